@@ -1,0 +1,90 @@
+"""Errors in a user's definitions: where they are, what is wrong, and how that is printed.
+
+Libraries raise :class:`DefinitionError` with every problem that they found; only the command line
+prints. The form is that of compilers: ``file:line:column: error: message``, then the source line,
+then a caret under the words that are meant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+__all__ = ["DefinitionError", "Diagnostic", "Source", "Span"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Source:
+    """A text of definitions.
+
+    Parameters
+    ----------
+    name : str
+        What to call it in messages: a file's path as the user wrote it, or ``<origin>/...`` for a
+        text that is in no file.
+    text : str
+        All of its characters, line ends as they were.
+    """
+
+    name: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Span:
+    """A range of characters of a source. Line and column are computed when somebody asks."""
+
+    source: Source
+    start: int
+    end: int
+
+    @property
+    def line(self) -> int:
+        """Line number, the first line being 1."""
+        return self.source.text.count("\n", 0, self.start) + 1
+
+    @property
+    def column(self) -> int:
+        """Column number in characters, the first column being 1."""
+        return self.start - (self.source.text.rfind("\n", 0, self.start) + 1) + 1
+
+    @property
+    def line_text(self) -> str:
+        """The source line of the start, without its line end."""
+        begin = self.source.text.rfind("\n", 0, self.start) + 1
+        end = self.source.text.find("\n", self.start)
+        return self.source.text[begin : None if end < 0 else end].rstrip("\r")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Diagnostic:
+    """One problem: a sentence, and the place that it is about (`None`: no text is to blame)."""
+
+    message: str
+    span: Span | None = None
+
+    def __str__(self) -> str:
+        if self.span is None:
+            return f"error: {self.message}"
+        span = self.span
+        text = span.line_text
+        # Tabs stay tabs in front of the caret, so that it stands right at any tab width.
+        indent = "".join("\t" if c == "\t" else " " for c in text[: span.column - 1])
+        carets = "^" * max(1, min(span.end - span.start, len(text) - span.column + 1))
+        where = f"{span.source.name}:{span.line}:{span.column}"
+        return f"{where}: error: {self.message}\n{text}\n{indent}{carets}"
+
+
+class DefinitionError(Exception):
+    """Definitions that cannot be used.
+
+    Attributes
+    ----------
+    diagnostics : tuple of Diagnostic
+        All problems that were found, in the order of the text; at least one.
+    """
+
+    def __init__(self, diagnostics: Iterable[Diagnostic]):
+        self.diagnostics = tuple(diagnostics)
+        assert self.diagnostics
+        super().__init__("\n".join(str(d) for d in self.diagnostics))

@@ -1,0 +1,252 @@
+"""The message model: what a ROS interface definition means, with every name resolved.
+
+A model is a tree of frozen values, equal when the definitions mean the same. It knows nothing of
+bytes on a wire beyond the size of each primitive; that is the business of :mod:`firm_hdl.wire`.
+Analyses are cached attributes, computed when first read (reference attribute grammars are the model
+of that: each attribute is an equation over the node and its children).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal, TypeAlias
+
+from firm_hdl.errors import Span
+
+__all__ = [
+    "PRIMITIVES",
+    "Array",
+    "Constant",
+    "Dialect",
+    "Field",
+    "FieldType",
+    "Message",
+    "Primitive",
+    "Sequence",
+    "Text",
+    "Value",
+]
+
+Dialect: TypeAlias = Literal["ros1", "ros2"]
+"""Whose rules a definition follows: ROS 1 (genmsg) or ROS 2 (rosidl)."""
+
+Value: TypeAlias = "bool | int | float | str | bytes | tuple[Value, ...]"
+"""A constant's or a default's value."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Primitive:
+    """A number of fixed size.
+
+    Attributes
+    ----------
+    name : str
+        As ROS writes it: ``bool``, ``byte``, ``char``, ``int8`` ... ``uint64``, ``float32``, ``float64``.
+    bytes : int
+        Size on every wire, in bytes: 1, 2, 4 or 8.
+    signed : bool
+        Whether an integer is two's complement. `byte` is signed in ROS 1 only.
+    kind : "bool", "int" or "float"
+        How the bits are to be read.
+    """
+
+    name: str
+    bytes: int
+    signed: bool
+    kind: Literal["bool", "int", "float"]
+
+    def __str__(self) -> str:
+        return self.name
+
+
+def _primitives(dialect: Dialect) -> dict[str, Primitive]:
+    sizes = {"int8": 1, "int16": 2, "int32": 4, "int64": 8}
+    table = {
+        "bool": Primitive(name="bool", bytes=1, signed=False, kind="bool"),
+        # genmsg: byte is a deprecated int8, char a deprecated uint8; rosidl: byte is an octet.
+        "byte": Primitive(name="byte", bytes=1, signed=dialect == "ros1", kind="int"),
+        "char": Primitive(name="char", bytes=1, signed=False, kind="int"),
+        "float32": Primitive(name="float32", bytes=4, signed=True, kind="float"),
+        "float64": Primitive(name="float64", bytes=8, signed=True, kind="float"),
+    }
+    for name, size in sizes.items():
+        table[name] = Primitive(name=name, bytes=size, signed=True, kind="int")
+        table["u" + name] = Primitive(name="u" + name, bytes=size, signed=False, kind="int")
+    return table
+
+
+PRIMITIVES: dict[Dialect, dict[str, Primitive]] = {
+    "ros1": _primitives("ros1"),
+    "ros2": _primitives("ros2"),
+}
+"""Every primitive by name, for each dialect."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Text:
+    """A string.
+
+    Attributes
+    ----------
+    bound : int or None
+        Most characters that it may have (bytes for `string`, UTF-16 units for `wstring`).
+    wide : bool
+        True for `wstring`.
+    """
+
+    bound: int | None = None
+    wide: bool = False
+
+    def __str__(self) -> str:
+        return ("wstring" if self.wide else "string") + ("" if self.bound is None else f"<={self.bound}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Array:
+    """A fixed number of elements, at least one."""
+
+    element: Primitive | Text | Message
+    count: int
+
+    def __str__(self) -> str:
+        return f"{self.element}[{self.count}]"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sequence:
+    """A number of elements that each message says anew; at most `bound`, unless that is `None`."""
+
+    element: Primitive | Text | Message
+    bound: int | None = None
+
+    def __str__(self) -> str:
+        return f"{self.element}[{'' if self.bound is None else f'<={self.bound}'}]"
+
+
+FieldType: TypeAlias = "Primitive | Text | Array | Sequence | Message"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Field:
+    """One member of a message.
+
+    Attributes
+    ----------
+    default : Value or None
+        ROS 2 only; never on the wire.
+    comment : str
+        Comment lines above and behind it, without the `#`, joined by newlines.
+    unit : str or None
+        A comment's ``[unit]``, as rosidl reads it.
+    span : Span or None
+        The field's name in the text. Not compared.
+    """
+
+    name: str
+    type: FieldType
+    default: Value | None = None
+    comment: str = field(default="", compare=False)
+    unit: str | None = field(default=None, compare=False)
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Constant:
+    """A named value of a message type; never on the wire.
+
+    Attributes
+    ----------
+    text : str
+        The value as the definition writes it (for ROS 1 strings: all that follows ``=``).
+    """
+
+    name: str
+    type: Primitive | Text
+    value: Value
+    text: str = field(default="", compare=False)
+    comment: str = field(default="", compare=False)
+    unit: str | None = field(default=None, compare=False)
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+# No slots: cached attributes live in the instance's dictionary.
+@dataclass(frozen=True, kw_only=True)
+class Message:
+    """A message type.
+
+    Attributes
+    ----------
+    name : str
+        Full name: ``sensor_msgs/msg/Imu`` in ROS 2, ``sensor_msgs/Imu`` in ROS 1; plain ``time`` and
+        ``duration`` for the built-in types of ROS 1.
+    dialect : "ros1" or "ros2"
+    fields : tuple of Field
+        In wire order. Empty for an empty message: what stands on the wire then depends on the wire.
+    constants : tuple of Constant
+    comment : str
+        The comment at the head of the file.
+    text : str
+        The definition as it was read.
+    """
+
+    name: str
+    dialect: Dialect
+    fields: tuple[Field, ...]
+    constants: tuple[Constant, ...] = ()
+    comment: str = field(default="", compare=False)
+    text: str = field(default="", compare=False, repr=False)
+
+    def __hash__(self) -> int:
+        # Equal messages have equal names; hashing the tree at every level would be quadratic.
+        return hash((self.dialect, self.name))
+
+    def __str__(self) -> str:
+        return self.name
+
+    @property
+    def package(self) -> str:
+        """Name of the package; empty for a built-in type."""
+        return self.name.partition("/")[0] if "/" in self.name else ""
+
+    @property
+    def base_name(self) -> str:
+        """Last part of the name."""
+        return self.name.rpartition("/")[2]
+
+    @property
+    def wire(self) -> Literal["ros1", "cdr"]:
+        """Wire format that the dialect's own middleware uses."""
+        return "ros1" if self.dialect == "ros1" else "cdr"
+
+    @cached_property
+    def children(self) -> tuple[Message, ...]:
+        """Distinct message types that fields name directly, in order of appearance."""
+        found: dict[str, Message] = {}
+        for item in self.fields:
+            kind = item.type.element if isinstance(item.type, Array | Sequence) else item.type
+            if isinstance(kind, Message):
+                found.setdefault(kind.name, kind)
+        return tuple(found.values())
+
+    @cached_property
+    def depth(self) -> int:
+        """Levels of messages: 1 for a message without message fields."""
+        return 1 + max((child.depth for child in self.children), default=0)
+
+    @cached_property
+    def is_fixed_size(self) -> bool:
+        """Whether every value of the message has the same number of bytes on a given wire."""
+
+        def fixed(kind: FieldType) -> bool:
+            match kind:
+                case Primitive():
+                    return True
+                case Message():
+                    return kind.is_fixed_size
+                case Array():
+                    return fixed(kind.element)
+                case _:
+                    return False
+
+        return all(fixed(item.type) for item in self.fields)

@@ -1,0 +1,428 @@
+"""From a layout and a bus width to a plan.
+
+The layout is flattened into segments, runs of bytes whose map is static, which end where a length
+decides what follows, where a loop starts or ends, or where padding is only known in the circuit.
+Segments are cut into steps (see `_cut`), and a run of items is started in the very step that
+holds its length wherever the window has room for both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from firm_hdl.model import Primitive
+from firm_hdl.plan.ir import (
+    RUN_COUNTER,
+    Begin,
+    Exits,
+    Fixed,
+    Jump,
+    Leaf,
+    Pad,
+    Part,
+    Plan,
+    Run,
+    Slice,
+    Step,
+)
+from firm_hdl.wire import Layout, Node, Path, Scalar, Trigger
+from firm_hdl.wire import Loop as LoopNode
+from firm_hdl.wire import Run as RunNode
+from firm_hdl.wire.layout import LENGTH, OCTET, Gap
+
+__all__ = ["BUS_BYTES", "DEFAULT_MAX_MESSAGE_BYTES", "build_plan"]
+
+BUS_BYTES = (1, 2, 4, 8, 16, 32, 64)
+DEFAULT_MAX_MESSAGE_BYTES = 1 << 24
+
+
+def build_plan(
+    layout: Layout, *, bus_bytes: int = 8, max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
+) -> Plan:
+    """Plan the converters of a layout.
+
+    Parameters
+    ----------
+    layout : Layout
+    bus_bytes : int
+        Width of the packet stream: 1, 2, 4, 8, 16, 32 or 64 bytes.
+    max_message_bytes : int
+        Packets that promise more are refused; at most 2**32 - 1.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of range, or no message of the type fits `max_message_bytes`.
+    """
+    if bus_bytes not in BUS_BYTES:
+        raise ValueError(f"Bus width must be one of {', '.join(map(str, BUS_BYTES))} bytes, not {bus_bytes!r}")
+    if not layout.min_bytes <= max_message_bytes < 1 << 32:
+        raise ValueError(
+            f"Maximum message size must be from {layout.min_bytes} bytes, the least that a "
+            f"{layout.message.name} has, to {(1 << 32) - 1}, not {max_message_bytes!r}"
+        )
+    builder = _Builder(layout, bus_bytes, max_message_bytes)
+    steps = builder.build()
+    return Plan(
+        message=layout.message.name,
+        wire=layout.rules.wire,
+        bus_bytes=bus_bytes,
+        max_message_bytes=max_message_bytes,
+        header_bytes=layout.rules.header_bytes,
+        slack_bytes=layout.rules.slack_bytes,
+        leaves=tuple(builder.leaves),
+        runs=tuple(builder.runs),
+        levels=builder.levels,
+        start=builder.jump_to(0),
+        steps=steps,
+    )
+
+
+@dataclass(slots=True, kw_only=True)
+class _Mark:
+    """A place between steps where a loop starts or ends, or a constant counter is loaded.
+
+    `kind` is "enter" (load `counter` with `count`), "loop" (the body of loop `counter` starts) or
+    "end" (it ends).
+    """
+
+    kind: str
+    counter: int | str
+    count: int = 0
+
+
+@dataclass(slots=True)
+class _Builder:
+    layout: Layout
+    bus_bytes: int
+    max_message_bytes: int
+    leaves: list[Leaf] = field(default_factory=list)
+    runs: list[Run] = field(default_factory=list)
+    levels: int = 0
+    # Steps and marks in wire order. Exits and bodies are filled in by `link`, when all is known.
+    program: list[Step | _Mark] = field(default_factory=list)
+    segment: list[Slice] = field(default_factory=list)
+    segment_align: int = 1
+    depth: int = 0
+    # Index of the step at each place of the program that holds one.
+    numbers: dict[int, int] = field(default_factory=dict)
+
+    @property
+    def window_bytes(self) -> int:
+        """What one step may take at most: two bus words, see docs/design.md."""
+        return 2 * self.bus_bytes
+
+    def build(self) -> tuple[Step, ...]:
+        rules = self.layout.rules
+        if rules.header_bytes:
+            self.segment.append(Fixed(at=0, data=rules.encapsulation, check=True))
+            options = bytes(rules.option_bytes)
+            self.segment.append(Fixed(at=len(rules.encapsulation), data=options, check=False))
+        self.nodes(self.layout.nodes)
+        self.flush()
+        places = [place for place, item in enumerate(self.program) if isinstance(item, Step)]
+        self.numbers = {place: index for index, place in enumerate(places)}
+        return self.link()
+
+    # Nodes to segments.
+
+    def nodes(self, nodes: tuple[Node, ...]) -> None:
+        for node in nodes:
+            match node:
+                case Scalar():
+                    self.gap(node.gap)
+                    self.value(self.leaf(node.path, "scalar", node.type), node.type.bytes)
+                case Trigger():
+                    self.value(self.leaf(node.path, "trigger", OCTET), 0)
+                case RunNode(count=None):
+                    self.counted_run(node)
+                case RunNode():
+                    self.array(node)
+                case LoopNode():
+                    self.loop(node)
+
+    def leaf(self, path: Path, kind: str, item: Primitive, lanes: int = 1) -> int:
+        if kind in ("length", "items"):
+            path = (*path, kind)
+        name = "bool" if kind == "trigger" else item.name
+        signed = item.signed and item.kind == "int"
+        self.leaves.append(Leaf(path=path, kind=kind, type=name, signed=signed, lanes=lanes))  # type: ignore[arg-type]
+        return len(self.leaves) - 1
+
+    @property
+    def segment_bytes(self) -> int:
+        return sum(item.bytes for item in self.segment)
+
+    def gap(self, gap: Gap) -> None:
+        if gap.bytes is None:
+            self.flush()
+            self.segment_align = gap.align
+        elif gap.bytes:
+            self.segment.append(Pad(at=self.segment_bytes, bytes=gap.bytes))
+
+    def value(self, leaf: int, size: int, *, last: bool = False, level: int | None = None) -> None:
+        at = self.segment_bytes
+        self.segment.append(
+            Part(at=at, bytes=size, leaf=leaf, first=0, size=size, last=last, last_level=level)
+        )
+
+    def limit(self, bound: int | None, item_bytes: int, end_bytes: int = 0) -> int:
+        """Return the largest count that a legal message can have."""
+        # Elements without bytes still take a transfer each, so they count as one byte.
+        left = self.max_message_bytes - self.layout.min_bytes - end_bytes
+        room = max(0, left // max(1, item_bytes))
+        return room if bound is None else min(bound, room)
+
+    def lanes(self, item: Primitive) -> int:
+        return max(1, self.bus_bytes // item.bytes)
+
+    def counted_run(self, node: RunNode) -> None:
+        assert node.gap is not None
+        self.gap(node.gap)
+        length = self.leaf(node.path, "length", LENGTH)
+        self.value(length, LENGTH.bytes)
+        items = self.leaf(node.path, "items", node.item, self.lanes(node.item))
+        begin = Begin(
+            length=length,
+            count=None,
+            limit=self.limit(node.bound, node.item.bytes, int(node.terminated)),
+            terminated=node.terminated,
+            level=None,
+            run=None,
+            body=None,
+        )
+        if node.item.bytes > self.bus_bytes:
+            self.item_loop(node, items, begin)
+        else:
+            self.runs.append(Run(items=items, terminated=node.terminated))
+            self.run(node, replace(begin, run=len(self.runs) - 1))
+
+    def array(self, node: RunNode) -> None:
+        assert node.count is not None
+        items = self.leaf(node.path, "items", node.item, self.lanes(node.item))
+        size = node.item.bytes
+        full, tail = divmod(node.count, self.lanes(node.item))
+        if node.count * size <= max(size, self.bus_bytes):
+            self.gap(node.item_gap)
+            self.value(items, node.count * size, last=True)
+            return
+        if size > self.bus_bytes:
+            self.item_loop(node, items, None)
+            return
+        self.gap(node.item_gap)
+        self.runs.append(Run(items=items, last=not tail))
+        count = full * self.lanes(node.item)
+        self.run(
+            replace(node, item_gap=Gap(align=1, bytes=0)),
+            Begin(
+                length=None,
+                count=count,
+                limit=count,
+                terminated=False,
+                level=None,
+                run=len(self.runs) - 1,
+                body=None,
+            ),
+        )
+        if tail:
+            self.value(items, tail * size, last=True)
+
+    def item_loop(self, node: RunNode, items: int, begin: Begin | None) -> None:
+        """Plan items wider than the bus: a loop over single items, some steps each."""
+        level = self.enter_loop(begin, node.count)
+        # Padding is in front of the first item only, but then it is there for all: items keep their
+        # own alignment. The gap of the layout was found for the first one, so it cannot be static.
+        if node.item_gap.bytes is None or node.item_gap.bytes:
+            self.segment_align = node.item_gap.align
+        self.value(items, node.item.bytes, level=level)
+        self.leave_loop()
+
+    def loop(self, node: LoopNode) -> None:
+        begin = None
+        if node.count is None:
+            assert node.gap is not None
+            self.gap(node.gap)
+            length = self.leaf(node.path, "length", LENGTH)
+            self.value(length, LENGTH.bytes)
+            limit = self.limit(node.bound, node.min_body_bytes)
+            begin = Begin(
+                length=length, count=None, limit=limit, terminated=False, level=None, run=None, body=None
+            )
+        self.enter_loop(begin, node.count)
+        self.nodes(node.body)
+        self.leave_loop()
+
+    def enter_loop(self, begin: Begin | None, count: int | None) -> int:
+        level = self.depth
+        self.depth += 1
+        self.levels = max(self.levels, self.depth)
+        if begin is None:
+            assert count is not None
+            self.flush()
+            self.program.append(_Mark(kind="enter", counter=level, count=count))
+        else:
+            self.flush(replace(begin, level=level))
+        self.program.append(_Mark(kind="loop", counter=level))
+        return level
+
+    def leave_loop(self) -> None:
+        self.flush()
+        self.depth -= 1
+        self.program.append(_Mark(kind="end", counter=self.depth))
+
+    # Segments to steps.
+
+    def run(self, node: RunNode, begin: Begin) -> None:
+        """End the segment with the start of a run, and add the run's body if it may need one."""
+        at_once = self.bus_bytes + (1 if begin.terminated else 0)
+        body = Step(run=begin.run, head=min(at_once, self.window_bytes), exits=_NOWHERE)
+        if begin.length is None and not self.segment:
+            assert begin.count is not None
+            self.flush()
+            self.program.append(_Mark(kind="enter", counter=RUN_COUNTER, count=begin.count))
+            self.program.append(replace(body, align=self.take_align()))
+            return
+        gap = node.item_gap.bytes
+        used = self.last_step_bytes() + (gap or 0)
+        head = min(at_once, self.window_bytes - used)
+        if gap is None or head < self.bus_bytes:
+            head = 0
+        self.flush(replace(begin, gap=gap or 0, head=head))
+        all_in_head = begin.count is not None and begin.count * node.item.bytes <= head
+        if not all_in_head:
+            self.program.append(replace(body, align=node.item_gap.align if gap is None else 1))
+
+    def take_align(self) -> int:
+        align, self.segment_align = self.segment_align, 1
+        return align
+
+    def last_step_bytes(self) -> int:
+        """Return the size of the last step that the segment will be cut into, if a run follows."""
+        return (self.segment_bytes - 1) % self.bus_bytes + 1 if self.segment else 0
+
+    def flush(self, begin: Begin | None = None) -> None:
+        """Turn the segment into steps, the last of which starts `begin`."""
+        if not self.segment:
+            assert begin is None
+            return
+        # From the start of the packet, cuts at bus words need no shifter. Elsewhere the offset is
+        # dynamic, and a remainder costs no cycle when the step before it takes it along.
+        absorb = bool(self.program) and not (begin is not None and begin.head)
+        sizes = _cut(self.segment_bytes, self.bus_bytes, self.window_bytes if absorb else self.bus_bytes)
+        align = self.take_align()
+        steps = _split(self.segment, sizes)
+        for index, slices in enumerate(steps):
+            self.program.append(
+                Step(
+                    align=align if index == 0 else 1,
+                    bytes=sizes[index],
+                    slices=slices,
+                    begin=begin if index == len(steps) - 1 else None,
+                    exits=_NOWHERE,
+                )
+            )
+        self.segment = []
+
+    # Control flow.
+
+    def jump_to(self, place: int) -> Jump:
+        """Return the jump that goes on at a place of the program: up to the next step, no loop ends."""
+        enter: list[tuple[int | str, int]] = []
+        while place < len(self.program):
+            item = self.program[place]
+            if isinstance(item, Step):
+                break
+            assert item.kind != "end"
+            if item.kind == "enter":
+                enter.append((item.counter, item.count))
+            place += 1
+        return Jump(enter=tuple(enter), step=self.numbers.get(place))
+
+    def exits_at(self, place: int, bodies: dict[int, int]) -> Exits:
+        """Return the exits of something that ends in front of a place of the program."""
+        repeats: list[tuple[int, Jump]] = []
+        while place < len(self.program):
+            item = self.program[place]
+            if isinstance(item, Step) or item.kind != "end":
+                break
+            assert isinstance(item.counter, int)
+            repeats.append((item.counter, self.jump_to(bodies[place])))
+            place += 1
+        return Exits(repeats=tuple(repeats), default=self.jump_to(place))
+
+    def link(self) -> tuple[Step, ...]:
+        bodies, ends = self.loop_places()
+        steps: list[Step] = []
+        for place, item in enumerate(self.program):
+            if isinstance(item, _Mark):
+                continue
+            begin = item.begin
+            after = place + 1
+            if begin is not None:
+                if begin.run is not None:
+                    # The body of a run, if any, is the next step.
+                    follower = self.program[after] if after < len(self.program) else None
+                    if isinstance(follower, Step) and follower.run == begin.run:
+                        begin = replace(begin, body=self.jump_to(after))
+                        after += 1
+                else:
+                    begin = replace(begin, body=self.jump_to(after))
+                    after = ends[after] + 1
+            steps.append(replace(item, begin=begin, exits=self.exits_at(after, bodies)))
+        return tuple(steps)
+
+    def loop_places(self) -> tuple[dict[int, int], dict[int, int]]:
+        """Return where the body of the loop that ends at a place starts, and the other way round."""
+        bodies: dict[int, int] = {}
+        ends: dict[int, int] = {}
+        open_loops: list[int] = []
+        for place, item in enumerate(self.program):
+            if isinstance(item, _Mark) and item.kind == "loop":
+                open_loops.append(place)
+            elif isinstance(item, _Mark) and item.kind == "end":
+                start = open_loops.pop()
+                bodies[place] = start + 1
+                ends[start] = place
+        return bodies, ends
+
+
+_NOWHERE = Exits(default=Jump(step=None))
+
+
+def _cut(total: int, bus_bytes: int, most_bytes: int) -> list[int]:
+    """Return step sizes for a segment: bus words, the last one with the remainder where it fits."""
+    words, rest = divmod(total, bus_bytes)
+    sizes = [bus_bytes] * words
+    if rest and sizes and bus_bytes + rest <= most_bytes:
+        sizes[-1] += rest
+    elif rest or not sizes:
+        sizes.append(rest)
+    return sizes
+
+
+def _split(segment: list[Slice], sizes: list[int]) -> list[tuple[Slice, ...]]:
+    """Distribute slices over steps, splitting those that cross a border."""
+    steps: list[list[Slice]] = [[] for _ in sizes]
+    index, start = 0, 0
+    for item in segment:
+        done = 0
+        while True:
+            while index < len(sizes) - 1 and item.at + done >= start + sizes[index]:
+                start += sizes[index]
+                index += 1
+            size = min(item.bytes - done, start + sizes[index] - item.at - done)
+            steps[index].append(_piece(item, done, size, item.at + done - start))
+            done += size
+            if done == item.bytes:
+                break
+    return [tuple(step) for step in steps]
+
+
+def _piece(item: Slice, first: int, size: int, at: int) -> Slice:
+    match item:
+        case Pad():
+            return Pad(at=at, bytes=size)
+        case Fixed():
+            return Fixed(at=at, data=item.data[first : first + size], check=item.check)
+        case Part():
+            return replace(item, at=at, bytes=size, first=first)

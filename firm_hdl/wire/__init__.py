@@ -1,0 +1,23 @@
+"""Wire formats: from a message model to its layout."""
+
+from firm_hdl.wire.cdr import CDR
+from firm_hdl.wire.layout import Gap, Layout, Loop, Node, Path, Run, Scalar, Trigger, lay_out, walk
+from firm_hdl.wire.ros1 import ROS1
+from firm_hdl.wire.rules import Wire, WireRules
+
+__all__ = [
+    "CDR",
+    "ROS1",
+    "Gap",
+    "Layout",
+    "Loop",
+    "Node",
+    "Path",
+    "Run",
+    "Scalar",
+    "Trigger",
+    "Wire",
+    "WireRules",
+    "lay_out",
+    "walk",
+]

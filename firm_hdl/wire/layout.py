@@ -1,0 +1,281 @@
+"""Layout: a message on a wire, field by field, with all that is statically known of its offsets.
+
+The layout is a tree in wire order. Alignment is decided here and nowhere else: each node carries a
+:class:`Gap`, the padding in front of it, as a number of bytes where the abstract interpretation of
+:mod:`firm_hdl.wire.residues` finds one, and else as the alignment that the circuit must reach.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from firm_hdl.model import PRIMITIVES, Array, Field, FieldType, Message, Primitive, Sequence, Text
+from firm_hdl.wire import residues as rs
+from firm_hdl.wire.cdr import CDR
+from firm_hdl.wire.ros1 import ROS1
+from firm_hdl.wire.rules import Wire, WireRules
+
+__all__ = ["Gap", "Layout", "Loop", "Node", "Path", "Run", "Scalar", "Trigger", "lay_out", "walk"]
+
+Path: TypeAlias = "tuple[str, ...]"
+RULES: dict[str, WireRules] = {"ros1": ROS1, "cdr": CDR}
+LENGTH = PRIMITIVES["ros2"]["uint32"]
+OCTET = PRIMITIVES["ros2"]["uint8"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gap:
+    """Padding in front of something that stands at a multiple of `align` bytes.
+
+    Attributes
+    ----------
+    align : int
+        1, 2, 4 or 8.
+    bytes : int or None
+        Size if it is the same in every packet, else `None`.
+    """
+
+    align: int
+    bytes: int | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scalar:
+    """One primitive."""
+
+    path: Path
+    gap: Gap
+    type: Primitive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trigger:
+    """A message without fields and without bytes."""
+
+    path: Path
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Run:
+    """Primitives in a row: a string, or an array or a sequence of primitives.
+
+    Attributes
+    ----------
+    gap : Gap or None
+        In front of the length on the wire; `None` if there is none (fixed arrays).
+    item_gap : Gap
+        In front of the first item. An empty run has no such padding (CDR).
+    count : int or None
+        Items, if the type fixes their number.
+    bound : int or None
+        Most items, if the type bounds their number.
+    terminated : bool
+        Whether a NUL follows the items, which the length on the wire counts.
+    """
+
+    path: Path
+    gap: Gap | None
+    item_gap: Gap
+    item: Primitive
+    count: int | None
+    bound: int | None
+    terminated: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Loop:
+    """Elements in a row that are not primitives.
+
+    Attributes are as for :class:`Run`; `body` is one element, placed wherever any of them may start.
+    """
+
+    path: Path
+    gap: Gap | None
+    count: int | None
+    bound: int | None
+    body: tuple[Node, ...]
+    min_body_bytes: int
+
+
+Node: TypeAlias = "Scalar | Trigger | Run | Loop"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layout:
+    """A message type on a wire.
+
+    Attributes
+    ----------
+    nodes : tuple of Node
+        Everything behind the encapsulation header, nested messages spliced in.
+    min_bytes : int
+        No packet of the type is shorter than this; header included.
+    """
+
+    message: Message
+    rules: WireRules
+    nodes: tuple[Node, ...]
+    min_bytes: int
+
+
+def lay_out(message: Message, wire: Wire | None = None) -> Layout:
+    """Lay a message out on a wire (by default that of its dialect)."""
+    if wire is not None and wire not in RULES:
+        raise ValueError(f"Wire must be one of {', '.join(map(repr, RULES))}, not {wire!r}")
+    rules = RULES[wire or message.wire]
+    builder = _Builder(rules)
+    nodes, _ = builder.message(message, (), rs.single(0))
+    return Layout(
+        message=message,
+        rules=rules,
+        nodes=nodes,
+        min_bytes=rules.header_bytes + builder.min_bytes(message),
+    )
+
+
+def walk(nodes: tuple[Node, ...]) -> Iterator[Node]:
+    """Yield all nodes in wire order, a loop before its body."""
+    for node in nodes:
+        yield node
+        if isinstance(node, Loop):
+            yield from walk(node.body)
+
+
+@dataclass(slots=True)
+class _Builder:
+    rules: WireRules
+    _after: dict[tuple[FieldType, int], int] = field(default_factory=dict)
+    _min: dict[FieldType, int] = field(default_factory=dict)
+
+    def align(self, primitive: Primitive) -> int:
+        return min(primitive.bytes, self.rules.max_align)
+
+    def gap(self, primitive: Primitive, at: int) -> Gap:
+        align = self.align(primitive)
+        return Gap(align=align, bytes=rs.pad_of(at, align))
+
+    # Where a value of a type ends, by where it starts.
+
+    def after(self, kind: FieldType, at: int) -> int:
+        result = 0
+        for r in rs.members(at):
+            key = (kind, r)
+            if key not in self._after:
+                self._after[key] = self._after_one(kind, rs.single(r))
+            result |= self._after[key]
+        return result
+
+    def _after_one(self, kind: FieldType, at: int) -> int:
+        match kind:
+            case Primitive():
+                return self.past(kind, at)
+            case Message(fields=()):
+                return at if self.rules.empty_member is None else self.past(OCTET, at)
+            case Message():
+                for item in kind.fields:
+                    at = self.after(item.type, at)
+                return at
+            case Text(wide=wide):
+                return rs.spread(self.past(LENGTH, at), 4 if wide else 1)
+            case Array(element=Primitive() as item, count=count):
+                return rs.advance(rs.aligned(at, self.align(item)), count * item.bytes)
+            case Sequence(element=Primitive() as item):
+                at = self.past(LENGTH, at)
+                return at | rs.spread(rs.advance(rs.aligned(at, self.align(item)), item.bytes), item.bytes)
+            case Array(element=element, count=count):
+                return rs.repeat(at, lambda now: self.after(element, now), count)[1]
+            case Sequence(element=element):
+                return rs.repeat(self.past(LENGTH, at), lambda now: self.after(element, now), None)[1]
+
+    def past(self, primitive: Primitive, at: int) -> int:
+        return rs.advance(rs.aligned(at, self.align(primitive)), primitive.bytes)
+
+    # Nodes.
+
+    def message(self, message: Message, path: Path, at: int) -> tuple[tuple[Node, ...], int]:
+        if not message.fields:
+            if self.rules.empty_member is None:
+                return (Trigger(path=path),), at
+            member = Field(name=self.rules.empty_member, type=OCTET)
+            return self.field(member.type, (*path, member.name), at), self.past(OCTET, at)
+        nodes: list[Node] = []
+        for item in message.fields:
+            nodes.extend(self.field(item.type, (*path, item.name), at))
+            at = self.after(item.type, at)
+        return tuple(nodes), at
+
+    def field(self, kind: FieldType, path: Path, at: int) -> tuple[Node, ...]:
+        match kind:
+            case Primitive():
+                return (Scalar(path=path, gap=self.gap(kind, at), type=kind),)
+            case Message():
+                return self.message(kind, path, at)[0]
+            case Text():
+                return (self.text(kind, path, at),)
+            case Array(element=Primitive() as item) | Sequence(element=Primitive() as item):
+                return (self.run(kind, item, path, at),)
+            case Array() | Sequence():
+                return (self.loop(kind, path, at),)
+
+    def text(self, kind: Text, path: Path, at: int) -> Run:
+        # wstring: each UTF-16 unit in four bytes, without a NUL, in today's ROS 2 middlewares.
+        return Run(
+            path=path,
+            gap=self.gap(LENGTH, at),
+            item_gap=Gap(align=1, bytes=0),
+            item=LENGTH if kind.wide else OCTET,
+            count=None,
+            bound=kind.bound,
+            terminated=self.rules.terminated and not kind.wide,
+        )
+
+    def run(self, kind: Array | Sequence, item: Primitive, path: Path, at: int) -> Run:
+        counted = isinstance(kind, Array)
+        start = at if counted else self.past(LENGTH, at)
+        return Run(
+            path=path,
+            gap=None if counted else self.gap(LENGTH, at),
+            item_gap=self.gap(item, start),
+            item=item,
+            count=kind.count if isinstance(kind, Array) else None,
+            bound=kind.bound if isinstance(kind, Sequence) else None,
+            terminated=False,
+        )
+
+    def loop(self, kind: Array | Sequence, path: Path, at: int) -> Loop:
+        counted = isinstance(kind, Array)
+        count = kind.count if isinstance(kind, Array) else None
+        start = at if counted else self.past(LENGTH, at)
+        entry, _ = rs.repeat(start, lambda now: self.after(kind.element, now), count)
+        return Loop(
+            path=path,
+            gap=None if counted else self.gap(LENGTH, at),
+            count=count,
+            bound=kind.bound if isinstance(kind, Sequence) else None,
+            body=self.field(kind.element, (*path, "item"), entry),
+            min_body_bytes=self.min_bytes(kind.element),
+        )
+
+    # Sizes.
+
+    def min_bytes(self, kind: FieldType) -> int:
+        """Return a lower bound of a value's size; padding is left out, as it depends on the place."""
+        if kind not in self._min:
+            self._min[kind] = self._min_bytes(kind)
+        return self._min[kind]
+
+    def _min_bytes(self, kind: FieldType) -> int:
+        match kind:
+            case Primitive():
+                return kind.bytes
+            case Message(fields=()):
+                return 0 if self.rules.empty_member is None else 1
+            case Message():
+                return sum(self.min_bytes(item.type) for item in kind.fields)
+            case Array():
+                return kind.count * self.min_bytes(kind.element)
+            case Text() | Sequence():
+                # A CDR string of length 0 has no NUL.
+                return LENGTH.bytes

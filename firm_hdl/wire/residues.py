@@ -1,0 +1,78 @@
+"""Sets of residues modulo 8: all that is known, before a packet comes, of where a field may start.
+
+A set is an 8-bit mask, bit r for offsets that are r modulo 8. Eight is enough because no primitive
+aligns to more. Every operation distributes over union, so a set's image is the union of its members'.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+__all__ = ["ALL", "MODULUS", "advance", "aligned", "members", "pad_of", "repeat", "single", "spread"]
+
+MODULUS = 8
+ALL = (1 << MODULUS) - 1
+
+
+def single(offset: int) -> int:
+    """Return the set of one known offset."""
+    return 1 << (offset % MODULUS)
+
+
+def members(residues: int) -> Iterator[int]:
+    """Yield the residues of a set in ascending order."""
+    return (r for r in range(MODULUS) if residues >> r & 1)
+
+
+def advance(residues: int, count: int) -> int:
+    """Return where offsets are after `count` bytes."""
+    count %= MODULUS
+    return (residues << count | residues >> (MODULUS - count)) & ALL
+
+
+def aligned(residues: int, align: int) -> int:
+    """Return where offsets are after padding to a multiple of `align` bytes."""
+    result = 0
+    for r in members(residues):
+        result |= single(r + -r % align)
+    return result
+
+
+def pad_of(residues: int, align: int) -> int | None:
+    """Return the padding to a multiple of `align` bytes if it is the same for all, else `None`."""
+    pads = {-r % align for r in members(residues)}
+    return pads.pop() if len(pads) == 1 else None
+
+
+def spread(residues: int, unit_bytes: int) -> int:
+    """Return where offsets are after any number of units, zero included."""
+    result = residues
+    for n in range(1, MODULUS):
+        result |= advance(residues, n * unit_bytes)
+    return result
+
+
+def repeat(residues: int, body: Callable[[int], int], count: int | None) -> tuple[int, int]:
+    """Run a loop body `count` times (`None`: any number of times, zero included).
+
+    Returns
+    -------
+    entry : int
+        Where some iteration may start.
+    after : int
+        Where the loop may end.
+    """
+    seen: list[int] = []
+    now = residues
+    entry = 0
+    # The images are subsets of a set of eight and so must recur; a recurring one closes the cycle.
+    while now not in seen and (count is None or len(seen) < count):
+        seen.append(now)
+        entry |= now
+        now = body(now)
+    if count is None:
+        return entry, entry | now
+    if len(seen) < count:
+        start = seen.index(now)
+        now = seen[start + (count - start) % (len(seen) - start)]
+    return entry, now

@@ -1,0 +1,20 @@
+"""The ROS 1 wire format: packed, little-endian, no header, no padding.
+
+As genpy and roscpp write it: a message body without the length that TCPROS puts in front.
+"""
+
+from __future__ import annotations
+
+from firm_hdl.wire.rules import WireRules
+
+__all__ = ["ROS1"]
+
+ROS1 = WireRules(
+    wire="ros1",
+    encapsulation=b"",
+    option_bytes=0,
+    max_align=1,
+    terminated=False,
+    empty_member=None,
+    slack_bytes=0,
+)

@@ -1,0 +1,48 @@
+"""What distinguishes one wire format from another, as data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+__all__ = ["Wire", "WireRules"]
+
+Wire = Literal["ros1", "cdr"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WireRules:
+    """Rules of a wire format.
+
+    Attributes
+    ----------
+    wire : "ros1" or "cdr"
+    encapsulation : bytes
+        Representation identifier that starts every packet; empty if the format has none. A packet
+        that starts with other bytes was not made for this converter.
+    option_bytes : int
+        Bytes behind the identifier that a receiver ignores and a sender sets to zero.
+    max_align : int
+        A primitive of n bytes stands at a multiple of min(n, max_align) bytes, counted from the end
+        of the encapsulation header.
+    terminated : bool
+        Whether a string's bytes end in a NUL that its length on the wire counts.
+    empty_member : str or None
+        Name of the uint8 that stands for a message without fields; `None`: such a message has no
+        bytes.
+    slack_bytes : int
+        Most bytes that may follow a message in its packet.
+    """
+
+    wire: Wire
+    encapsulation: bytes
+    option_bytes: int
+    max_align: int
+    terminated: bool
+    empty_member: str | None
+    slack_bytes: int
+
+    @property
+    def header_bytes(self) -> int:
+        """Bytes in front of the first field; alignment counts from behind them."""
+        return len(self.encapsulation) + self.option_bytes
