@@ -142,7 +142,7 @@ class _Builder:
                     self.loop(node)
 
     def leaf(self, path: Path, kind: str, item: Primitive, lanes: int = 1) -> int:
-        if kind in ("length", "items"):
+        if kind in ("length", "items", "trigger"):
             path = (*path, kind)
         name = "bool" if kind == "trigger" else item.name
         signed = item.signed and item.kind == "int"

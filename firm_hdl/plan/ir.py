@@ -44,7 +44,8 @@ class Leaf:
     Attributes
     ----------
     path : tuple of str
-        ROS names from the message down; the last one is ``length`` or ``items`` where `kind` says so.
+        ROS names from the message down; the last one is ``length``, ``items`` or ``trigger`` where `kind`
+        says so.
     kind : "scalar", "length", "items" or "trigger"
     type : str
         ROS name of the primitive (``uint32`` for a length, ``bool`` for a trigger).
