@@ -1,0 +1,1 @@
+"""Converters as Amaranth components."""

@@ -1,0 +1,85 @@
+"""Python names for ROS names: the members of message interfaces.
+
+Almost every ROS field name is used as it is. Three kinds are not: words that Python or Amaranth
+keeps for itself, and names with ``__``, which is what Amaranth joins the parts of a port's name with
+(``a__b`` and ``a.b`` would be one port, and one of the two silently lost). Such a member gets
+trailing underscores, as few as make it unique.
+"""
+
+from __future__ import annotations
+
+import keyword
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+__all__ = ["MemberTree", "member_tree"]
+
+RESERVED = frozenset({"signature", "metadata", "elaborate", "clk", "rst", *keyword.kwlist})
+STREAM_PORTS = ("payload", "valid", "ready")
+
+
+@dataclass(slots=True)
+class MemberTree:
+    """Members by ROS name, in wire order.
+
+    Attributes
+    ----------
+    member : str
+        Name in Python; empty at the root.
+    leaf : int or None
+        Index of the leaf, if this is one.
+    children : dict of str to MemberTree
+    """
+
+    member: str = ""
+    leaf: int | None = None
+    children: dict[str, MemberTree] = field(default_factory=dict)
+
+    def leaves(self, path: tuple[str, ...] = ()) -> Iterator[tuple[int, tuple[str, ...]]]:
+        """Yield the index and the member path of every leaf."""
+        if self.leaf is not None:
+            yield self.leaf, path
+        for child in self.children.values():
+            yield from child.leaves((*path, child.member))
+
+
+def member_tree(paths: Iterable[tuple[str, ...]]) -> MemberTree:
+    """Arrange leaves, given by their ROS paths in wire order, as a tree with Python names."""
+    root = MemberTree()
+    for index, path in enumerate(paths):
+        node = root
+        for name in path:
+            node = node.children.setdefault(name, MemberTree())
+        node.leaf = index
+    _name(root)
+    return root
+
+
+def _name(node: MemberTree) -> None:
+    for child in node.children.values():
+        _name(child)
+    taken: set[str] = set()
+    # Names that cannot clash are given out first, so that they stay as they are.
+    ordered = sorted(node.children.items(), key=lambda item: _may_clash(item[0]))
+    careful = any(_may_clash(name) for name in node.children)
+    for name, child in ordered:
+        member = name + "_" if name in RESERVED else name
+        while not taken.isdisjoint(_ports(member, child, careful)):
+            member += "_"
+        taken.update(_ports(member, child, careful))
+        child.member = member
+
+
+def _may_clash(name: str) -> bool:
+    return "__" in name or name.endswith("_") or name in RESERVED
+
+
+def _ports(member: str, node: MemberTree, careful: bool) -> Iterator[str]:
+    """Yield the names that a member occupies; only its own where no sibling could meet the others."""
+    yield member
+    if not careful:
+        return
+    if node.leaf is not None:
+        yield from (f"{member}__{port}" for port in STREAM_PORTS)
+    for child in node.children.values():
+        yield from (f"{member}__{port}" for port in _ports(child.member, child, careful))

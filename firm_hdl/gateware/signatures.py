@@ -1,0 +1,133 @@
+"""Signatures of the streams between converters and the world.
+
+The packet side carries serialized messages, the message side one stream per leaf. All are streams
+of `amaranth.lib.stream`, whose four rules hold: a transfer happens when `valid` and `ready` are both
+high; `valid` does not wait for `ready`; once high, `valid` and the payload stay until the transfer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from amaranth.hdl import Shape, signed, unsigned
+from amaranth.lib import data, enum, stream, wiring
+from amaranth.lib.wiring import Out
+
+from firm_hdl.gateware.members import MemberTree, member_tree
+from firm_hdl.model import Message
+from firm_hdl.plan import Leaf, Plan, build_plan
+from firm_hdl.wire import Wire, lay_out
+
+__all__ = [
+    "MessageSignature",
+    "PacketSignature",
+    "Status",
+    "StatusSignature",
+    "leaf_shape",
+    "packet_layout",
+    "plan_signature",
+]
+
+
+class Status(enum.Enum, shape=3):
+    """How a packet ended. The first error of a packet counts.
+
+    Members
+    -------
+    OK
+        Without an error.
+    TRUNCATED
+        The packet ended before the message (deserializer).
+    TRAILING
+        The message ended before the packet, by more than the wire allows (deserializer).
+    LENGTH
+        A length over its declared bound, or over what `max_message_bytes` leaves room for.
+    ENCAPSULATION
+        A representation that the converter was not built for (deserializer).
+    STRING
+        A string without its terminator (deserializer).
+    ITEMS
+        `items.last` not where `length` says (serializer).
+    """
+
+    OK = 0
+    TRUNCATED = 1
+    TRAILING = 2
+    LENGTH = 3
+    ENCAPSULATION = 4
+    STRING = 5
+    ITEMS = 6
+
+
+StatusSignature = stream.Signature(Status)
+"""One transfer per packet."""
+
+
+def packet_layout(bus_bytes: int) -> data.StructLayout:
+    """Return the payload of a packet stream.
+
+    Members
+    -------
+    data : ArrayLayout(8, bus_bytes)
+        Bytes, the first one on the wire in lane 0.
+    count : range(bus_bytes + 1)
+        Valid lanes. `bus_bytes` in every beat but the last of a packet; 0 only in the one beat of an
+        empty packet.
+    last : unsigned(1)
+        Set in the last beat of a packet.
+    """
+    return data.StructLayout(
+        {"data": data.ArrayLayout(8, bus_bytes), "count": range(bus_bytes + 1), "last": 1}
+    )
+
+
+def PacketSignature(bus_bytes: int) -> stream.Signature:
+    """Return the stream of packets, `bus_bytes` bytes a beat. See :func:`packet_layout`."""
+    # A function, as Amaranth's stream signature is final.
+    return stream.Signature(packet_layout(bus_bytes))
+
+
+def leaf_shape(leaf: Leaf) -> Shape | data.StructLayout:
+    """Return the payload's shape of a leaf's stream.
+
+    An integer has its own shape, a `bool` is one bit, a float is its bits, unsigned. `items` is a
+    structure of `data`, an array of `lanes` items with the first one in lane 0 and lanes past the
+    end 0, and `last`.
+    """
+    primitive = leaf.primitive
+    bits = 1 if primitive.kind == "bool" else 8 * primitive.bytes
+    shape = signed(bits) if leaf.signed else unsigned(bits)
+    if leaf.kind == "items":
+        return data.StructLayout({"data": data.ArrayLayout(shape, leaf.lanes), "last": 1})
+    return shape
+
+
+def MessageSignature(message: Message, bus_bytes: int, wire: Wire | None = None) -> wiring.Signature:
+    """Return the signature of a message, one stream per leaf, seen from where it comes from.
+
+    Parameters
+    ----------
+    message : Message
+    bus_bytes : int
+        Width of the packets on the other side of the converter; it decides the lanes of `items`.
+    wire : "ros1", "cdr" or None
+        Decides what an empty message is; `None`: the wire of the message's own dialect.
+    """
+    plan = build_plan(lay_out(message, wire), bus_bytes=bus_bytes, max_message_bytes=(1 << 32) - 1)
+    return plan_signature(plan, member_tree(leaf.path for leaf in plan.leaves))
+
+
+def plan_signature(plan: Plan, tree: MemberTree) -> wiring.Signature:
+    """Return the signature of a plan's message side, with the names of `tree`."""
+    return wiring.Signature(_members(plan.leaves, tree))
+
+
+def _members(leaves: Sequence[Leaf], node: MemberTree) -> dict[str, wiring.Member]:
+    return {
+        child.member: Out(
+            wiring.Signature(_members(leaves, child))
+            if child.leaf is None
+            else stream.Signature(leaf_shape(leaves[child.leaf]))
+        )
+        for child in node.children.values()
+    }
