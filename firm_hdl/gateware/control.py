@@ -1,0 +1,209 @@
+"""Control flow that both converters share: counters, the head of a run, and what comes next.
+
+Both transcribe the same plan, so both hold one step number, the loop counters, and the count of a
+run's items. What differs is only where a length comes from and what happens to the bytes.
+"""
+
+from __future__ import annotations
+
+from amaranth.hdl import Const, Module, Mux, Signal, Value
+
+from firm_hdl.plan import RUN_COUNTER, Exits, Jump, Plan, Step
+
+__all__ = ["Control"]
+
+
+class Control:
+    """Registers and decisions of a plan's control flow. Not a component: logic for one module.
+
+    Parameters
+    ----------
+    plan : Plan
+    count_bits : int or None
+        Width of counters; `None`: what the limits of the plan need, as a deserializer never counts
+        further.
+
+    Attributes
+    ----------
+    step : Signal
+        Number of the step.
+    levels : list of Signal
+        Elements left of each loop, the one under way included.
+    run_left : Signal
+        Items left of the run (a terminator included) in its body.
+    count : Signal
+        Set by the user in a step that begins something: items or elements that are to come, as on
+        the wire (a terminator included).
+    left : Signal
+        Items of the run, terminator included, in front of this cycle.
+    final : Signal
+        Whether the run ends in this cycle, if there is one.
+    run_bytes : Signal
+        Bytes of the run in this cycle; 0 if there is none.
+    has_items : Signal
+        Whether items are among them.
+    last_items : Signal
+        Whether no items come after them.
+    lane_used : Signal
+        Bit k: lane k of the transfer is an item.
+    base : Signal
+        Bytes of the step in front of the run, the gap included if something follows it.
+    done : Signal
+        Whether the plan leaves the step through its exits when it completes.
+    ends : Signal
+        Whether it then ends the packet.
+    align : Signal
+        What the next step needs: mask of the low bits of a position that must be zero.
+    """
+
+    def __init__(self, plan: Plan, *, count_bits: int | None = None):
+        self.plan = plan
+        begins = [step.begin for step in plan.steps if step.begin is not None]
+        limits = [max(begin.limit, begin.count or 0) + begin.terminated for begin in begins]
+        jumps = [plan.start]
+        for step in plan.steps:
+            jumps += [step.exits.default, *(jump for _, jump in step.exits.repeats)]
+            if step.begin is not None and step.begin.body is not None:
+                jumps.append(step.begin.body)
+        limits += [count for jump in jumps for _, count in jump.enter]
+        bits = max(limits, default=1).bit_length()
+        if count_bits is not None and any(begin.length is not None for begin in begins):
+            bits = max(bits, count_bits)
+        self.bits = bits
+        self.step = Signal(range(len(plan.steps)), init=plan.start.step or 0)
+        init = dict(plan.start.enter)
+        self.levels = [
+            Signal(bits, name=f"level_{level}", init=init.get(level, 0))
+            for level in range(plan.levels)
+        ]
+        self.run_left = Signal(bits, init=init.get(RUN_COUNTER, 0))
+        self.count = Signal(bits)
+        bus = plan.bus_bytes
+        self.left = Signal(bits)
+        self.most_items = Signal(range(bus + 2))
+        self.unit_log2 = Signal(range(7))
+        self.terminated = Signal()
+        self.running = Signal()
+        self.final = Signal()
+        self.run_bytes = Signal(range(bus + 2))
+        self.has_items = Signal()
+        self.last_items = Signal()
+        self.lane_used = Signal(bus)
+        gaps = (step.begin.gap if step.begin else 0 for step in plan.steps)
+        most = max(step.bytes + gap for step, gap in zip(plan.steps, gaps, strict=True))
+        self.base = Signal(range(most + 1))
+        self.done = Signal()
+        self.ends = Signal()
+        self.align = Signal(3)
+        self.next_step = Signal.like(self.step)
+
+    def add_run_logic(self, m: Module) -> None:
+        """Add what is the same for all runs: how much of one this cycle takes."""
+        bus = self.plan.bus_bytes
+        terminator = self.terminated
+        small = Signal(range(bus + 2))
+        m.d.comb += [
+            self.final.eq(self.left <= self.most_items),
+            small.eq(self.left),
+            self.has_items.eq(self.running & (self.left > terminator)),
+        ]
+        with m.If(self.running):
+            m.d.comb += self.run_bytes.eq(Mux(self.final, small << self.unit_log2, bus))
+        for unit in range(4):
+            lanes = bus >> unit
+            if not lanes:
+                break
+            with m.If(self.unit_log2 == unit):
+                m.d.comb += self.last_items.eq(self.left <= lanes + terminator)
+        for lane in range(bus):
+            m.d.comb += self.lane_used[lane].eq(self.left > lane + terminator)
+
+    def add_step(self, m: Module, step: Step) -> None:
+        """Add the decisions of a step, inside the case that selects it."""
+        m.d.comb += self.base.eq(step.bytes)
+        begin = step.begin
+        if step.run is not None:
+            self._run(m, step.run, step.head, self.run_left)
+            m.d.comb += self.done.eq(self.final)
+        elif begin is None:
+            m.d.comb += self.done.eq(1)
+        else:
+            some = self.count != 0
+            m.d.comb += self.base.eq(step.bytes + Mux(some, begin.gap, 0))
+            if begin.run is not None and begin.head:
+                with m.If(some):
+                    self._run(m, begin.run, begin.head, self.count)
+                m.d.comb += self.done.eq(~some | self.final)
+            else:
+                m.d.comb += self.done.eq(~some)
+        # Where to go, and with what alignment; the counters follow when the step completes.
+        with m.If(self.done):
+            self._exits(m, step.exits)
+        if begin is not None and begin.body is not None:
+            with m.Else():
+                self._goto(m, begin.body)
+        elif step.run is not None:
+            with m.Else():
+                m.d.comb += self.next_step.eq(self.step)
+
+    def add_counters(self, m: Module, step: Step) -> None:
+        """Add the changes of counters when the step completes, inside its case."""
+        begin = step.begin
+        if step.run is not None:
+            lanes = self.plan.leaves[self.plan.runs[step.run].items].lanes
+            m.d.sync += self.run_left.eq(self.run_left - lanes)
+        with m.If(self.done):
+            waiting = Const(1)
+            for level, jump in step.exits.repeats:
+                again = self.levels[level] > 1
+                with m.If(waiting & again):
+                    m.d.sync += self.levels[level].eq(self.levels[level] - 1)
+                    self._enter(m, jump)
+                waiting = waiting & ~again
+            with m.If(waiting):
+                self._enter(m, step.exits.default)
+                if step.exits.default.step is None:
+                    self._enter(m, self.plan.start)
+        if begin is not None and begin.body is not None:
+            with m.Else():
+                if begin.run is None:
+                    assert begin.level is not None
+                    m.d.sync += self.levels[begin.level].eq(self.count)
+                elif begin.head:
+                    lanes = self.plan.leaves[self.plan.runs[begin.run].items].lanes
+                    m.d.sync += self.run_left.eq(self.count - lanes)
+                else:
+                    m.d.sync += self.run_left.eq(self.count)
+                self._enter(m, begin.body)
+
+    def _run(self, m: Module, run: int, head: int, left: Value) -> None:
+        info = self.plan.runs[run]
+        unit = self.plan.leaves[info.items].item_bytes
+        m.d.comb += [
+            self.running.eq(1),
+            self.left.eq(left),
+            self.most_items.eq(head // unit),
+            self.unit_log2.eq(unit.bit_length() - 1),
+            self.terminated.eq(info.terminated),
+        ]
+
+    def _enter(self, m: Module, jump: Jump) -> None:
+        for counter, count in jump.enter:
+            target = self.run_left if counter == RUN_COUNTER else self.levels[int(counter)]
+            m.d.sync += target.eq(count)
+
+    def _goto(self, m: Module, jump: Jump) -> None:
+        if jump.step is None:
+            m.d.comb += [self.ends.eq(1), self.next_step.eq(self.plan.start.step or 0)]
+        else:
+            align = self.plan.steps[jump.step].align
+            m.d.comb += [self.next_step.eq(jump.step), self.align.eq(align - 1)]
+
+    def _exits(self, m: Module, exits: Exits) -> None:
+        self._goto(m, exits.default)
+        # Later statements win, so the innermost loop comes last.
+        for level, jump in reversed(exits.repeats):
+            with m.If(self.levels[level] > 1):
+                m.d.comb += self.ends.eq(0)
+                m.d.comb += self.align.eq(0)
+                self._goto(m, jump)

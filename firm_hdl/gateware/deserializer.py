@@ -1,0 +1,367 @@
+"""The deserializer: packets in, one stream per leaf of the message out."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
+from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware.control import Control
+from firm_hdl.gateware.members import member_tree
+from firm_hdl.gateware.signatures import PacketSignature, Status, StatusSignature, plan_signature
+from firm_hdl.gateware.slots import Slots
+from firm_hdl.gateware.window import Window
+from firm_hdl.model import Message
+from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Fixed, Pad, Part, Plan, Step, build_plan
+from firm_hdl.wire import Wire, lay_out
+
+__all__ = ["Deserializer"]
+
+
+class Deserializer(wiring.Component):
+    """Turn packets into messages.
+
+    Every leaf has one register. A packet moves one step of the plan per cycle, as long as its bytes
+    are there and the leaves of the step are free or being taken; leaves become valid in wire order.
+    Latency from the beat that completes a leaf to its `valid`: 2 cycles. `packets.ready` is a
+    function of registers; all outputs are registers. One clock domain, `sync`; its reset empties
+    everything.
+
+    Each packet ends in one transfer on `status`. After the first error in a packet, remaining
+    scalars and lengths transfer as 0, a sequence under way is completed with zeros, and the rest of
+    the packet is dropped; the next packet decodes as if nothing had happened.
+
+    Parameters
+    ----------
+    message : Message
+    wire : "ros1", "cdr" or None
+        `None`: the wire of the message's dialect.
+    bus_bytes : int
+        Bytes per beat: 1, 2, 4, 8, 16, 32 or 64.
+    max_message_bytes : int
+        A length that no packet of so many bytes can hold is an error.
+
+    Members
+    -------
+    packets : In(PacketSignature(bus_bytes))
+    message : Out(MessageSignature(message, bus_bytes))
+    status : Out(StatusSignature)
+
+    Attributes
+    ----------
+    plan : Plan
+    tree : MemberTree
+        Which member is which leaf.
+    """
+
+    def __init__(
+        self,
+        message: Message,
+        *,
+        wire: Wire | None = None,
+        bus_bytes: int = 8,
+        max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+    ):
+        self.plan = build_plan(
+            lay_out(message, wire), bus_bytes=bus_bytes, max_message_bytes=max_message_bytes
+        )
+        self.tree = member_tree(leaf.path for leaf in self.plan.leaves)
+        super().__init__(
+            {
+                "packets": In(PacketSignature(bus_bytes)),
+                "message": Out(plan_signature(self.plan, self.tree)),
+                "status": Out(StatusSignature),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        return _Circuit(self).module
+
+
+class _Circuit:
+    """The deserializer's logic, in pieces."""
+
+    def __init__(self, component: Deserializer):
+        self.plan: Plan = component.plan
+        self.status = component.status
+        self.streams: dict[int, stream.Interface] = {}
+        for leaf, path in component.tree.leaves():
+            interface = component.message
+            for name in path:
+                interface = getattr(interface, name)
+            self.streams[leaf] = interface
+
+        self.module = m = Module()
+        m.submodules.window = self.window = Window(self.plan)
+        self.control = Control(self.plan)
+        most = max(len(step.parts) + _has_run(step) for step in self.plan.steps)
+        self.slots = Slots(most)
+        self.error = Signal(Status)
+        self.draining = Signal()
+        self.enable = Signal()
+        self.complete = Signal()
+        # Set by each step.
+        self.needed = Signal(range(max(1, *(step.bytes for step in self.plan.steps)) + 1))
+        self.mismatch = Signal()
+        self.over = Signal()
+        self.run_bytes = Signal(8 * (self.plan.bus_bytes + 1))
+        self.run_have = Signal(self.plan.bus_bytes + 1)
+
+        m.d.comb += self.window.packets.payload.eq(component.packets.payload)
+        m.d.comb += self.window.packets.valid.eq(component.packets.valid)
+        m.d.comb += component.packets.ready.eq(self.window.packets.ready)
+        for interface in (*self.streams.values(), self.status):
+            with m.If(interface.ready):
+                m.d.sync += interface.valid.eq(0)
+        self.bad = self.error != Status.OK
+        self._steps()
+        self.control.add_run_logic(m)
+        self.slots.add_logic(m, self.enable, self.complete)
+        self._progress()
+        self._drain()
+
+    def free(self, interface: stream.Interface) -> Value:
+        return ~interface.valid | interface.ready
+
+    # Steps.
+
+    def _steps(self) -> None:
+        m = self.module
+        with m.Switch(self.control.step):
+            for index, step in enumerate(self.plan.steps):
+                with m.Case(index):
+                    self._step(step)
+                    with m.If(self.complete):
+                        self.control.add_counters(m, step)
+
+    def _step(self, step: Step) -> None:
+        m = self.module
+        needed = max((s.at + s.bytes for s in step.slices if not isinstance(s, Pad)), default=0)
+        m.d.comb += self.needed.eq(needed)
+        for item in step.slices:
+            if isinstance(item, Fixed) and item.check:
+                wrong = self.bytes(item.at, item.bytes) != int.from_bytes(item.data, "little")
+                m.d.comb += self.mismatch.eq(self.have(item.at + item.bytes) & wrong)
+        slot = 0
+        for part in step.parts:
+            self._part(part, slot, step)
+            slot += 1
+        if step.begin is not None and step.begin.count is not None:
+            m.d.comb += self.control.count.eq(step.begin.count)
+        if _has_run(step):
+            self._run(step, slot)
+        self.control.add_step(m, step)
+
+    def bytes(self, at: int, count: int) -> Value:
+        """Return bytes of the window as one value, little-endian."""
+        return Value.cast(self.window.data)[8 * at : 8 * (at + count)]
+
+    def have(self, count: int) -> Value:
+        """Return whether so many bytes of the window are there."""
+        return self.window.have[count - 1] if count else Const(1)
+
+    def good(self, count: int) -> Value:
+        """Return whether so many bytes are there, in a packet without an error so far."""
+        return self.have(count) & ~self.bad & ~self.mismatch
+
+    def _part(self, part: Part, slot: int, step: Step) -> None:
+        m = self.module
+        leaf = self.plan.leaves[part.leaf]
+        interface = self.streams[part.leaf]
+        payload = Value.cast(interface.payload)
+        value: Value = self.bytes(part.at, part.bytes)
+        good = self.good(part.at + part.bytes)
+        m.d.comb += self.slots.able[slot].eq(self.free(interface))
+        go = self.slots.go[slot]
+        if leaf.kind == "items":
+            self._items(part, go)
+        elif not part.completes:
+            with m.If(go):
+                m.d.sync += payload[8 * part.first : 8 * (part.first + part.bytes)].eq(value)
+        else:
+            if part.first:
+                value = Cat(payload[: 8 * part.first], value)
+            if leaf.kind == "trigger":
+                result: Value = Const(1)
+            elif leaf.kind == "length":
+                result = self._length(value, good, step)
+            else:
+                result = Mux(good, value.any() if leaf.type == "bool" else value, 0)
+            with m.If(go):
+                m.d.sync += payload.eq(result)
+        if part.completes:
+            with m.If(go):
+                m.d.sync += interface.valid.eq(1)
+
+    def _items(self, part: Part, go: Value) -> None:
+        """Write items of a transfer of static size: lane by lane, each good if all of it is there."""
+        m = self.module
+        leaf = self.plan.leaves[part.leaf]
+        payload = self.streams[part.leaf].payload
+        size, lanes = leaf.item_bytes, payload.data
+        with m.If(go):
+            for lane in range(leaf.lanes):
+                begin = max(lane * size, part.first)
+                end = min((lane + 1) * size, part.first + part.bytes)
+                target = Value.cast(lanes[lane])
+                if lane * size >= part.size:
+                    m.d.sync += target.eq(0)
+                if begin >= end:
+                    continue
+                at = part.at + begin - part.first
+                value: Value = self.bytes(at, end - begin)
+                if leaf.type == "bool":
+                    value = value.any()
+                shift = 8 * (begin - lane * size)
+                if end < (lane + 1) * size:
+                    m.d.sync += target[shift : shift + len(value)].eq(value)
+                    continue
+                whole = Cat(target[:shift], value) if shift else value
+                m.d.sync += target.eq(Mux(self.good(at + end - begin), whole, 0))
+            if part.completes:
+                last: Value = Const(part.last)
+                if part.last_level is not None:
+                    last = self.control.levels[part.last_level] <= 1
+                m.d.sync += payload.last.eq(last)
+
+    def _length(self, wire_length: Value, good: Value, step: Step) -> Value:
+        """Judge a length; return what its leaf transfers, and set what the step counts."""
+        m = self.module
+        begin = step.begin
+        assert begin is not None
+        over = wire_length > begin.limit + begin.terminated
+        some = good & ~over
+        m.d.comb += [
+            self.over.eq(good & over),
+            self.control.count.eq(Mux(some, wire_length, 0)),
+        ]
+        if begin.terminated:
+            return Mux(some & wire_length.any(), wire_length - 1, 0)
+        return Mux(some, wire_length, 0)
+
+    def _run(self, step: Step, slot: int) -> None:
+        m = self.module
+        control = self.control
+        run, at = step.run, 0
+        if run is None:
+            assert step.begin is not None
+            run, at = step.begin.run, step.bytes + step.begin.gap
+        assert run is not None
+        info = self.plan.runs[run]
+        leaf, interface = self.plan.leaves[info.items], self.streams[info.items]
+        m.d.comb += self.slots.able[slot].eq(~control.has_items | self.free(interface))
+        size = leaf.item_bytes
+        with m.If(self.slots.go[slot] & control.has_items):
+            m.d.sync += [interface.valid.eq(1), interface.payload.last.eq(control.last_items & info.last)]
+            for lane in range(leaf.lanes):
+                value: Value = self.bytes(at + lane * size, size)
+                if leaf.type == "bool":
+                    value = value.any()
+                used = control.lane_used[lane] & self.good(at + (lane + 1) * size)
+                m.d.sync += Value.cast(interface.payload.data[lane]).eq(Mux(used, value, 0))
+        if info.terminated:
+            most = min(step.head if step.run is not None else step.begin.head, self.plan.bus_bytes + 1)  # type: ignore[union-attr]
+            m.d.comb += self.run_bytes[: 8 * most].eq(self.bytes(at, most))
+            m.d.comb += self.run_have[:most].eq(self.window.have[at : at + most])
+
+    # Between steps.
+
+    def _progress(self) -> None:
+        m, control, window = self.module, self.control, self.window
+        plan = self.plan
+        take = Signal(range(len(window.have) + 8))
+        need = Signal.like(take)
+        enough = Signal()
+        m.d.comb += [
+            take.eq(control.base + control.run_bytes),
+            need.eq(Mux(control.running, take, self.needed)),
+            enough.eq(window.available >= need),
+        ]
+        pad = Signal(3)
+        if window.geometry.aligns:
+            m.d.comb += pad.eq(-(window.phase + take)[:3] & control.align)
+        failure = self._failure(enough)
+        ends = control.ends
+        status_able = ~ends | self.free(self.status)
+        m.d.comb += [
+            self.enable.eq(~self.draining & (self.bad | (window.held & (enough | window.ended)))),
+            self.complete.eq(self.enable & self.slots.all_served & status_able),
+            window.advance.eq(take + pad),
+            window.take.eq(self.complete & ~ends & ~self.bad),
+        ]
+        finished = Signal(Status)
+        slack = Signal()
+        m.d.comb += [
+            slack.eq(window.available <= take + plan.slack_bytes),
+            finished.eq(failure),
+        ]
+        with m.If((failure == Status.OK) & ~slack):
+            m.d.comb += finished.eq(Status.TRAILING)
+        with m.If(self.complete):
+            m.d.sync += [control.step.eq(control.next_step), self.error.eq(failure)]
+            with m.If(ends):
+                with m.If(window.ended):
+                    m.d.comb += window.finish.eq(1)
+                    self._report(finished)
+                with m.Else():
+                    m.d.sync += self.draining.eq(1)
+                    m.d.comb += window.take.eq(~self.bad)
+
+    def _failure(self, enough: Value) -> Signal:
+        """Return the status after this step: the first error of the packet, in wire order."""
+        m, control, window = self.module, self.control, self.window
+        failure = Signal(Status)
+        m.d.comb += failure.eq(self.error)
+        nul_missing = Signal()
+        bus = self.plan.bus_bytes
+        for k in range(bus + 1):
+            wrong = self.run_bytes[8 * k : 8 * (k + 1)].any() & self.run_have[k]
+            with m.If(control.left == k + 1):
+                m.d.comb += nul_missing.eq(wrong & control.running & control.final & control.terminated)
+        with m.If(~self.bad):
+            with m.If(self.mismatch):
+                m.d.comb += failure.eq(Status.ENCAPSULATION)
+            with m.Elif(window.available < self.needed):
+                m.d.comb += failure.eq(Status.TRUNCATED)
+            with m.Elif(self.over):
+                m.d.comb += failure.eq(Status.LENGTH)
+            with m.Elif(~enough):
+                m.d.comb += failure.eq(Status.TRUNCATED)
+            with m.Elif(nul_missing):
+                m.d.comb += failure.eq(Status.STRING)
+        return failure
+
+    def _report(self, status: Value) -> None:
+        self.module.d.sync += [
+            self.status.payload.eq(status),
+            self.status.valid.eq(1),
+            self.error.eq(Status.OK),
+        ]
+
+    def _drain(self) -> None:
+        """Drop what is left of a packet, beat by beat, and report it at the last one."""
+        m, window = self.module, self.window
+        slack = self.plan.slack_bytes
+        extra = Signal(range(slack + 2))
+        total = Signal(range(slack + 2 + self.plan.bus_bytes))
+        m.d.comb += total.eq(extra + window.first_bytes)
+        status = Signal(Status)
+        m.d.comb += status.eq(self.error)
+        with m.If((self.error == Status.OK) & (total > slack)):
+            m.d.comb += status.eq(Status.TRAILING)
+        with m.If(self.draining & window.held):
+            with m.If(~window.first_last):
+                m.d.comb += window.drop.eq(1)
+                m.d.sync += extra.eq(Mux(total > slack, slack + 1, total))
+            with m.Elif(self.free(self.status)):
+                m.d.comb += window.drop.eq(1)
+                m.d.sync += [extra.eq(0), self.draining.eq(0)]
+                self._report(status)
+
+
+def _has_run(step: Step) -> bool:
+    """Return whether a step may take items of a run."""
+    begin = step.begin
+    return step.run is not None or (begin is not None and begin.run is not None and begin.head > 0)
+
+
