@@ -1,5 +1,14 @@
 """Converters as Amaranth components."""
 
 from firm_hdl.gateware.deserializer import Deserializer
+from firm_hdl.gateware.serializer import Serializer
+from firm_hdl.gateware.signatures import MessageSignature, PacketSignature, Status, StatusSignature
 
-__all__ = ["Deserializer"]
+__all__ = [
+    "Deserializer",
+    "MessageSignature",
+    "PacketSignature",
+    "Serializer",
+    "Status",
+    "StatusSignature",
+]

@@ -94,7 +94,7 @@ class _Circuit:
         self.module = m = Module()
         m.submodules.window = self.window = Window(self.plan)
         self.control = Control(self.plan)
-        most = max(len(step.parts) + _has_run(step) for step in self.plan.steps)
+        most = max(len(step.parts) + step.takes_items for step in self.plan.steps)
         self.slots = Slots(most)
         self.error = Signal(Status)
         self.draining = Signal()
@@ -148,7 +148,7 @@ class _Circuit:
             slot += 1
         if step.begin is not None and step.begin.count is not None:
             m.d.comb += self.control.count.eq(step.begin.count)
-        if _has_run(step):
+        if step.takes_items:
             self._run(step, slot)
         self.control.add_step(m, step)
 
@@ -357,11 +357,3 @@ class _Circuit:
                 m.d.comb += window.drop.eq(1)
                 m.d.sync += [extra.eq(0), self.draining.eq(0)]
                 self._report(status)
-
-
-def _has_run(step: Step) -> bool:
-    """Return whether a step may take items of a run."""
-    begin = step.begin
-    return step.run is not None or (begin is not None and begin.run is not None and begin.head > 0)
-
-

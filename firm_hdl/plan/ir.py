@@ -263,6 +263,12 @@ class Step:
         return tuple(item for item in self.slices if isinstance(item, Part))
 
     @property
+    def takes_items(self) -> bool:
+        """Whether the step may take items of a run."""
+        begin = self.begin
+        return self.run is not None or (begin is not None and begin.run is not None and begin.head > 0)
+
+    @property
     def most_bytes(self) -> int:
         """Most bytes that one cycle of the step can take."""
         gap_and_head = 0 if self.begin is None or not self.begin.head else self.begin.gap + self.begin.head
