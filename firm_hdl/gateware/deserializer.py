@@ -94,8 +94,10 @@ class _Circuit:
         self.module = m = Module()
         m.submodules.window = self.window = Window(self.plan)
         self.control = Control(self.plan)
-        most = max(len(step.parts) + step.takes_items for step in self.plan.steps)
-        self.slots = Slots(most)
+        self.slots = Slots(max(_slots(step) for step in self.plan.steps))
+        # First bytes of a transfer that crosses steps, until its last ones are there.
+        carried = max((part.first for step in self.plan.steps for part in step.parts), default=0)
+        self.carry = Signal(8 * carried)
         self.error = Signal(Status)
         self.draining = Signal()
         self.enable = Signal()
@@ -144,8 +146,11 @@ class _Circuit:
                 m.d.comb += self.mismatch.eq(self.have(item.at + item.bytes) & wrong)
         slot = 0
         for part in step.parts:
-            self._part(part, slot, step)
-            slot += 1
+            if part.completes:
+                self._part(part, slot, step)
+                slot += 1
+            else:
+                self._carry(part)
         if step.begin is not None and step.begin.count is not None:
             m.d.comb += self.control.count.eq(step.begin.count)
         if step.takes_items:
@@ -164,65 +169,67 @@ class _Circuit:
         """Return whether so many bytes are there, in a packet without an error so far."""
         return self.have(count) & ~self.bad & ~self.mismatch
 
+    def whole(self, part: Part, begin: int, end: int) -> Value:
+        """Return bytes of a transfer that ends in this step; what was before is in the carry."""
+        carried = self.carry[8 * begin : 8 * min(end, part.first)] if begin < part.first else Const(0, 0)
+        start = max(begin, part.first)
+        return Cat(carried, self.bytes(part.at + start - part.first, max(0, end - start)))
+
+    def _carry(self, part: Part) -> None:
+        """Keep bytes of a transfer that goes on in the next step."""
+        m = self.module
+        size = self.plan.leaves[part.leaf].item_bytes
+        for k in range(part.bytes):
+            value: Value = self.bytes(part.at + k, 1)
+            # Items that end here are judged here: those in front of an error keep their values.
+            item_end = (part.first + k) // size * size + size
+            if item_end <= part.first + part.bytes:
+                value = Mux(self.good(part.at + item_end - part.first), value, 0)
+            with m.If(self.complete):
+                m.d.sync += self.carry[8 * (part.first + k) : 8 * (part.first + k + 1)].eq(value)
+
     def _part(self, part: Part, slot: int, step: Step) -> None:
         m = self.module
         leaf = self.plan.leaves[part.leaf]
         interface = self.streams[part.leaf]
-        payload = Value.cast(interface.payload)
-        value: Value = self.bytes(part.at, part.bytes)
-        good = self.good(part.at + part.bytes)
         m.d.comb += self.slots.able[slot].eq(self.free(interface))
+        good = self.good(part.at + part.bytes)
+        value = self.whole(part, 0, part.size)
+        if leaf.kind == "length":
+            value = self._length(value, good, step)
         go = self.slots.go[slot]
-        if leaf.kind == "items":
-            self._items(part, go)
-        elif not part.completes:
-            with m.If(go):
-                m.d.sync += payload[8 * part.first : 8 * (part.first + part.bytes)].eq(value)
-        else:
-            if part.first:
-                value = Cat(payload[: 8 * part.first], value)
-            if leaf.kind == "trigger":
-                result: Value = Const(1)
+        with m.If(go):
+            m.d.sync += interface.valid.eq(1)
+            if leaf.kind == "items":
+                self._items(part)
+            elif leaf.kind == "trigger":
+                m.d.sync += interface.payload.eq(1)
             elif leaf.kind == "length":
-                result = self._length(value, good, step)
+                m.d.sync += interface.payload.eq(value)
             else:
-                result = Mux(good, value.any() if leaf.type == "bool" else value, 0)
-            with m.If(go):
-                m.d.sync += payload.eq(result)
-        if part.completes:
-            with m.If(go):
-                m.d.sync += interface.valid.eq(1)
+                result = value.any() if leaf.type == "bool" else value
+                m.d.sync += interface.payload.eq(Mux(good, result, 0))
 
-    def _items(self, part: Part, go: Value) -> None:
-        """Write items of a transfer of static size: lane by lane, each good if all of it is there."""
+    def _items(self, part: Part) -> None:
+        """Write a transfer of static size, lane by lane; each is good if all of it is there."""
         m = self.module
         leaf = self.plan.leaves[part.leaf]
         payload = self.streams[part.leaf].payload
-        size, lanes = leaf.item_bytes, payload.data
-        with m.If(go):
-            for lane in range(leaf.lanes):
-                begin = max(lane * size, part.first)
-                end = min((lane + 1) * size, part.first + part.bytes)
-                target = Value.cast(lanes[lane])
-                if lane * size >= part.size:
-                    m.d.sync += target.eq(0)
-                if begin >= end:
-                    continue
-                at = part.at + begin - part.first
-                value: Value = self.bytes(at, end - begin)
+        size = leaf.item_bytes
+        for lane in range(leaf.lanes):
+            end = (lane + 1) * size
+            value: Value = Const(0)
+            if end <= part.size:
+                value = self.whole(part, lane * size, end)
                 if leaf.type == "bool":
                     value = value.any()
-                shift = 8 * (begin - lane * size)
-                if end < (lane + 1) * size:
-                    m.d.sync += target[shift : shift + len(value)].eq(value)
-                    continue
-                whole = Cat(target[:shift], value) if shift else value
-                m.d.sync += target.eq(Mux(self.good(at + end - begin), whole, 0))
-            if part.completes:
-                last: Value = Const(part.last)
-                if part.last_level is not None:
-                    last = self.control.levels[part.last_level] <= 1
-                m.d.sync += payload.last.eq(last)
+                if end > part.first:
+                    value = Mux(self.good(part.at + end - part.first), value, 0)
+            m.d.sync += Value.cast(payload.data[lane]).eq(value)
+        last: Value = Const(part.last)
+        if part.last_level is not None:
+            last = self.control.levels[part.last_level] <= 1
+        m.d.sync += payload.last.eq(last)
 
     def _length(self, wire_length: Value, good: Value, step: Step) -> Value:
         """Judge a length; return what its leaf transfers, and set what the step counts."""
@@ -357,3 +364,8 @@ class _Circuit:
                 m.d.comb += window.drop.eq(1)
                 m.d.sync += [extra.eq(0), self.draining.eq(0)]
                 self._report(status)
+
+
+def _slots(step: Step) -> int:
+    """Return how many leaves a step writes."""
+    return sum(part.completes for part in step.parts) + step.takes_items

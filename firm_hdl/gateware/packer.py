@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value, unsigned
+from amaranth.hdl import Module, Mux, Signal, Value, unsigned
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -72,64 +72,95 @@ class Packer(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         bus, word_bytes = self.plan.bus_bytes, self.geometry.word_bytes
-        granule = self.geometry.granule_bytes
         # A packet may end in a step without bytes. Its last beat must then still be here.
         holds = any(not step.most_bytes for step in self.plan.steps)
-        store_bytes = (bus if holds else bus - granule) + word_bytes
-        store = Signal(8 * max(bus, store_bytes))
-        level = Signal(range(bus + word_bytes + 8))
+        # Where words are not beats, one beat may wait while the next word comes, so that a short
+        # word, or the start of the next packet, does not leave a hole in the stream.
+        most_kept = 0 if self.geometry.granule_bytes == bus >= word_bytes and not holds else bus
+        store = Signal(8 * max(bus, most_kept + word_bytes))
+        level = Signal(range(most_kept + word_bytes + 8 + bus))
         ending = Signal()
+        end_beats = Signal(range(len(store) // 8 // bus + 2))
+        end_count = Signal(range(bus + 1))
         marked = Signal()
 
         payload = self.packets.payload
         is_last = Signal()
         m.d.comb += [
             self.packets.valid.eq(ending | ((level > bus) if holds else (level >= bus))),
-            is_last.eq(ending & (level <= bus)),
+            is_last.eq(ending & (end_beats == 1)),
             payload.last.eq(is_last),
-            payload.count.eq(Mux(level > bus, bus, level)),
+            payload.count.eq(Mux(is_last, end_count, bus)),
             Value.cast(payload.data).eq(store[: 8 * bus]),
             self.error.eq(is_last & marked),
         ]
         leaves = Signal()
         rest = Signal.like(level)
         kept = Signal.like(store)
+        word = self.word.payload
+        still_ending = Signal()
         m.d.comb += [
             leaves.eq(self.packets.valid & self.packets.ready),
-            rest.eq(Mux(leaves, Mux(is_last, 0, level - bus), level)),
+            rest.eq(Mux(leaves, level - bus, level)),
             kept.eq(Mux(leaves, store >> (8 * bus), store)),
-            # Nothing may be accepted behind a packet that is not gone, nor in front of a full beat.
-            self.word.ready.eq(
-                (~ending | (leaves & is_last)) & ((rest <= bus) if holds else (rest < bus))
-            ),
+            still_ending.eq(ending & ~(leaves & is_last)),
+            # One end of a packet is remembered at a time.
+            self.word.ready.eq((rest <= most_kept) & ~(still_ending & word.last)),
         ]
-        word = self.word.payload
         position = self._position(m, rest)
         pad = Signal(3)
         m.d.comb += pad.eq(-(position + word.count)[:3] & word.align)
-        low = granule.bit_length() - 1
-        m.d.sync += [store.eq(kept), level.eq(rest)]
-        with m.If(leaves & is_last):
-            m.d.sync += ending.eq(0)
+        m.d.sync += [store.eq(kept), level.eq(rest), ending.eq(still_ending)]
+        with m.If(leaves):
+            m.d.sync += end_beats.eq(end_beats - 1)
         with m.If(self.word.valid & self.word.ready):
             m.d.sync += [
-                store.eq(kept | self._placed(m, Cat(Const(0, low), rest[low:]))),
+                store.eq(kept | self._placed(m, rest, most_kept)),
                 level.eq(rest + word.count + pad),
-                ending.eq(word.last),
-                marked.eq(word.error),
             ]
+            with m.If(word.last):
+                self._end(m, rest, level, ending, end_beats, end_count)
+                m.d.sync += marked.eq(word.error)
         return m
 
-    def _placed(self, m: Module, offset: Value) -> Value:
-        """Return the word's bytes, moved up by an offset of at most a beat."""
+    def _end(
+        self,
+        m: Module,
+        rest: Signal,
+        level: Signal,
+        ending: Signal,
+        end_beats: Signal,
+        end_count: Signal,
+    ) -> None:
+        """End the packet with the word that is being accepted; the next one starts a new beat."""
+        bus = self.plan.bus_bytes
+        low = bus.bit_length() - 1
+        word = self.word.payload
+        total, empty, beats = Signal.like(level), Signal(), Signal.like(level)
+        if any(not step.most_bytes for step in self.plan.steps):
+            inside = Signal()
+            with m.If(self.word.valid & self.word.ready):
+                m.d.sync += inside.eq(~word.last)
+            m.d.comb += empty.eq(~inside & (word.count == 0))
+        m.d.comb += [
+            total.eq(rest + word.count),
+            beats.eq(((total + (bus - 1)) >> low) + empty),
+        ]
+        m.d.sync += [
+            level.eq(beats << low),
+            ending.eq(1),
+            end_beats.eq(beats),
+            end_count.eq(Mux(empty, 0, (total - 1)[:low] + 1)),
+        ]
+
+    def _placed(self, m: Module, rest: Value, most_kept: int) -> Value:
+        """Return the word's bytes, moved up behind those that are kept."""
         now: Value = Value.cast(self.word.payload.data)
-        for bit in range(self.plan.bus_bytes.bit_length()):
+        for bit in range(most_kept.bit_length()):
             if 1 << bit < self.geometry.granule_bytes:
                 continue
-            if 1 << bit == self.plan.bus_bytes and self.geometry.granule_bytes == 1 << bit:
-                break
             moved = Signal(len(now) + (8 << bit), name=f"moved_{1 << bit}")
-            m.d.comb += moved.eq(Mux(offset[bit], now << (8 << bit), now))
+            m.d.comb += moved.eq(Mux(rest[bit], now << (8 << bit), now))
             now = moved
         return now
 

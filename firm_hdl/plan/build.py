@@ -283,7 +283,7 @@ class _Builder:
             self.program.append(replace(body, align=self.take_align()))
             return
         gap = node.item_gap.bytes
-        used = self.last_step_bytes() + (gap or 0)
+        used = _cut(self.segment, self.bus_bytes, self.bus_bytes)[-1] + (gap or 0)
         head = min(at_once, self.window_bytes - used)
         if gap is None or head < self.bus_bytes:
             head = 0
@@ -296,19 +296,21 @@ class _Builder:
         align, self.segment_align = self.segment_align, 1
         return align
 
-    def last_step_bytes(self) -> int:
-        """Return the size of the last step that the segment will be cut into, if a run follows."""
-        return (self.segment_bytes - 1) % self.bus_bytes + 1 if self.segment else 0
-
     def flush(self, begin: Begin | None = None) -> None:
         """Turn the segment into steps, the last of which starts `begin`."""
         if not self.segment:
             assert begin is None
             return
-        # From the start of the packet, cuts at bus words need no shifter. Elsewhere the offset is
-        # dynamic, and a remainder costs no cycle when the step before it takes it along.
-        absorb = bool(self.program) and not (begin is not None and begin.head)
-        sizes = _cut(self.segment_bytes, self.bus_bytes, self.window_bytes if absorb else self.bus_bytes)
+        heads = begin is not None and begin.head > 0
+        bus = self.bus_bytes
+        if not self.program and not heads:
+            # From the start of the packet, cuts at bus words need no shifter.
+            sizes = [min(bus, self.segment_bytes - at) for at in range(0, self.segment_bytes, bus)]
+            sizes = sizes or [0]
+        else:
+            # Elsewhere the offset is dynamic. A remainder costs no cycle when the last step takes it
+            # along, unless the room is needed for the head of a run.
+            sizes = _cut(self.segment, bus, bus if heads else self.window_bytes)
         align = self.take_align()
         steps = _split(self.segment, sizes)
         for index, slices in enumerate(steps):
@@ -389,15 +391,23 @@ class _Builder:
 _NOWHERE = Exits(default=Jump(step=None))
 
 
-def _cut(total: int, bus_bytes: int, most_bytes: int) -> list[int]:
-    """Return step sizes for a segment: bus words, the last one with the remainder where it fits."""
-    words, rest = divmod(total, bus_bytes)
-    sizes = [bus_bytes] * words
-    if rest and sizes and bus_bytes + rest <= most_bytes:
-        sizes[-1] += rest
-    elif rest or not sizes:
-        sizes.append(rest)
-    return sizes
+def _cut(segment: list[Slice], bus_bytes: int, last_bytes: int) -> list[int]:
+    """Return step sizes for a segment: as few as can be, cut between values where that is possible.
+
+    Steps take up to a bus word, the last one up to `last_bytes`.
+    """
+    borders = {item.at for item in segment}
+    total = segment[-1].at + segment[-1].bytes
+    sizes: list[int] = []
+    start = 0
+    while total - start > last_bytes:
+        later = -(-(total - start - last_bytes) // bus_bytes) - 1
+        least = total - last_bytes - later * bus_bytes
+        cuts = [at for at in range(max(least, start + 1), start + bus_bytes + 1) if at in borders]
+        cut = cuts[-1] if cuts else start + bus_bytes
+        sizes.append(cut - start)
+        start = cut
+    return [*sizes, total - start]
 
 
 def _split(segment: list[Slice], sizes: list[int]) -> list[tuple[Slice, ...]]:
