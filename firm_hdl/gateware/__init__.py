@@ -1,6 +1,7 @@
 """Converters as Amaranth components."""
 
 from firm_hdl.gateware.deserializer import Deserializer
+from firm_hdl.gateware.record import RecordReader, RecordWriter, record_layout
 from firm_hdl.gateware.serializer import Serializer
 from firm_hdl.gateware.signatures import MessageSignature, PacketSignature, Status, StatusSignature
 
@@ -8,7 +9,10 @@ __all__ = [
     "Deserializer",
     "MessageSignature",
     "PacketSignature",
+    "RecordReader",
+    "RecordWriter",
     "Serializer",
     "Status",
     "StatusSignature",
+    "record_layout",
 ]

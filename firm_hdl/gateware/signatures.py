@@ -26,6 +26,7 @@ __all__ = [
     "leaf_shape",
     "packet_layout",
     "plan_signature",
+    "signature_of",
 ]
 
 
@@ -119,7 +120,12 @@ def MessageSignature(message: Message, bus_bytes: int, wire: Wire | None = None)
 
 def plan_signature(plan: Plan, tree: MemberTree) -> wiring.Signature:
     """Return the signature of a plan's message side, with the names of `tree`."""
-    return wiring.Signature(_members(plan.leaves, tree))
+    return signature_of(plan.leaves, tree)
+
+
+def signature_of(leaves: Sequence[Leaf], tree: MemberTree) -> wiring.Signature:
+    """Return the signature with the leaves that are in a tree."""
+    return wiring.Signature(_members(leaves, tree))
 
 
 def _members(leaves: Sequence[Leaf], node: MemberTree) -> dict[str, wiring.Member]:
