@@ -33,7 +33,9 @@ class Control:
         Items left of the run (a terminator included) in its body.
     count : Signal
         Set by the user in a step that begins something: items or elements that are to come, as on
-        the wire (a terminator included).
+        the wire (a terminator included). Need not be right if `some` is 0.
+    some : Signal
+        Set by the user in such a step: whether the count is above zero, and to be believed.
     left : Signal
         Items of the run, terminator included, in front of this cycle.
     final : Signal
@@ -78,12 +80,14 @@ class Control:
         ]
         self.run_left = Signal(bits, init=init.get(RUN_COUNTER, 0))
         self.count = Signal(bits)
+        self.some = Signal()
         bus = plan.bus_bytes
         self.left = Signal(bits)
         self.most_items = Signal(range(bus + 2))
         self.unit_log2 = Signal(range(7))
         self.terminated = Signal()
         self.running = Signal()
+        self.allowed = Signal()
         self.final = Signal()
         self.run_bytes = Signal(range(bus + 2))
         self.has_items = Signal()
@@ -103,9 +107,10 @@ class Control:
         terminator = self.terminated
         small = Signal(range(bus + 2))
         m.d.comb += [
-            self.final.eq(self.left <= self.most_items),
             small.eq(self.left),
-            self.has_items.eq(self.running & (self.left > terminator)),
+            # A wide comparison would be slow, and it is on the longest path.
+            self.final.eq(~self.left[len(small) :].any() & (small <= self.most_items)),
+            self.has_items.eq(self.allowed & (self.left > terminator)),
         ]
         with m.If(self.running):
             m.d.comb += self.run_bytes.eq(Mux(self.final, small << self.unit_log2, bus))
@@ -124,18 +129,16 @@ class Control:
         begin = step.begin
         if step.run is not None:
             self._run(m, step.run, step.head, self.run_left)
-            m.d.comb += self.done.eq(self.final)
+            m.d.comb += [self.done.eq(self.final), self.allowed.eq(1)]
         elif begin is None:
             m.d.comb += self.done.eq(1)
         else:
-            some = self.count != 0
-            m.d.comb += self.base.eq(step.bytes + Mux(some, begin.gap, 0))
+            if begin.gap:
+                m.d.comb += self.base.eq(step.bytes + Mux(self.count.any(), begin.gap, 0))
+            m.d.comb += self.done.eq(~self.some)
             if begin.run is not None and begin.head:
-                with m.If(some):
-                    self._run(m, begin.run, begin.head, self.count)
-                m.d.comb += self.done.eq(~some | self.final)
-            else:
-                m.d.comb += self.done.eq(~some)
+                self._run(m, begin.run, begin.head, self.count)
+                m.d.comb += [self.allowed.eq(self.some), self.done.eq(~self.some | self.final)]
         # Where to go, and with what alignment; the counters follow when the step completes.
         with m.If(self.done):
             self._exits(m, step.exits)

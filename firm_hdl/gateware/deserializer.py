@@ -102,12 +102,16 @@ class _Circuit:
         self.draining = Signal()
         self.enable = Signal()
         self.complete = Signal()
-        # Set by each step.
-        self.needed = Signal(range(max(1, *(step.bytes for step in self.plan.steps)) + 1))
+        # Set by each step: whether the bytes of its map are there, whether those that lengths promise
+        # are, whether more than the slack would be left, and what went wrong.
+        self.map_there = Signal()
+        self.too_much = Signal()
         self.mismatch = Signal()
         self.over = Signal()
-        self.run_bytes = Signal(8 * (self.plan.bus_bytes + 1))
-        self.run_have = Signal(self.plan.bus_bytes + 1)
+        # The window from where the run starts in this step.
+        most = self.plan.bus_bytes + 1
+        self.run_bytes = Signal(8 * most)
+        self.run_have = Signal(most + self.plan.slack_bytes + 1)
 
         m.d.comb += self.window.packets.payload.eq(component.packets.payload)
         m.d.comb += self.window.packets.valid.eq(component.packets.valid)
@@ -139,7 +143,10 @@ class _Circuit:
     def _step(self, step: Step) -> None:
         m = self.module
         needed = max((s.at + s.bytes for s in step.slices if not isinstance(s, Pad)), default=0)
-        m.d.comb += self.needed.eq(needed)
+        m.d.comb += [
+            self.map_there.eq(self.have(needed)),
+            self.too_much.eq(self.have(step.bytes + self.plan.slack_bytes + 1)),
+        ]
         for item in step.slices:
             if isinstance(item, Fixed) and item.check:
                 wrong = self.bytes(item.at, item.bytes) != int.from_bytes(item.data, "little")
@@ -152,7 +159,7 @@ class _Circuit:
             else:
                 self._carry(part)
         if step.begin is not None and step.begin.count is not None:
-            m.d.comb += self.control.count.eq(step.begin.count)
+            m.d.comb += [self.control.count.eq(step.begin.count), self.control.some.eq(1)]
         if step.takes_items:
             self._run(step, slot)
         self.control.add_step(m, step)
@@ -237,14 +244,14 @@ class _Circuit:
         begin = step.begin
         assert begin is not None
         over = wire_length > begin.limit + begin.terminated
-        some = good & ~over
+        some = Signal()
         m.d.comb += [
+            some.eq(good & ~over & wire_length.any()),
             self.over.eq(good & over),
-            self.control.count.eq(Mux(some, wire_length, 0)),
+            self.control.count.eq(wire_length),
+            self.control.some.eq(some),
         ]
-        if begin.terminated:
-            return Mux(some & wire_length.any(), wire_length - 1, 0)
-        return Mux(some, wire_length, 0)
+        return Mux(some, wire_length - 1 if begin.terminated else wire_length, 0)
 
     def _run(self, step: Step, slot: int) -> None:
         m = self.module
@@ -266,43 +273,29 @@ class _Circuit:
                     value = value.any()
                 used = control.lane_used[lane] & self.good(at + (lane + 1) * size)
                 m.d.sync += Value.cast(interface.payload.data[lane]).eq(Mux(used, value, 0))
+        have = self.window.have[at : at + len(self.run_have)]
+        m.d.comb += self.run_have[: len(have)].eq(have)
         if info.terminated:
-            most = min(step.head if step.run is not None else step.begin.head, self.plan.bus_bytes + 1)  # type: ignore[union-attr]
-            m.d.comb += self.run_bytes[: 8 * most].eq(self.bytes(at, most))
-            m.d.comb += self.run_have[:most].eq(self.window.have[at : at + most])
+            data = Value.cast(self.window.data)[8 * at : 8 * (at + self.plan.bus_bytes + 1)]
+            m.d.comb += self.run_bytes[: len(data)].eq(data)
 
     # Between steps.
 
     def _progress(self) -> None:
         m, control, window = self.module, self.control, self.window
-        plan = self.plan
-        take = Signal(range(len(window.have) + 8))
-        need = Signal.like(take)
-        enough = Signal()
-        m.d.comb += [
-            take.eq(control.base + control.run_bytes),
-            need.eq(Mux(control.running, take, self.needed)),
-            enough.eq(window.available >= need),
-        ]
-        pad = Signal(3)
-        if window.geometry.aligns:
-            m.d.comb += pad.eq(-(window.phase + take)[:3] & control.align)
-        failure = self._failure(enough)
+        failure, enough, too_much = self._failure()
         ends = control.ends
         status_able = ~ends | self.free(self.status)
         m.d.comb += [
             self.enable.eq(~self.draining & (self.bad | (window.held & (enough | window.ended)))),
             self.complete.eq(self.enable & self.slots.all_served & status_able),
-            window.advance.eq(take + pad),
-            window.take.eq(self.complete & ~ends & ~self.bad),
+            window.count.eq(control.base + control.run_bytes),
+            window.align.eq(control.align),
+            window.take.eq(self.complete & ~self.bad & ~(ends & window.ended)),
         ]
         finished = Signal(Status)
-        slack = Signal()
-        m.d.comb += [
-            slack.eq(window.available <= take + plan.slack_bytes),
-            finished.eq(failure),
-        ]
-        with m.If((failure == Status.OK) & ~slack):
+        m.d.comb += finished.eq(failure)
+        with m.If((failure == Status.OK) & too_much):
             m.d.comb += finished.eq(Status.TRAILING)
         with m.If(self.complete):
             m.d.sync += [control.step.eq(control.next_step), self.error.eq(failure)]
@@ -312,23 +305,50 @@ class _Circuit:
                     self._report(finished)
                 with m.Else():
                     m.d.sync += self.draining.eq(1)
-                    m.d.comb += window.take.eq(~self.bad)
 
-    def _failure(self, enough: Value) -> Signal:
-        """Return the status after this step: the first error of the packet, in wire order."""
-        m, control, window = self.module, self.control, self.window
-        failure = Signal(Status)
-        m.d.comb += failure.eq(self.error)
+    def _failure(self) -> tuple[Signal, Signal, Signal]:
+        """Judge the step.
+
+        Returns
+        -------
+        failure : Signal(Status)
+            The status after this step: the first error of the packet, in wire order.
+        enough : Signal
+            All bytes that the step takes are there.
+        too_much : Signal
+            More bytes are there behind them than may follow a message.
+        """
+        m, control = self.module, self.control
+        failure, enough, too_much = Signal(Status), Signal(), Signal()
         nul_missing = Signal()
-        bus = self.plan.bus_bytes
-        for k in range(bus + 1):
-            wrong = self.run_bytes[8 * k : 8 * (k + 1)].any() & self.run_have[k]
-            with m.If(control.left == k + 1):
-                m.d.comb += nul_missing.eq(wrong & control.running & control.final & control.terminated)
+        m.d.comb += [
+            failure.eq(self.error),
+            enough.eq(self.map_there),
+            too_much.eq(self.too_much),
+        ]
+        with m.If(control.running):
+            there = self.run_have
+            slack = self.plan.slack_bytes
+            m.d.comb += [
+                enough.eq(self.map_there & there[self.plan.bus_bytes - 1]),
+                too_much.eq(there[self.plan.bus_bytes + slack]),
+            ]
+            with m.If(control.final):
+                with m.Switch(control.run_bytes):
+                    for k in range(self.plan.bus_bytes + 2):
+                        with m.Case(k):
+                            run_there = there[k - 1] if k else Const(1)
+                            m.d.comb += [
+                                enough.eq(self.map_there & run_there),
+                                too_much.eq(there[k + slack]),
+                            ]
+                            if k:
+                                wrong = self.run_bytes[8 * (k - 1) : 8 * k].any() & run_there
+                                m.d.comb += nul_missing.eq(control.terminated & wrong)
         with m.If(~self.bad):
             with m.If(self.mismatch):
                 m.d.comb += failure.eq(Status.ENCAPSULATION)
-            with m.Elif(window.available < self.needed):
+            with m.Elif(~self.map_there):
                 m.d.comb += failure.eq(Status.TRUNCATED)
             with m.Elif(self.over):
                 m.d.comb += failure.eq(Status.LENGTH)
@@ -336,7 +356,7 @@ class _Circuit:
                 m.d.comb += failure.eq(Status.TRUNCATED)
             with m.Elif(nul_missing):
                 m.d.comb += failure.eq(Status.STRING)
-        return failure
+        return failure, enough, too_much
 
     def _report(self, status: Value) -> None:
         self.module.d.sync += [

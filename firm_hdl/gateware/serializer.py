@@ -134,7 +134,7 @@ class _Circuit:
             if isinstance(item, Fixed):
                 self.write(item.at, Const(int.from_bytes(item.data, "little"), 8 * item.bytes))
         if step.begin is not None and step.begin.count is not None:
-            self.module.d.comb += self.control.count.eq(step.begin.count)
+            self.module.d.comb += [self.control.count.eq(step.begin.count), self.control.some.eq(1)]
         # The first slot's error counts, so it is the last to be assigned.
         slots = len(step.parts)
         if step.takes_items:
@@ -187,9 +187,10 @@ class _Circuit:
         count = Signal(33)
         m.d.comb += count.eq(length + begin.terminated)
         # Once taken, the length is gone from its stream while the step may still wait for items.
-        m.d.comb += self.control.count.eq(
-            Mux(self.slots.served[slot], self.held_count, count)
-        )
+        m.d.comb += [
+            self.control.count.eq(Mux(self.slots.served[slot], self.held_count, count)),
+            self.control.some.eq(self.control.count.any()),
+        ]
         with m.If(self.slots.go[slot]):
             m.d.sync += self.held_count.eq(count)
             with m.If(length > begin.limit):

@@ -1,4 +1,4 @@
-"""A window onto the bytes of a packet: a queue of beats, a byte offset, one shifter."""
+"""A window onto the bytes of a packet: beats where they arrived, a byte offset, one shifter."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ __all__ = ["Window"]
 class Window(wiring.Component):
     """Show the next unread bytes of the packet at the head of a stream.
 
-    The queue holds one beat more than a step can touch, so that `packets.ready` is a function of
-    registers alone and the stream moves one beat per cycle. Beats stay where they arrived; the
-    window is shifted by the offset of the next unread byte, in granules (a plan whose steps all
-    start at bus words has no shifter). Latency 1 cycle from `packets` to the window.
+    Beats stay in the slots where they arrived. The slots that a step can touch are brought in order
+    and shifted by the offset of the next unread byte, in granules: a plan whose steps all start at
+    bus words has no shifter. There is at least one slot more than a step can touch, so that
+    `packets.ready` is a function of registers alone and the stream moves one beat per cycle.
+    Latency 1 cycle from `packets` to the window.
 
-    A beat whose bytes are all read leaves the queue, except the last one of a packet: that one is
+    A beat whose bytes are all read frees its slot, except the last one of a packet: that one is
     left to `finish` or `drop`, so the window never shows bytes of the next packet.
 
     Parameters
@@ -33,21 +34,22 @@ class Window(wiring.Component):
     -------
     packets : In(PacketSignature(bus_bytes))
     data : Out(ArrayLayout(8, word_bytes))
-        The next bytes, first one in lane 0. What is past `available` is not specified.
-    available : Out(range(reach_beats * bus_bytes + 1))
-        Bytes of the packet that are there to read.
-    have : Out(word_bytes)
-        Bit k: byte k is there.
+        The next bytes, first one in lane 0. Bytes that are not there are not specified.
+    have : Out
+        Bit k: byte k is there. Reaches `slack_bytes + 1` bytes further than `data`.
     held : Out(1)
         There is a beat, and the window stands.
     ended : Out(1)
-        The packet ends with the available bytes.
-    phase : Out(3)
-        Position behind the encapsulation header, modulo 8.
-    first_bytes, first_last : Out
-        Unread bytes of the first beat, and whether it is the packet's last.
-    advance : In
-        Bytes to go forward with `take`; padding may reach past what is there.
+        The packet ends within what the window can see.
+    first_bytes : Out(range(bus_bytes + 1))
+        Unread bytes of the first beat.
+    first_last : Out(1)
+        The first beat is the last one of its packet.
+    count : In(range(word_bytes + 1))
+        Bytes to go forward with `take`.
+    align : In(3)
+        Bits of the position behind the encapsulation header that must then be 0: padding is skipped
+        along, be it there or not.
     take, finish, drop : In(1)
         Go forward; remove the rest of the packet (when `ended`); remove the first beat (when
         `held`). At most one at a time.
@@ -62,15 +64,13 @@ class Window(wiring.Component):
             {
                 "packets": In(PacketSignature(bus)),
                 "data": Out(data.ArrayLayout(8, word)),
-                "available": Out(range(reach * bus + 1)),
-                "have": Out(word),
+                "have": Out(max(reach * bus, word + plan.slack_bytes + 1)),
                 "held": Out(1),
                 "ended": Out(1),
-                "phase": Out(3),
                 "first_bytes": Out(range(bus + 1)),
                 "first_last": Out(1),
-                # A step, and up to 7 bytes of padding behind it.
-                "advance": In(range(word + 8)),
+                "count": In(range(word + 1)),
+                "align": In(3),
                 "take": In(1),
                 "finish": In(1),
                 "drop": In(1),
@@ -80,49 +80,64 @@ class Window(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         bus, reach = self.plan.bus_bytes, self.geometry.reach_beats
-        depth = reach + 1
-        beats = [Signal(self.packets.payload.shape(), name=f"beat_{i}") for i in range(depth)]
+        depth = 1 << reach.bit_length()
+        # A beat's bytes, which of them are there, and whether it is the last one.
+        slot = data.StructLayout({"data": 8 * bus, "keep": bus, "last": 1})
+        slots = [Signal(slot, name=f"slot_{i}") for i in range(depth)]
+        first = Signal(range(depth))
         fill = Signal(range(depth + 1))
         offset = Signal(range(bus + self.geometry.word_bytes + 8))
         pops = Signal(range(reach + 1))
+        self._write(m, slots, first, fill, pops)
 
         # Beats of this packet that may be read: those up to the first `last`.
-        valid: list[Signal] = []
-        ends: list[Signal] = []
-        for i in range(reach):
-            valid.append(Signal(name=f"valid_{i}"))
-            ends.append(Signal(name=f"ends_{i}"))
-            before = valid[i - 1] & ~ends[i - 1] if i else Const(1)
+        beats = [Signal(slot, name=f"beat_{i}") for i in range(reach)]
+        valid = [Signal(name=f"valid_{i}") for i in range(reach)]
+        ends = [Signal(name=f"ends_{i}") for i in range(reach)]
+        before: Value = Const(1)
+        for i, beat in enumerate(beats):
             m.d.comb += [
+                beat.eq(Array(slots)[(first + i)[: len(first)]]),
                 valid[i].eq((fill > i) & before),
-                ends[i].eq(valid[i] & beats[i].last),
+                ends[i].eq(valid[i] & beat.last),
             ]
-        self._levels(m, beats, valid, ends, offset)
-        self._shift(m, beats, offset)
-        self._queue(m, beats, fill, pops)
+            before = valid[i] & ~beat.last
+        self._read(m, beats, valid, ends, offset)
 
-        past = Signal(range(bus + 2 * self.geometry.word_bytes + 16))
-        m.d.comb += past.eq(offset + Mux(self.take, self.advance, 0))
-        passed = [valid[i] & ~ends[i] & (past >= (i + 1) * bus) for i in range(reach)]
-        next_offset = Signal.like(offset)
-        with m.If(self.finish):
-            for i in reversed(range(reach)):
-                with m.If(ends[i]):
-                    m.d.comb += pops.eq(i + 1)
-        with m.Elif(self.drop):
-            m.d.comb += pops.eq(1)
+        past = self._past(m, offset)
+        m.d.comb += self._pops(m, pops, past, offset, valid, ends)
+        low = bus.bit_length() - 1
+        with m.If(self.finish | self.drop):
+            m.d.sync += offset.eq(0)
+        with m.Elif(self.take):
+            # Low bits that the plan proves to be zero are kept so, and cost nothing.
+            fixed = self.geometry.granule_bytes.bit_length() - 1
+            beats_over = past[low:] - pops
+            m.d.sync += offset.eq(Cat(Const(0, fixed), past[fixed:low], beats_over))
         with m.Else():
-            m.d.comb += [
-                pops.eq(sum(passed[1:], passed[0])),
-                next_offset.eq(past - Array(i * bus for i in range(reach + 1))[pops]),
-            ]
-        # Low bits that the plan proves to be zero are kept so, and cost nothing.
-        low = self.geometry.granule_bytes.bit_length() - 1
-        m.d.sync += offset.eq(Cat(Const(0, low), next_offset[low:]))
-        self._phase(m, offset)
+            m.d.sync += offset[low:].eq(offset[low:] - pops)
         return m
 
-    def _levels(
+    def _write(
+        self, m: Module, slots: list[Signal], first: Signal, fill: Signal, pops: Signal
+    ) -> None:
+        bus, depth = self.plan.bus_bytes, len(slots)
+        payload = self.packets.payload
+        free = Signal.like(first)
+        m.d.comb += self.packets.ready.eq(fill < depth)
+        arrives = self.packets.valid & self.packets.ready
+        with m.If(arrives):
+            m.d.sync += free.eq(free + 1)
+            for i, beat in enumerate(slots):
+                with m.If(free == i):
+                    m.d.sync += [
+                        beat.data.eq(Value.cast(payload.data)),
+                        beat.keep.eq(Cat(~payload.last | (payload.count > k) for k in range(bus))),
+                        beat.last.eq(payload.last),
+                    ]
+        m.d.sync += [fill.eq(fill - pops + arrives), first.eq(first + pops)]
+
+    def _read(
         self,
         m: Module,
         beats: list[Signal],
@@ -130,61 +145,78 @@ class Window(wiring.Component):
         ends: list[Signal],
         offset: Signal,
     ) -> None:
-        bus = self.plan.bus_bytes
-        total = Signal(range(len(valid) * bus + 1))
-        for i, beat in enumerate(beats[: len(valid)]):
-            with m.If(valid[i]):
-                m.d.comb += total.eq(i * bus + Mux(beat.last, beat.count, bus))
-        first = Signal(range(bus + 1))
-        m.d.comb += [
-            self.available.eq(Mux(total > offset, total - offset, 0)),
-            self.have.eq(Cat(self.available > k for k in range(self.geometry.word_bytes))),
-            self.ended.eq(Cat(ends).any()),
-            self.first_last.eq(ends[0]),
-            # An offset past the end of the last beat means padding that is not there.
-            self.held.eq(valid[0] & ((offset < bus) | beats[0].last)),
-            first.eq(Mux(beats[0].last, beats[0].count, bus)),
-            self.first_bytes.eq(Mux(first > offset, first - offset, 0)),
-        ]
-
-    def _shift(self, m: Module, beats: list[Signal], offset: Signal) -> None:
         bus, word = self.plan.bus_bytes, self.geometry.word_bytes
-        now: Value = Cat(beat.data for beat in beats[: self.geometry.reach_beats])
-        for bit in reversed(range(bus.bit_length() - 1)):
+        low = bus.bit_length() - 1
+        inside = offset[low:] == 0
+        keep = Cat(beat.keep & inside.replicate(bus) & ok.replicate(bus) for beat, ok in zip(beats, valid))
+        m.d.comb += [
+            Value.cast(self.data).eq(self._shifted(m, Cat(b.data for b in beats), offset, 8)[: 8 * word]),
+            self.have.eq(self._shifted(m, keep, offset, 1)),
+            self.ended.eq(Cat(ends).any()),
+            # An offset past the end of the last beat means padding that is not there.
+            self.held.eq(valid[0] & (inside | beats[0].last)),
+            self.first_last.eq(ends[0]),
+        ]
+        unread = self._shifted(m, beats[0].keep, offset, 1, name="unread")
+        m.d.comb += self.first_bytes.eq(Mux(inside, sum(unread[1:bus], unread[0]), 0))
+
+    def _shifted(
+        self, m: Module, now: Value, offset: Signal, unit_bits: int, name: str = "shifted"
+    ) -> Value:
+        """Return a value shifted down by the offset, in bytes of `unit_bits` bits."""
+        for bit in reversed(range(self.plan.bus_bytes.bit_length() - 1)):
             if 1 << bit < self.geometry.granule_bytes:
                 break
-            shifted = Signal(len(now), name=f"shifted_{1 << bit}")
-            m.d.comb += shifted.eq(Mux(offset[bit], now >> (8 << bit), now))
+            amount = unit_bits << bit
+            shifted = Signal(len(now), name=f"{name}_{amount}")
+            m.d.comb += shifted.eq(Mux(offset[bit], now >> amount, now))
             now = shifted
-        m.d.comb += Value.cast(self.data).eq(now[: 8 * word])
+        return now
 
-    def _queue(self, m: Module, beats: list[Signal], fill: Signal, pops: Signal) -> None:
-        depth = len(beats)
-        m.d.comb += self.packets.ready.eq(fill < depth)
-        arrives = self.packets.valid & self.packets.ready
-        slot = Signal.like(fill)
-        m.d.comb += slot.eq(fill - pops)
-        m.d.sync += fill.eq(slot + arrives)
-        for i, beat in enumerate(beats):
-            with m.Switch(pops):
-                for count in range(depth):
-                    with m.Case(count):
-                        if i + count < depth:
-                            m.d.sync += beat.eq(beats[i + count])
-            # Written even if nothing arrives: what is past `fill` does not count.
-            with m.If(slot == i):
-                m.d.sync += beat.eq(self.packets.payload)
-
-    def _phase(self, m: Module, offset: Signal) -> None:
-        header = self.plan.header_bytes
+    def _past(self, m: Module, offset: Signal) -> Signal:
+        """Return the offset behind the bytes that are taken, and the padding behind those."""
+        taken = Signal(range(self.plan.bus_bytes + 2 * self.geometry.word_bytes + 16))
+        past = Signal.like(taken)
+        m.d.comb += taken.eq(offset + self.count)
         if not self.geometry.aligns:
-            return
+            m.d.comb += past.eq(taken)
+            return past
+        header = self.plan.header_bytes
+        position = Signal(unsigned(3))
         if self.plan.bus_bytes >= 8:
-            m.d.comb += self.phase.eq(offset[:3] - header)
-            return
-        phase = Signal(unsigned(3), init=-header % 8)
-        m.d.comb += self.phase.eq(phase)
-        with m.If(self.finish | self.drop):
-            m.d.sync += phase.eq(-header % 8)
-        with m.Elif(self.take):
-            m.d.sync += phase.eq(phase + self.advance)
+            m.d.comb += position.eq(taken - header)
+        else:
+            # Bits of the position that the offset does not have.
+            start = Signal(unsigned(3), init=-header % 8)
+            m.d.comb += position.eq(start + self.count)
+            with m.If(self.finish | self.drop):
+                m.d.sync += start.eq(-header % 8)
+            with m.Elif(self.take):
+                m.d.sync += start.eq(position + (-position & self.align))
+        m.d.comb += past.eq(taken + (-position & self.align))
+        return past
+
+    def _pops(
+        self,
+        m: Module,
+        pops: Signal,
+        past: Signal,
+        offset: Signal,
+        valid: list[Signal],
+        ends: list[Signal],
+    ) -> Value:
+        """Return the assignment of how many beats leave in this cycle."""
+        low = self.plan.bus_bytes.bit_length() - 1
+        taken = Signal.like(pops, name="pops_taken")
+        idle = Signal.like(pops, name="pops_idle")
+        finished = Signal.like(pops, name="pops_finished")
+        for i in range(len(valid)):
+            goes = valid[i] & ~ends[i]
+            with m.If(goes & (past[low:] > i)):
+                m.d.comb += taken.eq(i + 1)
+            with m.If(goes & (offset[low:] > i)):
+                m.d.comb += idle.eq(i + 1)
+            with m.If(ends[i]):
+                m.d.comb += finished.eq(i + 1)
+        going = Mux(self.take, taken, idle)
+        return pops.eq(Mux(self.finish, finished, Mux(self.drop, 1, going)))
