@@ -40,6 +40,9 @@ class Deserializer(wiring.Component):
         Bytes per beat: 1, 2, 4, 8, 16, 32 or 64.
     max_message_bytes : int
         A length that no packet of so many bytes can hold is an error.
+    window_words : 1 or 2
+        Most bus words per cycle. 2 saves about one cycle for each string or sequence, and makes the
+        circuit larger and slower.
 
     Members
     -------
@@ -61,9 +64,13 @@ class Deserializer(wiring.Component):
         wire: Wire | None = None,
         bus_bytes: int = 8,
         max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+        window_words: int = 1,
     ):
         self.plan = build_plan(
-            lay_out(message, wire), bus_bytes=bus_bytes, max_message_bytes=max_message_bytes
+            lay_out(message, wire),
+            bus_bytes=bus_bytes,
+            max_message_bytes=max_message_bytes,
+            window_words=window_words,
         )
         self.tree = member_tree(leaf.path for leaf in self.plan.leaves)
         super().__init__(
@@ -101,6 +108,7 @@ class _Circuit:
         self.error = Signal(Status)
         self.draining = Signal()
         self.enable = Signal()
+        self.promised = Signal()
         self.complete = Signal()
         # Set by each step: whether the bytes of its map are there, whether those that lengths promise
         # are, whether more than the slack would be left, and what went wrong.
@@ -149,8 +157,7 @@ class _Circuit:
         ]
         for item in step.slices:
             if isinstance(item, Fixed) and item.check:
-                wrong = self.bytes(item.at, item.bytes) != int.from_bytes(item.data, "little")
-                m.d.comb += self.mismatch.eq(self.have(item.at + item.bytes) & wrong)
+                self._check(item)
         slot = 0
         for part in step.parts:
             if part.completes:
@@ -163,6 +170,14 @@ class _Circuit:
         if step.takes_items:
             self._run(step, slot)
         self.control.add_step(m, step)
+
+    def _check(self, item: Fixed) -> None:
+        """Compare bytes, each as far as it is there."""
+        wrong = [
+            self.have(item.at + k + 1) & (self.bytes(item.at + k, 1) != value)
+            for k, value in enumerate(item.data)
+        ]
+        self.module.d.comb += self.mismatch.eq(Cat(wrong).any())
 
     def bytes(self, at: int, count: int) -> Value:
         """Return bytes of the window as one value, little-endian."""
@@ -263,7 +278,9 @@ class _Circuit:
         assert run is not None
         info = self.plan.runs[run]
         leaf, interface = self.plan.leaves[info.items], self.streams[info.items]
-        m.d.comb += self.slots.able[slot].eq(~control.has_items | self.free(interface))
+        m.d.comb += self.slots.able[slot].eq(
+            self.promised & (~control.has_items | self.free(interface))
+        )
         size = leaf.item_bytes
         with m.If(self.slots.go[slot] & control.has_items):
             m.d.sync += [interface.valid.eq(1), interface.payload.last.eq(control.last_items & info.last)]
@@ -287,7 +304,11 @@ class _Circuit:
         ends = control.ends
         status_able = ~ends | self.free(self.status)
         m.d.comb += [
-            self.enable.eq(~self.draining & (self.bad | (window.held & (enough | window.ended)))),
+            # The map does not wait for the items behind it: they take longer to count.
+            self.enable.eq(
+                ~self.draining & (self.bad | (window.held & (self.map_there | window.ended)))
+            ),
+            self.promised.eq(self.bad | enough | window.ended),
             self.complete.eq(self.enable & self.slots.all_served & status_able),
             window.count.eq(control.base + control.run_bytes),
             window.align.eq(control.align),

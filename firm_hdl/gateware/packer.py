@@ -13,14 +13,15 @@ from firm_hdl.plan.geometry import geometry
 __all__ = ["Packer", "word_layout"]
 
 
-def word_layout(word_bytes: int) -> data.StructLayout:
+def word_layout(word_bytes: int, skip_bytes: int) -> data.StructLayout:
     """Return the payload of a stream of words.
 
     Members
     -------
     data : ArrayLayout(8, word_bytes)
         The first `count` lanes are the word; the others are 0.
-    count : range(word_bytes + 1)
+    count : range(skip_bytes + 1)
+        Lanes of the word, and zeros behind it.
     align : unsigned(3)
         Padding follows up to a position behind the encapsulation header that has these bits 0.
     last : unsigned(1)
@@ -31,7 +32,7 @@ def word_layout(word_bytes: int) -> data.StructLayout:
     return data.StructLayout(
         {
             "data": data.ArrayLayout(8, word_bytes),
-            "count": range(word_bytes + 1),
+            "count": range(skip_bytes + 1),
             "align": 3,
             "last": 1,
             "error": 1,
@@ -52,7 +53,7 @@ class Packer(wiring.Component):
 
     Members
     -------
-    word : In(stream.Signature(word_layout(word_bytes)))
+    word : In(stream.Signature(word_layout(word_bytes, skip_bytes)))
     packets : Out(PacketSignature(bus_bytes))
     error : Out(1)
         The packet of the beat on `packets` is marked; set with its last beat only.
@@ -61,9 +62,10 @@ class Packer(wiring.Component):
     def __init__(self, plan: Plan):
         self.plan = plan
         self.geometry = geometry(plan)
+        words = word_layout(self.geometry.word_bytes, self.geometry.skip_bytes)
         super().__init__(
             {
-                "word": In(stream.Signature(word_layout(self.geometry.word_bytes))),
+                "word": In(stream.Signature(words)),
                 "packets": Out(PacketSignature(plan.bus_bytes)),
                 "error": Out(1),
             }
@@ -78,7 +80,7 @@ class Packer(wiring.Component):
         # word, or the start of the next packet, does not leave a hole in the stream.
         most_kept = 0 if self.geometry.granule_bytes == bus >= word_bytes and not holds else bus
         store = Signal(8 * max(bus, most_kept + word_bytes))
-        level = Signal(range(most_kept + word_bytes + 8 + bus))
+        level = Signal(range(most_kept + self.geometry.skip_bytes + 8 + bus))
         ending = Signal()
         end_beats = Signal(range(len(store) // 8 // bus + 2))
         end_count = Signal(range(bus + 1))

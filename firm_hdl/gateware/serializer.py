@@ -33,7 +33,7 @@ class Serializer(wiring.Component):
 
     Parameters
     ----------
-    message, wire, bus_bytes, max_message_bytes
+    message, wire, bus_bytes, max_message_bytes, window_words
         As for :class:`Deserializer`.
 
     Members
@@ -58,9 +58,13 @@ class Serializer(wiring.Component):
         wire: Wire | None = None,
         bus_bytes: int = 8,
         max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+        window_words: int = 1,
     ):
         self.plan = build_plan(
-            lay_out(message, wire), bus_bytes=bus_bytes, max_message_bytes=max_message_bytes
+            lay_out(message, wire),
+            bus_bytes=bus_bytes,
+            max_message_bytes=max_message_bytes,
+            window_words=window_words,
         )
         self.tree = member_tree(leaf.path for leaf in self.plan.leaves)
         super().__init__(

@@ -45,7 +45,7 @@ class Window(wiring.Component):
         Unread bytes of the first beat.
     first_last : Out(1)
         The first beat is the last one of its packet.
-    count : In(range(word_bytes + 1))
+    count : In(range(skip_bytes + 1))
         Bytes to go forward with `take`.
     align : In(3)
         Bits of the position behind the encapsulation header that must then be 0: padding is skipped
@@ -69,7 +69,7 @@ class Window(wiring.Component):
                 "ended": Out(1),
                 "first_bytes": Out(range(bus + 1)),
                 "first_last": Out(1),
-                "count": In(range(word + 1)),
+                "count": In(range(self.geometry.skip_bytes + 1)),
                 "align": In(3),
                 "take": In(1),
                 "finish": In(1),
@@ -86,7 +86,7 @@ class Window(wiring.Component):
         slots = [Signal(slot, name=f"slot_{i}") for i in range(depth)]
         first = Signal(range(depth))
         fill = Signal(range(depth + 1))
-        offset = Signal(range(bus + self.geometry.word_bytes + 8))
+        offset = Signal(range(bus + self.geometry.skip_bytes + 8))
         pops = Signal(range(reach + 1))
         self._write(m, slots, first, fill, pops)
 
@@ -175,7 +175,8 @@ class Window(wiring.Component):
 
     def _past(self, m: Module, offset: Signal) -> Signal:
         """Return the offset behind the bytes that are taken, and the padding behind those."""
-        taken = Signal(range(self.plan.bus_bytes + 2 * self.geometry.word_bytes + 16))
+        # An offset, a step, and the padding of both.
+        taken = Signal(range(self.plan.bus_bytes + 2 * self.geometry.skip_bytes + 16))
         past = Signal.like(taken)
         m.d.comb += taken.eq(offset + self.count)
         if not self.geometry.aligns:

@@ -25,7 +25,7 @@ from firm_hdl.plan.ir import (
     Slice,
     Step,
 )
-from firm_hdl.wire import Layout, Node, Path, Scalar, Trigger
+from firm_hdl.wire import Layout, Node, Path, Scalar, Trigger, walk
 from firm_hdl.wire import Loop as LoopNode
 from firm_hdl.wire import Run as RunNode
 from firm_hdl.wire.layout import LENGTH, OCTET, Gap
@@ -37,7 +37,11 @@ DEFAULT_MAX_MESSAGE_BYTES = 1 << 24
 
 
 def build_plan(
-    layout: Layout, *, bus_bytes: int = 8, max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
+    layout: Layout,
+    *,
+    bus_bytes: int = 8,
+    max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+    window_words: int = 1,
 ) -> Plan:
     """Plan the converters of a layout.
 
@@ -48,6 +52,11 @@ def build_plan(
         Width of the packet stream: 1, 2, 4, 8, 16, 32 or 64 bytes.
     max_message_bytes : int
         Packets that promise more are refused; at most 2**32 - 1.
+    window_words : 1 or 2
+        Bus words that a step may take. With 2, the step that holds a length takes the first items
+        too, and remainders need no step of their own: about one cycle less for each string or
+        sequence, for a wider shifter and a longer path through it. Messages of fixed size always
+        have 2.
 
     Raises
     ------
@@ -61,7 +70,12 @@ def build_plan(
             f"Maximum message size must be from {layout.min_bytes} bytes, the least that a "
             f"{layout.message.name} has, to {(1 << 32) - 1}, not {max_message_bytes!r}"
         )
-    builder = _Builder(layout, bus_bytes, max_message_bytes)
+    if window_words not in (1, 2):
+        raise ValueError(f"Window must have 1 or 2 bus words, not {window_words!r}")
+    # Where no length is counted, a wide window costs no time, and the bus is kept busy with it.
+    if not any(isinstance(n, RunNode | LoopNode) and n.count is None for n in walk(layout.nodes)):
+        window_words = 2
+    builder = _Builder(layout, bus_bytes, max_message_bytes, window_words * bus_bytes)
     steps = builder.build()
     return Plan(
         message=layout.message.name,
@@ -96,6 +110,7 @@ class _Builder:
     layout: Layout
     bus_bytes: int
     max_message_bytes: int
+    window_bytes: int
     leaves: list[Leaf] = field(default_factory=list)
     runs: list[Run] = field(default_factory=list)
     levels: int = 0
@@ -106,11 +121,6 @@ class _Builder:
     depth: int = 0
     # Index of the step at each place of the program that holds one.
     numbers: dict[int, int] = field(default_factory=dict)
-
-    @property
-    def window_bytes(self) -> int:
-        """What one step may take at most: two bus words, see docs/design.md."""
-        return 2 * self.bus_bytes
 
     def build(self) -> tuple[Step, ...]:
         rules = self.layout.rules

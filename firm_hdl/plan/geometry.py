@@ -22,6 +22,8 @@ class Geometry:
     ----------
     word_bytes : int
         Most bytes that a step takes in one cycle; at least 1.
+    skip_bytes : int
+        Most bytes that a step goes forward, padding of known size in front of a run included.
     granule_bytes : int
         Every step starts at a multiple of this many bytes of a bus word; a power of two up to the
         bus width.
@@ -32,6 +34,7 @@ class Geometry:
     """
 
     word_bytes: int
+    skip_bytes: int
     granule_bytes: int
     reach_beats: int
     aligns: bool
@@ -49,8 +52,11 @@ def geometry(plan: Plan) -> Geometry:
     for step, residues in zip(plan.steps, starts, strict=True):
         for position in _members(residues):
             reach = max(reach, -(-(position % bus + step.most_bytes) // bus))
+    word = max((1, *(step.most_bytes for step in plan.steps)))
+    gaps = (step.bytes + step.begin.gap for step in plan.steps if step.begin is not None)
     return Geometry(
-        word_bytes=max(1, *(step.most_bytes for step in plan.steps)),
+        word_bytes=word,
+        skip_bytes=max((word, *gaps)),
         granule_bytes=granule,
         reach_beats=reach,
         aligns=any(step.align > 1 for step in plan.steps),
