@@ -1,6 +1,17 @@
 """The plan of a converter: what it does in each cycle, decided before there is any circuit."""
 
 from firm_hdl.plan.build import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, build_plan
+from firm_hdl.plan.check import check
+from firm_hdl.plan.interpret import (
+    Decoded,
+    DecodeStatus,
+    EncodeStatus,
+    Payload,
+    Transfer,
+    Visit,
+    decode,
+    encode,
+)
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
@@ -15,21 +26,33 @@ from firm_hdl.plan.ir import (
     Slice,
     Step,
 )
+from firm_hdl.plan.yaml import from_yaml, to_yaml
 
 __all__ = [
     "BUS_BYTES",
     "DEFAULT_MAX_MESSAGE_BYTES",
     "RUN_COUNTER",
     "Begin",
+    "DecodeStatus",
+    "Decoded",
+    "EncodeStatus",
     "Exits",
     "Fixed",
     "Jump",
     "Leaf",
     "Pad",
     "Part",
+    "Payload",
     "Plan",
     "Run",
     "Slice",
     "Step",
+    "Transfer",
+    "Visit",
     "build_plan",
+    "check",
+    "decode",
+    "encode",
+    "from_yaml",
+    "to_yaml",
 ]

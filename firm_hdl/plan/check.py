@@ -1,0 +1,347 @@
+"""What must hold of every plan, checked without knowing how it was built.
+
+A plan that passes can be transcribed blindly: each byte has one meaning, every jump is sound, each
+loop closes where it was opened. Where things stand in the packet is checked by
+:mod:`firm_hdl.plan.offsets`. Problems are sentences for people; an empty list means a good plan.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from firm_hdl.model import PRIMITIVES
+from firm_hdl.plan.build import BUS_BYTES
+from firm_hdl.plan.conform import against_layout
+from firm_hdl.plan.ir import RUN_COUNTER, Begin, Fixed, Jump, Leaf, Pad, Part, Plan, Slice, Step
+from firm_hdl.plan.offsets import Span, check_offsets, loop_spans
+from firm_hdl.wire import CDR, ROS1, Layout
+
+__all__ = ["check"]
+
+
+def check(plan: Plan, layout: Layout | None = None) -> list[str]:
+    """Return what is wrong with a plan, by itself and, if given, as a plan of a layout."""
+    problems: list[str] = []
+    # Each stage relies on what those before it have found to hold.
+    for stage in (_tables, _steps, _header, _transfers, _flow, check_offsets):
+        problems.extend(stage(plan))
+        if problems:
+            return problems
+    return [] if layout is None else list(against_layout(plan, layout))
+
+
+def _tables(plan: Plan) -> Iterator[str]:
+    if plan.bus_bytes not in BUS_BYTES:
+        yield f"bus of {plan.bus_bytes} bytes"
+        return
+    rules = CDR if plan.wire == "cdr" else ROS1
+    if (plan.header_bytes, plan.slack_bytes) != (rules.header_bytes, rules.slack_bytes):
+        yield f"header or slack is not that of {plan.wire}"
+    if len({leaf.path for leaf in plan.leaves}) != len(plan.leaves):
+        yield "two leaves have one path"
+    for leaf in plan.leaves:
+        yield from (f"leaf {leaf}: {problem}" for problem in _leaf(leaf, plan.bus_bytes))
+    if len({run.items for run in plan.runs}) != len(plan.runs):
+        yield "two runs have the same items"
+    for index, run in enumerate(plan.runs):
+        if run.items not in range(len(plan.leaves)) or plan.leaves[run.items].kind != "items":
+            yield f"run {index}: it has no items"
+        elif plan.leaves[run.items].item_bytes > plan.bus_bytes:
+            yield f"run {index}: items are wider than the bus"
+        elif run.terminated and plan.leaves[run.items].item_bytes != 1:
+            yield f"run {index}: a NUL follows items that are not bytes"
+
+
+def _leaf(leaf: Leaf, bus_bytes: int) -> Iterator[str]:
+    if leaf.type not in PRIMITIVES["ros2"]:
+        yield f"type {leaf.type!r} is not a primitive"
+        return
+    suffix = leaf.path[-1] if leaf.path else None
+    if leaf.kind != "scalar" and suffix != leaf.kind:
+        yield f"path does not end in {leaf.kind!r}"
+    special = {"length": "uint32", "trigger": "bool"}.get(leaf.kind, leaf.type)
+    if leaf.type != special:
+        yield f"a {leaf.kind} is of type {special}, not {leaf.type}"
+    item = leaf.primitive
+    if leaf.type != "byte" and leaf.signed != (item.signed and item.kind == "int"):
+        yield f"signedness is not that of {leaf.type}"
+    lanes = max(1, bus_bytes // item.bytes) if leaf.kind == "items" else 1
+    if leaf.lanes != lanes:
+        yield f"{leaf.lanes} lanes, not {lanes}"
+
+
+# Each step by itself.
+
+
+def _steps(plan: Plan) -> Iterator[str]:
+    if not plan.steps:
+        yield "there are no steps"
+    for index, step in enumerate(plan.steps):
+        problems = _body(plan, step) if step.run is not None else _static(plan, step)
+        yield from (f"step {index}: {problem}" for problem in problems)
+        if step.align not in (1, 2, 4, 8):
+            yield f"step {index}: alignment to {step.align}"
+
+
+def _header(plan: Plan) -> Iterator[str]:
+    rules = CDR if plan.wire == "cdr" else ROS1
+    slices = [item for step in plan.steps for item in step.slices]
+    fixed = [item for item in slices if isinstance(item, Fixed)]
+    if fixed != slices[: len(fixed)]:
+        yield "fixed bytes stand behind the header"
+    got = [(byte, item.check) for item in fixed for byte in item.data]
+    want = [(byte, True) for byte in rules.encapsulation] + [(0, False)] * rules.option_bytes
+    if got != want:
+        yield f"the header is not that of {plan.wire}"
+
+
+def _body(plan: Plan, step: Step) -> Iterator[str]:
+    if step.bytes or step.slices or step.begin is not None:
+        yield "the body of a run has bytes or a start of its own"
+    if step.run is None or step.run not in range(len(plan.runs)):
+        yield f"there is no run {step.run}"
+    else:
+        yield from _head(plan, step.run, step.head)
+
+
+def _head(plan: Plan, run: int, head: int) -> Iterator[str]:
+    leaf = plan.leaves[plan.runs[run].items]
+    word = leaf.lanes * leaf.item_bytes
+    if not word <= head <= word + (1 if plan.runs[run].terminated else 0):
+        yield f"{head} bytes of {leaf} a cycle do not suit words of {word}"
+
+
+def _static(plan: Plan, step: Step) -> Iterator[str]:
+    wrong = [problem for item in step.slices for problem in _slice(plan, item)]
+    if wrong:
+        yield from wrong
+        return
+    at = 0
+    for item in step.slices:
+        if item.at != at:
+            yield f"byte {min(at, item.at)} has no or two meanings"
+        at = item.at + item.bytes
+    if at != step.bytes:
+        yield f"the map has {at} bytes, the step {step.bytes}"
+    if step.head:
+        yield "a head, but no run"
+    if step.most_bytes > 2 * plan.bus_bytes:
+        yield f"{step.most_bytes} bytes in one cycle"
+    for part in step.parts[:-1]:
+        if not part.completes:
+            yield f"{plan.leaves[part.leaf]} is interrupted"
+    for item in step.slices[1:]:
+        if isinstance(item, Part) and item.first:
+            yield f"{plan.leaves[item.leaf]} goes on behind something else"
+    lengths = [part.leaf for part in step.parts if plan.leaves[part.leaf].kind == "length"]
+    done = [part.leaf for part in step.parts if part.completes and part.leaf in lengths]
+    counted = [] if step.begin is None or step.begin.length is None else [step.begin.length]
+    if done != counted or (done and step.slices[-1] is not step.parts[-1]):
+        yield "a length must be complete just where it starts something"
+    if step.begin is not None:
+        yield from _begin(plan, step.begin)
+
+
+def _slice(plan: Plan, item: Slice) -> Iterator[str]:
+    if isinstance(item, Pad | Fixed):
+        if item.bytes < 1:
+            yield f"nothing at byte {item.at}"
+        return
+    if item.leaf not in range(len(plan.leaves)):
+        yield f"there is no leaf {item.leaf}"
+        return
+    leaf = plan.leaves[item.leaf]
+    size = leaf.item_bytes
+    sizes = range(size, size * leaf.lanes + 1, size) if size else range(1)
+    if item.size not in sizes:
+        yield f"a transfer of {leaf} has {item.size} bytes"
+    if item.first < 0 or item.first + item.bytes > item.size or (size and item.bytes < 1):
+        yield f"{leaf} has no bytes {item.first} to {item.first + item.bytes - 1}"
+    ends = item.last or item.last_level is not None
+    if ends != (leaf.kind == "items") or (item.last and item.last_level is not None):
+        yield f"what ends {leaf} is not said once"
+
+
+def _begin(plan: Plan, begin: Begin) -> Iterator[str]:
+    if (begin.length is None) == (begin.count is None):
+        yield "one of a length and a constant must count"
+    if (begin.level is None) == (begin.run is None):
+        yield "one of a loop and a run must be started"
+        return
+    if begin.limit < 0 or (begin.count is not None and not 1 <= begin.count == begin.limit):
+        yield f"a count has the limit {begin.limit}"
+    if begin.body is None and begin.run is None:
+        yield "a loop has no body"
+    if begin.run is None:
+        if begin.terminated or begin.gap or begin.head:
+            yield "a loop has no NUL, gap or head"
+    elif begin.run not in range(len(plan.runs)):
+        yield f"there is no run {begin.run}"
+    else:
+        yield from _begin_run(plan, begin, begin.run)
+
+
+def _begin_run(plan: Plan, begin: Begin, run: int) -> Iterator[str]:
+    terminated = plan.runs[run].terminated
+    item_bytes = plan.leaves[plan.runs[run].items].item_bytes
+    if begin.terminated != terminated or (terminated and begin.length is None):
+        yield "the length and the run do not agree about a NUL"
+    if begin.head:
+        yield from _head(plan, run, begin.head)
+    if not 0 <= begin.gap < max(8, item_bytes):
+        yield f"a gap of {begin.gap} bytes"
+    most = begin.limit * item_bytes + (1 if terminated else 0)
+    if begin.body is None and most > begin.head:
+        yield f"a run of {most} bytes needs a body"
+
+
+# The transfers of each leaf.
+
+
+def _transfers(plan: Plan) -> Iterator[str]:
+    order: list[int] = []
+    parts: dict[int, list[Part]] = {}
+    runs: dict[int, set[int]] = {}
+    for step in plan.steps:
+        for part in step.parts:
+            order.append(part.leaf)
+            if part.completes:
+                parts.setdefault(part.leaf, []).append(part)
+        run = step.run if step.begin is None else step.begin.run
+        if run is not None:
+            order.append(plan.runs[run].items)
+            runs.setdefault(plan.runs[run].items, set()).add(run)
+    for now, leaf in zip([-1, *order], order, strict=False):
+        if leaf not in (now, now + 1):
+            yield f"leaf {plan.leaves[leaf]} is out of order"
+    for index, path in enumerate(plan.leaves):
+        ends = _ends(plan, parts.get(index, []), sorted(runs.get(index, ())))
+        yield from (f"leaf {path}: {problem}" for problem in ends)
+    yield from _joints(plan)
+
+
+def _ends(plan: Plan, parts: list[Part], runs: list[int]) -> Iterator[str]:
+    if len(parts) > 1 or len(runs) > 1 or not (parts or runs):
+        yield f"{len(parts)} transfers and {len(runs)} runs"
+    elif runs and plan.runs[runs[0]].last != (not parts):
+        yield "its end is not where the run says"
+    elif runs and parts and parts[0].last_level is not None:
+        yield "the tail of a run is in a loop"
+
+
+def _joints(plan: Plan) -> Iterator[str]:
+    """Check that a transfer cut by the end of a step goes on in the next one and only there."""
+    for index, step in enumerate(plan.steps):
+        first = step.slices[0] if step.slices else None
+        before = plan.steps[index - 1] if index else None
+        cut = before.slices[-1] if before is not None and before.slices else None
+        open_cut = isinstance(cut, Part) and not cut.completes
+        goes_on = isinstance(first, Part) and first.first > 0
+        if open_cut or goes_on:
+            assert before is not None or not open_cut
+            straight = before is not None and before.exits.repeats == () and before.begin is None
+            fits = (
+                isinstance(cut, Part)
+                and isinstance(first, Part)
+                and (cut.leaf, cut.size, cut.last, cut.last_level)
+                == (first.leaf, first.size, first.last, first.last_level)
+                and cut.first + cut.bytes == first.first
+                and step.align == 1
+            )
+            if not straight or not fits:
+                yield f"step {index}: the parts of a transfer do not join"
+    last = plan.steps[-1].slices[-1:]
+    if any(isinstance(item, Part) and not item.completes for item in last):
+        yield "the last transfer is cut"
+
+
+# Control flow.
+
+State = tuple[int, ...]
+
+
+@dataclass(slots=True)
+class _Walk:
+    """Follow all jumps, with the first steps of the loops that are open."""
+
+    plan: Plan
+    states: dict[int, State] = field(default_factory=dict)
+    # For the body of a run: who loaded the counter ("constant", or the run that was begun).
+    loaded: dict[int, int | str | None] = field(default_factory=dict)
+    counts: dict[tuple[int | str, int | None], int] = field(default_factory=dict)
+    todo: list[int] = field(default_factory=list)
+    problems: list[str] = field(default_factory=list)
+
+    def jump(
+        self, jump: Jump, state: State, expected: int, who: str, run: int | None = None
+    ) -> None:
+        """Follow a jump from a place where loops are open to where it is expected to go."""
+        loaded: int | str | None = run
+        for counter, count in jump.enter:
+            if count < 1 or count != self.counts.setdefault((counter, jump.step), count):
+                self.problems.append(f"{who}: {count} elements")
+            if counter == RUN_COUNTER:
+                if loaded is not None:
+                    self.problems.append(f"{who}: the counter of the run is loaded twice")
+                loaded = "constant"
+            elif counter != len(state) or len(state) >= self.plan.levels:
+                self.problems.append(f"{who}: loop {counter} inside {len(state)} loops")
+            else:
+                state = (*state, expected)
+        there = len(self.plan.steps) if jump.step is None else jump.step
+        if there != expected:
+            self.problems.append(f"{who}: goes to step {there}, not {expected}")
+        elif jump.step is None:
+            if state or loaded is not None:
+                self.problems.append(f"{who}: ends within a loop or a run")
+        elif there >= len(self.plan.steps):
+            self.problems.append(f"{who}: there is no step {there}")
+        elif there not in self.states:
+            self.states[there] = state
+            self.loaded[there] = loaded
+            self.todo.append(there)
+        elif (state, loaded) != (self.states[there], self.loaded[there]):
+            self.problems.append(f"{who}: step {there} is reached with other loops open before")
+
+    def step(self, index: int, spans: dict[Span, int]) -> None:
+        step, state, who = self.plan.steps[index], self.states[index], f"step {index}"
+        if self.loaded[index] not in ((None,) if step.run is None else ("constant", step.run)):
+            self.problems.append(f"{who}: the counter of the run is not loaded, or in vain")
+        constant = step.run is not None and self.loaded[index] == "constant"
+        if constant and self.plan.runs[step.run or 0].terminated:
+            self.problems.append(f"{who}: a constant run counts a NUL")
+        for part in step.parts:
+            if part.last_level is not None and part.last_level != len(state) - 1:
+                self.problems.append(f"{who}: loop {part.last_level} is not the innermost")
+        after = index + 1
+        begin = step.begin
+        if begin is not None and begin.body is not None:
+            inner = state if begin.level is None else (*state, after)
+            if begin.level is not None and begin.level != len(state):
+                self.problems.append(f"{who}: loop {begin.level} inside {len(state)} loops")
+            self.jump(begin.body, inner, after, f"{who}, body", begin.run)
+            last = after if begin.level is None else spans.get((len(state), after), after)
+            after = last + 1
+        for level, jump in step.exits.repeats:
+            if level != len(state) - 1:
+                self.problems.append(f"{who}: loop {level} ends inside {len(state)} loops")
+                return
+            self.jump(jump, state, state[-1], f"{who}, loop {level} again")
+            state = state[:-1]
+        self.jump(step.exits.default, state, after, f"{who}, next")
+
+
+def _flow(plan: Plan) -> list[str]:
+    walker = _Walk(plan)
+    spans = loop_spans(plan)
+    walker.jump(plan.start, (), 0, "start")
+    while walker.todo and not walker.problems:
+        walker.step(walker.todo.pop(), spans)
+    if walker.problems:
+        return walker.problems
+    missed = [index for index in range(len(plan.steps)) if index not in walker.states]
+    depth = max(map(len, walker.states.values()))
+    if depth != plan.levels:
+        walker.problems.append(f"{plan.levels} loop counters, of which {depth} are used")
+    return walker.problems + [f"step {index}: is never reached" for index in missed]

@@ -1,0 +1,104 @@
+"""Whether a plan is one of a given layout: its leaves, bounds and constant counts."""
+
+from __future__ import annotations
+
+from firm_hdl.plan.ir import RUN_COUNTER, Begin, Plan
+from firm_hdl.plan.offsets import jumps
+from firm_hdl.wire import Layout, Loop, Run, Scalar, Trigger, walk
+
+__all__ = ["against_layout"]
+
+Row = tuple[tuple[str, ...], str, str]
+
+
+def against_layout(plan: Plan, layout: Layout) -> list[str]:
+    """Return what a plan, sound by itself, has otherwise than a layout says."""
+    judge = _Judge(plan)
+    judge.problems += (
+        [f"it is of {plan.message} on {plan.wire}"]
+        if (plan.message, plan.wire) != (layout.message.name, layout.rules.wire)
+        else []
+    )
+    for node in walk(layout.nodes):
+        match node:
+            case Scalar():
+                judge.leaves.append((node.path, "scalar", node.type.name))
+            case Trigger():
+                judge.leaves.append(((*node.path, "trigger"), "trigger", "bool"))
+            case Run():
+                judge.run(node)
+            case Loop(count=None):
+                judge.counted(node, node.bound, terminated=False)
+            case Loop(count=int() as count):
+                judge.counts.append(count)
+    if judge.leaves != [(leaf.path, leaf.kind, leaf.type) for leaf in plan.leaves]:
+        judge.problems.append("leaves are not those of the layout")
+    if judge.counts != _loop_counts(plan):
+        judge.problems.append("constant loops are not those of the layout")
+    return judge.problems
+
+
+class _Judge:
+    def __init__(self, plan: Plan):
+        self.plan = plan
+        self.leaves: list[Row] = []
+        self.counts: list[int] = []
+        self.problems: list[str] = []
+        self.totals = _totals(plan)
+        begins = [step.begin for step in plan.steps if step.begin is not None]
+        self.begins: dict[int, Begin] = {b.length: b for b in begins if b.length is not None}
+
+    def counted(self, node: Run | Loop, bound: int | None, *, terminated: bool) -> None:
+        name = ".".join(node.path)
+        begin = self.begins.get(len(self.leaves))
+        self.leaves.append(((*node.path, "length"), "length", "uint32"))
+        if begin is None:
+            self.problems.append(f"{name} has no length")
+        elif bound is not None and begin.limit > bound:
+            self.problems.append(f"{name} may have more than {bound} elements")
+        elif begin.terminated != terminated:
+            self.problems.append(f"{name} has the NUL wrong")
+
+    def run(self, node: Run) -> None:
+        if node.count is None:
+            self.counted(node, node.bound, terminated=node.terminated)
+        else:
+            # Items wider than the bus are a loop over single ones.
+            wide = node.item.bytes > self.plan.bus_bytes and node.count > 1
+            self.counts += [node.count] if wide else []
+            total = self.totals.get(len(self.leaves))
+            if total != (1 if wide else node.count):
+                self.problems.append(f"{'.'.join(node.path)} has {total} items, not {node.count}")
+        self.leaves.append(((*node.path, "items"), "items", node.item.name))
+
+
+def _loop_counts(plan: Plan) -> list[int]:
+    """Return the counts of all loops of constant count, in wire order, outer ones first."""
+    counts = {
+        (jump.step, counter): count
+        for jump in jumps(plan)
+        for counter, count in jump.enter
+        if isinstance(counter, int) and jump.step is not None
+    }
+    return [counts[key] for key in sorted(counts)]
+
+
+def _totals(plan: Plan) -> dict[int, int]:
+    """Return the constant number of items of each leaf that has one: parts and constant runs."""
+    totals: dict[int, int] = {}
+    runs: dict[int, int] = {}
+    for step in plan.steps:
+        for part in step.parts:
+            if part.completes and plan.leaves[part.leaf].kind == "items":
+                count = part.size // plan.leaves[part.leaf].item_bytes
+                totals[part.leaf] = totals.get(part.leaf, 0) + count
+        if step.begin is not None and step.begin.run is not None and step.begin.count is not None:
+            runs[step.begin.run] = step.begin.count
+    for jump in jumps(plan):
+        run = None if jump.step is None else plan.steps[jump.step].run
+        for counter, count in jump.enter:
+            if counter == RUN_COUNTER and run is not None:
+                runs[run] = count
+    for run, count in runs.items():
+        totals[plan.runs[run].items] = totals.get(plan.runs[run].items, 0) + count
+    return totals

@@ -1,0 +1,225 @@
+"""Where the leaves of a plan stand in a packet, found by running the plan on offsets alone.
+
+An independent judge of alignment: the layout works out residues from the message's types, this
+module from the steps, one residue modulo 8 at a time. OMG DDS-XTypes 1.3, clause 7.4.1: a primitive
+of n bytes stands at a multiple of n, and there is no more padding than that takes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from firm_hdl.plan.ir import RUN_COUNTER, Begin, Fixed, Jump, Leaf, Pad, Part, Plan, Step
+from firm_hdl.wire import CDR, ROS1
+
+__all__ = ["Span", "check_offsets", "jumps", "loop_spans"]
+
+Span: TypeAlias = "tuple[int, int]"
+"""Level and first step of a loop."""
+
+Place: TypeAlias = "tuple[int, int]"
+"""An offset modulo 8, and padding bytes since then that nothing stands behind yet."""
+
+
+def loop_spans(plan: Plan) -> dict[Span, int]:
+    """Return the last step of each loop."""
+    spans: dict[Span, int] = {}
+    for index, step in enumerate(plan.steps):
+        for level, jump in step.exits.repeats:
+            if jump.step is not None:
+                spans[level, jump.step] = index
+    return spans
+
+
+def check_offsets(plan: Plan) -> list[str]:
+    """Return what is misaligned or has other padding than it needs. The control flow is sound."""
+    walk = _Walk(plan)
+    start: set[Place] = {(-plan.header_bytes % 8, 0)}
+    end = walk.region(0, len(plan.steps) - 1, 0, start)
+    walk.settle(end, "the end")
+    for index, step in enumerate(plan.steps):
+        if step.align != 1 and index not in walk.padded:
+            walk.say(f"step {index}: is aligned already")
+    return list(walk.problems)
+
+
+def jumps(plan: Plan) -> Iterator[Jump]:
+    """Yield every jump of a plan."""
+    yield plan.start
+    for step in plan.steps:
+        yield step.exits.default
+        yield from (jump for _, jump in step.exits.repeats)
+        if step.begin is not None and step.begin.body is not None:
+            yield step.begin.body
+
+
+@dataclass(slots=True)
+class _Walk:
+    plan: Plan
+    spans: dict[Span, int] = field(init=False)
+    # Constant counts by level (or "run") and first step.
+    counts: dict[tuple[int | str, int], int] = field(default_factory=dict)
+    known: dict[tuple[int, int, int, Place], frozenset[Place]] = field(default_factory=dict)
+    # A dict for its order.
+    problems: dict[str, None] = field(default_factory=dict)
+    # Steps whose alignment is of use.
+    padded: set[int] = field(default_factory=set)
+    max_align: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.spans = loop_spans(self.plan)
+        self.max_align = (CDR if self.plan.wire == "cdr" else ROS1).max_align
+        for jump in jumps(self.plan):
+            for counter, count in jump.enter:
+                if jump.step is not None:
+                    self.counts[counter, jump.step] = count
+
+    def say(self, problem: str) -> None:
+        self.problems[problem] = None
+
+    def settle(self, places: set[Place], where: str) -> None:
+        if any(pad for _, pad in places):
+            self.say(f"{where}: padding in front of nothing")
+
+    def align(self, leaf: Leaf) -> int:
+        return min(leaf.item_bytes, self.max_align) or 1
+
+    def region(self, first: int, last: int, depth: int, places: set[Place]) -> set[Place]:
+        """Run a range of steps that is inside `depth` loops."""
+        result: set[Place] = set()
+        for place in places:
+            key = (first, last, depth, place)
+            if key not in self.known:
+                self.known[key] = frozenset(self.run_region(first, last, depth, place))
+            result |= self.known[key]
+        return result
+
+    def run_region(self, first: int, last: int, depth: int, place: Place) -> set[Place]:
+        places = {place}
+        index = first
+        while index <= last:
+            if (depth, index) in self.counts:
+                count = self.counts[depth, index]
+                self.settle(places, f"step {index}")
+                end = self.spans.get((depth, index), last)
+                places = self.repeat(index, end, depth + 1, places, count)
+                index = end + 1
+            else:
+                places, index = self.step(index, depth, places)
+        return places
+
+    def repeat(
+        self, first: int, last: int, depth: int, places: set[Place], count: int
+    ) -> set[Place]:
+        seen: dict[frozenset[Place], int] = {}
+        order: list[set[Place]] = []
+        for done in range(count):
+            frozen = frozenset(places)
+            if frozen in seen:
+                # From here on everything recurs.
+                period = done - seen[frozen]
+                return order[seen[frozen] + (count - done) % period]
+            seen[frozen] = done
+            order.append(places)
+            places = self.region(first, last, depth, places)
+        return places
+
+    def any_number(self, first: int, last: int, depth: int, places: set[Place]) -> set[Place]:
+        while True:
+            more = places | self.region(first, last, depth, places)
+            if more == places:
+                return places
+            places = more
+
+    def step(self, index: int, depth: int, places: set[Place]) -> tuple[set[Place], int]:
+        """Run a step and what it starts; return also the step behind all that."""
+        step = self.plan.steps[index]
+        if step.align != 1:
+            self.settle(places, f"step {index}")
+            self.natural(index, step)
+            self.pad(index, places)
+            places = {((r + -r % step.align) % 8, 0) for r, _ in places}
+        if step.run is not None:
+            return self.constant_run(index, step.run, places), index + 1
+        for item in step.slices:
+            places = {self.slice(index, item, place) for place in places}
+        begin = step.begin
+        if begin is None:
+            return places, index + 1
+        if begin.level is not None or begin.length is not None:
+            self.settle(places, f"step {index}")
+        if begin.level is not None:
+            end = self.spans.get((depth, index + 1), index + 1)
+            return self.any_number(index + 1, end, depth + 1, places), end + 1
+        return self.begin_run(index, begin, places), index + (1 if begin.body is None else 2)
+
+    def pad(self, index: int, places: set[Place]) -> None:
+        if any(residue % self.plan.steps[index].align for residue, _ in places):
+            self.padded.add(index)
+
+    def natural(self, index: int, step: Step) -> None:
+        """Check that a step aligns to just what it starts with."""
+        if step.run is not None:
+            leaf = self.plan.leaves[self.plan.runs[step.run].items]
+        else:
+            first = step.slices[0] if step.slices else None
+            if not isinstance(first, Part) or first.first:
+                self.say(f"step {index}: alignment in front of nothing")
+                return
+            leaf = self.plan.leaves[first.leaf]
+        if step.align != self.align(leaf):
+            self.say(f"step {index}: {leaf} is aligned to {step.align}, not {self.align(leaf)}")
+
+    def slice(self, index: int, item: Pad | Fixed | Part, place: Place) -> Place:
+        residue, pad = place
+        if isinstance(item, Pad):
+            if pad + item.bytes > 7:
+                self.say(f"step {index}: 8 padding bytes or more")
+            return residue, min(7, pad + item.bytes)
+        if isinstance(item, Part) and item.first == 0:
+            leaf = self.plan.leaves[item.leaf]
+            self.expect(index, leaf, residue, pad)
+        elif pad:
+            self.say(f"step {index}: padding in front of nothing")
+        return (residue + pad + item.bytes) % 8, 0
+
+    def expect(self, index: int, leaf: Leaf, residue: int, pad: int) -> None:
+        align = self.align(leaf)
+        if pad != -residue % align:
+            self.say(
+                f"step {index}: {leaf} has {pad} bytes of padding in front, "
+                f"not {-residue % align}, at offset {residue} modulo 8"
+            )
+
+    def begin_run(self, index: int, begin: Begin, places: set[Place]) -> set[Place]:
+        assert begin.run is not None
+        leaf = self.plan.leaves[self.plan.runs[begin.run].items]
+        size = leaf.item_bytes
+        body_align = 1
+        if begin.body is not None:
+            body = self.plan.steps[index + 1]
+            body_align = body.align
+            if body_align != 1:
+                self.natural(index + 1, body)
+                self.pad(index + 1, places)
+                if begin.gap or begin.head:
+                    self.say(f"step {index}: {leaf} starts here and in an aligned step, too")
+        result: set[Place] = set() if begin.count is not None else set(places)
+        for residue, pad in places:
+            if body_align == 1:
+                self.expect(index, leaf, residue, pad + begin.gap)
+                start = residue + pad + begin.gap
+            else:
+                start = residue + -residue % body_align
+            counts = range(1, 9) if begin.count is None else [begin.count]
+            result |= {((start + count * size) % 8, 0) for count in counts}
+        return result
+
+    def constant_run(self, index: int, run: int, places: set[Place]) -> set[Place]:
+        leaf = self.plan.leaves[self.plan.runs[run].items]
+        for residue, pad in places:
+            self.expect(index, leaf, residue, pad)
+        count = self.counts.get((RUN_COUNTER, index), 0)
+        return {((r + pad + count * leaf.item_bytes) % 8, 0) for r, pad in places}

@@ -1,0 +1,311 @@
+"""Reading of plans that :mod:`firm_hdl.plan.yaml` printed, or that somebody edited since.
+
+Only the syntax is checked here, each mistake with its line; whether a plan makes sense is what
+:func:`firm_hdl.plan.check` finds out.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import TypeAlias, TypeVar
+
+import yaml
+
+from firm_hdl.model import PRIMITIVES
+from firm_hdl.plan.ir import (
+    RUN_COUNTER,
+    Begin,
+    Exits,
+    Fixed,
+    Jump,
+    Leaf,
+    Pad,
+    Part,
+    Plan,
+    Run,
+    Slice,
+    Step,
+)
+
+__all__ = ["from_yaml"]
+
+Entries: TypeAlias = "dict[str, yaml.Node]"
+T = TypeVar("T")
+
+NUMBERS = ("bus_bytes", "max_message_bytes", "header_bytes", "slack_bytes", "levels")
+KEYS = ("message", "wire", *NUMBERS, "leaves", "runs", "start", "steps")
+LEAF = re.compile(r"(?:(trigger|length)|(signed )?(\w+)(?: x (\d+))?)")
+RANGE = re.compile(r"(?:at (\d+)|(\d+)(?:\.\.(\d+))?)")
+FIXED = re.compile(r"\(((?:[0-9a-f]{2} )+)(checked|ignored)\)")
+PART = re.compile(
+    r"([\w.]+)(?:, (\d+) items?)?(?:, bytes (\d+)(?:\.\.(\d+))? of (\d+))?"
+    r"(, last)?(?:, last of loop (\d+))?"
+)
+BODY = re.compile(r"([\w.]+), up to (\d+) bytes?")
+JUMP = re.compile(r"(?:end|step (\d+))(?: with (.+))?")
+COUNTER = re.compile(r"(?:loop (\d+)|run) = (\d+)")
+
+
+def from_yaml(text: str) -> Plan:
+    """Read a plan.
+
+    Raises
+    ------
+    ValueError
+        If the text is not YAML or not that of a plan; the message starts with the line.
+    """
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    try:
+        node = yaml.compose(text, Loader=loader)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = "" if mark is None else f"Line {mark.line + 1}: "
+        raise ValueError(f"{line}not YAML: {getattr(error, 'problem', error)}") from None
+    if node is None:
+        raise ValueError("Line 1: a plan must be a mapping, not empty")
+    return _Reader().plan(node)
+
+
+def _error(node: yaml.Node, problem: str) -> ValueError:
+    return ValueError(f"Line {node.start_mark.line + 1}: {problem}")
+
+
+def _entries(node: yaml.Node, what: str) -> Entries:
+    if not isinstance(node, yaml.MappingNode):
+        raise _error(node, f"{what} must be a mapping")
+    result: Entries = {}
+    for key, value in node.value:
+        name = _text(key, "a key")
+        if name in result:
+            raise _error(key, f"{what} has {name!r} twice")
+        result[name] = value
+    return result
+
+
+def _text(node: yaml.Node, what: str) -> str:
+    if not isinstance(node, yaml.ScalarNode):
+        raise _error(node, f"{what} must be a single value")
+    return str(node.value)
+
+
+def _number(node: yaml.Node, what: str) -> int:
+    text = _text(node, what)
+    if not re.fullmatch("[0-9]+", text):
+        raise _error(node, f"{what} must be a number, not {text!r}")
+    return int(text)
+
+
+def _match(pattern: re.Pattern[str], node: yaml.Node, what: str) -> re.Match[str]:
+    text = _text(node, what)
+    found = pattern.fullmatch(text)
+    if found is None:
+        raise _error(node, f"{text!r} is not {what}")
+    return found
+
+
+def _take(entries: Entries, key: str, read: Callable[[yaml.Node, str], T]) -> T | None:
+    return read(entries.pop(key), key) if key in entries else None
+
+
+class _Reader:
+    leaves: tuple[Leaf, ...]
+    runs: tuple[Run, ...]
+
+    def plan(self, node: yaml.Node) -> Plan:
+        entries = _entries(node, "a plan")
+        for key in KEYS:
+            if key not in entries:
+                raise _error(node, f"the plan has no {key!r}")
+        for key in entries:
+            if key not in KEYS:
+                raise _error(entries[key], f"a plan has no {key!r}")
+        wire = _text(entries["wire"], "wire")
+        if wire not in ("ros1", "cdr"):
+            raise _error(entries["wire"], f"wire must be 'ros1' or 'cdr', not {wire!r}")
+        leaves = _entries(entries["leaves"], "leaves")
+        self.leaves = tuple(self.leaf(path, value) for path, value in leaves.items())
+        self.indices = {path: index for index, path in enumerate(leaves)}
+        runs = _entries(entries["runs"], "runs")
+        self.runs = tuple(self.run(path, value) for path, value in runs.items())
+        self.run_indices = {path: index for index, path in enumerate(runs)}
+        numbers = {key: _number(entries[key], key) for key in NUMBERS}
+        return Plan(
+            message=_text(entries["message"], "message"),
+            wire="ros1" if wire == "ros1" else "cdr",
+            leaves=self.leaves,
+            runs=self.runs,
+            start=self.jump(entries["start"], "start"),
+            steps=self.steps(entries["steps"]),
+            **numbers,
+        )
+
+    # Tables.
+
+    def leaf(self, path: str, node: yaml.Node) -> Leaf:
+        found = _match(LEAF, node, "a leaf")
+        names = tuple(path.split("."))
+        special, signed, name, lanes = found.groups()
+        if special == "trigger":
+            return Leaf(path=names, kind="trigger", type="bool", signed=False)
+        if special == "length":
+            return Leaf(path=names, kind="length", type="uint32", signed=False)
+        if name not in PRIMITIVES["ros2"]:
+            raise _error(node, f"{name!r} is not a primitive")
+        item = PRIMITIVES["ros1" if signed else "ros2"][name]
+        is_signed = item.signed and item.kind == "int"
+        if lanes is None:
+            return Leaf(path=names, kind="scalar", type=name, signed=is_signed)
+        return Leaf(path=names, kind="items", type=name, signed=is_signed, lanes=int(lanes))
+
+    def run(self, path: str, node: yaml.Node) -> Run:
+        items = node.value if isinstance(node, yaml.SequenceNode) else [node]
+        words = [_text(item, f"run {path!r}") for item in items]
+        if not set(words) <= {"NUL behind", "tail behind"}:
+            raise _error(node, f"run {path!r} can have 'NUL behind' and 'tail behind' only")
+        return Run(
+            items=self.index(self.indices, path, node),
+            terminated="NUL behind" in words,
+            last="tail behind" not in words,
+        )
+
+    def index(self, table: dict[str, int], path: str, node: yaml.Node) -> int:
+        if path not in table:
+            kind = "leaf" if table is self.indices else "run"
+            raise _error(node, f"the plan has no {kind} {path!r}")
+        return table[path]
+
+    # Steps.
+
+    def jump(self, node: yaml.Node, what: str) -> Jump:
+        found = _match(JUMP, node, f"a place to go on ({what})")
+        step, loads = found.groups()
+        enter: list[tuple[int | str, int]] = []
+        for load in loads.split("; ") if loads else ():
+            counter = COUNTER.fullmatch(load)
+            if counter is None:
+                raise _error(node, f"{load!r} is not a counter and a number")
+            level, count = counter.groups()
+            enter.append((RUN_COUNTER if level is None else int(level), int(count)))
+        return Jump(enter=tuple(enter), step=None if step is None else int(step))
+
+    def steps(self, node: yaml.Node) -> tuple[Step, ...]:
+        steps: list[Step] = []
+        for name, value in _entries(node, "steps").items():
+            if name != f"step {len(steps)}":
+                raise _error(value, f"expected step {len(steps)}, not {name!r}")
+            steps.append(self.step(_entries(value, name), value))
+        return tuple(steps)
+
+    def step(self, entries: Entries, node: yaml.Node) -> Step:
+        align = _take(entries, "align", _number)
+        size = _take(entries, "bytes", _number)
+        run = _take(entries, "run", lambda each, _: self.body(each))
+        begin = _take(entries, "begin", lambda each, _: each)
+        exits = _take(entries, "next", lambda each, _: self.exits(each))
+        if exits is None:
+            raise _error(node, "the step has no 'next'")
+        slices = [item for key, each in entries.items() for item in self.slices(key, each)]
+        total = sum(item.bytes for item in slices) if size is None else size
+        return Step(
+            align=1 if align is None else align,
+            bytes=total,
+            slices=tuple(slices),
+            begin=None if begin is None else self.begin(begin, total),
+            run=None if run is None else run[0],
+            head=0 if run is None else run[1],
+            exits=exits,
+        )
+
+    def body(self, node: yaml.Node) -> tuple[int, int]:
+        path, head = _match(BODY, node, "the body of a run").groups()
+        return self.index(self.run_indices, path, node), int(head)
+
+    def exits(self, node: yaml.Node) -> Exits:
+        if isinstance(node, yaml.ScalarNode):
+            return Exits(default=self.jump(node, "next"))
+        entries = _entries(node, "next")
+        if "else" not in entries:
+            raise _error(node, "next has no 'else'")
+        default = self.jump(entries.pop("else"), "else")
+        repeats: list[tuple[int, Jump]] = []
+        for key, value in entries.items():
+            found = re.fullmatch(r"loop (\d+) again", key)
+            if found is None:
+                raise _error(value, f"next has no {key!r}")
+            repeats.append((int(found[1]), self.jump(value, key)))
+        return Exits(repeats=tuple(repeats), default=default)
+
+    def begin(self, node: yaml.Node, at: int) -> Begin:
+        entries = _entries(node, "begin")
+        run = _take(entries, "run", lambda each, _: self.path(self.run_indices, each))
+        length = _take(entries, "count", lambda each, _: self.path(self.indices, each))
+        limit = _take(entries, "limit", _number)
+        if limit is None:
+            raise _error(node, "begin has no 'limit'")
+        gap = _take(entries, "gap", _number) or 0
+        head = entries.pop("head", None)
+        result = Begin(
+            length=length,
+            count=_take(entries, "constant", _number),
+            limit=limit,
+            terminated=_take(entries, "terminated", _text) == "true",
+            level=_take(entries, "loop", _number),
+            run=run,
+            gap=gap,
+            head=0 if head is None else self.head(head, at + gap),
+            body=_take(entries, "body", self.jump),
+        )
+        for key, value in entries.items():
+            raise _error(value, f"begin has no {key!r}")
+        return result
+
+    def path(self, table: dict[str, int], node: yaml.Node) -> int:
+        return self.index(table, _text(node, "a path"), node)
+
+    def head(self, node: yaml.Node, at: int) -> int:
+        _, first, last = _match(RANGE, node, "a range of bytes").groups()
+        if first is None or int(first) != at:
+            raise _error(node, f"the head must start at byte {at}, behind the step's own bytes")
+        return int(last or first) - at + 1
+
+    def slices(self, key: str, node: yaml.Node) -> list[Slice]:
+        found = RANGE.fullmatch(key)
+        if found is None:
+            raise _error(node, f"a step has no {key!r}")
+        nowhere, first, last = found.groups()
+        if nowhere is not None:
+            nodes = node.value if isinstance(node, yaml.SequenceNode) else [node]
+            return [self.slice(int(nowhere), 0, each) for each in nodes]
+        return [self.slice(int(first), int(last or first) - int(first) + 1, node)]
+
+    def slice(self, at: int, size: int, node: yaml.Node) -> Slice:
+        text = _text(node, "a byte's meaning")
+        if text == "(padding)":
+            return Pad(at=at, bytes=size)
+        fixed = FIXED.fullmatch(text)
+        if fixed is None:
+            return self.part(at, size, node)
+        data = bytes.fromhex(fixed[1])
+        if len(data) != size:
+            raise _error(node, f"{len(data)} fixed bytes stand where {size} are needed")
+        return Fixed(at=at, data=data, check=fixed[2] == "checked")
+
+    def part(self, at: int, size: int, node: yaml.Node) -> Part:
+        found = _match(PART, node, "a leaf, padding or fixed bytes")
+        path, items, first, end, whole, last, level = found.groups()
+        index = self.index(self.indices, path, node)
+        if first is not None and int(end or first) - int(first) + 1 != size:
+            raise _error(node, f"the bytes of {path!r} are not as many as those of the window")
+        natural = int(items or 1) * self.leaves[index].item_bytes
+        if whole is None and natural != size:
+            raise _error(node, f"{path!r} has {natural} bytes, not {size}")
+        return Part(
+            at=at,
+            bytes=size,
+            leaf=index,
+            first=int(first or 0),
+            size=natural if whole is None else int(whole),
+            last=last is not None,
+            last_level=None if level is None else int(level),
+        )

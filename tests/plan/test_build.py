@@ -1,0 +1,58 @@
+"""What the planner promises: legal parameters, few steps, limits of lengths."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from firm_hdl.plan import build_plan, decode, encode
+from firm_hdl.sim.values import to_transfers
+from firm_hdl.wire import lay_out
+from tests.strategies import BUS_WIDTHS, make
+
+BLOB = make("ros2", {"x": "uint32", "data": "uint8[]"})
+
+
+@pytest.mark.parametrize("width", [0, 3, 128, -8])
+def test_bus_widths_are_powers_of_two_up_to_64(width):
+    message = f"Bus width must be one of 1, 2, 4, 8, 16, 32, 64 bytes, not {width}"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        build_plan(lay_out(BLOB), bus_bytes=width)
+
+
+@pytest.mark.parametrize("size", [0, 11, 1 << 32])
+def test_the_largest_message_has_room_for_the_smallest(size):
+    message = (
+        "Maximum message size must be from 12 bytes, the least that a p/msg/T has, "
+        f"to 4294967295, not {size}"
+    )
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        build_plan(lay_out(BLOB), max_message_bytes=size)
+
+
+def test_the_smallest_message_is_the_largest_if_so_wished():
+    plan = build_plan(lay_out(BLOB), max_message_bytes=12)
+    packet = bytes.fromhex("00010000 05000000 00000000")
+    assert decode(plan, packet).status == "OK"
+    assert decode(plan, packet[:8] + b"\1\0\0\0x").status == "LENGTH"
+
+
+@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+def test_bulk_data_takes_a_bus_word_per_cycle(bus_bytes):
+    plan = build_plan(lay_out(BLOB), bus_bytes=bus_bytes)
+    value = {"x": 1, "data": bytes(range(256)) * 16}
+    packet, _ = encode(plan, to_transfers(plan, BLOB, value))
+    beats = -(-len(packet) // bus_bytes)
+    assert len(decode(plan, packet).steps) <= beats + 2
+
+
+@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+def test_fixed_fields_take_no_more_cycles_than_beats(bus_bytes):
+    kinds = ["uint8", "float64", "uint16", "uint32", "float64[9]", "uint8[21]"]
+    message = make("ros2", {f"f{n}": kinds[n % len(kinds)] for n in range(40)})
+    plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
+    packet = bytes.fromhex("00010000") + bytes(10000)
+    visits = decode(plan, packet).steps
+    size = sum(visit.bytes for visit in visits)
+    assert len(visits) <= -(-size // bus_bytes) * 1.5 + 2

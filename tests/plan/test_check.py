@@ -1,0 +1,219 @@
+"""Broken plans are found: by hand-made faults with what is said, and by every small change."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from firm_hdl.plan import (
+    BUS_BYTES,
+    Begin,
+    Exits,
+    Fixed,
+    Jump,
+    Leaf,
+    Pad,
+    Part,
+    Plan,
+    Run,
+    Step,
+    build_plan,
+    check,
+)
+from firm_hdl.wire import lay_out
+from tests.strategies import make
+
+INNER = make("ros2", {"x": "uint8", "d": "float64", "s": "string<=9"}, "I")
+RICH = make(
+    "ros2",
+    {
+        "a": "uint8",
+        "q": "uint16[]",
+        "b": "uint64",
+        "ps": (INNER, "[<=4]"),
+        "grid": (make("ros2", {"row": "uint8[3]", "t": "uint16"}, "R"), "[6]"),
+        "m": "float32[7]",
+        "w": "wstring",
+        "z": "uint8",
+    },
+)
+PACKED = make("ros1", {"a": "uint8", "s": "string", "e": make("ros1", {}, "E"), "d": "float64[5]"})
+LAYOUTS = [lay_out(RICH), lay_out(RICH, "ros1"), lay_out(PACKED), lay_out(PACKED, "cdr")]
+PLANS = [
+    (layout, build_plan(layout, bus_bytes=width, max_message_bytes=4000))
+    for layout in LAYOUTS
+    for width in BUS_BYTES
+]
+
+
+def test_good_plans_pass():
+    for layout, plan in PLANS:
+        assert check(plan) == []
+        assert check(plan, layout) == []
+
+
+def mutations(node: Any) -> Iterator[tuple[str, Any]]:
+    """Yield all values that differ from a part of a plan in one number, flag, name or element."""
+    if isinstance(node, bool):
+        yield "flag", not node
+    elif isinstance(node, int):
+        yield "more", node + 1
+        yield "less", node - 1
+    elif isinstance(node, tuple):
+        # Pairs of a counter and something keep their form.
+        pair = len(node) == 2 and isinstance(node[0], int | str) and not isinstance(node[1], str)
+        for index, item in enumerate(node):
+            rest = node[:index], node[index + 1 :]
+            if not pair:
+                yield f"[{index}] gone", rest[0] + rest[1]
+                yield f"[{index}] twice", (*rest[0], item, item, *rest[1])
+            for name, changed in mutations(item):
+                yield f"[{index}].{name}", (*rest[0], changed, *rest[1])
+    elif isinstance(node, Plan | Step | Begin | Jump | Exits | Part | Pad | Fixed | Run | Leaf):
+        for field in dataclasses.fields(node):
+            if (type(node), field.name) not in HARMLESS:
+                if getattr(node, field.name) is None and (type(node), field.name) in NUMBERS:
+                    yield f"{field.name}.some", replace(node, **{field.name: 0})
+                for name, changed in mutations(getattr(node, field.name)):
+                    yield f"{field.name}.{name}", replace(node, **{field.name: changed})
+
+
+# What may be otherwise in a sound plan: limits within the bound, and the size of packets.
+HARMLESS = {
+    (Begin, "limit"),
+    (Plan, "max_message_bytes"),
+}
+
+
+# What may be `None` and else is a number.
+NUMBERS = {
+    (Part, "last_level"),
+    (Jump, "step"),
+    (Begin, "length"),
+    (Begin, "count"),
+    (Begin, "level"),
+    (Begin, "run"),
+    (Step, "run"),
+}
+
+
+def is_sound_head(plan: Plan, name: str) -> bool:
+    """Tell changes of a head that stay sound: without room for the NUL, or none at all."""
+    smaller = plan.bus_bytes == 1 or any(run.terminated for run in plan.runs)
+    return name.endswith("head.less") and smaller
+
+
+@pytest.mark.parametrize("index", range(len(PLANS)))
+def test_every_small_change_of_a_plan_is_found(index):
+    layout, plan = PLANS[index]
+    tried = 0
+    for name, changed in mutations(plan):
+        tried += 1
+        if not is_sound_head(plan, name):
+            assert check(changed, layout), name
+    assert tried > 100
+
+
+@pytest.fixture
+def plan() -> Plan:
+    return build_plan(lay_out(RICH), bus_bytes=8)
+
+
+def with_step(plan: Plan, index: int, **changes: Any) -> Plan:
+    steps = list(plan.steps)
+    steps[index] = replace(steps[index], **changes)
+    return replace(plan, steps=tuple(steps))
+
+
+def find(plan: Plan, path: str) -> tuple[int, int]:
+    """Return step and slice of a leaf."""
+    for index, step in enumerate(plan.steps):
+        for place, item in enumerate(step.slices):
+            if isinstance(item, Part) and str(plan.leaves[item.leaf]) == path:
+                return index, place
+    raise AssertionError(path)
+
+
+def test_a_byte_with_two_meanings_is_named(plan):
+    index, place = find(plan, "q.length")
+    slices = list(plan.steps[index].slices)
+    slices[place] = replace(slices[place], at=slices[place].at - 1)
+    problems = check(with_step(plan, index, slices=tuple(slices)))
+    assert f"step {index}: byte {slices[place].at} has no or two meanings" in problems
+
+
+def test_a_missing_alignment_is_named(plan):
+    index, _ = find(plan, "b")
+    assert plan.steps[index].align == 8
+    first, *_ = check(with_step(plan, index, align=1))
+    assert first.startswith(f"step {index}: b has 0 bytes of padding in front, not ")
+
+
+def test_the_wrong_alignment_is_named(plan):
+    index, _ = find(plan, "b")
+    first, *_ = check(with_step(plan, index, align=4))
+    assert first == f"step {index}: b is aligned to 4, not 8"
+
+
+def test_a_needless_alignment_is_named(plan):
+    index, _ = find(plan, "w.length")
+    assert plan.steps[index].align == 1
+    slices = plan.steps[index].slices
+    assert str(plan.leaves[slices[0].leaf]) == "m.items"
+    assert check(with_step(plan, index, align=4)) == [f"step {index}: is aligned already"]
+
+
+def test_padding_in_front_of_nothing_is_named():
+    plan = build_plan(lay_out(make("ros2", {"a": "uint8"})))
+    step = plan.steps[0]
+    slices = (*step.slices, Pad(at=5, bytes=1))
+    problems = check(with_step(plan, 0, slices=slices, bytes=6))
+    assert problems == ["the end: padding in front of nothing"]
+
+
+def test_a_step_that_is_too_large_for_the_window_is_named():
+    plan = build_plan(lay_out(make("ros1", {f"x{n}": "uint64" for n in range(4)})), bus_bytes=16)
+    first, second = plan.steps
+    slices = [*first.slices, *(replace(item, at=item.at + 16) for item in second.slices)]
+    step = replace(first, slices=tuple(slices), bytes=32, exits=second.exits)
+    assert check(replace(plan, steps=(step,))) == []
+    narrow = replace(plan, steps=(step,), bus_bytes=8)
+    assert check(narrow) == ["step 0: 32 bytes in one cycle"]
+
+
+def test_a_jump_to_the_wrong_step_is_named(plan):
+    exits = plan.steps[0].exits
+    changed = replace(exits, default=replace(exits.default, step=2))
+    assert "step 0, next: goes to step 2, not 1" in check(with_step(plan, 0, exits=changed))
+
+
+def test_a_step_that_nothing_leads_to_is_named(plan):
+    steps = (*plan.steps, plan.steps[-1])
+    problems = check(replace(plan, steps=steps))
+    assert problems
+    *others, last = plan.steps
+    ends = replace(last, exits=Exits(default=Jump(step=len(others))))
+    assert check(replace(plan, steps=(*others, ends)))
+
+
+def test_a_loop_that_is_not_closed_is_named(plan):
+    index = next(n for n, step in enumerate(plan.steps) if step.exits.repeats)
+    exits = replace(plan.steps[index].exits, repeats=())
+    assert check(with_step(plan, index, exits=exits))
+
+
+def test_leaves_out_of_order_are_named():
+    plan = build_plan(lay_out(make("ros1", {"a": "uint8", "b": "uint8"})))
+    (step,) = plan.steps
+    slices = tuple(replace(item, leaf=1 - item.leaf) for item in step.slices)
+    problems = check(with_step(plan, 0, slices=slices))
+    assert problems[0] == "leaf b is out of order"
+
+
+def test_a_plan_of_another_layout_is_named(plan):
+    other = lay_out(make("ros2", {"a": "uint8"}))
+    assert "leaves are not those of the layout" in check(plan, other)

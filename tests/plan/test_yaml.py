@@ -1,0 +1,183 @@
+"""Plans as text: what people review, and what is said when they make a mistake."""
+
+from __future__ import annotations
+
+import re
+import time
+
+import pytest
+import yaml
+
+from firm_hdl.plan import build_plan, from_yaml, to_yaml
+from firm_hdl.wire import lay_out
+from tests.strategies import BUS_WIDTHS, make
+
+POINT = make("ros2", {"x": "uint8", "name": "string"}, "Point")
+MESSAGE = make("ros2", {"stamp": "uint32", "points": (POINT, "[<=5]"), "grid": "float32[5]"})
+
+BODY = """\
+message: p/msg/T
+wire: cdr
+bus_bytes: 8
+max_message_bytes: 1000
+header_bytes: 4
+slack_bytes: 3
+levels: 1
+leaves:
+  stamp: uint32
+  points.length: length
+  points.item.x: uint8
+  points.item.name.length: length
+  points.item.name.items: uint8 x 8
+  grid.items: float32 x 2
+runs:
+  points.item.name.items: [NUL behind]
+  grid.items: [tail behind]
+start: step 0
+steps:
+  step 0:  # packet bytes 0..7
+    0..1: (00 01 checked)
+    2..3: (00 00 ignored)
+    4..7: stamp
+    next: step 1
+  step 1:  # packet bytes 8..11
+    0..3: points.length
+    begin: {loop: 0, count: points.length, limit: 5, body: step 2}
+    next: step 5 with run = 4
+  step 2:  # in loop 0 (points.length)
+    0: points.item.x
+    next: step 3
+  step 3:  # in loop 0 (points.length)
+    align: 4
+    0..3: points.item.name.length
+    begin:
+      run: points.item.name.items
+      count: points.item.name.length
+      limit: 967
+      terminated: true
+      head: 4..12
+      body: step 4
+    next: {loop 0 again: step 2, else: step 5 with run = 4}
+  step 4:  # in loop 0 (points.length)
+    run: points.item.name.items, up to 9 bytes
+    next: {loop 0 again: step 2, else: step 5 with run = 4}
+  step 5:
+    align: 4
+    run: grid.items, up to 8 bytes
+    next: step 6
+  step 6:
+    0..3: grid.items, 1 item, last
+    next: end
+"""
+
+
+def text_of(message, **options):
+    return to_yaml(build_plan(lay_out(message), **options))
+
+
+def body_of(text):
+    return "".join(line for line in text.splitlines(True) if not line.startswith("#"))
+
+
+def test_a_plan_prints_as_an_engineer_reads_it():
+    assert body_of(text_of(MESSAGE, max_message_bytes=1000)) == BODY
+
+
+def test_the_first_line_sums_it_up():
+    first = text_of(MESSAGE).splitlines()[0]
+    assert first == (
+        "# Plan of p/msg/T on cdr, bus of 8 bytes: 6 leaves, 2 runs, 1 loop level, 7 steps."
+    )
+
+
+@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+def test_reading_gives_the_same_plan(bus_bytes):
+    plan = build_plan(lay_out(MESSAGE), bus_bytes=bus_bytes)
+    text = to_yaml(plan)
+    assert from_yaml(text) == plan
+    assert from_yaml(body_of(text)) == plan
+    assert to_yaml(from_yaml(text)) == text
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 8])
+def test_names_that_yaml_takes_for_values_stay_names(bus_bytes):
+    names = ["yes", "no", "on", "off", "true", "null", "y", "NO", "pad", "x1", "e1"]
+    message = make("ros1", dict.fromkeys(names, "uint16"))
+    plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
+    text = to_yaml(plan)
+    assert from_yaml(text) == plan
+    # So that other readers of YAML see the names, too.
+    assert list(yaml.safe_load(text)["leaves"]) == names
+    if bus_bytes == 8:
+        assert list(yaml.safe_load(text)["steps"]["step 0"].values())[:4] == names[:4]
+
+
+def test_leaves_without_bytes_print_where_they_become_valid():
+    empty = make("ros1", {}, "E")
+    message = make("ros1", {"a": "uint8", "e": empty, "f": empty, "b": "byte"})
+    plan = build_plan(lay_out(message))
+    text = to_yaml(plan)
+    assert "    0: a\n    at 1: [e.trigger, f.trigger]\n    1: b\n" in text
+    assert "  b: signed byte\n" in text
+    assert from_yaml(text) == plan
+
+
+def test_items_wider_than_the_bus_name_their_loop():
+    plan = build_plan(lay_out(make("ros1", {"a": "float64[]"})), bus_bytes=2)
+    text = to_yaml(plan)
+    assert "    0..3: a.items, 1 item, bytes 4..7 of 8, last of loop 0\n" in text
+    assert from_yaml(text) == plan
+
+
+MISTAKES = [
+    ("", "", "Line 1: a plan must be a mapping, not empty"),
+    (BODY, "[1, 2]", "Line 1: a plan must be a mapping"),
+    ("wire: cdr\n", "", "Line 1: the plan has no 'wire'"),
+    ("wire: cdr", "wire: can", "Line 2: wire must be 'ros1' or 'cdr', not 'can'"),
+    ("wire: cdr", "wire: cdr\nwires: 2", "Line 3: a plan has no 'wires'"),
+    ("bus_bytes: 8", "bus_bytes: wide", "Line 3: bus_bytes must be a number, not 'wide'"),
+    ("bus_bytes: 8", "bus_bytes: [8]", "Line 3: bus_bytes must be a single value"),
+    ("stamp: uint32", "stamp: uint31", "Line 9: 'uint31' is not a primitive"),
+    ("stamp: uint32", "stamp: a b c", "Line 9: 'a b c' is not a leaf"),
+    ("  points.length: length", "  stamp: uint8", "Line 10: leaves has 'stamp' twice"),
+    ("4..7: stamp", "4..7: stomp", "Line 23: the plan has no leaf 'stomp'"),
+    ("4..7: stamp", "4..6: stamp", "Line 23: 'stamp' has 4 bytes, not 3"),
+    ("4..7: stamp", "4..7: stamp?", "Line 23: 'stamp?' is not a leaf, padding or fixed bytes"),
+    ("4..7: stamp", "four: stamp", "Line 23: a step has no 'four'"),
+    ("(00 01 checked)", "(00 checked)", "Line 21: 1 fixed bytes stand where 2 are needed"),
+    ("next: step 1\n", "next: stop 1\n", "Line 24: 'stop 1' is not a place to go on (next)"),
+    ("    next: step 1\n", "", "Line 21: the step has no 'next'"),
+    ("with run = 4\n  step 2", "with run 4\n  step 2",
+     "Line 28: 'run 4' is not a counter and a number"),
+    ("  step 2:", "  step 9:", "Line 30: expected step 2, not 'step 9'"),
+    ("limit: 5, ", "", "Line 27: begin has no 'limit'"),
+    ("limit: 5, ", "limit: 5, most: 5, ", "Line 27: begin has no 'most'"),
+    ("head: 4..12", "head: 5..13",
+     "Line 40: the head must start at byte 4, behind the step's own bytes"),
+    (", else: step 5 with run = 4}\n  step 4", "}\n  step 4", "Line 42: next has no 'else'"),
+    ("run: grid.items, up", "run: grid, up", "Line 48: the plan has no run 'grid'"),
+    ("[NUL behind]", "[NUL there]",
+     "Line 16: run 'points.item.name.items' can have 'NUL behind' and 'tail behind' only"),
+    ("wire: cdr", "wire: [cdr", "Line 3: not YAML: "),
+    ("wire: cdr", "wire: \0cdr", "not YAML: "),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "message"), MISTAKES)
+def test_a_mistake_is_told_with_its_line(old, new, message):
+    text = BODY.replace(old, new, 1) if old else new
+    assert text != BODY
+    with pytest.raises(ValueError, match="^" + re.escape(message)) as caught:
+        from_yaml(text)
+    if not message.endswith(": "):
+        assert str(caught.value) == message
+
+
+def test_a_large_plan_takes_seconds():
+    inner = make("ros2", {f"f{n}": ["uint8", "float64", "string"][n % 3] for n in range(60)}, "I")
+    message = make("ros2", {f"field{n}": inner for n in range(150)})
+    plan = build_plan(lay_out(message))
+    assert len(plan.leaves) == 12000
+    start = time.monotonic()
+    assert from_yaml(to_yaml(plan)) == plan
+    assert time.monotonic() - start < 20

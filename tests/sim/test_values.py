@@ -1,0 +1,226 @@
+"""Values as people have them against transfers: kinds, spellings, ranges, and what is refused."""
+
+from __future__ import annotations
+
+import re
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from firm_hdl.plan import build_plan
+from firm_hdl.sim.values import from_transfers, to_transfers
+from firm_hdl.wire import lay_out
+from tests.strategies import TIMES, make
+
+INNER = make("ros2", {"x": "int16", "s": "string"}, "I")
+
+
+def transfers(fields, value, *, dialect="ros2", bus_bytes=4, **options):
+    message = make(dialect, fields)
+    plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
+    streams = to_transfers(plan, message, value, **options)
+    return {str(plan.leaves[leaf]): payloads for leaf, payloads in streams.items()}
+
+
+def test_items_go_a_bus_word_per_transfer_with_last_on_the_last():
+    got = transfers({"a": "uint8[]", "b": "uint16[3]"}, {"a": range(1, 7), "b": [1, 2, 3]})
+    assert got == {
+        "a.length": [6],
+        "a.items": [((1, 2, 3, 4), False), ((5, 6, 0, 0), True)],
+        "b.items": [((1, 2), False), ((3, 0), True)],
+    }
+
+
+def test_an_empty_sequence_has_a_length_only():
+    assert transfers({"a": "uint8[]"}, {"a": []}) == {"a.length": [0], "a.items": []}
+
+
+def test_elements_transfer_one_after_the_other():
+    value = {"ps": [{"x": -1, "s": "a"}, {"x": 2, "s": "bc"}]}
+    assert transfers({"ps": (INNER, "[]")}, value) == {
+        "ps.length": [2],
+        "ps.item.x": [-1, 2],
+        "ps.item.s.length": [1, 2],
+        "ps.item.s.items": [((97, 0, 0, 0), True), ((98, 99, 0, 0), True)],
+    }
+
+
+def test_an_empty_message_is_a_trigger_on_ros1_and_an_octet_on_cdr():
+    assert transfers({}, {}, dialect="ros1") == {"trigger": [1]}
+    name = "structure_needs_at_least_one_member"
+    assert transfers({}, {}) == {name: [0]}
+    assert transfers({}, {name: 0}) == {name: [0]}
+
+
+def test_floats_are_their_bits():
+    value = {"f": 1.0, "d": -2.0, "fs": [0.5]}
+    got = transfers({"f": "float32", "d": "float64", "fs": "float32[]"}, value)
+    assert got["f"] == [0x3F800000]
+    assert got["d"] == [0xC000000000000000]
+    assert got["fs.items"] == [((0x3F000000,), True)]
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "want"),
+    [
+        ("byte", 254, 254),
+        ("byte", -2, 254),
+        ("byte", b"\xfe", 254),
+        ("bool", np.True_, 1),
+        ("bool", 0, 0),
+        ("int64", np.int64(-5), -5),
+        ("uint8", np.uint8(255), 255),
+        ("float32", 3, 0x40400000),
+        ("float32", np.float64(3), 0x40400000),
+    ],
+)
+def test_numbers_may_be_of_any_kind_that_fits(kind, value, want):
+    assert transfers({"x": kind}, {"x": value}) == {"x": [want]}
+
+
+@pytest.mark.parametrize("given", [b"\1\2\xff", [1, 2, 255], np.array([1, 2, 255], np.uint8)])
+def test_bytes_lists_and_arrays_mean_the_same(given):
+    assert transfers({"x": "uint8[3]"}, {"x": given}) == {"x.items": [((1, 2, 255, 0), True)]}
+
+
+def test_a_ros1_byte_is_signed():
+    assert transfers({"x": "byte[2]"}, {"x": b"\1\xff"}, dialect="ros1") == {
+        "x.items": [((1, -1, 0, 0), True)]
+    }
+
+
+def test_wstring_is_utf_16_units_or_any_numbers():
+    got = transfers({"w": "wstring"}, {"w": "a\U0001f600"}, bus_bytes=16)
+    assert got["w.items"] == [((0x61, 0xD83D, 0xDE00, 0), True)]
+    got = transfers({"w": "wstring"}, {"w": [0x12345678]}, bus_bytes=16)
+    assert got["w.items"] == [((0x12345678, 0, 0, 0), True)]
+
+
+def test_objects_are_read_by_attributes_in_rosbags_spelling():
+    inner = make("ros1", {"from": "uint8", "t": TIMES[0], "d": TIMES[1]}, "K")
+    value = SimpleNamespace(
+        k=SimpleNamespace(
+            from_=7,
+            t=SimpleNamespace(sec=-1, nanosec=2),
+            d=SimpleNamespace(sec=-3, nanosec=0xFFFFFFFF),
+        )
+    )
+    assert transfers({"k": inner}, value, dialect="ros1") == {
+        "k.from": [7],
+        "k.t.secs": [0xFFFFFFFF],
+        "k.t.nsecs": [2],
+        "k.d.secs": [-3],
+        "k.d.nsecs": [-1],
+    }
+
+
+REFUSED = [
+    ({"x": "uint8"}, {"x": 256}, ValueError, "x must be from 0 to 255, not 256"),
+    ({"x": "int8"}, {"x": -129}, ValueError, "x must be from -128 to 127, not -129"),
+    ({"x": "byte"}, {"x": 256}, ValueError, "x must be from -128 to 255, not 256"),
+    ({"x": "uint8"}, {"x": 1.0}, TypeError, "x must be an integer, not 1.0"),
+    ({"x": "uint8"}, {"x": True}, TypeError, "x must be an integer, not True"),
+    ({"x": "bool"}, {"x": 2}, TypeError, "x must be a bool, not 2"),
+    ({"x": "bool"}, {"x": "yes"}, TypeError, "x must be a bool, not 'yes'"),
+    ({"x": "float32"}, {"x": "1"}, TypeError, "x must be a number, not '1'"),
+    ({"x": "float32"}, {"x": 1e39}, ValueError, "x is too large for a float32: 1e+39"),
+    ({"x": "string"}, {"x": 5}, TypeError, "x must be a string, not 5"),
+    ({"x": "wstring"}, {"x": b"a"}, TypeError, "x must be a wstring, not b'a'"),
+    ({"x": "uint8[3]"}, {"x": [1, 2]}, ValueError, "x must have 3 elements, not 2"),
+    ({"x": "uint8[<=1]"}, {"x": [1, 2]}, ValueError, "x must have at most 1 elements, not 2"),
+    ({"x": "string<=1"}, {"x": "é"}, ValueError, "x must have at most 1 elements, not 2"),
+    ({"x": "uint8[]"}, {"x": [1, 256]}, ValueError, "x[1] must be from 0 to 255, not 256"),
+    ({"x": "uint8[]"}, {"x": "abc"}, TypeError, "x must be a list of uint8, not 'abc'"),
+    ({"x": "uint8[]"}, {"x": 3}, TypeError, "x must be a list of uint8, not 3"),
+    ({"x": "uint8"}, {}, ValueError, "value has no field 'x', which p/msg/T has"),
+    ({"x": "uint8"}, {"x": 1, "y": 2}, ValueError, "value has a field 'y', which p/msg/T has not"),
+    ({"x": "uint8"}, 5, TypeError, "value must be a p/msg/T, not 5"),
+    (
+        {"p": (INNER, "[]")},
+        {"p": [{"x": 1, "s": ""}, {"x": 1 << 15, "s": ""}]},
+        ValueError,
+        "p[1].x must be from -32768 to 32767, not 32768",
+    ),
+    ({"p": INNER}, {"p": None}, TypeError, "p must be a p/msg/I, not None"),
+    ({"p": INNER}, {"p": {"x": 1}}, ValueError, "p has no field 's', which p/msg/I has"),
+]
+
+
+@pytest.mark.parametrize(("fields", "value", "error", "message"), REFUSED)
+def test_what_does_not_fit_is_refused_by_its_path(fields, value, error, message):
+    with pytest.raises(error, match=f"^{re.escape(message)}$"):
+        transfers(fields, value)
+
+
+def test_bounds_can_be_exceeded_on_purpose():
+    got = transfers({"x": "uint8[<=1]"}, {"x": [1, 2]}, check_bounds=False)
+    assert got == {"x.length": [2], "x.items": [((1, 2, 0, 0), True)]}
+
+
+# Back.
+
+
+def joined(fields, streams, bus_bytes=4):
+    message = make("ros2", fields)
+    plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
+    paths = [str(leaf) for leaf in plan.leaves]
+    given = {paths.index(name): payloads for name, payloads in streams.items()}
+    return from_transfers(plan, message, given)
+
+
+def test_transfers_become_plain_values():
+    empty = make("ros2", {}, "E")
+    fields = {"b": "bool", "f": "float32[]", "s": "string", "p": (INNER, "[1]"), "e": empty}
+    streams = {
+        "b": [1],
+        "f.length": [2],
+        "f.items": [((0x3F800000,), False), ((0x40000000,), True)],
+        "s.length": [2],
+        "s.items": [((0xC3, 0xA9, 0, 0), True)],
+        "p.item.x": [-4],
+        "p.item.s.length": [0],
+        "e.structure_needs_at_least_one_member": [0],
+    }
+    value = joined(fields, streams)
+    assert value == {"b": True, "f": [1.0, 2.0], "s": "é", "p": [{"x": -4, "s": ""}], "e": {}}
+    assert value["b"] is True
+
+
+def test_text_that_is_not_unicode_stays_what_it_was():
+    assert joined({"s": "string"}, {"s.length": [1], "s.items": [((0xFF, 0, 0, 0), True)]}) == {
+        "s": b"\xff"
+    }
+    assert joined({"s": "wstring"}, {"s.length": [1], "s.items": [((0x10000,), True)]}) == {
+        "s": [0x10000]
+    }
+    assert joined({"s": "wstring"}, {"s.length": [1], "s.items": [((0xD800,), True)]}) == {
+        "s": "\ud800"
+    }
+
+
+@pytest.mark.parametrize(
+    ("streams", "message"),
+    [
+        ({"q.length": [1]}, "Leaf q.items has fewer transfers than the message"),
+        ({}, "Leaf q.length has fewer transfers than the message"),
+        ({"q.length": [0, 0]}, "Leaf q.length has more transfers than the message"),
+        (
+            {"q.length": [0], "q.items": [((0, 0, 0, 0), True)]},
+            "Leaf q.items has more transfers than the message",
+        ),
+        (
+            {"q.length": [1], "q.items": [((1, 0, 0, 0), False)]},
+            "Leaf q.items has last wrong at item 1 of 1",
+        ),
+        (
+            {"q.length": [5], "q.items": [((1, 0, 0, 0), True), ((1, 0, 0, 0), True)]},
+            "Leaf q.items has last wrong at item 4 of 5",
+        ),
+        ({"q.length": [((1,), True)]}, "Leaf q.length carries numbers, not ((1,), True)"),
+        ({"q.length": [1], "q.items": [1]}, "Leaf q.items carries lanes and last, not 1"),
+    ],
+)
+def test_transfers_that_are_no_message_are_refused(streams, message):
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        joined({"q": "uint8[]"}, streams)

@@ -1,0 +1,122 @@
+"""The layout against packets: what it says of padding and sizes is true of every value."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from firm_hdl.model import PRIMITIVES
+from firm_hdl.plan import build_plan, encode
+from firm_hdl.sim.values import to_transfers
+from firm_hdl.wire import Gap, Loop, Run, Scalar, Trigger, lay_out, walk
+from tests.plan.reference import Reference
+from tests.strategies import definitions, make, values
+
+slow = settings(
+    deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+)
+P = PRIMITIVES["ros2"]
+
+
+def gaps_of(layout):
+    """Return the layout's gaps by path, as the reference decoder names them."""
+    result = {}
+    for node in walk(layout.nodes):
+        match node:
+            case Scalar():
+                result[node.path] = node.gap
+            case Run() | Loop():
+                if node.gap is not None:
+                    result[(*node.path, "length")] = node.gap
+                if isinstance(node, Run):
+                    result[(*node.path, "items")] = node.item_gap
+    return result
+
+
+@pytest.mark.parametrize("wire", ["ros1", "cdr"])
+@slow
+@given(data=st.data())
+def test_static_gaps_are_those_of_every_packet(wire, data):
+    definition = data.draw(definitions(wide=True))
+    message = definition.message
+    layout = lay_out(message, wire)
+    plan = build_plan(layout)
+    gaps = gaps_of(layout)
+    value = data.draw(values(message))
+    packet, _ = encode(plan, to_transfers(plan, message, value))
+    assert len(packet) >= layout.min_bytes
+    reference = Reference(plan, message, packet)
+    assert reference.status == "OK"
+    for path, found in reference.gaps:
+        assert gaps[path].bytes in (None, found)
+        assert found < gaps[path].align
+
+
+@pytest.mark.parametrize(
+    ("fields", "path", "gap"),
+    [
+        ({"a": "uint8", "b": "uint16"}, "b", 1),
+        ({"a": "uint8", "b": "uint64"}, "b", 7),
+        ({"a": "string", "b": "uint8"}, "b", 0),
+        ({"a": "string", "b": "uint16"}, "b", None),
+        ({"a": "wstring", "b": "uint32"}, "b", 0),
+        ({"a": "wstring", "b": "uint64"}, "b", None),
+        ({"a": "uint64[]", "b": "uint64"}, "b", None),
+        ({"a": "uint32[]", "b": "uint32"}, "b", 0),
+        ({"a": "uint16[3]", "b": "uint64"}, "b", 2),
+        ({"a": "uint64[]", "b": "uint32", "c": "uint64"}, "c", None),
+        ({"a": "string", "b": "uint64", "c": "uint16", "d": "uint64"}, "d", 6),
+    ],
+)
+def test_a_gap_is_static_just_when_types_decide_it(fields, path, gap):
+    layout = lay_out(make("ros2", fields))
+    assert gaps_of(layout)[(path,)].bytes == gap
+
+
+@pytest.mark.parametrize(("count", "gap"), [(1, 0), (2, 4), (3, 0), (4, 4), (1000001, 0)])
+def test_a_gap_behind_a_constant_loop_knows_its_count(count, gap):
+    element = make("ros2", {"x": "uint32"}, "E")
+    layout = lay_out(make("ros2", {"h": "uint32", "a": (element, f"[{count}]"), "z": "uint64"}))
+    assert gaps_of(layout)[("z",)].bytes == gap
+
+
+def test_a_loop_body_is_laid_out_for_all_of_its_elements():
+    element = make("ros2", {"x": "uint8", "y": "uint16"}, "E")
+    layout = lay_out(make("ros2", {"a": (element, "[]")}))
+    # The first element is at 4, where y has a gap of 1; all others start at even offsets, too.
+    assert gaps_of(layout)[("a", "item", "y")].bytes == 1
+    odd = make("ros2", {"y": "uint16", "x": "uint8"}, "E")
+    layout = lay_out(make("ros2", {"a": (odd, "[]")}))
+    assert gaps_of(layout)[("a", "item", "y")] == Gap(align=2, bytes=None)
+
+
+def test_ros1_has_no_gaps_at_all():
+    fields = {"a": "uint8", "b": "float64", "s": "string", "q": "uint16[]", "c": "int64[2]"}
+    gaps = gaps_of(lay_out(make("ros1", fields)))
+    assert set(gaps.values()) == {Gap(align=1, bytes=0)}
+
+
+def test_an_empty_message_is_nothing_on_ros1_and_an_octet_on_cdr():
+    assert lay_out(make("ros1", {})).nodes == (Trigger(path=()),)
+    (node,) = lay_out(make("ros2", {})).nodes
+    assert node.path == ("structure_needs_at_least_one_member",)
+    assert node.type == P["uint8"]
+
+
+@pytest.mark.parametrize(
+    ("wire", "fields", "size"),
+    [
+        ("ros1", {}, 0),
+        ("cdr", {}, 5),
+        ("cdr", {"a": "string", "b": "uint8[]", "c": "float64[3]"}, 4 + 4 + 4 + 24),
+        ("ros1", {"a": "string", "b": "uint8[]", "c": "float64[3]"}, 4 + 4 + 24),
+    ],
+)
+def test_min_bytes_is_the_size_of_the_emptiest_packet_without_padding(wire, fields, size):
+    assert lay_out(make("ros2", fields), wire).min_bytes == size
+
+
+def test_an_unknown_wire_is_refused():
+    with pytest.raises(ValueError, match=r"^Wire must be one of 'ros1', 'cdr', not 'can'$"):
+        lay_out(make("ros2", {}), "can")

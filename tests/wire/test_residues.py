@@ -1,0 +1,86 @@
+"""Residue sets against brute force over offsets."""
+
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from firm_hdl.wire import residues as rs
+
+sets = st.integers(1, rs.ALL)
+aligns = st.sampled_from([1, 2, 4, 8])
+
+
+def mask(offsets):
+    return sum({1 << (offset % 8) for offset in offsets})
+
+
+def offsets(residues):
+    """Some offsets of each residue, well above zero."""
+    return [8 * k + r for k in (0, 3) for r in range(8) if residues >> r & 1]
+
+
+@given(residues=sets, count=st.integers(0, 1000))
+def test_advance_moves_every_offset(residues, count):
+    assert rs.advance(residues, count) == mask(at + count for at in offsets(residues))
+
+
+@given(residues=sets, align=aligns)
+def test_aligned_pads_every_offset_to_the_next_multiple(residues, align):
+    assert rs.aligned(residues, align) == mask(
+        next(there for there in range(at, at + align) if there % align == 0)
+        for at in offsets(residues)
+    )
+
+
+@given(residues=sets, align=aligns)
+def test_pad_of_is_known_just_when_all_offsets_need_the_same(residues, align):
+    pads = {-at % align for at in offsets(residues)}
+    assert rs.pad_of(residues, align) == (pads.pop() if len(pads) == 1 else None)
+
+
+@given(residues=sets, unit=st.integers(1, 16))
+def test_spread_reaches_every_number_of_units_and_no_more(residues, unit):
+    assert rs.spread(residues, unit) == mask(
+        at + n * unit for at in offsets(residues) for n in range(17)
+    )
+
+
+@given(residues=sets)
+def test_members_are_the_residues_in_ascending_order(residues):
+    assert list(rs.members(residues)) == sorted({at % 8 for at in offsets(residues)})
+
+
+@given(offset=st.integers(0, 1 << 32))
+def test_single_is_the_set_of_one_offset(offset):
+    assert list(rs.members(rs.single(offset))) == [offset % 8]
+
+
+# Any body of a loop is a function of single residues, distributed over union.
+bodies = st.lists(sets, min_size=8, max_size=8)
+
+
+def image(body, residues):
+    result = 0
+    for r in range(8):
+        if residues >> r & 1:
+            result |= body[r]
+    return result
+
+
+@given(residues=sets, body=bodies, count=st.integers(1, 600))
+def test_repeat_of_a_constant_count_is_the_count_th_image(residues, body, count):
+    now, entry = residues, 0
+    for _ in range(count):
+        entry |= now
+        now = image(body, now)
+    assert rs.repeat(residues, lambda at: image(body, at), count) == (entry, now)
+
+
+@given(residues=sets, body=bodies)
+def test_repeat_of_an_unknown_count_is_the_union_of_all_images(residues, body):
+    now, everything = residues, 0
+    for _ in range(300):
+        everything |= now
+        now = image(body, now)
+    assert rs.repeat(residues, lambda at: image(body, at), None) == (everything, everything)
