@@ -44,7 +44,7 @@ RICH = make(
 PACKED = make("ros1", {"a": "uint8", "s": "string", "e": make("ros1", {}, "E"), "d": "float64[5]"})
 LAYOUTS = [lay_out(RICH), lay_out(RICH, "ros1"), lay_out(PACKED), lay_out(PACKED, "cdr")]
 PLANS = [
-    (layout, build_plan(layout, bus_bytes=width, max_message_bytes=4000))
+    (layout, build_plan(layout, bus_bytes=width, max_message_bytes=4000, window_words=2))
     for layout in LAYOUTS
     for width in BUS_BYTES
 ]
@@ -54,6 +54,8 @@ def test_good_plans_pass():
     for layout, plan in PLANS:
         assert check(plan) == []
         assert check(plan, layout) == []
+        narrow = build_plan(layout, bus_bytes=plan.bus_bytes, max_message_bytes=4000)
+        assert check(narrow, layout) == []
 
 
 def mutations(node: Any) -> Iterator[tuple[str, Any]]:

@@ -80,7 +80,7 @@ def body_of(text):
 
 
 def test_a_plan_prints_as_an_engineer_reads_it():
-    assert body_of(text_of(MESSAGE, max_message_bytes=1000)) == BODY
+    assert body_of(text_of(MESSAGE, max_message_bytes=1000, window_words=2)) == BODY
 
 
 def test_the_first_line_sums_it_up():
@@ -123,7 +123,7 @@ def test_leaves_without_bytes_print_where_they_become_valid():
 
 
 def test_items_wider_than_the_bus_name_their_loop():
-    plan = build_plan(lay_out(make("ros1", {"a": "float64[]"})), bus_bytes=2)
+    plan = build_plan(lay_out(make("ros1", {"a": "float64[]"})), bus_bytes=2, window_words=2)
     text = to_yaml(plan)
     assert "    0..3: a.items, 1 item, bytes 4..7 of 8, last of loop 0\n" in text
     assert from_yaml(text) == plan
