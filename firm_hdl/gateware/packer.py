@@ -81,6 +81,8 @@ class Packer(wiring.Component):
         most_kept = 0 if self.geometry.granule_bytes == bus >= word_bytes and not holds else bus
         store = Signal(8 * max(bus, most_kept + word_bytes))
         level = Signal(range(most_kept + self.geometry.skip_bytes + 8 + bus))
+        # Whether a packet has begun.
+        inside = Signal()
         ending = Signal()
         end_beats = Signal(range(len(store) // 8 // bus + 2))
         end_count = Signal(range(bus + 1))
@@ -119,15 +121,17 @@ class Packer(wiring.Component):
             m.d.sync += [
                 store.eq(kept | self._placed(m, rest, most_kept)),
                 level.eq(rest + word.count + pad),
+                inside.eq(~word.last),
             ]
             with m.If(word.last):
-                self._end(m, rest, level, ending, end_beats, end_count)
+                self._end(m, inside, rest, level, ending, end_beats, end_count)
                 m.d.sync += marked.eq(word.error)
         return m
 
     def _end(
         self,
         m: Module,
+        inside: Signal,
         rest: Signal,
         level: Signal,
         ending: Signal,
@@ -138,12 +142,8 @@ class Packer(wiring.Component):
         bus = self.plan.bus_bytes
         low = bus.bit_length() - 1
         word = self.word.payload
-        total, empty, beats = Signal.like(level), Signal(), Signal.like(level)
-        if any(not step.most_bytes for step in self.plan.steps):
-            inside = Signal()
-            with m.If(self.word.valid & self.word.ready):
-                m.d.sync += inside.eq(~word.last)
-            m.d.comb += empty.eq(~inside & (word.count == 0))
+        total, beats = Signal.like(level), Signal.like(level)
+        empty = ~inside & (word.count == 0)
         m.d.comb += [
             total.eq(rest + word.count),
             beats.eq(((total + (bus - 1)) >> low) + empty),

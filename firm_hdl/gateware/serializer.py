@@ -102,6 +102,7 @@ class _Circuit:
         self.raised = Signal(Status)
         self.writable = Signal()
         self.complete = Signal()
+        self.wanted = Signal(init=1)
         self.held_count = Signal(self.control.bits)
         lanes = self.packer.geometry.word_bytes
         self.lanes = [Signal(8, name=f"lane_{k}") for k in range(lanes)]
@@ -137,6 +138,9 @@ class _Circuit:
         for item in step.slices:
             if isinstance(item, Fixed):
                 self.write(item.at, Const(int.from_bytes(item.data, "little"), 8 * item.bytes))
+                if not step.parts:
+                    # No packet begins before there is a message for it.
+                    self.module.d.comb += self.wanted.eq(self.streams[0].valid)
         if step.begin is not None and step.begin.count is not None:
             self.module.d.comb += [self.control.count.eq(step.begin.count), self.control.some.eq(1)]
         # The first slot's error counts, so it is the last to be assigned.
@@ -234,7 +238,9 @@ class _Circuit:
             packer.word.payload.eq(word),
             Value.cast(packer.word.payload.data).eq(Cat(self.lanes)),
             self.writable.eq(~packer.word.valid | packer.word.ready),
-            self.complete.eq(self.writable & self.slots.all_served & (~control.ends | free)),
+            self.complete.eq(
+                self.writable & self.wanted & self.slots.all_served & (~control.ends | free)
+            ),
             error.eq(Mux(self.error == Status.OK, self.raised, self.error)),
         ]
         with m.If(self.writable):

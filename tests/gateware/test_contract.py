@@ -1,0 +1,209 @@
+# amaranth: UnusedElaboratable=no
+"""What the contract promises about time and order: no leaf waits for one that it does not need."""
+
+from __future__ import annotations
+
+import pytest
+from amaranth.sim import Simulator
+
+from firm_hdl import Deserializer, Serializer, Status
+from firm_hdl.sim import encode, loopback, receive_packets, send_packets
+from tests.strategies import make
+
+PAIR = make("ros1", {"x": "uint8", "y": "uint8"})
+POINT = make("ros1", {"x": "uint32", "name": "string", "y": "uint32"})
+
+
+def simulate(dut, *testbenches):
+    sim = Simulator(dut)
+    sim.add_clock(1e-8)
+    for testbench in testbenches:
+        sim.add_testbench(testbench)
+    sim.run()
+
+
+async def put(ctx, stream, value, deadline=50):
+    ctx.set(stream.payload, value)
+    ctx.set(stream.valid, 1)
+    for _ in range(deadline):
+        _, _, ready = await ctx.tick().sample(stream.ready)
+        if ready:
+            ctx.set(stream.valid, 0)
+            return
+    raise AssertionError("not taken")
+
+
+async def until_valid(ctx, stream, deadline=50):
+    for _ in range(deadline):
+        if ctx.get(stream.valid):
+            return ctx.get(stream.payload)
+        await ctx.tick()
+    raise AssertionError("not valid")
+
+
+def test_every_leaf_and_the_status_come_without_one_being_taken():
+    dut = Deserializer(POINT)
+
+    async def feed(ctx):
+        await send_packets(ctx, dut.packets, [b"\1\0\0\0\2\0\0\0hi\7\0\0\0"])
+
+    async def look(ctx):
+        message = dut.message
+        assert await until_valid(ctx, message.x) == 1
+        assert await until_valid(ctx, message.name.length) == 2
+        items = await until_valid(ctx, message.name.items)
+        assert [items.data[k] for k in range(3)] == [0x68, 0x69, 0]
+        assert items.last
+        assert await until_valid(ctx, message.y) == 7
+        assert await until_valid(ctx, dut.status) == Status.OK
+
+    simulate(dut, feed, look)
+
+
+def test_a_leaf_that_is_held_does_not_hold_an_earlier_one_of_the_next_message():
+    # Both are in one step; the second message's x needs x's register alone.
+    dut = Deserializer(PAIR)
+
+    async def feed(ctx):
+        await send_packets(ctx, dut.packets, [b"\1\2", b"\3\4"])
+
+    async def take(ctx):
+        assert await until_valid(ctx, dut.message.y) == 2
+        ctx.set(dut.message.x.ready, 1)
+        ctx.set(dut.status.ready, 1)
+        await ctx.tick()
+        ctx.set(dut.message.x.ready, 0)
+        assert await until_valid(ctx, dut.message.x) == 3
+        await ctx.tick().repeat(5)
+        assert ctx.get(dut.message.y.payload) == 2
+        ctx.set(dut.message.y.ready, 1)
+        await ctx.tick()
+        assert await until_valid(ctx, dut.message.y) == 4
+
+    simulate(dut, feed, take)
+
+
+def test_leaves_become_valid_in_wire_order():
+    # x's register is taken, y's is free: the second message's y must wait for its x.
+    dut = Deserializer(PAIR)
+
+    async def feed(ctx):
+        await send_packets(ctx, dut.packets, [b"\1\2", b"\3\4"])
+
+    async def take(ctx):
+        assert await until_valid(ctx, dut.message.y) == 2
+        ctx.set(dut.message.y.ready, 1)
+        ctx.set(dut.status.ready, 1)
+        await ctx.tick()
+        for _ in range(10):
+            assert not ctx.get(dut.message.y.valid)
+            await ctx.tick()
+
+    simulate(dut, feed, take)
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8])
+def test_a_producer_may_offer_one_leaf_after_the_other(bus_bytes):
+    dut = Serializer(POINT, bus_bytes=bus_bytes)
+    result = []
+
+    async def produce(ctx):
+        message = dut.message
+        for _ in range(2):
+            await put(ctx, message.x, 5)
+            await put(ctx, message.name.length, 1)
+            await put(ctx, message.name.items, {"data": [0x41] + [0xEE] * (bus_bytes - 1), "last": 1})
+            await put(ctx, message.y, 6)
+
+    async def consume(ctx):
+        ctx.set(dut.status.ready, 1)
+        result.extend(await receive_packets(ctx, dut.packets, 2))
+
+    simulate(dut, produce, consume)
+    # What the unused lanes hold does not reach the wire.
+    assert result == [b"\5\0\0\0\1\0\0\0A\6\0\0\0"] * 2
+
+
+def test_status_waits_until_it_is_taken_and_holds_the_next_packet():
+    dut = Deserializer(make("ros1", {"x": "uint8"}))
+
+    async def feed(ctx):
+        await send_packets(ctx, dut.packets, [b"\1", b"", b"\3"])
+
+    async def take(ctx):
+        ctx.set(dut.message.x.ready, 1)
+        await ctx.tick().repeat(20)
+        got = []
+        for _ in range(3):
+            got.append(await until_valid(ctx, dut.status))
+            ctx.set(dut.status.ready, 1)
+            await ctx.tick()
+            ctx.set(dut.status.ready, 0)
+        assert got == [Status.OK, Status.TRUNCATED, Status.OK]
+
+    simulate(dut, feed, take)
+
+
+def test_a_length_over_its_bound_is_sent_as_promised_and_marked():
+    message = make("ros2", {"name": "string<=3", "z": "uint8"})
+    five = {0: [5], 1: [((1, 2, 3, 4, 5, 0, 0, 0), True)], 2: [9]}
+    good = {0: [1], 1: [((7, 0, 0, 0, 0, 0, 0, 0), True)], 2: [8]}
+    sent = encode(message, [five, good])
+    assert sent.statuses == [Status.LENGTH, Status.OK]
+    assert sent.marked == [True, False]
+    assert sent.packets == [
+        b"\0\1\0\0\6\0\0\0\1\2\3\4\5\0\x09",
+        b"\0\1\0\0\2\0\0\0\7\0\x08",
+    ]
+
+
+@pytest.mark.parametrize("slack", range(6))
+def test_cdr_packets_may_be_padded_by_up_to_three_bytes(slack):
+    message = make("ros2", {"x": "uint32"})
+    packet = b"\0\1\0\0\5\0\0\0"
+    for bus_bytes in (1, 2, 4, 8, 16):
+        packets, statuses = loopback(message, [packet + bytes(slack), packet], bus_bytes=bus_bytes)
+        assert packets == [packet, packet]
+        assert statuses == [Status.OK if slack <= 3 else Status.TRAILING, Status.OK]
+
+
+def test_option_bits_of_the_encapsulation_are_ignored():
+    message = make("ros2", {"x": "uint32"})
+    packets, statuses = loopback(message, [b"\0\1\xff\x03\5\0\0\0"])
+    assert statuses == [Status.OK]
+    assert packets == [b"\0\1\0\0\5\0\0\0"]
+
+
+def test_big_endian_packets_are_refused():
+    message = make("ros2", {"x": "uint32"})
+    packets, statuses = loopback(message, [b"\0\0\0\0\0\0\0\5"])
+    assert statuses == [Status.ENCAPSULATION]
+    assert packets == [b"\0\1\0\0\0\0\0\0"]
+
+
+def test_a_cdr_string_of_length_zero_is_empty():
+    message = make("ros2", {"s": "string", "x": "uint32"})
+    packets, statuses = loopback(message, [b"\0\1\0\0\0\0\0\0\5\0\0\0"])
+    assert statuses == [Status.OK]
+    assert packets == [b"\0\1\0\0\1\0\0\0\0\0\0\0\5\0\0\0"]
+
+
+@pytest.mark.parametrize(
+    ("argument", "value", "error"),
+    [
+        ("bus_bytes", 3, "Bus width must be one of 1, 2, 4, 8, 16, 32, 64 bytes, not 3"),
+        ("wire", "xcdr2", "Wire must be one of 'ros1', 'cdr', not 'xcdr2'"),
+        ("window_words", 3, "Window must have 1 or 2 bus words, not 3"),
+        (
+            "max_message_bytes",
+            1,
+            "Maximum message size must be from 2 bytes, the least that a p/T has, to 4294967295, "
+            "not 1",
+        ),
+    ],
+)
+def test_wrong_arguments_are_refused(argument, value, error):
+    for converter in (Deserializer, Serializer):
+        with pytest.raises(ValueError) as caught:
+            converter(make("ros1", {"x": "uint8", "y": "uint8"}, "T"), **{argument: value})
+        assert str(caught.value) == error

@@ -1,0 +1,97 @@
+# amaranth: UnusedElaboratable=no
+"""Both converters against rosbags' bytes, the interpreter of the plan, and the contract."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+from firm_hdl import Deserializer, Serializer, Status
+from firm_hdl.plan import decode, encode
+from firm_hdl.sim import Harness, Stalls, to_transfers
+from firm_hdl.sim.loopback import join_transfers
+from tests.plan.test_random_messages import damaged, serialize, typed_values
+from tests.strategies import BUS_WIDTHS, values
+
+few = settings(
+    deadline=None,
+    max_examples=12,
+    phases=[Phase.explicit, Phase.reuse, Phase.generate],
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+WIRES = ("ros1", "cdr")
+stall_plans = st.none() | st.builds(
+    Stalls, probability=st.sampled_from([0.2, 0.5, 0.8]), seed=st.integers(0, 1000)
+)
+options = st.fixed_dictionaries(
+    {"bus_bytes": st.sampled_from(BUS_WIDTHS), "window_words": st.integers(1, 2)}
+)
+
+
+def expected(plan, packets):
+    """Return what the plan's interpreter makes of packets: transfers by leaf, and statuses."""
+    decoded = [decode(plan, packet) for packet in packets]
+    transfers = join_transfers(one.streams for one in decoded)
+    return transfers, [Status[str(one.status)] for one in decoded]
+
+
+def carried(seen):
+    return {leaf: payloads for leaf, payloads in seen.items() if payloads}
+
+
+@pytest.mark.parametrize("wire", WIRES)
+@few
+@given(data=st.data(), case=typed_values(), options=options, stalls=stall_plans)
+def test_messages_come_through_byte_for_byte(wire, data, case, options, stalls):
+    definition, value = case
+    more = data.draw(st.lists(values(definition.message), min_size=1, max_size=4))
+    packets = [serialize(definition, item, wire)[1] for item in (value, *more)]
+    rx = Deserializer(definition.message, wire=wire, **options)
+    tx = Serializer(definition.message, wire=wire, **options)
+    seen = Harness(rx, tx, gated=stalls is not None).run(packets=packets, stalls=stalls)
+    assert seen.packets == packets
+    assert carried(seen.transfers) == expected(rx.plan, packets)[0]
+    assert set(seen.statuses) | set(seen.sent_statuses) == {Status.OK}
+    assert not any(seen.marked)
+
+
+@pytest.mark.parametrize("wire", WIRES)
+@few
+@given(data=st.data(), case=typed_values(wide=True), options=options, stalls=stall_plans)
+def test_bad_packets_are_reported_and_forgotten(wire, data, case, options, stalls):
+    definition, value = case
+    rx = Deserializer(definition.message, wire=wire, max_message_bytes=100_000, **options)
+    good = encode(rx.plan, to_transfers(rx.plan, definition.message, value))[0]
+    packets = [good]
+    for packet in data.draw(st.lists(damaged(good), min_size=1, max_size=6)):
+        packets += [packet, good]
+    transfers, statuses = expected(rx.plan, packets)
+    seen = Harness(rx, None).run(packets=packets, stalls=stalls, limit=2_000_000)
+    assert list(seen.statuses) == statuses
+    assert carried(seen.transfers) == transfers
+
+
+@pytest.mark.parametrize("wire", WIRES)
+@few
+@given(data=st.data(), case=typed_values(), options=options, stalls=stall_plans)
+def test_wrong_streams_are_marked_and_forgotten(wire, data, case, options, stalls):
+    definition, value = case
+    tx = Serializer(definition.message, wire=wire, **options)
+    good = to_transfers(tx.plan, definition.message, value)
+    lasts = [leaf for leaf, transfers in good.items() if tx.plan.leaves[leaf].kind == "items"]
+    messages = [good]
+    for _ in range(data.draw(st.integers(1, 3))):
+        bad = {leaf: list(transfers) for leaf, transfers in good.items()}
+        for leaf in lasts:
+            for index, (lanes, last) in enumerate(bad[leaf]):
+                if data.draw(st.integers(0, 4)) == 0:
+                    bad[leaf][index] = (lanes, not last)
+        messages += [bad, good]
+    want = [encode(tx.plan, {k: iter(v) for k, v in message.items()}) for message in messages]
+    seen = Harness(None, tx).run(
+        transfers=join_transfers(messages), messages=len(messages), stalls=stalls
+    )
+    assert seen.packets == [packet for packet, _ in want]
+    assert [status.name for status in seen.statuses] == [str(status) for _, status in want]
+    assert seen.marked == [status != Status.OK for status in seen.statuses]
