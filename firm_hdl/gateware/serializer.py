@@ -102,7 +102,9 @@ class _Circuit:
         self.raised = Signal(Status)
         self.writable = Signal()
         self.complete = Signal()
-        self.wanted = Signal(init=1)
+        # Whether the step, and the word that it made, are only what every packet begins with.
+        self.leads = Signal()
+        self.led = Signal()
         self.held_count = Signal(self.control.bits)
         lanes = self.packer.geometry.word_bytes
         self.lanes = [Signal(8, name=f"lane_{k}") for k in range(lanes)]
@@ -139,8 +141,7 @@ class _Circuit:
             if isinstance(item, Fixed):
                 self.write(item.at, Const(int.from_bytes(item.data, "little"), 8 * item.bytes))
                 if not step.parts:
-                    # No packet begins before there is a message for it.
-                    self.module.d.comb += self.wanted.eq(self.streams[0].valid)
+                    self.module.d.comb += self.leads.eq(1)
         if step.begin is not None and step.begin.count is not None:
             self.module.d.comb += [self.control.count.eq(step.begin.count), self.control.some.eq(1)]
         # The first slot's error counts, so it is the last to be assigned.
@@ -233,19 +234,19 @@ class _Circuit:
         m, control, packer = self.module, self.control, self.packer
         word = Signal(packer.word.payload.shape())
         error = Signal(Status)
+        full = Signal()
         free = ~self.status.valid | self.status.ready
         m.d.comb += [
             packer.word.payload.eq(word),
             Value.cast(packer.word.payload.data).eq(Cat(self.lanes)),
-            self.writable.eq(~packer.word.valid | packer.word.ready),
-            self.complete.eq(
-                self.writable & self.wanted & self.slots.all_served & (~control.ends | free)
-            ),
+            # No packet begins before there is a message for it.
+            packer.word.valid.eq(full & (~self.led | self.streams[0].valid)),
+            self.writable.eq(~full | (packer.word.valid & packer.word.ready)),
+            self.complete.eq(self.writable & self.slots.all_served & (~control.ends | free)),
             error.eq(Mux(self.error == Status.OK, self.raised, self.error)),
         ]
         with m.If(self.writable):
-            m.d.sync += packer.word.valid.eq(self.complete)
-            m.d.sync += self.error.eq(error)
+            m.d.sync += [full.eq(self.complete), self.led.eq(self.leads), self.error.eq(error)]
             m.d.sync += [
                 lane.eq(next_lane)
                 for lane, next_lane in zip(self.lanes, self.next_lanes, strict=True)

@@ -1,0 +1,175 @@
+# amaranth: UnusedElaboratable=no
+"""The record view: a message as one structure, all of it valid together."""
+
+from __future__ import annotations
+
+import pytest
+from amaranth.hdl import Module, signed, unsigned
+from amaranth.lib import data, wiring
+from amaranth.lib.wiring import In, Out, connect, flipped
+from amaranth.sim import Simulator
+
+from firm_hdl import (
+    Deserializer,
+    PacketSignature,
+    RecordReader,
+    RecordWriter,
+    Serializer,
+    StatusSignature,
+    load_message,
+    record_layout,
+)
+from firm_hdl.plan import encode
+from firm_hdl.sim import receive_packets, send_packets, to_transfers
+from tests.strategies import make
+
+POINT = make("ros1", {"x": "uint16", "y": "int16"}, "Point")
+SHAPE = make(
+    "ros1",
+    {"name": "string", "corners": (POINT, "[3]"), "holes": "uint8[11]", "closed": "bool"},
+)
+
+
+class Loop(wiring.Component):
+    """A deserializer, a reader, a writer and a serializer."""
+
+    def __init__(self, message, **options):
+        self.parts = {
+            "rx": Deserializer(message, bus_bytes=options.get("bus_bytes", 8)),
+            "reader": RecordReader(message, **options),
+            "writer": RecordWriter(message, **options),
+            "tx": Serializer(message, bus_bytes=options.get("bus_bytes", 8)),
+        }
+        width = options.get("bus_bytes", 8)
+        super().__init__(
+            {
+                "i": In(PacketSignature(width)),
+                "o": Out(PacketSignature(width)),
+                "rx_status": Out(StatusSignature),
+                "tx_status": Out(StatusSignature),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        for name, part in self.parts.items():
+            m.submodules[name] = part
+        rx, reader, writer, tx = self.parts.values()
+        connect(m, flipped(self.i), rx.packets)
+        connect(m, rx.message, reader.message)
+        connect(m, reader.record, writer.record)
+        if hasattr(reader, "rest"):
+            connect(m, reader.rest, writer.rest)
+        connect(m, writer.message, tx.message)
+        connect(m, tx.packets, flipped(self.o))
+        connect(m, rx.status, flipped(self.rx_status))
+        connect(m, tx.status, flipped(self.tx_status))
+        return m
+
+
+def through(message, packets, **options):
+    dut = Loop(message, **options)
+    out = []
+
+    async def source(ctx):
+        ctx.set(dut.rx_status.ready, 1)
+        ctx.set(dut.tx_status.ready, 1)
+        await send_packets(ctx, dut.i, packets)
+
+    async def sink(ctx):
+        out.extend(await receive_packets(ctx, dut.o, len(packets)))
+
+    sim = Simulator(dut)
+    sim.add_clock(1e-8)
+    sim.add_testbench(source)
+    sim.add_testbench(sink)
+    sim.run()
+    return out
+
+
+def packets_of(message, values, bus_bytes=8):
+    plan = Deserializer(message, bus_bytes=bus_bytes).plan
+    return [encode(plan, to_transfers(plan, message, value))[0] for value in values]
+
+
+def test_the_layout_has_the_fields_of_the_message():
+    vector = data.StructLayout({axis: unsigned(64) for axis in "xyz"})
+    assert record_layout(load_message("geometry_msgs/msg/Twist")) == data.StructLayout(
+        {"linear": vector, "angular": vector}
+    )
+    assert record_layout(SHAPE) == data.StructLayout(
+        {
+            "corners": data.ArrayLayout(data.StructLayout({"x": unsigned(16), "y": signed(16)}), 3),
+            "holes": data.ArrayLayout(unsigned(8), 11),
+            "closed": unsigned(1),
+        }
+    )
+
+
+def test_fields_can_be_chosen():
+    imu = load_message("sensor_msgs/msg/Imu")
+    layout = record_layout(imu, fields=["header.stamp", "orientation.w"])
+    assert layout == data.StructLayout(
+        {
+            "header": data.StructLayout(
+                {"stamp": data.StructLayout({"sec": signed(32), "nanosec": unsigned(32)})}
+            ),
+            "orientation": data.StructLayout({"w": unsigned(64)}),
+        }
+    )
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 4, 8, 16])
+@pytest.mark.parametrize("fields", [None, ["corners"], ["holes", "closed"]])
+def test_records_come_through_with_the_rest_beside_them(bus_bytes, fields):
+    values = [
+        {
+            "name": "abcdefghij"[:count],
+            "corners": [{"x": 3 * count + k, "y": -k} for k in range(3)],
+            "holes": [count + k for k in range(11)],
+            "closed": bool(count % 2),
+        }
+        for count in (0, 3, 8)
+    ]
+    packets = packets_of(SHAPE, values, bus_bytes)
+    assert through(SHAPE, packets, bus_bytes=bus_bytes, fields=fields) == packets
+
+
+def test_a_record_is_offered_when_all_of_it_is_there():
+    dut = RecordReader(POINT)
+
+    async def testbench(ctx):
+        ctx.set(dut.record.ready, 1)
+        ctx.set(dut.message.x.payload, 5)
+        ctx.set(dut.message.x.valid, 1)
+        assert not ctx.get(dut.record.valid)
+        assert not ctx.get(dut.message.x.ready)
+        ctx.set(dut.message.y.payload, -6)
+        ctx.set(dut.message.y.valid, 1)
+        assert ctx.get(dut.record.valid)
+        assert ctx.get(dut.message.x.ready) and ctx.get(dut.message.y.ready)
+        assert ctx.get(dut.record.payload.x) == 5
+        assert ctx.get(dut.record.payload.y) == -6
+
+    sim = Simulator(dut)
+    sim.add_testbench(testbench)
+    sim.run()
+
+
+@pytest.mark.parametrize(
+    ("message", "fields", "error"),
+    [
+        (SHAPE, ["corner"], "Message p/T has no field of fixed size 'corner'"),
+        (SHAPE, ["name"], "Message p/T has no field of fixed size 'name'"),
+        (make("ros1", {"s": "string"}), None, "Message p/T has no field of fixed size for a record"),
+        (
+            make("ros1", {"a": "uint64[1025]"}),
+            None,
+            "Record of p/T is too wide: a has 65600 bits, and Amaranth elaborates at most 65535",
+        ),
+    ],
+)
+def test_records_that_cannot_be_are_refused(message, fields, error):
+    with pytest.raises(ValueError) as caught:
+        record_layout(message, fields=fields)
+    assert str(caught.value) == error
