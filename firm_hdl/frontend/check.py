@@ -1,0 +1,119 @@
+"""What a well-formed text can still get wrong by itself: sizes, values and doubled names.
+
+The limits are those of genmsg for ROS 1 and of rosidl_adapter for ROS 2. Each check yields
+diagnostics; none of them raises, so that all mistakes of a text are found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from firm_hdl.errors import Diagnostic, Source, Span
+from firm_hdl.frontend.explain import NAME_RULES
+from firm_hdl.frontend.parse import is_type_name
+from firm_hdl.frontend.syntax import (
+    ConstantSyntax,
+    FieldSyntax,
+    ListSyntax,
+    MessageSyntax,
+    SizeSyntax,
+    TypeSyntax,
+    ValueSyntax,
+)
+from firm_hdl.model import PRIMITIVES, Dialect
+
+__all__ = ["check_members", "check_type_name"]
+
+# Every wire format counts in 32 bits.
+_MOST = 2**32 - 1
+
+
+def check_type_name(
+    source: Source, package: str, name: str, dialect: Dialect
+) -> Iterator[Diagnostic]:
+    """Check what a file is called. The start of its text is to blame."""
+    start = Span(source=source, start=0, end=0)
+    some = "Name" if dialect == "ros2" else "name"
+    if not is_type_name(f"{package}/{some}", dialect):
+        rule = NAME_RULES["FIELD_NAME" if dialect == "ros2" else "NAME"]
+        yield Diagnostic(message=f"'{package}' is not a legal package name: {rule}", span=start)
+    if not is_type_name(name, dialect):
+        rule = NAME_RULES["MESSAGE_NAME" if dialect == "ros2" else "NAME"]
+        yield Diagnostic(message=f"'{name}' is not a legal message name: {rule}", span=start)
+
+
+def check_members(syntax: MessageSyntax) -> Iterator[Diagnostic]:
+    """Check every line of a text for itself, then the names against each other."""
+    for member in syntax.members:
+        yield from _check_sizes(member.type)
+        if isinstance(member, ConstantSyntax):
+            yield from _check_value(member.value, member.type, syntax.dialect)
+        elif isinstance(member.default, ValueSyntax):
+            yield from _check_value(member.default, member.type, syntax.dialect)
+        elif isinstance(member.default, ListSyntax):
+            yield from _check_list(member.default, member.type, syntax.dialect)
+    yield from _check_names(syntax)
+
+
+def _check_names(syntax: MessageSyntax) -> Iterator[Diagnostic]:
+    """Find names that are declared twice.
+
+    ROS 2 keeps fields and constants apart by their spelling. genmsg looks at fields only, and lets
+    a constant be declared again, or be called like a field.
+    """
+    seen: dict[str, Span] = {}
+    for member in syntax.members:
+        is_field = isinstance(member, FieldSyntax)
+        if syntax.dialect == "ros1" and not is_field:
+            continue
+        name = member.name
+        if name.text in seen:
+            what = "field" if is_field else "constant"
+            message = f"{what} '{name.text}' is already declared in line {seen[name.text].line}"
+            yield Diagnostic(message=message, span=name.span)
+        seen.setdefault(name.text, name.span)
+
+
+def _check_sizes(type_: TypeSyntax) -> Iterator[Diagnostic]:
+    array = "length of an array" if type_.array == "array" else "bound of a sequence"
+    yield from _check_size(type_.bound, "bound of a string")
+    yield from _check_size(type_.size, array)
+
+
+def _check_size(size: SizeSyntax | None, what: str) -> Iterator[Diagnostic]:
+    if size is None:
+        return
+    if size.value < 1:
+        yield Diagnostic(message=f"the {what} must be at least 1, not 0", span=size.span)
+    elif size.value > _MOST:
+        yield Diagnostic(message=f"the {what} must be at most {_MOST}", span=size.span)
+
+
+def _check_list(syntax: ListSyntax, type_: TypeSyntax, dialect: Dialect) -> Iterator[Diagnostic]:
+    count = len(syntax.items)
+    if type_.size is not None:
+        size = type_.size.value
+        if type_.array == "array" and count != size:
+            message = f"a default of {size} elements must stand here, not of {count}"
+            yield Diagnostic(message=message, span=syntax.span)
+        elif count > size:
+            message = f"a default of at most {size} elements must stand here, not of {count}"
+            yield Diagnostic(message=message, span=syntax.span)
+    for item in syntax.items:
+        yield from _check_value(item, type_, dialect)
+
+
+def _check_value(syntax: ValueSyntax, type_: TypeSyntax, dialect: Dialect) -> Iterator[Diagnostic]:
+    value = syntax.value
+    if isinstance(value, str):
+        if type_.bound is not None and len(value) > type_.bound.value:
+            message = f"a text of {len(value)} characters does not fit {type_.name}"
+            yield Diagnostic(message=f"{message}<={type_.bound.value}", span=syntax.span)
+        return
+    primitive = PRIMITIVES[dialect][type_.name]
+    if primitive.kind == "int":
+        bits = 8 * primitive.bytes - primitive.signed
+        low, high = -(2**bits) if primitive.signed else 0, 2**bits - 1
+        if not low <= value <= high:
+            message = f"the value of {primitive} must be in {low}..{high}"
+            yield Diagnostic(message=message, span=syntax.span)

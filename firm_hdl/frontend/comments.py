@@ -1,0 +1,99 @@
+"""Which comment belongs to which field, and the unit that a comment names.
+
+The rule is that of ``rosidl_adapter`` (``parse_message_string``, ``process_comments``), used for
+both dialects: comment lines at the very top describe the message; a comment above a definition or
+behind it describes that definition; an indented comment line continues the one before it.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator
+from itertools import groupby
+
+__all__ = ["CommentCollector", "condense"]
+
+
+def condense(lines: list[str]) -> tuple[str, str | None]:
+    """Take the unit out of comment lines and join what is left.
+
+    Parameters
+    ----------
+    lines : list of str
+        Comments without their ``#``.
+
+    Returns
+    -------
+    tuple of str and (str or None)
+        The comment, without common indentation and without empty lines at its ends or doubled
+        inside; and the text of its only ``[...]``, if there is exactly one.
+    """
+    units = list(_units("\n".join(lines)))
+    unit = None
+    if len(units) == 1:
+        ((text, unit),) = units
+        lines = [line.replace(text, "") for line in lines]
+    kept: list[str] = []
+    for is_empty, group in groupby(lines, key=lambda line: line == ""):
+        kept += [""] if is_empty else group
+    return textwrap.dedent("\n".join(kept)).strip("\n"), unit
+
+
+def _units(comment: str) -> Iterator[tuple[str, str]]:
+    r"""Yield each ``[unit]`` with the blanks in front of it, and what is inside.
+
+    A comma inside the brackets means a range, which is no unit. This is what the expression
+    ``\s*\[([^,\]]+)\]`` finds, in linear time.
+    """
+    for part in comment.split(","):
+        *closed, _ = part.split("]")
+        for piece in closed:
+            before, bracket, unit = piece.partition("[")
+            if bracket and unit:
+                blanks = before[len(before.rstrip()) :]
+                yield f"{blanks}[{unit}]", unit
+
+
+class CommentCollector:
+    """Hands each comment to its owner while the lines of a text go by."""
+
+    def __init__(self) -> None:
+        self.head: list[str] = []
+        self._is_head = True
+        self._pending: list[str] = []
+        self._last: list[str] | None = None
+
+    def add(self, comment: str, *, is_indented: bool, is_alone: bool) -> None:
+        """Take one comment.
+
+        Parameters
+        ----------
+        comment : str
+            All of it, from its first ``#`` to the end of the line.
+        is_indented : bool
+            Whether blanks stand before it. Not looked at unless it is alone.
+        is_alone : bool
+            Whether its line has no definition.
+        """
+        text = comment.lstrip("#").rstrip()
+        if not is_alone:
+            self._pending.append(text)
+        elif not is_indented:
+            (self.head if self._is_head else self._pending).append(text)
+        elif self._last is not None:
+            self._last.append(text)
+
+    def end_head(self) -> None:
+        """Note that a line went by that is no comment in the first column."""
+        self._is_head = False
+
+    def claim(self) -> list[str]:
+        """Give a new definition the comments above it and behind it.
+
+        Returns
+        -------
+        list of str
+            Still grows while indented comment lines follow.
+        """
+        self._last, self._pending = self._pending, []
+        return self._last

@@ -1,0 +1,122 @@
+"""The definitions that rosbags ships for every ROS distribution, as ``.msg`` text.
+
+rosbags keeps parsed definitions only. They are written out as text again and read by our own
+parser, so that an embedded type goes the same way as a user's. What rosbags does not keep is lost:
+comments, default values, and the difference between ``builtin_interfaces/Time`` and ``time``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from rosbags.interfaces import Nodetype
+from rosbags.typesys import Stores, get_typestore
+
+from firm_hdl.errors import Source
+from firm_hdl.model import Dialect
+
+__all__ = ["DEFAULT_DISTRO", "DISTROS", "Distro", "embedded_names", "embedded_source"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Distro:
+    """A ROS distribution.
+
+    Attributes
+    ----------
+    store : rosbags.typesys.Stores
+        What rosbags calls its types.
+    """
+
+    name: str
+    dialect: Dialect
+    store: Stores
+
+
+DISTROS: dict[str, Distro] = {
+    distro.name: distro
+    for distro in (
+        Distro(name="noetic", dialect="ros1", store=Stores.ROS1_NOETIC),
+        Distro(name="foxy", dialect="ros2", store=Stores.ROS2_FOXY),
+        Distro(name="humble", dialect="ros2", store=Stores.ROS2_HUMBLE),
+        Distro(name="iron", dialect="ros2", store=Stores.ROS2_IRON),
+        Distro(name="jazzy", dialect="ros2", store=Stores.ROS2_JAZZY),
+        Distro(name="kilted", dialect="ros2", store=Stores.ROS2_KILTED),
+        Distro(name="lyrical", dialect="ros2", store=Stores.ROS2_LYRICAL),
+    )
+}
+"""Every distribution whose types are embedded, oldest first."""
+
+DEFAULT_DISTRO = "lyrical"
+"""The newest one with long-term support."""
+
+# rosbags gives ROS 1's two builtin types the names that they have in ROS 2.
+_ROS1_BUILTINS = {
+    "builtin_interfaces/msg/Time": "time",
+    "builtin_interfaces/msg/Duration": "duration",
+}
+# What rosidl_generator adds to an empty message; it stands in no definition.
+_PADDING_MEMBER = "structure_needs_at_least_one_member"
+
+# (constants, fields) of a type, as rosbags types them in its private `Typesdict`.
+_Definition = tuple[list[tuple[str, str, Any]], list[tuple[str, Any]]]
+
+
+@cache
+def _definitions(distro: str) -> dict[tuple[str, str], _Definition]:
+    fielddefs: dict[str, Any] = dict(get_typestore(DISTROS[distro].store).fielddefs)
+    if DISTROS[distro].dialect == "ros1":
+        for name in _ROS1_BUILTINS:
+            fielddefs.pop(name, None)
+    split = {tuple(name.split("/msg/")): value for name, value in fielddefs.items()}
+    return {(package, name): value for (package, name), value in sorted(split.items())}
+
+
+def embedded_names(distro: str) -> list[tuple[str, str]]:
+    """List package and name of every type of a distribution, sorted."""
+    return list(_definitions(distro))
+
+
+def embedded_source(distro: str, package: str, name: str) -> Source | None:
+    """Write out an embedded type; `None` if the distribution does not have it."""
+    definition = _definitions(distro).get((package, name))
+    if definition is None:
+        return None
+    constants, fields = definition
+    dialect = DISTROS[distro].dialect
+    lines = [f"{type_} {name}={_value(value)}" for name, type_, value in constants]
+    lines += [
+        f"{_field_type(description, package, dialect)} {name}"
+        for name, description in fields
+        if name != _PADDING_MEMBER
+    ]
+    return Source(
+        name=f"<rosbags {distro}>/{package}/msg/{name}.msg",
+        text="".join(f"{line}\n" for line in lines),
+    )
+
+
+def _value(value: str | int | float | bool) -> str:
+    return str(value) if isinstance(value, str) else repr(value)
+
+
+def _field_type(description: Any, package: str, dialect: Dialect) -> str:
+    kind, detail = description
+    match kind:
+        case Nodetype.BASE:
+            name, bound = detail
+            return f"{name}<={bound}" if bound else str(name)
+        case Nodetype.NAME:
+            if dialect == "ros1" and detail in _ROS1_BUILTINS:
+                return _ROS1_BUILTINS[detail]
+            owner, name = detail.split("/msg/")
+            return str(name) if owner == package and name != "Header" else f"{owner}/{name}"
+        case Nodetype.ARRAY:
+            element, count = detail
+            return f"{_field_type(element, package, dialect)}[{count}]"
+        case _:
+            element, count = detail
+            bound = f"<={count}" if count else ""
+            return f"{_field_type(element, package, dialect)}[{bound}]"

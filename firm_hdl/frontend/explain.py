@@ -1,0 +1,246 @@
+"""What to say about a line that is no sentence of the language.
+
+A parser knows which terminals it expected. This module says it in the user's words, and where the
+mistake is one that people make, names it. All wording of syntax errors is here.
+"""
+
+from __future__ import annotations
+
+import re
+from difflib import get_close_matches
+
+from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
+
+from firm_hdl.model import PRIMITIVES, Dialect
+
+__all__ = ["NAME_RULES", "clip", "explain", "similar_builtin"]
+
+NAME_RULES = {
+    "NAME": "letters, digits and underscores, a letter first",
+    "FIELD_NAME": "lower-case letters, digits and single underscores, a letter first and no "
+    "underscore last",
+    "CONSTANT_NAME": "upper-case letters, digits and single underscores, a letter first and no "
+    "underscore last",
+    "MESSAGE_NAME": "letters and digits, a capital first",
+}
+"""What a name of each kind is made of."""
+
+# In the order in which they are listed to the user.
+_PHRASES = {
+    "INT_TYPE": "a type",
+    "PACKAGE": "a type",
+    "MESSAGE_NAME": "the name of a message type",
+    "CONSTANT_NAME": "a constant name",
+    "FIELD_NAME": "a field name",
+    "NAME": "a name",
+    "AT_MOST": "'<='",
+    "SIZE": "a number",
+    "OPEN": "'['",
+    "CLOSE": "']'",
+    "_EQUALS": "'='",
+    "INTEGER": "an integer",
+    "FLOAT": "a number",
+    "BOOLEAN": "a truth value",
+    "DOUBLE_QUOTED": "a text",
+    "CONSTANT_DOUBLE_QUOTED": "a text",
+    "DOUBLE_QUOTED_ITEM": "a text",
+    "LIST_OPEN": "a list in brackets",
+    "_COMMA": "','",
+    "LIST_CLOSE": "']'",
+    "_SPACE": "a space",
+    "COMMENT": "the end of the line",
+}
+# Names that other languages have for builtin types.
+_FOREIGN = {
+    "boolean": "bool",
+    "double": "float64",
+    "float": "float32",
+    "int": "int32",
+    "long": "int64",
+    "short": "int16",
+    "str": "string",
+    "uint": "uint32",
+    "unsigned": "uint32",
+}
+_WORD = re.compile(r"[^\s#]*")
+_TYPE_WORD = re.compile(r"[^\s#\[]*")
+_NAME_WORD = re.compile(r"[^\s#=]*")
+_VALUE_WORD = re.compile(r"[^#]*[^\s#]|")
+_ITEM_WORD = re.compile(r"[^#,\]]*[^\s#,\]]|")
+
+
+def explain(error: UnexpectedInput, line: str, dialect: Dialect) -> tuple[int, int, str]:
+    """Put a syntax error into words.
+
+    Returns
+    -------
+    tuple of int, int and str
+        Start and end of the words that are wrong, as offsets in the line, and the message.
+    """
+    start, expected = _place(error, line)
+    if dialect == "ros2" and start == 0 and line[:1].isspace():
+        start = len(line) - len(line.lstrip())
+        return start, len(line.rstrip()), "a definition must start in the first column"
+    for rule in (
+        _wrong_name,
+        _wrong_type,
+        _wrong_constant,
+        _wrong_value,
+        _wrong_size,
+        _wrong_separator,
+    ):
+        found = rule(line, start, expected, dialect)
+        if found is not None:
+            length, message = found
+            return start, start + length, message
+    start, end, message = _in_general(line, start, expected)
+    if dialect == "ros1" and "=" not in line[:end] and {"COMMENT", "_EQUALS"} <= expected:
+        message += "; a field of ROS 1 has no default"
+    return start, end, message
+
+
+def clip(text: str) -> str:
+    """Make a quotation fit for a message: not too long, and nothing in it that cannot be seen."""
+    shown = text if len(text) <= 60 else text[:57] + "..."
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in shown)
+
+
+def similar_builtin(word: str, dialect: Dialect) -> list[str]:
+    """List the builtin type that somebody who wrote this word may have meant, if there is one."""
+    if word in _FOREIGN:
+        return [_FOREIGN[word]]
+    return get_close_matches(word, [*PRIMITIVES[dialect], "string"], n=1, cutoff=0.7)
+
+
+def _place(error: UnexpectedInput, line: str) -> tuple[int, frozenset[str]]:
+    """Find where in the line the parser was stuck, and which terminals would have helped."""
+    if isinstance(error, UnexpectedCharacters):
+        assert error.pos_in_stream is not None
+        return error.pos_in_stream, frozenset(error.allowed or ())
+    assert isinstance(error, UnexpectedToken)
+    expected = frozenset(error.expected)
+    if error.token.type == "$END":
+        return len(line.rstrip()), expected
+    assert error.token.start_pos is not None
+    return error.token.start_pos, expected
+
+
+_Found = tuple[int, str] | None
+
+
+def _wrong_name(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
+    word = _group(_NAME_WORD, line, start)
+    kinds = expected & {"NAME", "FIELD_NAME", "CONSTANT_NAME"}
+    if not word or not kinds:
+        return None
+    has_value = line[start + len(word) :].lstrip().startswith("=")
+    if has_value and kinds == {"FIELD_NAME"}:
+        return len(word), "only a builtin type that is no array can have constants"
+    if dialect == "ros1":
+        what, rule = "name", NAME_RULES["NAME"]
+    elif has_value:
+        what, rule = "constant name", NAME_RULES["CONSTANT_NAME"]
+    else:
+        what, rule = "field name", NAME_RULES["FIELD_NAME"]
+    if "[" in word:
+        return len(word), f"'{clip(word)}' is not a legal {what}: brackets belong to the type"
+    return len(word), f"'{clip(word)}' is not a legal {what}: {rule}"
+
+
+def _wrong_type(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
+    word = _group(_TYPE_WORD, line, start)
+    if not word or "MESSAGE_NAME" not in expected:
+        return None
+    if "PACKAGE" not in expected:
+        return len(word), (
+            f"'{clip(word)}' is not a legal message name: {NAME_RULES['MESSAGE_NAME']}; "
+            "a type is written 'Name' or 'package/Name'"
+        )
+    message = f"'{clip(word)}' is not a type"
+    if dialect == "ros2" and word in ("time", "duration"):
+        return len(word), f"{message} of ROS 2; use 'builtin_interfaces/{word.capitalize()}'"
+    if word.startswith("@"):
+        return len(word), f"annotation '{clip(word)}' is not supported"
+    if word.startswith("\ufeff"):
+        return 1, "a byte order mark is not allowed"
+    close = similar_builtin(word, dialect)
+    if close:
+        return len(word), f"{message}; did you mean '{close[0]}'?"
+    package, slash, _ = word.partition("/")
+    if slash:
+        rule = NAME_RULES["NAME" if dialect == "ros1" else "FIELD_NAME"]
+        return len(word), f"'{clip(package)}' is not a legal package name: {rule}"
+    if dialect == "ros2":
+        message += f", and not a legal message name: {NAME_RULES['MESSAGE_NAME']}"
+    return len(word), message
+
+
+def _wrong_constant(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
+    rest = line[start:].lstrip()
+    if not rest.startswith("=") or "_EQUALS" in expected:
+        return None
+    if dialect == "ros2" and "LIST_OPEN" not in expected and "COMMENT" in expected:
+        return len(line[start:].rstrip()), "a default cannot contain '='"
+    return len(line[start:].rstrip()), "only a builtin type that is no array can have constants"
+
+
+def _wrong_value(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
+    is_item = line[:start].rstrip()[-1:] in ("[", ",")
+    word = _group(_ITEM_WORD if is_item else _VALUE_WORD, line, start)
+    if not word:
+        return None
+    quoted = clip(word)
+    if "INTEGER" in expected:
+        what = "a decimal integer" if dialect == "ros1" else "an integer"
+        return len(word), f"'{quoted}' is not {what}"
+    if "FLOAT" in expected:
+        return len(word), f"'{quoted}' is not a number"
+    if "BOOLEAN" in expected:
+        values = "True, False, 1 or 0" if dialect == "ros1" else "true, false, 1 or 0"
+        return len(word), f"'{quoted}' is not a truth value: {values}"
+    if "DOUBLE_QUOTED" in expected and "=" in word:
+        return len(word), "a default cannot contain '='"
+    if expected & {"DOUBLE_QUOTED", "CONSTANT_DOUBLE_QUOTED"}:
+        return len(word), f"{quoted} is not a text: a quote inside it needs a backslash"
+    return None
+
+
+def _wrong_size(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
+    word = _group(_WORD, line, start)
+    if "SIZE" not in expected:
+        return None
+    if not word:
+        return 1, "a number must stand here; blanks are not allowed inside a type"
+    return len(word), f"'{clip(word)}' is not a number of elements or characters"
+
+
+def _wrong_separator(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
+    if "_SPACE" not in expected or expected & {"COMMENT", "LIST_OPEN"}:
+        return None
+    rest = line[start:]
+    word = _group(_WORD, line, start)
+    if not rest.strip() or rest.lstrip().startswith("#"):
+        return 1, "a name must follow the type"
+    if rest[0].isspace():
+        return 1, "a space must separate type and name; tabs alone do not"
+    if word.startswith("<=") and dialect == "ros1":
+        return len(word), "ROS 1 has no bounds"
+    if word.startswith("[") and "OPEN" not in expected:
+        return len(word), "an array has one dimension"
+    return None
+
+
+def _in_general(line: str, start: int, expected: frozenset[str]) -> tuple[int, int, str]:
+    phrases = list(dict.fromkeys(p for name, p in _PHRASES.items() if name in expected))
+    *others, last = phrases or ["the end of the line"]
+    wanted = f"{', '.join(others)} or {last}" if others else last
+    start = len(line) - len(line[start:].lstrip())
+    word = _group(_WORD, line, start)
+    if word:
+        return start, start + len(word), f"expected {wanted}, not '{clip(word)}'"
+    return start, start + 1, f"expected {wanted}, but the definition ends here"
+
+
+def _group(pattern: re.Pattern[str], line: str, start: int) -> str:
+    match = pattern.match(line, start)
+    return match.group() if match else ""

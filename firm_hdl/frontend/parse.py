@@ -1,0 +1,315 @@
+"""Text to syntax, line by line.
+
+A ``.msg`` text is a list of lines that do not know of each other, so each one is parsed for itself
+and a wrong one never hides the next. The language of a line is in the grammars ``ros1_msg.lark``
+and ``ros2_msg.lark``; here is only what turns a parse tree into syntax.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from importlib import resources
+from typing import NamedTuple
+
+from lark import Lark, Token, Tree
+from lark.exceptions import UnexpectedInput
+
+from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
+from firm_hdl.frontend.comments import CommentCollector, condense
+from firm_hdl.frontend.explain import explain
+from firm_hdl.frontend.syntax import (
+    ConstantSyntax,
+    FieldSyntax,
+    ListSyntax,
+    MemberSyntax,
+    MessageSyntax,
+    NameSyntax,
+    SizeSyntax,
+    TypeSyntax,
+    ValueSyntax,
+)
+from firm_hdl.model import Dialect
+
+__all__ = ["is_type_name", "parse_message", "read_message"]
+
+_LINE_ENDS = {
+    # genmsg and rosidl_adapter read files in text mode; the latter then splits at all that Python
+    # calls a line boundary.
+    "ros1": re.compile(r"\r\n|[\n\r]"),
+    "ros2": re.compile("\r\n|[\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029]"),
+}
+
+# Nobody reads on after so many; without a limit, a large file of another kind takes minutes.
+_MOST_DIAGNOSTICS = 1000
+
+
+def parse_message(source: Source, dialect: Dialect) -> MessageSyntax:
+    """Parse a ``.msg`` text.
+
+    Raises
+    ------
+    DefinitionError
+        With one diagnostic for each line that is no sentence of the language.
+    """
+    syntax, diagnostics = read_message(source, dialect)
+    if diagnostics:
+        raise DefinitionError(diagnostics)
+    return syntax
+
+
+def read_message(source: Source, dialect: Dialect) -> tuple[MessageSyntax, list[Diagnostic]]:
+    """Parse a ``.msg`` text, leaving out the lines that are wrong.
+
+    Returns
+    -------
+    tuple of MessageSyntax and list of Diagnostic
+        The good lines, and what is wrong with the others, in the order of the text.
+    """
+    parser = _parser(dialect)
+    comments = CommentCollector()
+    drafts: list[tuple[_Draft, list[str]]] = []
+    diagnostics: list[Diagnostic] = []
+    for offset, line in _lines(source.text, dialect):
+        if len(diagnostics) >= _MOST_DIAGNOSTICS:
+            message = "too many errors; the rest of this file was not looked at"
+            span = Span(source=source, start=offset, end=offset + len(line))
+            diagnostics.append(Diagnostic(message=message, span=span))
+            break
+        if not line.startswith("#"):
+            comments.end_head()
+        try:
+            tree = parser.parse(line, start="line")
+        except UnexpectedInput as error:
+            start, end, message = explain(error, line, dialect)
+            span = Span(source=source, start=offset + start, end=offset + end)
+            diagnostics.append(Diagnostic(message=message, span=span))
+            continue
+        definition = _collect_comment(tree, comments)
+        if definition is not None:
+            draft = _Reader(source, offset, dialect).draft(definition)
+            if isinstance(draft, Diagnostic):
+                diagnostics.append(draft)
+            else:
+                drafts.append((draft, comments.claim()))
+    members = tuple(_member(draft, lines) for draft, lines in drafts)
+    comment, _ = condense(comments.head)
+    return (
+        MessageSyntax(source=source, dialect=dialect, members=members, comment=comment),
+        diagnostics,
+    )
+
+
+def is_type_name(name: str, dialect: Dialect) -> bool:
+    """Tell whether ``Name`` or ``package/Name`` is what a message type may be called."""
+    if name != name.strip():
+        return False
+    try:
+        _parser(dialect).parse(name, start="reference")
+    except UnexpectedInput:
+        return False
+    return True
+
+
+@cache
+def _parser(dialect: Dialect) -> Lark:
+    grammar = resources.files(__package__).joinpath(f"{dialect}_msg.lark").read_text("utf-8")
+    return Lark(grammar, parser="lalr", lexer="contextual", start=["line", "reference"])
+
+
+def _lines(text: str, dialect: Dialect) -> Iterator[tuple[int, str]]:
+    if dialect == "ros2":
+        text = text.replace("\t", " ")  # So does rosidl_adapter, in texts and comments, too.
+    start = 0
+    for end in _LINE_ENDS[dialect].finditer(text):
+        yield start, text[start : end.start()]
+        start = end.end()
+    yield start, text[start:]
+
+
+def _collect_comment(line: Tree[Token], comments: CommentCollector) -> Tree[Token] | None:
+    """Hand a line's comment on; return its definition, if there is one."""
+    definition: Tree[Token] | None = None
+    for child in line.children:
+        if isinstance(child, Tree):
+            definition = child
+        elif child is not None:
+            text = child.lstrip()
+            is_indented = len(text) < len(child)
+            comments.add(text, is_indented=is_indented, is_alone=definition is None)
+    return definition
+
+
+class _Draft(NamedTuple):
+    """A definition whose comment is not complete yet."""
+
+    type: TypeSyntax
+    name: NameSyntax
+    value: ValueSyntax | ListSyntax | None
+    is_constant: bool
+
+
+def _member(draft: _Draft, lines: list[str]) -> MemberSyntax:
+    comment, unit = condense(lines)
+    type_, name, value, is_constant = draft
+    if is_constant:
+        assert isinstance(value, ValueSyntax)
+        return ConstantSyntax(type=type_, name=name, value=value, comment=comment, unit=unit)
+    return FieldSyntax(type=type_, name=name, default=value, comment=comment, unit=unit)
+
+
+class _Reader:
+    """Turns the parse tree of one line into syntax.
+
+    Parameters
+    ----------
+    offset : int
+        Where the line starts in the source.
+    """
+
+    def __init__(self, source: Source, offset: int, dialect: Dialect) -> None:
+        self._source = source
+        self._offset = offset
+        self._dialect = dialect
+
+    def draft(self, tree: Tree[Token]) -> _Draft | Diagnostic:
+        """Read a definition. A number too long for Python to read is reported here."""
+        children = [child for child in tree.children if child is not None]
+        at_name = next(i for i, c in enumerate(children) if _kind(c) in _NAMES)
+        name = children[at_name]
+        assert isinstance(name, Token)
+        try:
+            type_ = self._type(children[:at_name])
+            value = self._value(children[at_name + 1 :])
+        except _TooLongError as error:
+            message = f"a number of {len(error.token)} digits is too long"
+            return Diagnostic(message=message, span=self._span(error.token))
+        is_constant = tree.data == "constant"
+        if is_constant and value is None:
+            # ``string NAME=`` is the empty text.
+            assert name.end_pos is not None
+            end = Span(
+                source=self._source,
+                start=self._offset + name.end_pos,
+                end=self._offset + name.end_pos,
+            )
+            value = ValueSyntax(value="", text="", span=end)
+        return _Draft(type_, NameSyntax(text=str(name), span=self._span(name)), value, is_constant)
+
+    def _type(self, parts: list[Token | Tree[Token]]) -> TypeSyntax:
+        head, *suffixes = parts
+        package: str | None = None
+        if isinstance(head, Token):
+            name = str(head)
+        else:
+            *prefix, word = [t for t in head.children if isinstance(t, Token)]
+            package = str(prefix[0]) if prefix else None
+            name = str(word)
+        tokens = list(_tokens(parts))
+        bound = next((self._size(s) for s in suffixes if _kind(s) == "bound"), None)
+        array = next((s for s in suffixes if _kind(s) == "array"), None)
+        size = None if array is None else self._size(array)
+        at_most = array is not None and any(t.type == "AT_MOST" for t in _tokens([array]))
+        return TypeSyntax(
+            package=package,
+            name=name,
+            is_builtin=isinstance(head, Token),
+            bound=bound,
+            array="one" if array is None else "array" if size and not at_most else "sequence",
+            size=size,
+            span=self._span(tokens[0], tokens[-1]),
+        )
+
+    def _size(self, suffix: Token | Tree[Token]) -> SizeSyntax | None:
+        for token in _tokens([suffix]):
+            if token.type == "SIZE":
+                return SizeSyntax(value=_integer(token), span=self._span(token))
+        return None
+
+    def _value(self, parts: list[Token | Tree[Token]]) -> ValueSyntax | ListSyntax | None:
+        if not parts:
+            return None
+        (part,) = parts
+        if isinstance(part, Token):
+            return self._scalar(part)
+        tokens = list(_tokens([part]))
+        items = tuple(self._scalar(t) for t in tokens if t.type not in _BRACKETS)
+        return ListSyntax(items=items, span=self._span(tokens[0], tokens[-1]))
+
+    def _scalar(self, token: Token) -> ValueSyntax:
+        value: bool | int | float | str
+        match token.type:
+            case "INTEGER":
+                value = _integer(token)
+            case "FLOAT":
+                value = float(token)
+            case "BOOLEAN":
+                value = _boolean(token)
+            case "RAW_TEXT" | "BARE_TEXT" | "CONSTANT_BARE_TEXT":
+                value = str(token)
+            case "DOUBLE_QUOTED_ITEM" | "SINGLE_QUOTED_ITEM" | "BARE_ITEM":
+                value = _item(token)
+            case _:
+                value = _unquoted(token)
+        return ValueSyntax(value=value, text=str(token), span=self._span(token))
+
+    def _span(self, first: Token, last: Token | None = None) -> Span:
+        last = last or first
+        assert first.start_pos is not None and last.end_pos is not None
+        return Span(
+            source=self._source,
+            start=self._offset + first.start_pos,
+            end=self._offset + last.end_pos,
+        )
+
+
+_NAMES = frozenset({"NAME", "FIELD_NAME", "CONSTANT_NAME"})
+_BRACKETS = frozenset({"EMPTY_LIST", "LIST_OPEN", "LIST_CLOSE"})
+
+
+class _TooLongError(Exception):
+    def __init__(self, token: Token) -> None:
+        super().__init__()
+        self.token = token
+
+
+def _kind(node: Token | Tree[Token]) -> str:
+    return node.type if isinstance(node, Token) else str(node.data)
+
+
+def _tokens(nodes: list[Token | Tree[Token]]) -> Iterator[Token]:
+    for node in nodes:
+        if isinstance(node, Token):
+            yield node
+        elif node is not None:
+            yield from _tokens(node.children)
+
+
+def _integer(token: Token) -> int:
+    for base in (10, 0):
+        try:
+            return int(token, base)
+        except ValueError:
+            continue
+    # The grammar lets through nothing but integers, so it is Python's limit on digits.
+    raise _TooLongError(token)
+
+
+def _boolean(token: Token) -> bool:
+    word = token.lower()
+    return word == "true" or (word != "false" and word.strip("+-0") != "")
+
+
+def _unquoted(text: str) -> str:
+    quote = text[0]
+    return text[1:-1].replace("\\" + quote, quote)
+
+
+def _item(text: str) -> str:
+    """Read an element of a list of texts as rosidl does, which unquotes and strips it twice."""
+    if text[0] in "\"'":
+        text = _unquoted(text).strip()
+    if len(text) > 1 and text[0] in "\"'" and text[0] == text[-1]:
+        text = _unquoted(text)
+    return text

@@ -1,0 +1,281 @@
+"""Syntax to model: names become types, and every wrong definition is found.
+
+A type is resolved once, after the types that it names. What is wrong with a text is kept with that
+text, so that a mistake in a dependency is reported once, where it stands. Dependencies are walked
+with a stack of our own: their depth is the user's business, not that of Python's recursion limit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
+from firm_hdl.frontend.check import check_members, check_type_name
+from firm_hdl.frontend.explain import similar_builtin
+from firm_hdl.frontend.parse import read_message
+from firm_hdl.frontend.sources import Sources
+from firm_hdl.frontend.suggest import did_you_mean, similar_types, unknown_type
+from firm_hdl.frontend.syntax import (
+    ConstantSyntax,
+    FieldSyntax,
+    ListSyntax,
+    MessageSyntax,
+    TypeSyntax,
+    ValueSyntax,
+)
+from firm_hdl.model import (
+    PRIMITIVES,
+    Array,
+    Constant,
+    Dialect,
+    Field,
+    FieldType,
+    Message,
+    Primitive,
+    Sequence,
+    Text,
+    Value,
+)
+
+__all__ = ["Resolver", "TypeName"]
+
+_MOST_SUGGESTIONS = 20
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class TypeName:
+    """Package and name of a message type; `str` writes it as the dialect does."""
+
+    package: str
+    name: str
+    dialect: Dialect
+
+    def __str__(self) -> str:
+        middle = "/msg/" if self.dialect == "ros2" else "/"
+        return f"{self.package}{middle}{self.name}"
+
+
+def _time(name: str, element: str) -> Message:
+    kind = PRIMITIVES["ros1"][element]
+    fields = tuple(Field(name=part, type=kind) for part in ("secs", "nsecs"))
+    return Message(name=name, dialect="ros1", fields=fields)
+
+
+# genmsg calls these builtin, and says what they are made of: time is unsigned, duration signed.
+_TIMES = {"time": _time("time", "uint32"), "duration": _time("duration", "int32")}
+
+
+@dataclass(slots=True)
+class _Entry:
+    """What is known of a type: its text, what is wrong with it, and what it needs."""
+
+    name: TypeName
+    syntax: MessageSyntax
+    diagnostics: list[Diagnostic]
+    needs: list[tuple[TypeName, Span]]
+    message: Message | None = None
+    is_done: bool = False
+    failed_needs: list[TypeName] = field(default_factory=list)
+
+
+class Resolver:
+    """Resolves the types of one set of sources, each of them once."""
+
+    def __init__(self, sources: Sources, dialect: Dialect) -> None:
+        self._sources = sources
+        self._dialect = dialect
+        self._entries: dict[TypeName, _Entry | None] = {}
+
+    def resolve(self, name: TypeName) -> Message | None:
+        """Resolve a type and all that it depends on.
+
+        Returns
+        -------
+        Message or None
+            `None` if there is no type of that name.
+
+        Raises
+        ------
+        DefinitionError
+            With all that is wrong in its text, then in those of its dependencies.
+        """
+        entry = self._enter(name)
+        if entry is None:
+            return None
+        if not entry.is_done:
+            self._walk(entry)
+        if entry.message is None:
+            raise DefinitionError(self._collect(entry))
+        return entry.message
+
+    def _walk(self, root: _Entry) -> None:
+        """Finish a type after the types that it needs, depth first."""
+        path: dict[TypeName, Iterator[tuple[TypeName, Span]]] = {root.name: iter(root.needs)}
+        while path:
+            name = next(reversed(path))
+            entry = self._entries[name]
+            assert entry is not None
+            for need, span in path[name]:
+                if need in path:
+                    entry.diagnostics.append(_cycle([*path], need, span))
+                    continue
+                needed = self._enter(need)
+                if needed is None:
+                    entry.diagnostics.append(self._unknown(entry, need, span))
+                elif not needed.is_done:
+                    path[need] = iter(needed.needs)
+                    break
+                elif needed.message is None:
+                    entry.failed_needs.append(need)
+            else:
+                del path[name]
+                self._finish(entry)
+                if path and entry.message is None:
+                    parent = self._entries[next(reversed(path))]
+                    assert parent is not None
+                    parent.failed_needs.append(name)
+
+    def _unknown(self, entry: _Entry, name: TypeName, span: Span) -> Diagnostic:
+        """Word the message for a type that a text names and that is nowhere."""
+        message = unknown_type(self._sources, name.package, name.name)
+        # Looking for similar names is slow; whoever has so many mistakes made them all in one way.
+        if len(entry.diagnostics) < _MOST_SUGGESTIONS:
+            builtins: list[str] = []
+            if name.package == entry.name.package:
+                builtins = similar_builtin(name.name, self._dialect)
+            similar = similar_types(self._sources, name.package, name.name)
+            # In a definition, types are written without ``/msg/``.
+            names = [base if p == entry.name.package else f"{p}/{base}" for p, base in similar]
+            message = did_you_mean(message, [*builtins, *names])
+        return Diagnostic(message=message, span=span)
+
+    def _enter(self, name: TypeName) -> _Entry | None:
+        """Read a type's text, once."""
+        if name not in self._entries:
+            self._entries[name] = self._load(name)
+        return self._entries[name]
+
+    def _load(self, name: TypeName) -> _Entry | None:
+        try:
+            source = self._sources.find(name.package, name.name)
+        except DefinitionError as error:
+            nothing = MessageSyntax(
+                source=Source(name=str(name), text=""),
+                dialect=self._dialect,
+                members=(),
+                comment="",
+            )
+            return _Entry(name, nothing, list(error.diagnostics), [], is_done=True)
+        if source is None:
+            return None
+        syntax, diagnostics = read_message(source, self._dialect)
+        diagnostics = [
+            *check_type_name(source, name.package, name.name, self._dialect),
+            *diagnostics,
+            *check_members(syntax),
+        ]
+        needs: dict[TypeName, Span] = {}
+        for member in syntax.members:
+            need = self._need(member.type, name.package)
+            if need is not None:
+                needs.setdefault(need, member.type.span)
+        return _Entry(name, syntax, diagnostics, list(needs.items()))
+
+    def _need(self, type_: TypeSyntax, package: str) -> TypeName | None:
+        if type_.is_builtin:
+            return None
+        # REP 100; genmsg does so for the bare word only, so that ``Header[]`` is the package's own.
+        is_header = type_.name == "Header" and type_.package is None and type_.array == "one"
+        if is_header and self._dialect == "ros1":
+            return TypeName("std_msgs", "Header", self._dialect)
+        return TypeName(type_.package or package, type_.name, self._dialect)
+
+    def _finish(self, entry: _Entry) -> None:
+        entry.is_done = True
+        entry.diagnostics.sort(key=lambda d: -1 if d.span is None else d.span.start)
+        if entry.diagnostics or entry.failed_needs:
+            return
+        members = entry.syntax.members
+        entry.message = Message(
+            name=str(entry.name),
+            dialect=self._dialect,
+            fields=tuple(
+                self._field(m, entry.name.package) for m in members if isinstance(m, FieldSyntax)
+            ),
+            constants=tuple(self._constant(m) for m in members if isinstance(m, ConstantSyntax)),
+            comment=entry.syntax.comment,
+            text=entry.syntax.source.text,
+        )
+
+    def _field(self, syntax: FieldSyntax, package: str) -> Field:
+        return Field(
+            name=syntax.name.text,
+            type=self._type(syntax.type, package),
+            default=None if syntax.default is None else _value(syntax.default),
+            comment=syntax.comment,
+            unit=syntax.unit,
+            span=syntax.name.span,
+        )
+
+    def _constant(self, syntax: ConstantSyntax) -> Constant:
+        kind = self._element(syntax.type, "")
+        assert isinstance(kind, Primitive | Text)
+        return Constant(
+            name=syntax.name.text,
+            type=kind,
+            value=syntax.value.value,
+            text=syntax.value.text,
+            comment=syntax.comment,
+            unit=syntax.unit,
+            span=syntax.name.span,
+        )
+
+    def _type(self, syntax: TypeSyntax, package: str) -> FieldType:
+        element = self._element(syntax, package)
+        match syntax.array:
+            case "one":
+                return element
+            case "array":
+                assert syntax.size is not None
+                return Array(element=element, count=syntax.size.value)
+            case "sequence":
+                bound = None if syntax.size is None else syntax.size.value
+                return Sequence(element=element, bound=bound)
+
+    def _element(self, syntax: TypeSyntax, package: str) -> Primitive | Text | Message:
+        need = self._need(syntax, package)
+        if need is not None:
+            entry = self._entries[need]
+            assert entry is not None and entry.message is not None
+            return entry.message
+        if syntax.name in ("string", "wstring"):
+            bound = None if syntax.bound is None else syntax.bound.value
+            return Text(bound=bound, wide=syntax.name == "wstring")
+        return _TIMES.get(syntax.name) or PRIMITIVES[self._dialect][syntax.name]
+
+    def _collect(self, entry: _Entry) -> list[Diagnostic]:
+        """Gather what is wrong with a type and with those that it needs, each text once."""
+        found: list[Diagnostic] = []
+        seen = {entry.name}
+        pending = [entry]
+        while pending:
+            current = pending.pop()
+            found += current.diagnostics
+            for name in reversed(current.failed_needs):
+                needed = self._entries[name]
+                if name not in seen and needed is not None:
+                    seen.add(name)
+                    pending.append(needed)
+        return found
+
+
+def _value(syntax: ValueSyntax | ListSyntax) -> Value:
+    if isinstance(syntax, ListSyntax):
+        return tuple(item.value for item in syntax.items)
+    return syntax.value
+
+
+def _cycle(path: list[TypeName], name: TypeName, span: Span) -> Diagnostic:
+    steps = " -> ".join(map(str, [*path[path.index(name) :], name]))
+    return Diagnostic(message=f"type '{name}' contains itself: {steps}", span=span)

@@ -1,0 +1,131 @@
+"""The syntax trees of definitions: what stands in a text, where, and nothing that it means.
+
+One class for each thing that a text can say. Names are not resolved, sizes and values are not
+checked against their types; that is the business of :mod:`firm_hdl.frontend.resolve`. Every node
+knows its span, so that whoever finds a mistake can point at it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from firm_hdl.errors import Source, Span
+from firm_hdl.model import Dialect
+
+__all__ = [
+    "ConstantSyntax",
+    "FieldSyntax",
+    "ListSyntax",
+    "MemberSyntax",
+    "MessageSyntax",
+    "NameSyntax",
+    "SizeSyntax",
+    "TypeSyntax",
+    "ValueSyntax",
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NameSyntax:
+    """The name of a field or a constant."""
+
+    text: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SizeSyntax:
+    """A number of elements or of characters."""
+
+    value: int
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TypeSyntax:
+    """The type of a field or a constant.
+
+    Attributes
+    ----------
+    package : str or None
+        The word in front of the slash.
+    name : str
+        A builtin type's name, or that of a message type.
+    is_builtin : bool
+        Whether `name` is one of the dialect's own words.
+    bound : SizeSyntax or None
+        What follows ``string<=``.
+    array : "one", "array" or "sequence"
+        Whether brackets follow, and whether they fix the number of elements.
+    size : SizeSyntax or None
+        The number in the brackets: the length of an array, the bound of a sequence.
+    """
+
+    package: str | None
+    name: str
+    is_builtin: bool
+    bound: SizeSyntax | None
+    array: Literal["one", "array", "sequence"]
+    size: SizeSyntax | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ValueSyntax:
+    """A constant's value, a default, or an element of one; quotes and escapes are undone."""
+
+    value: bool | int | float | str
+    text: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ListSyntax:
+    """The default of an array or a sequence."""
+
+    items: tuple[ValueSyntax, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FieldSyntax:
+    """One line that declares a field."""
+
+    type: TypeSyntax
+    name: NameSyntax
+    default: ValueSyntax | ListSyntax | None
+    comment: str
+    unit: str | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConstantSyntax:
+    """One line that declares a constant."""
+
+    type: TypeSyntax
+    name: NameSyntax
+    value: ValueSyntax
+    comment: str
+    unit: str | None
+
+
+MemberSyntax: TypeAlias = FieldSyntax | ConstantSyntax
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MessageSyntax:
+    """A whole ``.msg`` text.
+
+    Attributes
+    ----------
+    members : tuple of FieldSyntax or ConstantSyntax
+        In the order of the text.
+    comment : str
+        The comment at the head of the file.
+    """
+
+    source: Source
+    dialect: Dialect
+    members: tuple[MemberSyntax, ...]
+    comment: str

@@ -1,0 +1,50 @@
+"""Simulation: what a user needs to test an accelerator in plain Amaranth.
+
+Functions for a user's own testbenches (`send_packets`, `receive_packets`, `MessagePort`, `watch`),
+and converters run as functions (`loopback`, `decode`, `encode`, and `Harness` for many runs).
+"""
+
+from __future__ import annotations
+
+from firm_hdl.sim.bench import DeadlineError
+from firm_hdl.sim.harness import Harness, leaf_streams
+from firm_hdl.sim.loopback import Decoding, Encoding, Loopback, decode, encode, loopback
+from firm_hdl.sim.messages import MessagePort
+from firm_hdl.sim.record import Seen, leaf_name
+from firm_hdl.sim.stalls import StallPlan, Stalls
+from firm_hdl.sim.streams import (
+    receive,
+    receive_packets,
+    receive_statuses,
+    send,
+    send_packets,
+)
+from firm_hdl.sim.values import from_transfers, to_transfers
+from firm_hdl.sim.watch import StreamRuleError, StreamRules, watch
+
+__all__ = [
+    "DeadlineError",
+    "Decoding",
+    "Encoding",
+    "Harness",
+    "Loopback",
+    "MessagePort",
+    "Seen",
+    "StallPlan",
+    "Stalls",
+    "StreamRuleError",
+    "StreamRules",
+    "decode",
+    "encode",
+    "from_transfers",
+    "leaf_name",
+    "leaf_streams",
+    "loopback",
+    "receive",
+    "receive_packets",
+    "receive_statuses",
+    "send",
+    "send_packets",
+    "to_transfers",
+    "watch",
+]

@@ -1,0 +1,364 @@
+"""The fast loop that runs whole designs: one testbench that drives and observes all streams.
+
+A bench packs everything it drives into a few wide signals and everything it watches in every cycle
+into one, and moves the clock itself, so that the simulator settles once per clock edge and payloads
+are read only where something transfers or waits. That is several times faster than a testbench per
+stream, which is what matters for thousands of cases; users' own testbenches are served by
+:mod:`firm_hdl.sim.streams`.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from typing import TypeVar
+
+from amaranth.hdl import Cat, ClockDomain, Elaboratable, Module, Signal, Value
+from amaranth.lib import stream
+from amaranth.sim import Simulator, SimulatorContext
+
+from firm_hdl.sim.stalls import StallPlan, stalls_of
+from firm_hdl.sim.watch import StreamRules
+
+__all__ = ["Bench", "DeadlineError", "Job", "in_chunks"]
+
+T = TypeVar("T")
+
+WORD_BITS = 2048
+CHUNK = 24
+HALF_PERIOD = 5e-7
+
+
+class DeadlineError(AssertionError):
+    """Nothing more came although more was expected."""
+
+
+@dataclass(slots=True, kw_only=True)
+class Job:
+    """One run of a bench.
+
+    Attributes
+    ----------
+    sources : dict of str to iterable of int
+        Payloads to send, as bits, by the name of the stream.
+    takes : dict of str to callable
+        Called with the cycle and the payload's bits at each transfer of the stream of that name.
+    stalls : Stalls, mapping or None
+    finished : callable
+        Whether all that was expected has come; asked after each cycle with a transfer.
+    outstanding : callable
+        What was still expected, for the error.
+    deadline : int
+        Most cycles in a row without any transfer.
+    limit : int
+        Most cycles in total.
+    settle : int
+        Cycles without any transfer that end a finished run.
+    """
+
+    sources: dict[str, Iterable[int]]
+    takes: dict[str, Callable[[int, int], None]]
+    finished: Callable[[], bool]
+    outstanding: Callable[[], str]
+    stalls: StallPlan = None
+    deadline: int = 1000
+    limit: int = 1_000_000
+    settle: int = 4
+
+
+@dataclass(slots=True)
+class _Source:
+    """Something to send: the payload on offer, and those after it."""
+
+    valid: int
+    word: int
+    at: int
+    payloads: Iterator[int]
+    stalled: Iterator[bool] | None
+    payload: int = 0
+
+
+class Bench:
+    """A design with streams to the outside, ready to run jobs.
+
+    Parameters
+    ----------
+    design : Elaboratable
+        Needs a clock domain ``sync`` only.
+    sources : mapping of str to stream.Interface
+        Streams that the bench drives.
+    sinks : mapping of str to stream.Interface
+        Streams that the bench takes from. Always ready unless stalled.
+    taps : mapping of str to stream.Interface
+        Streams inside the design that the bench only watches.
+    gates : Signal or None
+        A bit for each tap, in order: the design lets the stream through while it is high. The bench
+        keeps it high while a transfer is offered behind it, as the rules of streams demand.
+    payloads : mapping of str to Value
+        What to see as the payload of a sink or tap, if that is more than its payload.
+    """
+
+    def __init__(
+        self,
+        design: Elaboratable,
+        *,
+        sources: Mapping[str, stream.Interface],
+        sinks: Mapping[str, stream.Interface],
+        taps: Mapping[str, stream.Interface] | None = None,
+        gates: Signal | None = None,
+        payloads: Mapping[str, Value] | None = None,
+    ):
+        self.sources, self.sinks = dict(sources), dict(sinks)
+        self.taps, self.gates = dict(taps or {}), gates
+        # Sinks and taps first, as only they are watched.
+        self.ports = [*self.sinks.values(), *self.taps.values(), *self.sources.values()]
+        self.names = [*self.sinks, *self.taps, *self.sources]
+        if len(set(self.names)) != len(self.names):
+            raise ValueError(f"Names of streams must differ, not {', '.join(self.names)}")
+        self.payloads = [Value.cast(port.payload) for port in self.ports]
+        for name, value in (payloads or {}).items():
+            self.payloads[self.names.index(name)] = value
+        self.words: list[Signal] = []
+        self.job: Job | None = None
+        self.cycles = 0
+        self.simulator = Simulator(self._top(design))
+        self._used = False
+
+    def run(self, job: Job, *, vcd: str | os.PathLike[str] | None = None) -> int:
+        """Run a job from reset; return the number of cycles, the settling included."""
+        if self._used:
+            self.simulator.reset()
+        else:
+            # Not earlier: Python warns of a testbench that never starts.
+            self.simulator.add_testbench(self._testbench)
+        self._used = True
+        self.job = job
+        self._delay = HALF_PERIOD if vcd is not None else 0.0
+        with nullcontext() if vcd is None else self.simulator.write_vcd(os.fspath(vcd)):
+            self.simulator.run()
+        return self.cycles
+
+    def _top(self, design: Elaboratable) -> Module:
+        m = Module()
+        m.submodules.design = design
+        m.domains.sync = domain = ClockDomain("sync", reset_less=True)
+        self.clock = domain.clk
+        self.handshakes = Signal(2 * len(self.ports))
+        bits = [port.valid for port in self.ports] + [port.ready for port in self.ports]
+        m.d.comb += self.handshakes.eq(Cat(_gathered(m, chunk) for chunk in in_chunks(bits)))
+        # The first word holds everything of one bit, others what is left of the sources' payloads.
+        control = [port.ready for port in self.sinks.values()]
+        control += [] if self.gates is None else [self.gates]
+        control += [port.valid for port in self.sources.values()]
+        layout: list[list[Value]] = [control]
+        self.places: list[tuple[int, int]] = []
+        sizes = [sum(map(len, control))]
+        for port in self.sources.values():
+            payload = Value.cast(port.payload)
+            if sizes[-1] + len(payload) > WORD_BITS:
+                layout.append([])
+                sizes.append(0)
+            self.places.append((len(layout) - 1, sizes[-1]))
+            layout[-1].append(payload)
+            sizes[-1] += len(payload)
+        for index, (parts, size) in enumerate(zip(layout, sizes, strict=True)):
+            word = Signal(size, name=f"word_{index}")
+            m.d.comb += Cat(*parts).eq(word)
+            self.words.append(word)
+        return m
+
+    async def _testbench(self, ctx: SimulatorContext) -> None:
+        assert self.job is not None
+        drive = _Drive(self, self.job)
+        watch = _Watch(self, self.job, ctx)
+        fired = held = 0
+        # The clock and the first word change together. Words reach the design through assignments
+        # only, so registers still see what was there before the edge, as they do of each other.
+        edge = Cat(self.clock, self.words[0])
+        while True:
+            changed = drive.next(fired, held)
+            if changed & 1:
+                ctx.set(edge, drive.words[0] << 1 | 1)
+            else:
+                ctx.set(self.clock, 1)
+            if changed > 1:
+                for index in range(1, len(self.words)):
+                    if changed >> index & 1:
+                        ctx.set(self.words[index], drive.words[index])
+            if self._delay:
+                await ctx.delay(self._delay)
+            fired, held = watch.next()
+            if watch.over:
+                break
+            ctx.set(self.clock, 0)
+            if self._delay:
+                await ctx.delay(self._delay)
+        self.cycles = watch.cycle
+
+
+def in_chunks(items: Sequence[T]) -> Iterator[Sequence[T]]:
+    """Yield items in groups that are worth a module of their own.
+
+    The simulator evaluates all combinational assignments of a module again whenever one of their
+    inputs changes, so hundreds of them in one module are slow; so are hundreds of modules.
+    """
+    for start in range(0, len(items), CHUNK):
+        yield items[start : start + CHUNK]
+
+
+def _gathered(m: Module, bits: Sequence[Value]) -> Signal:
+    """Return a signal of bits that come together in a module of their own."""
+    part = Module()
+    gathered = Signal(len(bits))
+    part.d.comb += gathered.eq(Cat(*bits))
+    m.submodules += part
+    return gathered
+
+
+class _Drive:
+    """What a bench drives in a run: a value for each of its words, in each cycle."""
+
+    def __init__(self, bench: Bench, job: Job):
+        self.words = [0] * len(bench.words)
+        self.always, self.changing = 0, []
+        inputs = [*bench.sinks, *(bench.taps if bench.gates is not None else ())]
+        self.gates = (1 << len(inputs)) - (1 << len(bench.sinks))
+        for index, name in enumerate(inputs):
+            if stalls := stalls_of(job.stalls, name):
+                self.changing.append((1 << index, stalls.cycles(name)))
+            else:
+                self.always |= 1 << index
+        self.first = len(bench.ports) - len(bench.sources)
+        self.sources = []
+        for index, name in enumerate(bench.sources):
+            stalls = stalls_of(job.stalls, name)
+            word, at = bench.places[index]
+            source = _Source(
+                valid=1 << (len(inputs) + index),
+                word=word,
+                at=at,
+                payloads=iter(job.sources.get(name, ())),
+                stalled=stalls.cycles(name) if stalls else None,
+            )
+            self.sources.append(source)
+        self.idle = list(self.sources)
+        self.control = 0
+
+    def next(self, fired: int, held: int) -> int:
+        """Go to the next cycle; return which words change, as bits.
+
+        Parameters
+        ----------
+        fired : int
+            Which ports transferred in this cycle, as bits.
+        held : int
+            Which ports offered a transfer that was not taken.
+        """
+        held &= self.gates & self.control
+        control = self.control
+        changed = 0
+        fired >>= self.first
+        while fired:
+            low = fired & -fired
+            source = self.sources[low.bit_length() - 1]
+            fired ^= low
+            control &= ~source.valid
+            self.idle.append(source)
+        if self.idle:
+            control, changed = self._offer(control)
+        control |= self.always
+        for bit, stalled in self.changing:
+            control = control & ~bit if next(stalled) else control | bit
+        control |= held
+        if control != self.control:
+            self.words[0] ^= control ^ self.control
+            self.control = control
+            changed |= 1
+        return changed
+
+    def _offer(self, control: int) -> tuple[int, int]:
+        """Let every source without an offer make one, unless it is stalled or has no more."""
+        changed = 0
+        idle = []
+        for source in self.idle:
+            if source.stalled is not None and next(source.stalled):
+                idle.append(source)
+                continue
+            payload = next(source.payloads, None)
+            if payload is None:
+                continue
+            if payload != source.payload:
+                self.words[source.word] ^= (payload ^ source.payload) << source.at
+                source.payload = payload
+                changed |= 1 << source.word
+            control |= source.valid
+        self.idle = idle
+        return control, changed
+
+
+class _Watch:
+    """What a bench sees in a run."""
+
+    def __init__(self, bench: Bench, job: Job, ctx: SimulatorContext):
+        self.job = job
+        self.get = ctx.get
+        self.payloads = bench.payloads
+        self.handshakes = bench.handshakes
+        self.names = bench.names
+        self.count = len(bench.ports)
+        self.watched = (1 << (self.count - len(bench.sources))) - 1
+        self.takes = [job.takes.get(name) for name in bench.names]
+        self.rules = StreamRules(bench.names)
+        stalls = [stalls_of(job.stalls, name) for name in bench.names]
+        self.deadline = job.deadline + max(each.longest for each in stalls)
+        self.cycle = 0
+        self.quiet = 0
+        self.settled = 0
+        self.finished = job.finished()
+        self.over = False
+
+    def payload(self, number: int) -> int:
+        """Return the bits that a port carries now."""
+        value: int = self.get(self.payloads[number])
+        return value
+
+    def next(self) -> tuple[int, int]:
+        """Look at one cycle; return which ports transfer in it, and which only offer, as bits."""
+        both: int = self.get(self.handshakes)
+        ready = both >> self.count
+        valid = both & ((1 << self.count) - 1)
+        fired = valid & ready
+        self.rules.check(self.cycle, valid & self.watched, ready, self.payload)
+        rest = fired
+        while rest:
+            low = rest & -rest
+            number = low.bit_length() - 1
+            rest ^= low
+            if take := self.takes[number]:
+                take(self.cycle, self.get(self.payloads[number]))
+        if fired:
+            self.quiet = self.settled = 0
+            self.finished = self.job.finished()
+        else:
+            self._rest(valid)
+        self.cycle += 1
+        if self.cycle > self.job.limit:
+            raise DeadlineError(
+                f"No end after {self.job.limit} cycles; outstanding: {self.job.outstanding()}"
+            )
+        return fired, valid & ~ready
+
+    def _rest(self, valid: int) -> None:
+        """Count a cycle without transfers; `valid`: who offers one."""
+        self.quiet += 1
+        self.settled = 0 if valid & self.watched else self.settled + 1
+        self.over = self.finished and self.settled >= self.job.settle
+        if self.quiet > self.deadline and not self.over:
+            waiting = [name for bit, name in enumerate(self.names) if valid >> bit & 1]
+            raise DeadlineError(
+                f"No transfer in {self.quiet} cycles up to cycle {self.cycle}; "
+                f"outstanding: {self.job.outstanding()}; "
+                f"offered and not taken: {', '.join(waiting) or 'nothing'}"
+            )

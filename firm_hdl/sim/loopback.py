@@ -1,0 +1,236 @@
+"""Converters run as functions: packets in, packets out, with every stream in between watched.
+
+`loopback` is the no-op accelerator: a deserializer connected with a serializer. `decode` and
+`encode` are one of the two alone. Each builds its circuit and runs it once; to run one circuit many
+times, keep a :class:`firm_hdl.sim.Harness`.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.gateware.signatures import Status
+from firm_hdl.model import Message
+from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Payload, Plan
+from firm_hdl.sim.harness import Harness
+from firm_hdl.sim.record import leaf_name
+from firm_hdl.sim.stalls import StallPlan, stalls_of
+from firm_hdl.sim.values import to_transfers
+from firm_hdl.wire import Wire
+
+__all__ = ["Decoding", "Encoding", "Loopback", "decode", "encode", "join_transfers", "loopback"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Loopback:
+    """What a loopback did. Unpacks as ``packets, statuses``.
+
+    Attributes
+    ----------
+    packets : list of bytes
+        What came out.
+    statuses : list of Status
+        The deserializer's.
+    sent_statuses : list of Status
+        The serializer's.
+    marked : list of bool
+        For each packet that came out, whether `packet_error` marked it.
+    transfers : dict of int to list
+        Payloads that each leaf's stream carried, by the index of the leaf, over all packets.
+    cycles : int
+        From the first beat that went in to the last that came out, both included.
+    beats_in, beats_out : int
+    """
+
+    packets: list[bytes]
+    statuses: list[Status]
+    sent_statuses: list[Status]
+    marked: list[bool]
+    transfers: dict[int, list[Payload]]
+    cycles: int
+    beats_in: int
+    beats_out: int
+
+    def __iter__(self) -> Iterator[list[bytes] | list[Status]]:
+        return iter((self.packets, self.statuses))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Decoding:
+    """What a deserializer did. Unpacks as ``transfers, statuses``.
+
+    Attributes are as for :class:`Loopback`; `cycles` ends with the last transfer of a leaf.
+    """
+
+    transfers: dict[int, list[Payload]]
+    statuses: list[Status]
+    cycles: int
+    beats_in: int
+
+    def __iter__(self) -> Iterator[dict[int, list[Payload]] | list[Status]]:
+        return iter((self.transfers, self.statuses))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Encoding:
+    """What a serializer did. Unpacks as ``packets, statuses``.
+
+    Attributes are as for :class:`Loopback`; `cycles` starts with the first transfer of a leaf.
+    `left` is how many transfers that were offered were never taken, by leaf.
+    """
+
+    packets: list[bytes]
+    statuses: list[Status]
+    marked: list[bool]
+    cycles: int
+    beats_out: int
+    left: dict[int, int]
+
+    def __iter__(self) -> Iterator[list[bytes] | list[Status]]:
+        return iter((self.packets, self.statuses))
+
+
+def loopback(
+    message: Message,
+    packets: Iterable[bytes],
+    *,
+    wire: Wire | None = None,
+    bus_bytes: int = 8,
+    max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+    stalls: StallPlan = None,
+    deadline: int = 1000,
+    limit: int | None = None,
+    vcd: str | os.PathLike[str] | None = None,
+) -> Loopback:
+    """Send packets through a deserializer and a serializer.
+
+    Parameters
+    ----------
+    message : Message
+    packets : iterable of bytes
+        Sent back to back.
+    wire, bus_bytes, max_message_bytes
+        As for the converters.
+    stalls : Stalls, mapping or None
+        Of ``packets_in``, ``packets_out``, ``status``, ``sent_status`` and ``message`` with
+        everything below it (``message.header.frame_id.items``); one record is for all of them.
+    deadline : int
+        Most cycles without a transfer anywhere, beside the longest stall.
+    limit : int or None
+        Most cycles in total; `None`: much more than any legal packets take.
+    vcd : path or None
+        Where to write a waveform. Slow.
+
+    Raises
+    ------
+    DeadlineError
+        If something does not come; says what.
+    StreamRuleError
+        If a stream breaks a rule.
+    """
+    rx = Deserializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
+    tx = Serializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
+    names = [leaf_name(rx.plan, leaf) for leaf in range(len(rx.plan.leaves))]
+    gated = any(stalls_of(stalls, name) for name in names)
+    seen = Harness(rx, tx, message=message, gated=gated).run(
+        packets=list(packets), stalls=stalls, deadline=deadline, limit=limit, vcd=vcd
+    )
+    return Loopback(
+        packets=seen.packets,
+        statuses=seen.statuses,
+        sent_statuses=seen.sent_statuses,
+        marked=seen.marked,
+        transfers=seen.transfers,
+        cycles=seen.cycles,
+        beats_in=seen.beats_in,
+        beats_out=seen.beats_out,
+    )
+
+
+def decode(
+    message: Message,
+    packets: Iterable[bytes],
+    *,
+    wire: Wire | None = None,
+    bus_bytes: int = 8,
+    max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+    stalls: StallPlan = None,
+    deadline: int = 1000,
+    limit: int | None = None,
+    vcd: str | os.PathLike[str] | None = None,
+) -> Decoding:
+    """Send packets through a deserializer, and take all that its leaves give.
+
+    Parameters and errors are those of :func:`loopback`.
+    """
+    rx = Deserializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
+    seen = Harness(rx, None, message=message).run(
+        packets=list(packets), stalls=stalls, deadline=deadline, limit=limit, vcd=vcd
+    )
+    return Decoding(
+        transfers=seen.transfers,
+        statuses=seen.statuses,
+        cycles=seen.cycles,
+        beats_in=seen.beats_in,
+    )
+
+
+def encode(
+    message: Message,
+    values: Iterable[object],
+    *,
+    wire: Wire | None = None,
+    bus_bytes: int = 8,
+    max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+    stalls: StallPlan = None,
+    deadline: int = 1000,
+    limit: int | None = None,
+    vcd: str | os.PathLike[str] | None = None,
+) -> Encoding:
+    """Send messages through a serializer, every leaf on its own.
+
+    Parameters
+    ----------
+    values : iterable
+        Messages as dicts, as objects (of rosbags, say), or as transfers (dicts of lists by the
+        index of the leaf), which may be wrong on purpose.
+
+    Other parameters and errors are those of :func:`loopback`.
+    """
+    tx = Serializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
+    given = [as_transfers(tx.plan, message, value) for value in values]
+    seen = Harness(None, tx, message=message).run(
+        transfers=join_transfers(given),
+        messages=len(given),
+        stalls=stalls,
+        deadline=deadline,
+        limit=limit,
+        vcd=vcd,
+    )
+    return Encoding(
+        packets=seen.packets,
+        statuses=seen.statuses,
+        marked=seen.marked,
+        cycles=seen.cycles,
+        beats_out=seen.beats_out,
+        left=seen.left,
+    )
+
+
+def as_transfers(plan: Plan, message: Message, value: object) -> Mapping[int, list[Payload]]:
+    """Return a message's transfers, whether it is given as such or as a value."""
+    if isinstance(value, Mapping) and value and all(isinstance(key, int) for key in value):
+        return value
+    return to_transfers(plan, message, value)
+
+
+def join_transfers(messages: Iterable[Mapping[int, list[Payload]]]) -> dict[int, list[Payload]]:
+    """Return the transfers of messages one after the other."""
+    joined: dict[int, list[Payload]] = {}
+    for message in messages:
+        for leaf, payloads in message.items():
+            joined.setdefault(leaf, []).extend(payloads)
+    return joined

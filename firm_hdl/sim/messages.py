@@ -1,0 +1,186 @@
+"""Whole messages on message interfaces, for users' own testbenches.
+
+A :class:`MessagePort` knows which stream is which leaf. All leaves move on their own: when sending,
+every leaf offers its transfers as soon as it can; when receiving, every leaf is ready as long as it
+is known to have transfers to come, which lengths tell as they arrive, and no longer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from amaranth.hdl import Cat, Value
+from amaranth.lib import stream
+from amaranth.sim import SimulatorContext
+
+from firm_hdl.gateware.members import member_tree
+from firm_hdl.model import Message
+from firm_hdl.plan import Payload, build_plan
+from firm_hdl.sim.bench import DeadlineError
+from firm_hdl.sim.demand import Demand, demand_table
+from firm_hdl.sim.harness import leaf_streams
+from firm_hdl.sim.payloads import decoder_of, encoder_of
+from firm_hdl.sim.record import leaf_name
+from firm_hdl.sim.stalls import StallPlan, stalls_of
+from firm_hdl.sim.values import from_transfers, to_transfers
+from firm_hdl.wire import Wire, lay_out
+
+__all__ = ["MessagePort"]
+
+
+@dataclass(slots=True)
+class _Lane:
+    """A leaf that has transfers to send."""
+
+    port: stream.Interface
+    bits: Value
+    payloads: Iterator[int]
+    stalled: Iterator[bool]
+    offered: bool = False
+
+
+class MessagePort:
+    """A message interface, seen from a testbench.
+
+    Parameters
+    ----------
+    interface : interface of a MessageSignature
+        ``rx.message`` of a converter, or the like in a design of your own.
+    message : Message
+    bus_bytes : int
+        The width that the signature was made for.
+    wire : "ros1", "cdr" or None
+        As for the signature.
+
+    Attributes
+    ----------
+    plan : Plan
+        Gives the leaves by index.
+    streams : dict of int to stream.Interface
+    """
+
+    def __init__(
+        self, interface: Any, message: Message, *, bus_bytes: int = 8, wire: Wire | None = None
+    ):
+        layout = lay_out(message, wire)
+        self.message = message
+        self.plan = build_plan(layout, bus_bytes=bus_bytes, max_message_bytes=(1 << 32) - 1)
+        tree = member_tree(leaf.path for leaf in self.plan.leaves)
+        self.streams = leaf_streams(interface, tree)
+        self._table = demand_table(self.plan, message)
+        self._encoders = [encoder_of(leaf) for leaf in self.plan.leaves]
+        self._decoders = [decoder_of(leaf) for leaf in self.plan.leaves]
+        self._names = [leaf_name(self.plan, leaf) for leaf in self.streams]
+
+    async def send(self, ctx: SimulatorContext, value: object, *, stalls: StallPlan = None) -> None:
+        """Send one message.
+
+        Parameters
+        ----------
+        value : mapping or object
+            A dict by field names, or an object with such attributes (of rosbags, say).
+        stalls : Stalls, mapping or None
+            When leaves do not offer their next transfer, by ``message.`` and the leaf's path.
+        """
+        transfers = to_transfers(self.plan, self.message, value)
+        await self.send_transfers(ctx, transfers, stalls=stalls)
+
+    async def receive(
+        self, ctx: SimulatorContext, *, stalls: StallPlan = None, deadline: int = 1000
+    ) -> dict[str, Any]:
+        """Receive one message, as a dict.
+
+        Parameters
+        ----------
+        stalls : Stalls, mapping or None
+            When leaves are not ready, by ``message.`` and the leaf's path.
+        deadline : int
+            Most cycles without any transfer, beside the longest stall.
+
+        Raises
+        ------
+        DeadlineError
+            Naming the leaves that still had transfers to come.
+        """
+        transfers = await self.receive_transfers(ctx, stalls=stalls, deadline=deadline)
+        return from_transfers(self.plan, self.message, transfers)
+
+    async def send_transfers(
+        self,
+        ctx: SimulatorContext,
+        transfers: Mapping[int, list[Payload]],
+        *,
+        stalls: StallPlan = None,
+    ) -> None:
+        """Send transfers given by leaf, which may be wrong on purpose, until all are taken."""
+        lanes = []
+        for leaf, payloads in transfers.items():
+            port, name = self.streams[leaf], self._names[leaf]
+            bits = map(self._encoders[leaf], payloads)
+            stalled = stalls_of(stalls, name).cycles(name)
+            lanes.append(_Lane(port, Value.cast(port.payload), bits, stalled))
+        lanes = [lane for lane in lanes if _offer(ctx, lane)]
+        while lanes:
+            _, _, ready = await ctx.tick().sample(Cat(lane.port.ready for lane in lanes))
+            for number, lane in enumerate(lanes):
+                if lane.offered and ready >> number & 1:
+                    ctx.set(lane.port.valid, 0)
+                    lane.offered = False
+            lanes = [lane for lane in lanes if lane.offered or _offer(ctx, lane)]
+
+    async def receive_transfers(
+        self, ctx: SimulatorContext, *, stalls: StallPlan = None, deadline: int = 1000
+    ) -> dict[int, list[Payload]]:
+        """Receive the transfers of one message. Parameters and errors as for :meth:`receive`."""
+        demand = Demand(self._table)
+        got: dict[int, list[Payload]] = {leaf: [] for leaf in self.streams}
+        kinds = [stalls_of(stalls, name) for name in self._names]
+        patterns = [kind.cycles(name) for kind, name in zip(kinds, self._names, strict=True)]
+        deadline += max(kind.longest for kind in kinds)
+        ports = list(self.streams.values())
+        valids = Cat(port.valid for port in ports)
+        payloads = [Value.cast(port.payload) for port in ports]
+        ready = quiet = 0
+        while True:
+            ready = self._set_ready(ctx, demand, patterns, ready)
+            if not demand.left:
+                return got
+            _, _, valid, *bits = await ctx.tick().sample(valids, *payloads)
+            quiet = 0 if valid & ready else quiet + 1
+            for leaf in got:
+                if (valid & ready) >> leaf & 1:
+                    payload = self._decoders[leaf](bits[leaf])
+                    got[leaf].append(payload)
+                    demand.take(leaf, payload)
+            if quiet > deadline:
+                left = (f"{self._names[leaf]} ({n})" for leaf, n in sorted(demand.left.items()))
+                what = f"No transfer of a message in {quiet} cycles; outstanding"
+                raise DeadlineError(f"{what}: {', '.join(left)}")
+
+    def _set_ready(
+        self, ctx: SimulatorContext, demand: Demand, patterns: list[Iterator[bool]], before: int
+    ) -> int:
+        """Make those leaves ready that have transfers to come; return them as bits."""
+        ready = 0
+        for leaf in demand.left:
+            if not next(patterns[leaf]):
+                ready |= 1 << leaf
+        for leaf, port in self.streams.items():
+            if (ready ^ before) >> leaf & 1:
+                ctx.set(port.ready, ready >> leaf & 1)
+        return ready
+
+
+def _offer(ctx: SimulatorContext, lane: _Lane) -> bool:
+    """Offer the next transfer of a lane unless it is stalled; return whether there is one."""
+    if next(lane.stalled):
+        return True
+    payload = next(lane.payloads, None)
+    if payload is None:
+        return False
+    ctx.set(lane.bits, payload)
+    ctx.set(lane.port.valid, 1)
+    lane.offered = True
+    return True

@@ -1,0 +1,197 @@
+"""What goes through converters in a run, put together from single transfers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from firm_hdl.gateware.signatures import Status
+from firm_hdl.plan import Payload, Plan
+from firm_hdl.sim.demand import DemandTable, split_transfers
+from firm_hdl.sim.payloads import PacketCollector, decoder_of
+from firm_hdl.sim.watch import PacketRules
+
+__all__ = ["Recorder", "Seen", "leaf_name"]
+
+
+@dataclass(slots=True, kw_only=True)
+class Seen:
+    """What went through a harness in one run.
+
+    Of a serializer alone, `statuses` are the serializer's, and `sent_statuses` is empty.
+
+    Attributes
+    ----------
+    packets : list of bytes
+        Packets that came out.
+    marked : list of bool
+        For each of them, whether `packet_error` marked it.
+    statuses : list of Status
+        From ``status``.
+    sent_statuses : list of Status
+        From ``sent_status``.
+    transfers : dict of int to list
+        Payloads by leaf, of all packets; every leaf is there.
+    cycles : int
+        From the first beat (or leaf transfer) that went in to the last that came out, both
+        included.
+    left : dict of int to int
+        Transfers that were offered to a serializer and that it never took, by leaf.
+    beats_in, beats_out : int
+        Beats of the packets that went in and came out.
+    """
+
+    packets: list[bytes] = field(default_factory=list)
+    marked: list[bool] = field(default_factory=list)
+    statuses: list[Status] = field(default_factory=list)
+    sent_statuses: list[Status] = field(default_factory=list)
+    transfers: dict[int, list[Payload]] = field(default_factory=dict)
+    left: dict[int, int] = field(default_factory=dict)
+    beats_in: int = 0
+    beats_out: int = 0
+    first_cycle: int = -1
+    last_cycle: int = -1
+
+    @property
+    def cycles(self) -> int:
+        """Cycles from the first transfer in to the last one out, both included; 0 if none came."""
+        return self.last_cycle - self.first_cycle + 1 if self.last_cycle >= 0 else 0
+
+
+def leaf_name(plan: Plan, leaf: int) -> str:
+    """Return the name of a leaf's stream."""
+    return f"message.{plan.leaves[leaf]}"
+
+
+class Recorder:
+    """Collects what one run shows.
+
+    Parameters
+    ----------
+    plan : Plan
+    expected : int
+        Packets (and statuses) that are to come.
+    decodes, encodes : bool
+        Which converters there are.
+    table : DemandTable or None
+        What messages call for, to name leaves that are missing.
+    """
+
+    def __init__(
+        self,
+        plan: Plan,
+        expected: int,
+        *,
+        decodes: bool,
+        encodes: bool,
+        table: DemandTable | None = None,
+    ):
+        self.plan = plan
+        self.table = table
+        self.expected = expected
+        self.encodes = encodes
+        self.decodes = decodes
+        self.bits: dict[int, list[int]] = {leaf: [] for leaf in range(len(plan.leaves))}
+        self.out = PacketCollector(plan.bus_bytes)
+        self.rules = PacketRules("packets_out", plan.bus_bytes)
+        self.seen = Seen(packets=self.out.packets)
+        self.error_at = 8 * plan.bus_bytes + plan.bus_bytes.bit_length() + 1
+        # Streams with one transfer or packet for each packet that goes in.
+        self.counted: dict[str, list[Status] | list[bytes]] = {"status": self.seen.statuses}
+        if encodes:
+            self.counted["packets_out"] = self.out.packets
+        if encodes and decodes:
+            self.counted["sent_status"] = self.seen.sent_statuses
+
+    def takes(self) -> dict[str, Callable[[int, int], None]]:
+        """Return what is to be called at each transfer, by the stream's name."""
+        takes: dict[str, Callable[[int, int], None]] = {
+            leaf_name(self.plan, leaf): self._leaf(bits) for leaf, bits in self.bits.items()
+        }
+        takes["packets_in"] = self._packet_in
+        takes["packets_out"] = self._packet_out
+        takes["status"] = self._status("status", self.seen.statuses)
+        takes["sent_status"] = self._status("sent_status", self.seen.sent_statuses)
+        return takes
+
+    def _status(self, name: str, statuses: list[Status]) -> Callable[[int, int], None]:
+        def take(cycle: int, bits: int) -> None:
+            statuses.append(Status(bits))
+            self._limit(name, cycle)
+
+        return take
+
+    def _limit(self, name: str, cycle: int) -> None:
+        if len(self.counted[name]) > self.expected:
+            raise AssertionError(
+                f"Stream {name!r} has more than the {self.expected} expected, in cycle {cycle}"
+            )
+
+    def _leaf(self, values: list[int]) -> Callable[[int, int], None]:
+        if self.encodes and self.decodes:
+            return lambda cycle, bits: values.append(bits)
+        if self.encodes:
+
+            def take(cycle: int, bits: int) -> None:
+                values.append(bits)
+                self._time_in(cycle)
+        else:
+
+            def take(cycle: int, bits: int) -> None:
+                values.append(bits)
+                self.seen.last_cycle = cycle
+
+        return take
+
+    def _time_in(self, cycle: int) -> None:
+        if self.seen.first_cycle < 0:
+            self.seen.first_cycle = cycle
+
+    def _packet_in(self, cycle: int, bits: int) -> None:
+        self._time_in(cycle)
+
+    def _packet_out(self, cycle: int, bits: int) -> None:
+        beat = bits & ((1 << self.error_at) - 1)
+        self.rules.check(cycle, beat)
+        self.seen.last_cycle = cycle
+        if self.out.take(beat):
+            self.seen.marked.append(bool(bits >> self.error_at))
+            self._limit("packets_out", cycle)
+
+    def finished(self) -> bool:
+        """Whether every stream has had all that is expected of it."""
+        return all(len(got) >= self.expected for got in self.counted.values())
+
+    def outstanding(self) -> str:
+        """Say what has not come."""
+        missing = [
+            f"{name} ({len(got)} of {self.expected})"
+            for name, got in self.counted.items()
+            if len(got) < self.expected
+        ]
+        if self.out.partial:
+            missing.append(f"the rest of a packet after {len(self.out.partial)} bytes")
+        return ", ".join(missing + self._missing_leaves()) or "nothing"
+
+    def _missing_leaves(self) -> list[str]:
+        """Name the leaves that a message under way still calls for."""
+        if self.table is None:
+            return []
+        messages, demand = split_transfers(self.table, self._transfers())
+        if len(messages) >= self.expected:
+            return []
+        return [f"{leaf_name(self.plan, n)} ({count})" for n, count in sorted(demand.left.items())]
+
+    def _transfers(self) -> dict[int, list[Payload]]:
+        decoders = [decoder_of(leaf) for leaf in self.plan.leaves]
+        return {leaf: [decoders[leaf](each) for each in bits] for leaf, bits in self.bits.items()}
+
+    def result(self) -> Seen:
+        """Return what was seen, once the run is over; the start of one more packet is an error."""
+        if self.out.partial:
+            raise AssertionError(
+                f"Stream 'packets_out' begins a packet too many: {self.out.partial.hex()}"
+            )
+        self.seen.transfers = self._transfers()
+        self.seen.beats_out = self.out.beats
+        return self.seen

@@ -1,0 +1,106 @@
+"""Stalls: when a stream is held up, as one frozen seeded record that fits any stream.
+
+A record describes a pattern of cycles, not a stream; each stream that uses it gets a pattern of its
+own, which depends on the seed and on the stream's name only. So a run is reproducible from the
+record alone, and two streams with the same record do not move in step.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import ClassVar, TypeAlias
+
+__all__ = ["StallPlan", "Stalls", "stalls_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class Stalls:
+    """When a stream is stalled.
+
+    A source that is stalled does not offer its next payload (a payload that is already offered
+    stays); a sink that is stalled is not ready.
+
+    Attributes
+    ----------
+    probability : float
+        Chance, in front of every cycle that lets through, of a stall.
+    min_cycles, max_cycles : int
+        Length of a stall, drawn evenly from this range (both ends included).
+    seed : int
+        Seed of the pattern.
+    pattern : str
+        Bits used over and over instead of chance, one a cycle: ``1`` lets through, ``0`` stalls.
+    """
+
+    probability: float = 0.0
+    min_cycles: int = 1
+    max_cycles: int = 1
+    seed: int = 0
+    pattern: str = ""
+
+    none: ClassVar[Stalls]
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.probability <= 1:
+            raise ValueError(f"Probability must be in 0..1, not {self.probability!r}")
+        if not 1 <= self.min_cycles <= self.max_cycles:
+            raise ValueError(
+                f"Lengths must be 1 <= min_cycles <= max_cycles, not "
+                f"{self.min_cycles!r} and {self.max_cycles!r}"
+            )
+        if set(self.pattern) - {"0", "1"}:
+            raise ValueError(f"Pattern must consist of 0 and 1, not {self.pattern!r}")
+        if self.pattern and "1" not in self.pattern:
+            raise ValueError(f"Pattern {self.pattern!r} would stall for ever")
+
+    @classmethod
+    def bits(cls, pattern: str) -> Stalls:
+        """Return the stalls of a bit string: ``1`` lets through, ``0`` stalls, repeated."""
+        if not pattern:
+            raise ValueError("Pattern must not be empty")
+        return cls(pattern=pattern)
+
+    def __bool__(self) -> bool:
+        """Whether there is any stall at all."""
+        return "0" in self.pattern if self.pattern else self.probability > 0
+
+    @property
+    def longest(self) -> int:
+        """Most cycles in a row that stall."""
+        if self.pattern:
+            return max(map(len, (self.pattern * 2).split("1")))
+        return self.max_cycles if self else 0
+
+    def cycles(self, name: str) -> Iterator[bool]:
+        """Yield, without end, whether the stream of that name is stalled in each cycle."""
+        while self.pattern:
+            yield from (bit == "0" for bit in self.pattern)
+        # A string seeds the same way in every process and Python release, unlike a hash.
+        rng = random.Random(f"{self.seed}/{name}")
+        while True:
+            if self and rng.random() < self.probability:
+                yield from (True for _ in range(rng.randint(self.min_cycles, self.max_cycles)))
+            yield False
+
+
+Stalls.none = Stalls()
+
+StallPlan: TypeAlias = "Stalls | Mapping[str, Stalls] | None"
+"""Stalls of many streams: one record for all of them, or records by stream name.
+
+A name stands for all streams below it, too: ``message`` for every leaf, ``message.header`` for
+those of the header, unless a longer name is there. Streams that are not named are not stalled.
+"""
+
+
+def stalls_of(plan: StallPlan, name: str) -> Stalls:
+    """Return the stalls of one stream."""
+    if plan is None:
+        return Stalls.none
+    if isinstance(plan, Stalls):
+        return plan
+    while name and name not in plan:
+        name = name.rpartition(".")[0]
+    return plan.get(name, Stalls.none)

@@ -1,0 +1,198 @@
+"""Drivers and monitors of single streams, for users' own testbenches.
+
+All are async functions to be awaited in a testbench of `amaranth.sim`; run what is to happen at the
+same time in testbenches of its own. Each starts with the cycle that is under way and returns right
+after the clock edge of its last transfer. Payloads are whatever `ctx.set` takes and `ctx.get` gives
+for the stream.
+
+The receiving side owns the deadline: if nothing comes for so many cycles, it raises
+`DeadlineError`, which says what was still expected.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+from amaranth.hdl import Value
+from amaranth.lib import stream
+from amaranth.sim import SimulatorContext
+
+from firm_hdl.gateware.signatures import Status
+from firm_hdl.sim.bench import DeadlineError
+from firm_hdl.sim.payloads import PacketCollector, all_beats
+from firm_hdl.sim.stalls import Stalls
+from firm_hdl.sim.watch import PacketRules
+
+__all__ = [
+    "receive",
+    "receive_packets",
+    "receive_statuses",
+    "send",
+    "send_packets",
+]
+
+DEADLINE = 1000
+
+
+async def send(
+    ctx: SimulatorContext,
+    port: stream.Interface,
+    payloads: Iterable[Any],
+    *,
+    stalls: Stalls = Stalls.none,
+    name: str = "stream",
+) -> None:
+    """Send payloads on a stream, and leave it idle.
+
+    Parameters
+    ----------
+    payloads : iterable
+        Plain integers are taken as bits.
+    stalls : Stalls
+        When not to offer the next payload.
+    name : str
+        Whose pattern of stalls to use.
+    """
+    stalled = stalls.cycles(name)
+    bits = Value.cast(port.payload)
+    for payload in payloads:
+        while next(stalled):
+            await ctx.tick()
+        if isinstance(payload, int):
+            ctx.set(bits, payload)
+        else:
+            ctx.set(port.payload, payload)
+        ctx.set(port.valid, 1)
+        # Not `until`: its generator complains if a simulation ends with an error in the meantime.
+        taken = 0
+        while not taken:
+            _, _, taken = await ctx.tick().sample(port.ready)
+        ctx.set(port.valid, 0)
+
+
+async def receive(
+    ctx: SimulatorContext,
+    port: stream.Interface,
+    count: int,
+    *,
+    stalls: Stalls = Stalls.none,
+    deadline: int = DEADLINE,
+    name: str = "stream",
+) -> list[Any]:
+    """Receive payloads from a stream, and leave it not ready.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+    stalls : Stalls
+        When not to be ready.
+    deadline : int
+        Most cycles without a transfer, beside the longest stall.
+    name : str
+        Name of the stream, for errors and for the pattern of stalls.
+
+    Raises
+    ------
+    DeadlineError
+    """
+    payloads: list[Any] = []
+
+    def expected() -> str:
+        left = count - len(payloads)
+        return f"{left} of {count} transfers" if left > 0 else ""
+
+    await _receive(ctx, port, port.payload, payloads.append, expected, stalls, deadline, name)
+    return payloads
+
+
+async def send_packets(
+    ctx: SimulatorContext,
+    port: stream.Interface,
+    packets: Iterable[bytes],
+    *,
+    stalls: Stalls = Stalls.none,
+    name: str = "packets_in",
+) -> None:
+    """Send packets on a packet stream, back to back. Parameters are those of :func:`send`."""
+    beats: Iterator[int] = all_beats(packets, len(port.payload.data))
+    await send(ctx, port, beats, stalls=stalls, name=name)
+
+
+async def receive_packets(
+    ctx: SimulatorContext,
+    port: stream.Interface,
+    count: int,
+    *,
+    stalls: Stalls = Stalls.none,
+    deadline: int = DEADLINE,
+    name: str = "packets_out",
+) -> list[bytes]:
+    """Receive packets from a packet stream, and check its rules.
+
+    Parameters are those of :func:`receive`.
+
+    Raises
+    ------
+    DeadlineError
+    StreamRuleError
+        If a beat breaks rule 3 or 4 of :mod:`firm_hdl.sim.watch`.
+    """
+    collector = PacketCollector(len(port.payload.data))
+    rules = PacketRules(name, collector.bus_bytes)
+
+    def expected() -> str:
+        left = count - len(collector.packets)
+        begun = f", {len(collector.partial)} bytes of one are there" if collector.partial else ""
+        return f"{left} of {count} packets{begun}" if left > 0 else ""
+
+    def take(beat: int) -> None:
+        rules.check(collector.beats, beat)
+        collector.take(beat)
+
+    bits = Value.cast(port.payload)
+    await _receive(ctx, port, bits, take, expected, stalls, deadline, name)
+    return collector.packets
+
+
+async def receive_statuses(
+    ctx: SimulatorContext,
+    port: stream.Interface,
+    count: int,
+    *,
+    stalls: Stalls = Stalls.none,
+    deadline: int = DEADLINE,
+    name: str = "status",
+) -> list[Status]:
+    """Receive statuses. Parameters and errors are those of :func:`receive`."""
+    return await receive(ctx, port, count, stalls=stalls, deadline=deadline, name=name)
+
+
+async def _receive(
+    ctx: SimulatorContext,
+    port: stream.Interface,
+    payload: Any,
+    take: Callable[[Any], object],
+    expected: Callable[[], str],
+    stalls: Stalls,
+    deadline: int,
+    name: str,
+) -> None:
+    """Receive for as long as `expected` says that something is; `take` gets each payload."""
+    stalled = stalls.cycles(name)
+    ready = quiet = 0
+    while expected():
+        if ready == (stall := next(stalled)):
+            ready = not stall
+            ctx.set(port.ready, ready)
+        _, _, valid, seen = await ctx.tick().sample(port.valid, payload)
+        if valid and ready:
+            take(seen)
+            quiet = 0
+        else:
+            quiet += 1
+        if quiet > deadline + stalls.longest:
+            what = f"No transfer on stream {name!r} in {quiet} cycles"
+            raise DeadlineError(f"{what}; outstanding: {expected()}")
+    ctx.set(port.ready, 0)

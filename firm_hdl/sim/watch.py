@@ -1,0 +1,154 @@
+"""Watching the rules of streams.
+
+Rules 1 and 2 are those of `amaranth.lib.stream` that can be seen from outside in every cycle, rules
+3 and 4 are those of packets (:func:`firm_hdl.gateware.packet_layout`):
+
+1. Once `valid` is high, it stays high until the transfer.
+2. Once `valid` is high, the payload stays the same until the transfer.
+3. A beat that is not the last of its packet is full: `count` is the width of the bus.
+4. `count` is at most the width of the bus, and 0 only in the one beat of an empty packet.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from amaranth.hdl import Cat, Value
+from amaranth.lib import data, stream
+from amaranth.sim import SimulatorContext
+
+__all__ = ["PacketRules", "StreamRuleError", "StreamRules", "is_packet_stream", "watch"]
+
+
+class StreamRuleError(AssertionError):
+    """A stream broke a rule.
+
+    Attributes
+    ----------
+    stream : str
+        Name of the stream.
+    rule : int
+        Number of the rule; see :mod:`firm_hdl.sim.watch`.
+    cycle : int
+        Cycle in which that was seen, from 0.
+    """
+
+    def __init__(self, stream: str, rule: int, cycle: int, what: str):
+        self.stream = stream
+        self.rule = rule
+        self.cycle = cycle
+        super().__init__(f"Stream {stream!r} breaks rule {rule} in cycle {cycle}: {what}")
+
+
+@dataclass(slots=True)
+class StreamRules:
+    """Rules 1 and 2 for a set of streams, told in each cycle what the streams do.
+
+    Streams are bits of integers, so that a cycle in which nothing waits costs next to nothing.
+
+    Attributes
+    ----------
+    names : list of str
+        Name of the stream of each bit.
+    held : dict of int to int
+        Payload of each stream that offered a transfer and did not get it.
+    """
+
+    names: list[str]
+    held: dict[int, int] = field(default_factory=dict)
+    _waiting: int = 0
+
+    def check(self, cycle: int, valid: int, ready: int, payload: Callable[[int], int]) -> None:
+        """Check one cycle; `payload` gives the payload of a stream by its number, as bits."""
+        if dropped := self._waiting & ~valid:
+            name = self.names[dropped.bit_length() - 1]
+            raise StreamRuleError(name, 1, cycle, "valid fell before the transfer")
+        waiting = valid & ~ready
+        if not (waiting or self.held):
+            return
+        for number, before in self.held.items():
+            if (now := payload(number)) != before:
+                what = f"payload changed from {before:#x} to {now:#x} before the transfer"
+                raise StreamRuleError(self.names[number], 2, cycle, what)
+        if waiting == self._waiting:
+            return
+        self.held = {
+            number: self.held[number] if number in self.held else payload(number)
+            for number in range(waiting.bit_length())
+            if waiting >> number & 1
+        }
+        self._waiting = waiting
+
+
+@dataclass(slots=True)
+class PacketRules:
+    """Rules 3 and 4 for one packet stream, told of each transfer."""
+
+    name: str
+    bus_bytes: int
+    _inside: bool = False
+
+    def check(self, cycle: int, bits: int) -> None:
+        """Check one beat, given as bits of the payload."""
+        count_bits = self.bus_bytes.bit_length()
+        count = bits >> 8 * self.bus_bytes & ((1 << count_bits) - 1)
+        last = bool(bits >> (8 * self.bus_bytes + count_bits))
+        if not last and count != self.bus_bytes:
+            what = f"count is {count}, not {self.bus_bytes}, in a beat that is not the last"
+            raise StreamRuleError(self.name, 3, cycle, what)
+        if count > self.bus_bytes or (count == 0 and self._inside):
+            what = f"count is {count}" + (" at the end of a packet" if self._inside else "")
+            raise StreamRuleError(self.name, 4, cycle, what)
+        self._inside = not last
+
+
+def is_packet_stream(port: Any) -> bool:
+    """Whether a stream carries packets."""
+    shape = port.payload.shape()
+    return isinstance(shape, data.StructLayout) and list(shape.members) == ["data", "count", "last"]
+
+
+def watch(streams: Mapping[str, stream.Interface]) -> Callable[[SimulatorContext], Awaitable[None]]:
+    """Return a testbench that watches streams for as long as the simulation runs.
+
+    Use as ``sim.add_testbench(watch({"packets": rx.packets}), background=True)``.
+
+    Parameters
+    ----------
+    streams : mapping of str to stream.Interface
+        Streams by the name that an error is to give. Packet streams are watched as such.
+
+    Raises
+    ------
+    StreamRuleError
+        From the simulation, in the cycle in which a rule is broken.
+    """
+    ports = list(streams.values())
+    names = list(streams)
+    packets = {
+        number: PacketRules(name, len(port.payload.data))
+        for number, (name, port) in enumerate(streams.items())
+        if is_packet_stream(port)
+    }
+
+    async def watcher(ctx: SimulatorContext) -> None:
+        rules = StreamRules(names)
+        for rule in packets.values():
+            rule._inside = False
+        valids, readies = Cat(port.valid for port in ports), Cat(port.ready for port in ports)
+        payloads = [Value.cast(port.payload) for port in ports]
+        cycle = 0
+        while True:
+            _, reset, valid, ready, *bits = await ctx.tick().sample(valids, readies, *payloads)
+            if reset:
+                rules = StreamRules(names)
+            else:
+                rules.check(cycle, valid, ready, bits.__getitem__)
+                for number, rule in packets.items():
+                    if (valid & ready) >> number & 1:
+                        rule.check(cycle, bits[number])
+            cycle += 1
+
+    return watcher

@@ -1,0 +1,25 @@
+"""Verification: converters against oracles, on every type.
+
+``python -m firm_hdl.verify`` runs it.
+"""
+
+from __future__ import annotations
+
+from firm_hdl.verify.acceptance import Options, Result, accept, accept_message
+from firm_hdl.verify.cases import Case, make_cases
+from firm_hdl.verify.oracle import Oracle, distro_oracle
+from firm_hdl.verify.runner import Task, collect_tasks, run_tasks
+
+__all__ = [
+    "Case",
+    "Options",
+    "Oracle",
+    "Result",
+    "Task",
+    "accept",
+    "accept_message",
+    "collect_tasks",
+    "distro_oracle",
+    "make_cases",
+    "run_tasks",
+]

@@ -1,0 +1,88 @@
+"""Whose comment is whose, and what unit it names."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from firm_hdl.errors import Source
+from firm_hdl.frontend.comments import condense
+from firm_hdl.frontend.parse import parse_message
+
+
+def comments(text, dialect="ros2"):
+    syntax = parse_message(Source(name="T.msg", text=text), dialect)
+    return syntax.comment, {m.name.text: m.comment for m in syntax.members}
+
+
+def test_head_comment_ends_at_the_first_line_that_is_none():
+    text = "# one\n#  two\n\n# of a\nint32 a\n"
+    assert comments(text) == ("one\n two", {"a": "of a"})
+
+
+def test_comment_right_above_the_first_field_is_the_head():
+    assert comments("# head\nint32 a\n") == ("head", {"a": ""})
+
+
+def test_comment_above_and_behind_are_joined():
+    assert comments("\n# above\nint32 a # behind\n") == ("", {"a": "above\nbehind"})
+
+
+def test_comment_survives_empty_lines():
+    assert comments("\n# above\n\n\nint32 a\n")[1] == {"a": "above"}
+
+
+def test_indented_comment_continues_the_definition_before_it():
+    text = "int32 a # one\n        # two\n# of b\nint32 b\n"
+    assert comments(text)[1] == {"a": "one\ntwo", "b": "of b"}
+
+
+def test_indented_comment_before_all_definitions_is_nobodys():
+    assert comments("\n  # lost\nint32 a\n") == ("", {"a": ""})
+
+
+def test_comment_after_the_last_definition_is_nobodys():
+    assert comments("int32 a\n# lost\n") == ("", {"a": ""})
+
+
+def test_constants_have_comments_too():
+    assert comments("\n# of A\nint32 A=1 # one\nint32 b\n")[1] == {"A": "of A\none", "b": ""}
+
+
+def test_hash_in_a_ros1_text_constant_is_no_comment():
+    assert comments("string A=x # y\n", "ros1")[1] == {"A": ""}
+    assert comments("string A=x # y\n", "ros2")[1] == {"A": "y"}
+
+
+@pytest.mark.parametrize(
+    ("lines", "comment", "unit"),
+    [
+        (["speed [m/s]"], "speed", "m/s"),
+        (["[m/s] speed"], "speed", "m/s"),
+        (["a [m]", "b [s]"], "a [m]\nb [s]", None),
+        (["range [0, 1]"], "range [0, 1]", None),
+        (["range [0, 1] [m]"], "range [0, 1]", "m"),
+        (["empty []"], "empty []", None),
+        (["open [m"], "open [m", None),
+        (["", "a", "", "", "b", ""], "a\n\nb", None),
+        (["  a", "   b"], "a\n b", None),
+        ([], "", None),
+        ([" [m]"], "", "m"),
+    ],
+)
+def test_units_and_empty_lines(lines, comment, unit):
+    assert condense(lines) == (comment, unit)
+
+
+@given(st.text(alphabet="[],a \n\t"))
+def test_unit_is_what_the_expression_of_rosidl_finds(text):
+    found = re.findall(r"\s*\[([^,\]]+)\]", text)
+    assert condense(text.split("\n"))[1] == (found[0] if len(found) == 1 else None)
+
+
+def test_brackets_by_the_thousand_take_no_time():
+    # An expression with this meaning that backtracks would take minutes.
+    assert condense(["[" * 1_000_000 + " " * 1_000_000 + "x"])[1] is None

@@ -1,0 +1,442 @@
+"""What each dialect's grammar lets through, and what it makes of it."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.errors import DefinitionError, Source
+from firm_hdl.frontend.parse import is_type_name, parse_message
+from firm_hdl.frontend.syntax import ConstantSyntax, FieldSyntax, ListSyntax
+
+
+def parse(text, dialect):
+    return parse_message(Source(name="T.msg", text=text), dialect)
+
+
+def member(line, dialect):
+    (only,) = parse(line, dialect).members
+    return only
+
+
+def field(line, dialect="ros2"):
+    only = member(line, dialect)
+    assert isinstance(only, FieldSyntax)
+    return only
+
+
+def constant(line, dialect="ros2"):
+    only = member(line, dialect)
+    assert isinstance(only, ConstantSyntax)
+    return only
+
+
+def refused(line, dialect):
+    with pytest.raises(DefinitionError) as error:
+        parse(line, dialect)
+    (diagnostic,) = error.value.diagnostics
+    return diagnostic.message
+
+
+def spelled(line, dialect="ros2"):
+    """Write a field's type down again, with all that the tree knows."""
+    type_ = field(line, dialect).type
+    text = f"{type_.package}/" * (type_.package is not None) + type_.name
+    if type_.bound:
+        text += f"<={type_.bound.value}"
+    match type_.array:
+        case "array":
+            text += f"[{type_.size.value}]"
+        case "sequence":
+            text += f"[<={type_.size.value}]" if type_.size else "[]"
+    return text
+
+
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+@pytest.mark.parametrize(
+    "type_", ["int8", "uint64", "float32", "bool", "byte", "char", "string", "Foo", "pkg/Foo"]
+)
+@pytest.mark.parametrize("suffix", ["", "[]", "[3]"])
+def test_types_of_both_dialects(dialect, type_, suffix):
+    assert spelled(f"{type_}{suffix} x", dialect) == type_ + suffix
+
+
+@pytest.mark.parametrize(
+    "type_",
+    ["wstring", "string<=5", "wstring<=5[2]", "string<=3[<=2]", "int8[<=4]", "p/Foo[<=1]"],
+)
+def test_bounds_are_ros2_only(type_):
+    assert spelled(f"{type_} x") == type_
+    refused(f"{type_} x", "ros1") if type_ != "wstring" else None
+
+
+def test_ros1_has_no_wstring():
+    # The word is an ordinary type name there.
+    assert not field("wstring x", "ros1").type.is_builtin
+    assert field("wstring x", "ros2").type.is_builtin
+
+
+def test_time_and_duration_are_builtin_in_ros1_only():
+    assert field("time t", "ros1").type.is_builtin
+    assert field("duration[2] t", "ros1").type.is_builtin
+    assert refused("time t", "ros2") == (
+        "'time' is not a type of ROS 2; use 'builtin_interfaces/Time'"
+    )
+
+
+@pytest.mark.parametrize("type_", ["int32_t", "strings", "boolean", "byte2", "float642"])
+def test_words_that_start_like_builtin_types_are_other_types(type_):
+    assert not field(f"{type_} x", "ros1").type.is_builtin
+    refused(f"{type_} x", "ros2")
+
+
+@pytest.mark.parametrize("name", ["a__b", "a_", "A", "aB", "a1", "int32", "string", "time"])
+def test_ros1_field_names(name):
+    assert field(f"int32 {name}", "ros1").name.text == name
+
+
+@pytest.mark.parametrize("name", ["_a", "1a", "a-b", "a.b", "é", "aé"])
+def test_ros1_refuses_field_names(name):
+    assert refused(f"int32 {name}", "ros1").startswith(f"'{name}' is not a legal name: ")
+
+
+@pytest.mark.parametrize("name", ["a", "a1", "a_b", "a_1b", "int32", "string", "range", "a1_2"])
+def test_ros2_field_names(name):
+    assert field(f"int32 {name}").name.text == name
+    assert field(f"int32 {name} 5").name.text == name
+
+
+@pytest.mark.parametrize("name", ["a__b", "a_", "A", "aB", "_a", "1a", "a-b", "é", "aé"])
+def test_ros2_refuses_field_names(name):
+    assert refused(f"int32 {name}", "ros2").startswith(f"'{name}' is not a legal field name: ")
+
+
+@pytest.mark.parametrize("name", ["A", "AB", "A1", "A_B", "A_1", "A1_B2_C3"])
+def test_ros2_constant_names(name):
+    assert constant(f"int32 {name}=1").name.text == name
+    assert constant(f"int32 {name} = 1").name.text == name
+
+
+@pytest.mark.parametrize("name", ["a", "Ab", "A__B", "A_", "_A", "1A", "aB"])
+def test_ros2_refuses_constant_names(name):
+    assert refused(f"int32 {name} = 1", "ros2").startswith(
+        f"'{name}' is not a legal constant name: "
+    )
+
+
+@pytest.mark.parametrize("name", ["a", "Ab", "A__B", "A_"])
+def test_ros1_constant_names(name):
+    assert constant(f"int32 {name}=1", "ros1").name.text == name
+
+
+@pytest.mark.parametrize(
+    ("text", "value"), [("0", 0), ("-5", -5), ("+5", 5), ("010", 10), ("1_000", 1000)]
+)
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_integers_are_decimal_even_with_a_leading_zero(dialect, text, value):
+    assert constant(f"int32 X={text}", dialect).value.value == value
+    assert constant(f"int32 X = {text} # 7", dialect).value.text == text
+
+
+@pytest.mark.parametrize(
+    ("text", "value"), [("0x10", 16), ("-0xFf", -255), ("0b101", 5), ("0o17", 15), ("0X_1", 1)]
+)
+def test_other_bases_are_ros2_only(text, value):
+    assert constant(f"int32 X={text}").value.value == value
+    assert field(f"int32 x {text}").default.value == value
+    assert refused(f"int32 X={text}", "ros1") == f"'{text}' is not a decimal integer"
+
+
+@pytest.mark.parametrize("text", ["", "1.0", "x", "- 5", "1 2", "'1'", "1,2", "1__0", "0x"])
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_what_is_no_integer_is_refused(dialect, text):
+    refused(f"int32 X={text}", dialect)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("1", 1.0), ("-.5", -0.5), ("5.", 5.0), ("1e3", 1000.0), ("1.5E-3", 0.0015), ("-inf", "-inf")],
+)
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_numbers(dialect, text, value):
+    assert constant(f"float64 X={text}", dialect).value.value == float(value)
+
+
+@pytest.mark.parametrize("text", ["", ".", "1,5", "1e", "0x10", "x", "1.0f", "1 0"])
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_what_is_no_number_is_refused(dialect, text):
+    refused(f"float64 X={text}", dialect)
+
+
+@pytest.mark.parametrize(
+    ("dialect", "text", "value"),
+    [
+        ("ros1", "True", True),
+        ("ros1", "False", False),
+        ("ros1", "1", True),
+        ("ros1", "0", False),
+        ("ros1", "00", False),
+        ("ros1", "-2", True),
+        ("ros2", "true", True),
+        ("ros2", "TRUE", True),
+        ("ros2", "False", False),
+        ("ros2", "1", True),
+        ("ros2", "0", False),
+    ],
+)
+def test_truth_values(dialect, text, value):
+    assert constant(f"bool X={text}", dialect).value.value is value
+
+
+@pytest.mark.parametrize(
+    ("dialect", "text"),
+    [("ros1", "true"), ("ros1", "01"), ("ros1", "yes"), ("ros2", "2"), ("ros2", "yes")],
+)
+def test_what_is_no_truth_value_is_refused(dialect, text):
+    refused(f"bool X={text}", dialect)
+
+
+@pytest.mark.parametrize(
+    ("line", "value"),
+    [
+        ("string X=abc", "abc"),
+        ("string X =  a b  ", "a b"),
+        ('string X="a # b" # c', '"a # b" # c'),
+        ("string X=#", "#"),
+        ("string X=a=b", "a=b"),
+        ("string X='", "'"),
+        ("string X=", ""),
+        ("string X=   ", ""),
+        ("  string  X=a", "a"),
+        ("string X=\ta\t b\t", "a\t b"),
+    ],
+)
+def test_ros1_text_constant_takes_all_that_follows(line, value):
+    assert constant(line, "ros1").value.value == value
+
+
+def test_ros1_comment_before_the_equals_sign_makes_no_constant():
+    assert field("string x # = 5", "ros1").comment == "= 5"
+
+
+@pytest.mark.parametrize(
+    ("written", "value"),
+    [
+        ("abc", "abc"),
+        ("a b  # c", "a b"),
+        ('"a b "', "a b "),
+        ("' a'", " a"),
+        ('"a # b"', '"a'),
+        (r'"a\"b"', 'a"b'),
+        (r"'a\'b'", "a'b"),
+        (r'"a\'b"', r"a\'b"),
+        (r'"a\\b\n"', r"a\\b\n"),
+        ('"a\'b"', "a'b"),
+        ('"abc', '"abc'),
+        ("a\"b'c", "a\"b'c"),
+        ('""', ""),
+        ("a\tb", "a b"),
+        ("[1]", "[1]"),
+        ("größe", "größe"),
+    ],
+)
+def test_ros2_texts(written, value):
+    assert constant(f"string X={written}").value.value == value
+    assert constant(f"wstring X = {written}").value.value == value
+    assert field(f"string x {written}").default.value == value
+
+
+def test_ros2_text_constant_may_be_empty_and_contain_equals():
+    assert constant("string X=").value.value == ""
+    assert constant("string X = a=b").value.value == "a=b"
+    assert constant('string X="=" # c').value.value == "="
+
+
+@pytest.mark.parametrize("text", ['"a"b"', "'a'b'", '"', "'", '"a" "b"'])
+def test_ros2_refuses_loose_quotes(text):
+    refused(f"string x {text}", "ros2")
+    refused(f"string X={text}", "ros2")
+
+
+def test_ros2_default_cannot_contain_equals():
+    assert refused('string x "a=b"', "ros2") == "a default cannot contain '='"
+    assert refused("string x a=b", "ros2") == "a default cannot contain '='"
+
+
+@pytest.mark.parametrize(
+    ("line", "values"),
+    [
+        ("int32[] x []", ()),
+        ("int32[] x [1]", (1,)),
+        ("int32[3] x [1,0x10, 010]", (1, 16, 10)),
+        ("int32[] x [ 1 , 2 ]  # c", (1, 2)),
+        ("float32[] x [1, .5,inf]", (1.0, 0.5, float("inf"))),
+        ("bool[] x [true,0,False]", (True, False, False)),
+        ("string[] x []", ()),
+        ("string[] x [a, b c ,d]", ("a", "b c", "d")),
+        ("""string[] x ["a,b", 'c"]']""", ("a,b", 'c"]')),
+        (r"""string[] x ["H\"el'lo", 'Wo\'r"ld']""", ("H\"el'lo", "Wo'r\"ld")),
+        ('string[] x ["a",]', ("a",)),
+        ('string[] x [""]', ("",)),
+        ('string[] x [" a "]', ("a",)),
+    ],
+)
+def test_ros2_defaults_of_arrays(line, values):
+    default = field(line).default
+    assert isinstance(default, ListSyntax)
+    assert tuple(item.value for item in default.items) == values
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "int32[] x 1",
+        "int32 x [1]",
+        "int32[] x [1",
+        "int32[] x 1]",
+        "int32[] x [ ]",
+        "int32[] x [1,]",
+        "int32[] x [,]",
+        "int32[] x [1 2]",
+        "int32[] x [1,a]",
+        "int32[] x [1.0]",
+        "bool[] x [2]",
+        "string[] x [a, ]b",
+        'string[] x ["a]',
+        "Foo x 1",
+        "Foo[] x []",
+    ],
+)
+def test_ros2_refuses_defaults(line):
+    refused(line, "ros2")
+
+
+@pytest.mark.parametrize("line", ["int32 x 5", "int32[] x [1]", "string x a", "int32 x y z"])
+def test_ros1_has_no_defaults(line):
+    assert "the end of the line" in refused(line, "ros1")
+
+
+@pytest.mark.parametrize(
+    ("dialect", "line"),
+    [
+        *(("ros1", f"{type_} X=1") for type_ in ("Foo", "int32[]", "string[2]", "p/F", "time")),
+        *(("ros2", f"{type_} X=1") for type_ in ("Foo", "int32[]", "string[2]", "p/F")),
+    ],
+)
+def test_constants_of_other_types_are_refused(dialect, line):
+    assert refused(line, dialect) == "only a builtin type that is no array can have constants"
+
+
+def test_constants_of_bounded_strings_are_refused():
+    refused("string<=5 X=a", "ros2")
+
+
+@pytest.mark.parametrize("separator", [" ", "   ", " \t", "\t ", "\t \t"])
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_blanks_between_type_and_name(dialect, separator):
+    assert field(f"int32{separator}x", dialect).name.text == "x"
+    assert field(f"int32{separator}x{separator}# c", dialect).name.text == "x"
+
+
+def test_tabs_alone_separate_in_ros2_only():
+    assert field("int32\t\tx").name.text == "x"
+    assert refused("int32\tx", "ros1") == "a space must separate type and name; tabs alone do not"
+
+
+def test_ros1_lines_may_be_indented_and_ros2_lines_may_not():
+    assert field("  int32 x", "ros1").name.text == "x"
+    assert refused("  int32 x", "ros2") == "a definition must start in the first column"
+
+
+@pytest.mark.parametrize(
+    "type_",
+    ["int32[ 3 ]", "int32 [3]", "int32[3][4]", "int32[", "int32]", "int32[-1]", "int32[x]", "a/b/C",
+     "a//B", "/B", "a/", "int32[3", "int32[]]", "p /B", "int-32"],
+)  # fmt: skip
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_malformed_types_are_refused(dialect, type_):
+    refused(f"{type_} x", dialect)
+
+
+@pytest.mark.parametrize(
+    "type_",
+    ["string<= 5", "string <=5", "string<=", "string<5", "int8<=5", "Foo<=5", "int8[<=]",
+     "int8[<= 3]", "int8[<3]", "pkg/msg/Foo", "foo", "Pkg/Foo", "p__q/Foo", "p_/Foo", "Foo_Bar"],
+)  # fmt: skip
+def test_malformed_types_of_ros2_are_refused(type_):
+    refused(f"{type_} x", "ros2")
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_line_ends(dialect, end):
+    text = f"# c{end}int32 a{end}string B=x{end}{end}int32 c # d{end}"
+    members = parse(text, dialect).members
+    assert [m.name.text for m in members] == ["a", "B", "c"]
+    assert members[1].value.value == "x"
+    assert members[2].comment == "d"
+
+
+@pytest.mark.parametrize("text", ["", "\n", "   ", "\t\n \n", "#", "  # c", "# a\n# b"])
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_texts_without_definitions(dialect, text):
+    assert parse(text, dialect).members == ()
+
+
+def test_spans_cover_the_words():
+    text = '# c\r\nstring<=5[2] ab ["x", y] # d\r\nint8 CD = 0x7\r\n'
+    one, two = parse(text, "ros2").members
+
+    def words(node):
+        return text[node.span.start : node.span.end]
+
+    assert [words(n) for n in (one.type, one.type.bound, one.type.size, one.name, one.default)] == [
+        "string<=5[2]", "5", "2", "ab", '["x", y]',
+    ]  # fmt: skip
+    assert [words(item) for item in one.default.items] == ['"x"', "y"]
+    assert [words(n) for n in (two.type, two.name, two.value)] == ["int8", "CD", "0x7"]
+    assert (two.name.span.line, two.name.span.column) == (3, 6)
+
+
+def test_every_bad_line_is_reported_and_hides_no_other():
+    text = "int32 a\nint32\nint32 b\nfloat c\nint32 D\n"
+    with pytest.raises(DefinitionError) as error:
+        parse(text, "ros2")
+    assert [d.span.line for d in error.value.diagnostics] == [2, 4, 5]
+
+
+def test_file_full_of_errors_is_given_up():
+    with pytest.raises(DefinitionError) as error:
+        parse("?\n" * 5000, "ros1")
+    *first, last = error.value.diagnostics
+    assert len(first) == 1000
+    assert last.message == "too many errors; the rest of this file was not looked at"
+
+
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_number_longer_than_python_reads_is_reported(dialect):
+    digits = "9" * 5000
+    for line in (f"int32 X={digits}", f"int32[{digits}] x"):
+        assert refused(line, dialect) == "a number of 5000 digits is too long"
+
+
+@pytest.mark.parametrize(
+    ("dialect", "name", "is_legal"),
+    [
+        ("ros1", "a_b__/A_b_", True),
+        ("ros1", "A/b", True),
+        ("ros1", "a/1", False),
+        ("ros1", "a-b/A", False),
+        ("ros1", "a/b/C", False),
+        ("ros2", "a_b/Ab1", True),
+        ("ros2", "Ab1", True),
+        ("ros2", "a/ab", False),
+        ("ros2", "A/Ab", False),
+        ("ros2", "a__b/Ab", False),
+        ("ros2", "a/A_b", False),
+        ("ros2", "a/Ab ", False),
+        ("ros2", "a/Srv_Request", True),
+        ("ros2", "", False),
+    ],
+)
+def test_names_of_types(dialect, name, is_legal):
+    assert is_type_name(name, dialect) is is_legal

@@ -1,0 +1,219 @@
+"""Names become types."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import Library, resolve
+from firm_hdl.model import PRIMITIVES, Array, Constant, Field, Message, Sequence, Text
+from tests.strategies import definitions
+
+from .workspace import errors_of, library, make_files
+
+
+def load(root, text, dialect="ros2", **others):
+    files = {"p/T": text} | {f"p/{name}": other for name, other in others.items()}
+    return library(root, files, dialect).message("p/T")
+
+
+def test_every_primitive(tmp_path):
+    for dialect in ("ros1", "ros2"):
+        names = PRIMITIVES[dialect]
+        message = load(tmp_path, "".join(f"{n} {n}\n" for n in names), dialect)
+        assert {f.name: f.type for f in message.fields} == names
+
+
+def test_byte_is_signed_in_ros1_only(tmp_path):
+    signed = {d: load(tmp_path, "byte b\nchar c", d).fields for d in ("ros1", "ros2")}
+    assert [f.type.signed for f in signed["ros1"]] == [True, False]
+    assert [f.type.signed for f in signed["ros2"]] == [False, False]
+
+
+def test_a_whole_message(tmp_path):
+    text = (
+        "# head\n\nint8 MAX=0x7F # most [m]\nstring<=3[<=2] a ['x', y]\n"
+        "wstring b\nU[2] c # [s]\np/U[] d\nfloat32 e 1\n"
+    )
+    message = load(tmp_path, text, U="")
+    u = Message(name="p/msg/U", dialect="ros2", fields=())
+    int8, float32 = PRIMITIVES["ros2"]["int8"], PRIMITIVES["ros2"]["float32"]
+    assert message == Message(
+        name="p/msg/T",
+        dialect="ros2",
+        fields=(
+            Field(name="a", type=Sequence(element=Text(bound=3), bound=2), default=("x", "y")),
+            Field(name="b", type=Text(wide=True)),
+            Field(name="c", type=Array(element=u, count=2)),
+            Field(name="d", type=Sequence(element=u)),
+            Field(name="e", type=float32, default=1.0),
+        ),
+        constants=(Constant(name="MAX", type=int8, value=127),),
+    )
+    assert (message.comment, message.text) == ("head", text)
+    assert [(f.comment, f.unit) for f in message.fields][2] == ("", "s")
+    (most,) = message.constants
+    assert (most.comment, most.unit, most.text) == ("most", "m", "0x7F")
+    assert message.fields[2].span.source.name == f"{tmp_path}/p/msg/T.msg"
+    assert (message.fields[2].span.line, message.fields[2].span.column) == (6, 6)
+
+
+def test_ros1_times_are_messages_of_two_fields(tmp_path):
+    message = load(tmp_path, "time t\nduration[2] d", "ros1")
+    time_, duration = message.fields[0].type, message.fields[1].type.element
+    assert (time_.name, time_.package) == ("time", "")
+    assert [(f.name, str(f.type)) for f in time_.fields] == [
+        ("secs", "uint32"),
+        ("nsecs", "uint32"),
+    ]
+    assert [(f.name, str(f.type)) for f in duration.fields] == [
+        ("secs", "int32"),
+        ("nsecs", "int32"),
+    ]
+
+
+def test_ros1_header_is_that_of_std_msgs_but_an_array_is_the_packages_own(tmp_path):
+    text = "Header a\nHeader[] b\nHeader[2] c\np/Header d\nstd_msgs/Header e"
+    message = load(tmp_path, text, "ros1", Header="int8 mine")
+    kinds = [getattr(f.type, "element", f.type).name for f in message.fields]
+    assert kinds == ["std_msgs/Header", "p/Header", "p/Header", "p/Header", "std_msgs/Header"]
+
+
+def test_ros2_header_is_the_packages_own(tmp_path):
+    message = load(tmp_path, "Header a\nstd_msgs/Header b", Header="int8 mine")
+    assert [f.type.name for f in message.fields] == ["p/msg/Header", "std_msgs/msg/Header"]
+
+
+def test_ros1_lets_a_constant_be_declared_again_and_called_like_a_field(tmp_path):
+    message = load(tmp_path, "int8 a\nint8 a=1\nint8 a=2\n", "ros1")
+    assert [c.value for c in message.constants] == [1, 2]
+
+
+def test_limits_of_values_are_legal(tmp_path):
+    for dialect in ("ros1", "ros2"):
+        lines = []
+        for kind in PRIMITIVES[dialect].values():
+            if kind.kind == "int":
+                bits = 8 * kind.bytes
+                low, high = (-(1 << bits - 1), (1 << bits - 1) - 1)
+                low, high = (low, high) if kind.signed else (0, (1 << bits) - 1)
+                lines += [f"{kind} {kind.name.upper()}_{i}={v}" for i, v in enumerate((low, high))]
+        constants = load(tmp_path, "\n".join(lines), dialect).constants
+        assert len(constants) == 20
+        for constant in constants[::2]:
+            beyond = f"{constant.type} X={constant.value - 1}"
+            with pytest.raises(DefinitionError, match=f"the value of {constant.type} must be in"):
+                load(tmp_path, beyond, dialect)
+
+
+def test_arrays_of_any_size_cost_nothing(tmp_path):
+    start = time.perf_counter()
+    message = load(tmp_path, "uint8[2147483648] a\nU[2147483648] b", U="float64[8388608] x")
+    assert [f.type.count for f in message.fields] == [1 << 31, 1 << 31]
+    assert message.is_fixed_size
+    assert time.perf_counter() - start < 1
+
+
+def test_same_type_is_the_same_object(tmp_path):
+    lib = library(tmp_path, {"p/T": "U a\nV b", "p/U": "W w", "p/V": "p/W w", "p/W": ""})
+    message = lib.message("p/T")
+    u, v = (f.type for f in message.fields)
+    assert u.fields[0].type is v.fields[0].type is lib.message("p/msg/W")
+    assert lib.message("p/T") is message
+
+
+def test_every_text_is_read_once_however_often_it_is_used(tmp_path, monkeypatch):
+    # A lattice: 2**40 ways from top to bottom.
+    files = {f"p/T{i}": f"T{i + 1} a\nT{i + 1}[] b\n" for i in range(40)} | {"p/T40": "int8 x"}
+    lib = library(tmp_path, files)
+    read = []
+    original = resolve.read_message
+    monkeypatch.setattr(
+        resolve, "read_message", lambda s, d: [read.append(s.name), original(s, d)][1]
+    )
+    assert lib.message("p/T0").depth == 41
+    assert len(read) == len(set(read)) == 41
+
+
+def test_mistakes_in_a_lattice_are_reported_once(tmp_path):
+    files = {f"p/T{i}": f"T{i + 1} a\nT{i + 1}[] b\n" for i in range(40)} | {"p/T40": "int8 X"}
+    with pytest.raises(DefinitionError) as error:
+        library(tmp_path, files).message("p/T0")
+    assert len(error.value.diagnostics) == 1
+
+
+def test_depth_is_not_limited_by_recursion(tmp_path):
+    files = {f"p/T{i}": f"T{i + 1} a\n" for i in range(3000)} | {"p/T3000": "Nothing x"}
+    with pytest.raises(DefinitionError) as error:
+        library(tmp_path, files).message("p/T0")
+    assert errors_of(error.value, tmp_path) == (
+        "p/msg/T3000.msg:1:1: error: type 'Nothing' is not defined in package 'p'\n"
+        "Nothing x\n^^^^^^^"
+    )
+    make_files(tmp_path, {"p/msg/T3000.msg": "int8 x"})
+    assert Library("lyrical", [tmp_path]).message("p/T0").name == "p/msg/T0"
+
+
+def test_syntax_errors_do_not_hide_other_errors_of_the_file(tmp_path):
+    with pytest.raises(DefinitionError) as error:
+        load(tmp_path, "Nothing a\nint32\nuint8 b 256\nuint8 b\n")
+    assert [d.span.line for d in error.value.diagnostics] == [1, 2, 3, 4]
+
+
+def test_mistake_in_a_dependency_is_reported_there(tmp_path):
+    lib = library(tmp_path, {"p/T": "q/U a\nq/U b", "q/U": "int32 B", "r/V": "p/T t"})
+    for name in ("r/V", "p/T", "q/U", "r/V"):
+        with pytest.raises(DefinitionError) as error:
+            lib.message(name)
+        assert errors_of(error.value, tmp_path).startswith("q/msg/U.msg:1:7: error: 'B' is not")
+        assert len(error.value.diagnostics) == 1
+
+
+def test_good_types_of_a_library_with_bad_ones_resolve(tmp_path):
+    lib = library(tmp_path, {"p/A": "A a", "p/B": "int8 x", "p/C": "Nothing n"})
+    assert lib.message("p/B").fields[0].name == "x"
+
+
+def test_cycle_through_a_sequence_is_a_cycle(tmp_path):
+    with pytest.raises(DefinitionError) as error:
+        load(tmp_path, "U[] u", U="V v", V="T[<=1] t")
+    assert errors_of(error.value, tmp_path) == (
+        "p/msg/V.msg:1:1: error: type 'p/msg/T' contains itself: "
+        "p/msg/T -> p/msg/U -> p/msg/V -> p/msg/T\nT[<=1] t\n^^^^^^"
+    )
+
+
+def test_cycle_below_a_type_is_none_of_its_own(tmp_path):
+    with pytest.raises(DefinitionError) as error:
+        load(tmp_path, "U u", U="V v", V="U u")
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.message == ("type 'p/msg/U' contains itself: p/msg/U -> p/msg/V -> p/msg/U")
+
+
+def test_unreadable_dependency_is_reported(tmp_path):
+    make_files(tmp_path, {"p/msg/T.msg": "U u\nint8 x"})
+    (tmp_path / "p/msg/U.msg").write_bytes(b"\xff")
+    with pytest.raises(DefinitionError, match="byte 0xff is not UTF-8 text"):
+        Library("lyrical", [tmp_path]).message("p/T")
+
+
+def test_a_thousand_unknown_types_are_reported_in_no_time(tmp_path):
+    start = time.perf_counter()
+    with pytest.raises(DefinitionError) as error:
+        load(tmp_path, "".join(f"Nothing{i} x{i}\n" for i in range(1000)))
+    assert len(error.value.diagnostics) == 1000
+    assert time.perf_counter() - start < 5
+
+
+@settings(deadline=None, suppress_health_check=list(HealthCheck))
+@given(definition=definitions("ros1") | definitions("ros2", wide=True))
+def test_random_definitions_come_back_from_their_texts(tmp_path_factory, definition):
+    root = tmp_path_factory.mktemp("ws")
+    for name, text in definition.texts.items():
+        make_files(root, {f"{name}.msg": text.replace("p/msg/", "p/")})
+    message = definition.message
+    lib = Library("noetic" if message.dialect == "ros1" else "lyrical", [root])
+    assert lib.message(message.name) == message

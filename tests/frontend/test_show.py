@@ -1,0 +1,105 @@
+"""Definitions printed as ROS prints them."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import Library, show
+
+from .workspace import library
+
+
+def test_rosmsg_show():
+    # The output of rosmsg 1.15.15, less its last empty line.
+    assert show(Library("noetic"), "sensor_msgs/NavSatFix") == (
+        "uint8 COVARIANCE_TYPE_UNKNOWN=0\n"
+        "uint8 COVARIANCE_TYPE_APPROXIMATED=1\n"
+        "uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2\n"
+        "uint8 COVARIANCE_TYPE_KNOWN=3\n"
+        "std_msgs/Header header\n"
+        "  uint32 seq\n"
+        "  time stamp\n"
+        "  string frame_id\n"
+        "sensor_msgs/NavSatStatus status\n"
+        "  int8 STATUS_NO_FIX=-1\n"
+        "  int8 STATUS_FIX=0\n"
+        "  int8 STATUS_SBAS_FIX=1\n"
+        "  int8 STATUS_GBAS_FIX=2\n"
+        "  uint16 SERVICE_GPS=1\n"
+        "  uint16 SERVICE_GLONASS=2\n"
+        "  uint16 SERVICE_COMPASS=4\n"
+        "  uint16 SERVICE_GALILEO=8\n"
+        "  int8 status\n"
+        "  uint16 service\n"
+        "float64 latitude\n"
+        "float64 longitude\n"
+        "float64 altitude\n"
+        "float64[9] position_covariance\n"
+        "uint8 position_covariance_type\n"
+    )
+
+
+def test_rosmsg_show_keeps_the_text_of_constants_and_names_types_in_full(tmp_path):
+    files = {"p/T": 'U[] a\nHeader h\nint8 X= +07 # c\nstring S = "#"\ntime[2] t', "p/U": "V v",
+             "p/V": ""}  # fmt: skip
+    assert show(library(tmp_path, files, "ros1"), "p/T") == (
+        'int8 X=+07\nstring S="#"\np/U[] a\n  p/V v\nstd_msgs/Header h\n  uint32 seq\n'
+        "  time stamp\n  string frame_id\ntime[2] t\n"
+    )
+
+
+NESTED = {
+    # As in ros2cli's own tests.
+    "q/ShortVaried": "# A constant\nbool BOOL_CONST=true # Comment - Nesting Level 1: 1 of 2\n\n"
+    "# Bool and array of bools\nbool bool_value\n"
+    "bool[<=3] bool_values # Comment - Nesting Level 1: 2 of 2\n\n# Trailing comment\n",
+    "q/ShortVariedNested": "# A short, varied type\n"
+    "ShortVaried short_varied # Comment - Nesting Level 2: 1 of 1\n# Trailing comment\n",
+    "q/ShortVariedMultiNested": "# A short, varied, and nested type\n"
+    "ShortVariedNested short_varied_nested # Comment - Nesting Level 3: 1 of 1\n"
+    "# Trailing comment\n",
+}
+
+
+def test_ros2_interface_show(tmp_path):
+    assert show(library(tmp_path, NESTED), "q/ShortVariedMultiNested") == (
+        "# A short, varied, and nested type\n"
+        "ShortVariedNested short_varied_nested # Comment - Nesting Level 3: 1 of 1\n"
+        "\tShortVaried short_varied\n"
+        "\t\tbool BOOL_CONST=true\n"
+        "\t\tbool bool_value\n"
+        "\t\tbool[<=3] bool_values\n"
+        "# Trailing comment\n"
+    )
+
+
+def test_ros2_interface_show_keeps_blanks_and_empty_lines_of_the_type_itself(tmp_path):
+    files = {
+        "p/T": "\n#\n\nint32   x  # c  \r\nU[<=2]\tu\n  # more\n\nU again\nU_Request r\n\n\n",
+        "p/U": "#\n# c\n\nint8   a    # one [m]\n         # two\nint8 b 5 # x\n",
+        "p/U_Request": "",
+    }
+    assert show(library(tmp_path, files), "p/T") == (
+        "\n#\n\nint32   x  # c\nU[<=2]\tu\n\tint8   a\n\tint8 b 5\n  # more\n\n"
+        "U again\n\tint8   a\n\tint8 b 5\nU_Request r\n\n\n"
+    )
+
+
+@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+def test_empty_message_shows_nothing(distro):
+    assert show(Library(distro), "std_msgs/Empty") == ""
+
+
+def test_deep_types_are_shown(tmp_path):
+    files = {f"p/T{i}": f"T{i + 1} a\n" for i in range(1500)} | {"p/T1500": "int8 x"}
+    for dialect, indent in (("ros1", "  "), ("ros2", "\t")):
+        text = show(library(tmp_path, files, dialect), "p/T0")
+        assert text.splitlines()[-1] == indent * 1500 + "int8 x"
+
+
+def test_wrong_types_are_not_shown(tmp_path):
+    with pytest.raises(DefinitionError):
+        show(library(tmp_path, {"p/T": "T t"}), "p/T")
+    with pytest.raises(DefinitionError):
+        show(Library(), "p/T")

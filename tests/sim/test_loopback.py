@@ -1,0 +1,266 @@
+# amaranth: UnusedElaboratable=no
+"""Converters run as functions, and what the harness says of them."""
+
+from __future__ import annotations
+
+import pytest
+from amaranth.hdl import Module
+from amaranth.lib import stream, wiring
+
+from firm_hdl.frontend import load_message
+from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.gateware.signatures import Status
+from firm_hdl.plan import build_plan
+from firm_hdl.sim import (
+    DeadlineError,
+    Harness,
+    Stalls,
+    StreamRuleError,
+    decode,
+    encode,
+    leaf_name,
+    loopback,
+    to_transfers,
+)
+from firm_hdl.sim.bench import Bench, Job
+from firm_hdl.sim.demand import Demand, demand_table, split_transfers
+from firm_hdl.sim.record import Recorder
+from firm_hdl.wire import lay_out
+from tests.sim.components import Relay
+
+IMAGE = load_message("sensor_msgs/msg/CompressedImage", distro="humble")
+JOINTS = load_message("trajectory_msgs/msg/JointTrajectory", distro="humble")
+VALUE = {
+    "header": {"stamp": {"sec": -2, "nanosec": 3}, "frame_id": "map"},
+    "format": "",
+    "data": list(range(37)),
+}
+PACKET = bytes.fromhex(
+    "00010000 feffffff 03000000 04000000 6d617000 01000000 00 000000 25000000"
+) + bytes(range(37))
+
+
+def plan_of(message, bus_bytes=8):
+    return build_plan(lay_out(message), bus_bytes=bus_bytes, max_message_bytes=1 << 24)
+
+
+def point(count):
+    return {
+        "positions": [0.5] * count,
+        "velocities": [],
+        "accelerations": [1.0],
+        "effort": [],
+        "time_from_start": {"sec": 1, "nanosec": 2},
+    }
+
+
+TRAJECTORY = {
+    "header": {"stamp": {"sec": 1, "nanosec": 2}, "frame_id": "é"},
+    "joint_names": ["a", "", "long name"],
+    "points": [point(0), point(1), point(3)],
+}
+
+
+def test_loopback_unpacks_as_packets_and_statuses():
+    packets, statuses = loopback(IMAGE, [PACKET, PACKET])
+    assert packets == [PACKET, PACKET]
+    assert statuses == [Status.OK, Status.OK]
+
+
+def test_loopback_tells_all_that_it_saw():
+    seen = loopback(IMAGE, [PACKET, PACKET])
+    plan = plan_of(IMAGE)
+    once = to_transfers(plan, IMAGE, VALUE)
+    assert seen.transfers == {leaf: payloads * 2 for leaf, payloads in once.items()}
+    assert seen.sent_statuses == [Status.OK, Status.OK]
+    assert seen.marked == [False, False]
+    assert seen.beats_in == seen.beats_out == 2 * -(-len(PACKET) // 8)
+    assert seen.beats_out <= seen.cycles <= seen.beats_out + 16
+
+
+@pytest.mark.parametrize(
+    "stalls",
+    [
+        Stalls(0.3, 1, 9, seed=4),
+        {"packets_in": Stalls.bits("01")},
+        {"packets_out": Stalls.bits("0001")},
+        {"status": Stalls.bits("0" * 40 + "1")},
+        {"message.data": Stalls(0.9, 3, 3)},
+        {"message": Stalls.bits("001"), "message.data": Stalls.none},
+    ],
+)
+def test_stalls_change_nothing_but_the_time(stalls):
+    free, stalled = loopback(IMAGE, [PACKET] * 3), loopback(IMAGE, [PACKET] * 3, stalls=stalls)
+    assert tuple(stalled) == tuple(free)
+    assert stalled.transfers == free.transfers
+    if "status" not in (stalls if isinstance(stalls, dict) else ()):
+        assert stalled.cycles > free.cycles
+
+
+def test_runs_of_a_harness_do_not_depend_on_each_other():
+    harness = Harness(Deserializer(IMAGE), Serializer(IMAGE), gated=True)
+    first = harness.run(packets=[PACKET])
+    harness.run(packets=[PACKET[:9]], stalls=Stalls(0.5, 1, 2))
+    again = harness.run(packets=[PACKET])
+    assert again == first
+
+
+def test_decode_gives_transfers_and_statuses():
+    transfers, statuses = decode(IMAGE, [PACKET[:20], PACKET], stalls=Stalls(0.4, 1, 3))
+    assert statuses == [Status.TRUNCATED, Status.OK]
+    plan = plan_of(IMAGE)
+    messages, _ = split_transfers(demand_table(plan, IMAGE), transfers)
+    assert len(messages) == 2
+    assert messages[1] == {
+        leaf: payloads for leaf, payloads in to_transfers(plan, IMAGE, VALUE).items() if payloads
+    }
+
+
+def test_encode_takes_values():
+    packets, statuses = encode(IMAGE, [VALUE, VALUE], stalls=Stalls(0.4, 1, 3))
+    assert packets == [PACKET, PACKET]
+    assert statuses == [Status.OK, Status.OK]
+
+
+def test_encode_takes_transfers_that_are_wrong():
+    plan = plan_of(IMAGE)
+    transfers = to_transfers(plan, IMAGE, VALUE)
+    (items,) = (n for n, leaf in enumerate(plan.leaves) if leaf.path == ("data", "items"))
+    lanes, _ = transfers[items][0]
+    transfers[items][0] = (lanes, True)
+    result = encode(IMAGE, [transfers, VALUE])
+    assert result.statuses == [Status.ITEMS, Status.OK]
+    assert result.marked == [True, False]
+    assert result.packets[1] == PACKET
+    assert not result.left
+
+
+def test_nested_sequences_are_split_into_messages():
+    plan = plan_of(JOINTS)
+    packets, _ = encode(JOINTS, [TRAJECTORY] * 3)
+    seen = loopback(JOINTS, packets, stalls=Stalls(0.2, 1, 3))
+    assert seen.packets == packets
+    one = {leaf: p for leaf, p in to_transfers(plan, JOINTS, TRAJECTORY).items() if p}
+    messages, rest = split_transfers(demand_table(plan, JOINTS), seen.transfers)
+    assert messages == [one] * 3
+    assert rest == Demand(demand_table(plan, JOINTS))
+
+
+def test_missing_transfers_hit_the_deadline_with_names():
+    plan = plan_of(IMAGE)
+    transfers = to_transfers(plan, IMAGE, VALUE)
+    (length,) = (n for n, leaf in enumerate(plan.leaves) if leaf.path == ("format", "length"))
+    transfers[length] = []
+    message = (
+        r"^No transfer in 51 cycles up to cycle \d+; "
+        r"outstanding: status \(0 of 1\), packets_out \(0 of 1\), "
+        r"the rest of a packet after \d+ bytes, message\.format\.length \(1\), .*; "
+        r"offered and not taken: message\.data\.length, message\.data\.items$"
+    )
+    with pytest.raises(DeadlineError, match=message):
+        encode(IMAGE, [transfers], deadline=50)
+
+
+def test_limit_ends_what_has_no_end():
+    message = r"^No end after 20 cycles; outstanding: status \(\d of 9\)"
+    with pytest.raises(DeadlineError, match=message):
+        loopback(IMAGE, [PACKET] * 9, limit=20)
+
+
+def test_leaf_stalls_need_gates():
+    harness = Harness(Deserializer(IMAGE), Serializer(IMAGE))
+    name = leaf_name(harness.plan, 0)
+    with pytest.raises(ValueError, match=rf"^Stream '{name}' can be stalled in a gated harness"):
+        harness.run(packets=[PACKET], stalls={name: Stalls.bits("01")})
+
+
+def test_harness_needs_a_converter():
+    with pytest.raises(ValueError, match=r"^A harness needs a deserializer or a serializer$"):
+        Harness(None, None)
+
+
+def test_no_packets_are_no_packets():
+    assert tuple(loopback(IMAGE, [])) == ([], [])
+    assert loopback(IMAGE, []).cycles == 0
+
+
+def test_waveform_is_written(tmp_path):
+    path = tmp_path / "loopback.vcd"
+    packets, _ = loopback(IMAGE, [PACKET], vcd=path)
+    assert packets == [PACKET]
+    assert "$enddefinitions" in path.read_text()
+
+
+class Faulty(wiring.Component):
+    """A serializer with a fault in one of its streams."""
+
+    def __init__(self, fault, *arguments, **options):
+        self.fault = fault
+        self.inner = Serializer(*arguments, **options)
+        self.plan, self.tree = self.inner.plan, self.inner.tree
+        super().__init__(self.inner.signature)
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.inner = inner = self.inner
+        wiring.connect(m, wiring.flipped(self.message), inner.message)
+        wiring.connect(m, inner.packets, wiring.flipped(self.packets))
+        wiring.connect(m, inner.status, wiring.flipped(self.status))
+        m.d.comb += self.packet_error.eq(inner.packet_error)
+        if self.fault == "silent":
+            m.d.comb += self.packets.valid.eq(0)
+        elif self.fault == "unstable":
+            m.d.comb += self.packets.payload.data[0].eq(
+                inner.packets.payload.data[0] ^ ~self.packets.ready
+            )
+        elif self.fault == "count":
+            m.d.comb += self.packets.payload.count.eq(3)
+        elif self.fault == "twice":
+            m.d.comb += self.status.valid.eq(1)
+        return m
+
+
+def test_deadline_of_a_decoder_names_the_leaves_that_are_missing():
+    plan = plan_of(IMAGE)
+    table = demand_table(plan, IMAGE)
+    recorder = Recorder(plan, 1, decodes=True, encodes=False, table=table)
+    recorder.bits[0].append(1)
+    assert recorder.outstanding().startswith(
+        "status (0 of 1), message.header.stamp.nanosec (1), message.header.frame_id.length (1), "
+    )
+
+
+@pytest.mark.parametrize(
+    ("fault", "error"),
+    [
+        ("silent", r"^No transfer in \d+ .*; outstanding: packets_out \(0 of 1\); offered and .*"),
+        ("unstable", r"^Stream 'packets_out' breaks rule 2 in cycle \d+: payload changed from "),
+        ("count", r"^Stream 'packets_out' breaks rule 3 in cycle \d+: count is 3, not 8, in "),
+        ("twice", r"^Stream 'sent_status' has more than the 1 expected, in cycle 1$"),
+    ],
+)
+def test_faults_are_found_by_name(fault, error):
+    harness = Harness(Deserializer(IMAGE), Faulty(fault, IMAGE))
+    with pytest.raises(AssertionError, match=error):
+        harness.run(packets=[PACKET], stalls={"packets_out": Stalls.bits("001")}, deadline=60)
+
+
+def test_streams_must_have_different_names():
+    port = stream.Signature(8).create(path=("p",))
+    with pytest.raises(ValueError, match=r"^Names of streams must differ, not a, a$"):
+        Bench(Relay(8), sources={"a": port}, sinks={"a": port})
+
+
+def test_dropped_valid_is_found_in_a_bench():
+    dut = Relay(8, "drop")
+    bench = Bench(dut, sources={"i": dut.i}, sinks={"o": dut.o})
+    got = []
+    job = Job(
+        sources={"i": range(1, 9)},
+        takes={"o": lambda cycle, bits: got.append(bits)},
+        finished=lambda: len(got) == 8,
+        outstanding=lambda: "some",
+        stalls={"o": Stalls.bits("00001")},
+    )
+    with pytest.raises(StreamRuleError, match=r"^Stream 'o' breaks rule 1 in cycle \d+"):
+        bench.run(job)

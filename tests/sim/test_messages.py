@@ -1,0 +1,145 @@
+"""Whole messages in a user's own testbench: an accelerator between two converters."""
+
+from __future__ import annotations
+
+import pytest
+from amaranth.hdl import Module
+from amaranth.lib import wiring
+from rosbags.typesys import Stores, get_typestore
+
+from firm_hdl.frontend import load_message
+from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.gateware.signatures import MessageSignature, Status
+from firm_hdl.sim import (
+    DeadlineError,
+    MessagePort,
+    Stalls,
+    receive_packets,
+    receive_statuses,
+    send_packets,
+    watch,
+)
+from tests.sim.components import run_testbenches
+from tests.sim.test_loopback import IMAGE, JOINTS, PACKET, TRAJECTORY, VALUE
+
+IMU = load_message("sensor_msgs/msg/Imu", distro="humble")
+STALLS = [None, Stalls(0.4, 1, 4, seed=2), {"message.header": Stalls.bits("0001")}]
+
+
+class Wires(wiring.Component):
+    """An accelerator that does nothing, between message interfaces."""
+
+    def __init__(self, message):
+        signature = MessageSignature(message, 8)
+        super().__init__({"i": wiring.In(signature), "o": wiring.Out(signature)})
+
+    def elaborate(self, platform):
+        m = Module()
+        wiring.connect(m, wiring.flipped(self.i), wiring.flipped(self.o))
+        return m
+
+
+@pytest.mark.parametrize("stalls", STALLS)
+@pytest.mark.parametrize(("message", "value"), [(IMAGE, VALUE), (JOINTS, TRAJECTORY)])
+def test_messages_pass_an_accelerator(message, value, stalls):
+    dut = Wires(message)
+    i, o = MessagePort(dut.i, message), MessagePort(dut.o, message)
+    got = []
+
+    async def source(ctx):
+        for _ in range(3):
+            await i.send(ctx, value, stalls=stalls)
+
+    async def sink(ctx):
+        for _ in range(3):
+            got.append(await o.receive(ctx, stalls=stalls))
+
+    names = {f"o.{leaf}": port for leaf, port in o.streams.items()}
+    run_testbenches(dut, source, sink, background=[watch(names)])
+    assert got == [value] * 3
+
+
+@pytest.mark.parametrize("stalls", STALLS)
+def test_packets_become_messages(stalls):
+    rx = Deserializer(IMAGE)
+    port = MessagePort(rx.message, IMAGE)
+    got = []
+
+    async def source(ctx):
+        await send_packets(ctx, rx.packets, [PACKET] * 2)
+
+    async def sink(ctx):
+        got.extend([await port.receive(ctx, stalls=stalls), await port.receive(ctx)])
+
+    async def statuses(ctx):
+        assert await receive_statuses(ctx, rx.status, 2) == [Status.OK] * 2
+
+    run_testbenches(rx, source, sink, statuses)
+    assert got == [VALUE] * 2
+
+
+def test_rosbags_objects_become_packets():
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    value = store.deserialize_cdr(PACKET, "sensor_msgs/msg/CompressedImage")
+    tx = Serializer(IMAGE)
+    port = MessagePort(tx.message, IMAGE)
+    got = []
+
+    async def source(ctx):
+        await port.send(ctx, value)
+
+    async def sink(ctx):
+        got.extend(await receive_packets(ctx, tx.packets, 1))
+
+    async def statuses(ctx):
+        assert await receive_statuses(ctx, tx.status, 1) == [Status.OK]
+
+    run_testbenches(tx, source, sink, statuses)
+    assert got == [PACKET]
+
+
+def test_leaves_are_offered_whatever_the_others_wait_for():
+    dut = Wires(IMAGE)
+    i, o = MessagePort(dut.i, IMAGE), MessagePort(dut.o, IMAGE)
+    last = max(o.streams)
+    got = []
+
+    async def source(ctx):
+        await i.send(ctx, VALUE)
+
+    async def sink(ctx):
+        # The last leaf alone is taken first: the sender must not wait with it for the others.
+        ctx.set(o.streams[last].ready, 1)
+        for _ in range(9):
+            _, _, valid = await ctx.tick().sample(o.streams[last].valid)
+            got.append(valid)
+
+    run_testbenches(dut, sink, background=[source])
+    assert got == [1, 1, 1, 1, 1, 0, 0, 0, 0]
+
+
+def test_one_message_is_taken_and_no_more():
+    dut = Wires(IMU)
+    i, o = MessagePort(dut.i, IMU), MessagePort(dut.o, IMU)
+    transfers = [0]
+
+    async def source(ctx):
+        leaves = {leaf: [0, 0] if plan.kind != "items" else [] for leaf, plan in leaves_of(i)}
+        await i.send_transfers(ctx, leaves)
+
+    async def sink(ctx):
+        arrays = {leaf for leaf, each in leaves_of(o) if each.kind == "items"}
+        with pytest.raises(DeadlineError) as caught:
+            await o.receive(ctx, deadline=5)
+        for leaf in arrays - {min(arrays)}:
+            assert f"message.{o.plan.leaves[leaf]} (" in str(caught.value)
+        _, _, *valid = await ctx.tick().sample(*(port.valid for port in o.streams.values()))
+        transfers[0] = sum(valid)
+
+    run_testbenches(dut, sink, background=[source])
+    scalars = sum(leaf.kind != "items" for leaf in i.plan.leaves)
+    assert transfers[0] == scalars
+
+
+def leaves_of(port):
+    return list(enumerate(port.plan.leaves))

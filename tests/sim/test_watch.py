@@ -1,0 +1,116 @@
+"""The watcher: silent on what is right, and a named rule for each way to be wrong."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.gateware.signatures import packet_layout
+from firm_hdl.sim import Stalls, StreamRuleError, StreamRules, receive, send, watch
+from firm_hdl.sim.payloads import packet_beats
+from firm_hdl.sim.watch import PacketRules
+from tests.sim.components import Relay, run_testbenches
+
+SLOW = Stalls.bits("00001")
+
+
+def relay(fault, stalls=SLOW):
+    dut = Relay(8, fault)
+    got = []
+
+    async def source(ctx):
+        await send(ctx, dut.i, range(1, 9))
+
+    async def sink(ctx):
+        got.extend(await receive(ctx, dut.o, 8, stalls=stalls))
+
+    run_testbenches(dut, source, sink, background=[watch({"i": dut.i, "dut.o": dut.o})])
+    return got
+
+
+def test_right_stream_passes():
+    assert relay("") == list(range(1, 9))
+
+
+def test_valid_that_falls_is_rule_1():
+    with pytest.raises(StreamRuleError) as caught:
+        relay("drop")
+    error = caught.value
+    assert (error.stream, error.rule) == ("dut.o", 1)
+    assert str(error) == (
+        f"Stream 'dut.o' breaks rule 1 in cycle {error.cycle}: valid fell before the transfer"
+    )
+
+
+def test_payload_that_changes_is_rule_2():
+    with pytest.raises(
+        StreamRuleError,
+        match=r"^Stream 'dut\.o' breaks rule 2 in cycle \d+: payload changed from 0x1 to 0x0 ",
+    ):
+        relay("change")
+
+
+@pytest.mark.parametrize("fault", ["drop", "change"])
+def test_faults_that_no_stall_provokes_are_not_seen(fault):
+    assert relay(fault, Stalls.none) == list(range(1, 9))
+
+
+def test_rules_follow_each_stream_on_its_own():
+    rules = StreamRules(["a", "b"])
+    payloads = [5, 6]
+    rules.check(0, 0b11, 0b01, payloads.__getitem__)
+    payloads[0] = 7
+    rules.check(1, 0b11, 0b11, payloads.__getitem__)
+    rules.check(2, 0b00, 0b00, payloads.__getitem__)
+    rules.check(3, 0b01, 0b00, payloads.__getitem__)
+    with pytest.raises(StreamRuleError, match=r"^Stream 'a' breaks rule 1 in cycle 4"):
+        rules.check(4, 0b10, 0b11, payloads.__getitem__)
+
+
+def test_change_in_the_cycle_of_the_transfer_is_seen():
+    rules = StreamRules(["a"])
+    rules.check(0, 1, 0, lambda number: 1)
+    with pytest.raises(StreamRuleError, match="rule 2 in cycle 1"):
+        rules.check(1, 1, 1, lambda number: 2)
+
+
+def beat(count, last, bus_bytes=4):
+    return packet_layout(bus_bytes).const({"data": [0] * bus_bytes, "count": count, "last": last})
+
+
+@pytest.mark.parametrize(
+    ("beats", "rule"),
+    [
+        ([(3, 0)], 3),
+        ([(0, 0)], 3),
+        ([(5, 1)], 4),
+        ([(4, 0), (0, 1)], 4),
+        ([(4, 0), (4, 1), (2, 0)], 3),
+    ],
+)
+def test_beats_that_no_packet_has_are_rules_3_and_4(beats, rule):
+    rules = PacketRules("p", 4)
+    with pytest.raises(StreamRuleError, match=f"^Stream 'p' breaks rule {rule} in cycle "):
+        for cycle, (count, last) in enumerate(beats):
+            rules.check(cycle, beat(count, last).as_bits())
+
+
+@pytest.mark.parametrize("size", range(10))
+def test_beats_of_packets_are_right(size):
+    rules = PacketRules("p", 4)
+    for packet in (bytes(size), bytes(size)):
+        for cycle, bits in enumerate(packet_beats(packet, 4)):
+            rules.check(cycle, bits)
+
+
+def test_watch_knows_packet_streams():
+    dut = Relay(packet_layout(4))
+    short = beat(2, 0)
+
+    async def source(ctx):
+        await send(ctx, dut.i, [short])
+
+    async def sink(ctx):
+        await receive(ctx, dut.o, 1)
+
+    with pytest.raises(StreamRuleError, match=r"^Stream 'packets' breaks rule 3 in cycle"):
+        run_testbenches(dut, source, sink, background=[watch({"packets": dut.o})])

@@ -1,0 +1,26 @@
+"""Random definitions on both wires and all bus widths: the checks of acceptance, in hardware."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from firm_hdl.verify import Options, Oracle, Result, accept_message
+from tests.strategies import BUS_WIDTHS, definitions
+
+
+@pytest.mark.parametrize("wire", ["ros1", "cdr"])
+@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+@given(
+    definition=definitions(),
+    bus_bytes=st.sampled_from(BUS_WIDTHS),
+    seed=st.integers(0, 1 << 16),
+)
+def test_random_types_pass(wire, definition, bus_bytes, seed):
+    message = definition.message
+    options = Options(bus_bytes=bus_bytes, wire=wire, seed=seed, most_cases=8)
+    result = Result(distro="", name=message.name)
+    oracle = Oracle(definition.store(), message.dialect)
+    accept_message(message, oracle, definition.rosbags_name, options, result)
+    assert not result.failures
