@@ -42,7 +42,8 @@ class Primitive:
     Attributes
     ----------
     name : str
-        As ROS writes it: ``bool``, ``byte``, ``char``, ``int8`` ... ``uint64``, ``float32``, ``float64``.
+        As ROS writes it: ``bool``, ``byte``, ``char``, ``int8`` ... ``uint64``, ``float32``,
+        ``float64``.
     bytes : int
         Size on every wire, in bytes: 1, 2, 4 or 8.
     signed : bool
@@ -99,7 +100,9 @@ class Text:
     wide: bool = False
 
     def __str__(self) -> str:
-        return ("wstring" if self.wide else "string") + ("" if self.bound is None else f"<={self.bound}")
+        return ("wstring" if self.wide else "string") + (
+            "" if self.bound is None else f"<={self.bound}"
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -178,8 +181,8 @@ class Message:
     Attributes
     ----------
     name : str
-        Full name: ``sensor_msgs/msg/Imu`` in ROS 2, ``sensor_msgs/Imu`` in ROS 1; plain ``time`` and
-        ``duration`` for the built-in types of ROS 1.
+        Full name: ``sensor_msgs/msg/Imu`` in ROS 2, ``sensor_msgs/Imu`` in ROS 1; plain ``time``
+        and ``duration`` for the built-in types of ROS 1.
     dialect : "ros1" or "ros2"
     fields : tuple of Field
         In wire order. Empty for an empty message: what stands on the wire then depends on the wire.

@@ -110,8 +110,8 @@ class _Circuit:
         self.enable = Signal()
         self.promised = Signal()
         self.complete = Signal()
-        # Set by each step: whether the bytes of its map are there, whether those that lengths promise
-        # are, whether more than the slack would be left, and what went wrong.
+        # Set by each step: whether the bytes of its map are there, whether those that lengths
+        # promise are, whether more than the slack would be left, and what went wrong.
         self.map_there = Signal()
         self.too_much = Signal()
         self.mismatch = Signal()
@@ -193,7 +193,9 @@ class _Circuit:
 
     def whole(self, part: Part, begin: int, end: int) -> Value:
         """Return bytes of a transfer that ends in this step; what was before is in the carry."""
-        carried = self.carry[8 * begin : 8 * min(end, part.first)] if begin < part.first else Const(0, 0)
+        carried = (
+            self.carry[8 * begin : 8 * min(end, part.first)] if begin < part.first else Const(0, 0)
+        )
         start = max(begin, part.first)
         return Cat(carried, self.bytes(part.at + start - part.first, max(0, end - start)))
 
@@ -283,7 +285,10 @@ class _Circuit:
         )
         size = leaf.item_bytes
         with m.If(self.slots.go[slot] & control.has_items):
-            m.d.sync += [interface.valid.eq(1), interface.payload.last.eq(control.last_items & info.last)]
+            m.d.sync += [
+                interface.valid.eq(1),
+                interface.payload.last.eq(control.last_items & info.last),
+            ]
             for lane in range(leaf.lanes):
                 value: Value = self.bytes(at + lane * size, size)
                 if leaf.type == "bool":
@@ -354,18 +359,17 @@ class _Circuit:
                 enough.eq(self.map_there & there[self.plan.bus_bytes - 1]),
                 too_much.eq(there[self.plan.bus_bytes + slack]),
             ]
-            with m.If(control.final):
-                with m.Switch(control.run_bytes):
-                    for k in range(self.plan.bus_bytes + 2):
-                        with m.Case(k):
-                            run_there = there[k - 1] if k else Const(1)
-                            m.d.comb += [
-                                enough.eq(self.map_there & run_there),
-                                too_much.eq(there[k + slack]),
-                            ]
-                            if k:
-                                wrong = self.run_bytes[8 * (k - 1) : 8 * k].any() & run_there
-                                m.d.comb += nul_missing.eq(control.terminated & wrong)
+            with m.If(control.final), m.Switch(control.run_bytes):
+                for k in range(self.plan.bus_bytes + 2):
+                    with m.Case(k):
+                        run_there = there[k - 1] if k else Const(1)
+                        m.d.comb += [
+                            enough.eq(self.map_there & run_there),
+                            too_much.eq(there[k + slack]),
+                        ]
+                        if k:
+                            wrong = self.run_bytes[8 * (k - 1) : 8 * k].any() & run_there
+                            m.d.comb += nul_missing.eq(control.terminated & wrong)
         with m.If(~self.bad):
             with m.If(self.mismatch):
                 m.d.comb += failure.eq(Status.ENCAPSULATION)

@@ -1,8 +1,8 @@
 """Python names for ROS names: the members of message interfaces.
 
 Almost every ROS field name is used as it is. Three kinds are not: words that Python or Amaranth
-keeps for itself, and names with ``__``, which is what Amaranth joins the parts of a port's name with
-(``a__b`` and ``a.b`` would be one port, and one of the two silently lost). Such a member gets
+keeps for itself, and names with ``__``, which is what Amaranth joins the parts of a port's name
+with (``a__b`` and ``a.b`` would be one port, and one of the two silently lost). Such a member gets
 trailing underscores, as few as make it unique.
 """
 
@@ -75,7 +75,7 @@ def _may_clash(name: str) -> bool:
 
 
 def _ports(member: str, node: MemberTree, careful: bool) -> Iterator[str]:
-    """Yield the names that a member occupies; only its own where no sibling could meet the others."""
+    """Yield the names that a member occupies, as far as a sibling could meet them."""
     yield member
     if not careful:
         return

@@ -163,7 +163,7 @@ def _walk(
             )
         case Array(element=Primitive(), count=count):
             leaf = leaves[(*path, "items")]
-            shape = leaf_shape(leaf)["data"].shape.elem_shape  # type: ignore[index]
+            shape = leaf_shape(leaf)["data"].shape.elem_shape
             for first in range(0, count, leaf.lanes):
                 places = [(*place, index) for index in range(first, min(first + leaf.lanes, count))]
                 transfers.setdefault(leaf.path, []).append(places)
@@ -184,7 +184,7 @@ def _empty_member(path: Path, leaves: dict[Path, Leaf]) -> str:
 def _at(view: object, place: Place) -> Value:
     for key in place:
         view = view[key]  # type: ignore[index]
-    return Value.cast(view)  # type: ignore[arg-type]
+    return Value.cast(view)
 
 
 class _Adapter(wiring.Component):
@@ -241,7 +241,7 @@ class _Adapter(wiring.Component):
 def _member(interface: object, path: Path) -> stream.Interface:
     for name in path:
         interface = getattr(interface, name)
-    return interface  # type: ignore[return-value]
+    return interface
 
 
 def _items(interface: stream.Interface) -> list[Value]:
@@ -393,5 +393,3 @@ def _array_ends(transfers: list[list[Place]]) -> Iterator[bool]:
     """Yield, per transfer, whether it is the last one of its array."""
     for now, following in zip(transfers, [*transfers[1:], None], strict=True):
         yield following is None or following[0][:-1] != now[0][:-1]
-
-

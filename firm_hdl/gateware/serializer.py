@@ -186,7 +186,8 @@ class _Circuit:
         """Return a length as it stands on the wire."""
         path = self.plan.leaves[leaf].path[:-1]
         terminated = any(
-            run.terminated and self.plan.leaves[run.items].path[:-1] == path for run in self.plan.runs
+            run.terminated and self.plan.leaves[run.items].path[:-1] == path
+            for run in self.plan.runs
         )
         return (length + terminated)[:32]
 

@@ -1,8 +1,9 @@
 """Signatures of the streams between converters and the world.
 
 The packet side carries serialized messages, the message side one stream per leaf. All are streams
-of `amaranth.lib.stream`, whose four rules hold: a transfer happens when `valid` and `ready` are both
-high; `valid` does not wait for `ready`; once high, `valid` and the payload stay until the transfer.
+of `amaranth.lib.stream`, whose four rules hold: a transfer happens when `valid` and `ready` are
+both high; `valid` does not wait for `ready`; once high, `valid` and the payload stay until the
+transfer.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ __all__ = [
 ]
 
 
-class Status(enum.Enum, shape=3):
+class Status(enum.Enum, shape=3):  # type: ignore[call-arg]
     """How a packet ended. The first error of a packet counts.
 
     Members
@@ -72,8 +73,8 @@ def packet_layout(bus_bytes: int) -> data.StructLayout:
     data : ArrayLayout(8, bus_bytes)
         Bytes, the first one on the wire in lane 0.
     count : range(bus_bytes + 1)
-        Valid lanes. `bus_bytes` in every beat but the last of a packet; 0 only in the one beat of an
-        empty packet.
+        Valid lanes. `bus_bytes` in every beat but the last of a packet; 0 only in the one beat of
+        an empty packet.
     last : unsigned(1)
         Set in the last beat of a packet.
     """
@@ -103,7 +104,9 @@ def leaf_shape(leaf: Leaf) -> Shape | data.StructLayout:
     return shape
 
 
-def MessageSignature(message: Message, bus_bytes: int, wire: Wire | None = None) -> wiring.Signature:
+def MessageSignature(
+    message: Message, bus_bytes: int, wire: Wire | None = None
+) -> wiring.Signature:
     """Return the signature of a message, one stream per leaf, seen from where it comes from.
 
     Parameters

@@ -1,4 +1,4 @@
-"""Progress within a step: leaves are served in wire order, each as soon as it and its forerunners can.
+"""Progress within a step: leaves are served in wire order, each as soon as it can be.
 
 A step may touch several leaves in one cycle. It must not insist on that: a consumer may hold one
 leaf until it has seen an earlier one, a producer may offer one only when the earlier one was
@@ -24,8 +24,8 @@ class Slots:
     Attributes
     ----------
     able : list of Signal
-        Set by the user, per slot: whether the leaf can be served now. Slots that a step does not use
-        stay 1.
+        Set by the user, per slot: whether the leaf can be served now. Slots that a step does not
+        use stay 1.
     go : list of Signal
         Per slot: serve the leaf in this cycle.
     all_served : Signal

@@ -148,9 +148,14 @@ class Window(wiring.Component):
         bus, word = self.plan.bus_bytes, self.geometry.word_bytes
         low = bus.bit_length() - 1
         inside = offset[low:] == 0
-        keep = Cat(beat.keep & inside.replicate(bus) & ok.replicate(bus) for beat, ok in zip(beats, valid))
+        keep = Cat(
+            beat.keep & inside.replicate(bus) & ok.replicate(bus) for beat, ok in zip(beats, valid,
+            strict=True)
+        )
         m.d.comb += [
-            Value.cast(self.data).eq(self._shifted(m, Cat(b.data for b in beats), offset, 8)[: 8 * word]),
+            Value.cast(self.data).eq(
+                self._shifted(m, Cat(b.data for b in beats), offset, 8)[: 8 * word]
+            ),
             self.have.eq(self._shifted(m, keep, offset, 1)),
             self.ended.eq(Cat(ends).any()),
             # An offset past the end of the last beat means padding that is not there.

@@ -18,6 +18,7 @@ from firm_hdl.plan.ir import (
     Fixed,
     Jump,
     Leaf,
+    LeafKind,
     Pad,
     Part,
     Plan,
@@ -64,7 +65,9 @@ def build_plan(
         If a parameter is out of range, or no message of the type fits `max_message_bytes`.
     """
     if bus_bytes not in BUS_BYTES:
-        raise ValueError(f"Bus width must be one of {', '.join(map(str, BUS_BYTES))} bytes, not {bus_bytes!r}")
+        raise ValueError(
+            f"Bus width must be one of {', '.join(map(str, BUS_BYTES))} bytes, not {bus_bytes!r}"
+        )
     if not layout.min_bytes <= max_message_bytes < 1 << 32:
         raise ValueError(
             f"Maximum message size must be from {layout.min_bytes} bytes, the least that a "
@@ -151,12 +154,12 @@ class _Builder:
                 case LoopNode():
                     self.loop(node)
 
-    def leaf(self, path: Path, kind: str, item: Primitive, lanes: int = 1) -> int:
-        if kind in ("length", "items", "trigger"):
+    def leaf(self, path: Path, kind: LeafKind, item: Primitive, lanes: int = 1) -> int:
+        if kind != "scalar":
             path = (*path, kind)
         name = "bool" if kind == "trigger" else item.name
         signed = item.signed and item.kind == "int"
-        self.leaves.append(Leaf(path=path, kind=kind, type=name, signed=signed, lanes=lanes))  # type: ignore[arg-type]
+        self.leaves.append(Leaf(path=path, kind=kind, type=name, signed=signed, lanes=lanes))
         return len(self.leaves) - 1
 
     @property
@@ -256,7 +259,13 @@ class _Builder:
             self.value(length, LENGTH.bytes)
             limit = self.limit(node.bound, node.min_body_bytes)
             begin = Begin(
-                length=length, count=None, limit=limit, terminated=False, level=None, run=None, body=None
+                length=length,
+                count=None,
+                limit=limit,
+                terminated=False,
+                level=None,
+                run=None,
+                body=None,
             )
         self.enter_loop(begin, node.count)
         self.nodes(node.body)
@@ -318,8 +327,8 @@ class _Builder:
             sizes = [min(bus, self.segment_bytes - at) for at in range(0, self.segment_bytes, bus)]
             sizes = sizes or [0]
         else:
-            # Elsewhere the offset is dynamic. A remainder costs no cycle when the last step takes it
-            # along, unless the room is needed for the head of a run.
+            # Elsewhere the offset is dynamic. A remainder costs no cycle when the last step takes
+            # it along, unless the room is needed for the head of a run.
             sizes = _cut(self.segment, bus, bus if heads else self.window_bytes)
         align = self.take_align()
         steps = _split(self.segment, sizes)
@@ -338,7 +347,7 @@ class _Builder:
     # Control flow.
 
     def jump_to(self, place: int) -> Jump:
-        """Return the jump that goes on at a place of the program: up to the next step, no loop ends."""
+        """Return the jump to the next step from a place of the program where no loop ends."""
         enter: list[tuple[int | str, int]] = []
         while place < len(self.program):
             item = self.program[place]
@@ -384,7 +393,7 @@ class _Builder:
         return tuple(steps)
 
     def loop_places(self) -> tuple[dict[int, int], dict[int, int]]:
-        """Return where the body of the loop that ends at a place starts, and the other way round."""
+        """Return the start of the body by the place of its loop's end, and that by the start."""
         bodies: dict[int, int] = {}
         ends: dict[int, int] = {}
         open_loops: list[int] = []

@@ -2,8 +2,8 @@
 
 A plan is a small program over a window of wire bytes. Each step moves a fixed number of bytes whose
 map to leaves is static, and may end in the head of a run of items. One plan serves both directions:
-a deserializer takes the bytes of a step from its window and writes leaves, a serializer reads leaves
-and appends the bytes.
+a deserializer takes the bytes of a step from its window and writes leaves, a serializer reads
+leaves and appends the bytes.
 
 Control flow. Steps stand in wire order. A step ends in its :class:`Exits`: loop counters are tried
 from the innermost outwards, and the first loop that has elements left is repeated; otherwise the
@@ -25,6 +25,7 @@ __all__ = [
     "Fixed",
     "Jump",
     "Leaf",
+    "LeafKind",
     "Pad",
     "Part",
     "Plan",
@@ -37,6 +38,9 @@ RUN_COUNTER = "run"
 """Name of the counter of items, beside the loop counters 0, 1, ... (outermost first)."""
 
 
+LeafKind: TypeAlias = Literal["scalar", "length", "items", "trigger"]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Leaf:
     """One stream of the message side.
@@ -44,8 +48,8 @@ class Leaf:
     Attributes
     ----------
     path : tuple of str
-        ROS names from the message down; the last one is ``length``, ``items`` or ``trigger`` where `kind`
-        says so.
+        ROS names from the message down; the last one is ``length``, ``items`` or ``trigger`` where
+        `kind` says so.
     kind : "scalar", "length", "items" or "trigger"
     type : str
         ROS name of the primitive (``uint32`` for a length, ``bool`` for a trigger).
@@ -56,7 +60,7 @@ class Leaf:
     """
 
     path: tuple[str, ...]
-    kind: Literal["scalar", "length", "items", "trigger"]
+    kind: LeafKind
     type: str
     signed: bool
     lanes: int = 1
@@ -147,8 +151,8 @@ class Run:
     terminated : bool
         Whether a NUL follows on the wire, counted there.
     last : bool
-        Whether the last transfer of the run is the last of its leaf (false if a tail of a fixed array
-        follows as a part).
+        Whether the last transfer of the run is the last of its leaf (false if a tail of a fixed
+        array follows as a part).
     """
 
     items: int
@@ -210,8 +214,8 @@ class Begin:
     gap : int
         Padding bytes in front of the first item, if there is one.
     head : int
-        Most bytes of the run that this step takes itself; 0: none. They start `gap` bytes behind the
-        step's own. A count that needs no more is done here.
+        Most bytes of the run that this step takes itself; 0: none. They start `gap` bytes behind
+        the step's own. A count that needs no more is done here.
     body : Jump or None
         Where a count above zero (and, for a run, beyond the head) goes on. `None`: never needed.
     """
@@ -242,7 +246,8 @@ class Step:
         The static map: each byte once, in wire order.
     begin : Begin or None
     run : int or None
-        Not `None`: the step is the body of that run, is repeated until the run is done, and has no map.
+        Not `None`: the step is the body of that run, is repeated until the run is done, and has no
+        map.
     head : int
         For a body: most bytes of the run per repetition.
     exits : Exits
@@ -266,12 +271,16 @@ class Step:
     def takes_items(self) -> bool:
         """Whether the step may take items of a run."""
         begin = self.begin
-        return self.run is not None or (begin is not None and begin.run is not None and begin.head > 0)
+        return self.run is not None or (
+            begin is not None and begin.run is not None and begin.head > 0
+        )
 
     @property
     def most_bytes(self) -> int:
         """Most bytes that one cycle of the step can take."""
-        gap_and_head = 0 if self.begin is None or not self.begin.head else self.begin.gap + self.begin.head
+        gap_and_head = (
+            0 if self.begin is None or not self.begin.head else self.begin.gap + self.begin.head
+        )
         return self.bytes + gap_and_head + (self.head if self.run is not None else 0)
 
 

@@ -88,7 +88,8 @@ class Run:
 class Loop:
     """Elements in a row that are not primitives.
 
-    Attributes are as for :class:`Run`; `body` is one element, placed wherever any of them may start.
+    Attributes are as for :class:`Run`; `body` is one element, placed wherever any of them may
+    start.
     """
 
     path: Path
@@ -183,11 +184,15 @@ class _Builder:
                 return rs.advance(rs.aligned(at, self.align(item)), count * item.bytes)
             case Sequence(element=Primitive() as item):
                 at = self.past(LENGTH, at)
-                return at | rs.spread(rs.advance(rs.aligned(at, self.align(item)), item.bytes), item.bytes)
+                return at | rs.spread(
+                    rs.advance(rs.aligned(at, self.align(item)), item.bytes), item.bytes
+                )
             case Array(element=element, count=count):
                 return rs.repeat(at, lambda now: self.after(element, now), count)[1]
             case Sequence(element=element):
-                return rs.repeat(self.past(LENGTH, at), lambda now: self.after(element, now), None)[1]
+                return rs.repeat(self.past(LENGTH, at), lambda now: self.after(element, now), None)[
+                    1
+                ]
 
     def past(self, primitive: Primitive, at: int) -> int:
         return rs.advance(rs.aligned(at, self.align(primitive)), primitive.bytes)
@@ -261,7 +266,7 @@ class _Builder:
     # Sizes.
 
     def min_bytes(self, kind: FieldType) -> int:
-        """Return a lower bound of a value's size; padding is left out, as it depends on the place."""
+        """Return a lower bound of a value's size, without padding, which depends on the place."""
         if kind not in self._min:
             self._min[kind] = self._min_bytes(kind)
         return self._min[kind]

@@ -1,14 +1,25 @@
 """Sets of residues modulo 8: all that is known, before a packet comes, of where a field may start.
 
 A set is an 8-bit mask, bit r for offsets that are r modulo 8. Eight is enough because no primitive
-aligns to more. Every operation distributes over union, so a set's image is the union of its members'.
+aligns to more. Every operation distributes over union, so a set's image is the union of its
+members'.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-__all__ = ["ALL", "MODULUS", "advance", "aligned", "members", "pad_of", "repeat", "single", "spread"]
+__all__ = [
+    "ALL",
+    "MODULUS",
+    "advance",
+    "aligned",
+    "members",
+    "pad_of",
+    "repeat",
+    "single",
+    "spread",
+]
 
 MODULUS = 8
 ALL = (1 << MODULUS) - 1

@@ -112,7 +112,9 @@ def test_a_producer_may_offer_one_leaf_after_the_other(bus_bytes):
         for _ in range(2):
             await put(ctx, message.x, 5)
             await put(ctx, message.name.length, 1)
-            await put(ctx, message.name.items, {"data": [0x41] + [0xEE] * (bus_bytes - 1), "last": 1})
+            await put(
+                ctx, message.name.items, {"data": [0x41] + [0xEE] * (bus_bytes - 1), "last": 1}
+            )
             await put(ctx, message.y, 6)
 
     async def consume(ctx):

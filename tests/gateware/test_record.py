@@ -161,7 +161,11 @@ def test_a_record_is_offered_when_all_of_it_is_there():
     [
         (SHAPE, ["corner"], "Message p/T has no field of fixed size 'corner'"),
         (SHAPE, ["name"], "Message p/T has no field of fixed size 'name'"),
-        (make("ros1", {"s": "string"}), None, "Message p/T has no field of fixed size for a record"),
+        (
+            make("ros1", {"s": "string"}),
+            None,
+            "Message p/T has no field of fixed size for a record",
+        ),
         (
             make("ros1", {"a": "uint64[1025]"}),
             None,
