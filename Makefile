@@ -1,0 +1,59 @@
+# What a newcomer types. Everything is installed into .venv, which `make clean` removes.
+
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+JOBS   ?= 2
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint verify bench tools clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
+
+demo: $(VENV)/.installed ## real ROS messages through generated hardware
+	$(BIN)/python examples/demo.py
+
+test: lint ## linters, types and all tests
+	$(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
+
+lint: $(VENV)/.installed-dev ## ruff and mypy only
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+verify: $(VENV)/.installed ## every type of every distribution against rosbags (hours; see VERIFY_ARGS)
+	$(BIN)/python -m firm_hdl.verify $(VERIFY_ARGS)
+
+bench: $(VENV)/.installed ## cycles per beat of long and short messages, on several bus widths
+	$(BIN)/python examples/bench.py
+
+tools: ## system packages that tests use where they are present; needs root
+	apt-get update
+	apt-get install -y --no-install-recommends iverilog verilator
+
+clean: ## remove .venv and what tools have cached
+	rm -rf $(VENV) build dist ./*.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache
+	find firm_hdl tests examples -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# A stamp is newer than pyproject.toml when what that asks for is installed.
+$(VENV)/.installed: pyproject.toml $(VENV)/.created
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	@touch $@
+
+$(VENV)/.installed-dev: pyproject.toml $(VENV)/.created
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $@ $(VENV)/.installed
+
+$(VENV)/.created:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || { \
+	  echo "firm-hdl needs Python 3.10 or newer; '$(PYTHON)' is not." >&2; \
+	  echo "Install one, or name it: make PYTHON=python3.12 ..." >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
+	  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	    apt-get update && apt-get install -y --no-install-recommends python3-venv; \
+	  else \
+	    echo "Python has no venv; on Debian and Ubuntu: sudo apt-get install python3-venv" >&2; \
+	    exit 1; \
+	  fi; }
+	$(PYTHON) -m venv --clear $(VENV)
+	@touch $@
