@@ -2,8 +2,8 @@
 
 The layout is flattened into segments, runs of bytes whose map is static, which end where a length
 decides what follows, where a loop starts or ends, or where padding is only known in the circuit.
-Segments are cut into steps (see `_cut`), and a run of items is started in the very step that
-holds its length wherever the window has room for both.
+Segments are cut into steps (see :mod:`firm_hdl.plan.cut`), and a run of items is started in the
+very step that holds its length wherever the window has room for both.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from firm_hdl.model import Primitive
+from firm_hdl.plan.cut import cut, split
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
@@ -302,7 +303,7 @@ class _Builder:
             self.program.append(replace(body, align=self.take_align()))
             return
         gap = node.item_gap.bytes
-        used = _cut(self.segment, self.bus_bytes, self.bus_bytes)[-1] + (gap or 0)
+        used = cut(self.segment, self.bus_bytes, self.bus_bytes)[-1] + (gap or 0)
         head = min(at_once, self.window_bytes - used)
         if gap is None or head < self.bus_bytes:
             head = 0
@@ -329,9 +330,9 @@ class _Builder:
         else:
             # Elsewhere the offset is dynamic. A remainder costs no cycle when the last step takes
             # it along, unless the room is needed for the head of a run.
-            sizes = _cut(self.segment, bus, bus if heads else self.window_bytes)
+            sizes = cut(self.segment, bus, bus if heads else self.window_bytes)
         align = self.take_align()
-        steps = _split(self.segment, sizes)
+        steps = split(self.segment, sizes)
         for index, slices in enumerate(steps):
             self.program.append(
                 Step(
@@ -408,50 +409,3 @@ class _Builder:
 
 
 _NOWHERE = Exits(default=Jump(step=None))
-
-
-def _cut(segment: list[Slice], bus_bytes: int, last_bytes: int) -> list[int]:
-    """Return step sizes for a segment: as few as can be, cut between values where that is possible.
-
-    Steps take up to a bus word, the last one up to `last_bytes`.
-    """
-    borders = {item.at for item in segment}
-    total = segment[-1].at + segment[-1].bytes
-    sizes: list[int] = []
-    start = 0
-    while total - start > last_bytes:
-        later = -(-(total - start - last_bytes) // bus_bytes) - 1
-        least = total - last_bytes - later * bus_bytes
-        cuts = [at for at in range(max(least, start + 1), start + bus_bytes + 1) if at in borders]
-        cut = cuts[-1] if cuts else start + bus_bytes
-        sizes.append(cut - start)
-        start = cut
-    return [*sizes, total - start]
-
-
-def _split(segment: list[Slice], sizes: list[int]) -> list[tuple[Slice, ...]]:
-    """Distribute slices over steps, splitting those that cross a border."""
-    steps: list[list[Slice]] = [[] for _ in sizes]
-    index, start = 0, 0
-    for item in segment:
-        done = 0
-        while True:
-            while index < len(sizes) - 1 and item.at + done >= start + sizes[index]:
-                start += sizes[index]
-                index += 1
-            size = min(item.bytes - done, start + sizes[index] - item.at - done)
-            steps[index].append(_piece(item, done, size, item.at + done - start))
-            done += size
-            if done == item.bytes:
-                break
-    return [tuple(step) for step in steps]
-
-
-def _piece(item: Slice, first: int, size: int, at: int) -> Slice:
-    match item:
-        case Pad():
-            return Pad(at=at, bytes=size)
-        case Fixed():
-            return Fixed(at=at, data=item.data[first : first + size], check=item.check)
-        case Part():
-            return replace(item, at=at, bytes=size, first=first)
