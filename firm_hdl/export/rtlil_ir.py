@@ -1,0 +1,198 @@
+"""RTLIL as data: modules of wires, cells, processes, memories and connections.
+
+The names are those of Yosys. Signals are specifications: chunks of wires and constants, least
+significant first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+__all__ = [
+    "Assign",
+    "Bits",
+    "Case",
+    "Cell",
+    "Chunk",
+    "Design",
+    "Memory",
+    "Module",
+    "Process",
+    "Slice",
+    "Spec",
+    "Statement",
+    "Switch",
+    "Value",
+    "Wire",
+    "cut",
+    "join",
+    "spec_width",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Bits:
+    """A constant; `text` has one of ``0 1 x z -`` per bit, most significant first."""
+
+    text: str
+
+    @property
+    def width(self) -> int:
+        """Number of bits."""
+        return len(self.text)
+
+
+@dataclass(frozen=True, slots=True)
+class Slice:
+    """`width` bits of a wire from bit `low` up. `bare`: printed as a name alone, so all of it."""
+
+    wire: str
+    low: int
+    width: int
+    bare: bool = field(default=False, compare=False)
+
+
+Chunk: TypeAlias = Bits | Slice
+# Least significant chunk first, which is the reverse of the order in the text.
+Spec: TypeAlias = tuple[Chunk, ...]
+Value: TypeAlias = int | float | str | Bits
+
+
+def spec_width(spec: Spec) -> int:
+    """Count the bits of a signal specification."""
+    return sum(chunk.width for chunk in spec)
+
+
+def cut(spec: Spec, low: int, width: int) -> Spec:
+    """Take `width` bits of a value from bit `low` up."""
+    result: list[Chunk] = []
+    position = 0
+    for chunk in spec:
+        start, stop = max(low, position), min(low + width, position + chunk.width)
+        if start < stop:
+            if stop - start == chunk.width:
+                result.append(chunk)
+            elif isinstance(chunk, Slice):
+                result.append(Slice(chunk.wire, chunk.low + start - position, stop - start))
+            else:
+                end = chunk.width - (start - position)
+                result.append(Bits(chunk.text[end - (stop - start) : end]))
+        position += chunk.width
+    return tuple(result)
+
+
+def join(*specs: Spec) -> Spec:
+    """Concatenate values, the least significant first; neighbouring chunks become one."""
+    result: list[Chunk] = []
+    for chunk in (chunk for spec in specs for chunk in spec if chunk.width):
+        last = result[-1] if result else None
+        if isinstance(last, Bits) and isinstance(chunk, Bits):
+            result[-1] = Bits(chunk.text + last.text)
+        elif (
+            isinstance(last, Slice)
+            and isinstance(chunk, Slice)
+            and last.wire == chunk.wire
+            and last.low + last.width == chunk.low
+        ):
+            result[-1] = Slice(last.wire, last.low, last.width + chunk.width)
+        else:
+            result.append(chunk)
+    return tuple(result)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wire:
+    """A wire; `direction` is ``input``, ``output``, ``inout`` or, if it is no port, `None`."""
+
+    name: str
+    width: int
+    signed: bool
+    direction: str | None
+    attributes: Mapping[str, Value]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Memory:
+    """A memory of `size` words of `width` bits; its ports and contents are cells."""
+
+    name: str
+    width: int
+    size: int
+    attributes: Mapping[str, Value]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cell:
+    """A primitive (`kind` starts with ``$``) or an instance of a module."""
+
+    kind: str
+    name: str
+    parameters: Mapping[str, Value]
+    ports: Mapping[str, Spec]
+    attributes: Mapping[str, Value]
+    line: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Assign:
+    """An assignment in a process; a later one wins."""
+
+    target: Spec
+    value: Spec
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """One arm of a switch. No patterns: the default arm."""
+
+    patterns: tuple[str, ...]
+    body: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Switch:
+    """The first case with a pattern that matches `selector` is taken."""
+
+    selector: Spec
+    cases: tuple[Case, ...]
+
+
+Statement: TypeAlias = Assign | Switch
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Process:
+    """Combinational assignments; what a target gets first is its default."""
+
+    name: str
+    body: tuple[Statement, ...]
+    line: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Module:
+    """One module: names are without RTLIL's leading backslash, made-up ones keep their ``$``."""
+
+    name: str
+    attributes: Mapping[str, Value]
+    wires: Mapping[str, Wire]
+    memories: Mapping[str, Memory]
+    items: tuple[Cell | Process, ...]
+    connections: tuple[tuple[Spec, Spec], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Design:
+    """All modules in the order of the text; the top one has the attribute ``top``."""
+
+    modules: Mapping[str, Module]
+
+    @property
+    def top(self) -> Module:
+        """The outermost module."""
+        for module in self.modules.values():
+            if module.attributes.get("top") == 1:
+                return module
+        return next(iter(self.modules.values()))

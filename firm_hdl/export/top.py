@@ -1,0 +1,253 @@
+"""Top levels: a converter behind ports that a design in VHDL or Verilog connects to.
+
+Packets are AXI4-Stream (Arm IHI 0051), the status too; each leaf of the message is a stream of its
+own under the field's name. Ports are plain vectors; what they mean is in :class:`Port`, which the
+manifest publishes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+from amaranth.hdl import Cat, ClockDomain, Module, Mux, Shape, Value
+from amaranth.lib import data, wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.export.names import flat_names
+from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.gateware.signatures import leaf_shape
+from firm_hdl.plan import Leaf, Plan
+
+__all__ = ["DIRECTIONS", "MAX_INPUT_BITS", "Direction", "Port", "Top", "leaf_names", "ports_of"]
+
+Direction: TypeAlias = Literal["deserializer", "serializer"]
+DIRECTIONS: tuple[Direction, ...] = ("deserializer", "serializer")
+
+MAX_INPUT_BITS = 65_535
+"""Amaranth 0.5 makes one cell of all inputs of a design, and no cell wider than this."""
+
+# What no leaf may be called: its ports are its name and ``_data``, ``_last`` and so on.
+_RESERVED = ("s_axis", "m_axis", "m_axis_status")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Port:
+    """A port of a top level.
+
+    Attributes
+    ----------
+    name : str
+    direction : "in" or "out"
+    width : int
+        In bits.
+    meaning : str
+        A sentence for people.
+    signed : bool
+    leaf : int or None
+        Index of the leaf that it belongs to.
+    """
+
+    name: str
+    direction: Literal["in", "out"]
+    width: int
+    meaning: str
+    signed: bool = False
+    leaf: int | None = None
+
+
+def leaf_names(plan: Plan) -> dict[tuple[str, ...], str]:
+    """Give what the names of each leaf's ports start with, by the leaf's path."""
+    return flat_names((leaf.path for leaf in plan.leaves), _RESERVED)
+
+
+def ports_of(plan: Plan, direction: Direction) -> tuple[Port, ...]:
+    """List the ports of a top level: clock, reset, packets, leaves in wire order, status."""
+    names = leaf_names(plan)
+    ports = [
+        Port(name="aclk", direction="in", width=1, meaning="Clock; its rising edge counts."),
+        Port(name="aresetn", direction="in", width=1, meaning="Synchronous reset, active low."),
+        *_packet_ports(plan.bus_bytes, direction),
+    ]
+    for index, leaf in enumerate(plan.leaves):
+        ports += _leaf_ports(leaf, index, names[leaf.path], direction)
+    # AXI4-Stream has whole bytes.
+    status = [("tdata", 8, "How the packet ended, once per packet; 0 is OK.")]
+    ports += _stream("m_axis_status", "t", status, "status", is_input=False)
+    return tuple(ports)
+
+
+def _packet_ports(bus_bytes: int, direction: Direction) -> list[Port]:
+    payload = [
+        ("tdata", 8 * bus_bytes, "Bytes of the packet, the first one in bits 7 to 0."),
+        ("tkeep", bus_bytes, "Bytes that are there, from lane 0 on; all but in the last beat."),
+        ("tlast", 1, "The packet's last beat."),
+    ]
+    if direction == "deserializer":
+        return _stream("s_axis", "t", payload, "beat", is_input=True)
+    payload.append(("tuser", 1, "With tlast: the packet's status is not OK; drop it."))
+    return _stream("m_axis", "t", payload, "beat", is_input=False)
+
+
+def _leaf_ports(leaf: Leaf, index: int, base: str, direction: Direction) -> list[Port]:
+    shape = leaf_shape(leaf)
+    if isinstance(shape, data.StructLayout):
+        payload = [
+            ("data", shape["data"].width, _meaning(leaf)),
+            ("last", 1, f"{leaf}: the transfer ends its array."),
+        ]
+        signed = False
+    else:
+        payload = [("data", shape.width, _meaning(leaf))]
+        signed = shape.signed
+    is_input = direction == "serializer"
+    return _stream(base, "", payload, str(leaf), is_input=is_input, signed=signed, leaf=index)
+
+
+def _stream(
+    base: str,
+    initial: str,
+    payload: list[tuple[str, int, str]],
+    what: str,
+    *,
+    is_input: bool,
+    signed: bool = False,
+    leaf: int | None = None,
+) -> list[Port]:
+    """List the ports of a stream; `signed` is that of ``data``."""
+    to, fro = ("in", "out") if is_input else ("out", "in")
+    whole = [
+        *((to, *entry) for entry in payload),
+        (to, f"{initial}valid", 1, f"{what}: offered."),
+        (fro, f"{initial}ready", 1, f"{what}: taken."),
+    ]
+    return [
+        Port(
+            name=f"{base}_{name}",
+            direction="in" if way == "in" else "out",
+            width=width,
+            meaning=meaning,
+            signed=signed and name == "data",
+            leaf=leaf,
+        )
+        for way, name, width, meaning in whole
+    ]
+
+
+def _meaning(leaf: Leaf) -> str:
+    if leaf.kind == "trigger":
+        return f"{leaf}: 1; that there is a message is all it says."
+    if leaf.kind == "length":
+        return f"{leaf}: how many follow."
+    form = {
+        "bool": "1 is true",
+        "float": "IEEE 754 bits",
+        "int": "two's complement" if leaf.signed else "unsigned",
+    }[leaf.primitive.kind]
+    if leaf.kind == "items":
+        lanes = f"{leaf.lanes} x {leaf.type}" if leaf.lanes > 1 else leaf.type
+        return f"{leaf}: {lanes} ({form}), the first item in the lowest bits."
+    return f"{leaf}: {leaf.type} ({form})."
+
+
+class Top(wiring.Component):
+    """A converter with AXI4-Stream on its packet side and named ports on its message side.
+
+    Adds neither register nor latency. `aresetn` is active low and synchronous to the rising edge of
+    `aclk`; one cycle of it empties everything. On the way in, ``tkeep`` is a run of ones from lane
+    0, looked at in a packet's last beat only; no ones at all there end an empty packet.
+
+    Parameters
+    ----------
+    core : Deserializer or Serializer
+
+    Members
+    -------
+    As :func:`ports_of` lists them.
+    """
+
+    def __init__(self, core: Deserializer | Serializer):
+        self.core = core
+        self.direction: Direction = (
+            "deserializer" if isinstance(core, Deserializer) else "serializer"
+        )
+        flows = {"in": In, "out": Out}
+        super().__init__(
+            {
+                port.name: flows[port.direction](Shape(port.width, port.signed))
+                for port in ports_of(core.plan, self.direction)
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        # The port is the clock: an assignment between the two would be a delta cycle in simulators.
+        domain = ClockDomain("sync", local=True)
+        domain.clk = self.aclk
+        m.domains += domain
+        m.d.comb += domain.rst.eq(~self.aresetn)
+        m.submodules.core = self.core
+        if self.direction == "deserializer":
+            self._packets_in(m)
+        else:
+            self._packets_out(m)
+        m.d.comb += [
+            self.m_axis_status_tdata.eq(Value.cast(self.core.status.payload)),
+            self.m_axis_status_tvalid.eq(self.core.status.valid),
+            self.core.status.ready.eq(self.m_axis_status_tready),
+        ]
+        m.d.comb += list(self._leaves())
+        return m
+
+    def _packets_in(self, m: Module) -> None:
+        packets = self.core.packets
+        count = Mux(self.s_axis_tlast, _ones(self.s_axis_tkeep), self.core.plan.bus_bytes)
+        m.d.comb += [
+            Value.cast(packets.payload.data).eq(self.s_axis_tdata),
+            packets.payload.count.eq(count),
+            packets.payload.last.eq(self.s_axis_tlast),
+            packets.valid.eq(self.s_axis_tvalid),
+            self.s_axis_tready.eq(packets.ready),
+        ]
+
+    def _packets_out(self, m: Module) -> None:
+        packets = self.core.packets
+        lanes = range(self.core.plan.bus_bytes)
+        m.d.comb += [
+            self.m_axis_tdata.eq(Value.cast(packets.payload.data)),
+            self.m_axis_tkeep.eq(Cat(packets.payload.count > lane for lane in lanes)),
+            self.m_axis_tlast.eq(packets.payload.last),
+            self.m_axis_tuser.eq(self.core.packet_error),
+            self.m_axis_tvalid.eq(packets.valid),
+            packets.ready.eq(self.m_axis_tready),
+        ]
+
+    def _leaves(self) -> Iterator[Any]:
+        names = leaf_names(self.core.plan)
+        inwards = self.direction == "serializer"
+
+        def connect(inner: Value, port: Value, *, inwards: bool = inwards) -> Any:
+            return inner.eq(port) if inwards else port.eq(inner)
+
+        for index, path in self.core.tree.leaves():
+            interface = self.core.message
+            for name in path:
+                interface = getattr(interface, name)
+            base = names[self.core.plan.leaves[index].path]
+            payload: Any = interface.payload
+            if isinstance(payload, data.View):
+                yield connect(payload["last"], getattr(self, f"{base}_last"))
+                payload = payload["data"]
+            yield connect(Value.cast(payload), getattr(self, f"{base}_data"))
+            yield connect(interface.valid, getattr(self, f"{base}_valid"))
+            yield connect(interface.ready, getattr(self, f"{base}_ready"), inwards=not inwards)
+
+
+def _ones(keep: Value) -> Value:
+    """Return the number of ones from bit 0 up to the first zero."""
+    lanes = len(keep)
+    # One-hot, whatever the bits above the first zero are.
+    found = {n: keep[:n].all() & ~keep[n] for n in range(1, lanes)} | {lanes: keep.all()}
+    bits = range(lanes.bit_length())
+    return Cat(Cat(here for n, here in found.items() if n >> bit & 1).any() for bit in bits)

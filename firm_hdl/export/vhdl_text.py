@@ -1,0 +1,123 @@
+"""Pieces of VHDL text: expressions with their precedence, literals, lines of at most 100 columns.
+
+IEEE Std 1076-2008, clause 9.2 (operators and their precedence) and 15.8 (bit string literals).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+__all__ = ["Text", "atom", "bit_literal", "call", "chain", "infix", "literal", "prefix", "wrap"]
+
+COLUMNS = 100
+
+_LEVELS = {
+    **dict.fromkeys(("and", "or", "xor"), 1),
+    **dict.fromkeys(("=", "/=", "<", "<=", ">", ">="), 2),
+    **dict.fromkeys(("+", "-", "&"), 4),
+    "*": 5,
+    "not": 6,
+    # A reduction such as `or x`: legal only where nothing is beside it.
+    "reduce": 0,
+}
+_ATOM = 9
+
+
+class Text(NamedTuple):
+    """An expression; `operator` is its outermost one, which decides who needs parentheses."""
+
+    text: str
+    operator: str = ""
+
+    @property
+    def level(self) -> int:
+        """How strongly the outermost operator binds."""
+        return _LEVELS.get(self.operator, _ATOM)
+
+    def inside(self, level: int) -> str:
+        """Give the text for a place that wants at least that level."""
+        return self.text if self.level >= level else f"({self.text})"
+
+
+def atom(text: str) -> Text:
+    """Make an expression that never needs parentheses."""
+    return Text(text)
+
+
+def call(function: str, *arguments: Text | str | int) -> Text:
+    """Call a function."""
+    parts = (part.text if isinstance(part, Text) else str(part) for part in arguments)
+    return Text(f"{function}({', '.join(parts)})")
+
+
+def prefix(operator: str, operand: Text) -> Text:
+    """Apply `not`, or a reduction such as `or`."""
+    return Text(f"{operator} {operand.inside(_ATOM)}", "not" if operator == "not" else "reduce")
+
+
+def infix(operator: str, left: Text, right: Text) -> Text:
+    """Apply a binary operator. Of a chain of one operator, the left part needs no parentheses."""
+    level = _LEVELS[operator]
+    if level == 1:
+        # VHDL does not mix logical operators, nor `not` with a relation, without parentheses.
+        return chain(operator, left, right)
+    strict = level + (level == 2)
+    return Text(f"{left.inside(strict)} {operator} {right.inside(level + 1)}", operator)
+
+
+def chain(operator: str, *operands: Text) -> Text:
+    """Join any number of operands by an associative operator."""
+    if len(operands) == 1:
+        return operands[0]
+    level = _LEVELS[operator]
+    parts = (
+        part.text if part.operator == operator else part.inside(level + 1) for part in operands
+    )
+    return Text(f" {operator} ".join(parts), operator)
+
+
+def bit_literal(bits: str) -> str:
+    """Give one bit; what is undefined is 0, as in Amaranth's simulator."""
+    return "'1'" if bits == "1" else "'0'"
+
+
+def literal(bits: str) -> str:
+    """Give a string of bits as the shortest literal of exactly that width."""
+    bits = "".join("1" if bit == "1" else "0" for bit in bits)
+    width = len(bits)
+    if width <= 8:
+        return f'"{bits}"'
+    digits = f"{int(bits, 2):0{-(-width // 4)}X}"
+    return f'x"{digits}"' if width % 4 == 0 else f'{width}x"{digits}"'
+
+
+def wrap(line: str) -> list[str]:
+    """Break a line of code that is too long, at spaces outside of strings.
+
+    A comment at its end goes before it.
+    """
+    indent = " " * (len(line) - len(line.lstrip()))
+    code, mark, comment = line.partition("  -- ")
+    if len(line) > COLUMNS and mark and code.strip():
+        return [f"{indent}-- {comment}", *wrap(code)]
+    if not code.strip() or code.lstrip().startswith("--"):
+        return [line]
+    lines: list[str] = []
+    while len(line) > COLUMNS and (cut := _break(line, len(indent) + 4)):
+        lines.append(line[:cut])
+        line = f"{indent}    {line[cut + 1 :]}"
+    return [*lines, line]
+
+
+def _break(line: str, start: int) -> int:
+    """Find the last good space to break at: after a logical operator or comma if there is one."""
+    best, quoted = 0, False
+    any_space = 0
+    for index, character in enumerate(line[: COLUMNS + 1]):
+        if character == '"':
+            quoted = not quoted
+        elif character == " " and not quoted and index > start:
+            any_space = index
+            if line[:index].endswith((" and", " or", " xor", " &", ",", " else", " <=")):
+                best = index
+    return best if best > COLUMNS // 2 else any_space

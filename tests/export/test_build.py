@@ -1,0 +1,302 @@
+"""Folders of files: whole or not at all, the same everywhere, left alone when current."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+
+import firm_hdl
+from firm_hdl.errors import DefinitionError
+from firm_hdl.export.build import BuildError, Built, build, check_size
+from firm_hdl.frontend import Library
+from firm_hdl.plan import build_plan, from_yaml
+from firm_hdl.wire import lay_out
+
+# The package's face has a function of this name.
+build_module = importlib.import_module("firm_hdl.export.build")
+
+ROOT = Path(firm_hdl.__file__).parent.parent
+
+
+def tree(folder: Path) -> dict[str, bytes]:
+    """Return every file below a folder."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+
+
+def build_one(out: Path, type_: str = "std_msgs/msg/Bool", **options: object) -> Built:
+    [built] = build([type_], out, **options)
+    return built
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """Leave out Yosys, which takes nearly all of a build's time."""
+    for name in ("Deserializer", "Serializer", "Top"):
+        monkeypatch.setattr(build_module, name, lambda *args, **options: None)
+    monkeypatch.setattr(
+        build_module, "to_verilog", lambda top, module, header: f"{header}module {module};\n"
+    )
+
+
+def test_folder_is_complete(tmp_path):
+    seen: list[Built] = []
+    built = build(
+        ["geometry_msgs/msg/Twist", "geometry_msgs/Twist"], tmp_path / "out", report=seen.append
+    )
+    assert seen == built
+    assert [one.folder for one in built] == [
+        tmp_path / "out" / "lyrical" / "geometry_msgs_msg_Twist_cdr_8"
+    ]
+    assert sorted(tree(tmp_path / "out" / "lyrical")) == [
+        f"geometry_msgs_msg_Twist_cdr_8/{name}"
+        for name in (
+            "geometry_msgs_msg_Twist_cdr_8_deserializer.v",
+            "geometry_msgs_msg_Twist_cdr_8_serializer.v",
+            "layout.svg",
+            "manifest.json",
+            "plan.yaml",
+        )
+    ]
+
+
+@pytest.mark.usefixtures("quick")
+def test_manifest_tells_all(tmp_path):
+    built = build_one(tmp_path, "sensor_msgs/msg/Range", bus_bytes=4, max_message_bytes=999)
+    manifest = json.loads((built.folder / "manifest.json").read_text())
+    library = Library()
+    assert manifest["inputs"]["message"] == "sensor_msgs/msg/Range"
+    assert manifest["inputs"]["dependencies"] == [
+        "builtin_interfaces/msg/Time",
+        "std_msgs/msg/Header",
+    ]
+    assert manifest["inputs"]["definition_sha256"] == library.definition_hash(
+        "sensor_msgs/msg/Range"
+    )
+    assert manifest["inputs"]["options"] == {
+        "wire": "cdr",
+        "bus_bytes": 4,
+        "max_message_bytes": 999,
+    }
+    assert manifest["inputs"]["generator"]["firm-hdl"] == firm_hdl.__version__
+    assert {"name": "ULTRASOUND", "type": "uint8", "value": 0} in manifest["constants"]
+    leaves = {leaf["path"]: leaf for leaf in manifest["leaves"]}
+    # The one field of the type that is a keyword.
+    assert leaves["range"] == {
+        "path": "range",
+        "name": "range_field",
+        "kind": "scalar",
+        "type": "float32",
+        "signed": False,
+        "layout": {"lanes": 1, "item_bits": 32, "data_bits": 32},
+    } | {key: leaves["range"][key] for key in ("comment", "unit") if key in leaves["range"]}
+    assert leaves["header.frame_id.items"]["layout"] == {
+        "lanes": 4,
+        "item_bits": 8,
+        "data_bits": 32,
+    }
+    ports = {port["name"]: port for port in manifest["converters"]["serializer"]["ports"]}
+    assert ports["range_field_data"] == {
+        "name": "range_field_data",
+        "direction": "in",
+        "width": 32,
+        "signed": False,
+        "meaning": "range: float32 (IEEE 754 bits).",
+        "leaf": "range",
+    }
+    assert ports["m_axis_tuser"]["direction"] == "out"
+
+
+@pytest.mark.usefixtures("quick")
+def test_plan_and_picture_read_back(tmp_path):
+    built = build_one(tmp_path, "sensor_msgs/msg/PointCloud2")
+    plan = build_plan(lay_out(Library().message("sensor_msgs/msg/PointCloud2")))
+    assert from_yaml((built.folder / "plan.yaml").read_text()) == plan
+    picture = ElementTree.fromstring((built.folder / "layout.svg").read_text())
+    texts = [element.text for element in picture.iter("{http://www.w3.org/2000/svg}text")]
+    for text in ("fields.item.name.length uint32", "data: length x uint8", "fields: length times"):
+        assert text in texts
+
+
+@pytest.mark.usefixtures("quick")
+def test_comments_and_units_are_in_the_manifest(tmp_path):
+    folder = tmp_path / "src" / "my_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Part.msg").write_text("float32 item  # how far [m]\n")
+    (folder / "Whole.msg").write_text("# Parts of it.\nPart[] parts\n")
+    built = build_one(tmp_path / "out", "my_msgs/msg/Whole", paths=[tmp_path / "src"])
+    leaves = json.loads((built.folder / "manifest.json").read_text())["leaves"]
+    found = {leaf["path"]: (leaf.get("comment"), leaf.get("unit")) for leaf in leaves}
+    assert found["parts.item.item"][1] == "m"
+    assert found["parts.length"][1] is None
+
+
+@pytest.mark.usefixtures("quick")
+def test_current_folder_is_left_alone(tmp_path):
+    first = build_one(tmp_path)
+    assert not first.was_current
+    (first.folder / "plan.yaml").touch()
+    times = {path: path.stat().st_mtime_ns for path in first.folder.iterdir()}
+    again = build_one(tmp_path)
+    assert again.was_current
+    assert again.description == first.description
+    assert times == {path: path.stat().st_mtime_ns for path in first.folder.iterdir()}
+    assert not build_one(tmp_path, force=True).was_current
+
+
+@pytest.mark.parametrize("name", ["plan.yaml", "manifest.json"])
+@pytest.mark.parametrize("how", ["changed", "removed"])
+@pytest.mark.usefixtures("quick")
+def test_folder_that_was_tampered_with_is_written_again(tmp_path, name, how):
+    built = build_one(tmp_path)
+    before = tree(built.folder)
+    if how == "removed" and name != "manifest.json":
+        (built.folder / name).unlink()
+    else:
+        text = (built.folder / name).read_text().replace("0.1.0", "0.0.9").replace("step", "stop")
+        (built.folder / name).write_text(text)
+    assert not build_one(tmp_path).was_current
+    assert tree(built.folder) == before
+
+
+@pytest.mark.usefixtures("quick")
+def test_other_options_and_definitions_are_built_anew(tmp_path, monkeypatch):
+    build_one(tmp_path)
+    assert not build_one(tmp_path, max_message_bytes=1000).was_current
+    assert build_one(tmp_path, max_message_bytes=1000).was_current
+    assert build_one(tmp_path, bus_bytes=4).folder.name == "std_msgs_msg_Bool_cdr_4"
+    monkeypatch.setattr(firm_hdl, "__version__", "9.9.9")
+    assert not build_one(tmp_path, max_message_bytes=1000).was_current
+
+
+@pytest.mark.usefixtures("quick")
+def test_what_users_added_stays(tmp_path):
+    built = build_one(tmp_path)
+    (built.folder / "notes.txt").write_text("mine")
+    (built.folder / "sim").mkdir()
+    (built.folder / "sim" / "run.do").write_text("run")
+    build_one(tmp_path, force=True)
+    assert (built.folder / "notes.txt").read_text() == "mine"
+    assert (built.folder / "sim" / "run.do").read_text() == "run"
+    assert sorted(path.name for path in built.folder.parent.iterdir()) == [built.folder.name]
+
+
+@pytest.mark.usefixtures("quick")
+def test_folder_of_somebody_else_is_refused(tmp_path):
+    folder = tmp_path / "lyrical" / "std_msgs_msg_Bool_cdr_8"
+    folder.mkdir(parents=True)
+    (folder / "thesis.tex").write_text("ten years")
+    with pytest.raises(BuildError, match=r"is not a folder that firm-hdl made; move it away$"):
+        build_one(tmp_path)
+    assert tree(tmp_path) == {"lyrical/std_msgs_msg_Bool_cdr_8/thesis.tex": b"ten years"}
+
+
+@pytest.mark.parametrize("fails_at", ["mkdir", "write_text", "rename"])
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+@pytest.mark.parametrize("is_there", [False, True])
+@pytest.mark.usefixtures("quick")
+def test_crash_leaves_the_old_or_the_new(tmp_path, monkeypatch, fails_at, error, is_there):
+    # Every call of each kind fails once; what is there then is whole, and nothing else is.
+    if is_there:
+        build_one(tmp_path, max_message_bytes=1000)
+    before = tree(tmp_path)
+    original = getattr(Path, fails_at)
+    for turn in range(20):
+        calls = 0
+
+        def fail(
+            self: Path, *args: object, _turn: int = turn, **options: object
+        ) -> object:
+            nonlocal calls
+            # The build's own folders only: putting things back must work.
+            if self.name.endswith((".json", ".yaml", ".svg", ".v", ".new")) or calls == 0:
+                calls += 1
+                if calls == _turn + 1:
+                    raise error
+            return original(self, *args, **options)
+
+        monkeypatch.setattr(Path, fails_at, fail)
+        try:
+            build_one(tmp_path)
+        except BuildError as caught:
+            assert "No space left on device" in str(caught)
+        except KeyboardInterrupt:
+            pass
+        else:
+            assert turn > 0, "the failure was never reached"
+            break
+        finally:
+            monkeypatch.setattr(Path, fails_at, original)
+        assert tree(tmp_path) == before
+        assert not list(tmp_path.rglob(".*"))
+    else:
+        raise AssertionError("the build never came through")
+    assert tree(tmp_path) != before
+
+
+def test_wrong_types_touch_nothing_and_are_all_told(tmp_path):
+    with pytest.raises(DefinitionError) as caught:
+        build(["std_msgs/msg/Bool", "std_msgs/msg/Boo", "nothing/msg/Here"], tmp_path / "out")
+    assert [diagnostic.message for diagnostic in caught.value.diagnostics] == [
+        "type 'Boo' is not defined in package 'std_msgs'; did you mean 'std_msgs/msg/Bool'?",
+        "package 'nothing' is not found",
+    ]
+    assert not (tmp_path / "out").exists()
+
+
+def test_type_that_amaranth_cannot_elaborate_is_refused_before_writing(tmp_path):
+    folder = tmp_path / "src" / "big_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Big.msg").write_text("".join(f"uint8[] f{k}\n" for k in range(120)))
+    with pytest.raises(BuildError) as caught:
+        build(
+            ["std_msgs/msg/Bool", "big_msgs/msg/Big"],
+            tmp_path / "out",
+            paths=[tmp_path / "src"],
+            bus_bytes=64,
+        )
+    assert str(caught.value) == (
+        "big_msgs/msg/Big: its serializer has 65644 input bits on a bus of 64 bytes, "
+        "and Amaranth elaborates at most 65535"
+    )
+    assert not (tmp_path / "out").exists()
+
+
+def test_size_just_below_the_limit_passes():
+    message = Library().message("sensor_msgs/msg/Imu")
+    check_size(build_plan(lay_out(message), bus_bytes=64))
+
+
+def test_output_is_the_same_everywhere(tmp_path):
+    script = (
+        "import sys; from firm_hdl.export import build\n"
+        "build(['sensor_msgs/msg/JointState', 'std_msgs/msg/Empty'], sys.argv[1])"
+    )
+    trees = []
+    for seed, place in (("0", "a"), ("1", "b/c")):
+        home = tmp_path / place
+        home.mkdir(parents=True)
+        environment = {
+            **os.environ,
+            "PYTHONHASHSEED": seed,
+            "PYTHONPATH": str(ROOT),
+            "LC_ALL": "C",
+        }
+        command = [sys.executable, "-c", script, "out"]
+        subprocess.run(command, cwd=home, env=environment, check=True)
+        trees.append(tree(home / "out"))
+    assert len(trees[0]) == 10
+    assert trees[0] == trees[1]
+    for text in trees[0].values():
+        assert str(ROOT).encode() not in text
+        assert str(tmp_path).encode() not in text

@@ -1,0 +1,267 @@
+"""The command: exact messages, exit statuses, and never a traceback."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import firm_hdl
+from firm_hdl import cli
+from firm_hdl.cli import main
+from firm_hdl.plan import build_plan, from_yaml
+from firm_hdl.wire import lay_out
+
+ROOT = Path(firm_hdl.__file__).parent.parent
+COMMAND = [sys.executable, "-c", "import sys; from firm_hdl.cli import main; sys.exit(main())"]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """An empty working directory."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def write(text: str, name: str = "Bad", package: str = "my_msgs") -> None:
+    folder = Path("src") / package / "msg"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{name}.msg").write_text(text)
+
+
+WRONG = {
+    "type": (
+        "uint8 a\nQuat orientation\n",
+        ":2:1: error: type 'Quat' is not defined in package 'my_msgs'\n"
+        "Quat orientation\n"
+        "^^^^\n",
+    ),
+    "package": (
+        "geometry_msg/Point p\n",
+        ":1:1: error: package 'geometry_msg' is not found; did you mean 'geometry_msgs/Point'?\n"
+        "geometry_msg/Point p\n"
+        "^^^^^^^^^^^^^^^^^^\n",
+    ),
+    "cycle": (
+        "Bad[] more\n",
+        ":1:1: error: type 'my_msgs/msg/Bad' contains itself: my_msgs/msg/Bad -> my_msgs/msg/Bad\n"
+        "Bad[] more\n"
+        "^^^^^\n",
+    ),
+    "name": (
+        "uint8 twoWords\n",
+        ":1:7: error: 'twoWords' is not a legal field name: lower-case letters, digits and single "
+        "underscores, a letter first and no underscore last\n"
+        "uint8 twoWords\n"
+        "      ^^^^^^^^\n",
+    ),
+    "constant": (
+        "uint8 MAX=256\n",
+        ":1:11: error: the value of uint8 must be in 0..255\n"
+        "uint8 MAX=256\n"
+        "          ^^^\n",
+    ),
+    "duplicate": (
+        "uint8 a\nuint16 a\n",
+        ":2:8: error: field 'a' is already declared in line 1\n"
+        "uint16 a\n"
+        "       ^\n",
+    ),
+    "bound": (
+        "uint8[<=0] a\n",
+        ":1:9: error: the bound of a sequence must be at least 1, not 0\n"
+        "uint8[<=0] a\n"
+        "        ^\n",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_wrong_definition_is_told_exactly_and_touches_nothing(here, capsys, case):
+    text, message = WRONG[case]
+    write(text)
+    status = main(["build", "std_msgs/msg/Bool", "my_msgs/msg/Bad", "--path", "src"])
+    out, err = capsys.readouterr()
+    assert (status, out) == (1, "")
+    assert err == f"src/my_msgs/msg/Bad.msg{message}"
+    assert sorted(path.name for path in here.iterdir()) == ["src"]
+
+
+def test_wrong_definition_leaves_what_was_built(here, capsys):
+    write("uint8 a\n")
+    arguments = ["build", "my_msgs/msg/Bad", "--path", "src"]
+    assert main(arguments) == 0
+    before = {path: path.stat().st_mtime_ns for path in (here / "vhdl_out").rglob("*")}
+    write("uint8 a\nuint8 a\n")
+    assert main(arguments) == 1
+    assert before == {path: path.stat().st_mtime_ns for path in (here / "vhdl_out").rglob("*")}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            ["show", "sensor_msgs/msg/Imux"],
+            "error: type 'Imux' is not defined in package 'sensor_msgs'; "
+            "did you mean 'sensor_msgs/msg/Imu'?\n",
+        ),
+        (
+            ["plan", "sensor_msg/msg/Imu"],
+            "error: package 'sensor_msg' is not found; did you mean 'sensor_msgs/msg/Imu'?\n",
+        ),
+        (
+            ["info", "Imu"],
+            "error: 'Imu' is not the name of a message type, which is 'package/msg/Name'; "
+            "did you mean 'sensor_msgs/msg/Imu'?\n",
+        ),
+        (["list", "--path", "nowhere"], "error: 'nowhere' is not a folder\n"),
+        (
+            ["build", "sensor_msgs/msg/Imu", "--max-message-bytes", "20"],
+            "error: sensor_msgs/msg/Imu: Maximum message size must be from 312 bytes, the least "
+            "that a sensor_msgs/msg/Imu has, to 4294967295, not 20\n",
+        ),
+    ],
+)
+def test_what_cannot_be_done_exits_1(here, capsys, arguments, message):
+    assert main(arguments) == 1
+    assert capsys.readouterr() == ("", message)
+    assert list(here.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "the following arguments are required: COMMAND"),
+        (["build"], "the following arguments are required: TYPE"),
+        (["built", "x"], "invalid choice: 'built'"),
+        (["build", "a/b", "--bus-bytes", "3"], "argument --bus-bytes: invalid choice: 3"),
+        (["build", "a/b", "--distro", "melodic"], "argument --distro: invalid choice: 'melodic'"),
+        (["plan", "a/b", "--wire", "json"], "argument --wire: invalid choice: 'json'"),
+        (
+            ["plan", "a/b", "--max-message-bytes", "0"],
+            "argument --max-message-bytes: must be from 1 to 4294967295, not 0",
+        ),
+        (
+            ["plan", "a/b", "--max-message-bytes", "much"],
+            "argument --max-message-bytes: 'much' is not a number",
+        ),
+    ],
+)
+def test_wrong_calls_exit_2(here, capsys, arguments, message):
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    out, err = capsys.readouterr()
+    assert (caught.value.code, out) == (2, "")
+    assert err.startswith("usage: firm-hdl")
+    assert message in err
+
+
+def test_build_says_what_it_did(here, capsys):
+    arguments = ["build", "geometry_msgs/msg/Twist", "--out", "gen", "--bus-bytes", "4"]
+    assert main(arguments) == 0
+    out, err = capsys.readouterr()
+    folder = os.path.join("gen", "lyrical", "geometry_msgs_msg_Twist_cdr_4", "")
+    figures = (
+        "geometry_msgs/msg/Twist on cdr, 32-bit bus: 13 steps; packet 52 bytes, 13 beats, "
+        "13 cycles\n"
+        "    clock for every packet: 100 Mbit/s 3.1 MHz, 1 Gbit/s 31.2 MHz, 10 Gbit/s 312.5 MHz\n"
+    )
+    assert (out, err) == (f"wrote   {folder}\n{figures}", "")
+    assert main(arguments) == 0
+    assert capsys.readouterr() == (f"current {folder}\n{figures}", "")
+    assert main(["info", *arguments[1:2], "--bus-bytes", "4"]) == 0
+    assert capsys.readouterr() == (figures, "")
+
+
+def test_list_and_show(here, capsys):
+    write("float32 way  # [m]\nstd_msgs/Bool is_open\n", "Mine")
+    assert main(["list", "--path", "src"]) == 0
+    names = capsys.readouterr().out.splitlines()
+    assert names == sorted(names)
+    assert {"my_msgs/msg/Mine", "sensor_msgs/msg/Imu"} <= {*names}
+    assert main(["show", "my_msgs/msg/Mine", "--path", "src"]) == 0
+    assert capsys.readouterr() == (
+        "float32 way  # [m]\nstd_msgs/Bool is_open\n\tbool data\n", ""
+    )
+
+
+def test_plan_reads_back(here, capsys):
+    options = ["--distro", "noetic", "--bus-bytes", "16", "--max-message-bytes", "0x400"]
+    assert main(["plan", "sensor_msgs/Imu", *options]) == 0
+    message = firm_hdl.load_message("sensor_msgs/Imu", distro="noetic")
+    plan = build_plan(lay_out(message), bus_bytes=16, max_message_bytes=1024)
+    assert from_yaml(capsys.readouterr().out) == plan
+
+
+def test_version(capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(["--version"])
+    assert caught.value.code == 0
+    assert capsys.readouterr().out == f"firm-hdl {firm_hdl.__version__}\n"
+
+
+def test_out_that_is_a_file_exits_1(here, capsys):
+    (here / "out").write_text("not a folder")
+    assert main(["build", "std_msgs/msg/Bool", "--out", "out"]) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("error: 'out")
+    assert err.count("\n") == 1
+    assert (here / "out").read_text() == "not a folder"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="uses a folder that even root cannot write to")
+def test_out_that_cannot_be_written_exits_1(here, capsys):
+    assert main(["build", "std_msgs/msg/Bool", "--out", "/proc/self/out"]) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("error: '/proc/self/out")
+    assert err.count("\n") == 1
+
+
+def test_reader_that_goes_away_is_no_traceback():
+    command = [*COMMAND, "list"]
+    reading, writing = os.pipe()
+    os.close(reading)
+    with os.fdopen(writing, "wb") as pipe:
+        done = subprocess.run(
+            command, stdout=pipe, stderr=subprocess.PIPE, env=ENVIRONMENT, check=False
+        )
+    assert (done.returncode, done.stderr) == (1, b"")
+
+
+def test_interrupt_is_no_traceback(here, capsys, monkeypatch):
+    def interrupted(*args: object, **options: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "build", interrupted)
+    assert main(["build", "std_msgs/msg/Bool"]) == 130
+    assert capsys.readouterr() == ("", "interrupted\n")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="sends a signal")
+def test_build_that_is_interrupted_leaves_whole_folders(here):
+    # The type is large enough to be under way when the signal comes.
+    types = ["sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/JointState", "sensor_msgs/msg/Imu"]
+    process = subprocess.Popen(
+        [*COMMAND, "build", *types],
+        env=ENVIRONMENT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    process.stdout.readline()
+    time.sleep(0.3)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    folders = list((here / "vhdl_out" / "lyrical").iterdir())
+    assert (process.returncode, err) == (130, "interrupted\n")
+    assert 1 <= len(folders) < len(types)
+    assert all(len(list(folder.iterdir())) == 5 for folder in folders)
