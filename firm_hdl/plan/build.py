@@ -165,7 +165,7 @@ class _Builder:
 
     @property
     def segment_bytes(self) -> int:
-        return sum(item.bytes for item in self.segment)
+        return self.segment[-1].at + self.segment[-1].bytes if self.segment else 0
 
     def gap(self, gap: Gap) -> None:
         if gap.bytes is None:
