@@ -69,7 +69,9 @@ def timing(plan: Plan) -> Timing:
     bus = plan.bus_bytes
     sizes = geometry(plan)
     shortest = hardest = _cost(plan, 0, 0)
-    if any(leaf.kind == "length" for leaf in plan.leaves):
+    # Of a long packet, short strings are a small part.
+    is_short = shortest.bytes < 1 << 14
+    if is_short and any(leaf.kind == "length" for leaf in plan.leaves):
         counts = sorted({0, 1, MANY_ELEMENTS.get(plan.levels, 2)})
         for elements, items in product(counts, sorted({0, 1, bus // 2, bus, bus + 1})):
             cost = _cost(plan, elements, items)

@@ -72,7 +72,8 @@ class Control:
         if count_bits is not None and any(begin.length is not None for begin in begins):
             bits = max(bits, count_bits)
         self.bits = bits
-        self.step = Signal(range(len(plan.steps)), init=plan.start.step or 0)
+        # At least one bit: Yosys writes a signal of none as one of two.
+        self.step = Signal(range(max(2, len(plan.steps))), init=plan.start.step or 0)
         init = dict(plan.start.enter)
         self.levels = [
             Signal(bits, name=f"level_{level}", init=init.get(level, 0))
