@@ -110,10 +110,11 @@ class _Circuit:
         self.enable = Signal()
         self.promised = Signal()
         self.complete = Signal()
-        # Set by each step: whether the bytes of its map are there, whether those that lengths
-        # promise are, whether more than the slack would be left, and what went wrong.
+        # Set by each step: whether the bytes of its map are there, which of those behind it are, as
+        # far as they matter, and what went wrong.
         self.map_there = Signal()
-        self.too_much = Signal()
+        self.behind = Signal(self.plan.slack_bytes + 1)
+        self.extra = Signal(range(self.plan.slack_bytes + 2))
         self.mismatch = Signal()
         self.over = Signal()
         # The window from where the run starts in this step.
@@ -153,7 +154,7 @@ class _Circuit:
         needed = max((s.at + s.bytes for s in step.slices if not isinstance(s, Pad)), default=0)
         m.d.comb += [
             self.map_there.eq(self.have(needed)),
-            self.too_much.eq(self.have(step.bytes + self.plan.slack_bytes + 1)),
+            self.behind.eq(self.window.have[step.bytes :]),
         ]
         for item in step.slices:
             if isinstance(item, Fixed) and item.check:
@@ -305,7 +306,7 @@ class _Circuit:
 
     def _progress(self) -> None:
         m, control, window = self.module, self.control, self.window
-        failure, enough, too_much = self._failure()
+        failure, enough, behind = self._failure()
         ends = control.ends
         status_able = ~ends | self.free(self.status)
         m.d.comb += [
@@ -317,20 +318,20 @@ class _Circuit:
             self.complete.eq(self.enable & self.slots.all_served & status_able),
             window.count.eq(control.base + control.run_bytes),
             window.align.eq(control.align),
-            window.take.eq(self.complete & ~self.bad & ~(ends & window.ended)),
+            window.take.eq(self.complete & ~self.bad & ~ends),
+            window.finish.eq(self.complete & ends),
         ]
         finished = Signal(Status)
         m.d.comb += finished.eq(failure)
-        with m.If((failure == Status.OK) & too_much):
+        with m.If((failure == Status.OK) & behind[-1]):
             m.d.comb += finished.eq(Status.TRAILING)
         with m.If(self.complete):
             m.d.sync += [control.step.eq(control.next_step), self.error.eq(failure)]
             with m.If(ends):
                 with m.If(window.ended):
-                    m.d.comb += window.finish.eq(1)
                     self._report(finished)
                 with m.Else():
-                    m.d.sync += self.draining.eq(1)
+                    m.d.sync += [self.draining.eq(1), self.extra.eq(sum(behind[1:], behind[0]))]
 
     def _failure(self) -> tuple[Signal, Signal, Signal]:
         """Judge the step.
@@ -341,23 +342,22 @@ class _Circuit:
             The status after this step: the first error of the packet, in wire order.
         enough : Signal
             All bytes that the step takes are there.
-        too_much : Signal
-            More bytes are there behind them than may follow a message.
+        behind : Signal
+            Bit k: byte k behind them is there. The last bit is one more than may follow a message.
         """
         m, control = self.module, self.control
-        failure, enough, too_much = Signal(Status), Signal(), Signal()
+        failure, enough, behind = Signal(Status), Signal(), Signal.like(self.behind)
         nul_missing = Signal()
         m.d.comb += [
             failure.eq(self.error),
             enough.eq(self.map_there),
-            too_much.eq(self.too_much),
+            behind.eq(self.behind),
         ]
         with m.If(control.running):
             there = self.run_have
-            slack = self.plan.slack_bytes
             m.d.comb += [
                 enough.eq(self.map_there & there[self.plan.bus_bytes - 1]),
-                too_much.eq(there[self.plan.bus_bytes + slack]),
+                behind.eq(there[self.plan.bus_bytes :]),
             ]
             with m.If(control.final), m.Switch(control.run_bytes):
                 for k in range(self.plan.bus_bytes + 2):
@@ -365,7 +365,7 @@ class _Circuit:
                         run_there = there[k - 1] if k else Const(1)
                         m.d.comb += [
                             enough.eq(self.map_there & run_there),
-                            too_much.eq(there[k + slack]),
+                            behind.eq(there[k:]),
                         ]
                         if k:
                             wrong = self.run_bytes[8 * (k - 1) : 8 * k].any() & run_there
@@ -381,7 +381,7 @@ class _Circuit:
                 m.d.comb += failure.eq(Status.TRUNCATED)
             with m.Elif(nul_missing):
                 m.d.comb += failure.eq(Status.STRING)
-        return failure, enough, too_much
+        return failure, enough, behind
 
     def _report(self, status: Value) -> None:
         self.module.d.sync += [
@@ -394,7 +394,7 @@ class _Circuit:
         """Drop what is left of a packet, beat by beat, and report it at the last one."""
         m, window = self.module, self.window
         slack = self.plan.slack_bytes
-        extra = Signal(range(slack + 2))
+        extra = self.extra
         total = Signal(range(slack + 2 + self.plan.bus_bytes))
         m.d.comb += total.eq(extra + window.first_bytes)
         status = Signal(Status)
@@ -407,7 +407,7 @@ class _Circuit:
                 m.d.sync += extra.eq(Mux(total > slack, slack + 1, total))
             with m.Elif(self.free(self.status)):
                 m.d.comb += window.drop.eq(1)
-                m.d.sync += [extra.eq(0), self.draining.eq(0)]
+                m.d.sync += self.draining.eq(0)
                 self._report(status)
 
 

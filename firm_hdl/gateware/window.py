@@ -51,8 +51,8 @@ class Window(wiring.Component):
         Bits of the position behind the encapsulation header that must then be 0: padding is skipped
         along, be it there or not.
     take, finish, drop : In(1)
-        Go forward; remove the rest of the packet (when `ended`); remove the first beat (when
-        `held`). At most one at a time.
+        Go forward; remove all beats of the packet that the window can see, which are its rest when
+        `ended`; remove the first beat (when `held`). At most one at a time.
     """
 
     def __init__(self, plan: Plan):
@@ -222,7 +222,7 @@ class Window(wiring.Component):
                 m.d.comb += taken.eq(i + 1)
             with m.If(goes & (offset[low:] > i)):
                 m.d.comb += idle.eq(i + 1)
-            with m.If(ends[i]):
+            with m.If(valid[i]):
                 m.d.comb += finished.eq(i + 1)
         going = Mux(self.take, taken, idle)
         return pops.eq(Mux(self.finish, finished, Mux(self.drop, 1, going)))

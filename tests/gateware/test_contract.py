@@ -7,7 +7,7 @@ import pytest
 from amaranth.sim import Simulator
 
 from firm_hdl import Deserializer, Serializer, Status
-from firm_hdl.sim import encode, loopback, receive_packets, send_packets
+from firm_hdl.sim import Stalls, encode, loopback, receive_packets, send_packets
 from tests.strategies import make
 
 PAIR = make("ros1", {"x": "uint8", "y": "uint8"})
@@ -167,6 +167,27 @@ def test_cdr_packets_may_be_padded_by_up_to_three_bytes(slack):
         packets, statuses = loopback(message, [packet + bytes(slack), packet], bus_bytes=bus_bytes)
         assert packets == [packet, packet]
         assert statuses == [Status.OK if slack <= 3 else Status.TRAILING, Status.OK]
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8])
+@pytest.mark.parametrize("slack", range(5))
+def test_padding_may_come_long_after_the_message(bus_bytes, slack):
+    # The step that ends the message does not see where the packet ends, and ends itself at an offset
+    # where no step starts.
+    fixed = make("ros2", {"x": "uint16"})
+    text = make("ros2", {"x": "uint16", "s": "string"})
+    start = [0, 1, 0, 0, 7, 7]
+    cases = [(fixed, start)]
+    for count in range(9):
+        cases.append((text, [*start, 0, 0, count + 1, 0, 0, 0, *range(1, count + 1), 0]))
+    for message, packet in cases:
+        statuses = loopback(
+            message,
+            [bytes([*packet, *[0xFF] * slack])] * 2,
+            bus_bytes=bus_bytes,
+            stalls={"packets_in": Stalls.bits("10000")},
+        ).statuses
+        assert statuses == [Status.OK if slack <= 3 else Status.TRAILING] * 2
 
 
 def test_option_bits_of_the_encapsulation_are_ignored():
