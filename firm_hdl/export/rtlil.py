@@ -205,7 +205,7 @@ class _Parser:
                 body.append(self._switch(line))
             else:
                 return tuple(body), line
-        self._fail("the text ends inside a process")
+        return self._fail("the text ends inside a process")
 
     def _switch(self, line: str) -> Switch:
         selector = self._spec(line[7:])

@@ -7,7 +7,7 @@ instances stay as they are; a signal that turns out constant keeps its name.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from firm_hdl.export.rtlil_evaluate import constant, evaluate
@@ -89,7 +89,21 @@ class _Simplifier:
             port: spec if port == output else self._resolve(spec)
             for port, spec in cell.ports.items()
         }
+        if cell.kind in ("$dff", "$adff") and (value := self._constant_register(cell, ports)):
+            self._learn(ports["Q"], value)
+            return None
         return replace(cell, ports=ports) if ports != cell.ports else cell
+
+    def _constant_register(self, cell: Cell, ports: Mapping[str, Spec]) -> Spec:
+        """Give the value of a register that never leaves the one that it starts with."""
+        if not ports["Q"]:
+            return ()
+        (chunk,) = ports["Q"]
+        assert isinstance(chunk, Slice)
+        init = self._module.wires[chunk.wire].attributes.get("init")
+        if not isinstance(init, Bits) or cell.parameters.get("ARST_VALUE", init) != init:
+            return ()
+        return (init,) if ports["D"] in (ports["Q"], (init,)) else ()
 
     def _learn(self, target: Spec, value: Spec) -> None:
         (chunk,) = target

@@ -7,8 +7,9 @@ from collections.abc import Iterator, Sequence
 from firm_hdl.export.rtlil_ir import Cell, Slice, Spec, Statement, cut
 from firm_hdl.export.vhdl_declare import Names
 from firm_hdl.export.vhdl_expr import Declared, Values
-from firm_hdl.export.vhdl_graph import INLINE, Graph, trim
+from firm_hdl.export.vhdl_graph import Graph
 from firm_hdl.export.vhdl_process import Statements, flatten
+from firm_hdl.export.vhdl_uses import INLINE, output, trim
 
 __all__ = ["Body"]
 
@@ -26,8 +27,8 @@ class Body:
         """Yield operators that have a signal of their own."""
         graph = self._graph
         for cell in graph.cells:
-            if cell.kind in INLINE and graph.output(cell) not in graph.folded:
-                yield from self._operator(self._names.declared[graph.output(cell)], cell)
+            if cell.kind in INLINE and output(cell) not in graph.folded:
+                yield from self._operator(self._names.declared[output(cell)], cell)
             elif cell.kind == "$tribuf":
                 yield from self._tristate(cell)
 

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from operator import eq, ge, gt, le, lt, ne
 from typing import TYPE_CHECKING
 
-from firm_hdl.export.rtlil_ir import Cell, Slice, Spec, spec_width
-from firm_hdl.export.vhdl_graph import int_parameter, trim
+from firm_hdl.export.rtlil_ir import Cell, Spec, spec_width
 from firm_hdl.export.vhdl_text import Text, atom, call, infix, literal, prefix
+from firm_hdl.export.vhdl_uses import int_parameter, output, trim
 
 if TYPE_CHECKING:
     from firm_hdl.export.vhdl_expr import Values
@@ -43,9 +43,7 @@ class Cells:
 
     def width(self, cell: Cell) -> int:
         """Count the bits of the result that anybody reads."""
-        chunk = cell.ports["Y"][0]
-        assert isinstance(chunk, Slice)
-        return self._values._width[chunk.wire]
+        return self._values.width(output(cell))
 
     def is_condition(self, cell: Cell) -> bool:
         """Tell results that are better written as a condition: they compare something."""
@@ -166,6 +164,10 @@ class Cells:
             left = values.extended(a, width, signed=signed)
             right = values.extended(b, width, signed=True) if signed else self._short(b)
             return infix(operator, left, right)
+        if spec_width(a) == 1 and operator == "+":
+            a, b = b, a
+        if spec_width(a) == 1:
+            return infix(operator, values.unsigned(a, width), self._short(b))
         # numeric_std extends the shorter operand by itself.
         return infix(operator, self._short(a), self._short(b))
 

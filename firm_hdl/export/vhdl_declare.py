@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 from firm_hdl.export.rtlil_ir import Bits, Cell, Module, Slice, Value, Wire
 from firm_hdl.export.vhdl_expr import Declared
-from firm_hdl.export.vhdl_graph import INLINE, Graph
+from firm_hdl.export.vhdl_graph import Graph
 from firm_hdl.export.vhdl_names import Scope, legal
 from firm_hdl.export.vhdl_text import bit_literal, literal
+from firm_hdl.export.vhdl_uses import INLINE, output
 
 __all__ = ["Names", "Port", "declare", "enumeration", "initial_value", "part_names"]
 
@@ -153,7 +154,7 @@ def _ports(
 
 def _read_registers(graph: Graph) -> frozenset[str]:
     return frozenset(
-        graph.output(cell)
+        output(cell)
         for cell in graph.cells
         if cell.kind == "$memrd_v2" and cell.parameters.get("CLK_ENABLE") == 1
     )
@@ -217,7 +218,7 @@ def _driven(graph: Graph, child_names: Mapping[str, Mapping[str, str]]) -> dict[
                         if isinstance(chunk, Slice)
                     )
         elif cell.kind in ("$dff", "$adff", "$memrd_v2") or cell.kind in INLINE:
-            wire = graph.output(cell)
+            wire = output(cell)
             if wire not in graph.folded:
                 driven[wire] = _made_up(cell.kind, wire)
     for process in graph.processes:

@@ -9,9 +9,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from firm_hdl.export.rtlil_evaluate import constant
 from firm_hdl.export.rtlil_ir import Bits, Cell, Chunk, Slice, Spec, spec_width
-from firm_hdl.export.vhdl_graph import trim
+from firm_hdl.export.vhdl_cells import Cells
 from firm_hdl.export.vhdl_text import Text, atom, bit_literal, call, chain, infix, literal
+from firm_hdl.export.vhdl_uses import trim
 
 __all__ = ["Declared", "Values"]
 
@@ -30,6 +32,11 @@ class Declared:
         if self.width == 1:
             return "std_logic"
         return f"{'std_logic_vector' if self.vector else 'unsigned'}({self.width - 1} downto 0)"
+
+    @property
+    def zero(self) -> str:
+        """The value 0."""
+        return "'0'" if self.width == 1 else "(others => '0')"
 
     def part(self, low: int, width: int) -> str:
         """Name some of its bits, as a target or, if it is no vector, a value."""
@@ -65,13 +72,14 @@ class Values:
     def __init__(
         self, declared: Mapping[str, Declared], folded: Mapping[str, Cell], width: Mapping[str, int]
     ) -> None:
-        # Late, as operators are made of values and values of operators.
-        from firm_hdl.export.vhdl_cells import Cells
-
         self._declared = declared
         self._folded = folded
         self._width = width
         self.cells = Cells(self)
+
+    def width(self, wire: str) -> int:
+        """Count the bits of a wire that anybody reads."""
+        return self._width[wire]
 
     def folded(self, spec: Spec) -> Cell | None:
         """Give the operator that a value is the whole result of, if it has no signal."""
@@ -162,11 +170,7 @@ class Values:
 
     def constant(self, spec: Spec, *, signed: bool = False) -> int | None:
         """Give the number that a value is, if it is a constant one."""
-        if not all(isinstance(chunk, Bits) for chunk in spec):
-            return None
-        bits = "".join(c.text for c in reversed(spec) if isinstance(c, Bits))
-        bits = "".join("1" if bit == "1" else "0" for bit in bits)
-        return int(bits or "0", 2) - ((signed and bits[:1] == "1") << len(bits))
+        return constant(spec, signed=signed)
 
     def _joined(self, spec: Spec, target: bool) -> Text:
         parts: list[Text] = []

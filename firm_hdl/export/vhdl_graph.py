@@ -9,88 +9,25 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from firm_hdl.export.rtlil_ir import (
     Assign,
-    Bits,
     Cell,
-    Chunk,
     Module,
     Process,
     Slice,
     Spec,
-    Statement,
-    Switch,
     spec_width,
 )
+from firm_hdl.export.vhdl_uses import INLINE, Use, output, statement_uses, uses_of
 
-__all__ = ["INLINE", "Graph", "enable_runs", "int_parameter", "trim"]
+__all__ = ["Graph"]
 
-_MODULAR = frozenset("$add $sub $mul $neg $and $or $xor $not $mux $shl".split())
-"""Kinds whose low result bits depend on the low operand bits alone."""
+_COMPARISONS = frozenset("$eq $ne $lt $le $gt $ge".split())
 
-INLINE = _MODULAR | frozenset(
-    "$reduce_bool $reduce_or $reduce_and $reduce_xor $divfloor $modfloor $shr $sshr $shift "
-    "$eq $ne $lt $le $gt $ge".split()
-)
-"""Kinds that are an expression."""
-
+# How many operands an expression has at most, and how often a comparison is written out.
 _FOLD_LEAVES = 6
-
-
-def trim(spec: Spec, width: int) -> Spec:
-    """Keep the `width` low bits."""
-    kept: list[Chunk] = []
-    for chunk in spec:
-        if width <= 0:
-            break
-        if chunk.width > width:
-            chunk = (
-                Bits(chunk.text[-width:])
-                if isinstance(chunk, Bits)
-                else Slice(chunk.wire, chunk.low, width)
-            )
-        kept.append(chunk)
-        width -= chunk.width
-    return tuple(kept)
-
-
-def int_parameter(cell: Cell, name: str) -> int:
-    """Read a parameter that is a number."""
-    value = cell.parameters.get(name, 0)
-    if isinstance(value, Bits):
-        return int(value.text or "0", 2)
-    if not isinstance(value, int):
-        raise ValueError(f"RTLIL line {cell.line}: parameter {name} of {cell.kind} is no number")
-    return value
-
-
-def enable_runs(spec: Spec) -> list[tuple[Chunk, int, int]]:
-    """Split a write enable, one bit per data bit, into (bit, lowest data bit, number of bits)."""
-    runs: list[tuple[Chunk, int, int]] = []
-    position = 0
-    for chunk in spec:
-        for i in range(chunk.width):
-            bit: Chunk = (
-                Bits(chunk.text[-1 - i])
-                if isinstance(chunk, Bits)
-                else Slice(chunk.wire, chunk.low + i, 1)
-            )
-            if runs and runs[-1][0] == bit:
-                runs[-1] = (bit, runs[-1][1], runs[-1][2] + 1)
-            else:
-                runs.append((bit, position, 1))
-            position += 1
-    return runs
-
-
-@dataclass(frozen=True, slots=True)
-class _Use:
-    """A reading of a specification. `inline`: an expression may stand there."""
-
-    spec: Spec
-    inline: bool
+_REPEATS = 3
 
 
 class Graph:
@@ -141,13 +78,6 @@ class Graph:
         assert name is not None
         return name
 
-    def output(self, cell: Cell) -> str:
-        """Name the wire that an operator, flip-flop or memory port drives."""
-        port = {"$dff": "Q", "$adff": "Q", "$memrd_v2": "DATA"}.get(cell.kind, "Y")
-        chunk = cell.ports[port][0]
-        assert isinstance(chunk, Slice)
-        return chunk.wire
-
     def is_instance(self, cell: Cell) -> bool:
         """Tell an instance, of a module of the design or of something foreign."""
         return not cell.kind.startswith("$")
@@ -175,11 +105,9 @@ class Graph:
         `floor_div` and `floor_mod` give 0 in that case by themselves.
         """
         divisions = {
-            self.output(cell): cell
-            for cell in self.cells
-            if cell.kind in ("$divfloor", "$modfloor")
+            output(cell): cell for cell in self.cells if cell.kind in ("$divfloor", "$modfloor")
         }
-        tests = {self.output(cell): cell for cell in self.cells if cell.kind == "$reduce_bool"}
+        tests = {output(cell): cell for cell in self.cells if cell.kind == "$reduce_bool"}
         guards: set[str] = set()
         cells: list[Cell] = []
         for cell in self.cells:
@@ -208,7 +136,7 @@ class Graph:
         self.cells = [
             cell
             for cell in cells
-            if cell.kind not in ("$divfloor", "$modfloor") or self.output(cell) not in guards
+            if cell.kind not in ("$divfloor", "$modfloor") or output(cell) not in guards
         ]
 
     def _sort_connections(self) -> None:
@@ -248,48 +176,18 @@ class Graph:
             and value[0].width == self.width[base]
         )
 
-    def _cell_uses(self) -> Iterator[_Use]:
+    def _cell_uses(self) -> Iterator[Use]:
         for cell in self.cells:
-            yield from self._uses_of(cell)
+            yield from uses_of(cell, self.width)
         for process in self.processes:
-            yield from _statement_uses(process.body)
-
-    def _uses_of(self, cell: Cell) -> Iterator[_Use]:
-        kind, ports = cell.kind, cell.ports
-        if kind in INLINE:
-            width = self.width[self.output(cell)] if kind in _MODULAR else None
-            for port, spec in ports.items():
-                if port == "Y":
-                    continue
-                cut = width is not None and not (port in "BS" and kind in ("$shl",)) and port != "S"
-                yield _Use(trim(spec, width) if cut and width is not None else spec, True)
-        elif kind in ("$dff", "$adff"):
-            yield _Use(ports["D"], True)
-            yield _Use(ports["CLK"], False)
-            yield _Use(ports.get("ARST", ()), False)
-        elif kind == "$memwr_v2":
-            runs = enable_runs(ports["EN"])
-            yield _Use(ports["ADDR"], False)
-            yield _Use(ports["DATA"], False)
-            yield _Use(ports["CLK"], False)
-            yield from (_Use((bit,), len(runs) == 1) for bit, _, _ in runs)
-        elif kind == "$memrd_v2":
-            yield _Use(ports["ADDR"], False)
-            yield _Use(ports["EN"], True)
-            yield _Use(ports["CLK"], False)
-        elif kind in ("$check", "$print"):
-            yield from (_Use(spec, port in ("A", "EN")) for port, spec in ports.items())
-        elif kind == "$tribuf":
-            yield from (_Use(ports[port], True) for port in ("A", "EN"))
-        elif kind != "$meminit_v2":
-            yield from (_Use(spec, False) for port, spec in ports.items())
+            yield from statement_uses(process.body)
 
     def _narrow(self) -> None:
         """Give made-up operator results the width that is read; drop what nobody reads."""
         drivers = {
-            self.output(cell): cell
+            output(cell): cell
             for cell in self.cells
-            if cell.kind in INLINE and self.output(cell).startswith("$")
+            if cell.kind in INLINE and output(cell).startswith("$")
         }
         needed: Counter[str] = Counter()
         pending: list[str] = []
@@ -302,25 +200,23 @@ class Graph:
                         pending.append(chunk.wire)
 
         for cell in self.cells:
-            if cell.kind not in INLINE or self.output(cell) not in drivers:
-                for use in self._uses_of(cell):
+            if cell.kind not in INLINE or output(cell) not in drivers:
+                for use in uses_of(cell, self.width):
                     demand(use.spec)
         for process in self.processes:
-            for use in _statement_uses(process.body):
+            for use in statement_uses(process.body):
                 demand(use.spec)
         for _, value in self.drives + self.watches:
             demand(value)
         while pending:
             name = pending.pop()
             self.width[name] = needed[name]
-            for use in self._uses_of(drivers[name]):
+            for use in uses_of(drivers[name], self.width):
                 demand(use.spec)
         self.cells = [
             cell
             for cell in self.cells
-            if cell.kind not in INLINE
-            or self.output(cell) not in drivers
-            or needed[self.output(cell)]
+            if cell.kind not in INLINE or output(cell) not in drivers or needed[output(cell)]
         ]
 
     def _adopt_names(self) -> None:
@@ -356,7 +252,7 @@ class Graph:
         for cell in self.cells:
             if cell.kind not in ("$dff", "$adff"):
                 continue
-            register = self.output(cell)
+            register = output(cell)
             self.register_of[register] = cell
             data = cell.ports["D"]
             chunk = data[0]
@@ -377,19 +273,19 @@ class Graph:
         yield from (use.spec for use in self._cell_uses())
         yield from (value for _, value in self.drives + self.watches)
 
-    def _all_uses(self) -> Iterator[_Use]:
+    def _all_uses(self) -> Iterator[Use]:
         for cell in self.cells:
-            register = self.output(cell) if cell.kind in ("$dff", "$adff") else None
+            register = output(cell) if cell.kind in ("$dff", "$adff") else None
             process = self.next_state.get(register) if register else None
-            for use in self._uses_of(cell):
+            for use in uses_of(cell, self.width):
                 if process is None or use.spec != cell.ports["D"]:
                     yield use
             if process is not None:
-                yield from _statement_uses(process.body)
+                yield from statement_uses(process.body)
         for process in self.processes:
-            yield from _statement_uses(process.body)
+            yield from statement_uses(process.body)
         for _, value in self.drives + self.watches:
-            yield _Use(value, True)
+            yield Use(value, True)
 
     def _fold(self) -> None:
         count: Counter[str] = Counter()
@@ -402,12 +298,12 @@ class Graph:
                     if not use.inline or not whole:
                         fixed.add(chunk.wire)
         candidates = {
-            self.output(cell): cell
+            output(cell): cell
             for cell in self.cells
             if cell.kind in INLINE
-            and self.output(cell).startswith("$")
-            and self.output(cell) not in self.name_of
-            and self.output(cell) not in fixed
+            and output(cell).startswith("$")
+            and output(cell) not in self.name_of
+            and output(cell) not in fixed
         }
         leaves: dict[str, int] = defaultdict(lambda: 1)
         for name in _in_order(candidates):
@@ -418,19 +314,23 @@ class Graph:
                 if port != "Y"
                 for chunk in spec
             )
-            if weight <= _FOLD_LEAVES and (count[name] == 1 or _is_plain_not(cell, self.folded)):
+            if weight <= _FOLD_LEAVES and (
+                count[name] == 1 or _may_repeat(cell, count[name], self.folded)
+            ):
                 leaves[name] = weight
                 self.folded[name] = cell
 
 
-def _is_plain_not(cell: Cell, folded: dict[str, Cell]) -> bool:
-    spec = cell.ports["A"]
-    return (
-        cell.kind == "$not"
-        and spec_width(spec) == 1
-        and isinstance(spec[0], Slice)
-        and spec[0].wire not in folded
-    )
+def _may_repeat(cell: Cell, uses: int, folded: dict[str, Cell]) -> bool:
+    """Tell what is as short as a name for it: an inverted bit, or two signals compared."""
+    specs = [spec for port, spec in cell.ports.items() if port != "Y"]
+    if any(len(spec) > 1 for spec in specs):
+        return False
+    if any(isinstance(c, Slice) and c.wire in folded for spec in specs for c in spec):
+        return False
+    if cell.kind == "$not":
+        return spec_width(cell.ports["A"]) == 1
+    return cell.kind in _COMPARISONS and uses <= _REPEATS
 
 
 def _in_order(candidates: dict[str, Cell]) -> Iterator[str]:
@@ -476,28 +376,3 @@ def _target(process: Process) -> str | None:
             assert isinstance(chunk, Slice)
             return chunk.wire
     return None
-
-
-def _statement_uses(body: tuple[Statement, ...]) -> Iterator[_Use]:
-    for statement in body:
-        if isinstance(statement, Assign):
-            yield _Use(statement.value, True)
-            continue
-        yield from _selector_uses(statement)
-        for case in statement.cases:
-            yield from _statement_uses(case.body)
-
-
-def _selector_uses(switch: Switch) -> Iterator[_Use]:
-    """A bit of a selector may be an expression if one arm alone looks at it."""
-    position = spec_width(switch.selector)
-    for chunk in reversed(switch.selector):
-        low = position - chunk.width
-        looks = sum(
-            any(mark != "-" for mark in pattern[len(pattern) - position : len(pattern) - low])
-            for case in switch.cases
-            for pattern in case.patterns
-        )
-        both = len(switch.selector) == 1 and looks == 2 and position == 1
-        yield _Use((chunk,), chunk.width == 1 and (looks <= 1 or both))
-        position = low

@@ -13,6 +13,7 @@ from firm_hdl.export.vhdl_expr import Values
 from firm_hdl.export.vhdl_graph import Graph
 from firm_hdl.export.vhdl_names import is_identifier
 from firm_hdl.export.vhdl_text import bit_literal, literal
+from firm_hdl.export.vhdl_uses import output
 
 __all__ = ["component", "foreign_instance", "instance"]
 
@@ -122,7 +123,7 @@ def _mode(cell: Cell, port: str, graph: Graph) -> str:
     directions = {wire.direction for wire in wires}
     if "inout" in directions:
         return "inout"
-    driven = {graph.output(other) for other in graph.cells if other.kind in ("$dff", "$adff")}
+    driven = {output(other) for other in graph.cells if other.kind in ("$dff", "$adff")}
     if directions == {"output"} and not any(
         wire.name in driven or wire.name in _sources(graph) for wire in wires
     ):
@@ -134,7 +135,7 @@ def _sources(graph: Graph) -> set[str]:
     """List the wires that processes, operators and connections drive."""
     names = {graph.target(process) for process in graph.processes}
     names.update(
-        graph.output(cell)
+        output(cell)
         for cell in graph.cells
         if cell.kind.startswith("$") and ("Y" in cell.ports or cell.kind == "$memrd_v2")
     )

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from firm_hdl.export.rtlil_ir import Bits, Cell, Memory, Slice, Spec, cut, spec_width
 from firm_hdl.export.vhdl_expr import Declared, Values
-from firm_hdl.export.vhdl_graph import enable_runs, int_parameter
 from firm_hdl.export.vhdl_text import Text, atom, bit_literal, chain, infix, literal
+from firm_hdl.export.vhdl_uses import enable_runs, int_parameter
 
 __all__ = ["MemoryText", "edge", "memory_id"]
 
@@ -155,8 +155,7 @@ class MemoryText:
         word = target.accept(atom(self._word(address)), target.width)
         if guard is None:
             return f"{target.name} <= {word};"
-        zero = "'0'" if target.width == 1 else "(others => '0')"
-        return f"{target.name} <= {word} when {guard.text} else {zero};"
+        return f"{target.name} <= {word} when {guard.text} else {target.zero};"
 
     def _clocked_read(self, cell: Cell) -> Iterator[str]:
         enable = cell.ports["EN"]
@@ -183,11 +182,7 @@ class MemoryText:
             yield f"if {guard.text} then"
             yield f"  {line}"
             yield "else"
-            yield (
-                f"  {target.name} <= {chr(39)}0{chr(39)};"
-                if target.width == 1
-                else (f"  {target.name} <= (others => '0');")
-            )
+            yield f"  {target.name} <= {target.zero};"
             yield "end if;"
         mask = int_parameter(cell, "TRANSPARENCY_MASK")
         for write in self._writes:

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from firm_hdl.export.rtlil_ir import Cell, Spec, cut
 from firm_hdl.export.vhdl_expr import Values
-from firm_hdl.export.vhdl_graph import int_parameter
+from firm_hdl.export.vhdl_uses import int_parameter
 
 __all__ = ["message"]
 

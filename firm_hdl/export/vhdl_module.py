@@ -17,6 +17,7 @@ from firm_hdl.export.vhdl_package import PACKAGE_NAME
 from firm_hdl.export.vhdl_process import Statements
 from firm_hdl.export.vhdl_registers import Registers
 from firm_hdl.export.vhdl_text import wrap
+from firm_hdl.export.vhdl_uses import output
 
 __all__ = ["EntityNames", "ModuleWriter"]
 
@@ -187,7 +188,7 @@ class ModuleWriter:
         return wire in self._graph.register_of or any(
             cell.kind == "$memrd_v2"
             and cell.parameters.get("CLK_ENABLE") == 1
-            and self._graph.output(cell) == wire
+            and output(cell) == wire
             for cell in self._graph.cells
         )
 
@@ -249,6 +250,7 @@ class ModuleWriter:
         yield from self._body.processes()
         for memory in self._memories():
             yield memory.processes()
+        yield self._reads_of_nothing()
         yield from self._registers.processes()
         yield self._body.connections(graph.drives)
         yield self._outputs()
@@ -256,6 +258,13 @@ class ModuleWriter:
         for cell in graph.cells:
             if cell.kind in ("$check", "$print"):
                 yield message(cell, self._values, self._module.name)
+
+    def _reads_of_nothing(self) -> Iterator[str]:
+        """Yield what ports of memories without words read."""
+        for cell in self._graph.cells:
+            if cell.kind == "$memrd_v2" and not self._module.memories[memory_id(cell)].size:
+                target = self._names.declared[output(cell)]
+                yield f"{target.name} <= {target.zero};"
 
     def _instance(self, cell: Cell) -> Iterator[str]:
         submodule = self._modules.get(cell.kind)

@@ -57,6 +57,17 @@ end package;
 
 package body firm_hdl_pkg is
 
+  -- Bit by bit, as GHDL 2.0 cannot synthesize a constant compared with a number.
+  function is_zero(value : unsigned) return boolean is
+  begin
+    for i in value'range loop
+      if value(i) = '1' then
+        return false;
+      end if;
+    end loop;
+    return true;
+  end function;
+
   function resize(value : std_ulogic; n : positive) return unsigned is
     variable result : unsigned(n - 1 downto 0) := (others => '0');
   begin
@@ -122,7 +133,7 @@ package body firm_hdl_pkg is
   begin
     bits := value;
     result := bits(n - 1 downto 0);
-    if bits(value'length - 1 downto n) /= 0 then
+    if not is_zero(bits(value'length - 1 downto n)) then
       result := (others => '1');
     end if;
     return result;
@@ -131,7 +142,7 @@ package body firm_hdl_pkg is
   function floor_div(dividend, divisor : unsigned) return unsigned is
     variable result : unsigned(dividend'length - 1 downto 0) := (others => '0');
   begin
-    if divisor /= 0 then
+    if not is_zero(divisor) then
       result := dividend / divisor;
     end if;
     return result;
@@ -145,10 +156,10 @@ package body firm_hdl_pkg is
   begin
     a := resize(dividend, n);
     b := resize(divisor, n);
-    if b /= 0 then
+    if not is_zero(unsigned(b)) then
       quotient := a / b;
       result := quotient;
-      if (a(n - 1) /= b(n - 1)) and a mod b /= 0 then
+      if (a(n - 1) /= b(n - 1)) and not is_zero(unsigned(a mod b)) then
         result := quotient - 1;
       end if;
     end if;
@@ -158,7 +169,7 @@ package body firm_hdl_pkg is
   function floor_mod(dividend, divisor : unsigned) return unsigned is
     variable result : unsigned(divisor'length - 1 downto 0) := (others => '0');
   begin
-    if divisor /= 0 then
+    if not is_zero(divisor) then
       result := dividend mod divisor;
     end if;
     return result;
@@ -167,7 +178,7 @@ package body firm_hdl_pkg is
   function floor_mod(dividend, divisor : signed) return signed is
     variable result : signed(divisor'length - 1 downto 0) := (others => '0');
   begin
-    if divisor /= 0 then
+    if not is_zero(unsigned(divisor)) then
       result := dividend mod divisor;
     end if;
     return result;

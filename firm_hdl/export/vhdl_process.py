@@ -283,8 +283,10 @@ class Statements:
         selector = self._values.unsigned(switch.selector).text
         yield f"case {selector} is"
         for patterns, case in plain:
-            choices = " | ".join(literal(p) for p in patterns) if patterns else "others"
-            remark = " or ".join(filter(None, (self._comment((chunk,), p) for p in patterns)))
+            choices = " | ".join(literal(p) for p in sorted(patterns)) if patterns else "others"
+            remark = " or ".join(
+                filter(None, (self._comment((chunk,), p) for p in sorted(patterns)))
+            )
             yield f"  when {choices} =>{f'  -- {remark}' if remark else ''}"
             yield from (f"    {line}" for line in self.body(case.body))
             if not case.body:

@@ -81,6 +81,10 @@ class Registers:
         reset: Spec = ()
         if cell.kind == "$dff" and body and (reset := self._reset_of(body[-1], wire)):
             body = body[:-1]
+        if not body:
+            # One that holds what it has; with nothing but a reset it would be a latch.
+            whole = (Slice(wire, 0, self._graph.width[wire]),)
+            body = (Assign(target=whole, value=whole),)
         return _Register(wire, cell, body, reset)
 
     def _holds(self, statement: Statement, wire: str) -> bool:

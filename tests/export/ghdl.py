@@ -117,7 +117,9 @@ def simulate(
     ports = list(vhdl.entities.values())[-1].ports
     into = {name: width for name, width in inputs.items() if width}
     out = {name: width for name, width in outputs.items() if width}
-    rows = ("".join(f"{step[name]:0{width}b}" for name, width in into.items()) for step in steps)
+    rows = (
+        "".join(f"{step[name]:0{width}b}" for name, width in into.items()) or "0" for step in steps
+    )
     (folder / "stimuli.txt").write_text("".join(f"{row}\n" for row in rows))
     (folder / "bench.vhd").write_text(_bench(vhdl.top, ports, into, out))
     run(folder, "-a", "--std=08", "bench.vhd")
@@ -155,7 +157,7 @@ use ieee.std_logic_1164.all;
 use std.textio.all;
 entity bench is end entity;
 architecture sim of bench is
-  signal stim : std_logic_vector({sum(inputs.values()) - 1} downto 0) := (others => '0');
+  signal stim : std_logic_vector({max(sum(inputs.values()) - 1, 0)} downto 0) := (others => '0');
   signal seen : std_logic_vector({sum(outputs.values()) - 1} downto 0);
 begin
   dut : entity work.{top} port map (

@@ -52,8 +52,9 @@ def test_vhdl_does_what_amaranth_does(seed: int, tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("ghdl")
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, 36])
 def test_no_latches_are_synthesized(seed: int, tmp_path: Path) -> None:
+    # GHDL 2.0 itself fails for constants of more than 32 bits in products, and for some memories.
     _, vhdl, _, _ = _both(seed)
     assert "latch" not in synthesize(vhdl, tmp_path).lower()
 
