@@ -58,20 +58,22 @@ class HalfSpeed(wiring.Component):
         connect(m, tx.packets, flipped(self.packets_out))
 
         # One record and one status come for each packet. They are taken together, and the record
-        # goes on only if all of its packet was good.
+        # goes on only if all of its packet was good. It waits for the serializer in a register, so
+        # that the deserializer can fill its own with the next message in the meantime.
         good = rx.status.payload == Status.OK
         both = reader.record.valid & rx.status.valid
-        taken = both & (writer.record.ready | ~good)
+        free = ~writer.record.valid | writer.record.ready
         m.d.comb += [
-            writer.record.valid.eq(both & good),
-            reader.record.ready.eq(taken),
-            rx.status.ready.eq(taken),
+            reader.record.ready.eq(both & free),
+            rx.status.ready.eq(both & free),
             tx.status.ready.eq(1),
         ]
-        for part in ("linear", "angular"):
-            for axis in ("x", "y", "z"):
-                velocity = reader.record.payload[part][axis]
-                m.d.comb += writer.record.payload[part][axis].eq(half(velocity))
+        with m.If(free):
+            m.d.sync += writer.record.valid.eq(both & good)
+            for part in ("linear", "angular"):
+                for axis in ("x", "y", "z"):
+                    velocity = reader.record.payload[part][axis]
+                    m.d.sync += writer.record.payload[part][axis].eq(half(velocity))
         return m
 
 

@@ -23,8 +23,8 @@ class Serializer(wiring.Component):
 
     Leaves are taken in wire order, several in one cycle if they are valid; none waits for a later
     one. Lengths on the wire, padding and terminators are added. Latency from the last leaf of a
-    step to its beat: 2 cycles. The `ready` of a leaf depends combinationally on `packets.ready`,
-    on `status.ready`, and on the `valid` of the leaves that stand before it in the same step.
+    step to its beat: 2 cycles. The `ready` of a leaf depends combinationally on `packets.ready`
+    and on the `valid` of the leaves that stand before it in the same step.
     One clock domain, `sync`; its reset empties everything.
 
     Each packet ends in one transfer on `status`. A length over its bound is written as it is, and
