@@ -172,8 +172,8 @@ def test_cdr_packets_may_be_padded_by_up_to_three_bytes(slack):
 @pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8])
 @pytest.mark.parametrize("slack", range(5))
 def test_padding_may_come_long_after_the_message(bus_bytes, slack):
-    # The step that ends the message does not see where the packet ends, and ends itself at an offset
-    # where no step starts.
+    # The step that ends the message does not see where the packet ends, and its own end is where no
+    # step starts.
     fixed = make("ros2", {"x": "uint16"})
     text = make("ros2", {"x": "uint16", "s": "string"})
     start = [0, 1, 0, 0, 7, 7]
