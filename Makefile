@@ -8,7 +8,7 @@ JOBS   ?= 2
 VERIFY_ARGS ?= --bus-bytes 4 --bus-bytes 8
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint verify bench tools ghdl clean
+.PHONY: help demo test lint verify bench tools ghdl verilog clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' Makefile
@@ -16,7 +16,7 @@ help: ## list the targets
 demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware
 	$(BIN)/python examples/demo.py
 
-test: lint ghdl ## linters, types and all tests
+test: lint ghdl verilog ## linters, types and all tests
 	$(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
 lint: $(VENV)/.installed-dev ## ruff and mypy only
@@ -29,22 +29,26 @@ verify: $(VENV)/.installed ## every type of every distribution against rosbags (
 bench: $(VENV)/.installed ## cycles per beat of long and short messages, on several bus widths
 	$(BIN)/python examples/bench.py
 
-tools: ## system packages that tests use where they are present; needs root
-	apt-get update
-	apt-get install -y --no-install-recommends iverilog verilator ghdl
+tools: ghdl verilog ## system packages that tests and the demo use
 
-# GHDL runs the benches of the VHDL. No Python package has it, so root gets it from Debian or Ubuntu
-# here; whoever cannot goes on without.
+# Tools that no Python package has. Root gets them from Debian or Ubuntu here; whoever cannot goes on
+# without: tests that need them are skipped, except in CI.
 ghdl:
-	@command -v ghdl >/dev/null || command -v ghdl-mcode >/dev/null || { \
-	  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
-	    echo "Installing GHDL, which runs the VHDL's test benches ..."; \
-	    { apt-get update && DEBIAN_FRONTEND=noninteractive \
-	      apt-get install -y --no-install-recommends ghdl; } >/dev/null 2>&1 \
-	      || echo "GHDL could not be installed (apt-get install ghdl); going on without." >&2; \
-	  else \
-	    echo "GHDL is not installed; to run the VHDL's test benches: sudo apt-get install ghdl" >&2; \
-	  fi; }
+	@$(call need,ghdl,command -v ghdl >/dev/null || command -v ghdl-mcode >/dev/null)
+
+verilog:
+	@$(call need,iverilog verilator,command -v iverilog >/dev/null && command -v verilator >/dev/null)
+
+# $(call need,packages,test that they are there)
+need = { $(2); } || { \
+  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+    echo "Installing $(1) ..."; \
+    { apt-get update && DEBIAN_FRONTEND=noninteractive \
+      apt-get install -y --no-install-recommends $(1); } >/dev/null 2>&1 \
+      || echo "Failed: apt-get install $(1); going on without." >&2; \
+  else \
+    echo "Missing, and used by tests: sudo apt-get install $(1)" >&2; \
+  fi; }
 
 clean: ## remove .venv and what tools have cached
 	rm -rf $(VENV) build dist ./*.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -56,7 +55,7 @@ def test_text_says_nothing_of_the_machine(direction):
     assert "[-1:0]" not in text
 
 
-@pytest.mark.skipif(shutil.which("verilator") is None, reason="verilator is not installed")
+@pytest.mark.usefixtures("verilator")
 @pytest.mark.parametrize("direction", DIRECTIONS)
 @pytest.mark.parametrize("type_", ["sensor_msgs/msg/JointState", "std_msgs/msg/Empty"])
 def test_verilator_finds_nothing(type_, direction, tmp_path):
@@ -117,7 +116,7 @@ endmodule
 """
 
 
-@pytest.mark.skipif(shutil.which("iverilog") is None, reason="iverilog is not installed")
+@pytest.mark.usefixtures("iverilog")
 @pytest.mark.parametrize("bus_bytes", [1, 8])
 def test_packets_come_back_in_iverilog(bus_bytes, tmp_path):
     type_ = "sensor_msgs/msg/JointState"
