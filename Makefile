@@ -34,7 +34,7 @@ tools: ghdl verilog ## system packages that tests and the demo use
 # Tools that no Python package has. Root gets them from Debian or Ubuntu here; whoever cannot goes on
 # without: tests that need them are skipped, except in CI.
 ghdl:
-	@$(call need,ghdl,command -v ghdl >/dev/null || command -v ghdl-mcode >/dev/null)
+	@$(call need,ghdl-mcode,command -v ghdl >/dev/null || command -v ghdl-mcode >/dev/null)
 
 verilog:
 	@$(call need,iverilog verilator,command -v iverilog >/dev/null && command -v verilator >/dev/null)

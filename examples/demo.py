@@ -1,15 +1,19 @@
 """Real ROS messages through hardware that was generated from their definitions.
 
 Builds three types, then sends messages that rosbags serialized through their deserializer and
-serializer, simulated, and compares what comes out byte for byte. This is what ``make demo`` runs.
+serializer, simulated, and compares what comes out byte for byte. Then the test benches of the
+generated VHDL do so in GHDL, where that is installed. This is what ``make demo`` runs.
 """
 
 from __future__ import annotations
 
 import math
+import shutil
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +21,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from firm_hdl import load_message
 from firm_hdl.cli import main as firm_hdl
+from firm_hdl.export.names import identifier
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.sim import loopback
 
@@ -25,6 +30,7 @@ __all__ = ["main"]
 OUT = "vhdl_out"
 BUS_BYTES = 8
 MESSAGES = 20
+GHDLS = ("ghdl", "ghdl-mcode", "ghdl-llvm", "ghdl-gcc")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,7 +142,26 @@ def main() -> int:
         cells, is_equal = run(example)
         failures += not is_equal
         print(row.format(*cells, "yes" if is_equal else "NO"), flush=True)
+    failures += run_vhdl()
     return 1 if failures else 0
+
+
+def run_vhdl() -> int:
+    """Run the benches of the VHDL; return how many failed."""
+    if not any(map(shutil.which, GHDLS)):
+        print("\nGHDL is not installed, so the VHDL's test benches did not run (apt install ghdl).")
+        return 0
+    print("\nThe VHDL's own test benches in GHDL, with random stalls:\n", flush=True)
+    failures = 0
+    for example in EXAMPLES:
+        wire = "ros1" if example.distro == "noetic" else "cdr"
+        name = f"{identifier(example.type)}_{wire}_{BUS_BYTES}"
+        script = Path(OUT) / example.distro / name / "vhdl" / "run_ghdl.sh"
+        status = subprocess.run(["sh", str(script)], check=False).returncode
+        if status:
+            print(f"FAIL {example.type}: {script} ended with {status}", flush=True)
+            failures += 1
+    return failures
 
 
 def run(example: Example) -> tuple[Iterator[str], bool]:

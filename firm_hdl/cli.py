@@ -17,6 +17,7 @@ from firm_hdl.export.build import BuildError, Built, build, load_all, plan_of
 from firm_hdl.export.timing import describe, timing
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS, Library, show
 from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, to_yaml
+from firm_hdl.verify.stimuli import stimuli
 
 __all__ = ["main"]
 
@@ -65,6 +66,7 @@ def _build(given: argparse.Namespace) -> None:
         bus_bytes=given.bus_bytes,
         max_message_bytes=given.max_message_bytes,
         force=given.force,
+        stimuli=stimuli,
         report=report,
     )
     for built in done:

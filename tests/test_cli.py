@@ -264,4 +264,4 @@ def test_build_that_is_interrupted_leaves_whole_folders(here):
     folders = list((here / "vhdl_out" / "lyrical").iterdir())
     assert (process.returncode, err) == (130, "interrupted\n")
     assert 1 <= len(folders) < len(types)
-    assert all(len(list(folder.iterdir())) == 5 for folder in folders)
+    assert all(len(list(folder.iterdir())) == 6 for folder in folders)

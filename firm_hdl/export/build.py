@@ -10,7 +10,7 @@ import hashlib
 import json
 import os
 import shutil
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,8 +21,9 @@ from firm_hdl.export.manifest import MANIFEST, inputs_of, make_manifest, module_
 from firm_hdl.export.names import identifier
 from firm_hdl.export.picture import to_svg
 from firm_hdl.export.timing import describe, timing
-from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, Top, ports_of
+from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, Direction, Top, ports_of
 from firm_hdl.export.verilog import to_verilog
+from firm_hdl.export.vhdl_user_build import to_vhdl
 from firm_hdl.frontend import DEFAULT_DISTRO, Library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
@@ -30,6 +31,10 @@ from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan, to_yaml
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["BuildError", "Built", "build", "check_size", "load_all", "plan_of"]
+
+
+VHDL_FOLDER = "vhdl"
+"""Where in a type's folder the VHDL is."""
 
 
 class BuildError(Exception):
@@ -63,6 +68,7 @@ class _Task:
     plan: Plan
     folder: Path
     inputs: dict[str, Any]
+    stimuli: Sequence[bytes]
 
 
 def build(
@@ -75,6 +81,7 @@ def build(
     bus_bytes: int = 8,
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
     force: bool = False,
+    stimuli: Callable[[Message, Plan], Sequence[bytes]] | None = None,
     report: Callable[[Built], None] | None = None,
 ) -> list[Built]:
     """Write the converters of types, each into a folder of its own below ``out/distro``.
@@ -91,6 +98,8 @@ def build(
         As for the converters.
     force : bool
         Whether to write folders that are current, too.
+    stimuli : callable or None
+        Gives the packets for a type's test bench in VHDL; without it, users write their own.
     report : callable or None
         Called with each type when it is done.
 
@@ -114,8 +123,12 @@ def build(
             distro=library.distro,
             definition_sha256=library.definition_hash(message.name),
         )
+        packets = list(stimuli(message, plan)) if stimuli is not None else []
+        inputs["stimuli_sha256"] = _digest(packets)
         folder = Path(out) / library.distro / name
-        tasks.append(_Task(message=message, plan=plan, folder=folder, inputs=inputs))
+        tasks.append(
+            _Task(message=message, plan=plan, folder=folder, inputs=inputs, stimuli=packets)
+        )
     _check_folders(tasks)
     built = []
     for task in tasks:
@@ -123,6 +136,10 @@ def build(
         if report is not None:
             report(built[-1])
     return built
+
+
+def _digest(packets: Sequence[bytes]) -> str:
+    return hashlib.sha256("".join(f"{packet.hex()}\n" for packet in packets).encode()).hexdigest()
 
 
 def load_all(library: Library, types: Iterable[str]) -> list[Message]:
@@ -198,7 +215,7 @@ def _do(task: _Task, force: bool) -> Built:
     )
     if built.was_current:
         return built
-    files = _texts(task)
+    files, vhdl = _texts(task)
     manifest = make_manifest(
         task.message,
         task.plan,
@@ -206,6 +223,7 @@ def _do(task: _Task, force: bool) -> Built:
         inputs=task.inputs,
         folder=task.folder.name,
         files=files,
+        vhdl=vhdl,
     )
     try:
         _replace(task.folder, {**files, MANIFEST: to_json(manifest)})
@@ -215,26 +233,41 @@ def _do(task: _Task, force: bool) -> Built:
     return built
 
 
-def _texts(task: _Task) -> dict[str, str]:
+def _texts(task: _Task) -> tuple[dict[str, str], dict[str, Any]]:
+    """Write all files but the manifest; also what the manifest says of the VHDL."""
     message, plan = task.message, task.plan
-    generator = f"firm-hdl {task.inputs['generator']['firm-hdl']}"
     options: dict[str, Any] = dict(task.inputs["options"])
+    tops: dict[Direction, Top] = {}
     files = {}
     for direction in DIRECTIONS:
         converter = Deserializer if direction == "deserializer" else Serializer
         module = module_name(task.folder.name, direction)
-        header = (
-            f"{module}: the {direction} of {message.name}, made by {generator}.\n"
-            f"{task.inputs['distro']}, wire {plan.wire}, bus of {plan.bus_bytes} bytes, "
-            f"messages of at most {plan.max_message_bytes} bytes\n"
-            f"definition (SHA-256): {task.inputs['definition_sha256']}\n"
-            f"What each port means: {MANIFEST}.\n"
-        )
-        top = Top(converter(message, **options))
-        files[f"{module}.v"] = to_verilog(top, module=module, header=header)
+        header = _header(task, module, f"the {direction}")
+        tops[direction] = Top(converter(message, **options))
+        files[f"{module}.v"] = to_verilog(tops[direction], module=module, header=header)
     files["plan.yaml"] = to_yaml(plan)
     files["layout.svg"] = to_svg(lay_out(message, plan.wire), f"{message.name} on {plan.wire}")
-    return files
+    vhdl = to_vhdl(
+        message,
+        plan,
+        tops,
+        name=task.folder.name,
+        header=_header(task, task.folder.name, "converters"),
+        stimuli=task.stimuli,
+    )
+    files.update((f"{VHDL_FOLDER}/{name}", text) for name, text in vhdl.files.items())
+    return files, vhdl.manifest
+
+
+def _header(task: _Task, name: str, what: str) -> str:
+    return (
+        f"{name}: {what} of {task.message.name}, made by "
+        f"firm-hdl {task.inputs['generator']['firm-hdl']}.\n"
+        f"{task.inputs['distro']}, wire {task.plan.wire}, bus of {task.plan.bus_bytes} bytes, "
+        f"messages of at most {task.plan.max_message_bytes} bytes\n"
+        f"definition (SHA-256): {task.inputs['definition_sha256']}\n"
+        f"What each port means: {MANIFEST}.\n"
+    )
 
 
 def _read_manifest(folder: Path) -> dict[str, Any] | None:
@@ -270,7 +303,10 @@ def _replace(folder: Path, files: dict[str, str]) -> None:
     try:
         staging.mkdir()
         for name, text in files.items():
+            (staging / name).parent.mkdir(exist_ok=True)
             (staging / name).write_text(text, encoding="utf-8", newline="\n")
+            if name.endswith(".sh"):
+                (staging / name).chmod(0o755)
         if folder.exists():
             _keep_others(folder, staging, files)
             folder.rename(old)
@@ -288,10 +324,21 @@ def _replace(folder: Path, files: dict[str, str]) -> None:
 def _keep_others(folder: Path, staging: Path, files: dict[str, str]) -> None:
     """Copy what users have added to a folder."""
     ours = {*files, MANIFEST, *(_read_manifest(folder) or {}).get("files", {})}
-    for entry in folder.iterdir():
-        if entry.name in ours:
+    shared = {name.partition("/")[0] for name in ours if "/" in name}
+    entries = [
+        *(entry for entry in folder.iterdir() if entry.name not in shared),
+        *(entry for name in sorted(shared) for entry in _entries(folder / name)),
+    ]
+    for entry in entries:
+        name = entry.relative_to(folder).as_posix()
+        if name in ours:
             continue
+        (staging / name).parent.mkdir(exist_ok=True)
         if entry.is_dir() and not entry.is_symlink():
-            shutil.copytree(entry, staging / entry.name, symlinks=True)
+            shutil.copytree(entry, staging / name, symlinks=True)
         else:
-            shutil.copy2(entry, staging / entry.name, follow_symlinks=False)
+            shutil.copy2(entry, staging / name, follow_symlinks=False)
+
+
+def _entries(folder: Path) -> list[Path]:
+    return list(folder.iterdir()) if folder.is_dir() else []

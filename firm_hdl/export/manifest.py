@@ -65,6 +65,7 @@ def make_manifest(
     inputs: Mapping[str, Any],
     folder: str,
     files: Mapping[str, str],
+    vhdl: Mapping[str, Any],
 ) -> dict[str, Any]:
     """Describe a folder.
 
@@ -76,6 +77,8 @@ def make_manifest(
         The folder's own name.
     files : mapping of str to str
         Text of every other file in it, by name.
+    vhdl : mapping
+        What there is in VHDL; see :func:`firm_hdl.export.vhdl_user_build.to_vhdl`.
     """
     statuses: Any = Status
     return {
@@ -94,6 +97,7 @@ def make_manifest(
             }
             for direction in DIRECTIONS
         },
+        "vhdl": dict(vhdl),
         "leaves": list(_leaves(message, plan)),
         "constants": [_constant(constant) for constant in message.constants],
         "files": {name: _digest(text) for name, text in sorted(files.items())},

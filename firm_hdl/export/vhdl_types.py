@@ -144,8 +144,13 @@ class _Writer:
         return "".join(
             [
                 self.header,
-                f"-- {self.message.name} as VHDL records: {self.tree.root.type} with data and valid"
-                f" of every field,\n-- {self.tree.root.ready_type} with ready the other way.\n",
+                *comment(
+                    f"{self.message.name} as records: {self.tree.root.type} has data and valid of "
+                    f"every field, {self.tree.root.ready_type} has ready, the other way.",
+                    "",
+                ),
+                *(["--\n"] if self.message.comment else []),
+                *comment(self.message.comment, ""),
                 f"\n{_LIBRARIES}\npackage {name} is\n",
                 *self.items(),
                 *self.records(),
@@ -173,10 +178,12 @@ class _Writer:
             done.add(node.type)
             width = max(len(child.name) for child in node.children)
             yield f"\n  type {node.type} is record\n"
+            kinds = max(len(child.type) for child in node.children) + 1
             for child in node.children:
                 if child.source is not None and child.source.comment:
                     yield from comment(child.source.comment, "    ")
-                yield f"    {child.name:{width}} : {child.type};{self.remark(child)}\n"
+                line = f"    {child.name:{width}} : {child.type + ';':{kinds}}{self.remark(child)}"
+                yield f"{line.rstrip()}\n"
             yield "  end record;\n"
             yield f"\n  type {node.ready_type} is record\n"
             for child in node.children:
@@ -196,10 +203,10 @@ class _Writer:
 
     def component(self, direction: Direction, entity: str) -> Iterator[str]:
         yield f"\n  component {entity} is\n"
-        yield from (f"  {line}" for line in self.ports(direction))
+        yield from (f"  {line}" for line in self.ports(direction, meanings=False))
         yield "  end component;\n"
 
-    def ports(self, direction: Direction) -> Iterator[str]:
+    def ports(self, direction: Direction, *, meanings: bool = True) -> Iterator[str]:
         """Yield a port clause, a line each: clock, packets, message, status."""
         forwards, backwards = ("out", "in ") if direction == "deserializer" else ("in ", "out")
         lines = [self.port(port) for port in ports_of(self.plan, direction) if port.leaf is None]
@@ -214,7 +221,12 @@ class _Writer:
         yield "  port (\n"
         for index, (name, kind, meaning) in enumerate(lines):
             end = ";" if index < len(lines) - 1 else ""
-            yield f"    {name:{names}} : {kind + end:{kinds}}  -- {meaning}\n"
+            line = f"    {name:{names}} : {kind + end:{kinds}}  -- {meaning}"
+            if not meanings or len(line) > 100:
+                if meanings:
+                    yield from comment(meaning, "    ")
+                line = f"    {name:{names}} : {kind}{end}"
+            yield f"{line}\n"
         yield "  );\n"
 
     @staticmethod
@@ -227,7 +239,7 @@ class _Writer:
     def wrapper(
         self, direction: Direction, entity: str, package: str, core: str, names: Mapping[str, str]
     ) -> str:
-        signals: list[str] = []
+        signals: list[tuple[str, str]] = []
         assignments: list[str] = []
         parts = {
             port.name: self.actual(port, direction, signals, assignments)
@@ -240,14 +252,14 @@ class _Writer:
         return "".join(
             [
                 self.header,
-                f"-- The {direction} of {self.message.name} with records;"
-                f" {core} has flat ports.\n",
+                f"-- The {direction} of {self.message.name} with records.\n",
+                f"-- {core} has flat ports.\n",
                 f"\n{_LIBRARIES}use work.{package}.all;\n",
                 f"\nentity {entity} is\n",
                 *self.ports(direction),
                 f"end entity;\n\narchitecture wrapper of {entity} is\n",
                 *(["\n"] if signals else []),
-                *signals,
+                *_aligned(signals),
                 f"\nbegin\n\n  core : entity work.{core}\n    port map (\n{joined}\n    );\n",
                 *(["\n"] if assignments else []),
                 *assignments,
@@ -256,7 +268,11 @@ class _Writer:
         )
 
     def actual(
-        self, port: Port, direction: Direction, signals: list[str], assignments: list[str]
+        self,
+        port: Port,
+        direction: Direction,
+        signals: list[tuple[str, str]],
+        assignments: list[str],
     ) -> str:
         """Give what a port of the core is connected to; conversions get a signal of their own.
 
@@ -278,7 +294,7 @@ class _Writer:
             return f"{whole}(0)"
         if leaf.kind != "items" and (primitive == "bool" or primitive.startswith("float")):
             return whole
-        signals.append(f"  signal {port.name} : std_logic_vector({port.width - 1} downto 0);\n")
+        signals.append((port.name, f"std_logic_vector({port.width - 1} downto 0)"))
         if direction == "serializer":
             convert = "to_slv" if leaf.kind == "items" else "std_logic_vector"
             assignments.append(f"  {port.name} <= {convert}({whole});\n")
@@ -290,6 +306,11 @@ class _Writer:
             )
             assignments.append(f"  {whole} <= {convert}({port.name});\n")
         return port.name
+
+
+def _aligned(signals: list[tuple[str, str]]) -> Iterator[str]:
+    width = max((len(name) for name, _ in signals), default=0)
+    return (f"  signal {name:{width}} : {kind};\n" for name, kind in signals)
 
 
 def _is_vector(name: str) -> bool:

@@ -15,13 +15,23 @@ from math import isfinite
 
 from firm_hdl.export.names import scope_names
 from firm_hdl.export.vhdl_names import USED
-from firm_hdl.export.vhdl_user_tree import snake
+from firm_hdl.export.vhdl_user_tree import TOOLS_WORDS, snake
 from firm_hdl.model import Array, Constant, Message, Primitive, Sequence
 
 __all__ = ["Named", "comment", "declarations", "named_constants"]
 
 _PLAIN = str.maketrans(
-    {"°": " deg", "²": "^2", "³": "^3", "µ": "u", "–": "-", "—": "-", "’": "'", "“": '"', "”": '"'}
+    {
+        "°": "deg",
+        "²": "^2",
+        "³": "^3",
+        "µ": "u",
+        "\N{EN DASH}": "-",
+        "\N{EM DASH}": "-",
+        "\N{RIGHT SINGLE QUOTATION MARK}": "'",
+        "\N{LEFT DOUBLE QUOTATION MARK}": '"',
+        "\N{RIGHT DOUBLE QUOTATION MARK}": '"',
+    }
 )
 
 
@@ -58,7 +68,7 @@ def named_constants(message: Message, taken: Iterable[str]) -> list[Named]:
     a severity, too); the others start with the name of their type.
     """
     found: dict[str, tuple[Message, Constant]] = {}
-    hiding = {*USED, *taken}
+    hiding = {*USED, *taken, *TOOLS_WORDS}
     for owner in _types(message):
         prefix = "" if owner is message else f"{snake(owner.base_name).upper()}_"
         for constant in owner.constants:
@@ -97,6 +107,10 @@ def declarations(named: Iterable[Named], taken: Iterable[str]) -> Iterator[str]:
     owner: Message | None = None
     named = list(named)
     used = {*taken, *(entry.name.lower() for entry in named)}
+    widths = {
+        id(entry.owner): max(len(other.name) for other in named if other.owner is entry.owner)
+        for entry in named
+    }
     for entry in named:
         if entry.owner is not owner:
             owner = entry.owner
@@ -105,7 +119,8 @@ def declarations(named: Iterable[Named], taken: Iterable[str]) -> Iterator[str]:
         unit = f" [{constant.unit}]" if constant.unit else ""
         yield from comment(constant.comment)
         if isinstance(constant.type, Primitive):
-            yield from _number(entry.name, constant.type, constant.value, unit, used)
+            name = entry.name.ljust(widths[id(owner)])
+            yield from _number(name, constant.type, constant.value, unit, used)
         else:
             yield f"  constant {entry.name} : string :=\n    {_string(constant.value)};\n"
 
@@ -127,7 +142,7 @@ def _number(
         number_ = float(value)
         if isfinite(number_):
             yield f"  constant {name} : real := {_real(number_)};  -- {kind}{unit}\n"
-        base = bits_name = f"{name}_BITS"
+        base = bits_name = f"{name.rstrip()}_BITS"
         count = 2
         while bits_name.lower() in used:
             bits_name, count = f"{base}_{count}", count + 1

@@ -15,7 +15,10 @@ from firm_hdl.export.vhdl_user_types import primitive_name
 from firm_hdl.model import Array, Field, FieldType, Message, Sequence, Text
 from firm_hdl.plan import Leaf, Plan
 
-__all__ = ["Node", "Tree", "snake", "tree_of"]
+__all__ = ["TOOLS_WORDS", "Node", "Tree", "snake", "tree_of"]
+
+TOOLS_WORDS = ("inherit",)
+"""What GHDL 2.0 keeps for itself in VHDL-2008: PSL has the word, but the standard does not."""
 
 _Paths = dict[str, "_Paths | int"]
 _Key = tuple[object, ...]
@@ -125,7 +128,7 @@ class _Maker:
     def node(self, paths: _Paths, kind: FieldType | None, name: str, access: str) -> Node:
         node = Node(name=name, access=access)
         # A member called `std_logic` would hide the type of its neighbours.
-        for child, vhdl in scope_names(paths, ("std_logic",)).items():
+        for child, vhdl in scope_names(paths, ("std_logic", *TOOLS_WORDS)).items():
             below = paths[child]
             member, child_kind = _below(kind, child)
             path = f"{access}.{vhdl}".lstrip(".")

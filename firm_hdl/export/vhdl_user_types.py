@@ -86,7 +86,7 @@ def _declarations() -> Iterator[str]:
     yield "\n  -- Items that are transferred together, the first one at index 0.\n"
     for name, (data, _) in _DATA.items():
         yield f"  type {name}_items_t is array (natural range <>) of {data};\n"
-    yield "\n  -- Between items and the vectors of the flat ports: the first item in the lowest bits.\n"
+    yield "\n  -- Between items and the flat ports' vectors, the first item lowest.\n"
     for name in _DATA:
         yield f"  {_TO_SLV.format(name=name)};\n  {_TO_ITEMS.format(name=name)};\n"
     yield f"\nend package {TYPES_NAME};\n"

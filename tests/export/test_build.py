@@ -15,6 +15,7 @@ import pytest
 import firm_hdl
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, Built, build, check_size
+from firm_hdl.export.vhdl_user_build import VhdlFolder
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, from_yaml
 from firm_hdl.wire import lay_out
@@ -47,6 +48,11 @@ def quick(monkeypatch):
     monkeypatch.setattr(
         build_module, "to_verilog", lambda top, module, header: f"{header}module {module};\n"
     )
+    monkeypatch.setattr(
+        build_module,
+        "to_vhdl",
+        lambda *args, header, **options: VhdlFolder(files={"a.vhd": f"-- {header}"}, manifest={}),
+    )
 
 
 def test_folder_is_complete(tmp_path):
@@ -66,8 +72,43 @@ def test_folder_is_complete(tmp_path):
             "layout.svg",
             "manifest.json",
             "plan.yaml",
+            "vhdl/firm_hdl_axis_sink.vhd",
+            "vhdl/firm_hdl_axis_source.vhd",
+            "vhdl/firm_hdl_bench_pkg.vhd",
+            "vhdl/firm_hdl_pkg.vhd",
+            "vhdl/firm_hdl_types_pkg.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_window.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_pkg.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_serializer.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_flat.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_flat_core.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_tb.vhd",
+            "vhdl/run_ghdl.sh",
         )
     ]
+
+
+def test_vhdl_compiles_in_the_order_of_the_manifest_and_stimuli_are_the_callers(tmp_path):
+    options = {"stimuli": lambda message, plan: [b"\x00\x01\x00\x00\x01"]}
+    built = build_one(tmp_path, **options)
+    vhdl = json.loads((built.folder / "manifest.json").read_text())["vhdl"]
+    there = {path.name for path in (built.folder / "vhdl").iterdir()}
+    listed = [*vhdl["files"], *vhdl["bench"]["files"]]
+    assert there == {*listed, "run_ghdl.sh", "stimuli.txt"}
+    for place, name in enumerate(listed):
+        text = (built.folder / "vhdl" / name).read_text()
+        for later in listed[place:]:
+            assert f"use work.{later.removesuffix('.vhd')}." not in text
+            assert f"entity work.{later.removesuffix('.vhd')}\n" not in text
+    assert (built.folder / "vhdl" / "run_ghdl.sh").stat().st_mode & 0o111
+    assert (built.folder / "vhdl" / "stimuli.txt").read_text().splitlines()[1:] == ["0001000001"]
+    assert build_one(tmp_path, **options).was_current
+    assert not build_one(tmp_path).was_current
+    assert not (built.folder / "vhdl" / "stimuli.txt").exists()
 
 
 @pytest.mark.usefixtures("quick")
@@ -185,7 +226,12 @@ def test_what_users_added_stays(tmp_path):
     (built.folder / "notes.txt").write_text("mine")
     (built.folder / "sim").mkdir()
     (built.folder / "sim" / "run.do").write_text("run")
+    (built.folder / "vhdl" / "mine.vhd").write_text("mine")
+    (built.folder / "vhdl" / "work").mkdir()
+    (built.folder / "vhdl" / "work" / "results.txt").write_text("00")
     build_one(tmp_path, force=True)
+    assert (built.folder / "vhdl" / "mine.vhd").read_text() == "mine"
+    assert (built.folder / "vhdl" / "work" / "results.txt").read_text() == "00"
     assert (built.folder / "notes.txt").read_text() == "mine"
     assert (built.folder / "sim" / "run.do").read_text() == "run"
     assert sorted(path.name for path in built.folder.parent.iterdir()) == [built.folder.name]
@@ -295,7 +341,7 @@ def test_output_is_the_same_everywhere(tmp_path):
         command = [sys.executable, "-c", script, "out"]
         subprocess.run(command, cwd=home, env=environment, check=True)
         trees.append(tree(home / "out"))
-    assert len(trees[0]) == 10
+    assert len(trees[0]) == 10 + 2 * 16
     assert trees[0] == trees[1]
     for text in trees[0].values():
         assert str(ROOT).encode() not in text
