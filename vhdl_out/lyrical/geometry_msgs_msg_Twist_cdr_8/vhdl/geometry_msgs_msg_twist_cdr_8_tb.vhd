@@ -1,0 +1,256 @@
+-- geometry_msgs_msg_Twist_cdr_8: converters of geometry_msgs/msg/Twist, made by firm-hdl 0.1.0.
+-- lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
+-- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
+-- What each port means: manifest.json.
+-- Test bench of the converters of geometry_msgs/msg/Twist. Simulation only.
+--
+-- Ends by itself, with a line that starts with PASS, or with a failure.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+use std.textio.all;
+
+use work.firm_hdl_bench_pkg.all;
+use work.firm_hdl_types_pkg.all;
+use work.geometry_msgs_msg_twist_cdr_8_pkg.all;
+
+entity geometry_msgs_msg_twist_cdr_8_tb is
+  generic (
+    stimuli   : string  := "stimuli.txt";    -- packets to send, one a line, in hexadecimal
+    expected  : string  := "stimuli.txt";    -- packets that have to come out
+    results   : string  := "results.txt";    -- packets that came out
+    transfers : string  := "transfers.txt";  -- cycle, leaf and data of each transfer of a leaf
+    seed      : natural := 1;
+    stalls    : natural range 0 to 99 := 40; -- percent of the cycles in which a stream stalls
+    patience  : positive := 100_000          -- cycles without a beat after which it has failed
+  );
+end entity;
+
+architecture sim of geometry_msgs_msg_twist_cdr_8_tb is
+
+  constant BUS_BYTES : positive := 8;
+  constant LEAVES    : positive := 6;
+
+  signal aclk    : std_logic := '0';
+  signal aresetn : std_logic := '0';
+  signal over    : boolean := false;
+  signal cycle   : natural := 0;
+
+  signal i_tdata, o_tdata   : std_logic_vector(8 * BUS_BYTES - 1 downto 0);
+  signal i_tkeep, o_tkeep   : std_logic_vector(BUS_BYTES - 1 downto 0);
+  signal i_tlast, o_tlast   : std_logic;
+  signal i_tvalid, o_tvalid : std_logic;
+  signal i_tready, o_tready : std_logic;
+  signal o_tuser            : std_logic;
+  signal i_done             : boolean;
+  signal i_packets          : natural;
+  signal o_packets          : natural;
+  signal o_bytes            : natural;
+  signal o_total            : natural;
+
+  signal rx_tdata, tx_tdata   : std_logic_vector(7 downto 0);
+  signal rx_tvalid, tx_tvalid : std_logic;
+  signal rx_tready, tx_tready : std_logic := '0';
+  signal rx_count, tx_count   : natural := 0;
+
+  -- From the deserializer, and to the serializer.
+  signal rx_msg, tx_msg : twist_t;
+  signal rx_rdy, tx_rdy : twist_ready_t;
+
+  -- Per leaf: whether it may pass, whether it is offered, whether it would be taken.
+  signal gate    : std_logic_vector(LEAVES - 1 downto 0) := (others => '1');
+  signal offered : std_logic_vector(LEAVES - 1 downto 0);
+  signal taken   : std_logic_vector(LEAVES - 1 downto 0);
+
+begin
+
+  source : entity work.firm_hdl_axis_source
+    generic map (bus_bytes => BUS_BYTES, stimuli => stimuli, seed => seed, stalls => stalls)
+    port map (
+      aclk => aclk, aresetn => aresetn, tdata => i_tdata, tkeep => i_tkeep, tlast => i_tlast,
+      tvalid => i_tvalid, tready => i_tready, packets => i_packets, done => i_done
+    );
+
+  sink : entity work.firm_hdl_axis_sink
+    generic map (
+      bus_bytes => BUS_BYTES, expected => expected, results => results, seed => seed,
+      stalls => stalls
+    )
+    port map (
+      aclk => aclk, aresetn => aresetn, tdata => o_tdata, tkeep => o_tkeep, tlast => o_tlast,
+      tuser => o_tuser, tvalid => o_tvalid, tready => o_tready, packets => o_packets,
+      bytes => o_bytes, total => o_total
+    );
+
+  rx : geometry_msgs_msg_twist_cdr_8_deserializer
+    port map (
+      aclk => aclk, aresetn => aresetn, s_axis_tdata => i_tdata, s_axis_tkeep => i_tkeep,
+      s_axis_tlast => i_tlast, s_axis_tvalid => i_tvalid, s_axis_tready => i_tready,
+      msg => rx_msg, rdy => rx_rdy, m_axis_status_tdata => rx_tdata,
+      m_axis_status_tvalid => rx_tvalid, m_axis_status_tready => rx_tready
+    );
+
+  tx : geometry_msgs_msg_twist_cdr_8_serializer
+    port map (
+      aclk => aclk, aresetn => aresetn, m_axis_tdata => o_tdata, m_axis_tkeep => o_tkeep,
+      m_axis_tlast => o_tlast, m_axis_tuser => o_tuser, m_axis_tvalid => o_tvalid,
+      m_axis_tready => o_tready, msg => tx_msg, rdy => tx_rdy, m_axis_status_tdata => tx_tdata,
+      m_axis_status_tvalid => tx_tvalid, m_axis_status_tready => tx_tready
+    );
+
+  -- The accelerator: it does nothing, but stalls.
+
+  tx_msg.linear.x.data <= rx_msg.linear.x.data;
+  tx_msg.linear.x.valid <= rx_msg.linear.x.valid and gate(0);
+  rx_rdy.linear.x <= tx_rdy.linear.x and gate(0);
+  offered(0) <= rx_msg.linear.x.valid;
+  taken(0) <= tx_rdy.linear.x;
+
+  tx_msg.linear.y.data <= rx_msg.linear.y.data;
+  tx_msg.linear.y.valid <= rx_msg.linear.y.valid and gate(1);
+  rx_rdy.linear.y <= tx_rdy.linear.y and gate(1);
+  offered(1) <= rx_msg.linear.y.valid;
+  taken(1) <= tx_rdy.linear.y;
+
+  tx_msg.linear.z.data <= rx_msg.linear.z.data;
+  tx_msg.linear.z.valid <= rx_msg.linear.z.valid and gate(2);
+  rx_rdy.linear.z <= tx_rdy.linear.z and gate(2);
+  offered(2) <= rx_msg.linear.z.valid;
+  taken(2) <= tx_rdy.linear.z;
+
+  tx_msg.angular.x.data <= rx_msg.angular.x.data;
+  tx_msg.angular.x.valid <= rx_msg.angular.x.valid and gate(3);
+  rx_rdy.angular.x <= tx_rdy.angular.x and gate(3);
+  offered(3) <= rx_msg.angular.x.valid;
+  taken(3) <= tx_rdy.angular.x;
+
+  tx_msg.angular.y.data <= rx_msg.angular.y.data;
+  tx_msg.angular.y.valid <= rx_msg.angular.y.valid and gate(4);
+  rx_rdy.angular.y <= tx_rdy.angular.y and gate(4);
+  offered(4) <= rx_msg.angular.y.valid;
+  taken(4) <= tx_rdy.angular.y;
+
+  tx_msg.angular.z.data <= rx_msg.angular.z.data;
+  tx_msg.angular.z.valid <= rx_msg.angular.z.valid and gate(5);
+  rx_rdy.angular.z <= tx_rdy.angular.z and gate(5);
+  offered(5) <= rx_msg.angular.z.valid;
+  taken(5) <= tx_rdy.angular.z;
+
+  -- What was offered stays offered until it is taken.
+  stalling : process (aclk)
+    variable random : random_t := random_from(seed, 3);
+    variable stall : boolean;
+  begin
+    if rising_edge(aclk) then
+      for k in gate'range loop
+        if offered(k) = '1' and (gate(k) = '0' or taken(k) = '1') then
+          draw(random, stalls, stall);
+          gate(k) <= '0' when stall else '1';
+        end if;
+      end loop;
+    end if;
+  end process;
+
+  -- Items are written with the first one to the right; a last transfer has an asterisk.
+  logging : process (aclk)
+    file record_of : text open write_mode is transfers;
+
+    procedure note (leaf : string; data : string; last : std_logic := '0') is
+    begin
+      write(record_of, integer'image(cycle) & " " & leaf & " " & data);
+      if last = '1' then
+        write(record_of, " *");
+      end if;
+      write(record_of, "" & LF);
+    end procedure;
+  begin
+    if rising_edge(aclk) and aresetn = '1' then
+      if (offered(0) and gate(0) and taken(0)) = '1' then
+        note("linear.x", to_hstring(rx_msg.linear.x.data));
+      end if;
+      if (offered(1) and gate(1) and taken(1)) = '1' then
+        note("linear.y", to_hstring(rx_msg.linear.y.data));
+      end if;
+      if (offered(2) and gate(2) and taken(2)) = '1' then
+        note("linear.z", to_hstring(rx_msg.linear.z.data));
+      end if;
+      if (offered(3) and gate(3) and taken(3)) = '1' then
+        note("angular.x", to_hstring(rx_msg.angular.x.data));
+      end if;
+      if (offered(4) and gate(4) and taken(4)) = '1' then
+        note("angular.y", to_hstring(rx_msg.angular.y.data));
+      end if;
+      if (offered(5) and gate(5) and taken(5)) = '1' then
+        note("angular.z", to_hstring(rx_msg.angular.z.data));
+      end if;
+    end if;
+  end process;
+
+  aclk <= not aclk after 5 ns when not over;
+
+  control : process (aclk)
+    variable random : random_t := random_from(seed, 4);
+    variable stall : boolean;
+    variable idle, first, final : natural := 0;
+    variable started : boolean := false;
+
+    procedure check (what : string; status : std_logic_vector(7 downto 0); number : natural) is
+    begin
+      assert status = STATUS_OK
+        report "FAIL packet " & integer'image(number) & ": the " & what & " says " &
+          status_name(status)
+        severity failure;
+    end procedure;
+  begin
+    if rising_edge(aclk) and not over then
+      cycle <= cycle + 1;
+      if cycle = 3 then
+        aresetn <= '1';
+      end if;
+
+      if (rx_tvalid and rx_tready) = '1' then
+        check("deserializer", rx_tdata, rx_count);
+        rx_count <= rx_count + 1;
+      end if;
+      draw(random, stalls, stall);
+      rx_tready <= '0' when stall else '1';
+      if (tx_tvalid and tx_tready) = '1' then
+        check("serializer", tx_tdata, tx_count);
+        tx_count <= tx_count + 1;
+      end if;
+      draw(random, stalls, stall);
+      tx_tready <= '0' when stall else '1';
+
+      idle := idle + 1;
+      if (i_tvalid and i_tready) = '1' then
+        idle := 0;
+        if not started then
+          first := cycle;
+          started := true;
+        end if;
+      end if;
+      if (o_tvalid and o_tready) = '1' then
+        idle := 0;
+        final := cycle;
+      end if;
+      assert idle < patience
+        report "FAIL nothing moves: " & integer'image(o_packets) & " of " & integer'image(o_total) &
+          " packets came out, " & integer'image(i_packets) & " went in, with " &
+          integer'image(rx_count) & " and " & integer'image(tx_count) & " statuses"
+        severity failure;
+
+      -- A while longer, in case that something comes that should not.
+      if i_done and o_packets = o_total and i_packets = o_total and rx_count = o_total and
+          tx_count = o_total and idle > 100 then
+        assert o_total > 0 report "FAIL there are no packets" severity failure;
+        assert (o_tvalid or rx_tvalid or tx_tvalid or (or offered)) = '0'
+          report "FAIL something is left over" severity failure;
+        write(output, "PASS geometry_msgs/msg/Twist, cdr, bus of 8 bytes: " & integer'image(o_packets) & " packets, " &
+          integer'image(o_bytes) & " bytes, " & integer'image(final - first + 1) & " cycles" & LF);
+        over <= true;
+      end if;
+    end if;
+  end process;
+
+end architecture sim;  -- of geometry_msgs_msg_twist_cdr_8_tb

@@ -1,0 +1,42 @@
+#!/bin/sh
+# Run the test bench in GHDL. Arguments go to the simulation, such as -gseed=7 or --wave=tb.ghw.
+# What GHDL and the bench write is in work/ beside this script; WORK names another folder, and GHDL
+# another command than the first that is found.
+set -eu
+here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
+work=${WORK:-$here/work}
+ghdl=${GHDL:-}
+if [ -z "$ghdl" ]; then
+  for name in ghdl ghdl-mcode ghdl-llvm ghdl-gcc; do
+    if command -v "$name" >/dev/null 2>&1; then ghdl=$name; break; fi
+  done
+fi
+if [ -z "$ghdl" ]; then
+  echo "run_ghdl.sh: GHDL is not installed (Debian, Ubuntu: apt install ghdl)" >&2
+  exit 127
+fi
+if [ ! -f "$here/stimuli.txt" ]; then
+  echo "run_ghdl.sh: write packets to $here/stimuli.txt, one a line, in hexadecimal" >&2
+  exit 2
+fi
+mkdir -p "$work"
+cd "$work"
+printf '*\n' > .gitignore
+"$ghdl" -a --std=08 \
+  "$here/firm_hdl_types_pkg.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_pkg.vhd" \
+  "$here/firm_hdl_pkg.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_window.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_deserializer_flat.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_serializer_flat_core.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_serializer_flat.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_deserializer.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_serializer.vhd" \
+  "$here/firm_hdl_bench_pkg.vhd" \
+  "$here/firm_hdl_axis_source.vhd" \
+  "$here/firm_hdl_axis_sink.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_tb.vhd"
+exec "$ghdl" --elab-run --std=08 geometry_msgs_msg_twist_cdr_8_tb --ieee-asserts=disable-at-0 \
+  -gstimuli="$here/stimuli.txt" -gexpected="$here/stimuli.txt" "$@"
