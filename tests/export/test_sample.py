@@ -15,8 +15,12 @@ SAMPLE = ROOT / "vhdl_out" / "lyrical" / "geometry_msgs_msg_Twist_cdr_8"
 
 def files(folder: Path) -> dict[str, bytes]:
     """Return the files of a folder, without what running the bench leaves there."""
-    paths = (path for path in folder.rglob("*") if path.is_file() and "work" not in path.parts)
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
+    found = {path.relative_to(folder): path for path in folder.rglob("*") if path.is_file()}
+    return {
+        name.as_posix(): path.read_bytes()
+        for name, path in found.items()
+        if "work" not in name.parts
+    }
 
 
 def test_sample_is_current(tmp_path, capsys):
