@@ -8,7 +8,13 @@ from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.control import Control
 from firm_hdl.gateware.members import member_tree
-from firm_hdl.gateware.signatures import PacketSignature, Status, StatusSignature, plan_signature
+from firm_hdl.gateware.signatures import (
+    PacketSignature,
+    Status,
+    StatusSignature,
+    leaf_streams,
+    plan_signature,
+)
 from firm_hdl.gateware.slots import Slots
 from firm_hdl.gateware.window import Window
 from firm_hdl.model import Message
@@ -91,12 +97,7 @@ class _Circuit:
     def __init__(self, component: Deserializer):
         self.plan: Plan = component.plan
         self.status = component.status
-        self.streams: dict[int, stream.Interface] = {}
-        for leaf, path in component.tree.leaves():
-            interface = component.message
-            for name in path:
-                interface = getattr(interface, name)
-            self.streams[leaf] = interface
+        self.streams = leaf_streams(component.message, component.tree)
 
         self.module = m = Module()
         m.submodules.window = self.window = Window(self.plan)

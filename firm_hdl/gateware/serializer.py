@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
-from amaranth.lib import stream, wiring
+from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.control import Control
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.gateware.packer import Packer
-from firm_hdl.gateware.signatures import PacketSignature, Status, StatusSignature, plan_signature
+from firm_hdl.gateware.signatures import (
+    PacketSignature,
+    Status,
+    StatusSignature,
+    leaf_streams,
+    plan_signature,
+)
 from firm_hdl.gateware.slots import Slots
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Fixed, Part, Plan, Step, build_plan
@@ -86,12 +92,7 @@ class _Circuit:
     def __init__(self, component: Serializer):
         self.plan: Plan = component.plan
         self.status = component.status
-        self.streams: dict[int, stream.Interface] = {}
-        for leaf, path in component.tree.leaves():
-            interface = component.message
-            for name in path:
-                interface = getattr(interface, name)
-            self.streams[leaf] = interface
+        self.streams = leaf_streams(component.message, component.tree)
 
         self.module = m = Module()
         m.submodules.packer = self.packer = Packer(self.plan)

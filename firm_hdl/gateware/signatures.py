@@ -9,6 +9,7 @@ transfer.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from amaranth.hdl import Shape, signed, unsigned
 from amaranth.lib import data, enum, stream, wiring
@@ -25,6 +26,7 @@ __all__ = [
     "Status",
     "StatusSignature",
     "leaf_shape",
+    "leaf_streams",
     "packet_layout",
     "plan_signature",
     "signature_of",
@@ -140,3 +142,14 @@ def _members(leaves: Sequence[Leaf], node: MemberTree) -> dict[str, wiring.Membe
         )
         for child in node.children.values()
     }
+
+
+def leaf_streams(interface: Any, tree: MemberTree) -> dict[int, stream.Interface]:
+    """Return the streams of a message interface by the index of their leaf, in wire order."""
+    streams = {}
+    for leaf, path in tree.leaves():
+        port = interface
+        for name in path:
+            port = getattr(port, name)
+        streams[leaf] = port
+    return dict(sorted(streams.items()))

@@ -6,8 +6,9 @@ and converters run as functions (`loopback`, `decode`, `encode`, and `Harness` f
 
 from __future__ import annotations
 
+from firm_hdl.gateware.signatures import leaf_streams
 from firm_hdl.sim.bench import DeadlineError
-from firm_hdl.sim.harness import Harness, leaf_streams
+from firm_hdl.sim.harness import Harness
 from firm_hdl.sim.loopback import Decoding, Encoding, Loopback, decode, encode, loopback
 from firm_hdl.sim.messages import MessagePort
 from firm_hdl.sim.record import Seen, leaf_name

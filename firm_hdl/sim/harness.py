@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
 
 from amaranth.hdl import Cat, Elaboratable, Module, Signal, Value
 from amaranth.lib import stream, wiring
 
 from firm_hdl.gateware import Deserializer, Serializer
-from firm_hdl.gateware.members import MemberTree
+from firm_hdl.gateware.signatures import leaf_streams
 from firm_hdl.model import Message
 from firm_hdl.plan import Payload, Plan
 from firm_hdl.sim.bench import Bench, Job, in_chunks
@@ -24,18 +23,7 @@ from firm_hdl.sim.payloads import all_beats, beats_of, encoder_of
 from firm_hdl.sim.record import Recorder, Seen, leaf_name
 from firm_hdl.sim.stalls import StallPlan, stalls_of
 
-__all__ = ["Harness", "leaf_streams"]
-
-
-def leaf_streams(interface: Any, tree: MemberTree) -> dict[int, stream.Interface]:
-    """Return the streams of a message interface by the index of their leaf, in wire order."""
-    streams = {}
-    for leaf, path in tree.leaves():
-        port = interface
-        for name in path:
-            port = getattr(port, name)
-        streams[leaf] = port
-    return dict(sorted(streams.items()))
+__all__ = ["Harness"]
 
 
 class Harness:

@@ -16,11 +16,11 @@ from amaranth.lib import stream
 from amaranth.sim import SimulatorContext
 
 from firm_hdl.gateware.members import member_tree
+from firm_hdl.gateware.signatures import leaf_streams
 from firm_hdl.model import Message
 from firm_hdl.plan import Payload, build_plan
 from firm_hdl.sim.bench import DeadlineError
 from firm_hdl.sim.demand import Demand, demand_table
-from firm_hdl.sim.harness import leaf_streams
 from firm_hdl.sim.payloads import decoder_of, encoder_of
 from firm_hdl.sim.record import leaf_name
 from firm_hdl.sim.stalls import StallPlan, stalls_of
