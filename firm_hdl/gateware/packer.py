@@ -81,7 +81,7 @@ class Packer(wiring.Component):
         most_kept = 0 if self.geometry.granule_bytes == bus >= word_bytes and not holds else bus
         store = Signal(8 * max(bus, most_kept + word_bytes))
         level = Signal(range(most_kept + self.geometry.skip_bytes + 8 + bus))
-        # Whether a packet has begun.
+        # Whether the packet has any bytes yet.
         inside = Signal()
         ending = Signal()
         end_beats = Signal(range(len(store) // 8 // bus + 2))
@@ -121,7 +121,7 @@ class Packer(wiring.Component):
             m.d.sync += [
                 store.eq(kept | self._placed(m, rest, most_kept)),
                 level.eq(rest + word.count + pad),
-                inside.eq(~word.last),
+                inside.eq(~word.last & (inside | (word.count != 0))),
             ]
             with m.If(word.last):
                 self._end(m, inside, rest, level, ending, end_beats, end_count)

@@ -190,6 +190,16 @@ def test_padding_may_come_long_after_the_message(bus_bytes, slack):
         assert statuses == [Status.OK if slack <= 3 else Status.TRAILING] * 2
 
 
+@pytest.mark.parametrize("bus_bytes", [1, 8, 32])
+def test_a_message_of_many_empty_ones_is_an_empty_packet(bus_bytes):
+    empty = make("ros1", {}, "E")
+    nested = make("ros1", {"e": empty}, "N")
+    message = make("ros1", {"a": empty, "b": (nested, "[2]"), "c": empty})
+    packets, statuses = loopback(message, [b"", b"", b"x"], bus_bytes=bus_bytes)
+    assert packets == [b"", b"", b""]
+    assert statuses == [Status.OK, Status.OK, Status.TRAILING]
+
+
 def test_option_bits_of_the_encapsulation_are_ignored():
     message = make("ros2", {"x": "uint32"})
     packets, statuses = loopback(message, [b"\0\1\xff\x03\5\0\0\0"])

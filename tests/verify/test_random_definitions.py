@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from firm_hdl.verify import Options, Oracle, Result, accept_message
@@ -11,7 +11,13 @@ from tests.strategies import BUS_WIDTHS, definitions
 
 
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
-@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+# Shrinking would simulate for many minutes; the message of a failure says how to repeat it.
+@settings(
+    max_examples=25,
+    deadline=None,
+    phases=[Phase.explicit, Phase.reuse, Phase.generate],
+    suppress_health_check=list(HealthCheck),
+)
 @given(
     definition=definitions(),
     bus_bytes=st.sampled_from(BUS_WIDTHS),

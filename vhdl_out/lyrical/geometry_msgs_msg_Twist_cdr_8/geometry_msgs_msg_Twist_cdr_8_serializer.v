@@ -1395,22 +1395,25 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer.core.packer (packets__ready, rs
   wire [5:0] \$26 ;
   wire [6:0] \$27 ;
   wire \$28 ;
-  wire [7:0] \$29 ;
+  wire \$29 ;
   wire [3:0] \$3 ;
   wire \$30 ;
   wire \$31 ;
-  wire \$32 ;
-  wire [5:0] \$33 ;
-  wire [3:0] \$34 ;
-  wire [3:0] \$35 ;
-  reg [63:0] \$36 ;
-  reg [4:0] \$37 ;
-  reg \$38 ;
-  reg [1:0] \$39 ;
+  wire [7:0] \$32 ;
+  wire \$33 ;
+  wire \$34 ;
+  wire \$35 ;
+  wire [5:0] \$36 ;
+  wire [3:0] \$37 ;
+  wire [3:0] \$38 ;
+  reg [63:0] \$39 ;
   wire [5:0] \$4 ;
-  reg \$40 ;
-  reg [3:0] \$41 ;
-  reg \$42 ;
+  reg [4:0] \$40 ;
+  reg \$41 ;
+  reg [1:0] \$42 ;
+  reg \$43 ;
+  reg [3:0] \$44 ;
+  reg \$45 ;
   wire [5:0] \$5 ;
   wire [63:0] \$6 ;
   wire \$7 ;
@@ -1475,7 +1478,13 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer.core.packer (packets__ready, rs
   input word__valid;
   wire word__valid;
   always @(posedge aclk)
-    marked <= \$42 ;
+    end_beats <= \$42 ;
+  always @(posedge aclk)
+    \inside  <= \$43 ;
+  always @(posedge aclk)
+    end_count <= \$44 ;
+  always @(posedge aclk)
+    marked <= \$45 ;
   assign \$1  = level >= 4'h8;
   assign packets__valid = ending | \$1 ;
   assign \$2  = end_beats == 1'h1;
@@ -1509,34 +1518,68 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer.core.packer (packets__ready, rs
   assign \$26  = \$5 [4:0] + word__payload[67:64];
   assign \$27  = \$26  + \$14 [2:0];
   assign \$28  = ~ word__payload[71];
-  assign \$30  = ~ \inside ;
-  assign \$31  = ! word__payload[67:64];
-  assign \$32  = \$30  & \$31 ;
-  assign \$33  = \$like  - 1'h1;
-  assign \$34  = \$33 [2:0] + 1'h1;
-  assign \$35  = \$32  ? 4'h0 : \$34 ;
+  assign \$29  = | word__payload[67:64];
+  assign \$30  = \inside  | \$29 ;
+  assign \$31  = \$28  & \$30 ;
+  assign \$33  = ~ \inside ;
+  assign \$34  = ! word__payload[67:64];
+  assign \$35  = \$33  & \$34 ;
+  assign \$36  = \$like  - 1'h1;
+  assign \$37  = \$36 [2:0] + 1'h1;
+  assign \$38  = \$35  ? 4'h0 : \$37 ;
   always @(posedge aclk)
-    store <= \$36 ;
+    store <= \$39 ;
   always @(posedge aclk)
-    level <= \$37 ;
+    level <= \$40 ;
   always @(posedge aclk)
-    ending <= \$38 ;
-  always @(posedge aclk)
-    end_beats <= \$39 ;
-  always @(posedge aclk)
-    \inside  <= \$40 ;
-  always @(posedge aclk)
-    end_count <= \$41 ;
+    ending <= \$41 ;
   always @* begin
     if (\$auto$verilog_backend.cc:2355:dump_module$2 ) begin end
-    \$42  = marked;
+    \$42  = end_beats;
+    if (leaves) begin
+      \$42  = \$23 [1:0];
+    end
     if (\$24 ) begin
       if (word__payload[71]) begin
-        \$42  = word__payload[72];
+        \$42  = beats[1:0];
       end
     end
     if (rst) begin
-      \$42  = 1'h0;
+      \$42  = 2'h0;
+    end
+  end
+  always @* begin
+    if (\$auto$verilog_backend.cc:2355:dump_module$2 ) begin end
+    \$43  = \inside ;
+    if (\$24 ) begin
+      \$43  = \$31 ;
+    end
+    if (rst) begin
+      \$43  = 1'h0;
+    end
+  end
+  always @* begin
+    if (\$auto$verilog_backend.cc:2355:dump_module$2 ) begin end
+    \$44  = end_count;
+    if (\$24 ) begin
+      if (word__payload[71]) begin
+        \$44  = \$38 ;
+      end
+    end
+    if (rst) begin
+      \$44  = 4'h0;
+    end
+  end
+  always @* begin
+    if (\$auto$verilog_backend.cc:2355:dump_module$2 ) begin end
+    \$45  = marked;
+    if (\$24 ) begin
+      if (word__payload[71]) begin
+        \$45  = word__payload[72];
+      end
+    end
+    if (rst) begin
+      \$45  = 1'h0;
     end
   end
   always @* begin
@@ -1559,74 +1602,37 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer.core.packer (packets__ready, rs
   end
   always @* begin
     if (\$auto$verilog_backend.cc:2355:dump_module$2 ) begin end
-    \$36  = kept;
+    \$39  = kept;
     if (\$24 ) begin
-      \$36  = \$25 ;
+      \$39  = \$25 ;
     end
     if (rst) begin
-      \$36  = 64'h0000000000000000;
+      \$39  = 64'h0000000000000000;
     end
   end
   always @* begin
     if (\$auto$verilog_backend.cc:2355:dump_module$2 ) begin end
-    \$37  = \$5 [4:0];
+    \$40  = \$5 [4:0];
     if (\$24 ) begin
-      \$37  = \$27 [4:0];
+      \$40  = \$27 [4:0];
       if (word__payload[71]) begin
-        \$37  = \$29 [4:0];
+        \$40  = \$32 [4:0];
       end
     end
     if (rst) begin
-      \$37  = 5'h00;
+      \$40  = 5'h00;
     end
   end
   always @* begin
     if (\$auto$verilog_backend.cc:2355:dump_module$2 ) begin end
-    \$38  = still_ending;
+    \$41  = still_ending;
     if (\$24 ) begin
       if (word__payload[71]) begin
-        \$38  = 1'h1;
+        \$41  = 1'h1;
       end
     end
     if (rst) begin
-      \$38  = 1'h0;
-    end
-  end
-  always @* begin
-    if (\$auto$verilog_backend.cc:2355:dump_module$2 ) begin end
-    \$39  = end_beats;
-    if (leaves) begin
-      \$39  = \$23 [1:0];
-    end
-    if (\$24 ) begin
-      if (word__payload[71]) begin
-        \$39  = beats[1:0];
-      end
-    end
-    if (rst) begin
-      \$39  = 2'h0;
-    end
-  end
-  always @* begin
-    if (\$auto$verilog_backend.cc:2355:dump_module$2 ) begin end
-    \$40  = \inside ;
-    if (\$24 ) begin
-      \$40  = \$28 ;
-    end
-    if (rst) begin
-      \$40  = 1'h0;
-    end
-  end
-  always @* begin
-    if (\$auto$verilog_backend.cc:2355:dump_module$2 ) begin end
-    \$41  = end_count;
-    if (\$24 ) begin
-      if (word__payload[71]) begin
-        \$41  = \$35 ;
-      end
-    end
-    if (rst) begin
-      \$41  = 4'h0;
+      \$41  = 1'h0;
     end
   end
   assign rest = \$5 [4:0];
@@ -1661,5 +1667,5 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer.core.packer (packets__ready, rs
   assign packets__payload[68] = is_last;
   assign \$6  = 64'h0000000000000000;
   assign \$18  = { 3'h0, \$17 [5:3] };
-  assign \$29  = { beats, 3'h0 };
+  assign \$32  = { beats, 3'h0 };
 endmodule

@@ -89,7 +89,8 @@ begin
         store <= kept;
         if and_24 = '1' then
           store <= kept or word_payload(63 downto 0);
-          inside <= not word_payload(71);
+          inside <= not word_payload(71) and (inside or
+              to_std_logic(word_payload(67 downto 64) /= 0));
           if word_payload(71) = '1' then
             if inside = '0' and word_payload(67 downto 64) = 0 then
               end_count <= (others => '0');
