@@ -5,6 +5,7 @@ from firm_hdl.plan.check import check
 from firm_hdl.plan.interpret import (
     Decoded,
     DecodeStatus,
+    Edge,
     EncodeStatus,
     Payload,
     Transfer,
@@ -35,6 +36,7 @@ __all__ = [
     "Begin",
     "DecodeStatus",
     "Decoded",
+    "Edge",
     "EncodeStatus",
     "Exits",
     "Fixed",

@@ -18,6 +18,7 @@ from firm_hdl.plan.ir import RUN_COUNTER, Begin, Exits, Fixed, Jump, Leaf, Pad, 
 __all__ = [
     "DecodeStatus",
     "Decoded",
+    "Edge",
     "EncodeStatus",
     "Payload",
     "Transfer",
@@ -58,6 +59,22 @@ class Visit(NamedTuple):
     bytes: int
 
 
+class Edge(NamedTuple):
+    """A decision that a plan leaves to the packet.
+
+    Attributes
+    ----------
+    step : int
+    way : str
+        ``padding N``: the step was aligned by skipping N bytes. ``again``: the body of a run was
+        repeated. ``body``: what the step starts goes on elsewhere. ``loop N again`` and ``next``:
+        the exit that was taken.
+    """
+
+    step: int
+    way: str
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Decoded:
     """What a packet decodes to.
@@ -70,11 +87,14 @@ class Decoded:
         The packet's first error, or ``OK``.
     steps : tuple of Visit
         The cycles that were run, in order.
+    edges : frozenset of Edge
+        The decisions that were taken.
     """
 
     transfers: tuple[Transfer, ...]
     status: DecodeStatus
     steps: tuple[Visit, ...]
+    edges: frozenset[Edge]
 
     @property
     def streams(self) -> dict[int, list[Payload]]:
@@ -92,11 +112,16 @@ def decode(plan: Plan, packet: bytes) -> Decoded:
     if reader.status == "OK" and len(packet) - reader.position > plan.slack_bytes:
         reader.status = "TRAILING"
     return Decoded(
-        transfers=tuple(reader.transfers), status=reader.status, steps=tuple(reader.visits)
+        transfers=tuple(reader.transfers),
+        status=reader.status,
+        steps=tuple(reader.visits),
+        edges=frozenset(reader.edges),
     )
 
 
-def encode(plan: Plan, streams: Mapping[int, Iterable[Payload]]) -> tuple[bytes, EncodeStatus]:
+def encode(
+    plan: Plan, streams: Mapping[int, Iterable[Payload]], *, bare_strings: bool = False
+) -> tuple[bytes, EncodeStatus]:
     """Encode a message as the serializer of a plan does.
 
     Parameters
@@ -105,6 +130,9 @@ def encode(plan: Plan, streams: Mapping[int, Iterable[Payload]]) -> tuple[bytes,
     streams : mapping of int to iterable
         Payloads by index of the leaf. Iterators are advanced by what one message takes, so that
         calls with the same iterators give one packet each.
+    bare_strings : bool
+        Whether to write an empty CDR string as the length 0, without its NUL. Serializers never
+        do, but ROS 2 and the deserializer read it.
 
     Returns
     -------
@@ -118,7 +146,8 @@ def encode(plan: Plan, streams: Mapping[int, Iterable[Payload]]) -> tuple[bytes,
     ValueError
         If a leaf has fewer transfers than its length promises, or a payload does not fit its leaf.
     """
-    writer = _Writer(plan=plan, streams={leaf: iter(given) for leaf, given in streams.items()})
+    iterators = {leaf: iter(given) for leaf, given in streams.items()}
+    writer = _Writer(plan=plan, streams=iterators, bare_strings=bare_strings)
     writer.go()
     return bytes(writer.packet), writer.status
 
@@ -132,6 +161,7 @@ class _Machine(ABC):
     # The value of the latest length: items on the wire, a NUL included.
     length: int = 0
     visits: list[Visit] = field(default_factory=list)
+    edges: set[Edge] = field(default_factory=set)
     # Each length's Begin; its first bytes may be some steps before it.
     begins: dict[int, Begin] = field(init=False)
 
@@ -177,7 +207,10 @@ class _Machine(ABC):
     def step(self, index: int) -> int | None:
         """Run one step, all repetitions of a run's body included, and return the next one."""
         step = self.plan.steps[index]
-        self.skip((self.plan.header_bytes - self.offset) % step.align)
+        if step.align != 1:
+            padding = (self.plan.header_bytes - self.offset) % step.align
+            self.edges.add(Edge(index, f"padding {padding}"))
+            self.skip(padding)
         start = self.offset
         for item in step.slices:
             match item:
@@ -192,16 +225,23 @@ class _Machine(ABC):
                 start = self.offset
                 self.take(self.plan.runs[step.run], step.head)
                 self.visits.append(Visit(index, self.offset - start))
-            return self.leave(step.exits)
+                if self.counters[RUN_COUNTER]:
+                    self.edges.add(Edge(index, "again"))
+            return self.leave(index, step.exits)
         body = None if step.begin is None else self.begin(step.begin)
         self.visits.append(Visit(index, self.offset - start))
-        return self.leave(step.exits) if body is None else self.enter(body)
+        if body is None:
+            return self.leave(index, step.exits)
+        self.edges.add(Edge(index, "body"))
+        return self.enter(body)
 
-    def leave(self, exits: Exits) -> int | None:
+    def leave(self, index: int, exits: Exits) -> int | None:
         for level, jump in exits.repeats:
             if self.counters[level] > 1:
                 self.counters[level] -= 1
+                self.edges.add(Edge(index, f"loop {level} again"))
                 return self.enter(jump)
+        self.edges.add(Edge(index, "next"))
         return self.enter(exits.default)
 
     def begin(self, begin: Begin) -> Jump | None:
@@ -319,6 +359,7 @@ class _Reader(_Machine):
 @dataclass(slots=True, kw_only=True)
 class _Writer(_Machine):
     streams: Mapping[int, Iterator[Payload]]
+    bare_strings: bool
     status: EncodeStatus = "OK"
     packet: bytearray = field(default_factory=bytearray)
     # All bytes of the transfer under way.
@@ -362,7 +403,7 @@ class _Writer(_Machine):
             begin = self.begins[index]
             if payload > begin.limit:
                 self.fail("LENGTH")
-            payload += 1 if begin.terminated else 0
+            payload += 1 if begin.terminated and (payload or not self.bare_strings) else 0
             self.length = payload
         return _bytes(leaf, payload)
 

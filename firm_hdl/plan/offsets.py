@@ -14,7 +14,7 @@ from typing import TypeAlias
 from firm_hdl.plan.ir import RUN_COUNTER, Begin, Fixed, Jump, Leaf, Pad, Part, Plan, Step
 from firm_hdl.wire import CDR, ROS1
 
-__all__ = ["Span", "check_offsets", "jumps", "loop_spans"]
+__all__ = ["Span", "check_offsets", "jumps", "loop_spans", "paddings"]
 
 Span: TypeAlias = "tuple[int, int]"
 """Level and first step of a loop."""
@@ -40,9 +40,16 @@ def check_offsets(plan: Plan) -> list[str]:
     end = walk.region(0, len(plan.steps) - 1, 0, start)
     walk.settle(end, "the end")
     for index, step in enumerate(plan.steps):
-        if step.align != 1 and index not in walk.padded:
+        if step.align != 1 and not any(walk.skipped.get(index, ())):
             walk.say(f"step {index}: is aligned already")
     return list(walk.problems)
+
+
+def paddings(plan: Plan) -> dict[int, frozenset[int]]:
+    """Return, for each step that is aligned, the numbers of bytes that may be skipped before it."""
+    walk = _Walk(plan)
+    walk.region(0, len(plan.steps) - 1, 0, {(-plan.header_bytes % 8, 0)})
+    return {index: frozenset(found) for index, found in walk.skipped.items()}
 
 
 def jumps(plan: Plan) -> Iterator[Jump]:
@@ -64,8 +71,8 @@ class _Walk:
     known: dict[tuple[int, int, int, Place], frozenset[Place]] = field(default_factory=dict)
     # A dict for its order.
     problems: dict[str, None] = field(default_factory=dict)
-    # Steps whose alignment is of use.
-    padded: set[int] = field(default_factory=set)
+    # Bytes that are skipped in front of steps that are aligned.
+    skipped: dict[int, set[int]] = field(default_factory=dict)
     max_align: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -156,8 +163,8 @@ class _Walk:
         return self.begin_run(index, begin, places), index + (1 if begin.body is None else 2)
 
     def pad(self, index: int, places: set[Place]) -> None:
-        if any(residue % self.plan.steps[index].align for residue, _ in places):
-            self.padded.add(index)
+        align = self.plan.steps[index].align
+        self.skipped.setdefault(index, set()).update(-residue % align for residue, _ in places)
 
     def natural(self, index: int, step: Step) -> None:
         """Check that a step aligns to just what it starts with."""

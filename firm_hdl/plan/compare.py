@@ -1,0 +1,183 @@
+"""What differs between two plans, by meaning and not by line.
+
+Plans are compared in their printed form, which is what people review. Steps are told apart by what
+they take instead of by their numbers, so that a step which is added in front renumbers nothing, and
+a jump is compared by where it leads.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from difflib import SequenceMatcher
+from typing import Any
+
+import yaml
+
+__all__ = ["Change", "compare"]
+
+_STEP = re.compile(r"step \d+")
+_STEP_PATH = re.compile(r"steps\[([^]]*)\]")
+# A slice of a step: ``0..3``, ``4``, ``at 8``.
+_PLACE = re.compile(r"(?:at )?\d+(?:\.\.\d+)?")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Change:
+    """One difference.
+
+    Attributes
+    ----------
+    path : str
+        Where: ``steps[header.stamp.sec].begin.limit``. A step is named by what it takes first.
+    old, new : str or None
+        What stands there; `None` if nothing does.
+    """
+
+    path: str
+    old: str | None
+    new: str | None
+
+    def __str__(self) -> str:
+        if self.old is None:
+            return f"{self.path}: new: {self.new}"
+        if self.new is None:
+            return f"{self.path}: gone: {self.old}"
+        return f"{self.path}: {self.old} -> {self.new}"
+
+    @property
+    def kind(self) -> str:
+        """The change without the names of one type, for counting over many types."""
+        where = re.sub(r"\[[^]]*\]", "[*]", self.path)
+        where = re.sub(r"^(leaves|runs)\..*", r"\1.*", where)
+        if self.old is None or self.new is None:
+            return f"{where}: {'new' if self.old is None else 'gone'}"
+        return where
+
+
+def compare(old: str, new: str) -> list[Change]:
+    """Compare two plans in YAML.
+
+    Returns
+    -------
+    list of Change
+        Empty if they mean the same. In the order of the new plan; what is gone comes last.
+
+    Raises
+    ------
+    ValueError
+        If a text is not that of a plan.
+    """
+    before, after = _facts(old), _facts(new)
+    # A step that only one of them has is one change, not one for each of its entries.
+    before, after = _fold(before, after), _fold(after, before)
+    changes = [
+        Change(path=path, old=before.get(path), new=text)
+        for path, text in after.items()
+        if before.get(path) != text
+    ]
+    changes += [
+        Change(path=path, old=text, new=None) for path, text in before.items() if path not in after
+    ]
+    for what in ("leaves", "steps"):
+        changes += _moved(what, _entries(before, what), _entries(after, what))
+    return changes
+
+
+def _fold(facts: Mapping[str, str], others: Mapping[str, str]) -> dict[str, str]:
+    known = set(_entries(others, "steps"))
+    folded: dict[str, str] = {}
+    for path, text in facts.items():
+        found = _STEP_PATH.match(path)
+        if found is None or found[1] in known:
+            folded[path] = text
+        else:
+            entry = f"{path[found.end() :].lstrip('.')}: {text}"
+            earlier = folded.get(found[0])
+            folded[found[0]] = entry if earlier is None else f"{earlier}; {entry}"
+    return folded
+
+
+def _facts(text: str) -> dict[str, str]:
+    """Give everything that a plan says, by path."""
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    try:
+        document = yaml.load(text, Loader=loader)
+    except yaml.YAMLError as error:
+        raise ValueError(f"Not YAML: {error}") from None
+    if not isinstance(document, dict) or not isinstance(document.get("steps"), dict):
+        raise ValueError("Not a plan: it has no steps")
+    names = _step_names(document["steps"])
+    facts: dict[str, str] = {}
+    for key, value in document.items():
+        if key == "steps":
+            for step, content in value.items():
+                facts.update(_flatten(f"steps[{names[step]}]", content, names))
+        else:
+            facts.update(_flatten(str(key), value, names))
+    return facts
+
+
+def _step_names(steps: Mapping[str, Any]) -> dict[str, str]:
+    """Name each step by what it takes first; several of one name are numbered."""
+    seen: Counter[str] = Counter()
+    names = {}
+    for step, content in steps.items():
+        name = _step_name(content)
+        seen[name] += 1
+        names[step] = name if seen[name] == 1 else f"{name}, {seen[name]}"
+    return names
+
+
+def _step_name(content: Mapping[Any, Any]) -> str:
+    if "run" in content:
+        return f"run of {str(content['run']).partition(',')[0]}"
+    slices = [value for key, value in content.items() if _PLACE.fullmatch(str(key))]
+    flat = [text for s in slices for text in (s if isinstance(s, list) else [s])]
+    for text in flat:
+        if not str(text).startswith("("):
+            return str(text)
+    if flat:
+        return "header" if "checked" in str(flat[0]) else "padding"
+    begin = content.get("begin")
+    if isinstance(begin, Mapping):
+        return f"begin of {begin.get('run', begin.get('count', begin.get('constant')))}"
+    return "nothing"
+
+
+def _flatten(path: str, value: Any, names: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            yield from _flatten(f"{path}.{key}", inner, names)
+    elif isinstance(value, list):
+        yield path, ", ".join(map(str, value))
+    else:
+        # A jump: "step 3", perhaps with counters.
+        yield path, _STEP.sub(lambda found: f"step [{names.get(found[0], '?')}]", str(value))
+
+
+def _entries(facts: Mapping[str, str], what: str) -> list[str]:
+    """List leaves, or names of steps, in their order."""
+    if what == "leaves":
+        return [path.removeprefix("leaves.") for path in facts if path.startswith("leaves.")]
+    found = map(_STEP_PATH.match, facts)
+    return list(dict.fromkeys(match[1] for match in found if match))
+
+
+def _moved(what: str, old: list[str], new: list[str]) -> Iterator[Change]:
+    """Say which entries of both lists stand in another order."""
+    common = set(old) & set(new)
+    first = [name for name in old if name in common]
+    second = [name for name in new if name in common]
+    if first == second:
+        return
+    matcher = SequenceMatcher(a=first, b=second, autojunk=False)
+    for tag, start, end, at, to in matcher.get_opcodes():
+        if tag != "equal":
+            yield Change(
+                path=f"order of {what}",
+                old=", ".join(first[start:end]) or "(nothing here)",
+                new=", ".join(second[at:to]) or "(nothing here)",
+            )

@@ -1,0 +1,89 @@
+"""What plans have in common: their shape, and the constructs that they are made of.
+
+Gateware transcribes a plan, and a leaf's name is nothing but the name of its ports. So plans that
+are equal except for names give equal circuits, and verifying one of them verifies all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from firm_hdl.plan.ir import RUN_COUNTER, Begin, Fixed, Jump, Pad, Part, Plan, Step
+
+__all__ = ["constructs", "shape"]
+
+
+def shape(plan: Plan) -> Plan:
+    """Return the plan without names: equal for types whose converters are the same circuit."""
+    leaves = []
+    for index, leaf in enumerate(plan.leaves):
+        # The last part of a path says what kind of leaf it is; the check of plans looks at it.
+        end = () if leaf.kind == "scalar" else (leaf.kind,)
+        leaves.append(replace(leaf, path=(f"leaf{index}", *end)))
+    return replace(plan, message="", leaves=tuple(leaves))
+
+
+def constructs(plan: Plan) -> frozenset[str]:
+    """Name everything that a plan is made of, for choosing types that cover all of it."""
+    found = {f"wire {plan.wire}", f"{min(plan.levels, 3)} loop levels", *_jump("start", plan.start)}
+    for leaf in plan.leaves:
+        found.add(f"leaf {leaf.kind} {'signed ' if leaf.signed else ''}{leaf.type}")
+    for run in plan.runs:
+        size = plan.leaves[run.items].item_bytes
+        nul, tail = run.terminated, not run.last
+        found.add(f"run of {size} bytes{', NUL' if nul else ''}{', tail behind' if tail else ''}")
+    for step in plan.steps:
+        found.update(_step(plan, step))
+    return frozenset(found)
+
+
+def _step(plan: Plan, step: Step) -> Iterator[str]:
+    yield f"align {step.align}"
+    if step.run is not None:
+        yield f"body of a run, head {step.head - plan.bus_bytes:+}"
+    for item in step.slices:
+        match item:
+            case Pad():
+                yield f"padding of {item.bytes}"
+            case Fixed():
+                yield f"fixed bytes, {'checked' if item.check else 'ignored'}"
+            case Part():
+                yield _part(plan, item)
+    if step.begin is not None:
+        yield _begin(step.begin)
+        if step.begin.body is not None:
+            yield from _jump("body", step.begin.body)
+    yield f"{min(len(step.exits.repeats), 3)} loops may repeat"
+    for _, jump in step.exits.repeats:
+        yield from _jump("repeat", jump)
+    yield from _jump("next", step.exits.default)
+
+
+def _part(plan: Plan, part: Part) -> str:
+    leaf = plan.leaves[part.leaf]
+    if part.bytes == part.size:
+        which = "whole"
+    else:
+        which = "first part" if not part.first else "last part" if part.completes else "inner part"
+    end = ", last" if part.last else ", last by its loop" if part.last_level is not None else ""
+    return f"{which} of {leaf.kind}, {leaf.item_bytes} bytes each{end}"
+
+
+def _begin(begin: Begin) -> str:
+    words = ["loop" if begin.run is None else "run"]
+    words.append("counted by a constant" if begin.length is None else "counted by a length")
+    words += ["NUL"] if begin.terminated else []
+    words += [f"gap of {begin.gap}"] if begin.gap else []
+    words += ["head"] if begin.head else []
+    words += [] if begin.body is not None else ["no body"]
+    return f"begin {', '.join(words)}"
+
+
+def _jump(what: str, jump: Jump) -> Iterator[str]:
+    yield f"{what} {'ends the packet' if jump.step is None else 'goes on'}"
+    loops = sum(counter != RUN_COUNTER for counter, _ in jump.enter)
+    if loops:
+        yield f"{what} enters {loops} loops"
+    if loops < len(jump.enter):
+        yield f"{what} enters a run"

@@ -1,0 +1,90 @@
+"""The semantic difference of plans."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from firm_hdl import load_message
+from firm_hdl.plan import build_plan, to_yaml
+from firm_hdl.plan.compare import compare
+from firm_hdl.wire import lay_out
+
+
+def plan(name, **options):
+    return build_plan(lay_out(load_message(name)), **options)
+
+
+def differences(one, other):
+    return [str(change) for change in compare(to_yaml(one), to_yaml(other))]
+
+
+def test_equal_plans_have_no_difference():
+    imu = plan("sensor_msgs/msg/Imu")
+    assert differences(imu, imu) == []
+
+
+def test_comments_and_layout_of_the_text_do_not_count():
+    text = to_yaml(plan("sensor_msgs/msg/JointState"))
+    plain = "".join(f"{line.partition('  # ')[0]}\n" for line in text.splitlines() if line[0] != "#")
+    assert plain != text
+    assert compare(text, plain) == []
+
+
+def test_a_limit_is_one_change_with_its_place():
+    old = plan("sensor_msgs/msg/Imu")
+    new = plan("sensor_msgs/msg/Imu", max_message_bytes=4096)
+    assert differences(old, new) == [
+        "max_message_bytes: 16777216 -> 4096",
+        "steps[header.stamp.nanosec].begin.limit: 16776903 -> 3783",
+    ]
+
+
+def test_a_step_in_front_renumbers_nothing():
+    old, new = plan("geometry_msgs/msg/Point"), plan("geometry_msgs/msg/Quaternion")
+    assert differences(old, new) == [
+        "message: geometry_msgs/msg/Point -> geometry_msgs/msg/Quaternion",
+        "leaves.w: new: float64",
+        "steps[z, bytes 4..7 of 8].4..7: new: w, bytes 0..3 of 8",
+        "steps[z, bytes 4..7 of 8].next: end -> step [w, bytes 4..7 of 8]",
+        "steps[w, bytes 4..7 of 8]: new: 0..3: w, bytes 4..7 of 8; next: end",
+    ]
+
+
+def test_leaves_in_another_order_are_a_change():
+    old = plan("geometry_msgs/msg/Vector3", bus_bytes=32)
+    first, second, third = old.leaves
+    # The same leaves and the same steps: only what each index means was exchanged.
+    new = replace(old, leaves=(second, first, third))
+    changes = differences(old, new)
+    assert [change for change in changes if change.startswith("order of leaves")]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda p: replace(p, slack_bytes=0),
+        lambda p: replace(p, steps=(replace(p.steps[0], align=4), *p.steps[1:])),
+        lambda p: replace(p, leaves=(replace(p.leaves[0], type="uint32"), *p.leaves[1:])),
+        lambda p: replace(p, runs=(replace(p.runs[0], terminated=False), *p.runs[1:])),
+        lambda p: replace(p, start=replace(p.start, step=1)),
+        lambda p: replace(p, steps=p.steps[:-1]),
+    ],
+)
+def test_any_change_of_meaning_is_found(change):
+    old = plan("sensor_msgs/msg/JointState")
+    assert differences(old, change(old))
+    assert differences(change(old), old)
+
+
+def test_kinds_leave_out_what_belongs_to_one_type():
+    old, new = (plan("sensor_msgs/msg/Imu", max_message_bytes=n) for n in (4096, 8192))
+    kinds = [change.kind for change in compare(to_yaml(old), to_yaml(new))]
+    assert kinds == ["max_message_bytes", "steps[*].begin.limit"]
+
+
+@pytest.mark.parametrize("text", ["", "a: [", "[]", "message: x"])
+def test_what_is_no_plan_is_refused(text):
+    with pytest.raises(ValueError, match=r"^Not (YAML|a plan): "):
+        compare(text, text)
