@@ -77,7 +77,9 @@ class Case:
 def run_lengths(item_bytes: int, bus_bytes: int, bound: int | None) -> list[int]:
     """Return the lengths that a run of items should have at least once, without repetition."""
     lanes = max(1, bus_bytes // item_bytes)
-    lengths = [*range(max(3, lanes + 2)), 2 * lanes, 2 * lanes + 1, 3 * lanes - 1]
+    # On a narrow bus, every residue modulo 8 still counts: padding depends on it.
+    most = max(3, lanes + 2, 8 // item_bytes + 2)
+    lengths = [*range(most), 2 * lanes, 2 * lanes + 1, 3 * lanes - 1]
     if bound:
         lengths = [length for length in lengths if length <= bound]
         lengths += [bound] if bound * item_bytes <= MOST_BYTES else []
