@@ -17,6 +17,7 @@ from firm_hdl.export.build import BuildError, Built, build, load_all, plan_of
 from firm_hdl.export.timing import describe, timing
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS, Library, show
 from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, to_yaml
+from firm_hdl.verify.golden_command import add_golden_arguments, run_cover, run_golden
 from firm_hdl.verify.stimuli import stimuli
 
 __all__ = ["main"]
@@ -28,9 +29,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if hasattr(sys.stdout, "reconfigure"):
         # A comment in a definition may have characters that the terminal has not.
         sys.stdout.reconfigure(errors="backslashreplace")
-    run: Callable[[argparse.Namespace], None] = given.run
+    run: Callable[[argparse.Namespace], int | None] = given.run
     try:
-        run(given)
+        status = run(given)
         sys.stdout.flush()
     except DefinitionError as error:
         print(error, file=sys.stderr)
@@ -49,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return 130
-    return 0
+    return status or 0
 
 
 def _build(given: argparse.Namespace) -> None:
@@ -124,13 +125,21 @@ def _parser() -> argparse.ArgumentParser:
     command = _command(commands, "info", _info, "say how many cycles and which clock types need")
     command.add_argument("types", nargs="+", metavar="TYPE")
     _add_options(command)
+
+    command = _command(commands, "golden", run_golden, "compare plans with golden ones, by meaning")
+    add_golden_arguments(command)
+    _add_options(command)
+
+    command = _command(commands, "cover", run_cover, "choose few types that have all features")
+    command.add_argument("types", nargs="*", metavar="TYPE", help="to choose from; default: all")
+    _add_options(command)
     return parser
 
 
 def _command(
     commands: argparse._SubParsersAction[argparse.ArgumentParser],
     name: str,
-    run: Callable[[argparse.Namespace], None],
+    run: Callable[[argparse.Namespace], int | None],
     text: str,
 ) -> argparse.ArgumentParser:
     command = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
