@@ -7,8 +7,10 @@ then a caret under the words that are meant.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 
 __all__ = ["DefinitionError", "Diagnostic", "Source", "Span"]
 
@@ -41,7 +43,7 @@ class Span:
     @property
     def line(self) -> int:
         """Line number, the first line being 1."""
-        return self.source.text.count("\n", 0, self.start) + 1
+        return bisect_right(_line_starts(self.source.text), self.start)
 
     @property
     def column(self) -> int:
@@ -75,6 +77,15 @@ class Diagnostic:
         return f"{where}: error: {self.message}\n{text}\n{indent}{carets}"
 
 
+# A text with a thousand mistakes must not be searched from its start for each of them.
+@lru_cache(maxsize=16)
+def _line_starts(text: str) -> list[int]:
+    starts = [0]
+    while end := text.find("\n", starts[-1]) + 1:
+        starts.append(end)
+    return starts
+
+
 class DefinitionError(Exception):
     """Definitions that cannot be used.
 
@@ -87,4 +98,8 @@ class DefinitionError(Exception):
     def __init__(self, diagnostics: Iterable[Diagnostic]):
         self.diagnostics = tuple(diagnostics)
         assert self.diagnostics
-        super().__init__("\n".join(str(d) for d in self.diagnostics))
+        super().__init__(self.diagnostics)
+
+    def __str__(self) -> str:
+        # Not made before somebody reads it: there may be a thousand, in a thousand types.
+        return "\n".join(str(d) for d in self.diagnostics)

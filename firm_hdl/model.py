@@ -15,7 +15,9 @@ from typing import Literal, TypeAlias
 from firm_hdl.errors import Span
 
 __all__ = [
+    "IDL_PRIMITIVES",
     "PRIMITIVES",
+    "PRIMITIVE_OF",
     "Action",
     "Array",
     "Constant",
@@ -46,11 +48,11 @@ class Primitive:
     ----------
     name : str
         As ROS writes it: ``bool``, ``byte``, ``char``, ``int8`` ... ``uint64``, ``float32``,
-        ``float64``.
+        ``float64``; from IDL also ``wchar``.
     bytes : int
         Size on every wire, in bytes: 1, 2, 4 or 8.
     signed : bool
-        Whether an integer is two's complement. `byte` is signed in ROS 1 only.
+        Whether an integer is two's complement. `byte` is signed in ROS 1 only, `char` in IDL only.
     kind : "bool", "int" or "float"
         How the bits are to be read.
     """
@@ -85,6 +87,20 @@ PRIMITIVES: dict[Dialect, dict[str, Primitive]] = {
     "ros2": _primitives("ros2"),
 }
 """Every primitive by name, for each dialect."""
+
+IDL_PRIMITIVES: dict[str, Primitive] = PRIMITIVES["ros2"] | {
+    # A C `signed char`, unlike the `char` of .msg files; Fast CDR gives a wchar_t four bytes.
+    "char": Primitive(name="char", bytes=1, signed=True, kind="int"),
+    "wchar": Primitive(name="wchar", bytes=4, signed=False, kind="int"),
+}
+"""Every primitive that a definition in OMG IDL can name."""
+
+PRIMITIVE_OF: dict[tuple[str, bool], Primitive] = {
+    (item.name, item.signed and item.kind == "int"): item
+    for table in (*PRIMITIVES.values(), IDL_PRIMITIVES)
+    for item in table.values()
+}
+"""Every primitive of all languages, by its name and whether it is a signed integer."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -243,11 +259,13 @@ class Message:
     @cached_property
     def depth(self) -> int:
         """Levels of messages: 1 for a message without message fields."""
+        self._settle("depth")
         return 1 + max((child.depth for child in self.children), default=0)
 
     @cached_property
     def is_fixed_size(self) -> bool:
         """Whether every value of the message has the same number of bytes on a given wire."""
+        self._settle("is_fixed_size")
 
         def fixed(kind: FieldType) -> bool:
             match kind:
@@ -261,6 +279,18 @@ class Message:
                     return False
 
         return all(fixed(item.type) for item in self.fields)
+
+    def _settle(self, attribute: str) -> None:
+        """Evaluate an attribute of all messages below, deepest first.
+
+        Nesting may be deeper than Python's recursion limit.
+        """
+        pending = list(self.children)
+        while pending:
+            missing = [c for c in pending[-1].children if attribute not in vars(c)]
+            pending += missing
+            if not missing:
+                getattr(pending.pop(), attribute)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,10 +6,11 @@ diagnostics; none of them raises, so that all mistakes of a text are found.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from firm_hdl.errors import Diagnostic, Source, Span
 from firm_hdl.frontend.explain import NAME_RULES
+from firm_hdl.frontend.names import TypeName, owners
 from firm_hdl.frontend.parse import is_type_name
 from firm_hdl.frontend.syntax import (
     ConstantSyntax,
@@ -20,7 +21,7 @@ from firm_hdl.frontend.syntax import (
     TypeSyntax,
     ValueSyntax,
 )
-from firm_hdl.model import PRIMITIVES, Dialect
+from firm_hdl.model import IDL_PRIMITIVES, PRIMITIVES, Primitive
 
 __all__ = ["check_members", "check_type_name"]
 
@@ -29,29 +30,34 @@ _MOST = 2**32 - 1
 
 
 def check_type_name(
-    source: Source, package: str, name: str, dialect: Dialect
+    source: Source, name: TypeName, messages: Iterable[str]
 ) -> Iterator[Diagnostic]:
-    """Check what a file is called. The start of its text is to blame."""
+    """Check what a file is called, and its messages. The start of its text is to blame."""
     start = Span(source=source, start=0, end=0)
-    some = "Name" if dialect == "ros2" else "name"
-    if not is_type_name(f"{package}/{some}", dialect):
+    dialect, some = name.dialect, "Name" if name.dialect == "ros2" else "name"
+    if not is_type_name(f"{name.package}/{some}", dialect):
         rule = NAME_RULES["FIELD_NAME" if dialect == "ros2" else "NAME"]
-        yield Diagnostic(message=f"'{package}' is not a legal package name: {rule}", span=start)
-    if not is_type_name(name, dialect):
+        message = f"'{name.package}' is not a legal package name: {rule}"
+        yield Diagnostic(message=message, span=start)
+    # A recording has the messages that are made of services and actions, each by itself.
+    bases = [next((o.name for o in owners(name)), m) if m == name.name else m for m in messages]
+    if not all(is_type_name(base, dialect) for base in bases):
         rule = NAME_RULES["MESSAGE_NAME" if dialect == "ros2" else "NAME"]
-        yield Diagnostic(message=f"'{name}' is not a legal message name: {rule}", span=start)
+        what = {"msg": "message", "srv": "service", "action": "action"}[name.kind]
+        yield Diagnostic(message=f"'{name.name}' is not a legal {what} name: {rule}", span=start)
 
 
 def check_members(syntax: MessageSyntax) -> Iterator[Diagnostic]:
     """Check every line of a text for itself, then the names against each other."""
+    primitives = IDL_PRIMITIVES if syntax.language == "idl" else PRIMITIVES[syntax.dialect]
     for member in syntax.members:
         yield from _check_sizes(member.type)
         if isinstance(member, ConstantSyntax):
-            yield from _check_value(member.value, member.type, syntax.dialect)
+            yield from _check_value(member.value, member.type, primitives)
         elif isinstance(member.default, ValueSyntax):
-            yield from _check_value(member.default, member.type, syntax.dialect)
+            yield from _check_value(member.default, member.type, primitives)
         elif isinstance(member.default, ListSyntax):
-            yield from _check_list(member.default, member.type, syntax.dialect)
+            yield from _check_list(member.default, member.type, primitives)
     yield from _check_names(syntax)
 
 
@@ -89,7 +95,9 @@ def _check_size(size: SizeSyntax | None, what: str) -> Iterator[Diagnostic]:
         yield Diagnostic(message=f"the {what} must be at most {_MOST}", span=size.span)
 
 
-def _check_list(syntax: ListSyntax, type_: TypeSyntax, dialect: Dialect) -> Iterator[Diagnostic]:
+def _check_list(
+    syntax: ListSyntax, type_: TypeSyntax, primitives: Mapping[str, Primitive]
+) -> Iterator[Diagnostic]:
     count = len(syntax.items)
     if type_.size is not None:
         size = type_.size.value
@@ -100,17 +108,19 @@ def _check_list(syntax: ListSyntax, type_: TypeSyntax, dialect: Dialect) -> Iter
             message = f"a default of at most {size} elements must stand here, not of {count}"
             yield Diagnostic(message=message, span=syntax.span)
     for item in syntax.items:
-        yield from _check_value(item, type_, dialect)
+        yield from _check_value(item, type_, primitives)
 
 
-def _check_value(syntax: ValueSyntax, type_: TypeSyntax, dialect: Dialect) -> Iterator[Diagnostic]:
+def _check_value(
+    syntax: ValueSyntax, type_: TypeSyntax, primitives: Mapping[str, Primitive]
+) -> Iterator[Diagnostic]:
     value = syntax.value
     if isinstance(value, str):
         if type_.bound is not None and len(value) > type_.bound.value:
             message = f"a text of {len(value)} characters does not fit {type_.name}"
             yield Diagnostic(message=f"{message}<={type_.bound.value}", span=syntax.span)
         return
-    primitive = PRIMITIVES[dialect][type_.name]
+    primitive = primitives[type_.name]
     if primitive.kind == "int":
         bits = 8 * primitive.bytes - primitive.signed
         low, high = -(2**bits) if primitive.signed else 0, 2**bits - 1

@@ -28,11 +28,14 @@ class Distro:
     ----------
     store : rosbags.typesys.Stores
         What rosbags calls its types.
+    has_events : bool
+        Whether services have a message for introspection, ``_Event``: since iron.
     """
 
     name: str
     dialect: Dialect
     store: Stores
+    has_events: bool = False
 
 
 DISTROS: dict[str, Distro] = {
@@ -41,10 +44,10 @@ DISTROS: dict[str, Distro] = {
         Distro(name="noetic", dialect="ros1", store=Stores.ROS1_NOETIC),
         Distro(name="foxy", dialect="ros2", store=Stores.ROS2_FOXY),
         Distro(name="humble", dialect="ros2", store=Stores.ROS2_HUMBLE),
-        Distro(name="iron", dialect="ros2", store=Stores.ROS2_IRON),
-        Distro(name="jazzy", dialect="ros2", store=Stores.ROS2_JAZZY),
-        Distro(name="kilted", dialect="ros2", store=Stores.ROS2_KILTED),
-        Distro(name="lyrical", dialect="ros2", store=Stores.ROS2_LYRICAL),
+        Distro(name="iron", dialect="ros2", store=Stores.ROS2_IRON, has_events=True),
+        Distro(name="jazzy", dialect="ros2", store=Stores.ROS2_JAZZY, has_events=True),
+        Distro(name="kilted", dialect="ros2", store=Stores.ROS2_KILTED, has_events=True),
+        Distro(name="lyrical", dialect="ros2", store=Stores.ROS2_LYRICAL, has_events=True),
     )
 }
 """Every distribution whose types are embedded, oldest first."""

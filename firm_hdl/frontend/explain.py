@@ -82,6 +82,7 @@ def explain(error: UnexpectedInput, line: str, dialect: Dialect) -> tuple[int, i
         start = len(line) - len(line.lstrip())
         return start, len(line.rstrip()), "a definition must start in the first column"
     for rule in (
+        _wrong_part,
         _wrong_name,
         _wrong_type,
         _wrong_constant,
@@ -126,6 +127,14 @@ def _place(error: UnexpectedInput, line: str) -> tuple[int, frozenset[str]]:
 
 
 _Found = tuple[int, str] | None
+
+
+def _wrong_part(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
+    if start or not line.startswith("---"):
+        return None
+    if dialect == "ros2" and line != "---":
+        return len(line), "what separates two parts is a line '---' and nothing else"
+    return len(line), "a message has one part; '---' is for services and actions"
 
 
 def _wrong_name(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:

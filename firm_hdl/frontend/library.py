@@ -5,20 +5,24 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Iterable
+from dataclasses import replace
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source
+from firm_hdl.frontend.assemble import assemble
 from firm_hdl.frontend.embedded import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.explain import clip
-from firm_hdl.frontend.resolve import Resolver, TypeName
-from firm_hdl.frontend.sources import Sources
+from firm_hdl.frontend.interfaces import Unit
+from firm_hdl.frontend.names import KINDS, Kind, TypeName, owners
+from firm_hdl.frontend.resolve import Resolver
+from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin, Origin, Sources
 from firm_hdl.frontend.suggest import did_you_mean, similar_types, unknown_type
-from firm_hdl.model import Dialect, Message
+from firm_hdl.model import Action, Dialect, Interface, Message, Service
 
 __all__ = ["Library", "load_message"]
 
 
 class Library:
-    """All message types of a distribution and of some folders.
+    """All messages, services and actions of a distribution and of some folders.
 
     Parameters
     ----------
@@ -26,7 +30,9 @@ class Library:
         ROS distribution: a key of `DISTROS`. It decides the dialect, and which types are there
         without any folder.
     paths : iterable of str or path
-        Folders with ROS packages, searched in this order and before the distribution's own types.
+        Folders with ROS packages, searched in this order and before anything else.
+    origins : iterable of Origin or None
+        What to search after the folders. By default, the distribution's own types.
 
     Raises
     ------
@@ -37,13 +43,20 @@ class Library:
     """
 
     def __init__(
-        self, distro: str = DEFAULT_DISTRO, paths: Iterable[str | os.PathLike[str]] = ()
+        self,
+        distro: str = DEFAULT_DISTRO,
+        paths: Iterable[str | os.PathLike[str]] = (),
+        *,
+        origins: Iterable[Origin] | None = None,
     ) -> None:
         if distro not in DISTROS:
             raise ValueError(f"Distribution must be one of {', '.join(DISTROS)}, not {distro!r}")
         self._distro = distro
-        self._sources = Sources(distro, paths)
-        self._resolver = Resolver(self._sources, self.dialect)
+        others = [EmbeddedOrigin(distro)] if origins is None else origins
+        self._sources = Sources([*_folders(paths), *others])
+        has_events = DISTROS[distro].has_events
+        self._resolver = Resolver(self._sources, self.dialect, has_events=has_events)
+        self._interfaces: dict[TypeName, Service | Action] = {}
 
     @property
     def distro(self) -> str:
@@ -56,42 +69,91 @@ class Library:
         return DISTROS[self._distro].dialect
 
     def names(self) -> list[str]:
-        """List the full names of all types, sorted."""
-        types = self._sources.types.items()
-        return sorted(
-            str(TypeName(package, name, self.dialect)) for package, names in types for name in names
-        )
+        """List the full names of all message types that have a definition of their own, sorted."""
+        found = (TypeName(p, k, n, self.dialect) for p, k, n in self._sources.names if k == "msg")
+        return sorted(map(str, found))
+
+    def interfaces(self) -> list[str]:
+        """List the full names of all that has a definition, services and actions too, sorted.
+
+        Where ROS 1 gives two of them the same name, the kind is in it: ``package/srv/Name``.
+        """
+        names: dict[str, TypeName] = {}
+        order = {kind: index for index, kind in enumerate(KINDS)}
+        for package, kind, name in sorted(self._sources.names, key=lambda n: order[n[1]]):
+            full = TypeName(package, kind, name, self.dialect)
+            short = str(full)
+            names[short if short not in names else f"{package}/{kind}/{name}"] = full
+        return sorted(names)
 
     def message(self, name: str) -> Message:
-        """Give the model of a type.
+        """Give the model of a message.
 
         Parameters
         ----------
         name : str
-            ``package/msg/Name`` or ``package/Name``.
+            ``package/msg/Name`` or ``package/Name``. Messages of services and actions have names,
+            too: ``package/srv/Name_Request``, and in ROS 1 ``package/NameRequest``.
 
         Raises
         ------
         DefinitionError
             With all that is wrong with the definition and with those that it depends on; without
-            a span, if `name` means no type.
+            a span, if `name` means no message.
         """
-        parsed = self._parse(name)
-        message = self._resolver.resolve(parsed)
-        if message is None:
-            raise self._unknown(parsed)
-        return message
+        candidates = self._parse(name)
+        for candidate in self._by_origin(candidates):
+            message = self._resolver.resolve(candidate)
+            if message is not None:
+                return message
+        for candidate in candidates:
+            unit = self._resolver.unit(candidate)
+            if unit is not None and candidate.kind != "msg":
+                what = "a service" if candidate.kind == "srv" else "an action"
+                text = f"'{candidate}' is {what}, not a message"
+                parts = [str(candidate)[: -len(candidate.name)] + part for part in unit.messages]
+                raise self._error(did_you_mean(text, parts))
+        raise self._unknown(candidates[0])
+
+    def interface(self, name: str) -> Interface:
+        """Give the model of a message, a service or an action.
+
+        Parameters
+        ----------
+        name : str
+            ``package/kind/Name`` or ``package/Name``, the latter for the first of message, service
+            and action that there is; also what `message` takes.
+
+        Raises
+        ------
+        DefinitionError
+            As by `message`.
+        """
+        candidates = self._parse(name)
+        for candidate in self._by_origin(candidates):
+            unit = self._resolver.unit(candidate)
+            if unit is not None and candidate.kind != "msg" and not unit.is_message:
+                return self._assembled(candidate, unit)
+            message = self._resolver.resolve(candidate)
+            if message is not None:
+                return message
+        raise self._unknown(candidates[0])
 
     def source(self, name: str) -> Source:
-        """Give the text that defines a type. Its name is parsed as by `message`."""
-        parsed = self._parse(name)
-        source = self._sources.find(parsed.package, parsed.name)
-        if source is None:
-            raise self._unknown(parsed)
-        return source
+        """Give the text that defines a type, which may be a service or an action."""
+        return self._unit(name).source
 
-    def definition_hash(self, name: str) -> str:
+    def is_idl(self, name: str) -> bool:
+        """Tell whether a type is defined in OMG IDL."""
+        return self._unit(name).language == "idl"
+
+    def definition_hash(self, name: str | Interface) -> str:
         """Digest a type's text and those of all types that it depends on.
+
+        Parameters
+        ----------
+        name : str or Message or Service or Action
+            As for `interface`, or what that returned.
 
         Returns
         -------
@@ -99,9 +161,9 @@ class Library:
             SHA-256 in hexadecimal. It does not depend on where the files are, nor on how their
             lines end.
         """
-        root = self.message(name)
-        found = {root.name: root}
-        pending = [root]
+        roots = (self.interface(name) if isinstance(name, str) else name).messages
+        found = {root.name: root for root in roots}
+        pending = [*roots]
         while pending:
             for child in pending.pop().children:
                 # The builtin types of ROS 1 have neither a text nor a package.
@@ -109,7 +171,9 @@ class Library:
                     found[child.name] = child
                     pending.append(child)
         digest = hashlib.sha256()
-        for message in [root, *sorted((m for m in found.values() if m is not root), key=str)]:
+        given = {root.name for root in roots}
+        others = [message for message in found.values() if message.name not in given]
+        for message in [*roots, *sorted(others, key=str)]:
             text = message.text.replace("\r\n", "\n").replace("\r", "\n")
             for part in (message.name, text):
                 # The length in front keeps neighbours apart.
@@ -117,21 +181,55 @@ class Library:
                 digest.update(b"%d:" % len(data) + data)
         return digest.hexdigest()
 
-    def _parse(self, name: str) -> TypeName:
+    def _unit(self, name: str) -> Unit:
+        candidates = self._parse(name)
+        for candidate in self._by_origin(candidates):
+            unit = self._resolver.unit(candidate) or self._resolver.unit_of(candidate)
+            if unit is not None:
+                return unit
+        raise self._unknown(candidates[0])
+
+    def _assembled(self, name: TypeName, unit: Unit) -> Service | Action:
+        if name not in self._interfaces:
+
+            def resolve(part: str) -> Message | None:
+                return self._resolver.resolve(replace(name, name=part))
+
+            self._interfaces[name] = assemble(unit, resolve)
+        return self._interfaces[name]
+
+    def _parse(self, name: str) -> list[TypeName]:
+        """List what a name can mean, the likeliest first."""
+        kinds: tuple[Kind, ...] = KINDS
         match name.split("/"):
-            case [package, base] | [package, "msg", base] if package and base:
-                return TypeName(package, base, self.dialect)
+            case [package, base] if package and base:
+                return [TypeName(package, kind, base, self.dialect) for kind in kinds]
+            case [package, "msg" | "srv" | "action" as kind, base] if package and base:
+                return [TypeName(package, kind, base, self.dialect)]
         form = "package/msg/Name" if self.dialect == "ros2" else "package/Name"
-        message = f"'{clip(name)}' is not the name of a message type, which is '{form}'"
-        raise self._error(message, similar_types(self._sources, "", name.rpartition("/")[2]))
+        message = f"'{clip(name)}' is not the name of a type, which is '{form}'"
+        similar = similar_types(self._sources, "", name.rpartition("/")[2])
+        raise self._error(did_you_mean(message, self._spell(similar)))
+
+    def _by_origin(self, names: list[TypeName]) -> list[TypeName]:
+        """Put what is found in an earlier origin first: `TestGoal` may be a message of the
+        distribution, and that of an action in a folder of the user."""
+        found: dict[TypeName, None] = {}
+        asked = {other: name for name in names for other in (name, *owners(name))}
+        for there in self._sources.by_origin(asked):
+            found[asked[there]] = None
+        return list(found)
 
     def _unknown(self, name: TypeName) -> DefinitionError:
         message = unknown_type(self._sources, name.package, name.name)
-        return self._error(message, similar_types(self._sources, name.package, name.name))
+        similar = similar_types(self._sources, name.package, name.name)
+        return self._error(did_you_mean(message, self._spell(similar)))
 
-    def _error(self, message: str, similar: list[tuple[str, str]]) -> DefinitionError:
-        names = [str(TypeName(package, name, self.dialect)) for package, name in similar]
-        return DefinitionError([Diagnostic(message=did_you_mean(message, names))])
+    def _spell(self, types: list[tuple[str, Kind, str]]) -> list[str]:
+        return [str(TypeName(package, kind, name, self.dialect)) for package, kind, name in types]
+
+    def _error(self, message: str) -> DefinitionError:
+        return DefinitionError([Diagnostic(message=message)])
 
 
 def load_message(
@@ -150,3 +248,16 @@ def load_message(
         As for `Library`, which is the thing to use for more than one type.
     """
     return Library(distro, paths).message(name)
+
+
+def _folders(paths: Iterable[str | os.PathLike[str]]) -> list[FolderOrigin]:
+    folders: list[FolderOrigin] = []
+    wrong: list[Diagnostic] = []
+    for path in paths:
+        try:
+            folders.append(FolderOrigin(path))
+        except DefinitionError as error:
+            wrong += error.diagnostics
+    if wrong:
+        raise DefinitionError(wrong)
+    return folders

@@ -8,7 +8,7 @@ and ``ros2_msg.lark``; here is only what turns a parse tree into syntax.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib import resources
 from typing import NamedTuple
@@ -32,7 +32,7 @@ from firm_hdl.frontend.syntax import (
 )
 from firm_hdl.model import Dialect
 
-__all__ = ["is_type_name", "parse_message", "read_message"]
+__all__ = ["is_type_name", "lines_of", "parse_message", "read_message"]
 
 _LINE_ENDS = {
     # genmsg and rosidl_adapter read files in text mode; the latter then splits at all that Python
@@ -59,8 +59,21 @@ def parse_message(source: Source, dialect: Dialect) -> MessageSyntax:
     return syntax
 
 
-def read_message(source: Source, dialect: Dialect) -> tuple[MessageSyntax, list[Diagnostic]]:
+def read_message(
+    source: Source,
+    dialect: Dialect,
+    *,
+    lines: Iterable[tuple[int, str]] | None = None,
+    text: str | None = None,
+) -> tuple[MessageSyntax, list[Diagnostic]]:
     """Parse a ``.msg`` text, leaving out the lines that are wrong.
+
+    Parameters
+    ----------
+    lines : iterable of tuple of int and str
+        Those of the lines that `lines_of` gives which belong to the message; by default all.
+    text : str or None
+        The text of the message, where that is not the whole source.
 
     Returns
     -------
@@ -71,7 +84,7 @@ def read_message(source: Source, dialect: Dialect) -> tuple[MessageSyntax, list[
     comments = CommentCollector()
     drafts: list[tuple[_Draft, list[str]]] = []
     diagnostics: list[Diagnostic] = []
-    for offset, line in _lines(source.text, dialect):
+    for offset, line in lines_of(source.text, dialect) if lines is None else lines:
         if len(diagnostics) >= _MOST_DIAGNOSTICS:
             message = "too many errors; the rest of this file was not looked at"
             span = Span(source=source, start=offset, end=offset + len(line))
@@ -93,12 +106,12 @@ def read_message(source: Source, dialect: Dialect) -> tuple[MessageSyntax, list[
                 diagnostics.append(draft)
             else:
                 drafts.append((draft, comments.claim()))
-    members = tuple(_member(draft, lines) for draft, lines in drafts)
+    members = tuple(_member(draft, found) for draft, found in drafts)
     comment, _ = condense(comments.head)
-    return (
-        MessageSyntax(source=source, dialect=dialect, members=members, comment=comment),
-        diagnostics,
+    syntax = MessageSyntax(
+        source=source, dialect=dialect, members=members, comment=comment, text=text
     )
+    return syntax, diagnostics
 
 
 def is_type_name(name: str, dialect: Dialect) -> bool:
@@ -118,7 +131,15 @@ def _parser(dialect: Dialect) -> Lark:
     return Lark(grammar, parser="lalr", lexer="contextual", start=["line", "reference"])
 
 
-def _lines(text: str, dialect: Dialect) -> Iterator[tuple[int, str]]:
+def lines_of(text: str, dialect: Dialect) -> Iterator[tuple[int, str]]:
+    """Split a text as ROS does.
+
+    Yields
+    ------
+    tuple of int and str
+        Where a line starts, and the line without its end. Behind the last line end there is one
+        more line, which may be empty.
+    """
     if dialect == "ros2":
         text = text.replace("\t", " ")  # So does rosidl_adapter, in texts and comments, too.
     start = 0
@@ -308,6 +329,7 @@ def _unquoted(text: str) -> str:
 
 def _item(text: str) -> str:
     """Read an element of a list of texts as rosidl does, which unquotes and strips it twice."""
+    text = str(text)  # A plain one, no token.
     if text[0] in "\"'":
         text = _unquoted(text).strip()
     if len(text) > 1 and text[0] in "\"'" and text[0] == text[-1]:

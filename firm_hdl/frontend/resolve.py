@@ -1,19 +1,21 @@
 """Syntax to model: names become types, and every wrong definition is found.
 
-A type is resolved once, after the types that it names. What is wrong with a text is kept with that
-text, so that a mistake in a dependency is reported once, where it stands. Dependencies are walked
-with a stack of our own: their depth is the user's business, not that of Python's recursion limit.
+A message is resolved once, after the messages that it names. What is wrong with a text is kept with
+that text, so that a mistake in a dependency is reported once, where it stands. Dependencies are
+walked with a stack of our own: their depth is the user's business, not that of Python's recursion
+limit.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
-from firm_hdl.frontend.check import check_members, check_type_name
 from firm_hdl.frontend.explain import similar_builtin
-from firm_hdl.frontend.parse import read_message
+from firm_hdl.frontend.interfaces import Unit, read_unit
+from firm_hdl.frontend.names import TypeName, owners
 from firm_hdl.frontend.sources import Sources
 from firm_hdl.frontend.suggest import did_you_mean, similar_types, unknown_type
 from firm_hdl.frontend.syntax import (
@@ -25,6 +27,7 @@ from firm_hdl.frontend.syntax import (
     ValueSyntax,
 )
 from firm_hdl.model import (
+    IDL_PRIMITIVES,
     PRIMITIVES,
     Array,
     Constant,
@@ -38,22 +41,13 @@ from firm_hdl.model import (
     Value,
 )
 
-__all__ = ["Resolver", "TypeName"]
+__all__ = ["Resolver"]
 
 _MOST_SUGGESTIONS = 20
+# What rosidl_adapter writes into the IDL of an empty message, because IDL has no empty structures.
+_PADDING_MEMBER = "structure_needs_at_least_one_member"
 
-
-@dataclass(frozen=True, slots=True, order=True)
-class TypeName:
-    """Package and name of a message type; `str` writes it as the dialect does."""
-
-    package: str
-    name: str
-    dialect: Dialect
-
-    def __str__(self) -> str:
-        middle = "/msg/" if self.dialect == "ros2" else "/"
-        return f"{self.package}{middle}{self.name}"
+_Primitives: TypeAlias = Mapping[str, Primitive]
 
 
 def _time(name: str, element: str) -> Message:
@@ -68,7 +62,7 @@ _TIMES = {"time": _time("time", "uint32"), "duration": _time("duration", "int32"
 
 @dataclass(slots=True)
 class _Entry:
-    """What is known of a type: its text, what is wrong with it, and what it needs."""
+    """What is known of a message: its text, what is wrong with it, and what it needs."""
 
     name: TypeName
     syntax: MessageSyntax
@@ -80,20 +74,28 @@ class _Entry:
 
 
 class Resolver:
-    """Resolves the types of one set of sources, each of them once."""
+    """Resolves the messages of one set of sources, each of them once.
 
-    def __init__(self, sources: Sources, dialect: Dialect) -> None:
+    Parameters
+    ----------
+    has_events : bool
+        Whether services have a message for introspection.
+    """
+
+    def __init__(self, sources: Sources, dialect: Dialect, *, has_events: bool) -> None:
         self._sources = sources
         self._dialect = dialect
+        self._has_events = has_events
         self._entries: dict[TypeName, _Entry | None] = {}
+        self._units: dict[TypeName, Unit | None] = {}
 
     def resolve(self, name: TypeName) -> Message | None:
-        """Resolve a type and all that it depends on.
+        """Resolve a message and all that it depends on.
 
         Returns
         -------
         Message or None
-            `None` if there is no type of that name.
+            `None` if there is no message of that name.
 
         Raises
         ------
@@ -108,6 +110,36 @@ class Resolver:
         if entry.message is None:
             raise DefinitionError(self._collect(entry))
         return entry.message
+
+    def unit(self, name: TypeName) -> Unit | None:
+        """Read the file that declares a message, a service or an action, once.
+
+        Returns
+        -------
+        Unit or None
+            `None` if there is no file of that name.
+
+        Raises
+        ------
+        DefinitionError
+            If there is, but it cannot be read. What is wrong with its text is in the unit.
+        """
+        if name not in self._units:
+            definition = self._sources.find(name.package, name.kind, name.name)
+            unit = None
+            if definition is not None:
+                include, has_events = self._sources.include, self._has_events
+                unit = read_unit(name, definition, include, has_events=has_events)
+            self._units[name] = unit
+        return self._units[name]
+
+    def unit_of(self, name: TypeName) -> Unit | None:
+        """Read the file that a message is made from; as `unit`."""
+        for owner in self._sources.by_origin([name, *owners(name)]):
+            unit = self.unit(owner)
+            if unit is not None and (name.name in unit.messages or unit.diagnostics):
+                return unit
+        return None
 
     def _walk(self, root: _Entry) -> None:
         """Finish a type after the types that it needs, depth first."""
@@ -139,14 +171,18 @@ class Resolver:
     def _unknown(self, entry: _Entry, name: TypeName, span: Span) -> Diagnostic:
         """Word the message for a type that a text names and that is nowhere."""
         message = unknown_type(self._sources, name.package, name.name)
+        made_from = self._sources.by_origin(owners(replace(name, kind="action")))
+        if made_from and self._dialect == "ros1":
+            action = f"the action '{made_from[0].name}'"
+            message += f"; it will be, when the package is built and a file is made from {action}"
         # Looking for similar names is slow; whoever has so many mistakes made them all in one way.
         if len(entry.diagnostics) < _MOST_SUGGESTIONS:
             builtins: list[str] = []
             if name.package == entry.name.package:
                 builtins = similar_builtin(name.name, self._dialect)
-            similar = similar_types(self._sources, name.package, name.name)
+            similar = similar_types(self._sources, name.package, name.name, kinds=("msg",))
             # In a definition, types are written without ``/msg/``.
-            names = [base if p == entry.name.package else f"{p}/{base}" for p, base in similar]
+            names = [base if p == entry.name.package else f"{p}/{base}" for p, _, base in similar]
             message = did_you_mean(message, [*builtins, *names])
         return Diagnostic(message=message, span=span)
 
@@ -158,29 +194,27 @@ class Resolver:
 
     def _load(self, name: TypeName) -> _Entry | None:
         try:
-            source = self._sources.find(name.package, name.name)
+            unit = self.unit_of(name)
         except DefinitionError as error:
-            nothing = MessageSyntax(
-                source=Source(name=str(name), text=""),
-                dialect=self._dialect,
-                members=(),
-                comment="",
-            )
-            return _Entry(name, nothing, list(error.diagnostics), [], is_done=True)
-        if source is None:
+            return self._failed(name, error.diagnostics)
+        if unit is None:
             return None
-        syntax, diagnostics = read_message(source, self._dialect)
-        diagnostics = [
-            *check_type_name(source, name.package, name.name, self._dialect),
-            *diagnostics,
-            *check_members(syntax),
-        ]
+        syntax = unit.messages.get(name.name)
+        if syntax is None:
+            # A part that the file lacks, because it is wrong.
+            return self._failed(name, unit.diagnostics)
         needs: dict[TypeName, Span] = {}
         for member in syntax.members:
             need = self._need(member.type, name.package)
             if need is not None:
                 needs.setdefault(need, member.type.span)
-        return _Entry(name, syntax, diagnostics, list(needs.items()))
+        return _Entry(name, syntax, [*unit.diagnostics], list(needs.items()))
+
+    def _failed(self, name: TypeName, diagnostics: Iterable[Diagnostic]) -> _Entry:
+        nothing = MessageSyntax(
+            source=Source(name=str(name), text=""), dialect=self._dialect, members=(), comment=""
+        )
+        return _Entry(name, nothing, list(diagnostics), [], is_done=True)
 
     def _need(self, type_: TypeSyntax, package: str) -> TypeName | None:
         if type_.is_builtin:
@@ -188,38 +222,41 @@ class Resolver:
         # REP 100; genmsg does so for the bare word only, so that ``Header[]`` is the package's own.
         is_header = type_.name == "Header" and type_.package is None and type_.array == "one"
         if is_header and self._dialect == "ros1":
-            return TypeName("std_msgs", "Header", self._dialect)
-        return TypeName(type_.package or package, type_.name, self._dialect)
+            return TypeName("std_msgs", "msg", "Header", self._dialect)
+        return TypeName(type_.package or package, type_.kind or "msg", type_.name, self._dialect)
 
     def _finish(self, entry: _Entry) -> None:
         entry.is_done = True
         entry.diagnostics.sort(key=lambda d: -1 if d.span is None else d.span.start)
         if entry.diagnostics or entry.failed_needs:
             return
-        members = entry.syntax.members
+        syntax, package = entry.syntax, entry.name.package
+        fields = [m for m in syntax.members if isinstance(m, FieldSyntax)]
+        if syntax.language == "idl" and [m.name.text for m in fields] == [_PADDING_MEMBER]:
+            fields = []
+        constants = [m for m in syntax.members if isinstance(m, ConstantSyntax)]
+        primitives = IDL_PRIMITIVES if syntax.language == "idl" else PRIMITIVES[self._dialect]
         entry.message = Message(
             name=str(entry.name),
             dialect=self._dialect,
-            fields=tuple(
-                self._field(m, entry.name.package) for m in members if isinstance(m, FieldSyntax)
-            ),
-            constants=tuple(self._constant(m) for m in members if isinstance(m, ConstantSyntax)),
-            comment=entry.syntax.comment,
-            text=entry.syntax.source.text,
+            fields=tuple(self._field(m, package, primitives) for m in fields),
+            constants=tuple(self._constant(m, primitives) for m in constants),
+            comment=syntax.comment,
+            text=syntax.source.text if syntax.text is None else syntax.text,
         )
 
-    def _field(self, syntax: FieldSyntax, package: str) -> Field:
+    def _field(self, syntax: FieldSyntax, package: str, primitives: _Primitives) -> Field:
         return Field(
             name=syntax.name.text,
-            type=self._type(syntax.type, package),
+            type=self._type(syntax.type, package, primitives),
             default=None if syntax.default is None else _value(syntax.default),
             comment=syntax.comment,
             unit=syntax.unit,
             span=syntax.name.span,
         )
 
-    def _constant(self, syntax: ConstantSyntax) -> Constant:
-        kind = self._element(syntax.type, "")
+    def _constant(self, syntax: ConstantSyntax, primitives: _Primitives) -> Constant:
+        kind = self._element(syntax.type, "", primitives)
         assert isinstance(kind, Primitive | Text)
         return Constant(
             name=syntax.name.text,
@@ -231,8 +268,8 @@ class Resolver:
             span=syntax.name.span,
         )
 
-    def _type(self, syntax: TypeSyntax, package: str) -> FieldType:
-        element = self._element(syntax, package)
+    def _type(self, syntax: TypeSyntax, package: str, primitives: _Primitives) -> FieldType:
+        element = self._element(syntax, package, primitives)
         match syntax.array:
             case "one":
                 return element
@@ -243,7 +280,9 @@ class Resolver:
                 bound = None if syntax.size is None else syntax.size.value
                 return Sequence(element=element, bound=bound)
 
-    def _element(self, syntax: TypeSyntax, package: str) -> Primitive | Text | Message:
+    def _element(
+        self, syntax: TypeSyntax, package: str, primitives: _Primitives
+    ) -> Primitive | Text | Message:
         need = self._need(syntax, package)
         if need is not None:
             entry = self._entries[need]
@@ -252,7 +291,7 @@ class Resolver:
         if syntax.name in ("string", "wstring"):
             bound = None if syntax.bound is None else syntax.bound.value
             return Text(bound=bound, wide=syntax.name == "wstring")
-        return _TIMES.get(syntax.name) or PRIMITIVES[self._dialect][syntax.name]
+        return _TIMES.get(syntax.name) or primitives[syntax.name]
 
     def _collect(self, entry: _Entry) -> list[Diagnostic]:
         """Gather what is wrong with a type and with those that it needs, each text once."""
@@ -267,7 +306,8 @@ class Resolver:
                 if name not in seen and needed is not None:
                     seen.add(name)
                     pending.append(needed)
-        return found
+        # Parts of one file have all that is wrong with it in common.
+        return list(dict.fromkeys(found))
 
 
 def _value(syntax: ValueSyntax | ListSyntax) -> Value:

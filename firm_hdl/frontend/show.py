@@ -1,22 +1,33 @@
 """Definitions printed the way ROS's own tools print them.
 
-For ROS 1 that is ``rosmsg show``: what the definition means, constants first. For ROS 2 it is
-``ros2 interface show``: the text as it stands, with the definitions of nested types under each
-field. Comments of nested types are left out, all of each: released ros2cli versions leave stray
-``#`` behind, which they call a bug (ros2cli issue 769).
+For ROS 1 that is ``rosmsg show`` and ``rossrv show``: what the definition means, constants first.
+For ROS 2 it is ``ros2 interface show``: the text as it stands, with the definitions of nested types
+under each field. Comments of nested types are left out, all of each: released ros2cli versions
+leave stray ``#`` behind, which they call a bug (ros2cli issue 769). A definition in IDL is shown
+as the ``.msg`` text that means the same.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from firm_hdl.frontend.library import Library
-from firm_hdl.model import Array, Field, Message, Sequence
+from firm_hdl.frontend.parse import lines_of
+from firm_hdl.model import (
+    Action,
+    Array,
+    Constant,
+    Field,
+    Interface,
+    Message,
+    Sequence,
+    Service,
+    Value,
+)
 
 __all__ = ["show"]
 
-_LINE_END = re.compile(r"\r\n|\r|\n")
+_SEPARATOR = "---"
 
 
 def show(library: Library, name: str) -> str:
@@ -26,7 +37,7 @@ def show(library: Library, name: str) -> str:
     ----------
     library : Library
     name : str
-        As for `Library.message`.
+        As for `Library.interface`.
 
     Returns
     -------
@@ -36,54 +47,127 @@ def show(library: Library, name: str) -> str:
     Raises
     ------
     DefinitionError
-        As `Library.message` does.
+        As `Library.interface` does.
     """
-    message = library.message(name)
-    entries = _ros1_entries if library.dialect == "ros1" else _ros2_entries
-    indent = "  " if library.dialect == "ros1" else "\t"
-    lines = []
-    stack = [iter(entries(message, True))]
+    interface = library.interface(name)
+    printer = _Ros1() if library.dialect == "ros1" else _Ros2(library)
+    lines: list[str] = []
+    stack = [printer.root(interface)]
     while stack:
         for line, nested in stack[-1]:
-            lines.append(indent * (len(stack) - 1) + line if line else "")
+            lines.append(printer.indent * (len(stack) - 1) + line if line else "")
             if nested is not None:
-                stack.append(iter(entries(nested, False)))
+                stack.append(printer.nested(nested))
                 break
         else:
             stack.pop()
     return "".join(f"{line}\n" for line in lines)
 
 
-_Entry = tuple[str, "Message | None"]
+_Entries = Iterator[tuple[str, "Message | None"]]
 
 
-def _nested(item: Field) -> Message | None:
+def _parts(interface: Interface) -> tuple[Message, ...]:
+    """List the messages that a definition declares itself."""
+    match interface:
+        case Service():
+            return interface.request, interface.response
+        case Action():
+            return interface.goal, interface.result, interface.feedback
+    return (interface,)
+
+
+def _message_in(item: Field) -> Message | None:
     kind = item.type.element if isinstance(item.type, Array | Sequence) else item.type
     # ROS 1's builtin types have no package.
     return kind if isinstance(kind, Message) and kind.package else None
 
 
-def _ros1_entries(message: Message, is_root: bool) -> Iterator[_Entry]:
-    for constant in message.constants:
-        yield f"{constant.type} {constant.name}={constant.text}", None
-    for item in message.fields:
-        yield f"{item.type} {item.name}", _nested(item)
+class _Ros1:
+    indent = "  "
+
+    def root(self, interface: Interface) -> _Entries:
+        for index, part in enumerate(_parts(interface)):
+            if index:
+                yield _SEPARATOR, None
+            yield from self.nested(part)
+
+    def nested(self, message: Message) -> _Entries:
+        for constant in message.constants:
+            yield f"{constant.type} {constant.name}={constant.text}", None
+        for item in message.fields:
+            yield f"{item.type} {item.name}", _message_in(item)
 
 
-def _ros2_entries(message: Message, is_root: bool) -> Iterator[_Entry]:
-    fields = iter(message.fields)
-    item = next(fields, None)
-    start = 0
-    lines = _LINE_END.split(message.text)
+class _Ros2:
+    indent = "\t"
+
+    def __init__(self, library: Library) -> None:
+        self._library = library
+
+    def root(self, interface: Interface) -> _Entries:
+        parts = _parts(interface)
+        if self._library.is_idl(interface.name):
+            for index, part in enumerate(parts):
+                if index:
+                    yield _SEPARATOR, None
+                yield from _as_msg(part)
+            return
+        fields = (item for part in parts for item in part.fields)
+        for line, nested in _lines(interface.text, fields):
+            yield line.rstrip(), nested
+
+    def nested(self, message: Message) -> _Entries:
+        if self._library.is_idl(message.name):
+            entries = _as_msg(message)
+        else:
+            entries = _lines(message.text, message.fields)
+        for line, nested in entries:
+            shown = line.partition("#")[0].strip()
+            if shown:
+                yield shown, nested
+
+
+def _lines(text: str, fields: Iterable[Field]) -> _Entries:
+    """Yield the lines of a ROS 2 text, each with the message that its field is of."""
+    remaining = iter(fields)
+    lines = [text[start : start + len(line)] for start, line in lines_of(text, "ros2")]
     if not lines[-1]:
         lines.pop()  # What follows the last line's end is no line.
     for line in lines:
-        end = message.text.find(line, start) + len(line)
-        nested = None
-        if item is not None and item.span is not None and item.span.start < end:
-            nested = _nested(item)
-            item = next(fields, None)
-        start = end
-        shown = line.rstrip() if is_root else line.partition("#")[0].strip()
-        if shown or is_root:
-            yield shown, nested
+        type_, _, rest = line.replace("\t", " ").partition("#")[0].rstrip().partition(" ")
+        is_field = type_ and rest and "=" not in rest
+        item = next(remaining, None) if is_field else None
+        yield line, None if item is None else _message_in(item)
+
+
+def _as_msg(message: Message) -> _Entries:
+    """Write a message in the form of a ``.msg`` file."""
+    yield from _comment(message.comment)
+    members: Iterable[Constant | Field] = (*message.constants, *message.fields)
+    for member in members:
+        yield from _comment(member.comment)
+        unit = f"  # [{member.unit}]" if member.unit is not None else ""
+        if isinstance(member, Constant):
+            value = _literal(member.value)
+            yield f"{member.type} {member.name}={value}{unit}", None
+        else:
+            default = "" if member.default is None else f" {_literal(member.default)}"
+            type_ = str(member.type).replace("/msg/", "/")
+            yield f"{type_} {member.name}{default}{unit}", _message_in(member)
+
+
+def _comment(text: str) -> _Entries:
+    for line in text.splitlines():
+        yield f"# {line.strip()}".rstrip(), None
+
+
+def _literal(value: Value) -> str:
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            return '"' + value.replace('"', '\\"') + '"'
+        case tuple():
+            return f"[{', '.join(map(_literal, value))}]"
+    return repr(value)

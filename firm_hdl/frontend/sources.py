@@ -1,25 +1,130 @@
-"""Where definitions come from: folders with ROS packages first, then the embedded types.
+"""Where definitions come from: one origin after the other, the first that has a type wins.
 
-Folders are scanned once, for names only; a file is read when its type is asked for. Each type is
-looked up for itself: a folder that has a package with some of its types adds to the embedded
-package of that name and overrides type by type.
+An origin is anything that can list names and find a text: folders with ROS packages, the types of a
+distribution, a recording. Each type is looked up for itself: a folder that has a package with some
+of its types adds to the embedded package of that name and overrides type by type.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Literal, Protocol, TypeAlias
 from xml.etree import ElementTree
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
 from firm_hdl.frontend.embedded import embedded_names, embedded_source
+from firm_hdl.frontend.names import KINDS, Kind, TypeName
 
-__all__ = ["Sources"]
+__all__ = ["Definition", "EmbeddedOrigin", "FolderOrigin", "Language", "Origin", "Sources"]
+
+Language: TypeAlias = Literal["msg", "srv", "action", "idl"]
+"""What a text is written in."""
 
 # How colcon and catkin are told to leave a folder alone.
 _IGNORE_MARKERS = frozenset({"AMENT_IGNORE", "CATKIN_IGNORE", "COLCON_IGNORE"})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Definition:
+    """A text that defines a message, a service or an action."""
+
+    source: Source
+    language: Language
+
+
+class Origin(Protocol):
+    """A place that definitions come from."""
+
+    def names(self) -> Iterable[tuple[str, Kind, str]]:
+        """List package, kind and name of everything that is defined here."""
+
+    def find(self, package: str, kind: Kind, name: str) -> Definition | None:
+        """Read a definition; `None` if it is not here.
+
+        Raises
+        ------
+        DefinitionError
+            If it is here, but cannot be read.
+        """
+
+
+class EmbeddedOrigin:
+    """The types that come with firm-hdl.
+
+    Parameters
+    ----------
+    distro : str
+        A key of `DISTROS`.
+    """
+
+    def __init__(self, distro: str) -> None:
+        self._distro = distro
+
+    def names(self) -> Iterator[tuple[str, Kind, str]]:
+        """List every message type of the distribution."""
+        for package, name in embedded_names(self._distro):
+            yield package, "msg", name
+
+    def find(self, package: str, kind: Kind, name: str) -> Definition | None:
+        """Write out the definition of an embedded type."""
+        source = embedded_source(self._distro, package, name) if kind == "msg" else None
+        return None if source is None else Definition(source=source, language="msg")
+
+
+class FolderOrigin:
+    """A folder that is a package, or contains packages at any depth.
+
+    It is scanned once, for names only; a file is read when its type is asked for. A package has its
+    files in ``msg/``, ``srv/`` and ``action/``, in source or in installed layout. Where a type is
+    there in ROS's own form and in IDL, which is what an installation has, the former is taken.
+
+    Parameters
+    ----------
+    path : str or path
+
+    Raises
+    ------
+    DefinitionError
+        If the path is not a folder. It has no span.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        root = os.fspath(path)
+        if not os.path.isdir(root):
+            raise DefinitionError([Diagnostic(message=f"'{root}' is not a folder")])
+        self._files: dict[tuple[str, Kind, str], str] = {}
+        self._packages: dict[str, str] = {}
+        for package, folder in _packages(root):
+            self._packages.setdefault(package, folder)
+            for kind in KINDS:
+                for file in _definition_files(folder, kind):
+                    key = package, kind, os.path.splitext(file)[0]
+                    self._files.setdefault(key, os.path.join(folder, kind, file))
+
+    def names(self) -> Iterable[tuple[str, Kind, str]]:
+        """List what the files are called."""
+        return self._files
+
+    def find(self, package: str, kind: Kind, name: str) -> Definition | None:
+        """Read the file of a definition."""
+        file = self._files.get((package, kind, name))
+        if file is None:
+            return None
+        language: Language = "idl" if file.endswith(".idl") else kind
+        return Definition(source=_read(file), language=language)
+
+    def include(self, path: str) -> Source | None:
+        """Read what an ``#include "package/folder/file.idl"`` names; `None` if it is not here."""
+        package, _, rest = path.partition("/")
+        folder = self._packages.get(package)
+        if folder is None or ".." in rest.split("/"):
+            return None
+        file = os.path.join(folder, rest)
+        return _read(file) if os.path.isfile(file) else None
 
 
 class Sources:
@@ -27,65 +132,94 @@ class Sources:
 
     Parameters
     ----------
-    distro : str
-        A key of `DISTROS`.
-    paths : iterable of str or path
-        Folders to search, the first one first. A folder is a package, or contains packages at any
-        depth, in source or in installed layout.
-
-    Raises
-    ------
-    DefinitionError
-        If one of the paths is not a folder. It has no span.
+    origins : iterable of Origin
+        The first one that has a type wins.
     """
 
-    def __init__(self, distro: str, paths: Iterable[str | os.PathLike[str]] = ()) -> None:
-        self._distro = distro
-        self._files: dict[tuple[str, str], str] = {}
-        wrong = []
-        for given in paths:
-            path = os.fspath(given)
-            if os.path.isdir(path):
-                for package, folder in _packages(path):
-                    for file in _message_files(folder):
-                        key = package, file.removesuffix(".msg")
-                        self._files.setdefault(key, os.path.join(folder, "msg", file))
-            else:
-                wrong.append(Diagnostic(message=f"'{path}' is not a folder"))
-        if wrong:
-            raise DefinitionError(wrong)
+    def __init__(self, origins: Iterable[Origin]) -> None:
+        self._origins = tuple(origins)
 
     @cached_property
-    def types(self) -> dict[str, list[str]]:
-        """Names of the types of every package, both sorted."""
-        found: dict[str, list[str]] = {}
-        for package, name in sorted({*self._files, *embedded_names(self._distro)}):
-            found.setdefault(package, []).append(name)
+    def _names(self) -> tuple[frozenset[tuple[str, Kind, str]], ...]:
+        return tuple(frozenset(origin.names()) for origin in self._origins)
+
+    @cached_property
+    def names(self) -> frozenset[tuple[str, Kind, str]]:
+        """Package, kind and name of every definition."""
+        return frozenset().union(*self._names)
+
+    def by_origin(self, names: Iterable[TypeName]) -> list[TypeName]:
+        """Sort names by where the first definition of each is; leave out those without one."""
+        found: dict[TypeName, None] = {}
+        candidates = list(names)
+        for there in self._names:
+            for name in candidates:
+                if (name.package, name.kind, name.name) in there:
+                    found[name] = None
+        return list(found)
+
+    @cached_property
+    def types(self) -> dict[str, list[tuple[Kind, str]]]:
+        """Kinds and names of the definitions of every package, both sorted; messages first."""
+        found: dict[str, list[tuple[Kind, str]]] = {}
+        order = {kind: index for index, kind in enumerate(KINDS)}
+        for package, kind, name in sorted(self.names, key=lambda n: (n[0], order[n[1]], n[2])):
+            found.setdefault(package, []).append((kind, name))
         return found
 
     @cached_property
-    def packages_of(self) -> dict[str, list[str]]:
-        """Packages that have a type of a given name, those of the distribution first."""
-        found: dict[str, dict[str, None]] = {}
-        for package, name in [*embedded_names(self._distro), *sorted(self._files)]:
-            found.setdefault(name, {})[package] = None
-        return {name: list(packages) for name, packages in found.items()}
+    def packages_of(self) -> dict[tuple[Kind, str], list[str]]:
+        """Packages that have a definition of a kind and name, those of the last origin first.
 
-    def find(self, package: str, name: str) -> Source | None:
-        """Read the definition of a type.
+        The last one is the distribution, whose types are the likeliest to be meant.
+        """
+        found: dict[tuple[Kind, str], dict[str, None]] = {}
+        for names in reversed(self._names):
+            for package, kind, name in sorted(names):
+                found.setdefault((kind, name), {})[package] = None
+        return {key: list(packages) for key, packages in found.items()}
+
+    def find(self, package: str, kind: Kind, name: str) -> Definition | None:
+        """Read a definition.
 
         Returns
         -------
-        Source or None
-            `None` if there is no such type.
+        Definition or None
+            `None` if there is none of that name.
 
         Raises
         ------
         DefinitionError
-            If there is, but its file cannot be read.
+            If there is, but it cannot be read.
         """
-        file = self._files.get((package, name))
-        return embedded_source(self._distro, package, name) if file is None else _read(file)
+        for origin in self._origins:
+            found = origin.find(package, kind, name)
+            if found is not None:
+                return found
+        return None
+
+    def include(self, path: str) -> Source | None:
+        """Read what an IDL file includes.
+
+        Returns
+        -------
+        Source or None
+            `None` if there is no such file. ROS makes an IDL file of every definition that is
+            written otherwise; what others need of that one is its types, which are found by name,
+            so that its text is given as empty.
+        """
+        for origin in self._origins:
+            if isinstance(origin, FolderOrigin):
+                source = origin.include(path)
+                if source is not None:
+                    return source
+        match path.removesuffix(".idl").split("/"):
+            case [package, ("msg" | "srv" | "action") as kind, name] if path.endswith(".idl"):
+                found = self.find(package, kind, name)
+                if found is not None:
+                    text = found.source.text if found.language == "idl" else ""
+                    return Source(name=found.source.name, text=text)
+        return None
 
 
 def _packages(root: str) -> Iterator[tuple[str, str]]:
@@ -104,23 +238,29 @@ def _packages(root: str) -> Iterator[tuple[str, str]]:
         if (status.st_dev, status.st_ino) in seen or names & _IGNORE_MARKERS:
             continue
         seen.add((status.st_dev, status.st_ino))
-        if "msg" in names and _message_files(folder):
+        kinds = {kind for kind in KINDS if kind in names and _definition_files(folder, kind)}
+        if kinds:
             yield _package_name(folder), folder
         if "package.xml" in names:
             continue  # As for colcon and catkin, a package contains no other.
         pending += [
             entry.path
             for entry in reversed(entries)
-            if not entry.name.startswith(".") and entry.name != "msg" and os.path.isdir(entry.path)
+            if not entry.name.startswith(".")
+            and entry.name not in kinds
+            and os.path.isdir(entry.path)
         ]
 
 
-def _message_files(package: str) -> list[str]:
+def _definition_files(package: str, kind: Kind) -> list[str]:
+    """List the files of one kind, the preferred one of each type first."""
     try:
-        names = os.listdir(os.path.join(package, "msg"))
+        names = os.listdir(os.path.join(package, kind))
     except OSError:
         return []
-    return sorted(name for name in names if name.endswith(".msg") and name != ".msg")
+    endings = f".{kind}", ".idl"
+    found = [name for name in names if name.endswith(endings) and name not in endings]
+    return sorted(found, key=lambda name: (name.endswith(".idl"), name))
 
 
 def _package_name(folder: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from difflib import get_close_matches
 
 from firm_hdl.frontend.explain import clip
+from firm_hdl.frontend.names import KINDS, Kind
 from firm_hdl.frontend.sources import Sources
 
 __all__ = ["did_you_mean", "similar_types", "unknown_type"]
@@ -17,21 +18,32 @@ def unknown_type(sources: Sources, package: str, name: str) -> str:
     return f"package '{clip(package)}' is not found"
 
 
-def similar_types(sources: Sources, package: str, name: str) -> list[tuple[str, str]]:
-    """List packages and names of the types that may have been meant, the likeliest first.
+def similar_types(
+    sources: Sources, package: str, name: str, *, kinds: tuple[Kind, ...] = KINDS
+) -> list[tuple[str, Kind, str]]:
+    """List package, kind and name of the types that may have been meant, the likeliest first.
 
     The same name in a package that looks alike, then in any other; a name that looks alike in the
     package, if it exists.
     """
-    packages = sources.packages_of.get(name, [])
-    close = get_close_matches(package, packages, n=len(packages) or 1)
-    found = [(other, name) for other in [*close, *packages]]
-    own = sources.types.get(package, [])
-    found += [(package, other) for other in get_close_matches(name, own)]
+    found: list[tuple[str, Kind, str]] = []
+    for kind in kinds:
+        packages = sources.packages_of.get((kind, name), [])
+        close = get_close_matches(package, packages, n=len(packages) or 1)
+        found += [(other, kind, name) for other in [*close, *packages]]
+    found += _close_names(sources, package, name, kinds)
     if package not in sources.types and not found:
         for other in get_close_matches(package, sources.types):
-            found += [(other, close) for close in get_close_matches(name, sources.types[other])]
+            found += _close_names(sources, other, name, kinds)
     return list(dict.fromkeys(found))
+
+
+def _close_names(
+    sources: Sources, package: str, name: str, kinds: tuple[Kind, ...]
+) -> list[tuple[str, Kind, str]]:
+    types = sources.types.get(package, [])
+    close = get_close_matches(name, [base for kind, base in types if kind in kinds])
+    return [(package, k, base) for base in close for k, b in types if b == base and k in kinds]
 
 
 def did_you_mean(message: str, names: list[str]) -> str:

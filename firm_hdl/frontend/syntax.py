@@ -54,6 +54,9 @@ class TypeSyntax:
         A builtin type's name, or that of a message type.
     is_builtin : bool
         Whether `name` is one of the dialect's own words.
+    kind : "msg", "srv", "action" or None
+        The namespace of a message type, where the text says it (in IDL ``pkg::action::X_Goal``).
+        `None` means that of messages, as everywhere in ``.msg``, ``.srv`` and ``.action`` files.
     bound : SizeSyntax or None
         What follows ``string<=``.
     array : "one", "array" or "sequence"
@@ -69,6 +72,7 @@ class TypeSyntax:
     array: Literal["one", "array", "sequence"]
     size: SizeSyntax | None
     span: Span
+    kind: Literal["msg", "srv", "action"] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,17 +119,25 @@ MemberSyntax: TypeAlias = FieldSyntax | ConstantSyntax
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MessageSyntax:
-    """A whole ``.msg`` text.
+    """A whole ``.msg`` text, or the part of another that defines one message.
 
     Attributes
     ----------
+    source : Source
+        The whole file, which all spans speak of.
     members : tuple of FieldSyntax or ConstantSyntax
         In the order of the text.
     comment : str
-        The comment at the head of the file.
+        The comment at the head of the text.
+    text : str or None
+        The text of this message alone; `None` means all of the source.
+    language : "msg" or "idl"
+        Whose words the names of builtin types are: `char` is another type in IDL.
     """
 
     source: Source
     dialect: Dialect
     members: tuple[MemberSyntax, ...]
     comment: str
+    text: str | None = None
+    language: Literal["msg", "idl"] = "msg"

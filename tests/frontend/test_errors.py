@@ -1,7 +1,7 @@
 """What users are told: each wrong file in ``errors/`` next to its whole message.
 
-``errors/<dialect>`` is a folder of packages; beside ``Name.msg`` stands in ``Name.err`` what
-loading that type must say.
+``errors/<dialect>`` is a folder of packages; beside ``Name.msg``, ``Name.srv``, ``Name.action``
+or ``Name.idl`` stands in ``Name.err`` what loading that type must say.
 """
 
 from __future__ import annotations
@@ -14,22 +14,27 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 
 ERRORS = Path(__file__).parent / "errors"
-CASES = sorted(path.relative_to(ERRORS) for path in ERRORS.glob("*/*/msg/*.msg"))
+CASES = sorted(
+    path.relative_to(ERRORS)
+    for kind in ("msg", "srv", "action")
+    for ending in (kind, "idl")
+    for path in ERRORS.glob(f"*/*/{kind}/*.{ending}")
+)
 
 
 @pytest.mark.parametrize("case", CASES, ids=str)
 def test_wrong_definition_gets_exactly_this_message(case, monkeypatch):
     monkeypatch.chdir(ERRORS)
-    dialect, package, _, file = case.parts
+    dialect, package, kind, file = case.parts
     library = Library("noetic" if dialect == "ros1" else "lyrical", [dialect])
     with pytest.raises(DefinitionError) as error:
-        library.message(f"{package}/{Path(file).stem}")
+        library.interface(f"{package}/{kind}/{Path(file).stem}")
     want = (ERRORS / case).with_suffix(".err").read_text(encoding="utf-8")
     assert f"{error.value}\n" == want
 
 
 def test_there_are_cases():
-    assert len(CASES) > 20
+    assert len(CASES) > 40
     assert len(list(ERRORS.rglob("*.err"))) == len(CASES)
 
 

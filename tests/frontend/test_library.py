@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 import firm_hdl.frontend
-from firm_hdl.errors import DefinitionError
+from firm_hdl.errors import DefinitionError, Source
 from firm_hdl.frontend import DISTROS, Library, load_message
+from firm_hdl.frontend.sources import Definition
+from firm_hdl.model import Action, Message, Service
 
 from .workspace import library, make_files
 
@@ -20,7 +22,8 @@ def refused(function, *args):
 
 def test_public_names():
     assert firm_hdl.frontend.__all__ == [
-        "DEFAULT_DISTRO", "DISTROS", "Distro", "Library", "load_message", "show",
+        "DEFAULT_DISTRO", "DISTROS", "Distro", "Library", "RecordingOrigin", "load_message",
+        "open_library", "show",
     ]  # fmt: skip
 
 
@@ -55,7 +58,7 @@ def test_load_message_takes_paths(tmp_path):
 @pytest.mark.parametrize("name", ["", "/", "a//b", "/a/b", "a/b/", "a/b/c", "a/b/c/d", "time"])
 def test_malformed_names(name):
     assert refused(Library("noetic").message, name) == (
-        f"error: '{name}' is not the name of a message type, which is 'package/Name'"
+        f"error: '{name}' is not the name of a type, which is 'package/Name'"
     )
     assert refused(Library("noetic").source, name).startswith(f"error: '{name}' is not the name")
 
@@ -63,10 +66,10 @@ def test_malformed_names(name):
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("Imu", "'Imu' is not the name of a message type, which is 'package/msg/Name'; "
+        ("Imu", "'Imu' is not the name of a type, which is 'package/msg/Name'; "
                 "did you mean 'sensor_msgs/msg/Imu'?"),
         ("sensor_msgs/srv/Imu",
-         "'sensor_msgs/srv/Imu' is not the name of a message type, which is 'package/msg/Name'; "
+         "type 'Imu' is not defined in package 'sensor_msgs'; "
          "did you mean 'sensor_msgs/msg/Imu'?"),
         ("sensor_msgs/msg/Imuu", "type 'Imuu' is not defined in package 'sensor_msgs'; "
                                  "did you mean 'sensor_msgs/msg/Imu'?"),
@@ -79,7 +82,7 @@ def test_malformed_names(name):
         ("std_msgs/Pose", "type 'Pose' is not defined in package 'std_msgs'; "
                           "did you mean 'geometry_msgs/msg/Pose'?"),
         ("nothing/At/All",
-         "'nothing/At/All' is not the name of a message type, which is 'package/msg/Name'"),
+         "'nothing/At/All' is not the name of a type, which is 'package/msg/Name'"),
         ("nothing/Similar", "package 'nothing' is not found"),
     ],
 )  # fmt: skip
@@ -97,6 +100,117 @@ def test_long_and_invisible_names_are_shown_shortened_and_escaped():
     assert message.startswith("error: '\\x00xxx") and len(message) < 200
 
 
+@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+def test_interfaces_are_all_definitions(tmp_path, distro):
+    files = {"p/msg/A.msg": "", "p/srv/B.srv": "---", "p/action/C.action": "---\n---"}
+    lib = Library(distro, [make_files(tmp_path, files)])
+    names = [name for name in lib.interfaces() if name.startswith("p/")]
+    if distro == "noetic":
+        assert names == ["p/A", "p/B", "p/C"]
+    else:
+        assert names == ["p/action/C", "p/msg/A", "p/srv/B"]
+    assert [name for name in lib.names() if name.startswith("p/")] == [names[distro != "noetic"]]
+    assert [lib.interface(name).name for name in names] == names
+
+
+def test_same_name_of_several_kinds(tmp_path):
+    files = {"p/msg/A.msg": "int8 a", "p/srv/A.srv": "---", "p/action/A.action": "---\n---"}
+    lib = Library("noetic", [make_files(tmp_path, files)])
+    names = [name for name in lib.interfaces() if name.startswith("p/")]
+    assert names == ["p/A", "p/action/A", "p/srv/A"]
+    assert [type(lib.interface(name)) for name in names] == [Message, Action, Service]
+    assert [lib.interface(name).name for name in names] == ["p/A"] * 3
+
+
+@pytest.mark.parametrize("name", ["p/B", "p/srv/B"])
+def test_a_service_is_no_message(tmp_path, name):
+    make_files(tmp_path, {"p/srv/B.srv": "---"})
+    assert refused(Library("lyrical", [tmp_path]).message, name) == (
+        "error: 'p/srv/B' is a service, not a message; "
+        "did you mean 'p/srv/B_Request', 'p/srv/B_Response' or 'p/srv/B_Event'?"
+    )
+    assert refused(Library("noetic", [tmp_path]).message, name) == (
+        "error: 'p/B' is a service, not a message; did you mean 'p/BRequest' or 'p/BResponse'?"
+    )
+
+
+def test_services_and_actions_are_suggested(tmp_path):
+    lib = Library("lyrical", [make_files(tmp_path, {"p/srv/Begin.srv": "---"})])
+    assert refused(lib.interface, "p/Begni") == (
+        "error: type 'Begni' is not defined in package 'p'; did you mean 'p/srv/Begin'?"
+    )
+    # A field cannot be of such a type.
+    make_files(tmp_path, {"p/msg/A.msg": "Begni a"})
+    with pytest.raises(DefinitionError) as error:
+        Library("lyrical", [tmp_path]).message("p/A")
+    assert error.value.diagnostics[0].message == "type 'Begni' is not defined in package 'p'"
+
+
+def test_messages_of_services_are_the_same_objects_however_asked_for(tmp_path):
+    make_files(tmp_path, {"p/srv/B.srv": "int8 a\n---", "p/action/C.action": "---\n---"})
+    for distro, request, goal in (
+        ("noetic", "p/BRequest", "p/CGoal"),
+        ("humble", "p/srv/B_Request", "p/action/C_Goal"),
+    ):
+        lib = Library(distro, [tmp_path])
+        assert lib.message(request) is lib.interface("p/B").request is lib.interface(request)
+        assert lib.message(goal) is lib.interface("p/C").goal
+        assert lib.interface("p/C") is lib.interface("p/action/C")
+        assert lib.source(request).text == "int8 a\n---"
+        assert lib.source(goal).text == lib.source("p/C").text == "---\n---"
+    assert Library("noetic", [tmp_path]).message("p/srv/BRequest").name == "p/BRequest"
+    assert Library("noetic", [tmp_path]).message("p/action/CGoal").name == "p/CGoal"
+
+
+def test_hash_of_services_is_that_of_all_their_messages(tmp_path):
+    def hashes(text, name):
+        root = make_files(tmp_path / str(len(list(tmp_path.iterdir()))), {"p/srv/B.srv": text})
+        return Library("lyrical", [root]).definition_hash(name)
+
+    before, after = "Header a\n---\nint8 b", "Header a\n---\nint8 c"
+    before, after = (text.replace("Header", "std_msgs/Header") for text in (before, after))
+    assert hashes(before, "p/srv/B_Request") == hashes(after, "p/srv/B_Request")
+    for name in ("p/srv/B_Response", "p/srv/B_Event", "p/srv/B"):
+        assert hashes(before, name) != hashes(after, name)
+    lib = Library("lyrical", [make_files(tmp_path / "x", {"p/srv/B.srv": before})])
+    assert lib.definition_hash(lib.interface("p/B")) == lib.definition_hash("p/B")
+
+
+class Texts:
+    """The smallest origin that there can be."""
+
+    def __init__(self, texts):
+        self.texts = texts
+
+    def names(self):
+        return list(self.texts)
+
+    def find(self, package, kind, name):
+        text = self.texts.get((package, kind, name))
+        source = Source(name=f"<texts>/{name}", text=text or "")
+        return None if text is None else Definition(source=source, language="msg")
+
+
+def test_origins_replace_the_types_of_the_distribution(tmp_path):
+    origin = Texts({("p", "msg", "A"): "q/B b", ("q", "msg", "B"): "int8 x"})
+    lib = Library("lyrical", origins=[origin])
+    assert lib.interfaces() == ["p/msg/A", "q/msg/B"]
+    assert lib.message("p/A").fields[0].type is lib.message("q/B")
+    assert refused(lib.message, "std_msgs/String") == "error: package 'std_msgs' is not found"
+    lib = Library("lyrical", [make_files(tmp_path, {"q/msg/B.msg": "int8 y"})], origins=[origin])
+    assert lib.message("q/B").fields[0].name == "y"
+
+
+def test_origins_may_have_messages_of_services_by_themselves():
+    # As recordings have.
+    names = ["S_Event", "S_Request", "S_Response"]
+    lib = Library("lyrical", origins=[Texts({("p", "srv", n): f"int8 x{len(n)}" for n in names})])
+    assert lib.interfaces() == [f"p/srv/{name}" for name in names]
+    for name in lib.interfaces():
+        assert lib.message(name) is lib.interface(name)
+    assert refused(lib.interface, "p/srv/S").startswith("error: type 'S' is not defined")
+
+
 def test_unknown_distribution():
     with pytest.raises(ValueError) as error:
         Library("melodic")
@@ -106,9 +220,9 @@ def test_unknown_distribution():
     )
 
 
-def test_path_that_is_no_folder(tmp_path):
-    assert refused(Library, "lyrical", [f"{tmp_path}/x"]) == (
-        f"error: '{tmp_path}/x' is not a folder"
+def test_paths_that_are_no_folders(tmp_path):
+    assert refused(Library, "lyrical", [f"{tmp_path}/x", tmp_path, f"{tmp_path}/y"]) == (
+        f"error: '{tmp_path}/x' is not a folder\nerror: '{tmp_path}/y' is not a folder"
     )
 
 

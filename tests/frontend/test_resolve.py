@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.frontend import Library, resolve
+from firm_hdl.frontend import Library, interfaces
 from firm_hdl.model import PRIMITIVES, Array, Constant, Field, Message, Sequence, Text
 from tests.strategies import definitions
 
@@ -130,9 +130,9 @@ def test_every_text_is_read_once_however_often_it_is_used(tmp_path, monkeypatch)
     files = {f"p/T{i}": f"T{i + 1} a\nT{i + 1}[] b\n" for i in range(40)} | {"p/T40": "int8 x"}
     lib = library(tmp_path, files)
     read = []
-    original = resolve.read_message
+    original = interfaces.read_message
     monkeypatch.setattr(
-        resolve, "read_message", lambda s, d: [read.append(s.name), original(s, d)][1]
+        interfaces, "read_message", lambda s, d: [read.append(s.name), original(s, d)][1]
     )
     assert lib.message("p/T0").depth == 41
     assert len(read) == len(set(read)) == 41

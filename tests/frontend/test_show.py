@@ -7,7 +7,7 @@ import pytest
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library, show
 
-from .workspace import library
+from .workspace import library, make_files
 
 
 def test_rosmsg_show():
@@ -103,3 +103,77 @@ def test_wrong_types_are_not_shown(tmp_path):
         show(library(tmp_path, {"p/T": "T t"}), "p/T")
     with pytest.raises(DefinitionError):
         show(Library(), "p/T")
+
+
+SERVICE = {
+    "p/srv/S.srv": "# Asks.\nint8 X=1 # one\nq/U a  # [m]\n---\n# Answers.\n\nq/U[<=2] b\nint8 c\n",
+    "q/msg/U.msg": "# u\nint8 x # comment\n",
+}
+
+
+def test_rossrv_show(tmp_path):
+    texts = {name: text.replace("<=2", "2") for name, text in SERVICE.items()}
+    library = Library("noetic", [make_files(tmp_path, texts)])
+    # As rosmsg 1.15.15's `get_srv_text`.
+    assert show(library, "p/S") == ("int8 X=1\nq/U a\n  int8 x\n---\nq/U[2] b\n  int8 x\nint8 c\n")
+    assert show(library, "p/SResponse") == "q/U[2] b\n  int8 x\nint8 c\n"
+
+
+def test_ros2_interface_show_of_a_service(tmp_path):
+    library = Library("lyrical", [make_files(tmp_path, SERVICE)])
+    assert show(library, "p/srv/S") == (
+        "# Asks.\nint8 X=1 # one\nq/U a  # [m]\n\tint8 x\n---\n# Answers.\n\n"
+        "q/U[<=2] b\n\tint8 x\nint8 c\n"
+    )
+    assert show(library, "p/srv/S_Response") == ("# Answers.\n\nq/U[<=2] b\n\tint8 x\nint8 c\n")
+    assert show(library, "p/srv/S_Event").endswith(
+        "S_Request[<=1] request\n\tint8 X=1\n\tq/U a\n\t\tint8 x\n"
+        "S_Response[<=1] response\n\tq/U[<=2] b\n\t\tint8 x\n\tint8 c\n"
+    )
+
+
+@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+def test_actions_are_shown(tmp_path, distro):
+    text = "int8 a\n---\nstd_msgs/String b\n---\n# c\n"
+    library = Library(distro, [make_files(tmp_path, {"p/action/A.action": text})])
+    tail = "# c\n" if distro == "lyrical" else ""
+    indent = "\t" if distro == "lyrical" else "  "
+    assert show(library, "p/action/A") == (
+        f"int8 a\n---\nstd_msgs/String b\n{indent}string data\n---\n{tail}"
+    )
+
+
+def test_idl_is_shown_as_msg(tmp_path):
+    idl = """
+        #include "q/msg/U.idl"
+        module p { module msg {
+          module T_Constants { const short LIMIT = 3; };
+          @verbatim(language="comment", text="A type.")
+          struct T {
+            @unit(value="m") @default(value=2.5)
+            double x;
+            sequence<q::msg::U, 4> us;
+            string<5> s;
+          };
+        }; };
+    """
+    files = {"p/msg/T.idl": idl, "q/msg/U.msg": SERVICE["q/msg/U.msg"], "p/msg/V.msg": "T[2] t # v"}
+    library = Library("lyrical", [make_files(tmp_path, files)])
+    assert show(library, "p/msg/T") == (
+        "# A type.\nint16 LIMIT=3\nfloat64 x 2.5  # [m]\nq/U[<=4] us\n\tint8 x\nstring<=5 s\n"
+    )
+    assert show(library, "p/msg/V") == (
+        "T[2] t # v\n\tint16 LIMIT=3\n\tfloat64 x 2.5\n\tq/U[<=4] us\n\t\tint8 x\n\tstring<=5 s\n"
+    )
+
+
+def test_shown_idl_is_a_definition_that_means_the_same(tmp_path):
+    idl = (
+        'module p { module msg { module T_Constants { const string S = "a\'b"; '
+        "const boolean B = TRUE; const float F = 1.5; }; struct T { "
+        '@default(value="x y") string s; @default(value=FALSE) boolean b; '
+        "long long a[3]; sequence<octet> o; @default(value=-7) long n; }; }; };"
+    )
+    library = Library("lyrical", [make_files(tmp_path / "1", {"p/msg/T.idl": idl})])
+    root = make_files(tmp_path / "2", {"p/msg/T.msg": show(library, "p/msg/T")})
+    assert Library("lyrical", [root]).message("p/T") == library.message("p/T")

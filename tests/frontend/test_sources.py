@@ -8,17 +8,22 @@ import sys
 import pytest
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.frontend.sources import Sources
+from firm_hdl.frontend.names import TypeName
+from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin, Sources
 
 from .workspace import make_files
 
 
+def sources(*roots):
+    """Folders, in front of a distribution."""
+    return Sources([*map(FolderOrigin, roots), EmbeddedOrigin("lyrical")])
+
+
 def found(*roots):
-    """Names that folders add to a distribution."""
-    have = Sources("lyrical", roots).types
-    without = Sources("lyrical").types
-    names = {(p, n) for p, ns in have.items() for n in ns}
-    return sorted(names - {(p, n) for p, ns in without.items() for n in ns})
+    """Packages and names of the messages that folders have."""
+    names = Sources(map(FolderOrigin, roots)).names
+    assert all(kind == "msg" for _, kind, _ in names)
+    return sorted((package, name) for package, _, name in names)
 
 
 @pytest.mark.parametrize(
@@ -41,8 +46,9 @@ def test_current_folder_may_be_the_package(tmp_path, monkeypatch):
     assert found(".") == [("pkg", "A")]
 
 
-def test_only_msg_files_count(tmp_path):
-    files = ["msg/A.msg.bak", "msg/a.txt", "msg/.msg", "A.msg", "msgs/A.msg", "srv/A.srv"]
+def test_only_definitions_in_the_folder_of_their_kind_count(tmp_path):
+    files = ["msg/A.msg.bak", "msg/a.txt", "msg/.msg", "A.msg", "msgs/A.msg", "msg/A.srv"]
+    files += ["srv/A.msg", "msg/.idl", "action/A.srv", "srv/A.action"]
     make_files(tmp_path, {f"pkg/{file}": "" for file in files})
     assert found(tmp_path) == []
 
@@ -98,51 +104,51 @@ def test_links_to_packages_are_followed(tmp_path):
 def test_first_path_wins_type_by_type(tmp_path):
     make_files(tmp_path, {"one/pkg/msg/A.msg": "# 1", "two/pkg/msg/A.msg": "# 2"})
     make_files(tmp_path, {"two/pkg/msg/B.msg": "# 2"})
-    sources = Sources("lyrical", [tmp_path / "one", tmp_path / "two"])
-    assert [sources.find("pkg", n).text for n in ("A", "B")] == ["# 1", "# 2"]
-    sources = Sources("lyrical", [tmp_path / "two", tmp_path / "one"])
-    assert [sources.find("pkg", n).text for n in ("A", "B")] == ["# 2", "# 2"]
+    have = sources(tmp_path / "one", tmp_path / "two")
+    assert [have.find("pkg", "msg", n).source.text for n in ("A", "B")] == ["# 1", "# 2"]
+    have = sources(tmp_path / "two", tmp_path / "one")
+    assert [have.find("pkg", "msg", n).source.text for n in ("A", "B")] == ["# 2", "# 2"]
 
 
 def test_within_a_path_the_first_folder_by_name_wins(tmp_path):
     make_files(tmp_path, {"b/pkg/msg/A.msg": "# b", "a/z/pkg/msg/A.msg": "# a", "c/x": ""})
-    assert Sources("lyrical", [tmp_path]).find("pkg", "A").text == "# a"
+    assert sources(tmp_path).find("pkg", "msg", "A").source.text == "# a"
 
 
 def test_folder_overrides_the_distribution_type_by_type(tmp_path):
     make_files(tmp_path, {"std_msgs/msg/Header.msg": "# mine", "std_msgs/msg/Extra.msg": ""})
-    sources = Sources("lyrical", [tmp_path])
-    assert sources.find("std_msgs", "Header").text == "# mine"
-    assert sources.find("std_msgs", "String").name == "<rosbags lyrical>/std_msgs/msg/String.msg"
-    assert "Extra" in sources.types["std_msgs"]
-    assert sources.find("std_msgs", "Nothing") is None
+    have = sources(tmp_path)
+    assert have.find("std_msgs", "msg", "Header").source.text == "# mine"
+    embedded = have.find("std_msgs", "msg", "String")
+    assert embedded.source.name == "<rosbags lyrical>/std_msgs/msg/String.msg"
+    assert ("msg", "Extra") in have.types["std_msgs"]
+    assert have.find("std_msgs", "msg", "Nothing") is None
 
 
 def test_source_is_named_as_the_user_wrote_the_path(tmp_path, monkeypatch):
     make_files(tmp_path, {"ws/src/pkg/msg/A.msg": ""})
     monkeypatch.chdir(tmp_path)
-    assert Sources("lyrical", ["ws"]).find("pkg", "A").name == "ws/src/pkg/msg/A.msg"
+    assert sources("ws").find("pkg", "msg", "A").source.name == "ws/src/pkg/msg/A.msg"
 
 
 def test_text_is_kept_as_it_is(tmp_path):
     text = "# größe\r\nint32 a\rint32 b\n"
     make_files(tmp_path, {"pkg/msg/A.msg": text})
-    assert Sources("lyrical", [tmp_path]).find("pkg", "A").text == text
+    assert sources(tmp_path).find("pkg", "msg", "A").source.text == text
 
 
-def test_what_is_no_folder_is_refused(tmp_path):
+@pytest.mark.parametrize("name", ["file", "none"])
+def test_what_is_no_folder_is_refused(tmp_path, name):
     make_files(tmp_path, {"file": ""})
     with pytest.raises(DefinitionError) as error:
-        Sources("lyrical", [f"{tmp_path}/file", tmp_path, f"{tmp_path}/none"])
-    assert str(error.value) == (
-        f"error: '{tmp_path}/file' is not a folder\nerror: '{tmp_path}/none' is not a folder"
-    )
+        FolderOrigin(tmp_path / name)
+    assert str(error.value) == f"error: '{tmp_path}/{name}' is not a folder"
 
 
 def test_file_that_cannot_be_read_is_reported(tmp_path):
     (tmp_path / "pkg/msg/A.msg").mkdir(parents=True)
     with pytest.raises(DefinitionError) as error:
-        Sources("lyrical", [tmp_path]).find("pkg", "A")
+        sources(tmp_path).find("pkg", "msg", "A")
     assert str(error.value) == (f"error: '{tmp_path}/pkg/msg/A.msg' cannot be read: Is a directory")
 
 
@@ -160,3 +166,49 @@ def test_scanning_reads_no_definition(tmp_path):
     for number in range(300):
         (tmp_path / f"p{number}/msg/A.msg").mkdir(parents=True)
     assert len(found(tmp_path)) == 300
+
+
+def test_services_actions_and_idl_are_found(tmp_path):
+    files = ["pkg/msg/A.msg", "pkg/srv/B.srv", "pkg/msg/I.idl", "pkg/action/J.idl"]
+    files += ["src/only/srv/S.srv", "install/act/share/act/action/C.action"]
+    origin = FolderOrigin(make_files(tmp_path, dict.fromkeys(files, "")))
+    found = {name: origin.find(*name).language for name in origin.names()}
+    assert found == {
+        ("act", "action", "C"): "action",
+        ("only", "srv", "S"): "srv",
+        ("pkg", "action", "J"): "idl",
+        ("pkg", "msg", "A"): "msg",
+        ("pkg", "msg", "I"): "idl",
+        ("pkg", "srv", "B"): "srv",
+    }
+    assert origin.find("pkg", "srv", "A") is None
+
+
+def test_folder_called_like_a_kind_may_contain_packages(tmp_path):
+    make_files(tmp_path, {"action/pkg/msg/A.msg": "", "msg/other/msg/B.msg": ""})
+    assert found(tmp_path) == [("other", "B"), ("pkg", "A")]
+
+
+def test_ros_form_of_a_type_wins_over_the_idl_made_of_it(tmp_path):
+    make_files(tmp_path, {"pkg/msg/A.idl": "idl", "pkg/msg/A.msg": "# msg"})
+    assert FolderOrigin(tmp_path).find("pkg", "msg", "A").source.text == "# msg"
+
+
+def test_includes_are_read_from_folders_first(tmp_path):
+    files = {"pkg/msg/A.idl": "// a", "pkg/idl/common.idl": "// c", "pkg/msg/B.msg": "int8 b"}
+    have = sources(make_files(tmp_path / "ws", files))
+    make_files(tmp_path, {"secret.idl": ""})
+    assert have.include("pkg/msg/A.idl").text == "// a"
+    assert have.include("pkg/idl/common.idl").text == "// c"
+    # Of what is in ROS's own form, others need no text: its types are found by name.
+    assert have.include("pkg/msg/B.idl").text == ""
+    assert have.include("std_msgs/msg/String.idl").text == ""
+    for path in ("pkg/msg/C.idl", "pkg/srv/A.idl", "none/msg/A.idl", "A.idl", "", "pkg/msg"):
+        assert have.include(path) is None
+    assert have.include("pkg/../../secret.idl") is None
+
+
+def test_names_are_sorted_by_their_first_origin(tmp_path):
+    make_files(tmp_path, {"std_msgs/srv/String.srv": "", "p/msg/A.msg": ""})
+    names = [TypeName("std_msgs", kind, "String", "ros2") for kind in ("msg", "srv", "action")]
+    assert sources(tmp_path).by_origin(names) == [names[1], names[0]]

@@ -1,0 +1,206 @@
+"""What the names in an IDL file mean: constants, typedefs, and what files include.
+
+rosidl_parser does not read what a file includes, and has no scopes: typedefs are known by their
+last name in the whole file. Constants are looked up as the standard says, from the inner module to
+the outer, and then in the modules ``..._Constants``, which ROS 2 puts beside the struct.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from firm_hdl.errors import Diagnostic, Source
+from firm_hdl.frontend.explain import clip
+from firm_hdl.frontend.idl.parse import parse_file
+from firm_hdl.frontend.idl.tree import (
+    BasicType,
+    Declarator,
+    Definition,
+    Enum,
+    Expression,
+    FileSyntax,
+    Include,
+    Module,
+    ScopedName,
+    SequenceType,
+    StringType,
+    Struct,
+    Typedef,
+    TypeNode,
+)
+from firm_hdl.frontend.idl.values import AlreadyReportedError, UnknownNameError, Value
+
+__all__ = ["CONSTANTS", "Alias", "Names", "Path", "definitions", "included"]
+
+Path = tuple[str, ...]
+
+CONSTANTS = "_Constants"
+"""What the module with a struct's constants is called, behind the struct's name."""
+
+
+class Alias(NamedTuple):
+    """One name that a typedef declares, and the modules around it."""
+
+    path: Path
+    type: TypeNode
+    declarator: Declarator
+
+
+def definitions(file: FileSyntax) -> Iterator[tuple[Path, Definition]]:
+    """Yield everything that a file declares, with the names of the modules around it, in order."""
+    pending: list[tuple[Path, Definition]] = [((), d) for d in reversed(file.definitions)]
+    while pending:
+        path, definition = pending.pop()
+        yield path, definition
+        if isinstance(definition, Module):
+            inner = (*path, definition.name.text)
+            pending += [(inner, d) for d in reversed(definition.definitions)]
+
+
+def included(file: FileSyntax, include: Callable[[str], Source | None]) -> list[FileSyntax]:
+    """Read all files that a file includes, directly or not; each follows those that it includes.
+
+    What is not found or is no IDL is left out: rosidl_parser does not look at it at all. Whoever
+    needs something from it will miss it.
+    """
+    found: dict[str, FileSyntax] = {}
+    seen = {file.source.name}
+
+    def children(parent: FileSyntax) -> Iterator[FileSyntax]:
+        for _, definition in definitions(parent):
+            if isinstance(definition, Include):
+                source = include(definition.path)
+                if source is not None and source.name not in seen:
+                    seen.add(source.name)
+                    child = parse_file(source)
+                    if not isinstance(child, Diagnostic):
+                        yield child
+
+    path = [(file, children(file))]
+    while path:
+        parent, pending = path[-1]
+        child = next(pending, None)
+        if child is not None:
+            path.append((child, children(child)))
+        else:
+            path.pop()
+            found[parent.source.name] = parent
+    del found[file.source.name]
+    return list(found.values())
+
+
+@dataclass(slots=True)
+class Names:
+    """All that can be named from within a file.
+
+    Attributes
+    ----------
+    constants : dict of tuple of str to (Value or None)
+        By full name; `None` for one that is wrong, which has been reported.
+    aliases : dict of str to Alias
+        What typedefs declare, by last name.
+    enums, structs : dict of str to tuple of str
+        Full names, by last name.
+    """
+
+    constants: dict[Path, Value | None] = field(default_factory=dict)
+    aliases: dict[str, Alias] = field(default_factory=dict)
+    enums: dict[str, Path] = field(default_factory=dict)
+    structs: dict[str, Path] = field(default_factory=dict)
+    _by_last: dict[str, list[Path]] = field(default_factory=dict)
+
+    def add_constant(self, full: Path, value: Value | None) -> None:
+        """Declare a constant; one of the same name hides it."""
+        if full not in self.constants:
+            self._by_last.setdefault(full[-1], []).append(full)
+        self.constants[full] = value
+
+    def add_types(self, file: FileSyntax) -> list[Diagnostic]:
+        """Declare all types of a file.
+
+        Returns
+        -------
+        list of Diagnostic
+            For typedefs that give a name two meanings.
+        """
+        wrong = []
+        own: dict[str, str] = {}
+        for path, definition in definitions(file):
+            match definition:
+                case Typedef():
+                    for declarator in definition.declarators:
+                        name = declarator.name
+                        meaning = _describe(definition.type, declarator)
+                        if own.setdefault(name.text, meaning) != meaning:
+                            message = f"typedef '{name.text}' is already declared as another type"
+                            wrong.append(Diagnostic(message=message, span=name.span))
+                        self.aliases[name.text] = Alias(path, definition.type, declarator)
+                case Enum():
+                    self.enums[definition.name.text] = (*path, definition.name.text)
+                case Struct():
+                    self.structs[definition.name.text] = (*path, definition.name.text)
+        return wrong
+
+    def constant(self, name: ScopedName, path: Path, struct: str | None = None) -> Value:
+        """Give the value of a constant.
+
+        Parameters
+        ----------
+        path : tuple of str
+            The modules around the place where it is named.
+        struct : str or None
+            The struct that it is named in.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is none of that name.
+        """
+        full = self._find(name, path, struct)
+        value = self.constants[full]
+        if value is None:
+            # Reported where it stands; this one must not be used either.
+            raise AlreadyReportedError(f"constant '{name}' is wrong", name.span)
+        return value
+
+    def _find(self, name: ScopedName, path: Path, struct: str | None) -> Path:
+        for depth in range(0 if name.is_absolute else len(path), -1, -1):
+            for module in ((), (f"{struct}{CONSTANTS}",)):
+                full = (*path[:depth], *module, *name.parts)
+                if full in self.constants:
+                    return full
+        places = self._by_last.get(name.parts[-1], [])
+        if len(name.parts) == 1:
+            beside = [p for p in places if len(p) > 1 and p[-2].endswith(CONSTANTS)]
+            if len(beside) == 1:
+                return beside[0]
+        message = f"constant '{clip(str(name))}' is not declared above"
+        if name.parts in (("true",), ("false",)):
+            message = f"'{name}' is not a truth value: TRUE or FALSE"
+        elif len(places) > 1:
+            message += f"; there are {len(places)} of that name elsewhere"
+        raise UnknownNameError(message, name.span)
+
+
+def _describe(type_: TypeNode, declarator: Declarator) -> str:
+    """Write a type so that equal ones come out equal, as far as rosidl_parser knows."""
+    text = "".join(f"[{_words(size)}]" for size in declarator.sizes)
+    while isinstance(type_, SequenceType):
+        text += f"<{'' if type_.bound is None else _words(type_.bound)}>"
+        type_ = type_.element
+    match type_:
+        case BasicType():
+            return text + type_.name
+        case StringType():
+            bound = "" if type_.bound is None else _words(type_.bound)
+            return f"{text}{'wstring' if type_.wide else 'string'} {bound}"
+        case ScopedName():
+            return text + str(type_)
+    return text + "fixed"
+
+
+def _words(expression: Expression) -> str:
+    span = expression.span
+    return " ".join(span.source.text[span.start : span.end].split())

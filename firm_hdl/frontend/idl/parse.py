@@ -1,0 +1,232 @@
+"""Text to tree, with the grammar in ``idl.lark``.
+
+The parser is LALR with a stack of its own, and the tree is built from the leaves up, so that no
+text reaches Python's limit of recursion. Those who walk the tree may recurse nevertheless: the
+parser refuses what is nested deeper than anybody writes.
+"""
+
+from __future__ import annotations
+
+from functools import cache, lru_cache
+from importlib import resources
+from typing import Any
+
+from lark import Lark, Token, Transformer_NonRecursive, v_args
+from lark.exceptions import UnexpectedInput
+from lark.tree import Meta
+
+from firm_hdl.errors import Diagnostic, Source, Span
+from firm_hdl.frontend.idl.explain import explain
+from firm_hdl.frontend.idl.tree import (
+    Annotation,
+    BasicType,
+    Chain,
+    Constant,
+    Declarator,
+    Enum,
+    Expression,
+    FileSyntax,
+    FixedType,
+    Include,
+    LiteralSyntax,
+    Member,
+    Module,
+    Name,
+    ScopedName,
+    SequenceType,
+    StringType,
+    Struct,
+    Typedef,
+    Unary,
+)
+
+__all__ = ["parse_file"]
+
+# Entries on the parser's stack. A parenthesis takes one to twelve of them, a module six.
+_MOST_NESTED = 200
+
+_ROS_NAMES = {
+    "boolean": "bool",
+    "octet": "byte",
+    "short": "int16",
+    "unsigned short": "uint16",
+    "long": "int32",
+    "unsigned long": "uint32",
+    "long long": "int64",
+    "unsigned long long": "uint64",
+    "float": "float32",
+    "double": "float64",
+}
+_LITERALS: dict[str, Any] = {
+    "DECIMAL": "integer",
+    "OCTAL": "integer",
+    "HEXADECIMAL": "integer",
+    "FLOAT": "float",
+    "FIXED": "fixed",
+    "CHARACTER": "character",
+    "TRUE": "boolean",
+    "FALSE": "boolean",
+    "STRING": "string",
+    "WIDE_STRING": "wstring",
+}
+
+
+# The same file is included by many others.
+@lru_cache(maxsize=512)
+def parse_file(source: Source) -> FileSyntax | Diagnostic:
+    """Parse an IDL file.
+
+    Returns
+    -------
+    FileSyntax or Diagnostic
+        The tree, or what is wrong at the first place that is no sentence of the language.
+    """
+    parser = _parser().parse_interactive(source.text)
+    try:
+        for token in parser.iter_parse():
+            if len(parser.parser_state.state_stack) > _MOST_NESTED:
+                return Diagnostic(message="this is nested too deeply", span=_span(source, token))
+        tree = parser.feed_eof()  # type: ignore[no-untyped-call]
+    except UnexpectedInput as error:
+        start, end, message = explain(
+            error,
+            source.text,
+            parser.accepts(),  # type: ignore[no-untyped-call]
+        )
+        return Diagnostic(message=message, span=Span(source=source, start=start, end=end))
+    file = _Builder(source).transform(tree)
+    assert isinstance(file, FileSyntax)
+    return file
+
+
+@cache
+def _parser() -> Lark:
+    grammar = resources.files(__package__).joinpath("idl.lark").read_text("utf-8")
+    return Lark(grammar, parser="lalr", lexer="contextual", propagate_positions=True)
+
+
+@v_args(meta=True)
+class _Builder(Transformer_NonRecursive[Token, Any]):
+    """Makes our tree of the parser's: each rule of the grammar has a method of its name."""
+
+    def __init__(self, source: Source) -> None:
+        super().__init__()
+        self._source = source
+
+    def start(self, meta: Meta, parts: list[Any]) -> FileSyntax:
+        return FileSyntax(source=self._source, definitions=tuple(parts))
+
+    def include(self, meta: Meta, parts: list[Any]) -> Include:
+        (token,) = parts
+        path = token.removeprefix("#include").strip()[1:-1]
+        return Include(path=path, span=self._span(meta))
+
+    def module(self, meta: Meta, parts: list[Any]) -> Module:
+        annotations, name, *definitions = parts
+        return Module(
+            annotations=annotations, name=self._name(name), definitions=tuple(definitions)
+        )
+
+    def constant(self, meta: Meta, parts: list[Any]) -> Constant:
+        annotations, type_, name, value = parts
+        return Constant(annotations=annotations, type=type_, name=self._name(name), value=value)
+
+    def typedef(self, meta: Meta, parts: list[Any]) -> Typedef:
+        type_, *declarators = parts
+        return Typedef(type=type_, declarators=tuple(declarators))
+
+    def struct(self, meta: Meta, parts: list[Any]) -> Struct:
+        annotations, name, members = parts
+        return Struct(annotations=annotations, name=self._name(name), members=members)
+
+    def body(self, meta: Meta, parts: list[Any]) -> tuple[Member, ...]:
+        return tuple(parts)
+
+    def member(self, meta: Meta, parts: list[Any]) -> Member:
+        annotations, type_, *declarators = parts
+        return Member(annotations=annotations, type=type_, declarators=tuple(declarators))
+
+    def enum(self, meta: Meta, parts: list[Any]) -> Enum:
+        annotations, name, *enumerators = parts
+        return Enum(annotations=annotations, name=self._name(name), enumerators=tuple(enumerators))
+
+    def enumerator(self, meta: Meta, parts: list[Any]) -> Name:
+        return self._name(parts[-1])
+
+    def declarator(self, meta: Meta, parts: list[Any]) -> Declarator:
+        name, *sizes = parts
+        return Declarator(name=self._name(name), sizes=tuple(sizes))
+
+    def annotations(self, meta: Meta, parts: list[Any]) -> tuple[Annotation, ...]:
+        return tuple(parts)
+
+    def annotation(self, meta: Meta, parts: list[Any]) -> Annotation:
+        name, *arguments = parts
+        return Annotation(
+            name=name,
+            arguments=tuple(a for a in arguments if a is not None),
+            span=self._span(meta),
+        )
+
+    def argument(self, meta: Meta, parts: list[Any]) -> tuple[None, Expression]:
+        return None, parts[0]
+
+    def named_argument(self, meta: Meta, parts: list[Any]) -> tuple[Name, Expression]:
+        name, value = parts
+        return self._name(name), value
+
+    def basic_type(self, meta: Meta, parts: list[Any]) -> BasicType:
+        words = " ".join(part for part in parts if part)
+        return BasicType(name=_ROS_NAMES.get(words, words), span=self._span(meta))
+
+    def sequence_type(self, meta: Meta, parts: list[Any]) -> SequenceType:
+        element, bound = parts
+        return SequenceType(element=element, bound=bound, span=self._span(meta))
+
+    def string_type(self, meta: Meta, parts: list[Any]) -> StringType:
+        word, bound = parts
+        return StringType(wide=word == "wstring", bound=bound, span=self._span(meta))
+
+    def fixed_type(self, meta: Meta, parts: list[Any]) -> FixedType:
+        return FixedType(span=self._span(meta))
+
+    fixed_constant = fixed_type
+
+    def scoped_name(self, meta: Meta, parts: list[Any]) -> ScopedName:
+        words = tuple(str(part) for part in parts if part is not None and part != "::")
+        return ScopedName(parts=words, is_absolute=parts[0] is not None, span=self._span(meta))
+
+    def chain(self, meta: Meta, parts: list[Any]) -> Chain:
+        return Chain(
+            operands=tuple(parts[::2]),
+            operators=tuple(map(str, parts[1::2])),
+            span=self._span(meta),
+        )
+
+    def left(self, meta: Meta, parts: list[Any]) -> str:
+        return self._source.text[meta.start_pos : meta.end_pos]
+
+    right = left
+
+    def unary(self, meta: Meta, parts: list[Any]) -> Unary:
+        operator, operand = parts
+        return Unary(operator=str(operator), operand=operand, span=self._span(meta))
+
+    def literal(self, meta: Meta, parts: list[Any]) -> LiteralSyntax:
+        return LiteralSyntax(
+            kind=_LITERALS[parts[0].type],
+            parts=tuple(map(str, parts)),
+            text=self._source.text[meta.start_pos : meta.end_pos],
+            span=self._span(meta),
+        )
+
+    def _name(self, token: Token) -> Name:
+        return Name(text=str(token), span=_span(self._source, token))
+
+    def _span(self, meta: Meta) -> Span:
+        return Span(source=self._source, start=meta.start_pos, end=meta.end_pos)
+
+
+def _span(source: Source, token: Token) -> Span:
+    assert token.start_pos is not None and token.end_pos is not None
+    return Span(source=source, start=token.start_pos, end=token.end_pos)

@@ -1,0 +1,328 @@
+"""Trees to the syntax that all languages share: one message for each struct of a file.
+
+What is checked is what rosidl_parser checks, and then what the C++ made from such a file would be
+refused for; ``docs/errata.md`` lists the differences. Everything that is wrong is reported, and
+what it concerns is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Literal
+
+from firm_hdl.errors import Diagnostic, Source, Span
+from firm_hdl.frontend.idl.annotations import (
+    comment_of,
+    default_of,
+    refusals,
+    unit_of,
+    unsigned_bits,
+    words_of,
+)
+from firm_hdl.frontend.idl.names import CONSTANTS, Names, Path, definitions, included
+from firm_hdl.frontend.idl.parse import parse_file
+from firm_hdl.frontend.idl.tree import (
+    BasicType,
+    Constant,
+    Declarator,
+    FileSyntax,
+    FixedType,
+    Member,
+    Module,
+    StringType,
+    Struct,
+    Typedef,
+)
+from firm_hdl.frontend.idl.types import Expander
+from firm_hdl.frontend.idl.values import (
+    AlreadyReportedError,
+    IdlError,
+    UnknownNameError,
+    Value,
+    evaluate,
+    fit,
+)
+from firm_hdl.frontend.syntax import (
+    ConstantSyntax,
+    FieldSyntax,
+    MemberSyntax,
+    MessageSyntax,
+    NameSyntax,
+    TypeSyntax,
+    ValueSyntax,
+)
+
+__all__ = ["read_idl"]
+
+# Nobody reads on after so many.
+_MOST_DIAGNOSTICS = 1000
+
+# What rosidl_adapter gives to messages without fields; it stands in no definition.
+_PADDING_MEMBER = "structure_needs_at_least_one_member"
+
+# What the structs of a file are, by their number.
+_PARTS = {
+    1: ("a message", ("",)),
+    2: ("a service", ("_Request", "_Response")),
+    3: ("an action", ("_Goal", "_Result", "_Feedback")),
+}
+
+
+def read_idl(
+    source: Source, include: Callable[[str], Source | None]
+) -> tuple[dict[str, MessageSyntax], list[Diagnostic]]:
+    """Read an IDL file as ROS 2 packages have them.
+
+    Parameters
+    ----------
+    include : callable
+        Gives the text of what the file includes, by the words between the quotes or angles.
+
+    Returns
+    -------
+    tuple of (dict of str to MessageSyntax) and list of Diagnostic
+        The structs by their names, such as ``Imu`` or ``SetBool_Request``, with typedefs expanded
+        and constants evaluated; and what is wrong, in the order of the text.
+    """
+    file = parse_file(source)
+    if isinstance(file, Diagnostic):
+        return {}, [file]
+    reader = _Reader(file, included(file, include))
+    messages = reader.messages()
+    # Those of included files come first.
+    wrong = sorted(reader.wrong, key=lambda d: (_place(d, source), d.message))
+    wrong = list(dict.fromkeys(wrong))
+    if len(wrong) > _MOST_DIAGNOSTICS:
+        del wrong[_MOST_DIAGNOSTICS:]
+        wrong.append(Diagnostic(message="too many errors; the others are not listed"))
+    return messages, wrong
+
+
+def _place(diagnostic: Diagnostic, source: Source) -> int:
+    span = diagnostic.span
+    return -1 if span is None or span.source is not source else span.start
+
+
+class _Reader:
+    """Reads one file; collects what is wrong in `wrong`."""
+
+    def __init__(self, file: FileSyntax, includes: list[FileSyntax]) -> None:
+        self.wrong: list[Diagnostic] = []
+        self._file = file
+        self._names = Names()
+        self._spans: dict[Path, Span] = {}
+        self._constants: dict[str, list[ConstantSyntax]] = {}
+        for other in includes:
+            self._names.add_types(other)
+            for path, node in definitions(other):
+                if isinstance(node, Constant):
+                    self._included_constant(node, path)
+        self.wrong += self._names.add_types(file)
+        self._expander = Expander(self._names)
+
+    def messages(self) -> dict[str, MessageSyntax]:
+        """Read everything that the file declares."""
+        structs: list[tuple[Path, Struct]] = []
+        for path, node in definitions(self._file):
+            match node:
+                case Module():
+                    self.wrong += refusals(node.annotations)
+                case Constant():
+                    self._constant(node, path)
+                case Typedef():
+                    self._typedef(node)
+                case Struct(members=members) if members is not None:
+                    structs.append((path, node))
+        self.wrong += _check_structs(self._file, structs)
+        messages = {node.name.text: self._struct(node, path) for path, node in structs}
+        for _, node in definitions(self._file):
+            if isinstance(node, Typedef):
+                self._unused(node)
+        return messages
+
+    def _included_constant(self, node: Constant, path: Path) -> None:
+        try:
+            value, *_ = self._value(node, path)
+        except IdlError:
+            return  # Who needs it will find it missing; what is wrong is that file's business.
+        self._names.add_constant((*path, node.name.text), value)
+
+    def _constant(self, node: Constant, path: Path) -> None:
+        """Declare a constant, and keep it for the struct that it belongs to."""
+        full = (*path, node.name.text)
+        name = NameSyntax(text=node.name.text, span=node.name.span)
+        self.wrong += refusals(node.annotations)
+        if not path:
+            message = "a constant must stand in a module"
+            self.wrong.append(Diagnostic(message=message, span=name.span))
+        if full in self._spans:
+            line = self._spans[full].line
+            message = f"constant '{name.text}' is already declared in line {line}"
+            self.wrong.append(Diagnostic(message=message, span=name.span))
+            return
+        self._spans[full] = name.span
+        try:
+            value, type_, fitting = self._value(node, path)
+        except IdlError as error:
+            self._note(error)
+            self._names.add_constant(full, None)
+            return
+        self._names.add_constant(full, value)
+        if not path:
+            return
+        span = node.value.span
+        self._constants.setdefault(path[-1], []).append(
+            ConstantSyntax(
+                type=type_,
+                name=name,
+                value=ValueSyntax(value=fitting, text=words_of(span), span=span),
+                comment=comment_of(node.annotations),
+                unit=unit_of(node.annotations),
+            )
+        )
+
+    def _value(
+        self, node: Constant, path: Path
+    ) -> tuple[Value, TypeSyntax, bool | int | float | str]:
+        """Evaluate a constant: what expressions see of it, its type, and its value."""
+        type_ = self._constant_type(node)
+        lookup = partial(self._names.constant, path=path)
+        value = evaluate(node.value, lookup, unsigned_bits(type_.name))
+        fitting = fit(value, type_.name, node.value.span)
+        if type_.name not in ("char", "wchar"):
+            value = Value(_KINDS.get(type_.name, "integer"), fitting)
+        return value, type_, fitting
+
+    def _constant_type(self, node: Constant) -> TypeSyntax:
+        match node.type:
+            case StringType():
+                # ROS 2 forgets the bound.
+                name = "wstring" if node.type.wide else "string"
+            case BasicType() if node.type.name != "long double":
+                name = node.type.name
+            case BasicType() | FixedType():
+                what = "long double" if isinstance(node.type, BasicType) else "fixed"
+                raise IdlError(f"type '{what}' is not supported", node.type.span)
+            case _:
+                message = "the type of a constant must be a builtin one"
+                raise IdlError(message, node.type.span)
+        return TypeSyntax(
+            package=None,
+            name=name,
+            is_builtin=True,
+            bound=None,
+            array="one",
+            size=None,
+            span=node.type.span,
+        )
+
+    def _typedef(self, node: Typedef) -> None:
+        for declarator in node.declarators[1:]:
+            message = f"a typedef declares one name in ROS 2; '{declarator.name.text}' is one more"
+            self.wrong.append(Diagnostic(message=message, span=declarator.name.span))
+
+    def _unused(self, node: Typedef) -> None:
+        """Check a typedef even if no member uses it, except for the names in it, as rosidl does."""
+        for declarator in node.declarators:
+            try:
+                self._expander.alias(declarator.name.text)
+            except UnknownNameError:
+                pass
+            except IdlError as error:
+                self._note(error)
+
+    def _struct(self, node: Struct, path: Path) -> MessageSyntax:
+        assert node.members is not None
+        self.wrong += refusals(node.annotations)
+        fields = [field for member in node.members for field in self._fields(member, path, node)]
+        match fields:
+            case [FieldSyntax(name=NameSyntax(text=name), type=type_)] if (
+                name == _PADDING_MEMBER and type_.name == "uint8" and type_.array == "one"
+            ):
+                fields = []
+        members: list[MemberSyntax] = [
+            *self._constants.get(node.name.text + CONSTANTS, []),
+            *fields,
+        ]
+        members.sort(key=lambda member: member.name.span.start)
+        return MessageSyntax(
+            source=self._file.source,
+            dialect="ros2",
+            members=tuple(members),
+            comment=comment_of(node.annotations),
+            language="idl",
+        )
+
+    def _fields(self, node: Member, path: Path, struct: Struct) -> Iterator[FieldSyntax]:
+        self.wrong += refusals(node.annotations)
+        array: Declarator | None = None
+        for declarator in node.declarators:
+            name = declarator.name
+            if array is not None:
+                message = (
+                    f"'{name.text}' stands behind array '{array.name.text}', whose size ROS 2 "
+                    "gives it too; declare it in a line of its own"
+                )
+                self.wrong.append(Diagnostic(message=message, span=name.span))
+            if declarator.sizes:
+                array = declarator
+            try:
+                type_ = self._expander.member(node.type, declarator, path, struct.name.text)
+            except IdlError as error:
+                self._note(error)
+                continue
+            lookup = partial(self._names.constant, path=path, struct=struct.name.text)
+            try:
+                default = default_of(node.annotations, type_, lookup)
+            except IdlError as error:
+                self._note(error)
+                default = None
+            yield FieldSyntax(
+                type=type_,
+                name=NameSyntax(text=name.text, span=name.span),
+                default=default,
+                comment=comment_of(node.annotations),
+                unit=unit_of(node.annotations),
+            )
+
+    def _note(self, error: IdlError) -> None:
+        if not isinstance(error, AlreadyReportedError):
+            self.wrong.append(error.diagnostic)
+
+
+_KINDS: dict[str, Literal["integer", "float", "boolean", "text"]] = {
+    "bool": "boolean",
+    "float32": "float",
+    "float64": "float",
+    "string": "text",
+    "wstring": "text",
+}
+
+
+def _check_structs(file: FileSyntax, structs: list[tuple[Path, Struct]]) -> Iterator[Diagnostic]:
+    """Check that a file declares one message, one service or one action."""
+    if not structs:
+        start = Span(source=file.source, start=0, end=0)
+        yield Diagnostic(message="this file declares no struct", span=start)
+        return
+    for _, struct in structs[len(_PARTS) :]:
+        message = (
+            "a file has one struct for a message, two for a service, three for an action; "
+            f"'{struct.name.text}' is one more"
+        )
+        yield Diagnostic(message=message, span=struct.name.span)
+    what, suffixes = _PARTS[min(len(structs), len(_PARTS))]
+    first_path, first = structs[0]
+    base = first.name.text.removesuffix(suffixes[0])
+    for (path, struct), suffix in zip(structs, suffixes, strict=False):
+        name = struct.name.text
+        if not name.endswith(suffix):
+            message = f"'{name}' must end with '{suffix}', as the file declares {what}"
+            yield Diagnostic(message=message, span=struct.name.span)
+        elif name.removesuffix(suffix) != base and first.name.text.endswith(suffixes[0]):
+            message = f"'{name}' must be called '{base}{suffix}', to match '{first.name.text}'"
+            yield Diagnostic(message=message, span=struct.name.span)
+        elif path != first_path:
+            message = f"'{name}' must be in the same module as '{first.name.text}'"
+            yield Diagnostic(message=message, span=struct.name.span)

@@ -1,0 +1,245 @@
+"""The syntax tree of an IDL file: what stands in it and where, nothing that it means.
+
+Typedefs are not expanded, expressions not evaluated, names not resolved. That is the business of
+:mod:`firm_hdl.frontend.idl.names`, :mod:`~firm_hdl.frontend.idl.values` and
+:mod:`~firm_hdl.frontend.idl.types`; what comes out of them has the form that all languages share
+(:mod:`firm_hdl.frontend.syntax`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from firm_hdl.errors import Source, Span
+
+__all__ = [
+    "Annotation",
+    "BasicType",
+    "Chain",
+    "Constant",
+    "Declarator",
+    "Definition",
+    "Enum",
+    "Expression",
+    "FileSyntax",
+    "FixedType",
+    "Include",
+    "LiteralSyntax",
+    "Member",
+    "Module",
+    "Name",
+    "ScopedName",
+    "SequenceType",
+    "StringType",
+    "Struct",
+    "TypeNode",
+    "Typedef",
+    "Unary",
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Name:
+    """An identifier."""
+
+    text: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScopedName:
+    """A reference, such as ``sensor_msgs::msg::Imu``.
+
+    Attributes
+    ----------
+    is_absolute : bool
+        Whether ``::`` stands in front.
+    """
+
+    parts: tuple[str, ...]
+    is_absolute: bool
+    span: Span
+
+    def __str__(self) -> str:
+        return ("::" if self.is_absolute else "") + "::".join(self.parts)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LiteralSyntax:
+    """A literal.
+
+    Attributes
+    ----------
+    text : str
+        As it is written; of a string with several parts, all of them.
+    parts : tuple of str
+        The words that it consists of: several only of strings.
+    """
+
+    kind: Literal["integer", "float", "fixed", "character", "boolean", "string", "wstring"]
+    parts: tuple[str, ...]
+    text: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unary:
+    """A sign, or ``~``, in front of an operand."""
+
+    operator: str
+    operand: Expression
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chain:
+    """Operands with operators of one precedence between them, to be worked off from the left.
+
+    A sum of a thousand numbers is one node, so that the tree is no deeper than its parentheses.
+    """
+
+    operands: tuple[Expression, ...]
+    operators: tuple[str, ...]
+    span: Span
+
+
+Expression: TypeAlias = "ScopedName | LiteralSyntax | Unary | Chain"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Annotation:
+    """``@name``, ``@name(value)`` or ``@name(key=value, ...)``.
+
+    Attributes
+    ----------
+    arguments : tuple of (Name or None) and Expression
+        The one value without a key has `None` for its name.
+    """
+
+    name: ScopedName
+    arguments: tuple[tuple[Name | None, Expression], ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BasicType:
+    """A type of fixed size.
+
+    Attributes
+    ----------
+    name : str
+        As ROS writes it; ``long double``, which ROS has not, as IDL does.
+    """
+
+    name: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StringType:
+    """``string`` or ``wstring``."""
+
+    wide: bool
+    bound: Expression | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SequenceType:
+    """``sequence<element>`` or ``sequence<element, bound>``."""
+
+    element: TypeNode
+    bound: Expression | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FixedType:
+    """``fixed<digits, scale>``, or ``fixed`` as the type of a constant."""
+
+    span: Span
+
+
+TypeNode: TypeAlias = "BasicType | StringType | SequenceType | FixedType | ScopedName"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Declarator:
+    """A name, and the dimensions that stand behind it."""
+
+    name: Name
+    sizes: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Include:
+    """``#include "path"`` or ``#include <path>``."""
+
+    path: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Constant:
+    """``const type name = value``."""
+
+    annotations: tuple[Annotation, ...]
+    type: TypeNode
+    name: Name
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Typedef:
+    """``typedef type name, name``."""
+
+    type: TypeNode
+    declarators: tuple[Declarator, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Enum:
+    """``enum name { ... }``."""
+
+    annotations: tuple[Annotation, ...]
+    name: Name
+    enumerators: tuple[Name, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Member:
+    """A line of a struct."""
+
+    annotations: tuple[Annotation, ...]
+    type: TypeNode
+    declarators: tuple[Declarator, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Struct:
+    """A struct; its declaration ahead of the definition has `None` for members."""
+
+    annotations: tuple[Annotation, ...]
+    name: Name
+    members: tuple[Member, ...] | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Module:
+    """``module name { ... }``."""
+
+    annotations: tuple[Annotation, ...]
+    name: Name
+    definitions: tuple[Definition, ...]
+
+
+Definition: TypeAlias = "Include | Constant | Typedef | Enum | Struct | Module"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FileSyntax:
+    """A whole file."""
+
+    source: Source
+    definitions: tuple[Definition, ...]

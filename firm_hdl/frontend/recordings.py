@@ -1,0 +1,174 @@
+"""Definitions that a recording carries, for whoever has the data but not the packages.
+
+A ``.bag`` of ROS 1 has the definition of every topic's type, with those of all types in it behind
+it. So have an ``.mcap`` of ROS 2, and a ``.db3`` from iron on; ros2/rosbag2's
+``docs/message_definition_encoding.md`` says how. rosbags reads the files; the texts then go the
+same way as any other.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from rosbags.interfaces import Connection, MessageDefinitionFormat
+from rosbags.rosbag1 import Reader as Reader1
+from rosbags.rosbag1 import ReaderError as ReaderError1
+from rosbags.rosbag2 import Reader as Reader2
+from rosbags.rosbag2 import ReaderError as ReaderError2
+
+from firm_hdl.errors import DefinitionError, Diagnostic, Source
+from firm_hdl.frontend.embedded import DISTROS
+from firm_hdl.frontend.names import Kind
+from firm_hdl.frontend.sources import Definition, Language
+from firm_hdl.model import Dialect
+
+__all__ = ["RecordingOrigin"]
+
+_Name = tuple[str, Kind, str]
+
+_KINDS: dict[str, Kind] = {"msg": "msg", "srv": "srv", "action": "action"}
+
+# What stands between the definitions of a topic: a line of ``=``, and what comes next.
+_NEXT = re.compile(r"^={3,}[ \t]*\r?\n(MSG|SRV|IDL):[ \t]*(\S+)[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
+_SERVICE_PARTS = re.compile(r"^---", re.MULTILINE)
+
+
+class RecordingOrigin:
+    """The types of a recording: a ``.bag``, ``.mcap`` or ``.db3`` file, or a folder of rosbag2.
+
+    The file is read at once, and closed. Where it defines a type twice, the first text counts.
+
+    Parameters
+    ----------
+    path : str or path
+
+    Attributes
+    ----------
+    path : str
+    dialect : "ros1" or "ros2"
+    distro : str or None
+        The distribution that the recording says it was made with, if it is one of `DISTROS`.
+
+    Raises
+    ------
+    DefinitionError
+        If the file cannot be read, or carries no definitions. It has no span.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = os.fspath(path)
+        is_bag = self.path.lower().endswith(".bag") and not os.path.isdir(self.path)
+        self.dialect: Dialect = "ros1" if is_bag else "ros2"
+        self.distro: str | None = None
+        self._definitions: dict[_Name, Definition] = {}
+        self._missing: set[_Name] = set()
+        for connection in self._connections():
+            self._add(connection)
+        self._missing -= self._definitions.keys()
+        if not self._definitions:
+            raise self._error(self._why_empty())
+
+    def names(self) -> Iterable[_Name]:
+        """List all that the recording defines."""
+        return self._definitions
+
+    def find(self, package: str, kind: Kind, name: str) -> Definition | None:
+        """Give a definition. A topic's type that has none is a `DefinitionError`."""
+        if (package, kind, name) in self._missing:
+            raise self._error(
+                f"'{self.path}' has a topic of type '{package}/{kind}/{name}', but not its "
+                "definition"
+            )
+        return self._definitions.get((package, kind, name))
+
+    def _connections(self) -> list[Connection]:
+        if not os.path.exists(self.path):
+            raise self._error(f"'{self.path}' does not exist")
+        is_folder = os.path.isdir(self.path)
+        if is_folder and not os.path.exists(os.path.join(self.path, "metadata.yaml")):
+            raise self._error(f"'{self.path}' is a folder without the metadata.yaml of a recording")
+        reader = Reader1 if self.dialect == "ros1" else Reader2
+        try:
+            with reader(Path(self.path)) as recording:
+                distro = getattr(recording, "ros_distro", None)
+                if distro in DISTROS and DISTROS[distro].dialect == self.dialect:
+                    self.distro = distro
+                return list(recording.connections)
+        except OSError as error:
+            reason = error.strerror or str(error)
+        except (ReaderError1, ReaderError2) as error:
+            reason = str(error)
+        except KeyError as error:
+            # Such as the language of the definitions.
+            reason = f"rosbags does not know {error}"
+        except Exception as error:
+            # A damaged file makes a reader fail in ways that nobody has listed.
+            reason = f"{type(error).__name__}: {error}"
+        raise self._error(f"'{self.path}' cannot be read as a recording: {reason}")
+
+    def _add(self, connection: Connection) -> None:
+        name = _parse(connection.msgtype)
+        if name is None:
+            return
+        text = connection.msgdef.data
+        if connection.msgdef.format == MessageDefinitionFormat.NONE or not (
+            text or self.dialect == "ros1"
+        ):
+            self._missing.add(name)
+            return
+        is_idl = connection.msgdef.format == MessageDefinitionFormat.IDL
+        for part, language, body in _split(name, text, is_idl):
+            package, kind, base = part
+            place = f"<{self.path}>/{package}/{kind}/{base}.{language}"
+            source = Source(name=place, text=body)
+            self._definitions.setdefault(part, Definition(source=source, language=language))
+
+    def _why_empty(self) -> str:
+        if not self._missing:
+            return f"'{self.path}' has no topics, and so no definitions"
+        return (
+            f"'{self.path}' carries no definitions of its types, as recordings made before ROS 2 "
+            "iron; name folders that have them with --path, or a distribution with --distro, "
+            "instead of --bag"
+        )
+
+    def _error(self, message: str) -> DefinitionError:
+        return DefinitionError([Diagnostic(message=message)])
+
+
+def _parse(name: str) -> _Name | None:
+    match name.split("/"):
+        case [package, base] if package and base:
+            return package, "msg", base
+        case [package, kind, base] if package and base and kind in _KINDS:
+            return package, _KINDS[kind], base
+    return None
+
+
+def _split(name: _Name, text: str, is_idl: bool) -> Iterator[tuple[_Name, Language, str]]:
+    """Cut a topic's definition into those of the types in it."""
+    marks = list(_NEXT.finditer(text))
+    starts = [0, *(mark.end() for mark in marks)]
+    ends = [*(mark.start() for mark in marks), len(text)]
+    names = [name, *(_parse(mark[2]) for mark in marks)]
+    for index, (part, start, end) in enumerate(zip(names, starts, ends, strict=True)):
+        body = text[start:end]
+        if part is None or (is_idl and index == 0 and not body.strip() and marks):
+            continue  # In IDL, the first definition has a heading, too.
+        if index < len(marks) and body.endswith("\n"):
+            # Writers put an empty line, or at least the line's end, between definitions.
+            body = body[:-1]
+        if body and not body.endswith("\n"):
+            body += "\n"
+        yield part, _language(part, body, is_idl), body
+
+
+def _language(name: _Name, text: str, is_idl: bool) -> Language:
+    if is_idl:
+        return "idl"
+    # A message of a service or of an action may be defined by itself.
+    is_whole = name[1] != "msg" and _SERVICE_PARTS.search(text) is not None
+    return name[1] if is_whole else "msg"

@@ -1,0 +1,113 @@
+"""Where a command searches for definitions: what it is told, and what the environment says.
+
+ROS's tools find packages by variables that a ROS setup file sets, and the command takes them, too,
+so that it knows the packages of the workspace that is active. In both variables the first folder
+that has a package wins, as for ROS itself; here, type by type.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.frontend.embedded import DEFAULT_DISTRO, DISTROS
+from firm_hdl.frontend.library import Library
+from firm_hdl.frontend.names import KINDS
+from firm_hdl.frontend.recordings import RecordingOrigin
+from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin, Origin
+from firm_hdl.model import Dialect
+
+__all__ = ["ENVIRONMENT", "environment_origins", "open_library"]
+
+ENVIRONMENT: dict[Dialect, str] = {"ros1": "ROS_PACKAGE_PATH", "ros2": "AMENT_PREFIX_PATH"}
+"""The variable that says where packages are."""
+
+
+def open_library(
+    distro: str | None = None,
+    paths: Iterable[str | os.PathLike[str]] = (),
+    bags: Iterable[str | os.PathLike[str]] = (),
+    *,
+    environment: Mapping[str, str] | None = None,
+) -> Library:
+    """Open all definitions that a command is to see.
+
+    Parameters
+    ----------
+    distro : str or None
+        `None`: what the recordings say, else the newest distribution of their kind of ROS.
+    paths : iterable of str or path
+        Folders with ROS packages. They come first, then those of the environment, then the
+        distribution's own types.
+    bags : iterable of str or path
+        Recordings. If there are any, definitions come from nowhere else.
+    environment : mapping or None
+        Variables to read (by default those of the process).
+
+    Raises
+    ------
+    ValueError
+        If there are both recordings and paths.
+    DefinitionError
+        If a folder or a recording cannot be used. It has no span.
+    """
+    folders, files = list(paths), list(bags)
+    if files:
+        if folders:
+            raise ValueError("Recordings are read without any other definitions")
+        return _of_recordings(distro, [RecordingOrigin(file) for file in files])
+    distro = distro or DEFAULT_DISTRO
+    found = environment_origins(
+        DISTROS[distro].dialect, os.environ if environment is None else environment
+    )
+    return Library(distro, folders, origins=[*found, EmbeddedOrigin(distro)])
+
+
+def environment_origins(dialect: Dialect, environment: Mapping[str, str]) -> Iterator[Origin]:
+    """Give the folders of packages that the environment names; what is no folder is left out."""
+    for place in environment.get(ENVIRONMENT[dialect], "").split(os.pathsep):
+        if not os.path.isdir(place):
+            continue  # So do ROS's tools. An empty entry is no folder, either.
+        if dialect == "ros1":
+            yield FolderOrigin(place)
+        else:
+            # A prefix may be all of ``/usr``: only packages are looked into.
+            share = Path(place, "share")
+            for package in sorted(share.iterdir()) if share.is_dir() else []:
+                if any((package / kind).is_dir() for kind in KINDS):
+                    yield FolderOrigin(package)
+
+
+def _of_recordings(distro: str | None, recordings: list[RecordingOrigin]) -> Library:
+    first = recordings[0]
+    for other in recordings:
+        if other.dialect != first.dialect:
+            raise _error(
+                f"'{first.path}' is a recording of {_ros(first.dialect)}, and '{other.path}' of "
+                f"{_ros(other.dialect)}; read them one at a time"
+            )
+    if distro is None:
+        known = [recording.distro for recording in recordings if recording.distro is not None]
+        distro = known[0] if known else _newest(first.dialect)
+    if DISTROS[distro].dialect != first.dialect:
+        raise _error(
+            f"'{first.path}' is a recording of {_ros(first.dialect)}, and {distro} is "
+            f"{_ros(DISTROS[distro].dialect)}"
+        )
+    return Library(distro, origins=recordings)
+
+
+def _newest(dialect: Dialect) -> str:
+    if DISTROS[DEFAULT_DISTRO].dialect == dialect:
+        return DEFAULT_DISTRO
+    return [name for name, distro in DISTROS.items() if distro.dialect == dialect][-1]
+
+
+def _ros(dialect: Dialect) -> str:
+    return "ROS 1" if dialect == "ros1" else "ROS 2"
+
+
+def _error(message: str) -> DefinitionError:
+    return DefinitionError([Diagnostic(message=message)])

@@ -1,0 +1,23 @@
+"""What holds for all tests."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+# The packages of the workspace that happens to be active are nobody's business here.
+for _name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
+    os.environ.pop(_name, None)
+
+
+@pytest.fixture(scope="session")
+def corpus() -> Path:
+    """Definitions of real ROS packages, where ``FIRM_HDL_CORPUS`` names a folder of them."""
+    folder = os.environ.get("FIRM_HDL_CORPUS")
+    if folder:
+        return Path(folder)
+    if os.environ.get("CI"):
+        pytest.fail("FIRM_HDL_CORPUS is not set, and CI must not skip this")
+    pytest.skip("FIRM_HDL_CORPUS is not set")

@@ -1,0 +1,248 @@
+"""Trees to messages, and messages to the model."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from firm_hdl.errors import DefinitionError, Source
+from firm_hdl.frontend import Library
+from firm_hdl.frontend.idl import read_idl
+from firm_hdl.frontend.syntax import ConstantSyntax, FieldSyntax
+from firm_hdl.model import IDL_PRIMITIVES, Array, Sequence, Text
+from tests.frontend.workspace import make_files
+
+from .rosidl import describe, read
+
+
+def library(tmp_path, files):
+    return Library("lyrical", [make_files(tmp_path, files)])
+
+
+def message(tmp_path, members, before=""):
+    text = f"module p {{ module msg {{ {before} struct T {{ {members} }}; }}; }};"
+    return library(tmp_path, {"p/msg/T.idl": text}).message("p/msg/T")
+
+
+def types(found):
+    return {item.name: str(item.type) for item in found.fields}
+
+
+def test_primitives_have_the_names_that_ros_gives_them(tmp_path):
+    words = (
+        "short|unsigned short|long|unsigned long|long long|unsigned long long|float|double|char|"
+        "wchar|boolean|octet|int8|uint8|int16|uint16|int32|uint32|int64|uint64"
+    ).split("|")
+    members = "".join(f"{word} a{i}; " for i, word in enumerate(words))
+    assert [*types(message(tmp_path, members)).values()] == (
+        "int16 uint16 int32 uint32 int64 uint64 float32 float64 char wchar bool byte "
+        "int8 uint8 int16 uint16 int32 uint32 int64 uint64"
+    ).split()
+
+
+def test_char_is_signed_and_wchar_has_four_bytes(tmp_path):
+    a, b = message(tmp_path, "char a; wchar b;").fields
+    assert a.type == IDL_PRIMITIVES["char"] and a.type.signed
+    assert b.type == IDL_PRIMITIVES["wchar"] and b.type.bytes == 4
+
+
+def test_types_with_sizes(tmp_path):
+    found = message(
+        tmp_path,
+        "string a; wstring<2> b; sequence<long> c; sequence<string<3>, N> d; double e[N * 2], f;"
+        "std_msgs::msg::Header g; sequence<std_msgs::msg::Header, 2> h;".replace("2], f", "2]"),
+        "const long N = 4;",
+    )
+    assert types(found) == {
+        "a": "string",
+        "b": "wstring<=2",
+        "c": "int32[]",
+        "d": "string<=3[<=4]",
+        "e": "float64[8]",
+        "g": "std_msgs/msg/Header",
+        "h": "std_msgs/msg/Header[<=2]",
+    }
+    assert isinstance(found.fields[3].type, Sequence) and isinstance(found.fields[4].type, Array)
+    assert found.fields[1].type == Text(bound=2, wide=True)
+
+
+def test_typedefs_are_expanded_whatever_their_order(tmp_path):
+    found = message(
+        tmp_path,
+        "D a; p::msg::C b; sequence<A> c; B d[2];",
+        "typedef C D; typedef B C[3]; typedef A B; typedef string<5> A;",
+    )
+    assert types(found) == {
+        "a": "string<=5[3]",
+        "b": "string<=5[3]",
+        "c": "string<=5[]",
+        "d": "string<=5[2]",
+    }
+
+
+def test_constants_are_looked_up_from_the_inside_to_the_outside():
+    text = """module p { const long N = 1; module msg {
+      const long N = 2;
+      module T_Constants { const long N = 3; const long M = N; const long O = p::N; };
+      module U_Constants { const long N = 4; const long P = 5; };
+      struct T { long a[N]; long b[M]; long c[O + 1]; long d[::p::N + 1]; long e[P];
+                 long f[U_Constants::N]; long g[msg::T_Constants::N]; };
+    }; };"""
+    (found,) = describe(read(text)[0])
+    sizes = [field["type"] for field in found["fields"]]
+    assert sizes == [f"int32[{n}]" for n in (2, 3, 2, 2, 5, 4, 3)]
+    assert read(text)[1] == []
+
+
+def test_constants_belong_to_the_struct_that_their_module_is_called_after(tmp_path):
+    text = """module p { module srv {
+      module S_Request_Constants {
+        @verbatim(language="comment", text="why") @unit(value="m")
+        const double A = 1 / 2.;
+        const char B = 'b';
+      };
+      struct S_Request { long a; };
+      module S_Response_Constants { const string A = "x" "\\n"; const boolean C = TRUE; };
+      struct S_Response { long a; };
+    }; };"""
+    service = library(tmp_path, {"p/srv/S.idl": text}).interface("p/srv/S")
+    a, b = service.request.constants
+    assert (a.name, a.value, str(a.type), a.comment, a.unit) == ("A", 0.5, "float64", "why", "m")
+    assert (a.text, b.value) == ("1 / 2.", 98)
+    assert [(c.name, c.value) for c in service.response.constants] == [("A", "x\n"), ("C", True)]
+
+
+def test_comments_units_and_defaults_are_in_the_model(tmp_path):
+    text = """module p { module msg {
+      @verbatim (language="comment", text="about T" "\\n" "and more")
+      struct T {
+        @verbatim (language="comment", text="about a") @unit (value="m/s") @default (value=-3)
+        long a, b;
+        @default (value="(1, 0x10, -3)") sequence<int8> c;
+        @default (value="('a, b', \\"c'\\", 'd\\\\\\\\n')") string d[3];
+        @default (value="[True, False]") boolean e[2];
+        @default (value=TRUE) boolean f;
+      };
+    }; };"""
+    found = library(tmp_path, {"p/msg/T.idl": text}).message("p/msg/T")
+    assert found.comment == "about T\nand more"
+    a, b, c, d, e, f = found.fields
+    for item in (a, b):
+        assert (item.comment, item.unit, item.default) == ("about a", "m/s", -3)
+    assert c.default == (1, 16, -3)
+    assert d.default == ("a, b", "c'", "d\n")
+    assert e.default == (True, False)
+    assert f.default is True
+
+
+def test_padding_member_alone_is_an_empty_message(tmp_path):
+    member = "uint8 structure_needs_at_least_one_member;"
+    assert message(tmp_path, member).fields == ()
+    assert len(message(tmp_path, member + " long a;").fields) == 2
+
+
+def test_spans_point_at_the_words():
+    text = "module p { struct T { unsigned long a, b[1 + 1]; }; };"
+    messages, _ = read(text)
+    for field in messages["T"].members:
+        assert isinstance(field, FieldSyntax)
+        assert text[field.type.span.start : field.type.span.end] == "unsigned long"
+        assert text[field.name.span.start : field.name.span.end] == field.name.text
+    size = messages["T"].members[1].type.size
+    assert (size.value, text[size.span.start : size.span.end]) == (2, "1 + 1")
+
+
+def test_what_is_included_can_be_named(tmp_path):
+    files = {
+        "q/msg/Base.idl": """#include "Other.idl"
+            module q { module msg { const long N = M * 2; typedef double Pair[2];
+            struct Base { long a; }; }; };""",
+        "q/msg/Other.idl": """#include "Base.idl"
+            module q { module msg { const long M = 3; struct Other { long a; }; }; };""",
+        "p/msg/T.idl": """#include <q/msg/Base.idl>
+            #include "nowhere/msg/Nothing.idl"
+            module p { module msg { struct T { long a[q::msg::N]; Pair b; q::msg::Base c; }; }; };""",
+    }
+    found = library(tmp_path, files).message("p/msg/T")
+    # `Base` and `Other` include each other, and `M` comes first for whoever starts at `Base`.
+    assert types(found) == {"a": "int32[6]", "b": "float64[2]", "c": "q/msg/Base"}
+
+
+def test_included_files_that_are_wrong_are_their_own_business(tmp_path):
+    files = {
+        "q/msg/Base.idl": "module q { module msg { const long N = 1 / 0; struct Base { any a; }; }; };",
+        "p/msg/T.idl": """#include "q/msg/Base.idl"
+            module p { module msg { struct T { long a; }; }; };""",
+        "p/msg/U.idl": """#include "q/msg/Base.idl"
+            module p { module msg { struct U { long a[q::msg::N]; }; }; };""",
+    }
+    lib = library(tmp_path, files)
+    assert types(lib.message("p/msg/T")) == {"a": "int32"}
+    with pytest.raises(DefinitionError, match=r"constant 'q::msg::N' is not declared above"):
+        lib.message("p/msg/U")
+
+
+def test_a_typedef_that_is_wrong_is_reported_once():
+    text = "module p { typedef Nothing A; struct T { A a; A b; sequence<A> c; }; };"
+    (only,) = read(text)[1]
+    assert only.message.startswith("'Nothing' is not a type")
+    assert (only.span.line, only.span.column) == (1, 20)
+
+
+def test_a_constant_that_is_wrong_is_reported_once():
+    text = (
+        "module p { const long N = 1 / 0; const long M = N; struct T { long a[N]; long b[M]; }; };"
+    )
+    assert [d.message for d in read(text)[1]] == ["division by zero"]
+
+
+def test_enumerators_do_not_disturb():
+    text = "module p { enum E { a, T }; struct T { long a; }; };"
+    messages, wrong = read(text)
+    assert wrong == [] and [*messages] == ["T"]
+
+
+def test_good_members_stay_when_others_are_wrong():
+    messages, wrong = read("module p { struct T { long a; any b; long double c; long d; }; };")
+    assert [m.name.text for m in messages["T"].members] == ["a", "d"]
+    assert len(wrong) == 2
+
+
+def test_a_thousand_mistakes_are_enough():
+    members = "".join(f"any a{i}; " for i in range(3000))
+    wrong = read(f"module p {{ struct T {{ {members} }}; }};")[1]
+    assert len(wrong) == 1001
+    assert wrong[-1].message == "too many errors; the others are not listed"
+
+
+@pytest.mark.parametrize("kind", ["typedefs", "constants", "includes"])
+def test_long_chains_need_neither_stack_nor_time(kind):
+    count, sources = 3000, {}
+    if kind == "typedefs":
+        chain = "".join(f"typedef A{i} A{i + 1}; " for i in reversed(range(count)))
+        text = f"module p {{ typedef long A0; {chain} struct T {{ A{count} a; A5 b; }}; }};"
+    elif kind == "constants":
+        chain = "".join(f"const long A{i + 1} = A{i} + 1; " for i in range(count))
+        text = f"module p {{ const long A0 = 0; {chain} struct T {{ long a[A{count}]; }}; }};"
+    else:
+        for i in range(count):
+            sources[f"F{i}"] = f'#include "F{i + 1}"\nmodule p {{ const long A{i} = {i}; }};'
+        text = '#include "F0"\nmodule p { struct T { long a[A2999]; }; };'.replace("A", "p::A")
+
+    def include(path):
+        return Source(name=path, text=sources[path]) if path in sources else None
+
+    start = time.process_time()
+    messages, wrong = read_idl(Source(name="test.idl", text=text), include)
+    assert wrong == []
+    assert messages["T"].members
+    assert time.process_time() - start < 10
+
+
+def test_members_are_in_the_order_of_the_text():
+    text = """module p { module T_Constants { const long A = 1; }; struct T { long b; };
+      module T_Constants { const long C = 1; }; };"""
+    members = read(text)[0]["T"].members
+    assert [m.name.text for m in members] == ["A", "b", "C"]
+    assert [isinstance(m, ConstantSyntax) for m in members] == [True, False, True]

@@ -1,0 +1,138 @@
+"""Expressions and what their values may be used for."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.errors import Source
+from firm_hdl.frontend.idl.parse import parse_file
+from firm_hdl.frontend.idl.values import IdlError, UnknownNameError, Value, evaluate, fit
+
+
+def value(text, bits=None):
+    file = parse_file(Source(name="test.idl", text=f"module m {{ const long A = {text}; }};"))
+    node = file.definitions[0].definitions[0].value
+
+    def lookup(name):
+        if str(name) == "m::ANSWER":
+            return Value("integer", 42)
+        raise UnknownNameError(f"no {name}", name.span)
+
+    return evaluate(node, lookup, bits)
+
+
+@pytest.mark.parametrize(
+    ("text", "want"),
+    [
+        ("42", 42),
+        ("052", 42),
+        ("0x2A", 42),
+        ("0X2a", 42),
+        ("0", 0),
+        ("00", 0),
+        ("-7 / 2", -3),
+        ("7 / -2", -3),
+        ("-7 % 2", -1),
+        ("7 % -2", 1),
+        ("1 + 2 * 3 - 4", 3),
+        ("10 - 4 - 3", 3),
+        ("(1 + 2) * 3", 9),
+        ("1 << 4 >> 2", 4),
+        ("0xF0 | 0x0F & 0x3C ^ 0x01", 0xF0 | (0x0F & 0x3C) ^ 0x01),
+        ("~0", -1),
+        ("-(-3)", 3),
+        ("m::ANSWER + 1", 43),
+        ("18446744073709551615", 2**64 - 1),
+        ("-9223372036854775808", -(2**63)),
+    ],
+)
+def test_integers(text, want):
+    assert value(text) == ("integer", want)
+
+
+def test_complement_of_an_unsigned_type_has_its_size():
+    assert value("~1", 8) == ("integer", 254)
+    assert value("~0", 64) == ("integer", 2**64 - 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "want"),
+    [
+        ("1.5", 1.5),
+        ("1.", 1.0),
+        (".5e1", 5.0),
+        ("1e3", 1000.0),
+        ("-2E-1", -0.2),
+        ("1 + .5", 1.5),
+        ("1.5d", 1.5),
+        ("7D", 7.0),
+        ("3 / 2.", 1.5),
+    ],
+)
+def test_numbers_with_a_fraction(text, want):
+    assert value(text) == ("float", want)
+
+
+@pytest.mark.parametrize(
+    ("text", "want"),
+    [
+        ("'a'", 97),
+        ("' '", 32),
+        ("'\"'", 34),
+        (r"'\''", 39),
+        (r"'\n'", 10),
+        (r"'\x41'", 65),
+        (r"'\101'", 65),
+        (r"'\?'", 63),
+        ("'é'", 233),
+        ("L'é'", 233),
+        (r"L'\u2122'", 0x2122),
+    ],
+)
+def test_characters(text, want):
+    assert value(text) == ("character", want)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "want"),
+    [
+        ("bool", "TRUE", True),
+        ("bool", "0", False),
+        ("byte", "255", 255),
+        ("char", "'a'", 97),
+        ("char", r"'\xff'", -1),
+        ("char", "-128", -128),
+        ("wchar", r"L'\u2122'", 0x2122),
+        ("int8", "-128", -128),
+        ("uint64", "18446744073709551615", 2**64 - 1),
+        ("float32", "2", 2.0),
+        ("string", '"a" "b"', "ab"),
+        ("wstring", '"a"', "a"),
+    ],
+)
+def test_values_become_those_of_a_type(name, text, want):
+    span = Source(name="x", text="x")
+    got = fit(value(text), name, span)
+    assert got == want and type(got) is type(want)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("bool", "2"),
+        ("bool", "1.0"),
+        ("byte", "256"),
+        ("char", "128"),
+        ("char", r"L'\u2122'"),
+        ("int8", "'a'"),
+        ("int32", "TRUE"),
+        ("int32", "1."),
+        ("float64", '"1"'),
+        ("float32", "TRUE"),
+        ("string", "'a'"),
+        ("wstring", "1"),
+    ],
+)
+def test_values_that_a_type_does_not_have_are_refused(name, text):
+    with pytest.raises(IdlError):
+        fit(value(text), name, Source(name="x", text="x"))

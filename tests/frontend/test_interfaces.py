@@ -1,0 +1,298 @@
+"""Services and actions: how their files are cut, and which messages ROS makes of them."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import DISTROS, Library
+from firm_hdl.model import Action, Array, Message, Sequence, Service
+
+from .workspace import make_files
+
+DISTRO = {"ros1": "noetic", "ros2": "lyrical"}
+
+
+def load(root, name, text, *, distro="lyrical", **others):
+    """Load the interface of a package ``p`` that a text defines."""
+    kind = name.split("/")[0]
+    files = {f"p/{name}.{kind}": text} | {f"p/{k}/{n}": t for (k, n), t in others.items()}
+    return Library(distro, [make_files(root, files)]).interface(f"p/{name}")
+
+
+def fields(message):
+    return [f"{item.type} {item.name}" for item in message.fields]
+
+
+# What genmsg 0.6.0 and genaction.py, and rosidl_adapter 3.3.1, make of these: fields of each part,
+# or None where they refuse it.
+SERVICES = [
+    ("---", [], [], True),
+    ("---\n", [], [], True),
+    ("int8 a\n---\nint8 b", ["a"], ["b"], True),
+    ("int8 a\r\n---\r\nint8 b\r\n", ["a"], ["b"], True),
+    ("int8 a\r---\rint8 b\r", ["a"], ["b"], True),
+    ("# c\n---\n# d\n\nint8 b # e\n", [], ["b"], True),
+    ("#---\n---\nint8 b", [], ["b"], True),
+    ("int8 a # ---\n---\nint8 b", ["a"], ["b"], True),
+    ("", [], [], False),
+    ("int8 a", ["a"], [], False),
+    ("int8 a\n--- \nint8 b", ["a"], ["b"], False),
+    ("int8 a\n---\t\nint8 b", ["a"], ["b"], False),
+    ("int8 a\n----\nint8 b", ["a"], ["b"], False),
+    ("int8 a\n--- # c\nint8 b", ["a"], ["b"], False),
+    ("int8 a\n---int8 c\nint8 b", ["a"], ["b"], False),
+    ("---\nint8 a\n---\nint8 b", [], ["a", "b"], False),
+    ("---\n---\n---", [], [], False),
+]
+
+
+@pytest.mark.parametrize(("text", "request_", "response", "is_ros2"), SERVICES)
+def test_services_are_cut_as_genmsg_does(tmp_path, text, request_, response, is_ros2):
+    service = load(tmp_path, "srv/S", text, distro="noetic")
+    assert [f.name for f in service.request.fields] == request_
+    assert [f.name for f in service.response.fields] == response
+
+
+@pytest.mark.parametrize(("text", "request_", "response", "is_ros2"), SERVICES)
+def test_services_are_cut_as_rosidl_adapter_does(tmp_path, text, request_, response, is_ros2):
+    if not is_ros2:
+        with pytest.raises(DefinitionError):
+            load(tmp_path, "srv/S", text)
+        return
+    service = load(tmp_path, "srv/S", text)
+    assert [f.name for f in service.request.fields] == request_
+    assert [f.name for f in service.response.fields] == response
+
+
+ACTIONS = [
+    ("---\n---", ([], [], []), "both"),
+    ("int8 a\n---\nint8 b\n---\nint8 c\n", (["a"], ["b"], ["c"]), "both"),
+    ("int8 a\r\n---\r\nint8 b\r\n---\r\nint8 c", (["a"], ["b"], ["c"]), "both"),
+    ("---\n\n---\nint8 c\nint8 d", ([], [], ["c", "d"]), "both"),
+    ("int8 a\n--- x\nint8 b\n----\nint8 c\n", (["a"], ["b"], ["c"]), "ros1"),
+    ("int8 a\n---\nint8 b", None, None),
+    ("int8 a", None, None),
+    ("", None, None),
+    ("---\n---\n---", None, None),
+]
+
+
+@pytest.mark.parametrize("dialect", DISTRO)
+@pytest.mark.parametrize(("text", "parts", "legal"), ACTIONS)
+def test_actions_are_cut_as_ros_does(tmp_path, dialect, text, parts, legal):
+    if legal not in ("both", dialect):
+        with pytest.raises(DefinitionError):
+            load(tmp_path, "action/A", text, distro=DISTRO[dialect])
+        return
+    action = load(tmp_path, "action/A", text, distro=DISTRO[dialect])
+    found = action.goal, action.result, action.feedback
+    assert tuple([f.name for f in part.fields] for part in found) == parts
+
+
+def test_every_part_has_its_comment_its_constants_and_spans_of_the_whole_file(tmp_path):
+    text = "# Asks.\nint8 X=1\nint8 a # [m]\n---\n# Answers.\n\n# Why.\nstring b\n"
+    service = load(tmp_path, "srv/S", text)
+    assert (service.comment, service.response.comment) == ("Asks.", "Answers.")
+    assert [c.name for c in service.request.constants] == ["X"]
+    (a,), (b,) = service.request.fields, service.response.fields
+    assert (a.unit, b.comment) == ("m", "Why.")
+    assert (a.span.line, b.span.line, b.span.column) == (3, 8, 8)
+    assert b.span.source.text == text == service.text
+
+
+def test_ros2_service(tmp_path):
+    service = load(tmp_path, "srv/S", "int8 a\n---\nint8 b")
+    assert isinstance(service, Service)
+    assert (service.name, service.dialect) == ("p/srv/S", "ros2")
+    assert service.messages == (service.request, service.response, service.event)
+    assert [m.name for m in service.messages] == [
+        "p/srv/S_Request", "p/srv/S_Response", "p/srv/S_Event",
+    ]  # fmt: skip
+    assert fields(service.event) == [
+        "service_msgs/msg/ServiceEventInfo info",
+        "p/srv/S_Request[<=1] request",
+        "p/srv/S_Response[<=1] response",
+    ]
+    assert service.event.fields[1].type == Sequence(element=service.request, bound=1)
+
+
+@pytest.mark.parametrize("distro", [name for name, d in DISTROS.items() if d.dialect == "ros2"])
+def test_services_have_events_from_iron_on(tmp_path, distro):
+    library = Library(distro, [make_files(tmp_path, {"p/srv/S.srv": "---"})])
+    has_events = distro not in ("foxy", "humble")
+    assert (library.interface("p/srv/S").event is not None) is has_events
+    if not has_events:
+        with pytest.raises(DefinitionError, match="type 'S_Event' is not defined in package 'p'"):
+            library.message("p/srv/S_Event")
+
+
+def test_ros1_service(tmp_path):
+    service = load(tmp_path, "srv/S", "int8 a\n---\nint8 b\n", distro="noetic")
+    assert (service.name, service.event) == ("p/S", None)
+    assert [m.name for m in service.messages] == ["p/SRequest", "p/SResponse"]
+    # genmsg puts the lines of each part together again, and ends each of them.
+    assert [m.text for m in service.messages] == ["int8 a\n", "int8 b\n\n"]
+
+
+FIBONACCI = "int32 order\n---\nint32[] sequence\n---\nint32[] partial\n"
+
+
+def test_ros2_action(tmp_path):
+    action = load(tmp_path, "action/F", FIBONACCI)
+    assert isinstance(action, Action)
+    uuid = "unique_identifier_msgs/msg/UUID goal_id"
+    info = "service_msgs/msg/ServiceEventInfo info"
+    assert {m.name: fields(m) for m in action.messages} == {
+        "p/action/F_Goal": ["int32 order"],
+        "p/action/F_Result": ["int32[] sequence"],
+        "p/action/F_Feedback": ["int32[] partial"],
+        "p/action/F_SendGoal_Request": [uuid, "p/action/F_Goal goal"],
+        "p/action/F_SendGoal_Response": ["bool accepted", "builtin_interfaces/msg/Time stamp"],
+        "p/action/F_SendGoal_Event": [
+            info,
+            "p/action/F_SendGoal_Request[<=1] request",
+            "p/action/F_SendGoal_Response[<=1] response",
+        ],
+        "p/action/F_GetResult_Request": [uuid],
+        "p/action/F_GetResult_Response": ["int8 status", "p/action/F_Result result"],
+        "p/action/F_GetResult_Event": [
+            info,
+            "p/action/F_GetResult_Request[<=1] request",
+            "p/action/F_GetResult_Response[<=1] response",
+        ],
+        "p/action/F_FeedbackMessage": [uuid, "p/action/F_Feedback feedback"],
+    }
+    assert [s.name for s in action.services] == ["p/action/F_SendGoal", "p/action/F_GetResult"]
+    assert action.wrappers[0].fields[1].type is action.feedback
+    goal_id = action.wrappers[0].fields[0].type
+    assert [str(f.type) for f in goal_id.fields] == ["uint8[16]"]
+
+
+def test_ros2_action_before_iron_has_no_events(tmp_path):
+    action = load(tmp_path, "action/F", FIBONACCI, distro="humble")
+    assert len(action.messages) == 8
+    assert not any(m.name.endswith("_Event") for m in action.messages)
+
+
+GENERATED = "# ====== DO NOT MODIFY! AUTOGENERATED FROM AN ACTION DEFINITION ======\n"
+
+
+def test_ros1_action(tmp_path):
+    action = load(tmp_path, "action/F", FIBONACCI, distro="noetic")
+    assert {m.name: m.text for m in action.messages} == {
+        "p/FGoal": f"{GENERATED}int32 order\n",
+        "p/FResult": f"{GENERATED}int32[] sequence\n",
+        "p/FFeedback": f"{GENERATED}int32[] partial\n\n",
+        "p/FActionGoal": (
+            f"{GENERATED}\nHeader header\nactionlib_msgs/GoalID goal_id\nFGoal goal\n"
+        ),
+        "p/FActionResult": (
+            f"{GENERATED}\nHeader header\nactionlib_msgs/GoalStatus status\nFResult result\n"
+        ),
+        "p/FActionFeedback": (
+            f"{GENERATED}\nHeader header\nactionlib_msgs/GoalStatus status\nFFeedback feedback\n"
+        ),
+        "p/FAction": (
+            f"{GENERATED}\nFActionGoal action_goal\nFActionResult action_result\n"
+            "FActionFeedback action_feedback\n"
+        ),
+    }
+    whole = action.wrappers[-1]
+    assert [str(f.type) for f in whole.fields] == [
+        "p/FActionGoal", "p/FActionResult", "p/FActionFeedback",
+    ]  # fmt: skip
+    assert [str(f.type) for f in whole.fields[0].type.fields] == [
+        "std_msgs/Header", "actionlib_msgs/GoalID", "p/FGoal",
+    ]  # fmt: skip
+
+
+def test_an_action_called_like_the_start_of_header(tmp_path):
+    action = load(tmp_path, "action/Head", FIBONACCI, distro="noetic")
+    assert fields(action.wrappers[0])[0] == "std_msgs/Header header"
+
+
+def test_made_messages_mean_what_their_texts_say(tmp_path):
+    # ROS 1 tools read the texts; so must we, and find the same fields.
+    action = load(tmp_path / "1", "action/F", FIBONACCI, distro="noetic")
+    files = {f"p/msg/{m.base_name}.msg": m.text for m in action.messages}
+    library = Library("noetic", [make_files(tmp_path / "2", files)])
+    assert [library.message(m.name) for m in action.messages] == [*action.messages]
+
+
+def test_ros1_definitions_may_use_the_messages_of_actions_once_they_are_files(tmp_path):
+    # genmsg knows files only; genaction.py writes these when the package is built.
+    files = {"p/action/F.action": FIBONACCI, "q/msg/M.msg": "p/FGoal a\np/FActionFeedback[2] b"}
+    library = Library("noetic", [make_files(tmp_path, files)])
+    with pytest.raises(DefinitionError) as error:
+        library.message("q/M")
+    assert error.value.diagnostics[0].message == (
+        "type 'FGoal' is not defined in package 'p'; it will be, when the package is built and a "
+        "file is made from the action 'F'"
+    )
+    texts = {f"p/msg/{m.base_name}.msg": m.text for m in library.interface("p/F").messages}
+    library = Library("noetic", [make_files(tmp_path, texts)])
+    one, two = library.message("q/M").fields
+    assert one.type == library.interface("p/F").goal
+    assert two.type == Array(element=library.message("p/FActionFeedback"), count=2)
+
+
+@pytest.mark.parametrize(
+    ("distro", "type_"),
+    [
+        ("noetic", "p/SRequest"),
+        ("lyrical", "p/S_Request"),
+        ("lyrical", "p/F_Goal"),
+        ("lyrical", "S"),
+        ("noetic", "F"),
+    ],
+)
+def test_definitions_cannot_use_what_is_no_message_file(tmp_path, distro, type_):
+    files = {"p/srv/S.srv": "---", "p/action/F.action": FIBONACCI, "p/msg/M.msg": f"{type_} a"}
+    with pytest.raises(DefinitionError, match="is not defined in package 'p'"):
+        Library(distro, [make_files(tmp_path, files)]).message("p/M")
+
+
+def test_a_file_that_makes_a_name_wins_over_later_origins(tmp_path):
+    # noetic has actionlib/TestGoal as a message.
+    make_files(tmp_path, {"actionlib/action/Test.action": "string mine\n---\n---\n"})
+    library = Library("noetic", [tmp_path])
+    assert fields(library.message("actionlib/TestGoal")) == ["string mine"]
+    assert fields(Library("noetic").message("actionlib/TestGoal")) == ["int32 goal"]
+    make_files(tmp_path, {"actionlib/msg/TestGoal.msg": "int8 file"})
+    assert fields(Library("noetic", [tmp_path]).message("actionlib/TestGoal")) == ["int8 file"]
+
+
+def test_long_suffixes_are_tried_first(tmp_path):
+    files = {"p/action/F.action": "int8 f\n---\n---", "p/action/FAction.action": "int8 g\n---\n---"}
+    library = Library("noetic", [make_files(tmp_path, files)])
+    assert [f.name for f in library.message("p/FActionGoal").fields] == [
+        "header",
+        "goal_id",
+        "goal",
+    ]
+    assert fields(library.message("p/FActionActionGoal"))[-1] == "p/FActionGoal goal"
+
+
+def test_names_that_only_look_derived_are_messages(tmp_path):
+    files = {"p/msg/MoveGoal.msg": "int8 a", "p/msg/Goal.msg": "", "p/msg/Action.msg": ""}
+    for distro in ("noetic", "lyrical"):
+        library = Library(distro, [make_files(tmp_path, files)])
+        assert fields(library.message("p/MoveGoal")) == ["int8 a"]
+        assert isinstance(library.interface("p/Goal"), Message)
+        with pytest.raises(DefinitionError):
+            library.message("p/MoveResult")
+
+
+def test_mistakes_of_one_file_are_reported_once_and_in_order(tmp_path):
+    with pytest.raises(DefinitionError) as error:
+        load(tmp_path, "action/A", "Nothing a\n---\nint8 B\n---\nint8 c 300\nNothing d\n")
+    assert [d.span.line for d in error.value.diagnostics] == [1, 3, 5, 6]
+
+
+def test_a_wrong_part_spoils_the_file(tmp_path):
+    files = {"p/srv/S.srv": "int8 a\n---\nint8 B\n"}
+    library = Library("lyrical", [make_files(tmp_path, files)])
+    for name in ("p/srv/S_Request", "p/srv/S_Response", "p/srv/S_Event", "p/srv/S"):
+        with pytest.raises(DefinitionError, match="'B' is not a legal field name"):
+            library.message(name)

@@ -1,0 +1,250 @@
+"""Types from recordings, and from nowhere else."""
+
+from __future__ import annotations
+
+import json
+import random
+
+import pytest
+from rosbags.rosbag2 import StoragePlugin
+from rosbags.rosbag2 import Writer as Writer2
+
+from firm_hdl.cli import main
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import Library, RecordingOrigin, open_library
+from firm_hdl.identity import type_hash
+
+from .recordings import FORMATS, make_old_db3, make_recording
+from .workspace import make_files
+
+SEPARATOR = "=" * 80
+
+
+@pytest.fixture(params=FORMATS)
+def recording(request, tmp_path):
+    """A recording of each form."""
+    return make_recording(tmp_path, request.param)
+
+
+def test_types_are_those_of_the_topics_and_in_them(recording):
+    ours = open_library(bags=[recording])
+    names = {"my_msgs/Wheel", "my_msgs/Spot", "std_msgs/String", "std_msgs/Header"}
+    if ours.dialect == "ros2":
+        names |= {"builtin_interfaces/Time"}
+        names = {name.replace("/", "/msg/") for name in names}
+    assert {*ours.names()} == names
+    assert ours.distro == ("noetic" if ours.dialect == "ros1" else "lyrical")
+    wheel = ours.message("my_msgs/Wheel")
+    assert [field.name for field in wheel.fields] == ["header", "speed", "spots"]
+    assert [field.name for field in wheel.fields[2].type.element.fields] == ["a", "b"]
+    assert [(c.name, c.value) for c in wheel.constants] == [("LEFT", 0)]
+
+
+def test_no_other_types_are_there(recording):
+    # The distribution has it, but it is not in the recording.
+    with pytest.raises(DefinitionError, match="type 'Bool' is not defined in package 'std_msgs'"):
+        open_library(bags=[recording]).message("std_msgs/Bool")
+
+
+@pytest.mark.parametrize("form", ["mcap", "db3"])
+def test_single_file_of_rosbag2_will_do(tmp_path, form):
+    (file,) = make_recording(tmp_path, form).glob(f"*.{form}")
+    (file.parent / "metadata.yaml").unlink()
+    assert open_library(bags=[file]).message("my_msgs/Wheel").fields[1].name == "speed"
+
+
+def test_definitions_mean_what_those_in_folders_mean(tmp_path):
+    recorded = open_library(bags=[make_recording(tmp_path, "mcap")], distro="jazzy")
+    want = Library("jazzy")
+    for name in ("std_msgs/msg/Header", "std_msgs/msg/String"):
+        assert recorded.message(name) == want.message(name)
+        assert type_hash(recorded.message(name)) == type_hash(want.message(name))
+
+
+def test_commands_take_recordings(tmp_path, recording, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    bag = ["--bag", str(recording)]
+    assert main(["show", "my_msgs/Wheel", *bag]) == 0
+    assert capsys.readouterr().out.startswith("uint8 LEFT=0\nstd_msgs/Header header\n")
+    assert main(["list", *bag]) == 0
+    assert "Wheel" in capsys.readouterr().out
+    assert main(["build", "my_msgs/Wheel", *bag, "--out", "out"]) == 0
+    (manifest,) = tmp_path.glob("out/*/my_msgs*/manifest.json")
+    leaves = json.loads(manifest.read_text())["leaves"]
+    assert any("speed" in json.dumps(leaf) for leaf in leaves)
+    assert main(["metrics", "--all", *bag]) == 0
+    assert main(["info", "my_msgs/Wheel", *bag]) == 0
+    assert main(["proto", "my_msgs/Wheel", *bag]) == 0
+    command = "md5" if recording.suffix == ".bag" else "hash"
+    assert main([command, "my_msgs/Wheel", *bag]) == 0
+
+
+def test_paths_and_recordings_exclude_each_other(recording, capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(["list", "--bag", str(recording), "--path", "."])
+    assert caught.value.code == 2
+    assert "not allowed with argument" in capsys.readouterr().err
+    with pytest.raises(ValueError, match=r"^Recordings are read without any other definitions$"):
+        open_library(paths=["."], bags=[recording])
+
+
+def test_dialect_of_the_distribution_must_be_that_of_the_recording(tmp_path):
+    bag, mcap = make_recording(tmp_path, "bag"), make_recording(tmp_path, "mcap")
+    assert open_library("humble", bags=[mcap]).distro == "humble"
+    with pytest.raises(DefinitionError) as error:
+        open_library("humble", bags=[bag])
+    assert str(error.value) == f"error: '{bag}' is a recording of ROS 1, and humble is ROS 2"
+    with pytest.raises(DefinitionError) as error:
+        open_library(bags=[mcap, bag])
+    assert str(error.value) == (
+        f"error: '{mcap}' is a recording of ROS 2, and '{bag}' of ROS 1; read them one at a time"
+    )
+
+
+def test_first_of_several_recordings_wins(tmp_path):
+    one = record(tmp_path / "one", "p/msg/A", "int8 one\n")
+    two = record(tmp_path / "two", "p/msg/A", "int8 two\n", ("p/msg/B", "int8 b\n"))
+    ours = open_library(bags=[one, two])
+    assert ours.names() == ["p/msg/A", "p/msg/B"]
+    assert ours.message("p/A").fields[0].name == "one"
+
+
+def record(path, name, text, *more):
+    """Record topics whose definitions are given texts; hashes in it are nobody's business."""
+    with Writer2(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        for index, (type_name, definition) in enumerate([(name, text), *more]):
+            hashed = "RIHS01_" + "0" * 64
+            writer.add_connection(f"/t{index}", type_name, msgdef=definition, rihs01=hashed)
+    return path
+
+
+def test_texts_are_cut_at_headings_alone(tmp_path):
+    text = (
+        f"# {SEPARATOR}\nB b\np/C c\n\n{SEPARATOR}\nMSG: p/msg/B\nint8 x # =====\n\n"
+        f"{SEPARATOR}\r\nMSG: p/C\r\nint8 y\r\n{SEPARATOR}\nMSG: p/D"
+    )
+    ours = open_library(bags=[record(tmp_path / "r", "p/msg/A", text)])
+    assert ours.names() == ["p/msg/A", "p/msg/B", "p/msg/C", "p/msg/D"]
+    assert ours.message("p/A").comment == SEPARATOR
+    assert ours.source("p/A").text == f"# {SEPARATOR}\nB b\np/C c\n"
+    assert ours.source("p/B").text == "int8 x # =====\n"
+    assert ours.source("p/C").text == "int8 y\r\n"
+    assert ours.source("p/D").text == ""
+
+
+def test_mistake_is_shown_where_it_is_in_its_type(tmp_path):
+    path = record(tmp_path / "r", "p/msg/A", f"B b\n{SEPARATOR}\nMSG: p/B\nint8 x\nint33 y\n")
+    with pytest.raises(DefinitionError) as error:
+        open_library(bags=[path]).message("p/A")
+    assert str(error.value).startswith(f"<{path}>/p/msg/B.msg:2:1: error: 'int33' is not a type")
+
+
+def test_definitions_in_idl(tmp_path):
+    def idl(name, body):
+        text = f"module p {{ module msg {{ struct {name} {{ {body} }}; }}; }};\n"
+        return f"{SEPARATOR}\nIDL: p/msg/{name}\n{text}"
+
+    text = idl("A", "p::msg::B b; float x;").replace("module", '#include "p/msg/B.idl"\nmodule', 1)
+    path = record(tmp_path / "r", "p/msg/A", text + idl("B", "char c;"))
+    ours = open_library(bags=[path])
+    assert ours.names() == ["p/msg/A", "p/msg/B"]
+    b, x = ours.message("p/A").fields
+    assert (x.name, x.type.name) == ("x", "float32")
+    assert [(f.name, f.type.signed) for f in b.type.fields] == [("c", True)]
+
+
+def test_messages_of_services_and_actions(tmp_path):
+    uuid = f"{SEPARATOR}\nMSG: unique_identifier_msgs/msg/UUID\nuint8[16] uuid\n"
+    path = record(
+        tmp_path / "r",
+        "p/srv/S",
+        f"A a\n---\nint8 b\n{SEPARATOR}\nMSG: p/msg/A\nint8 x\n",
+        (
+            "p/action/Go_FeedbackMessage",
+            "unique_identifier_msgs/UUID goal_id\nint8 rest\n" + uuid,
+        ),
+    )
+    ours = open_library("humble", bags=[path])
+    assert [m.name for m in ours.interface("p/srv/S").messages] == [
+        "p/srv/S_Request",
+        "p/srv/S_Response",
+    ]
+    assert ours.message("p/srv/S_Request").fields[0].type.name == "p/msg/A"
+    feedback = ours.message("p/action/Go_FeedbackMessage")
+    assert [field.name for field in feedback.fields] == ["goal_id", "rest"]
+
+
+def test_recording_without_definitions_says_what_to_do(tmp_path):
+    path = make_old_db3(tmp_path / "old.db3", ["std_msgs/msg/String"])
+    with pytest.raises(DefinitionError) as error:
+        RecordingOrigin(path)
+    assert str(error.value) == (
+        f"error: '{path}' carries no definitions of its types, as recordings made before ROS 2 "
+        "iron; name folders that have them with --path, or a distribution with --distro, instead "
+        "of --bag"
+    )
+    path = make_old_db3(tmp_path / "none.db3", [])
+    with pytest.raises(DefinitionError, match=r"has no topics, and so no definitions$"):
+        RecordingOrigin(path)
+
+
+def test_topic_without_definition_is_told_from_one_that_is_not_there(tmp_path):
+    path = record(tmp_path / "r", "p/msg/A", "int8 a\n", ("p/msg/B", ""))
+    ours = open_library(bags=[path])
+    assert ours.names() == ["p/msg/A"]
+    with pytest.raises(DefinitionError) as error:
+        ours.message("p/B")
+    assert str(error.value) == (
+        f"error: '{path}' has a topic of type 'p/msg/B', but not its definition"
+    )
+
+
+def test_what_is_no_recording_is_refused(tmp_path):
+    make_files(tmp_path, {"a.txt": "x", "a.bag": "", "b.bag": "hello\n", "a.mcap": "hello"})
+    make_files(tmp_path, {"a.db3": "hello" * 1000, "folder/a.msg": "", "dir.bag/x": ""})
+    reasons = {
+        "a.txt": "cannot be read as a recording: Unrecognized storage format '.txt'",
+        "a.bag": "cannot be read as a recording: ",
+        "b.bag": "cannot be read as a recording: File magic is invalid.",
+        "a.mcap": "cannot be read as a recording: File magic is invalid.",
+        "a.db3": "cannot be read as a recording: ",
+        "folder": "is a folder without the metadata.yaml of a recording",
+        "dir.bag": "is a folder without the metadata.yaml of a recording",
+        "none.bag": "does not exist",
+    }
+    for name, reason in reasons.items():
+        with pytest.raises(DefinitionError) as error:
+            RecordingOrigin(tmp_path / name)
+        assert str(error.value).startswith(f"error: '{tmp_path / name}' {reason}")
+        assert "\n" not in str(error.value)
+
+
+def test_definitions_in_an_unknown_language_are_refused_by_name(tmp_path):
+    (file,) = record(tmp_path / "r", "p/msg/A", "int8 a\n").glob("*.mcap")
+    file.write_bytes(file.read_bytes().replace(b"ros2msg", b"ros1msg"))
+    with pytest.raises(DefinitionError) as error:
+        RecordingOrigin(file)
+    assert str(error.value) == (
+        f"error: '{file}' cannot be read as a recording: rosbags does not know 'ros1msg'"
+    )
+
+
+def test_damaged_recording_ends_in_definitions_or_in_an_error(recording, tmp_path):
+    """Cut and flip: whatever the reader makes of it, nothing else comes out."""
+    file = recording if recording.is_file() else next(recording.glob(f"*.{recording.name}"))
+    data, draw = file.read_bytes(), random.Random(1)
+    outcomes = set()
+    for number in range(40):
+        damaged = bytearray(data[: draw.randrange(len(data))] if number % 2 else data)
+        for _ in range(draw.randrange(1, 20)):
+            damaged[draw.randrange(len(damaged))] = draw.randrange(256)
+        path = tmp_path / f"damaged{number}{file.suffix}"
+        path.write_bytes(damaged)
+        try:
+            ours = open_library(bags=[path])
+            for name in ours.interfaces():
+                ours.interface(name)
+            outcomes.add("definitions")
+        except DefinitionError:
+            outcomes.add("error")
+    assert "error" in outcomes
