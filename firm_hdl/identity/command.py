@@ -1,0 +1,121 @@
+"""What the commands ``md5``, ``hash`` and ``proto`` print."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+
+from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.frontend import Library
+from firm_hdl.identity.md5 import md5sum
+from firm_hdl.identity.proto import TooLargeError, proto
+from firm_hdl.identity.rihs import type_hash
+from firm_hdl.model import Action, Dialect, Interface, Message, Service
+
+__all__ = ["hash_lines", "load_interfaces", "md5_lines", "proto_text"]
+
+
+def md5_lines(library: Library, names: Iterable[str]) -> list[str]:
+    """List md5 sums, each with the name of its type; an action's are those of its messages.
+
+    Raises
+    ------
+    DefinitionError
+        With what is wrong with any of the types, or if the distribution is of ROS 2.
+    """
+    _require(library, "ros1", "md5 sums are of ROS 1; for ROS 2 there is 'firm-hdl hash'")
+    summed: list[Message | Service] = []
+    for interface in load_interfaces(library, names):
+        summed += interface.messages if isinstance(interface, Action) else (interface,)
+    return [f"{md5sum(item)}  {item.name}" for item in summed]
+
+
+def hash_lines(library: Library, names: Iterable[str]) -> list[str]:
+    """List type hashes, each with the name of its type.
+
+    Raises
+    ------
+    DefinitionError
+        With what is wrong with any of the types, or if there are no hashes for them.
+    """
+    _require(library, "ros2", "type hashes are of ROS 2; for ROS 1 there is 'firm-hdl md5'")
+    lines, problems = [], []
+    for interface in load_interfaces(library, names):
+        try:
+            lines.append(f"{type_hash(interface)}  {interface.name}")
+        except ValueError as error:
+            problems.append(Diagnostic(message=f"{library.distro}: {error}"))
+    if problems:
+        raise DefinitionError(problems)
+    return lines
+
+
+def proto_text(library: Library, name: str, *, quotes: bool = True) -> str:
+    """Give the text of `proto` for a type, and the line end behind it.
+
+    Raises
+    ------
+    DefinitionError
+        With what is wrong with the type, or if the text would be too long.
+    """
+    (interface,) = load_interfaces(library, [name])
+    try:
+        return proto(interface, quotes=quotes) + "\n"
+    except TooLargeError as error:
+        raise DefinitionError([Diagnostic(message=str(error))]) from None
+
+
+def load_interfaces(
+    library: Library,
+    names: Iterable[str],
+    *,
+    found: Callable[[Interface], None] | None = None,
+) -> list[Interface]:
+    """Load messages, services and actions, each once.
+
+    Parameters
+    ----------
+    library : Library
+    names : iterable of str
+        As for `Library.interface`; also the services that ROS 2 makes of an action.
+    found : callable or None
+        Called with each, good ones among wrong ones included.
+
+    Raises
+    ------
+    DefinitionError
+        With the problems of all of them.
+    """
+    interfaces: dict[tuple[type, str], Interface] = {}
+    problems: dict[str, Diagnostic] = {}
+    for name in names:
+        try:
+            interface = _interface(library, name)
+        except DefinitionError as error:
+            problems.update((str(problem), problem) for problem in error.diagnostics)
+            continue
+        # In ROS 1, a message and a service may have the same name.
+        key = type(interface), interface.name
+        if key not in interfaces and found is not None:
+            found(interface)
+        interfaces[key] = interface
+    if problems:
+        raise DefinitionError(problems.values())
+    return list(interfaces.values())
+
+
+def _interface(library: Library, name: str) -> Interface:
+    for suffix in ("_SendGoal", "_GetResult"):
+        if library.dialect == "ros2" and name.endswith(suffix):
+            with suppress(DefinitionError):
+                action = library.interface(name.removesuffix(suffix))
+                if isinstance(action, Action):
+                    full = action.name + suffix
+                    return next(service for service in action.services if service.name == full)
+    return library.interface(name)
+
+
+def _require(library: Library, dialect: Dialect, message: str) -> None:
+    if library.dialect != dialect:
+        message = f"{library.distro}: {message}"
+        raise DefinitionError([Diagnostic(message=message)])

@@ -1,0 +1,53 @@
+"""The md5 sum by which ROS 1 tells one version of a type from another.
+
+genmsg computes it over the definition without comments, constants first, in which each message
+type is replaced by its own sum; a service's is over the request's text and the response's, with
+nothing between them. genmsg 0.6.0, ``gentools.compute_md5``, is the reference; ROS 2 has no such
+sums.
+"""
+
+from __future__ import annotations
+
+import hashlib
+
+from firm_hdl.identity.order import in_order
+from firm_hdl.model import Array, Message, Sequence, Service
+
+__all__ = ["md5sum"]
+
+
+def md5sum(interface: Message | Service) -> str:
+    """Compute the md5 sum of a message or a service of ROS 1.
+
+    Actions have none; their messages do.
+
+    Raises
+    ------
+    ValueError
+        If the definition is of ROS 2.
+    """
+    if interface.dialect != "ros1":
+        raise ValueError(f"Only types of ROS 1 have md5 sums, and {interface} is of ROS 2")
+    parts = (interface,) if isinstance(interface, Message) else (
+        interface.request,
+        interface.response,
+    )
+    sums: dict[str, str] = {}
+    for message in in_order(parts):
+        sums[message.name] = _digest(_text(message, sums))
+    return _digest("".join(_text(message, sums) for message in parts))
+
+
+def _digest(text: str) -> str:
+    return hashlib.md5(text.encode(), usedforsecurity=False).hexdigest()
+
+
+def _text(message: Message, sums: dict[str, str]) -> str:
+    lines = [f"{item.type} {item.name}={item.text}" for item in message.constants]
+    for field in message.fields:
+        kind = field.type.element if isinstance(field.type, Array | Sequence) else field.type
+        # The builtin times have no package, and stand for themselves.
+        is_nested = isinstance(kind, Message) and kind.package != ""
+        lines.append(f"{sums[str(kind)] if is_nested else field.type} {field.name}")
+    # So does genmsg, which matters if the last line is a text that ends in blanks.
+    return "\n".join(lines).strip()

@@ -1,0 +1,31 @@
+"""Message types in an order in which each comes after those that it is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from firm_hdl.model import Message
+
+__all__ = ["in_order"]
+
+
+def in_order(roots: Iterable[Message]) -> list[Message]:
+    """List messages and all that they are made of, each once, parts first.
+
+    The stack is our own: how deep definitions nest is their author's business. What has the same
+    name is taken for the same type, as it is in one library.
+    """
+    done: dict[str, Message] = {}
+    for root in roots:
+        stack: list[tuple[Message, Iterator[Message]]] = []
+        if root.name not in done:
+            stack.append((root, iter(root.children)))
+        while stack:
+            message, children = stack[-1]
+            child = next((c for c in children if c.name not in done), None)
+            if child is None:
+                stack.pop()
+                done[message.name] = message
+            else:
+                stack.append((child, iter(child.children)))
+    return list(done.values())

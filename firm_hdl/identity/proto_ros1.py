@@ -1,0 +1,131 @@
+"""An example of a message as ``rosmsg-proto`` prints it.
+
+It is the YAML of a new message, with one element in every sequence. Which parts stand in braces and
+brackets depends on what was seen before: the tool starts with a line for each field, and changes
+over, for the rest of the text, at the first message with more than four fields or the first fixed
+array of more than four elements. What encloses them has not been decided then, so it changes, too.
+"""
+
+from __future__ import annotations
+
+import base64
+import keyword
+from dataclasses import dataclass
+
+import yaml
+
+from firm_hdl.identity.proto_errors import TooLargeError
+from firm_hdl.model import PRIMITIVES, Array, Field, FieldType, Message, Primitive, Sequence, Text
+
+__all__ = ["ros1_proto"]
+
+# From here on PyYAML takes minutes.
+_MOST_VALUES = 1_000_000
+# PyYAML calls itself for each level.
+_MOST_LEVELS = 100
+
+# What rosmsg counts as long.
+_SHORT = 4
+
+_TAG = "tag:yaml.org,2002:"
+
+# What genpy, whose attributes are printed, adds an underscore to.
+_RESERVED = frozenset({*keyword.kwlist, "self"})
+
+# Bytes to Python, which it holds as one value.
+_PACKED = frozenset({"uint8", "char"})
+
+
+def ros1_proto(message: Message) -> str:
+    """Print an example of a message of ROS 1, without quotes around it."""
+    node = _Writer(name=message.name).message(message, 1)
+    return yaml.serialize(node, Dumper=yaml.SafeDumper).rstrip("\n")
+
+
+@dataclass(slots=True)
+class _Writer:
+    """Builds YAML nodes in the order in which rosmsg does, which decides their style."""
+
+    name: str
+    # `False`: one line for each; `None`: what PyYAML finds best.
+    style: bool | None = False
+    values: int = 0
+
+    def count(self, values: int) -> None:
+        self.values += values
+        if self.values > _MOST_VALUES:
+            raise TooLargeError(f"{self.name} has an example of more than {_MOST_VALUES} values")
+
+    def message(self, message: Message, level: int) -> yaml.MappingNode:
+        if level > _MOST_LEVELS:
+            raise TooLargeError(f"{self.name} has an example of more than {_MOST_LEVELS} levels")
+        has_long_list = any(
+            isinstance(item.type, Array) and item.type.count > _SHORT and not _is_packed(item.type)
+            for item in message.fields
+        )
+        if has_long_list or len(message.fields) > _SHORT:
+            self.style = None
+        return self.mapping([(item.name, item) for item in message.fields], level)
+
+    def mapping(self, members: list[tuple[str, Field]], level: int) -> yaml.MappingNode:
+        pairs = []
+        for name, item in members:
+            key = self.scalar("str", f"{name}_" if name in _RESERVED else name)
+            pairs.append((key, self.value(item.type, level)))
+        is_plain = all(_is_plain(node) for _, node in pairs)
+        return yaml.MappingNode(f"{_TAG}map", pairs, flow_style=self.flow(is_plain))
+
+    def value(self, kind: FieldType, level: int) -> yaml.Node:
+        if isinstance(kind, Array | Sequence) and _is_packed(kind):
+            data = bytes(kind.count) if isinstance(kind, Array) else b""
+            # The text of a long one takes PyYAML time, too.
+            self.count(1 + len(data) // 16)
+            text = base64.encodebytes(data).decode("ascii")
+            return yaml.ScalarNode(f"{_TAG}binary", text, style="|")
+        match kind:
+            case Message():
+                return self.message(kind, level + 1)
+            case Array(element=element, count=count):
+                self.count(count)
+                return self.sequence([self.value(element, level) for _ in range(count)])
+            case Sequence(element=Message(name="time" | "duration") as element):
+                # rosmsg has an element of the message that bears the name, instead.
+                return self.sequence([self.mapping([("data", _field(element))], level + 1)])
+            case Sequence(element=element):
+                # It takes 0 for any number, a float included.
+                number = isinstance(element, Primitive) and element.kind == "float"
+                return self.sequence([self.value(_INTEGER if number else element, level)])
+            case Text():
+                return self.scalar("str", "")
+            case Primitive(kind="bool"):
+                return self.scalar("bool", "false")
+            case Primitive(kind="float"):
+                return self.scalar("float", "0.0")
+            case Primitive():
+                return self.scalar("int", "0")
+
+    def sequence(self, nodes: list[yaml.Node]) -> yaml.SequenceNode:
+        is_plain = all(_is_plain(node) for node in nodes)
+        return yaml.SequenceNode(f"{_TAG}seq", nodes, flow_style=self.flow(is_plain))
+
+    def flow(self, is_plain: bool) -> bool:
+        return is_plain if self.style is None else self.style
+
+    def scalar(self, tag: str, text: str) -> yaml.ScalarNode:
+        self.count(1)
+        return yaml.ScalarNode(f"{_TAG}{tag}", text, style="")
+
+
+_INTEGER = PRIMITIVES["ros1"]["int32"]
+
+
+def _field(message: Message) -> Field:
+    return Field(name=message.name, type=message)
+
+
+def _is_packed(kind: Array | Sequence) -> bool:
+    return isinstance(kind.element, Primitive) and kind.element.name in _PACKED
+
+
+def _is_plain(node: yaml.Node) -> bool:
+    return isinstance(node, yaml.ScalarNode) and not node.style

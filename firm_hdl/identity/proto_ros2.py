@@ -1,0 +1,130 @@
+"""An example of a message as ``ros2 interface proto`` prints it.
+
+It is the YAML of a new message: fixed arrays are written out, sequences are empty, defaults are
+applied. The text of each type is put together once, from those of its parts, so that an array of
+millions costs no more than its text.
+"""
+
+from __future__ import annotations
+
+import re
+import struct
+import sys
+from typing import Any
+
+import yaml
+
+from firm_hdl.identity.order import in_order
+from firm_hdl.identity.proto_errors import TooLargeError
+from firm_hdl.model import Array, Field, Message, Primitive, Sequence, Text, Value
+
+__all__ = ["ros2_proto"]
+
+# The example of an array of 8 MiB fits several times; that of arrays of such arrays does not.
+_MOST_CHARACTERS = 1 << 28
+
+_LINE = re.compile(r"^(?=.)", re.MULTILINE)
+
+
+def ros2_proto(message: Message) -> str:
+    """Print an example of a message of ROS 2, without quotes around it."""
+    texts: dict[str, str] = {}
+    for part in in_order([message]):
+        texts[part.name] = _message(part, texts)
+    return texts[message.name]
+
+
+def _message(message: Message, texts: dict[str, str]) -> str:
+    lines = []
+    room = _MOST_CHARACTERS
+    for item in message.fields:
+        lines.append(_field(item, texts))
+        room -= len(lines[-1])
+        if room < 0:
+            raise TooLargeError(
+                f"{message.name} has an example of more than {_MOST_CHARACTERS} characters"
+            )
+    return "".join(lines) or "{}\n"
+
+
+def _field(item: Field, texts: dict[str, str]) -> str:
+    match item.type:
+        case Message(fields=()):
+            return f"{_key(item)} {{}}\n"
+        case Message():
+            return f"{_key(item)}\n{_indented(texts[item.type.name])}"
+        case Array(element=Message() as element, count=count):
+            # A list stands no deeper than its key, and its dashes are the indentation.
+            entry = texts[element.name]
+            return f"{_key(item)}\n" + _times(f"- {_indented(entry)[2:]}", count, item)
+        case Array(element=element, count=count) if item.default is None:
+            entry = _dump([_initial(element)])
+            return f"{_key(item)}\n" + _times(entry, count, item)
+        case _:
+            return _dump({item.name: _value(item)})
+
+
+def _key(item: Field) -> str:
+    # Some names need quotes.
+    return _dump({item.name: 0}).removesuffix(" 0\n")
+
+
+def _times(entry: str, count: int, item: Field) -> str:
+    if len(entry) * count > _MOST_CHARACTERS:
+        raise TooLargeError(
+            f"field '{item.name}' of {count} elements has an example of more than "
+            f"{_MOST_CHARACTERS} characters"
+        )
+    return entry * count
+
+
+def _indented(text: str) -> str:
+    return _LINE.sub("  ", text)
+
+
+def _value(item: Field) -> Any:
+    kind, default = item.type, item.default
+    match kind:
+        case Array() | Sequence():
+            assert not isinstance(kind.element, Message) or default is None
+            values = default if isinstance(default, tuple) else ()
+            return [_listed(_converted(value, kind.element), kind.element) for value in values]
+        case Message():
+            raise AssertionError
+        case _:
+            return _initial(kind) if default is None else _converted(default, kind)
+
+
+def _initial(kind: Any) -> Any:
+    if isinstance(kind, Text):
+        return ""
+    return _converted(0, kind)
+
+
+def _converted(value: Value, kind: Any) -> Any:
+    """Turn a value into that of rosidl_generator_py's class, as rosidl_runtime_py prints it."""
+    if isinstance(kind, Primitive) and not isinstance(value, str | bytes | tuple):
+        if kind.name == "byte" or _is_character(kind):
+            return chr(int(value) & 0xFF if kind.name == "byte" else int(value))
+        convert = {"bool": bool, "int": int, "float": float}[kind.kind]
+        return convert(value)
+    return value
+
+
+def _is_character(kind: Primitive) -> bool:
+    # The ``char`` of a ``.msg`` is a number to rosidl, those of an IDL are characters.
+    return kind.name == "wchar" or (kind.name == "char" and kind.signed)
+
+
+def _listed(value: Any, kind: Any) -> Any:
+    """Round as an array of float32 does; a single float32 is a Python float there."""
+    if not isinstance(kind, Primitive) or kind.name != "float32":
+        return value
+    try:
+        return struct.unpack("f", struct.pack("f", value))[0]
+    except OverflowError:
+        return float("inf") if value > 0 else float("-inf")
+
+
+def _dump(value: Any) -> str:
+    return yaml.dump(value, allow_unicode=True, width=sys.maxsize, default_flow_style=False)

@@ -1,0 +1,334 @@
+"""What can be said of a message type without any message: how deep, how large, how regular.
+
+The paper explains test results by such figures. Each is an attribute of a type that follows from
+those of its parts, computed once per type (and per place modulo 8 that the type may start at, for
+what depends on that); nothing is unrolled, and nothing calls itself, so that neither arrays of
+millions nor deep nesting cost anything.
+
+That sizes are found by making everything as short, or as long, as it may be holds on any wire: what
+starts later never ends earlier.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from firm_hdl.identity import in_order
+from firm_hdl.metrics.features import FEATURES, features_of
+from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text
+from firm_hdl.wire import CDR, ROS1, Wire, WireRules
+from firm_hdl.wire import residues as rs
+
+__all__ = ["Analyses", "Metrics", "metrics_of"]
+
+_LENGTH_BYTES = 4
+_RESIDUES = range(rs.MODULUS)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Metrics:
+    """Figures of a message type on a wire.
+
+    Attributes
+    ----------
+    name : str
+    wire : "ros1" or "cdr"
+    depth : int
+        Levels of messages; 1 if there is no message in it.
+    types : int
+        Different message types in it, itself included.
+    constants : int
+        Its own ones.
+    fields : int
+        Its own ones.
+    leaves : int
+        Fields of all levels that are no messages. An array or a sequence counts as one element,
+        and so does a message without fields.
+    fixed_leaves, dynamic_leaves : int
+        Those that have the same number of bytes in each message, and the others: strings,
+        sequences, and all that is in sequences of messages.
+    min_bytes : int
+        Size of the shortest message, encapsulation header included, as encoders write it.
+    max_bytes : int or None
+        Size of the longest message; `None` if there is none.
+    aligned, padded, shifting : int
+        Places on the wire, lengths of sequences and strings included, which never have padding in
+        front, or the same in each message (but some), or padding that differs.
+    features : tuple of str
+        Keys of `FEATURES` that occur in it or in any message in it.
+    definition_bytes : int
+        Size of the text that defines the type; that of the whole file for a message of a service or
+        an action.
+    """
+
+    name: str
+    wire: Wire
+    depth: int
+    types: int
+    constants: int
+    fields: int
+    leaves: int
+    fixed_leaves: int
+    dynamic_leaves: int
+    min_bytes: int
+    max_bytes: int | None
+    aligned: int
+    padded: int
+    shifting: int
+    features: tuple[str, ...]
+    definition_bytes: int
+
+
+def metrics_of(message: Message, wire: Wire | None = None) -> Metrics:
+    """Analyse one type on a wire (by default that of its dialect)."""
+    return Analyses(wire or message.wire).metrics(message)
+
+
+@dataclass(slots=True, kw_only=True)
+class _Type:
+    """What is known of a type, wherever it starts.
+
+    Attributes
+    ----------
+    after : list of int
+        Residues where it may end, by the residue where it starts.
+    least : list of int
+        Bytes of the shortest value, by the residue where it starts.
+    most : list of int or None
+        Those of the longest.
+    fixed, dynamic : int
+        Leaves.
+    """
+
+    after: list[int]
+    least: list[int]
+    most: list[int] | None
+    fixed: int
+    dynamic: int
+    features: frozenset[str]
+
+
+_Key = tuple[Message, int]
+_Counts = tuple[int, int, int]
+
+
+@dataclass(slots=True)
+class Analyses:
+    """Analyses of many types on one wire; what they share is analysed once."""
+
+    wire: Wire
+    _rules: WireRules = field(init=False)
+    _types: dict[Message, _Type] = field(default_factory=dict)
+    _places: dict[_Key, _Counts] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._rules = CDR if self.wire == "cdr" else ROS1
+
+    def metrics(self, message: Message) -> Metrics:
+        """Give the figures of a type."""
+        parts = in_order([message])
+        for part in parts:
+            if part not in self._types:
+                self._types[part] = self._analyse(part)
+        known = self._types[message]
+        header = self._rules.header_bytes
+        aligned, padded, shifting = self._alignment(message)
+        return Metrics(
+            name=message.name,
+            wire=self.wire,
+            depth=message.depth,
+            types=sum(part.package != "" for part in parts),
+            constants=len(message.constants),
+            fields=len(message.fields),
+            leaves=known.fixed + known.dynamic,
+            fixed_leaves=known.fixed,
+            dynamic_leaves=known.dynamic,
+            min_bytes=header + known.least[0],
+            max_bytes=None if known.most is None else header + known.most[0],
+            aligned=aligned,
+            padded=padded,
+            shifting=shifting,
+            features=tuple(name for name in FEATURES if name in known.features),
+            definition_bytes=len(message.text.encode()),
+        )
+
+    # Attributes of a type from those of its parts, which are known.
+
+    def _analyse(self, message: Message) -> _Type:
+        kinds = [item.type for item in message.fields]
+        parts = {child: self._types[child].features for child in message.children}
+        after = [self._after_all(kinds, rs.single(r)) for r in _RESIDUES]
+        least = [self._size_all(kinds, r, False) for r in _RESIDUES]
+        most = [self._size_all(kinds, r, True) for r in _RESIDUES]
+        leaves = [self._leaves(kind) for kind in kinds] or [(1, 0)]
+        return _Type(
+            after=after,
+            least=[size for size in least if size is not None],
+            most=[size for size in most if size is not None] or None,
+            fixed=sum(fixed for fixed, _ in leaves),
+            dynamic=sum(dynamic for _, dynamic in leaves),
+            features=features_of(message, parts),
+        )
+
+    def _leaves(self, kind: FieldType) -> tuple[int, int]:
+        match kind:
+            case Primitive():
+                return 1, 0
+            case Text():
+                return 0, 1
+            case Message():
+                return self._types[kind].fixed, self._types[kind].dynamic
+            case Array(element=element):
+                return self._leaves(element)
+            case Sequence(element=element):
+                return 0, sum(self._leaves(element))
+
+    # Sizes.
+
+    def _size_all(self, kinds: list[FieldType], start: int, longest: bool) -> int | None:
+        at = start
+        for kind in kinds:
+            size = self._size(kind, at % rs.MODULUS, longest)
+            if size is None:
+                return None
+            at += size
+        if not kinds and self._rules.empty_member is not None:
+            at += 1
+        return at - start
+
+    def _size(self, kind: FieldType, start: int, longest: bool) -> int | None:
+        """Return the bytes of the shortest or of the longest value, padding in front included."""
+        match kind:
+            case Primitive():
+                return -start % self._align(kind.bytes) + kind.bytes
+            case Message():
+                sizes = self._types[kind].most if longest else self._types[kind].least
+                return None if sizes is None else sizes[start]
+            case Text(bound=bound, wide=wide):
+                if longest and bound is None:
+                    return None
+                units = bound or 0 if longest else 0
+                nul = self._rules.terminated and not wide
+                return self._prefix(start) + units * (4 if wide else 1) + nul
+            case Array(element=element, count=count):
+                return self._repeated(element, start, count, longest)
+            case Sequence(element=element, bound=bound):
+                if longest and bound is None:
+                    return None
+                prefix = self._prefix(start)
+                count = bound or 0 if longest else 0
+                at = (start + prefix) % rs.MODULUS
+                size = self._repeated(element, at, count, longest)
+                return None if size is None else prefix + size
+
+    def _prefix(self, start: int) -> int:
+        return -start % self._align(_LENGTH_BYTES) + _LENGTH_BYTES
+
+    def _align(self, size: int) -> int:
+        return min(size, self._rules.max_align)
+
+    def _repeated(self, kind: FieldType, start: int, count: int, longest: bool) -> int | None:
+        """Add up elements; where they start recurs modulo 8, so few are looked at."""
+        seen: dict[int, tuple[int, int]] = {}
+        at, done = start, 0
+        while done < count:
+            residue = at % rs.MODULUS
+            if residue in seen:
+                before, at_before = seen[residue]
+                rounds = (count - done) // (done - before)
+                at += rounds * (at - at_before)
+                done += rounds * (done - before)
+                seen.clear()
+                continue
+            seen[residue] = done, at
+            size = self._size(kind, residue, longest)
+            if size is None:
+                return None
+            at += size
+            done += 1
+        return at - start
+
+    # Alignment: sets of residues where something may start.
+
+    def _after_all(self, kinds: list[FieldType], at: int) -> int:
+        for kind in kinds:
+            at = self._after(kind, at)
+        if not kinds and self._rules.empty_member is not None:
+            at = rs.advance(at, 1)
+        return at
+
+    def _after(self, kind: FieldType, at: int) -> int:
+        match kind:
+            case Primitive():
+                return self._past(kind.bytes, at)
+            case Message():
+                result = 0
+                for residue in rs.members(at):
+                    result |= self._types[kind].after[residue]
+                return result
+            case Text(wide=wide):
+                return rs.spread(self._past(_LENGTH_BYTES, at), 4 if wide else 1)
+            case Array(element=element, count=count):
+                return rs.repeat(at, lambda now: self._after(element, now), count)[1]
+            case Sequence(element=element):
+                start = self._past(_LENGTH_BYTES, at)
+                return rs.repeat(start, lambda now: self._after(element, now), None)[1]
+
+    def _past(self, size: int, at: int) -> int:
+        return rs.advance(rs.aligned(at, self._align(size)), size)
+
+    def _alignment(self, message: Message) -> _Counts:
+        root = (message, rs.single(0))
+        stack = [root]
+        while stack:
+            key = stack[-1]
+            if key in self._places:
+                stack.pop()
+                continue
+            own, parts = self._own_places(key)
+            missing = [part for part in parts if part not in self._places]
+            stack += missing
+            if not missing:
+                for part in parts:
+                    own = [a + b for a, b in zip(own, self._places[part], strict=True)]
+                self._places[stack.pop()] = own[0], own[1], own[2]
+        return self._places[root]
+
+    def _own_places(self, key: _Key) -> tuple[list[int], list[_Key]]:
+        """Count the places that are a type's own; list the messages in it and where they start."""
+        message, at = key
+        counts = [0, 0, 0]
+        parts: list[_Key] = []
+
+        def place(size: int, at: int) -> None:
+            pad = rs.pad_of(at, self._align(size))
+            counts[2 if pad is None else 1 if pad else 0] += 1
+
+        for item in message.fields:
+            kind, now = item.type, at
+            if isinstance(kind, Text | Sequence):
+                place(_LENGTH_BYTES, now)
+                now = self._past(_LENGTH_BYTES, now)
+            if isinstance(kind, Array | Sequence):
+                element = kind.element
+                count = kind.count if isinstance(kind, Array) else None
+                now = self._entry(element, now, count)
+            else:
+                element = kind
+            match element:
+                case Message():
+                    parts.append((element, now))
+                case Primitive():
+                    place(element.bytes, now)
+                case Text() if isinstance(kind, Array | Sequence):
+                    place(_LENGTH_BYTES, now)
+            at = self._after(kind, at)
+        if not message.fields and self._rules.empty_member is not None:
+            place(1, at)
+        return counts, parts
+
+    def _entry(self, element: Primitive | Text | Message, at: int, count: int | None) -> int:
+        """Return where some element may start, padding in front of it not yet taken."""
+        if isinstance(element, Primitive):
+            return at  # The others follow without padding.
+        return rs.repeat(at, lambda now: self._after(element, now), count)[0]

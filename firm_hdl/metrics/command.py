@@ -1,0 +1,56 @@
+"""What the command ``metrics`` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tqdm import tqdm
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import Library
+from firm_hdl.identity.command import load_interfaces
+from firm_hdl.metrics.analysis import Analyses, Metrics
+from firm_hdl.metrics.report import report
+from firm_hdl.model import Interface
+from firm_hdl.wire import Wire
+
+__all__ = ["metrics_text"]
+
+
+def metrics_text(
+    library: Library, names: Iterable[str] | None, form: str, wire: Wire | None = None
+) -> tuple[str, DefinitionError | None]:
+    """Write down the figures of types; those of a service or an action are of its messages.
+
+    Parameters
+    ----------
+    library : Library
+    names : iterable of str or None
+        `None`: all that the library has, with a progress bar where a person can see it.
+    form : str
+        A key of `FORMATS`.
+    wire : "ros1", "cdr" or None
+        `None`: that of the library's dialect.
+
+    Returns
+    -------
+    tuple of str and DefinitionError or None
+        The text, and what is wrong with the types that are not in it.
+    """
+    analyses = Analyses(wire or ("ros1" if library.dialect == "ros1" else "cdr"))
+    rows: dict[str, Metrics] = {}
+
+    def found(interface: Interface) -> None:
+        for message in interface.messages:
+            if message.name not in rows:
+                rows[message.name] = analyses.metrics(message)
+
+    wrong = None
+    chosen = library.interfaces() if names is None else list(names)
+    # `None` shows no bar where standard error is no terminal.
+    bar = tqdm(chosen, unit="type", leave=False, disable=None if names is None else True)
+    try:
+        load_interfaces(library, bar, found=found)
+    except DefinitionError as error:
+        wrong = error
+    return report(rows.values(), form), wrong

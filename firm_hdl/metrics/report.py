@@ -1,0 +1,82 @@
+"""Figures as a table, as CSV, as JSON."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, fields
+
+from firm_hdl.metrics.analysis import Metrics
+
+__all__ = ["FORMATS", "report"]
+
+_COLUMNS = tuple(item.name for item in fields(Metrics))
+
+# Columns of the table, which leaves out what is quickly seen elsewhere, and their headings.
+_HEADINGS = {
+    "name": "name",
+    "depth": "depth",
+    "types": "types",
+    "leaves": "leaves",
+    "fixed_leaves": "fixed",
+    "dynamic_leaves": "dynamic",
+    "min_bytes": "min",
+    "max_bytes": "max",
+    "aligned": "aligned",
+    "padded": "padded",
+    "shifting": "shifting",
+    "features": "features",
+}
+
+
+def report(rows: Iterable[Metrics], form: str) -> str:
+    """Write figures down.
+
+    Parameters
+    ----------
+    rows : iterable of Metrics
+    form : str
+        A key of `FORMATS`.
+    """
+    return FORMATS[form](list(rows))
+
+
+def _table(rows: list[Metrics]) -> str:
+    lines = [[*_HEADINGS.values()], *([_cell(row, name) for name in _HEADINGS] for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    text = ""
+    for line in lines:
+        cells = [
+            cell.ljust(width) if name in ("name", "features") else cell.rjust(width)
+            for name, cell, width in zip(_HEADINGS, line, widths, strict=True)
+        ]
+        text += "  ".join(cells).rstrip() + "\n"
+    return text
+
+
+def _cell(row: Metrics, name: str) -> str:
+    value = getattr(row, name)
+    if isinstance(value, tuple):
+        return ",".join(value) or "-"
+    return "-" if value is None else str(value)
+
+
+def _csv(rows: list[Metrics]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(_COLUMNS)
+    for row in rows:
+        values = asdict(row) | {"features": " ".join(row.features)}
+        # An empty cell for what has no maximum.
+        writer.writerow([values[name] for name in _COLUMNS])
+    return text.getvalue()
+
+
+def _json(rows: list[Metrics]) -> str:
+    return json.dumps([asdict(row) for row in rows], indent=2) + "\n"
+
+
+FORMATS: dict[str, Callable[[list[Metrics]], str]] = {"table": _table, "csv": _csv, "json": _json}
+"""How figures can be written down."""

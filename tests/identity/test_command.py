@@ -1,0 +1,98 @@
+"""The commands ``md5``, ``hash`` and ``proto``: exact output, exact complaints."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.cli import main
+
+from ..frontend.workspace import make_files
+
+DEFINITIONS = {
+    "p/msg/A.msg": "int32 a\n",
+    "p/srv/S.srv": "int8 a\n---\nint8 b\n",
+    "p/action/Do.action": "int8 a\n---\nint8 b\n---\nint8 c\n",
+    "p/msg/Bad.msg": "int33 a\n",
+    "p/msg/Worse.msg": "int34 a\n",
+}
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch, capsys):
+    """Run the command in a folder with packages; return status, output and complaints."""
+    make_files(tmp_path, DEFINITIONS)
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments):
+        status = main([*arguments, "--path", "."])
+        return status, *capsys.readouterr()
+
+    return run
+
+
+def test_md5_is_of_ros1_unless_told_otherwise(run):
+    assert run("md5", "std_msgs/String", "p/A") == (
+        0,
+        "992ce8a1687cec8c8bd883ec73ca41d1  std_msgs/String\n"
+        "5c9fb1a886e81e3162a5c87bf55c072b  p/A\n",
+        "",
+    )
+    status, out, err = run("md5", "std_msgs/msg/String", "--distro", "humble")
+    assert (status, out) == (1, "")
+    assert err == "error: humble: md5 sums are of ROS 1; for ROS 2 there is 'firm-hdl hash'\n"
+
+
+def test_md5_of_an_action_is_that_of_its_messages(run):
+    status, out, err = run("md5", "p/Do")
+    assert (status, err) == (0, "")
+    parts = ["Goal", "Result", "Feedback", "ActionGoal", "ActionResult", "ActionFeedback", "Action"]
+    assert [line.split("  ")[1] for line in out.splitlines()] == [f"p/Do{part}" for part in parts]
+
+
+def test_hash_takes_all_that_has_one(run):
+    names = ["p/msg/A", "p/srv/S", "p/srv/S_Event", "p/action/Do", "p/action/Do_SendGoal"]
+    status, out, err = run("hash", *names, "p/action/Do_GetResult_Request", "p/A")
+    assert (status, err) == (0, "")
+    hashes, found = zip(*(line.split("  ") for line in out.splitlines()), strict=True)
+    assert [*found] == [*names, "p/action/Do_GetResult_Request"]
+    assert len({*hashes}) == len(names) + 1
+    assert all(h.startswith("RIHS01_") and len(h) == 7 + 64 for h in hashes)
+
+
+def test_hash_says_what_has_none(run):
+    assert run("hash", "p/A", "--distro", "noetic") == (
+        1,
+        "",
+        "error: noetic: type hashes are of ROS 2; for ROS 1 there is 'firm-hdl md5'\n",
+    )
+    assert run("hash", "p/msg/A", "p/srv/S", "--distro", "foxy") == (
+        1,
+        "",
+        "error: foxy: p/srv/S has no type hash: services have hashes from iron on, where they have "
+        "an event message, too\n",
+    )
+
+
+@pytest.mark.parametrize("command", ["md5", "hash"])
+def test_all_that_is_wrong_is_reported_at_once(run, command):
+    status, out, err = run(command, "p/Bad", "p/A", "p/Worse", "p/Nothing")
+    assert (status, out) == (1, "")
+    for word in ("'int33'", "'int34'", "'Nothing'"):
+        assert word in err
+
+
+def test_proto_prints_quotes_unless_told_otherwise(run):
+    assert run("proto", "p/msg/A") == (0, '"a: 0\n"\n', "")
+    assert run("proto", "p/srv/S", "--no-quotes") == (0, "a: 0\n\n", "")
+    assert run("proto", "p/A", "--distro", "noetic") == (0, '"a: 0"\n', "")
+    assert run("proto", "p/Do", "--distro", "noetic", "--no-quotes") == (0, "a: 0\n", "")
+
+
+def test_proto_of_what_is_too_long_is_no_traceback(run, tmp_path):
+    make_files(tmp_path, {"p/msg/Huge.msg": "float64[4000000000] data\n"})
+    assert run("proto", "p/Huge") == (
+        1,
+        "",
+        "error: field 'data' of 4000000000 elements has an example of more than 268435456 "
+        "characters\n",
+    )

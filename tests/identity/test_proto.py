@@ -1,0 +1,254 @@
+"""Examples of types, against rosmsg's own and against messages put together another way."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+from rosbags.interfaces import Nodetype
+from rosbags.typesys import get_typestore
+
+from firm_hdl.frontend import DISTROS, Library
+from firm_hdl.identity import TooLargeError, proto
+from firm_hdl.model import IDL_PRIMITIVES, Array, Field, Message, Sequence, Text
+
+from ..frontend.workspace import library, make_files
+
+DEBIAN_PYTHON = "/usr/bin/python3"
+WORKER = Path(__file__).with_name("rosmsg_worker.py")
+
+
+# ROS 2.
+
+
+def default(description, store):
+    """A value of a rosbags type as rosidl_generator_py makes it."""
+    kind, detail = description
+    match kind:
+        case Nodetype.BASE:
+            zeros = {"string": "", "bool": False, "float32": 0.0, "float64": 0.0, "byte": "\0"}
+            return zeros.get(detail[0], 0)
+        case Nodetype.NAME:
+            return new(detail, store)
+        case Nodetype.ARRAY:
+            return [default(detail[0], store) for _ in range(detail[1])]
+        case _:
+            return []
+
+
+def new(name, store):
+    fields = store.fielddefs[name][1]
+    return {n: default(d, store) for n, d in fields if not n.startswith("structure_needs")}
+
+
+@pytest.mark.parametrize("distro", ["humble", "lyrical"])
+def test_example_is_the_yaml_of_a_new_message(distro):
+    store, ours = get_typestore(DISTROS[distro].store), Library(distro)
+    for name in ours.names():
+        want = yaml.dump(
+            new(name, store),
+            allow_unicode=True,
+            width=sys.maxsize,
+            default_flow_style=False,
+            sort_keys=False,
+        )
+        assert proto(ours.message(name)) == f'"{want}"', name
+
+
+DEFAULTS = r"""bool a true
+byte b 200
+char c 65
+float32 d 1.1
+float64 e 3
+string f "it's: \"x\""
+wstring g "größe"
+string<=5 h
+int32[3] i [1, 2, -3]
+int32[<=3] j [4, 5]
+float32[] k [1.5, 0.1]
+string[2] l ["yes", ""]
+bool[] m [true, false]
+byte[2] n [0, 255]
+int8[2] o
+string<=4[2] p
+float64 y
+string on "null"
+"""
+
+
+def test_defaults_are_applied(tmp_path):
+    ours = library(tmp_path, {"p/A": DEFAULTS})
+    assert proto(ours.message("p/A"), quotes=False) == (
+        "a: true\nb: È\nc: 65\nd: 1.1\ne: 3.0\n"
+        "f: 'it''s: \"x\"'\ng: größe\nh: ''\n"
+        "i:\n- 1\n- 2\n- -3\nj:\n- 4\n- 5\nk:\n- 1.5\n- 0.10000000149011612\n"
+        "l:\n- 'yes'\n- ''\nm:\n- true\n- false\n"
+        'n:\n- "\\0"\n- ÿ\no:\n- 0\n- 0\np:\n- \'\'\n- \'\'\n'
+        "y: 0.0\n'on': 'null'\n"
+    )
+
+
+def test_parts_are_indented_and_arrays_written_out(tmp_path):
+    texts = {
+        "p/Top": "Part part\nPart[2] parts\nPart[] more\nNone none\nNone[2] nones\n",
+        "p/Part": 'Leaf leaf\nint8[2] two\nstring s "a\\n\\nb"\n',
+        "p/Leaf": "float32 x\nLeast[1] least\n",
+        "p/Least": "int8 y 1\nint8 z 2\n",
+        "p/None": "",
+    }
+    ours = library(tmp_path, texts)
+    message = ours.message("p/Top")
+    part = {
+        "leaf": {"x": 0.0, "least": [{"y": 1, "z": 2}]},
+        "two": [0, 0],
+        "s": ours.message("p/Part").fields[2].default,
+    }
+    one, two, three = json.loads(json.dumps([part] * 3))
+    value = {"part": one, "parts": [two, three], "more": [], "none": {}, "nones": [{}, {}]}
+    want = yaml.dump(value, width=sys.maxsize, default_flow_style=False, sort_keys=False)
+    assert proto(message, quotes=False) == want
+
+
+def test_text_with_line_ends_keeps_its_indentation():
+    line = Field(name="s", type=Text(), default="one\ntwo\n\nthree")
+    leaf = Message(name="p/msg/L", dialect="ros2", fields=(line,))
+    top = Message(
+        name="p/msg/T", dialect="ros2", fields=(Field(name="a", type=Array(element=leaf, count=1)),)
+    )
+    want = yaml.dump({"a": [{"s": "one\ntwo\n\nthree"}]}, default_flow_style=False)
+    assert proto(top, quotes=False) == want
+
+
+def test_characters_of_idl_are_texts():
+    fields = tuple(
+        Field(name=name, type=IDL_PRIMITIVES[name], default=value)
+        for name, value in (("char", None), ("wchar", "A"))
+    )
+    more = (Field(name="more", type=Array(element=IDL_PRIMITIVES["char"], count=2)),)
+    message = Message(name="p/msg/A", dialect="ros2", fields=fields + more)
+    assert proto(message, quotes=False) == 'char: "\\0"\nwchar: A\nmore:\n- "\\0"\n- "\\0"\n'
+
+
+def test_service_is_shown_by_its_request_and_action_by_its_goal(tmp_path):
+    make_files(
+        tmp_path,
+        {"p/srv/S.srv": "int8 a\n---\nint8 b\n", "p/action/A.action": "int8 c\n---\n---\n"},
+    )
+    for distro in ("lyrical", "noetic"):
+        ours = Library(distro, [tmp_path])
+        end = "\n" if distro == "lyrical" else ""
+        assert proto(ours.interface("p/srv/S")) == f'"a: 0{end}"'
+        assert proto(ours.interface("p/action/A")) == f'"c: 0{end}"'
+
+
+def test_millions_of_elements_are_quick_and_more_is_refused(tmp_path):
+    texts = {
+        "p/Large": "uint8[8388608] data\n",
+        "p/Larger": "Large[50] data\n",
+        "p/Many": "\n".join(f"Large a{i}" for i in range(50)),
+    }
+    ours = library(tmp_path, texts)
+    assert len(proto(ours.message("p/Large"))) == len('"data:\n"') + 8388608 * len("- 0\n")
+    for name in ("Larger", "Many"):
+        with pytest.raises(TooLargeError, match="has an example of more than 268435456 characters"):
+            proto(ours.message(f"p/{name}"))
+
+
+def test_depth_is_no_matter_in_ros2():
+    top = Message(name="p/msg/L", dialect="ros2", fields=())
+    for level in range(1500):
+        kind = Sequence(element=top) if level % 2 else top
+        top = Message(
+            name=f"p/msg/L{level}", dialect="ros2", fields=(Field(name="f", type=kind),)
+        )
+    assert proto(top, quotes=False) == "f: []\n"
+
+
+# ROS 1.
+
+
+@pytest.fixture(scope="session")
+def rosmsg():
+    """Debian's ``rosmsg-proto msg`` for many types at a time."""
+    test = [DEBIAN_PYTHON, "-c", "import rosmsg, genpy.dynamic"]
+    try:
+        subprocess.run(test, check=True, capture_output=True)
+    except (OSError, subprocess.CalledProcessError):
+        message = "python3-rosmsg is not installed for /usr/bin/python3 (as root: make tools)"
+        if os.environ.get("CI"):
+            pytest.fail(message)
+        pytest.skip(message)
+
+    def run(folder, names):
+        command = [DEBIAN_PYTHON, str(WORKER), str(folder)]
+        text = "".join(f"{name}\n" for name in names)
+        done = subprocess.run(command, input=text, capture_output=True, text=True, check=True)
+        return dict(zip(names, map(json.loads, done.stdout.splitlines()), strict=True))
+
+    return run
+
+
+# Each row changes the style at another place.
+ROS1 = {
+    "p/Plain": "int32 a\nfloat32 b\nstring c\nbool d\n",
+    "p/Five": "int32 a\nfloat32 b\nstring c\nbool d\nuint8 e\n",
+    "p/Times": "time t\nduration d\ntime[] ts\nduration[2] ds\nHeader header\nHeader[] own\n",
+    "p/Header": "string mine\n",
+    "p/Bytes": "uint8[] a\nchar[] b\nuint8[3] c\nchar[70] d\nbyte[] e\nint8[2] f\n",
+    "p/Lists": "float64[] a\nstring[] b\nbool[] c\nstring[2] d\nfloat32[4] e\n",
+    "p/Long": "int8 a\nfloat32[5] b\nPlain c\n",
+    "p/LongLast": "Plain a\nPlain b\nLong c\n",
+    "p/Messages": "Plain[] a\nPlain[2] b\nFive[] c\nPlain[] d\n",
+    "p/None": "",
+    "p/Nones": "None a\nNone[] b\nNone[2] c\n",
+    "p/Nested": "Messages[] a\nNones[] b\nTimes c\nint8 x\nint8 y\n",
+    "p/Constants": "int8 A=1\nstring B=x\nint8 a\n",
+    "p/Names": "float64 y\nint8 on\nint8 null\nint8 x\n",
+    "p/Python": "int8 self\nint8 lambda\nint8 None\nint8 print\nint8 match\n",
+    "p/Folded": "int8[60] numbers\nstring[40] texts\n",
+}
+
+
+def test_example_is_that_of_rosmsg_proto(tmp_path, rosmsg):
+    ours = library(tmp_path, ROS1, "ros1")
+    needed = {
+        "Header": "uint32 seq\ntime stamp\nstring frame_id\n",
+        "Time": "time data\n",
+        "Duration": "duration data\n",
+    }
+    make_files(tmp_path, {f"std_msgs/msg/{name}.msg": text for name, text in needed.items()})
+    want = rosmsg(tmp_path, list(ROS1))
+    assert None not in want.values()
+    assert {name: proto(ours.message(name)) for name in ROS1} == want
+
+
+def test_examples_of_the_corpus_are_those_of_rosmsg_proto(corpus, rosmsg):
+    # Every 40th, which takes 10 s, all of it in rosmsg; all were compared once.
+    noetic = Library("noetic", [corpus / "ros1"])
+    files = sorted((corpus / "ros1").glob("*/msg/*.msg"))[::40]
+    names = [f"{path.parts[-3]}/{path.stem}" for path in files]
+    want = rosmsg(corpus / "ros1", names)
+    assert len(want) > 100
+    assert {name: proto(noetic.message(name)) for name in names} == want
+
+
+def test_what_pyyaml_would_take_minutes_for_is_refused(tmp_path):
+    ours = library(tmp_path, {"p/A": "int8[1000000] a\n", "p/B": "uint8[8388608] a\n"}, "ros1")
+    message = "^p/A has an example of more than 1000000 values$"
+    with pytest.raises(TooLargeError, match=message):
+        proto(ours.message("p/A"))
+    # Bytes are one text.
+    assert proto(ours.message("p/B")).startswith('"a: !!binary |\n  AAAA')
+
+
+def test_nesting_too_deep_for_pyyaml_is_refused():
+    top = Message(name="p/L", dialect="ros1", fields=())
+    for level in range(1000):
+        top = Message(name=f"p/L{level}", dialect="ros1", fields=(Field(name="f", type=top),))
+    with pytest.raises(TooLargeError, match=r"^p/L999 has an example of more than 100 levels$"):
+        proto(top)
