@@ -24,8 +24,10 @@ from firm_hdl.wire.layout import OCTET
 
 __all__ = ["RecordReader", "RecordWriter", "record_layout"]
 
-MAX_RECORD_BITS = 65_535
+MAX_CELL_BITS = 65_535
 """Amaranth 0.5 elaborates no wider cell."""
+
+MAX_RECORD_BITS = MAX_CELL_BITS
 
 Path: TypeAlias = "tuple[str, ...]"
 Place: TypeAlias = "tuple[str | int, ...]"
@@ -181,10 +183,21 @@ def _empty_member(path: Path, leaves: dict[Path, Leaf]) -> str:
     return next(leaf[-1] for leaf in leaves if leaf[:-1] == path)
 
 
-def _at(view: object, place: Place) -> Value:
+def _first_bit(layout: Shapes, place: Place) -> int:
+    """Return where in a record a value starts."""
+    bit = 0
     for key in place:
-        view = view[key]  # type: ignore[index]
-    return Value.cast(view)
+        assert isinstance(layout, data.Layout)
+        member = layout[key]
+        bit, layout = bit + member.offset, member.shape
+    return bit
+
+
+def _shape(layout: Shapes, place: Place) -> Shapes:
+    for key in place:
+        assert isinstance(layout, data.Layout)
+        layout = layout[key].shape
+    return layout
 
 
 class _Adapter(wiring.Component):
@@ -218,6 +231,12 @@ class _Adapter(wiring.Component):
         left = {name: child for name, child in children.items() if child is not None}
         return MemberTree(node.member, None, left) if left else None
 
+    def _bits(self, places: list[Place]) -> slice:
+        """Return which bits of the record a transfer has: items of an array are neighbours."""
+        layout = self._record.layout
+        ends = [_first_bit(layout, place) for place in places]
+        return slice(ends[0], ends[-1] + Shape.cast(_shape(layout, places[-1])).width)
+
     def _streams(self) -> Iterator[tuple[list[list[Place]], stream.Interface]]:
         for index, path in self.tree.leaves():
             transfers = self._record.transfers.get(self.plan.leaves[index].path)
@@ -244,12 +263,10 @@ def _member(interface: object, path: Path) -> stream.Interface:
     return interface
 
 
-def _items(interface: stream.Interface) -> list[Value]:
-    """Return the values of a transfer: its lanes, or the one scalar."""
+def _values(interface: stream.Interface) -> Value:
+    """Return the values of a transfer: its lanes, the first one lowest, or the one scalar."""
     payload = interface.payload
-    if isinstance(payload, data.View):
-        return [Value.cast(payload.data[k]) for k in range(len(payload.data))]
-    return [Value.cast(payload)]
+    return Value.cast(payload.data if isinstance(payload, data.View) else payload)
 
 
 class RecordReader(_Adapter):
@@ -289,38 +306,50 @@ class RecordReader(_Adapter):
         self._pass_on(m)
         taken = Signal()
         there: list[Value] = []
+        parts: dict[int, Value] = {}
         for transfers, leaf in self._streams():
             if len(transfers) == 1:
-                for place, value in zip(transfers[0], _items(leaf), strict=False):
-                    m.d.comb += _at(self.record.payload, place).eq(value)
+                kept = _values(leaf)
                 m.d.comb += leaf.ready.eq(taken)
                 there.append(leaf.valid)
             else:
-                there.append(self._collect(m, transfers, leaf, taken))
+                kept, full = self._collect(m, len(transfers), leaf, taken)
+                there.append(full)
+            for number, places in enumerate(transfers):
+                bits = self._bits(places)
+                first = number * len(_values(leaf))
+                parts[bits.start] = kept[first : first + bits.stop - bits.start]
         m.d.comb += [
+            # One assignment: those to slices take time that grows with the square of their number.
+            Value.cast(self.record.payload).eq(Cat(parts[bit] for bit in sorted(parts))),
             self.record.valid.eq(Cat(there).all()),
             taken.eq(self.record.valid & self.record.ready),
         ]
         return m
 
     def _collect(
-        self, m: Module, transfers: list[list[Place]], leaf: stream.Interface, taken: Value
-    ) -> Value:
-        """Collect transfers in registers; return whether all are there."""
-        index = Signal(range(len(transfers) + 1))
-        full = index == len(transfers)
+        self, m: Module, count: int, leaf: stream.Interface, taken: Value
+    ) -> tuple[Value, Value]:
+        """Shift transfers through registers; return these, and whether all are there."""
+        incoming = _values(leaf)
+        width = len(incoming)
+        index = Signal(range(count + 1))
+        full = index == count
         m.d.comb += leaf.ready.eq(~full)
         with m.If(taken):
             m.d.sync += index.eq(0)
         with m.Elif(leaf.valid & ~full):
             m.d.sync += index.eq(index + 1)
-        for number, places in enumerate(transfers):
-            for place, value in zip(places, _items(leaf), strict=False):
-                kept = Signal.like(value, name="kept_" + "_".join(map(str, place)))
-                with m.If(index == number):
-                    m.d.sync += kept.eq(value)
-                m.d.comb += _at(self.record.payload, place).eq(kept)
-        return full
+        # Lanes that are in no record make it wider than a record can be.
+        most = MAX_CELL_BITS // width
+        parts: list[Signal] = []
+        while count:
+            # From the end of the message on, where transfers come in.
+            parts.insert(0, kept := Signal(min(count, most) * width, name=f"kept_{len(parts)}"))
+            with m.If(leaf.valid & ~full):
+                m.d.sync += kept.eq(Cat(kept[width:], incoming))
+            incoming, count = kept[:width], count - min(count, most)
+        return (parts[0] if len(parts) == 1 else Cat(parts)), full
 
 
 class RecordWriter(_Adapter):
@@ -378,12 +407,11 @@ class RecordWriter(_Adapter):
     def _offer(
         self, m: Module, transfers: list[list[Place]], leaf: stream.Interface, index: Signal
     ) -> None:
-        lanes = _items(leaf)
+        vector = Value.cast(self.record.payload)
         with m.Switch(index):
             for number, places in enumerate(transfers):
                 with m.Case(number):
-                    for place, lane in zip(places, lanes, strict=False):
-                        m.d.comb += lane.eq(_at(self.record.payload, place))
+                    m.d.comb += _values(leaf).eq(vector[self._bits(places)])
         if isinstance(leaf.payload, data.View):
             ends = [number for number, last in enumerate(_array_ends(transfers)) if last]
             m.d.comb += leaf.payload.last.eq(Cat(index == number for number in ends).any())

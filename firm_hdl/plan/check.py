@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from firm_hdl.model import PRIMITIVES
+from firm_hdl.model import PRIMITIVE_OF
 from firm_hdl.plan.build import BUS_BYTES
 from firm_hdl.plan.conform import against_layout
 from firm_hdl.plan.ir import RUN_COUNTER, Begin, Fixed, Jump, Leaf, Pad, Part, Plan, Slice, Step
@@ -54,8 +54,11 @@ def _tables(plan: Plan) -> Iterator[str]:
 
 
 def _leaf(leaf: Leaf, bus_bytes: int) -> Iterator[str]:
-    if leaf.type not in PRIMITIVES["ros2"]:
+    if not any((leaf.type, signed) in PRIMITIVE_OF for signed in (False, True)):
         yield f"type {leaf.type!r} is not a primitive"
+        return
+    if (leaf.type, leaf.signed) not in PRIMITIVE_OF:
+        yield f"signedness is not that of {leaf.type}"
         return
     suffix = leaf.path[-1] if leaf.path else None
     if leaf.kind != "scalar" and suffix != leaf.kind:
@@ -64,8 +67,6 @@ def _leaf(leaf: Leaf, bus_bytes: int) -> Iterator[str]:
     if leaf.type != special:
         yield f"a {leaf.kind} is of type {special}, not {leaf.type}"
     item = leaf.primitive
-    if leaf.type != "byte" and leaf.signed != (item.signed and item.kind == "int"):
-        yield f"signedness is not that of {leaf.type}"
     lanes = max(1, bus_bytes // item.bytes) if leaf.kind == "items" else 1
     if leaf.lanes != lanes:
         yield f"{leaf.lanes} lanes, not {lanes}"

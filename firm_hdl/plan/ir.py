@@ -16,7 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from firm_hdl.model import PRIMITIVES, Primitive
+from firm_hdl.model import PRIMITIVE_OF, Primitive
 
 __all__ = [
     "RUN_COUNTER",
@@ -70,8 +70,9 @@ class Leaf:
 
     @property
     def primitive(self) -> Primitive:
-        """The primitive that `type` names."""
-        return PRIMITIVES["ros1" if self.signed and self.type == "byte" else "ros2"][self.type]
+        """The primitive that `type` names; of `byte` and `char`, that with the sign."""
+        # Only a plan that is wrong has the other sign, and the check of plans says so.
+        return PRIMITIVE_OF.get((self.type, self.signed)) or PRIMITIVE_OF[self.type, not self.signed]
 
     @property
     def item_bytes(self) -> int:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from firm_hdl.model import PRIMITIVE_OF
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
@@ -180,8 +181,8 @@ def _leaf(leaf: Leaf) -> str:
     if leaf.kind == "trigger":
         return "trigger"
     text = "length" if leaf.kind == "length" and leaf.type == "uint32" else leaf.type
-    if leaf.type == "byte" and leaf.signed:
-        text = "signed byte"
+    if leaf.signed and (leaf.type, False) in PRIMITIVE_OF:
+        text = f"signed {leaf.type}"
     return f"{text} x {leaf.lanes}" if leaf.kind == "items" else text
 
 

@@ -12,7 +12,7 @@ from typing import TypeAlias, TypeVar
 
 import yaml
 
-from firm_hdl.model import PRIMITIVES
+from firm_hdl.model import PRIMITIVE_OF
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
@@ -150,10 +150,12 @@ class _Reader:
             return Leaf(path=names, kind="trigger", type="bool", signed=False)
         if special == "length":
             return Leaf(path=names, kind="length", type="uint32", signed=False)
-        if name not in PRIMITIVES["ros2"]:
+        if not any((name, sign) in PRIMITIVE_OF for sign in (False, True)):
             raise _error(node, f"{name!r} is not a primitive")
-        item = PRIMITIVES["ros1" if signed else "ros2"][name]
-        is_signed = item.signed and item.kind == "int"
+        # Without the word, the sign is that of the type; `byte` and `char` have none then.
+        is_signed = bool(signed) or (name, False) not in PRIMITIVE_OF
+        if (name, is_signed) not in PRIMITIVE_OF:
+            raise _error(node, f"{name!r} has no sign")
         if lanes is None:
             return Leaf(path=names, kind="scalar", type=name, signed=is_signed)
         return Leaf(path=names, kind="items", type=name, signed=is_signed, lanes=int(lanes))

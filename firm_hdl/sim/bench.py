@@ -56,6 +56,9 @@ class Job:
         Most cycles in total.
     settle : int
         Cycles without any transfer that end a finished run.
+    observe : callable or None
+        Called before the first clock edge and then in each cycle, when everything has settled, with
+        the values of the bench's probes.
     """
 
     sources: dict[str, Iterable[int]]
@@ -66,6 +69,7 @@ class Job:
     deadline: int = 1000
     limit: int = 1_000_000
     settle: int = 4
+    observe: Callable[[list[int]], None] | None = None
 
 
 @dataclass(slots=True)
@@ -98,6 +102,8 @@ class Bench:
         keeps it high while a transfer is offered behind it, as the rules of streams demand.
     payloads : mapping of str to Value
         What to see as the payload of a sink or tap, if that is more than its payload.
+    probes : sequence of Value
+        What jobs may observe.
     """
 
     def __init__(
@@ -109,6 +115,7 @@ class Bench:
         taps: Mapping[str, stream.Interface] | None = None,
         gates: Signal | None = None,
         payloads: Mapping[str, Value] | None = None,
+        probes: Sequence[Value] = (),
     ):
         self.sources, self.sinks = dict(sources), dict(sinks)
         self.taps, self.gates = dict(taps or {}), gates
@@ -123,7 +130,10 @@ class Bench:
         self.words: list[Signal] = []
         self.job: Job | None = None
         self.cycles = 0
-        self.simulator = Simulator(self._top(design))
+        top = self._top(design)
+        # Signals, as the simulator compiles what drives those, and interprets expressions.
+        self.probes = [_gathered(top, [value]) for value in probes]
+        self.simulator = Simulator(top)
         self._used = False
 
     def run(self, job: Job, *, vcd: str | os.PathLike[str] | None = None) -> int:
@@ -173,6 +183,9 @@ class Bench:
         assert self.job is not None
         drive = _Drive(self, self.job)
         watch = _Watch(self, self.job, ctx)
+        observe = self.job.observe
+        if observe is not None:
+            observe([ctx.get(probe) for probe in self.probes])
         fired = held = 0
         # The clock and the first word change together. Words reach the design through assignments
         # only, so registers still see what was there before the edge, as they do of each other.
@@ -189,6 +202,8 @@ class Bench:
                         ctx.set(self.words[index], drive.words[index])
             if self._delay:
                 await ctx.delay(self._delay)
+            if observe is not None:
+                observe([ctx.get(probe) for probe in self.probes])
             fired, held = watch.next()
             if watch.over:
                 break
@@ -211,8 +226,9 @@ def in_chunks(items: Sequence[T]) -> Iterator[Sequence[T]]:
 def _gathered(m: Module, bits: Sequence[Value]) -> Signal:
     """Return a signal of bits that come together in a module of their own."""
     part = Module()
-    gathered = Signal(len(bits))
-    part.d.comb += gathered.eq(Cat(*bits))
+    together = Cat(*bits)
+    gathered = Signal(len(together))
+    part.d.comb += gathered.eq(together)
     m.submodules += part
     return gathered
 

@@ -8,7 +8,7 @@ deserializer), and ``message.`` with the path of a leaf.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from amaranth.hdl import Cat, Elaboratable, Module, Signal, Value
 from amaranth.lib import stream, wiring
@@ -38,6 +38,8 @@ class Harness:
         Their message type, so that errors can name leaves that are missing.
     gated : bool
         Whether leaf streams between the two can be stalled.
+    probes : sequence of Value
+        What a run may observe.
     """
 
     def __init__(
@@ -47,6 +49,7 @@ class Harness:
         *,
         message: Message | None = None,
         gated: bool = False,
+        probes: Sequence[Value] = (),
     ):
         component = deserializer if deserializer is not None else serializer
         if component is None:
@@ -59,7 +62,7 @@ class Harness:
         self.leaf_ports = {names[leaf]: port for leaf, port in leaves.items()}
         self.gated = gated and deserializer is not None and serializer is not None
         circuit = _Circuit(deserializer, serializer, self.gated)
-        self.bench = self._bench(circuit)
+        self.bench = self._bench(circuit, probes)
 
     def run(
         self,
@@ -71,6 +74,7 @@ class Harness:
         deadline: int = 1000,
         limit: int | None = None,
         vcd: str | os.PathLike[str] | None = None,
+        observe: Callable[[list[int]], None] | None = None,
     ) -> Seen:
         """Send packets (with a deserializer) or transfers (without), and take what comes.
 
@@ -82,6 +86,8 @@ class Harness:
             Most cycles without any transfer, beside the longest stall.
         limit : int or None
             Most cycles in total. `None`: much more than any legal packets take.
+        observe : callable or None
+            Gets the values of the probes in each cycle; see :class:`firm_hdl.sim.bench.Job`.
 
         Raises
         ------
@@ -113,6 +119,7 @@ class Harness:
             stalls=stalls,
             deadline=deadline,
             limit=limit,
+            observe=observe,
         )
         run.seen.beats_in = sum(beats_of(len(p), self.plan.bus_bytes) for p in packets or ())
         self.bench.run(job, vcd=vcd)
@@ -131,7 +138,7 @@ class Harness:
                 if stalls_of(stalls, name):
                     raise ValueError(f"Stream {name!r} can be stalled in a gated harness only")
 
-    def _bench(self, circuit: _Circuit) -> Bench:
+    def _bench(self, circuit: _Circuit, probes: Sequence[Value]) -> Bench:
         rx, tx = self.deserializer, self.serializer
         sources: dict[str, stream.Interface] = {}
         sinks: dict[str, stream.Interface] = {}
@@ -147,7 +154,13 @@ class Harness:
         target = sources if rx is None else sinks if tx is None else taps
         target.update(self.leaf_ports)
         return Bench(
-            circuit, sources=sources, sinks=sinks, taps=taps, gates=circuit.gates, payloads=payloads
+            circuit,
+            sources=sources,
+            sinks=sinks,
+            taps=taps,
+            gates=circuit.gates,
+            payloads=payloads,
+            probes=probes,
         )
 
     def _sources(

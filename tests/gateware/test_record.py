@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import pytest
+from amaranth.back import rtlil
 from amaranth.hdl import Module, signed, unsigned
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
@@ -19,6 +20,7 @@ from firm_hdl import (
     load_message,
     record_layout,
 )
+from firm_hdl.gateware import record
 from firm_hdl.plan import encode
 from firm_hdl.sim import receive_packets, send_packets, to_transfers
 from tests.strategies import make
@@ -177,3 +179,21 @@ def test_records_that_cannot_be_are_refused(message, fields, error):
     with pytest.raises(ValueError) as caught:
         record_layout(message, fields=fields)
     assert str(caught.value) == error
+
+
+@pytest.mark.parametrize("bits", [64, 130, 200])
+def test_arrays_are_collected_in_registers_that_amaranth_can_elaborate(monkeypatch, bits):
+    monkeypatch.setattr(record, "MAX_CELL_BITS", bits)
+    message = make("ros1", {"rows": (make("ros1", {"row": "uint8[9]"}, "Row"), "[5]")})
+    values = [
+        {"rows": [{"row": [(k * j + start) % 256 for j in range(9)]} for k in range(5)]}
+        for start in (0, 1)
+    ]
+    packets = packets_of(message, values)
+    assert through(message, packets) == packets
+
+
+def test_lanes_that_no_record_has_may_be_wider_than_a_cell():
+    message = make("ros1", {"rows": (make("ros1", {"row": "uint8[65]"}, "Row"), "[100]")})
+    for adapter in (RecordReader, RecordWriter):
+        assert rtlil.convert(adapter(message, bus_bytes=64))

@@ -12,7 +12,8 @@ import struct
 import numpy as np
 import pytest
 
-from firm_hdl.plan import build_plan, decode, encode
+from firm_hdl.model import IDL_PRIMITIVES, Array, Field, Message, Sequence
+from firm_hdl.plan import build_plan, decode, encode, from_yaml, to_yaml
 from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.wire import lay_out
 from tests.strategies import BUS_WIDTHS, TIMES, make
@@ -236,3 +237,28 @@ def test_strings_of_every_residue_end_where_they_should(bus_bytes, count):
     assert [last for _, last in words] == [n == len(words) - 1 for n in range(len(words))]
     assert len(words) == -(-count // bus_bytes)
     assert b"".join(bytes(lanes) for lanes, _ in words) == text + bytes(-count % bus_bytes)
+
+
+def test_idl_char_is_signed_and_wchar_has_four_bytes():
+    # OMG IDL has types that .msg has not: C's signed char; a wchar_t, which Fast CDR writes as u32.
+    char, wchar = IDL_PRIMITIVES["char"], IDL_PRIMITIVES["wchar"]
+    message = Message(
+        name="p/msg/T",
+        dialect="ros2",
+        fields=(
+            Field(name="c", type=char),
+            Field(name="w", type=wchar),
+            Field(name="cs", type=Sequence(element=char)),
+            Field(name="ws", type=Array(element=wchar, count=2)),
+        ),
+    )
+    value = {"c": -2, "w": 0x1F600, "cs": [-1, 1], "ws": [0x61, 0xE9]}
+    for bus_bytes in BUS_WIDTHS:
+        plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
+        packet, status = encode(plan, to_transfers(plan, message, value))
+        want = "00010000 fe|000000 00f60100 02000000 ff 01|0000 61000000 e9000000"
+        assert (packet, status) == (data(want), "OK")
+        assert from_transfers(plan, message, decode(plan, packet).streams) == value
+        text = to_yaml(plan)
+        assert "c: signed char\n" in text and "w: wchar\n" in text
+        assert from_yaml(text) == plan
