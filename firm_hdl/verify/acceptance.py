@@ -5,29 +5,49 @@ the packet back byte for byte, every leaf must have transferred what the oracle 
 status must be ``OK``: once with nothing stalled and all packets back to back, and once with every
 stream stalled. The golden model (:mod:`firm_hdl.plan.interpret`) must agree in both directions.
 Then packets are broken, each between two good ones, and hardware and golden model must agree on
-what is left of them.
+what is left of them. If a simulator of exported text is asked for, all of that is replayed in it,
+cycle by cycle (:mod:`firm_hdl.verify.crosscheck`).
 """
 
 from __future__ import annotations
 
+import os
 import random
+import resource
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from functools import cache
 from itertools import chain
+from typing import Any
 
+from firm_hdl.export.names import identifier
 from firm_hdl.frontend import Library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
-from firm_hdl.plan import Payload, Plan
+from firm_hdl.plan import Edge, Payload, Plan
+from firm_hdl.plan.edges import edges
 from firm_hdl.plan.interpret import decode, encode
 from firm_hdl.sim.harness import Harness
 from firm_hdl.sim.record import Seen
 from firm_hdl.sim.stalls import Stalls
 from firm_hdl.verify.cases import Case, make_cases
-from firm_hdl.verify.oracle import Oracle, Transfers, distro_oracle
+from firm_hdl.verify.crosscheck import Crosscheck
+from firm_hdl.verify.directed import Coverage, bare_packets, more_cases
+from firm_hdl.verify.figures import digest, figures
+from firm_hdl.verify.options import Options, Result
+from firm_hdl.verify.oracle import Oracle, Transfers
+from firm_hdl.verify.simulators import simulator
+from firm_hdl.verify.user_oracle import NotJudgedError, judge_of
 
-__all__ = ["Options", "Result", "accept", "accept_message", "broken_packets", "stalls_for"]
+__all__ = [
+    "Options",
+    "Result",
+    "accept",
+    "accept_message",
+    "broken_packets",
+    "library_of",
+    "stalls_for",
+]
 
 MAX_MESSAGE_BYTES = 1 << 16
 """Small enough that a length over what it leaves room for can be completed in simulation."""
@@ -37,73 +57,6 @@ LARGE = 300_000
 """Beats times leaves, to which simulation time is roughly proportional, of a large type's cases."""
 
 LARGE_STRIDE = 4
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """How to run the cases of a type.
-
-    Attributes
-    ----------
-    bus_bytes : int
-    wire : "ros1", "cdr" or None
-        `None`: that of the distribution.
-    seed : int
-    stalled, broken : bool
-        Whether to run with stalls, and with broken packets, as well.
-    most_cases : int or None
-    """
-
-    bus_bytes: int = 8
-    wire: str | None = None
-    seed: int = 0
-    stalled: bool = True
-    broken: bool = True
-    most_cases: int | None = None
-
-    def command(self, distro: str, name: str) -> str:
-        """Return the command that runs one type again."""
-        parts = ["python -m firm_hdl.verify", f"--distro {distro}", f"--bus-bytes {self.bus_bytes}"]
-        parts += [f"--wire {self.wire}"] if self.wire else []
-        parts += [f"--seed {self.seed}"]
-        parts += [] if self.stalled else ["--no-stalls"]
-        parts += [] if self.broken else ["--no-broken"]
-        parts += [] if self.most_cases is None else [f"--cases {self.most_cases}"]
-        return " ".join([*parts, name])
-
-
-@dataclass(slots=True, kw_only=True)
-class Result:
-    """What became of a type.
-
-    Attributes
-    ----------
-    distro, name : str
-    failures : list of str
-        Empty if all is well.
-    cases, packets : int
-        Cases of the type, and packets sent for them in all runs.
-    beats, cycles : int
-        Of the run without stalls.
-    simulated_cycles : int
-        Of all runs.
-    seconds, setup_seconds : float
-        In total, and until the circuit was ready to run.
-    command : str
-        How to run it again.
-    """
-
-    distro: str
-    name: str
-    failures: list[str] = field(default_factory=list)
-    cases: int = 0
-    packets: int = 0
-    beats: int = 0
-    cycles: int = 0
-    simulated_cycles: int = 0
-    seconds: float = 0.0
-    setup_seconds: float = 0.0
-    command: str = ""
 
 
 def accept(distro: str, name: str, options: Options | None = None) -> Result:
@@ -117,24 +70,33 @@ def accept(distro: str, name: str, options: Options | None = None) -> Result:
     """
     options = options or Options()
     result = Result(distro=distro, name=name, command=options.command(distro, name))
-    began = time.perf_counter()
+    began, began_cpu = time.perf_counter(), _cpu_seconds()
     try:
-        package, _, base = name.rpartition("/")
-        full = f"{package.removesuffix('/msg')}/msg/{base}"
-        accept_message(_library(distro).message(name), distro_oracle(distro), full, options, result)
+        message = library_of(distro, options.paths).message(name)
+        judge = judge_of(message, None if options.paths else distro)
+        result.note = judge.note
+        prepared = time.perf_counter() - began
+        accept_message(message, judge.oracle, judge.name, options, result)
+        result.setup_seconds += prepared
+    except NotJudgedError as error:
+        result.not_judged = str(error)
     except Exception as error:  # Whatever it is, the other types are to go on.
         result.failures.append(f"{type(error).__name__}: {error}")
     result.seconds = time.perf_counter() - began
+    result.cpu_seconds = _cpu_seconds() - began_cpu
     return result
 
 
-_libraries: dict[str, Library] = {}
+def _cpu_seconds() -> float:
+    """Return the processor time of this thread, and of programs that it has waited for."""
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.thread_time() + children.ru_utime + children.ru_stime
 
 
-def _library(distro: str) -> Library:
-    if distro not in _libraries:
-        _libraries[distro] = Library(distro)
-    return _libraries[distro]
+@cache
+def library_of(distro: str, paths: tuple[str, ...]) -> Library:
+    """Return a library, which is opened once in a process."""
+    return Library(distro, paths)
 
 
 def accept_message(
@@ -143,27 +105,23 @@ def accept_message(
     """Run all cases of a message type that the oracle knows by `name`, and add to `result`."""
     began = time.perf_counter()
     wire = options.wire or message.wire
-    cases = list(
-        make_cases(
-            oracle,
-            name,
-            wire=wire,
-            bus_bytes=options.bus_bytes,
-            seed=options.seed,
-            most=options.most_cases,
-        )
-    )
-    result.cases = len(cases)
     run = _Acceptance(message, wire, options, result)
+    cases = run.cases(oracle, name)
+    bare = bare_packets(run.plan, cases)
+    result.cases = len(cases)
+    result.metrics = figures(message, run.plan, [case.packet for case in cases])
     result.setup_seconds = time.perf_counter() - began
-    run.golden(cases)
-    run.good(cases, None)
+    run.golden(cases, bare)
+    if not options.simulated:
+        return
+    run.good(cases, None, bare)
     if run.is_large(cases):
         cases = cases[::LARGE_STRIDE]
     if options.stalled:
         run.good(cases, stalls_for(f"{options.seed}/{name}"))
     if options.broken:
         run.broken(cases)
+    run.crosscheck()
 
 
 def stalls_for(seed: str | float) -> Stalls:
@@ -195,16 +153,47 @@ class _Acceptance:
     def __init__(self, message: Message, wire: str, options: Options, result: Result):
         self.options = options
         self.result = result
-        settings = {
+        self.message = message
+        self.settings: dict[str, Any] = {
             "wire": wire,
             "bus_bytes": options.bus_bytes,
             "max_message_bytes": MAX_MESSAGE_BYTES,
         }
-        rx = Deserializer(message, **settings)  # type: ignore[arg-type]
-        tx = Serializer(message, **settings)  # type: ignore[arg-type]
+        rx, tx = self.converters()
         self.plan = rx.plan
-        self.harness = Harness(rx, tx, message=message, gated=options.stalled)
+        result.wire, result.shape = self.plan.wire, digest(self.plan)
+        self.runs = 0
         self.rng = random.Random(f"{options.seed}/{message.name}/broken")
+        if not options.simulated:
+            return
+        other = simulator(options.simulator)
+        self.cross = (
+            None if other is None else Crosscheck(other, (rx, tx), self.converters, message.name)
+        )
+        probes = () if self.cross is None else self.cross.trace.probes
+        self.harness = Harness(rx, tx, message=message, gated=options.stalled, probes=probes)
+
+    def cases(self, oracle: Oracle, name: str) -> list[Case]:
+        """Make the cases, and those that the plan's other decisions need if there is no limit."""
+        options, plan = self.options, self.plan
+        cases = list(
+            make_cases(
+                oracle,
+                name,
+                wire=plan.wire,
+                bus_bytes=plan.bus_bytes,
+                seed=options.seed,
+                most=options.most_cases,
+            )
+        )
+        if options.most_cases is None:
+            cases += more_cases(oracle, name, plan, cases, seed=options.seed)
+        return cases
+
+    def converters(self) -> tuple[Deserializer, Serializer]:
+        return Deserializer(self.message, **self.settings), Serializer(
+            self.message, **self.settings
+        )
 
     def is_large(self, cases: Sequence[Case]) -> bool:
         """Whether a type takes minutes to simulate; it is stalled and broken less often."""
@@ -214,13 +203,16 @@ class _Acceptance:
     def fail(self, what: str) -> None:
         self.result.failures.append(what)
 
-    def golden(self, cases: Sequence[Case]) -> None:
-        """Check the golden model against the oracle."""
-        for case in cases:
-            decoded = decode(self.plan, case.packet)
+    def golden(self, cases: Sequence[Case], bare: Sequence[tuple[Case, bytes]]) -> None:
+        """Check the golden model against the oracle, and note which decisions packets take."""
+        taken: set[Edge] = set()
+        for case, packet in chain(((case, case.packet) for case in cases), bare):
+            decoded = decode(self.plan, packet)
+            taken |= decoded.edges
             if decoded.status != "OK":
                 self.fail(f"golden model, {case.what}: status {decoded.status}")
             self.transfers("golden model, " + case.what, decoded.streams, [case.transfers])
+        for case in cases:
             streams = {self.leaf(path): list(items) for path, items in case.transfers.items()}
             try:
                 packet, status = encode(self.plan, streams)
@@ -230,6 +222,8 @@ class _Acceptance:
             self.packets("golden model, " + case.what, [packet], [case.packet])
             if status != "OK":
                 self.fail(f"golden model, {case.what}: status {status} when encoding")
+        possible = edges(self.plan)
+        self.result.coverage = Coverage(possible=possible, taken=possible & taken)
 
     def leaf(self, path: tuple[str, ...]) -> int:
         for number, leaf in enumerate(self.plan.leaves):
@@ -237,17 +231,50 @@ class _Acceptance:
                 return number
         raise AssertionError(f"The plan has no leaf {'.'.join(path)}")
 
-    def send(self, packets: Sequence[bytes], stalls: Stalls | None) -> Seen:
-        seen = self.harness.run(packets=packets, stalls=stalls)
+    def send(self, where: str, packets: Sequence[bytes], stalls: Stalls | None) -> Seen:
+        observe = None if self.cross is None else self.cross.start(where)
+        began = time.perf_counter()
+        try:
+            seen = self.harness.run(
+                packets=packets, stalls=stalls, observe=observe, vcd=self.waveform()
+            )
+        finally:
+            self.result.simulation_seconds += time.perf_counter() - began
         self.result.packets += len(packets)
         self.result.simulated_cycles += self.harness.bench.cycles
+        if self.cross is not None:
+            self.cross.done(seen)
         return seen
 
-    def good(self, cases: Sequence[Case], stalls: Stalls | None) -> None:
-        """Check the hardware against the oracle."""
+    def waveform(self) -> str | None:
+        """Return the file for the waveform of the next run, if it is to have one."""
+        if self.options.vcd is None:
+            return None
+        self.runs += 1
+        os.makedirs(self.options.vcd, exist_ok=True)
+        base = identifier(f"{self.message.name}_{self.plan.wire}_{self.plan.bus_bytes}")
+        return os.path.join(self.options.vcd, f"{base}_run{self.runs}.vcd")
+
+    def crosscheck(self) -> None:
+        """Compare everything that was sent with another simulator, if there is one."""
+        if self.cross is not None:
+            began = time.perf_counter()
+            self.result.comparison = self.cross.compare()
+            self.result.simulation_seconds += time.perf_counter() - began
+            self.result.failures += self.result.comparison.failures
+
+    def good(
+        self,
+        cases: Sequence[Case],
+        stalls: Stalls | None,
+        bare: Sequence[tuple[Case, bytes]] = (),
+    ) -> None:
+        """Check the hardware against the oracle; `bare` packets are to come out as their cases."""
+        sent = [case.packet for case in cases] + [packet for _, packet in bare]
+        cases = [*cases, *(case for case, _ in bare)]
         where = "hardware" if stalls is None else f"hardware, {stalls}"
         try:
-            seen = self.send([case.packet for case in cases], stalls)
+            seen = self.send(where, sent, stalls)
         except AssertionError as error:
             self.fail(f"{where}: {type(error).__name__}: {error}")
             return
@@ -271,7 +298,7 @@ class _Acceptance:
         where = f"hardware, broken packets, {stalls}"
         expected = [decode(self.plan, packet) for packet in packets]
         try:
-            seen = self.send(packets, stalls)
+            seen = self.send(where, packets, stalls)
         except AssertionError as error:
             self.fail(f"{where}: {type(error).__name__}: {error}")
             return

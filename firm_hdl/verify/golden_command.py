@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from firm_hdl.export.build import BuildError, load_all, plan_of
-from firm_hdl.frontend import Library
+from firm_hdl.frontend import Library, open_library
 from firm_hdl.plan.shape import shape
 from firm_hdl.verify.cover import choose, features
 from firm_hdl.verify.golden import Checked, add, check_golden, read_golden, summarise
@@ -84,7 +84,7 @@ def _add(given: argparse.Namespace) -> int:
 
 def run_cover(given: argparse.Namespace) -> int:
     """Run ``firm-hdl cover``: print a covering set of types, and what each one adds."""
-    library = Library(given.distro, given.path)
+    library = open_library(given.distro, given.path, given.bag)
     names = given.types or library.names()
     types, costs, shapes = {}, {}, set()
     for message in load_all(library, names):

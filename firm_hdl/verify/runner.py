@@ -6,14 +6,21 @@ Types that are the same in several distributions are run once and counted for ea
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from collections.abc import Container, Generator, Iterable, Sequence
+from dataclasses import dataclass, replace
 
+from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.frontend import Library
+from firm_hdl.model import Message
 from firm_hdl.verify.acceptance import Options, Result, accept
+from firm_hdl.verify.executors import PROCESSES, run_each
 from firm_hdl.verify.oracle import DISTRO_STORES, distro_oracle
 
-__all__ = ["Task", "collect_tasks", "run_tasks"]
+__all__ = ["Task", "UnknownTypeError", "collect_own", "collect_tasks", "run_tasks"]
+
+
+class UnknownTypeError(ValueError):
+    """No distribution has a type of a name."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,7 +52,7 @@ def collect_tasks(distros: Iterable[str] = (), names: Sequence[str] = ()) -> lis
 
     Raises
     ------
-    ValueError
+    UnknownTypeError
         If no distribution has a type of a name.
     """
     wanted = {_full(name) for name in names}
@@ -59,30 +66,87 @@ def collect_tasks(distros: Iterable[str] = (), names: Sequence[str] = ()) -> lis
                 found[name, structure].append(distro)
                 weights[name, structure] = len(structure)
     if missing := wanted - {name for name, _ in found}:
-        raise ValueError(f"No distribution has {', '.join(sorted(missing))}")
+        raise UnknownTypeError(f"No distribution has {', '.join(sorted(missing))}")
     # The largest first, so that no processor is left with one at the end.
     keys = sorted(found, key=lambda key: (-weights[key], key))
     return [Task(distro=found[k][-1], name=k[0], same=tuple(found[k])) for k in keys]
 
 
-def run_tasks(
-    tasks: Sequence[Task], options: Options, jobs: int | None = None
-) -> Iterator[tuple[Task, Result]]:
-    """Run tasks in `jobs` processes (`None`: one per processor), and yield results as they come."""
-    if jobs == 1:
-        for task in tasks:
-            yield task, accept(task.distro, task.name, options)
-        return
-    with ProcessPoolExecutor(jobs) as pool:
-        futures = {pool.submit(accept, t.distro, t.name, options): t for t in tasks}
-        for future in as_completed(futures):
-            task = futures[future]
+def collect_own(distros: Iterable[str], names: Sequence[str], paths: Sequence[str]) -> list[Task]:
+    """List what to run of the types in folders, the largest types first.
+
+    Parameters
+    ----------
+    distros : iterable of str
+        Whose rules and types the folders' own are read with, in turn.
+    names : sequence of str
+        Types, services or actions; none: all that are in the folders.
+    paths : sequence of str
+
+    Raises
+    ------
+    DefinitionError
+        With the problems of all of them.
+    """
+    found: dict[tuple[str, str], int] = {}
+    problems: dict[str, Diagnostic] = {}
+    for distro in distros:
+        library = Library(distro, paths)
+        for name in names or Library(distro, paths, origins=()).interfaces():
             try:
-                result = future.result()
-            except Exception as error:  # A process that died takes its type with it, not the rest.
-                result = Result(distro=task.distro, name=task.name)
-                result.failures.append(f"{type(error).__name__}: {error}")
-                result.command = options.command(task.distro, task.name)
+                messages = library.interface(name).messages
+            except DefinitionError as error:
+                problems.update((str(problem), problem) for problem in error.diagnostics)
+                continue
+            found.update(((distro, message.name), _weight(message)) for message in messages)
+    if problems:
+        raise DefinitionError(problems.values())
+    keys = sorted(found, key=lambda key: (-found[key], key))
+    return [Task(distro=distro, name=name, same=(distro,)) for distro, name in keys]
+
+
+def _weight(message: Message) -> int:
+    """Estimate how long a type takes: by its fields, nested ones included."""
+    seen: dict[str, int] = {}
+
+    def weigh(kind: Message) -> int:
+        if kind.name not in seen:
+            seen[kind.name] = 0
+            seen[kind.name] = len(kind.fields) + sum(map(weigh, kind.children))
+        return seen[kind.name]
+
+    return weigh(message)
+
+
+def run_tasks(
+    tasks: Sequence[Task],
+    options: Options,
+    jobs: int | None = None,
+    *,
+    executor: str = PROCESSES,
+    golden_only: Container[Task] = (),
+) -> Generator[tuple[Task, Result], None, None]:
+    """Run tasks in `jobs` processes (`None`: one per processor), and yield results as they come.
+
+    Parameters
+    ----------
+    executor : str
+        See :func:`firm_hdl.verify.executors.run_each`.
+    golden_only : container of Task
+        Those whose circuit is not to be simulated.
+    """
+    without = replace(options, simulated=False)
+    work = [
+        (task, (task.distro, task.name, without if task in golden_only else options))
+        for task in tasks
+    ]
+    for task, result in run_each(accept, work, executor=executor, jobs=jobs):
+        if isinstance(result, Exception):
+            failed = Result(distro=task.distro, name=task.name)
+            failed.failures.append(f"{type(result).__name__}: {result}")
+            failed.command = options.command(task.distro, task.name)
+            yield task, failed
+        else:
             yield task, result
 
 

@@ -1,0 +1,119 @@
+"""How acceptance runs the cases of a type, and what becomes of it."""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import dataclass, field
+
+from firm_hdl.verify.crosscheck import Comparison
+from firm_hdl.verify.directed import Coverage
+
+__all__ = ["Options", "Result"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """How to run the cases of a type.
+
+    Attributes
+    ----------
+    bus_bytes : int
+    wire : "ros1", "cdr" or None
+        `None`: that of the distribution.
+    seed : int
+    stalled, broken : bool
+        Whether to run with stalls, and with broken packets, as well.
+    most_cases : int or None
+    simulator : str
+        ``python``, or the simulator of exported text that everything is replayed in as well; see
+        :data:`firm_hdl.verify.simulators.SIMULATORS`.
+    paths : tuple of str
+        Folders with ROS packages, searched before the distribution's own types.
+    vcd : str or None
+        Folder for a waveform of each run.
+    simulated : bool
+        Whether to run the circuit at all, and not only the golden model: the same circuit may have
+        been simulated for another type.
+    """
+
+    bus_bytes: int = 8
+    wire: str | None = None
+    seed: int = 0
+    stalled: bool = True
+    broken: bool = True
+    most_cases: int | None = None
+    simulator: str = "python"
+    paths: tuple[str, ...] = ()
+    vcd: str | None = None
+    simulated: bool = True
+
+    def command(self, distro: str, name: str) -> str:
+        """Return the command that runs one type again."""
+        parts = ["firm-hdl verify", f"--distro {distro}"]
+        parts += [f"--path {shlex.quote(path)}" for path in self.paths]
+        parts += [] if self.simulator == "python" else [f"--simulator {self.simulator}"]
+        parts += [f"--bus-bytes {self.bus_bytes}"]
+        parts += [f"--wire {self.wire}"] if self.wire else []
+        parts += [f"--seed {self.seed}"]
+        parts += [] if self.stalled else ["--no-stalls"]
+        parts += [] if self.broken else ["--no-broken"]
+        parts += [] if self.most_cases is None else [f"--cases {self.most_cases}"]
+        parts += [] if self.vcd is None else [f"--vcd {shlex.quote(self.vcd)}"]
+        return " ".join([*parts, name])
+
+
+@dataclass(slots=True, kw_only=True)
+class Result:
+    """What became of a type.
+
+    Attributes
+    ----------
+    distro, name : str
+    failures : list of str
+        Empty if all is well.
+    cases, packets : int
+        Cases of the type, and packets sent for them in all runs.
+    beats, cycles : int
+        Of the run without stalls.
+    simulated_cycles : int
+        Of all runs.
+    seconds, setup_seconds, simulation_seconds, cpu_seconds : float
+        In total, until the circuit was ready to run, in simulators, and of the processor.
+    wire : str
+        Empty if nothing was run.
+    coverage : Coverage or None
+        Decisions of the plan that the packets took which are not damaged.
+    metrics : dict of str to float
+        Figures of the type, of its plan and of its cases.
+    shape : str
+        Digest of the plan without names.
+    command : str
+        How to run it again.
+    not_judged : str
+        Why there is no oracle for the type, and nothing was run; empty if there is.
+    note : str
+        What is to be known about the oracle; empty in most cases.
+    comparison : Comparison or None
+        With another simulator, if there was one.
+    """
+
+    distro: str
+    name: str
+    failures: list[str] = field(default_factory=list)
+    cases: int = 0
+    packets: int = 0
+    beats: int = 0
+    cycles: int = 0
+    simulated_cycles: int = 0
+    seconds: float = 0.0
+    setup_seconds: float = 0.0
+    simulation_seconds: float = 0.0
+    cpu_seconds: float = 0.0
+    wire: str = ""
+    coverage: Coverage | None = None
+    metrics: dict[str, float] = field(default_factory=dict)
+    shape: str = ""
+    command: str = ""
+    not_judged: str = ""
+    note: str = ""
+    comparison: Comparison | None = None

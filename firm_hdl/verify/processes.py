@@ -1,0 +1,155 @@
+"""Other programs, and many processes of our own, such that an interruption leaves nothing behind.
+
+A program runs in a process group of its own and is killed with all that it started when whoever
+waits for it is stopped. Processes that share out work are stopped, and not waited for, when the one
+that hands it out is interrupted.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any, TypeVar
+
+__all__ = ["ToolError", "in_processes", "run_tool", "worker_pool"]
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+_running: set[subprocess.Popen[str]] = set()
+
+
+class ToolError(Exception):
+    """A program failed, or did not end; the text is what it said."""
+
+
+def run_tool(
+    command: Sequence[str],
+    folder: Path,
+    *,
+    environment: Mapping[str, str] | None = None,
+    timeout: float = 600.0,
+) -> str:
+    """Run a program in a folder; return what it said on both of its outputs.
+
+    Raises
+    ------
+    ToolError
+        If it fails, or takes longer than `timeout` seconds.
+    """
+    process = subprocess.Popen(
+        command,
+        cwd=folder,
+        env={**os.environ, **(environment or {})},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        start_new_session=True,
+    )
+    _running.add(process)
+    try:
+        said, _ = process.communicate(timeout=timeout)
+    except subprocess.TimeoutExpired:
+        raise ToolError(f"{Path(command[0]).name} took more than {timeout:.0f} s") from None
+    finally:
+        _kill(process)
+        # Waits for it, and closes its output.
+        with process:
+            _running.discard(process)
+    if process.returncode:
+        raise ToolError(said.strip() or f"exit status {process.returncode}")
+    return said
+
+
+def in_processes(
+    work: Callable[..., R], tasks: Sequence[tuple[T, tuple[Any, ...]]], jobs: int | None
+) -> Iterator[tuple[T, R | Exception]]:
+    """Call a function for each task, in `jobs` processes (`None`: one per processor).
+
+    Parameters
+    ----------
+    work : callable
+        A function of a module. What it leaves in temporary folders goes with the processes.
+    tasks : sequence of (key, arguments)
+
+    Yields
+    ------
+    key, result
+        As they come. An exception stands for the result of a process that died.
+    """
+    if jobs == 1:
+        for key, arguments in tasks:
+            yield key, work(*arguments)
+        return
+    with worker_pool(jobs) as pool:
+        futures = {pool.submit(work, *arguments): key for key, arguments in tasks}
+        for future in as_completed(futures):
+            error = future.exception()
+            if error is None:
+                yield futures[future], future.result()
+            else:
+                # A process that died takes its task with it, not the rest.
+                yield futures[future], Exception(f"{type(error).__name__}: {error}")
+
+
+@contextmanager
+def worker_pool(jobs: int | None) -> Iterator[ProcessPoolExecutor]:
+    """Open a pool of processes that end when its owner is interrupted, stopped, or killed."""
+    with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
+        before = set(multiprocessing.active_children())
+        arguments = (folder, os.getpid())
+        with ProcessPoolExecutor(jobs, initializer=_prepare, initargs=arguments) as pool:
+            try:
+                yield pool
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                for child in set(multiprocessing.active_children()) - before:
+                    child.terminate()
+                raise
+
+
+def _prepare(folder: str, parent: int) -> None:
+    """Make a worker wait for its parent's word when somebody presses Ctrl-C.
+
+    Its temporary files go to a folder that the parent removes, however the worker ends.
+    """
+    tempfile.tempdir = folder
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _stop)
+    threading.Thread(target=_end_with, args=(parent, folder), daemon=True).start()
+
+
+def _end_with(parent: int, folder: str) -> None:
+    """End this process when its parent has been killed, which tells nobody."""
+    while True:
+        try:
+            os.kill(parent, 0)
+        except ProcessLookupError:
+            shutil.rmtree(folder, ignore_errors=True)
+            _stop(signal.SIGKILL, None)
+        time.sleep(1)
+
+
+def _stop(number: int, frame: object) -> None:
+    for process in list(_running):
+        _kill(process)
+    os._exit(128 + number)
+
+
+def _kill(process: subprocess.Popen[str]) -> None:
+    # Once it has been waited for, its number may be somebody else's.
+    if process.poll() is None:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)

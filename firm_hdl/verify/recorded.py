@@ -1,0 +1,127 @@
+"""TS3 and records: which test a task is, and what is kept of its result."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.export.build import BuildError, plan_of
+from firm_hdl.frontend import DISTROS
+from firm_hdl.verify.acceptance import MAX_MESSAGE_BYTES, library_of
+from firm_hdl.verify.figures import digest
+from firm_hdl.verify.options import Options, Result
+from firm_hdl.verify.records import PlanCoverage, Record, Seconds, Status, Test
+from firm_hdl.verify.runner import Task
+
+__all__ = ["record_of", "same_circuits", "test_of"]
+
+MOST_FAILURES = 20
+MOST_CHARACTERS = 4000
+
+# What people have a look at first; the command makes it.
+WAVEFORM_FOLDER = "waveforms"
+
+
+def test_of(task: Task, options: Options) -> Test:
+    """Return the test that runs a task with some options."""
+    own = [f"seed={options.seed}"]
+    own += [] if options.most_cases is None else [f"cases={options.most_cases}"]
+    own += [] if options.stalled else ["no-stalls"]
+    own += [] if options.broken else ["no-broken"]
+    own += [f"path={path}" for path in options.paths]
+    return Test(
+        system="ts3",
+        simulator=options.simulator,
+        distro=task.distro,
+        type=task.name,
+        same=task.same,
+        wire=options.wire or ("ros1" if DISTROS[task.distro].dialect == "ros1" else "cdr"),
+        bus_bytes=options.bus_bytes,
+        options=",".join(own),
+    )
+
+
+# Pytest takes functions of such names for tests, wherever they come from.
+test_of.__test__ = False  # type: ignore[attr-defined]
+
+
+def record_of(task: Task, result: Result, options: Options, same_as: str = "") -> Record:
+    """Return what is kept of a result.
+
+    Parameters
+    ----------
+    same_as : str
+        Key of the test that simulates the circuit for this one.
+    """
+    status: Status = "fail" if result.failures else "skipped" if result.not_judged else "pass"
+    testing = result.seconds - result.setup_seconds - result.simulation_seconds
+    waveform = replace(options, vcd=WAVEFORM_FOLDER, simulator="python")
+    return Record(
+        test=test_of(task, options),
+        status=status,
+        reason="" if result.failures else result.not_judged,
+        failures=_clipped(result.failures),
+        note=result.note,
+        seconds=Seconds(
+            generation=result.setup_seconds,
+            simulation=result.simulation_seconds,
+            testing=max(0.0, testing) if result.setup_seconds else 0.0,
+        ),
+        cpu_seconds=result.cpu_seconds,
+        cases=result.cases,
+        packets=result.packets,
+        cycles=result.simulated_cycles,
+        beats=result.beats,
+        coverage=_coverage(result),
+        metrics=result.metrics,
+        shape=result.shape,
+        same_as=same_as,
+        command=result.command,
+        waveform_command=waveform.command(task.distro, task.name),
+    )
+
+
+def _coverage(result: Result) -> PlanCoverage | None:
+    coverage = result.coverage
+    if coverage is None:
+        return None
+    return PlanCoverage(
+        taken=len(coverage.taken),
+        possible=len(coverage.possible),
+        missing=tuple(f"step {edge.step}: {edge.way}" for edge in coverage.missing),
+    )
+
+
+def _clipped(failures: Sequence[str]) -> tuple[str, ...]:
+    found = [
+        text
+        if len(text) <= MOST_CHARACTERS
+        else f"{text[:MOST_CHARACTERS]}... ({len(text)} characters)"
+        for text in failures[:MOST_FAILURES]
+    ]
+    if len(failures) > MOST_FAILURES:
+        found.append(f"and {len(failures) - MOST_FAILURES} more")
+    return tuple(found)
+
+
+def same_circuits(tasks: Sequence[Task], options: Options) -> dict[Task, Task]:
+    """Return tasks whose circuit is that of an earlier task, and that task.
+
+    Circuits are the same where plans are the same but for names.
+    """
+    first: dict[str, Task] = {}
+    found: dict[Task, Task] = {}
+    for task in tasks:
+        try:
+            message = library_of(task.distro, options.paths).message(task.name)
+            wire: Any = options.wire or message.wire
+            plan = plan_of(message, wire, options.bus_bytes, MAX_MESSAGE_BYTES)
+        except (DefinitionError, BuildError, ValueError):
+            # Whatever is wrong with it, its own test says.
+            continue
+        other = first.setdefault(digest(plan), task)
+        if other is not task:
+            found[task] = other
+    return found

@@ -1,0 +1,92 @@
+"""``firm-hdl report``: results in, a report out."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from firm_hdl.export.build import BuildError
+from firm_hdl.verify.report.as_json import to_json
+from firm_hdl.verify.report.html import to_html
+from firm_hdl.verify.report.markdown import to_markdown
+from firm_hdl.verify.report.summary import Summary, summarise
+from firm_hdl.verify.results import ResultsError, read_results
+
+__all__ = ["FORMATS", "add_report_arguments", "run_report", "write_report"]
+
+FORMATS: Mapping[str, Callable[[Summary], str]] = {
+    "html": to_html,
+    "md": to_markdown,
+    "json": to_json,
+}
+"""By the end of a file's name."""
+
+
+def add_report_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what ``firm-hdl report`` takes."""
+    parser.add_argument(
+        "results", nargs="+", metavar="RESULTS", help="files that firm-hdl verify --results wrote"
+    )
+    parser.add_argument("--out", metavar="FILE", help="file to write; default: standard output")
+    parser.add_argument(
+        "--format", choices=list(FORMATS), help="default: that of the file's name, or md"
+    )
+    parser.add_argument("--title", default="Verification of firm-hdl", help="default: %(default)s")
+
+
+def run_report(given: argparse.Namespace) -> None:
+    """Run ``firm-hdl report``.
+
+    Raises
+    ------
+    BuildError
+        If a file is not one of results.
+    """
+    form = given.format
+    if given.out is None:
+        print(_made(given.results, form or "md", given.title), end="")
+        return
+    write_report(given.results, given.out, form, given.title)
+    print(f"wrote   {given.out}")
+
+
+def write_report(
+    results: Sequence[str | os.PathLike[str]],
+    out: str | os.PathLike[str],
+    form: str | None = None,
+    title: str = "Verification of firm-hdl",
+) -> None:
+    """Write a report of files of results.
+
+    Parameters
+    ----------
+    out : path
+    form : str or None
+        A key of `FORMATS`; `None`: what the name of `out` ends in.
+
+    Raises
+    ------
+    BuildError
+        If a file is not one of results, or if the form cannot be told.
+    """
+    path = Path(out)
+    form = form or path.suffix.lstrip(".").lower()
+    if form not in FORMATS:
+        ends = ", ".join(f".{name}" for name in FORMATS)
+        raise BuildError(f"'{out}': the name of a report must end in {ends}, or give --format")
+    text = _made(results, form, title)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    # Nobody finds half a page, however this ends.
+    part = path.with_name(path.name + ".part")
+    part.write_text(text, encoding="utf-8", newline="\n")
+    part.replace(path)
+
+
+def _made(results: Sequence[str | os.PathLike[str]], form: str, title: str) -> str:
+    try:
+        found = {str(path): read_results(path) for path in results}
+    except ResultsError as error:
+        raise BuildError(str(error)) from None
+    return FORMATS[form](summarise(found, title))

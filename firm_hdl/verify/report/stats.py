@@ -1,0 +1,145 @@
+"""The statistics of a report: quantiles, shares within a time, correlations, and fitted functions.
+
+Functions are fitted by least squares: a line in the figures as they are, and a power law as a line
+in their logarithms. R² is that of the space that the fit was made in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+__all__ = ["Box", "Correlation", "Fit", "box_of", "correlate", "curve_of", "share_within"]
+
+LEAST_POINTS = 5
+"""A function is fitted to so many points, and so many different values, at least."""
+
+LEAST_VALUES = 3
+MOST_CURVE_POINTS = 240
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Box:
+    """How values are distributed.
+
+    Attributes
+    ----------
+    count : int
+    least, q1, median, q3, p95, most : float
+        Quartiles and the 95th percentile between the smallest value and the largest.
+    total : float
+    """
+
+    count: int
+    least: float
+    q1: float
+    median: float
+    q3: float
+    p95: float
+    most: float
+    total: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fit:
+    """A fitted function: ``a + b x`` of a line, ``a x^b`` of a power law."""
+
+    a: float
+    b: float
+    r2: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Correlation:
+    """How a figure goes with a time.
+
+    Attributes
+    ----------
+    count : int
+        Of pairs.
+    pearson, spearman : float
+        Of the values, and of their ranks.
+    linear, power : Fit or None
+        `None` if there are too few points; the power law is of those above zero.
+    """
+
+    count: int
+    pearson: float
+    spearman: float
+    linear: Fit | None
+    power: Fit | None
+
+
+def box_of(values: Sequence[float]) -> Box | None:
+    """Return how values are distributed; `None` of no values."""
+    if not values:
+        return None
+    at = np.quantile(np.asarray(values, dtype=float), (0, 0.25, 0.5, 0.75, 0.95, 1))
+    least, q1, median, q3, p95, most = (float(value) for value in at)
+    return Box(
+        count=len(values),
+        least=least,
+        q1=q1,
+        median=median,
+        q3=q3,
+        p95=p95,
+        most=most,
+        total=float(sum(values)),
+    )
+
+
+def curve_of(values: Sequence[float]) -> list[tuple[float, float]]:
+    """Return points of the share of values that are at most so large, the last one at 1."""
+    ordered = sorted(values)
+    count = len(ordered)
+    if not count:
+        return []
+    step = max(1, count // MOST_CURVE_POINTS)
+    ranks = [*range(step, count, step), count]
+    return [(ordered[rank - 1], rank / count) for rank in ranks]
+
+
+def share_within(values: Sequence[float], limit: float) -> float:
+    """Return the share of values that are at most `limit`."""
+    return sum(value <= limit for value in values) / len(values) if values else 0.0
+
+
+def correlate(x: Sequence[float], y: Sequence[float]) -> Correlation | None:
+    """Find out how two figures go together.
+
+    Returns
+    -------
+    Correlation or None
+        `None` where one of them does not vary.
+    """
+    xs, ys = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    if len(xs) < 2 or np.ptp(xs) == 0 or np.ptp(ys) == 0:
+        return None
+    above = (xs > 0) & (ys > 0)
+    line = _line(xs, ys)
+    law = _line(np.log(xs[above]), np.log(ys[above]))
+    return Correlation(
+        count=len(xs),
+        pearson=float(np.corrcoef(xs, ys)[0, 1]),
+        spearman=float(np.corrcoef(_ranks(xs), _ranks(ys))[0, 1]),
+        linear=line,
+        power=None if law is None else Fit(a=float(np.exp(law.a)), b=law.b, r2=law.r2),
+    )
+
+
+def _line(xs: np.ndarray, ys: np.ndarray) -> Fit | None:
+    if len(xs) < LEAST_POINTS or len(np.unique(xs)) < LEAST_VALUES or np.ptp(ys) == 0:
+        return None
+    x, y = xs - xs.mean(), ys - ys.mean()
+    b = float(x @ y / (x @ x))
+    left = y - b * x
+    return Fit(a=float(ys.mean() - b * xs.mean()), b=b, r2=float(1 - (left @ left) / (y @ y)))
+
+
+def _ranks(values: np.ndarray) -> np.ndarray:
+    """Return ranks, the mean one of equal values."""
+    _, which, counts = np.unique(values, return_inverse=True, return_counts=True)
+    ends = np.cumsum(counts)
+    return np.asarray(((ends - counts + ends + 1) / 2)[which])

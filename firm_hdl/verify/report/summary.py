@@ -1,0 +1,319 @@
+"""All that a report says, as data: HTML, Markdown and JSON are three ways to write it down."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from firm_hdl.verify.records import STAGES, Record
+from firm_hdl.verify.report.outcomes import Counts, Outcome, count, outcomes_of
+from firm_hdl.verify.report.stats import Box, Correlation, box_of, correlate, curve_of, share_within
+from firm_hdl.verify.results import Results
+
+__all__ = ["LIMITS", "TOP", "CoverageSum", "Curve", "Group", "Run", "Summary", "Trend", "summarise"]
+
+LIMITS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 60)
+"""Seconds that shares of tests are given for."""
+
+TOP = 15
+"""How many of the slowest and of the most complex types are listed."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Group:
+    """Tests that have something in common.
+
+    Attributes
+    ----------
+    labels : tuple of str
+        What they have in common.
+    counts : Counts
+    cpu_seconds : float
+    """
+
+    labels: tuple[str, ...]
+    counts: Counts
+    cpu_seconds: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Curve:
+    """Times of the tests of a suite.
+
+    Attributes
+    ----------
+    suite : str
+    points : tuple of (float, float)
+        Seconds, and the share of tests that took at most so long.
+    within : mapping of float to float
+        That share at `LIMITS`.
+    seconds, cpu_seconds : Box or None
+        By the clock on the wall, and of the processor.
+    stages : mapping of str to Box
+        Times of each stage that took any.
+    stage_values : mapping of str to tuple of float
+    """
+
+    suite: str
+    points: tuple[tuple[float, float], ...]
+    within: Mapping[float, float]
+    seconds: Box | None
+    cpu_seconds: Box | None
+    stages: Mapping[str, Box]
+    stage_values: Mapping[str, tuple[float, ...]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trend:
+    """How a figure of types goes with a time of their tests.
+
+    Attributes
+    ----------
+    suite, metric, time : str
+        `time` is the name of a stage, or ``total``.
+    correlation : Correlation
+    points : tuple of (float, float)
+        Figure and seconds; those of `time` ``total`` alone.
+    """
+
+    suite: str
+    metric: str
+    time: str
+    correlation: Correlation
+    points: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoverageSum:
+    """Plan coverage of a suite.
+
+    Attributes
+    ----------
+    suite : str
+    types, full : int
+        Tests with figures, and those among them with every decision taken.
+    taken, possible : int
+        Decisions of all of them.
+    """
+
+    suite: str
+    types: int
+    full: int
+    taken: int
+    possible: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Run:
+    """A file of results.
+
+    Attributes
+    ----------
+    name : str
+    options : mapping of str to object
+    sessions : tuple of mapping of str to str
+    planned, recorded : int
+    """
+
+    name: str
+    options: Mapping[str, Any]
+    sessions: tuple[Mapping[str, str], ...]
+    planned: int
+    recorded: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Summary:
+    """What a report says.
+
+    Attributes
+    ----------
+    title : str
+    counts : Counts
+    by_suite, by_distro, by_package : tuple of Group
+        A test counts once in `by_suite`, and in each of its distributions in the others.
+    outcomes : tuple of Outcome
+    circuits : mapping of str to (int, int)
+        By suite: different circuits, and tests that rest on that of another type.
+    curves : tuple of Curve
+    trends : tuple of Trend
+    coverage : tuple of CoverageSum
+    runs : tuple of Run
+    """
+
+    title: str
+    counts: Counts
+    by_suite: tuple[Group, ...]
+    by_distro: tuple[Group, ...]
+    by_package: tuple[Group, ...]
+    outcomes: tuple[Outcome, ...]
+    circuits: Mapping[str, tuple[int, int]]
+    curves: tuple[Curve, ...]
+    trends: tuple[Trend, ...]
+    coverage: tuple[CoverageSum, ...]
+    runs: tuple[Run, ...]
+
+    @property
+    def failed(self) -> list[Outcome]:
+        """Tests that failed."""
+        return [each for each in self.outcomes if each.verdict == "fail"]
+
+    @property
+    def not_run(self) -> list[Outcome]:
+        """Tests that nothing is known about."""
+        return [each for each in self.outcomes if each.verdict == "not run"]
+
+    @property
+    def skipped(self) -> list[Outcome]:
+        """Tests that there is a reason not to run."""
+        return [each for each in self.outcomes if each.verdict == "skipped"]
+
+    @property
+    def slowest(self) -> list[Outcome]:
+        """Tests that took longest, the slowest first."""
+        return self._top(lambda record: record.seconds.total)
+
+    @property
+    def most_complex(self) -> list[Outcome]:
+        """Tests of the types with most leaves, of the steps of their plans among equals."""
+        return self._top(lambda r: (r.metrics.get("leaves", 0), r.metrics.get("steps", 0)))
+
+    @property
+    def uncovered(self) -> list[Outcome]:
+        """Tests that did not take every decision of their plan."""
+        return [
+            each
+            for each in self.outcomes
+            if each.record is not None
+            and (coverage := each.record.coverage) is not None
+            and coverage.taken < coverage.possible
+        ]
+
+    def _top(self, by: Callable[[Record], Any]) -> list[Outcome]:
+        known = [(by(each.record), each) for each in self.outcomes if each.record is not None]
+        known.sort(key=lambda pair: pair[0], reverse=True)
+        return [each for figure, each in known[:TOP] if figure]
+
+
+def summarise(files: Mapping[str, Results], title: str = "Verification of firm-hdl") -> Summary:
+    """Summarise files of results, by name."""
+    outcomes = outcomes_of(list(files.values()))
+    suites: dict[str, list[Outcome]] = defaultdict(list)
+    for outcome in outcomes:
+        suites[_suite(outcome)].append(outcome)
+    return Summary(
+        title=title,
+        counts=count(outcomes),
+        by_suite=_groups((outcome, (_suite(outcome),)) for outcome in outcomes),
+        by_distro=_groups(
+            (outcome, (_suite(outcome), distro))
+            for outcome in outcomes
+            for distro in outcome.test.distros
+        ),
+        by_package=_groups(
+            (outcome, (_suite(outcome), distro, outcome.test.package))
+            for outcome in outcomes
+            for distro in outcome.test.distros
+        ),
+        outcomes=tuple(outcomes),
+        circuits={
+            suite: known for suite, own in suites.items() if (known := _circuits(own)) != (0, 0)
+        },
+        curves=tuple(_curve(suite, own) for suite, own in suites.items() if _ran(own)),
+        trends=tuple(trend for suite, own in suites.items() for trend in _trends(suite, own)),
+        coverage=tuple(
+            found for suite, own in suites.items() if (found := _coverage(suite, own)).types
+        ),
+        runs=tuple(_run(name, results) for name, results in files.items()),
+    )
+
+
+def _suite(outcome: Outcome) -> str:
+    test = outcome.test
+    bus = f"{test.bus_bytes}-byte bus" if test.bus_bytes else ""
+    return ", ".join(part for part in (test.system, test.simulator, bus) if part)
+
+
+def _groups(labelled: Iterable[tuple[Outcome, tuple[str, ...]]]) -> tuple[Group, ...]:
+    found: dict[tuple[str, ...], list[Outcome]] = defaultdict(list)
+    for outcome, labels in labelled:
+        found[labels].append(outcome)
+    return tuple(
+        Group(
+            labels=labels,
+            counts=count(own),
+            cpu_seconds=sum(o.record.cpu_seconds for o in own if o.record is not None),
+        )
+        for labels, own in sorted(found.items())
+    )
+
+
+def _ran(outcomes: Iterable[Outcome]) -> list[Record]:
+    """Return records of tests that took time."""
+    records = [o.record for o in outcomes if o.record is not None and o.verdict != "skipped"]
+    return [record for record in records if record.seconds.total > 0]
+
+
+def _circuits(outcomes: Iterable[Outcome]) -> tuple[int, int]:
+    records = [outcome.record for outcome in outcomes if outcome.record is not None]
+    shapes = {record.shape for record in records if record.shape}
+    return len(shapes), sum(bool(record.same_as) for record in records)
+
+
+def _curve(suite: str, outcomes: Sequence[Outcome]) -> Curve:
+    records = _ran(outcomes)
+    totals = [record.seconds.total for record in records]
+    stages = {
+        stage: tuple(seconds)
+        for stage in STAGES
+        if (seconds := [s for r in records if (s := getattr(r.seconds, stage)) > 0])
+    }
+    boxes = {stage: box_of(values) for stage, values in stages.items()}
+    return Curve(
+        suite=suite,
+        points=tuple(curve_of(totals)),
+        within={limit: share_within(totals, limit) for limit in LIMITS},
+        seconds=box_of(totals),
+        cpu_seconds=box_of([record.cpu_seconds for record in records if record.cpu_seconds]),
+        stages={stage: box for stage, box in boxes.items() if box is not None},
+        stage_values=stages,
+    )
+
+
+def _trends(suite: str, outcomes: Sequence[Outcome]) -> Iterable[Trend]:
+    # Whose circuit was not simulated has no time to speak of.
+    records = [record for record in _ran(outcomes) if not record.same_as]
+    for metric in sorted({name for record in records for name in record.metrics}):
+        for time in ("total", *STAGES):
+            points = [
+                (float(record.metrics[metric]), seconds)
+                for record in records
+                if metric in record.metrics and (seconds := getattr(record.seconds, time)) > 0
+            ]
+            found = correlate([x for x, _ in points], [y for _, y in points])
+            if found is not None:
+                kept = tuple(points) if time == "total" else ()
+                yield Trend(suite=suite, metric=metric, time=time, correlation=found, points=kept)
+
+
+def _coverage(suite: str, outcomes: Iterable[Outcome]) -> CoverageSum:
+    found = [o.record.coverage for o in outcomes if o.record is not None and o.record.coverage]
+    return CoverageSum(
+        suite=suite,
+        types=len(found),
+        full=sum(each.taken == each.possible for each in found),
+        taken=sum(each.taken for each in found),
+        possible=sum(each.possible for each in found),
+    )
+
+
+def _run(name: str, results: Results) -> Run:
+    return Run(
+        name=name,
+        options=results.options,
+        sessions=results.sessions,
+        planned=len(results.planned),
+        recorded=len(results.records),
+    )

@@ -1,0 +1,228 @@
+"""The tables of a report, which all of its forms have: headings, and rows of cells.
+
+A cell is what is read and, where it is a number, what it sorts by. Forms differ in how they write
+it down, not in what is there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from firm_hdl.verify.records import STAGES
+from firm_hdl.verify.report.charts import law_text, line_text
+from firm_hdl.verify.report.outcomes import Counts, Outcome
+from firm_hdl.verify.report.summary import LIMITS, Curve, Group, Summary, Trend
+from firm_hdl.verify.report.svg import number, seconds
+
+__all__ = [
+    "SIGNS",
+    "Cell",
+    "Table",
+    "coverage_table",
+    "every_table",
+    "group_table",
+    "missing_table",
+    "stage_table",
+    "title_of",
+    "trend_table",
+    "within_table",
+]
+
+SIGNS = {"pass": "✓ pass", "fail": "✗ fail", "skipped": "- skipped", "not run": "? not run"}
+"""How verdicts are written: never by colour alone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A cell.
+
+    Attributes
+    ----------
+    text : str
+    value : float or None
+        What it sorts by, if it is a number.
+    verdict : str
+        Its colour; empty for that of text.
+    counts : Counts or None
+        Drawn as a bar, where something can be drawn.
+    """
+
+    text: str
+    value: float | None = None
+    verdict: str = ""
+    counts: Counts | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table; the headings of numbers end in ``#``."""
+
+    headings: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+
+
+def _count(value: float) -> Cell:
+    return Cell(number(value), value)
+
+
+def _time(value: float) -> Cell:
+    return Cell(seconds(value) if value else "-", value)
+
+
+def _of(headings: str, rows: Iterable[Iterable[Cell]]) -> Table:
+    return Table(tuple(headings.split("|")), tuple(tuple(row) for row in rows))
+
+
+def title_of(outcome: Outcome) -> str:
+    """Name a test in a line."""
+    test = outcome.test
+    circuit = [test.wire, f"{test.bus_bytes}-byte bus" if test.bus_bytes else "", test.options]
+    return ", ".join(
+        part
+        for part in (test.type, " ".join(test.distros), test.system, test.simulator, *circuit)
+        if part
+    )
+
+
+def group_table(groups: Iterable[Group], names: str) -> Table:
+    """List groups of tests with their counts."""
+
+    def rows() -> Iterator[Iterable[Cell]]:
+        for group in groups:
+            counts = group.counts
+            yield (
+                *map(Cell, group.labels),
+                Cell(SIGNS[counts.verdict], verdict=counts.verdict),
+                Cell("", counts.passed / max(1, counts.total), counts=counts),
+                *map(_count, (counts.passed, counts.failed, counts.skipped, counts.not_run)),
+                _time(group.cpu_seconds),
+            )
+
+    return _of(f"{names}|Result|Share|Passed#|Failed#|Skipped#|Not run#|CPU time#", rows())
+
+
+def within_table(curves: Iterable[Curve]) -> Table:
+    """List the shares of tests that were completed within some times."""
+    limits = "|".join(f"{limit:g} s#" for limit in LIMITS)
+    return _of(
+        f"Test system|Tests#|{limits}",
+        (
+            (
+                Cell(curve.suite),
+                _count(0 if curve.seconds is None else curve.seconds.count),
+                *(Cell(_percent(share), share) for share in curve.within.values()),
+            )
+            for curve in curves
+        ),
+    )
+
+
+def _percent(share: float) -> str:
+    text = f"{share:.1%}"
+    # Rounding must not say that all is done.
+    return "99.9%" if text == "100.0%" and share < 1 else text
+
+
+def stage_table(curves: Iterable[Curve]) -> Table:
+    """List quartiles of the times of stages."""
+
+    def rows() -> Iterator[Iterable[Cell]]:
+        for curve in curves:
+            boxes = [(stage, curve.stages[stage]) for stage in STAGES if stage in curve.stages]
+            boxes += [("all stages", curve.seconds)] if curve.seconds else []
+            boxes += [("processor", curve.cpu_seconds)] if curve.cpu_seconds else []
+            for name, box in boxes:
+                times = (box.least, box.q1, box.median, box.q3, box.p95, box.most, box.total)
+                yield (Cell(curve.suite), Cell(name), *map(_time, times))
+
+    columns = "Least#|Quartile 1#|Median#|Quartile 3#|95 %#|Most#|Sum#"
+    return _of(f"Test system|Stage|{columns}", rows())
+
+
+def trend_table(trends: Iterable[Trend]) -> Table:
+    """List how figures go with times."""
+
+    def rows() -> Iterator[Iterable[Cell]]:
+        for trend in trends:
+            found = trend.correlation
+            yield (
+                Cell(trend.suite),
+                Cell(trend.metric),
+                Cell(trend.time),
+                _count(found.count),
+                *(Cell(f"{value:+.2f}", value) for value in (found.spearman, found.pearson)),
+                Cell(law_text(found.power)),
+                _r2(found.power.r2 if found.power else None),
+                Cell(line_text(found.linear)),
+                _r2(found.linear.r2 if found.linear else None),
+            )
+
+    columns = "Spearman#|Pearson r#|Power law, in s|R²#|Line, in s|R²#"
+    return _of(f"Test system|Figure x|Time|Tests#|{columns}", rows())
+
+
+def _r2(value: float | None) -> Cell:
+    return Cell("-", -1.0) if value is None else Cell(f"{value:.2f}", value)
+
+
+def every_table(outcomes: Iterable[Outcome]) -> Table:
+    """List tests one by one."""
+
+    def rows() -> Iterator[Iterable[Cell]]:
+        for outcome in outcomes:
+            test, record = outcome.test, outcome.record
+            metrics = record.metrics if record is not None else {}
+            circuit = f"{test.wire} {test.bus_bytes or ''}".strip()
+            yield (
+                Cell(test.type),
+                Cell(" ".join(test.distros)),
+                Cell(" ".join(part for part in (test.system, test.simulator) if part)),
+                Cell(circuit),
+                Cell(SIGNS[outcome.verdict], verdict=outcome.verdict),
+                _time(record.seconds.total if record else 0),
+                _time(record.cpu_seconds if record else 0),
+                *(_count(metrics.get(name, 0)) for name in ("leaves", "steps")),
+                _count(record.packets if record else 0),
+                _count(record.cycles if record else 0),
+                _covered(outcome),
+                Cell(outcome.circuit_of),
+            )
+
+    columns = "Time#|CPU#|Leaves#|Steps#|Packets#|Cycles#|Plan coverage#|Circuit of"
+    return _of(f"Type|Distributions|System|Wire, bus|Result|{columns}", rows())
+
+
+def _covered(outcome: Outcome) -> Cell:
+    coverage = outcome.record.coverage if outcome.record is not None else None
+    if coverage is None:
+        return Cell("-", -1.0)
+    share = coverage.taken / coverage.possible if coverage.possible else 1.0
+    return Cell(f"{coverage.taken} of {coverage.possible}", share)
+
+
+def coverage_table(summary: Summary) -> Table:
+    """List plan coverage by suite."""
+    return _of(
+        "Test system|Tests#|All decisions taken#|Decisions taken#|Of#|Coverage#",
+        (
+            (
+                Cell(each.suite),
+                *map(_count, (each.types, each.full, each.taken, each.possible)),
+                Cell(_percent(share := each.taken / max(1, each.possible)), share),
+            )
+            for each in summary.coverage
+        ),
+    )
+
+
+def missing_table(outcomes: Iterable[Outcome]) -> Table:
+    """List decisions that no packet took."""
+
+    def rows() -> Iterator[Iterable[Cell]]:
+        for outcome in outcomes:
+            assert outcome.record is not None and outcome.record.coverage is not None
+            names = "; ".join(outcome.record.coverage.missing)
+            yield Cell(title_of(outcome)), _covered(outcome), Cell(names or "not named")
+
+    return _of("Test|Plan coverage#|Not taken", rows())

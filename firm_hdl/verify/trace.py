@@ -1,0 +1,205 @@
+"""What every port of both exported converters did in each cycle of a Python simulation.
+
+The simulation runs the converters themselves; what is recorded is what the ports of their exported
+tops (:class:`firm_hdl.export.top.Top`) would carry, so that any simulator of the exported text can
+be given the same inputs and must show the same outputs, in the same cycles, payloads included that
+nobody looks at.
+
+Form. A trace is two lists of rows of text, one row a cycle. A row has a number and bits for each
+port that changed, such as ``3 0101 7 1``. A row of inputs begins with ``1``, or with ``0`` if no
+row of outputs belongs to it: so it is in the cycles of a reset, which stand between runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from amaranth.hdl import Cat, Const, Value
+from amaranth.lib import data
+
+from firm_hdl.export.names import identifier
+from firm_hdl.export.top import Direction, Port, leaf_names, ports_of
+from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.gateware.signatures import leaf_streams
+from firm_hdl.plan import Plan
+
+__all__ = ["ARESETN", "Device", "Pin", "Trace", "read_row"]
+
+ARESETN = 0
+"""The number of the reset among the inputs; both converters share it."""
+
+RESET_CYCLES = 2
+CHUNK = 24
+"""Pins that are looked at together: all are, when one of them changes."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Device:
+    """A converter that is exported.
+
+    Attributes
+    ----------
+    direction : "deserializer" or "serializer"
+    name : str
+        Name of its outermost entity, as ``firm-hdl build`` names it.
+    plan : Plan
+    """
+
+    direction: Direction
+    name: str
+    plan: Plan
+
+    @classmethod
+    def of(cls, core: Deserializer | Serializer, message: str) -> Device:
+        """Describe a converter of a type."""
+        direction: Direction = "deserializer" if isinstance(core, Deserializer) else "serializer"
+        base = identifier(f"{message}_{core.plan.wire}_{core.plan.bus_bytes}").lower()
+        return cls(direction=direction, name=f"{base}_{direction}_flat", plan=core.plan)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pin:
+    """A port of one of the devices.
+
+    Attributes
+    ----------
+    device : int
+    port : Port
+    number : int
+        In rows: inputs and outputs are numbered apart, over all devices.
+    """
+
+    device: int
+    port: Port
+    number: int
+
+
+class Trace:
+    """Recorded runs of converters.
+
+    Parameters
+    ----------
+    cores : sequence of Deserializer or Serializer
+        Those that are simulated.
+    message : str
+        Name of their type.
+
+    Attributes
+    ----------
+    devices : list of Device
+    inputs, outputs : list of Pin
+        `aclk` and `aresetn` left out.
+    stimuli, expected : list of str
+        Rows of inputs of all cycles, and rows of outputs of all cycles but those of resets.
+    probes : list of Value
+        What is to be observed: the pins, several at once.
+    runs : list of (str, int)
+        What each run is called, and with which row of outputs it begins.
+    """
+
+    def __init__(self, cores: Sequence[Deserializer | Serializer], message: str):
+        self.devices = [Device.of(core, message) for core in cores]
+        self.inputs: list[Pin] = []
+        self.outputs: list[Pin] = []
+        values: dict[str, list[Value]] = {"in": [], "out": []}
+        for number, core in enumerate(cores):
+            device = self.devices[number]
+            sources = _port_values(core)
+            for port in ports_of(device.plan, device.direction)[2:]:
+                pins = self.inputs if port.direction == "in" else self.outputs
+                # The reset is the first input.
+                at = len(pins) + (port.direction == "in")
+                pins.append(Pin(device=number, port=port, number=at))
+                values[port.direction].append(sources[port.name])
+        self._inputs = _Changes(self.inputs, values["in"])
+        self._outputs = _Changes(self.outputs, values["out"])
+        self.probes = [*self._inputs.probes, *self._outputs.probes]
+        self.stimuli: list[str] = []
+        self.expected: list[str] = []
+        self.runs: list[tuple[str, int]] = []
+        self._is_reset = False
+
+    def start(self, name: str) -> None:
+        """Begin a run; all but the first, which tests what registers hold initially, by a reset."""
+        if self.runs:
+            self.stimuli += [f"0 {ARESETN} 0", *["0"] * (RESET_CYCLES - 1)]
+        self.runs.append((name, len(self.expected)))
+        self._is_reset = True
+
+    def observe(self, values: Sequence[int]) -> None:
+        """Record a cycle, given the values of the probes."""
+        split = len(self._inputs.probes)
+        released = [f"{ARESETN} 1"] if self._is_reset else []
+        self._is_reset = False
+        self.stimuli.append(" ".join(["1", *released, *self._inputs.next(values[:split])]))
+        self.expected.append(" ".join(self._outputs.next(values[split:])))
+
+    def run_of(self, row: int) -> tuple[str, int]:
+        """Return the run to which a row of outputs belongs, and which of its cycles that is."""
+        name, first = next(run for run in reversed(self.runs) if run[1] <= row)
+        return name, row - first
+
+
+class _Changes:
+    """The pins that have changed since the last cycle, as words of a row."""
+
+    def __init__(self, pins: Sequence[Pin], values: Sequence[Value]):
+        self.probes: list[Value] = []
+        self.parts: list[list[tuple[int, int, int]]] = []
+        for start in range(0, len(values), CHUNK):
+            part = values[start : start + CHUNK]
+            self.probes.append(Cat(*part))
+            places, at = [], 0
+            for pin, value in zip(pins[start : start + CHUNK], part, strict=True):
+                places.append((pin.number, at, len(value)))
+                at += len(value)
+            self.parts.append(places)
+        self.before: list[int | None] = [None] * len(self.parts)
+
+    def next(self, values: Sequence[int]) -> Iterator[str]:
+        for index, now in enumerate(values):
+            before = self.before[index]
+            if now == before:
+                continue
+            self.before[index] = now
+            # Before the first cycle, everything is new.
+            changed = -1 if before is None else now ^ before
+            for number, at, width in self.parts[index]:
+                if changed >> at & (mask := (1 << width) - 1):
+                    yield f"{number} {now >> at & mask:0{width}b}"
+
+
+def _port_values(core: Deserializer | Serializer) -> dict[str, Value]:
+    """Return what the ports of a converter's top carry, by their names."""
+    plan = core.plan
+    packets, status = core.packets, core.status
+    side = "s_axis" if isinstance(core, Deserializer) else "m_axis"
+    values: dict[str, Value] = {
+        f"{side}_tdata": Value.cast(packets.payload.data),
+        f"{side}_tkeep": Cat(packets.payload.count > lane for lane in range(plan.bus_bytes)),
+        f"{side}_tlast": packets.payload.last,
+        f"{side}_tvalid": packets.valid,
+        f"{side}_tready": packets.ready,
+        "m_axis_status_tdata": Cat(Value.cast(status.payload), Const(0, 8))[:8],
+        "m_axis_status_tvalid": status.valid,
+        "m_axis_status_tready": status.ready,
+    }
+    if isinstance(core, Serializer):
+        values["m_axis_tuser"] = core.packet_error
+    names = leaf_names(plan)
+    for leaf, port in leaf_streams(core.message, core.tree).items():
+        base = names[plan.leaves[leaf].path]
+        payload = port.payload
+        if isinstance(payload, data.View):
+            values[f"{base}_last"] = payload["last"]
+            payload = payload["data"]
+        values[f"{base}_data"] = Value.cast(payload)
+        values[f"{base}_valid"], values[f"{base}_ready"] = port.valid, port.ready
+    return values
+
+
+def read_row(row: str) -> Iterable[tuple[int, str]]:
+    """Yield number and bits of each change in a row of outputs."""
+    words = iter(row.split())
+    return zip(map(int, words), words, strict=True)

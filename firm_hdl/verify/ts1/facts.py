@@ -1,0 +1,155 @@
+"""What is said of a definition, in plain data, so that readers of any kind can be compared.
+
+Facts are a dictionary. Whoever gives them gives the parts that it knows:
+
+``structure``
+    Each message that the definition declares or that is derived from it, by full name. A message
+    has ``fields`` and ``constants``, lists in the order of the text, and a ``comment``. A field has
+    a ``name``, a ``type`` as ROS 2 writes it with the full names of messages (``string<=8[<=3]``,
+    ``std_msgs/msg/Header``), a ``default``, a ``comment`` and a ``unit``; a constant has a
+    ``value``, too, and in ROS 1 the ``text`` of it.
+``names``
+    What a text in IDL itself calls its message.
+``show``
+    What ``rosmsg show`` or ``rossrv show`` prints.
+``md5``
+    The md5sum of ROS 1 of each message and service, by full name.
+``hash``
+    The type hash of ROS 2 (RIHS01).
+``proto``
+    What ``ros2 interface proto`` prints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+from firm_hdl.model import Array, Constant, Field, FieldType, Interface, Message, Sequence, Value
+
+__all__ = ["Difference", "Facts", "differences", "structure"]
+
+Facts: TypeAlias = "dict[str, Any]"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Difference:
+    """One thing that two readers say differently.
+
+    Attributes
+    ----------
+    path : str
+        Where: ``verdict``, or a path through facts.
+    ours, theirs : str
+        What each says, in one line.
+    values : tuple
+        What each says, as it is.
+    """
+
+    path: str
+    ours: str
+    theirs: str
+    values: tuple[Any, Any] = field(default=(None, None), compare=False, repr=False)
+
+    def __str__(self) -> str:
+        return f"{self.path}: firm-hdl {self.ours}; oracle {self.theirs}"
+
+
+def structure(interface: Interface, alike: Mapping[str, str] | None = None) -> dict[str, Any]:
+    """Describe a model.
+
+    Parameters
+    ----------
+    interface : Message, Service or Action
+    alike : mapping of str to str
+        Names of primitives that whoever is compared with cannot tell from others, and those.
+    """
+    return {each.name: _message(each, alike or {}) for each in interface.messages}
+
+
+def differences(ours: Any, theirs: Any, path: str = "") -> Iterator[Difference]:
+    """Yield what `theirs` says otherwise. What it does not speak of is not compared."""
+    if isinstance(theirs, dict) and isinstance(ours, dict):
+        for key, value in theirs.items():
+            step = f"{path}/{key}" if path else key
+            if key in ours:
+                yield from differences(ours[key], value, step)
+            else:
+                yield Difference(path=step, ours="has none", theirs=_show(value))
+    elif _is_members(ours) and _is_members(theirs):
+        names = [[item["name"] for item in items] for items in (ours, theirs)]
+        if names[0] != names[1]:
+            yield _differ(path, *names)
+            return
+        for label, our, their in zip(names[0], ours, theirs, strict=True):
+            yield from differences(our, their, f"{path}/{label}")
+    elif not _same(ours, theirs):
+        yield _differ(path, ours, theirs)
+
+
+def _differ(path: str, ours: Any, theirs: Any) -> Difference:
+    return Difference(path=path, ours=_show(ours), theirs=_show(theirs), values=(ours, theirs))
+
+
+def _is_members(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(item, dict) for item in value)
+
+
+def _same(ours: Any, theirs: Any) -> bool:
+    # By their texts: a NaN is one, zero has a sign, and True is not 1.
+    return type(ours) is type(theirs) and repr(ours) == repr(theirs)
+
+
+def _show(value: Any, most: int = 300) -> str:
+    text = repr(value)
+    return text if len(text) <= most else f"{text[:most]}..."
+
+
+def _message(message: Message, alike: Mapping[str, str]) -> dict[str, Any]:
+    return {
+        "fields": [_field(each, alike) for each in message.fields],
+        "constants": [_constant(each, alike) for each in message.constants],
+        "comment": message.comment,
+    }
+
+
+def _field(field: Field, alike: Mapping[str, str]) -> dict[str, Any]:
+    return {
+        "name": field.name,
+        "type": _type(field.type, alike),
+        "default": None if field.default is None else _value(field.default),
+        "comment": field.comment,
+        "unit": field.unit,
+    }
+
+
+def _constant(constant: Constant, alike: Mapping[str, str]) -> dict[str, Any]:
+    return {
+        "name": constant.name,
+        "type": _type(constant.type, alike),
+        "value": _value(constant.value),
+        "text": constant.text,
+        "comment": constant.comment,
+        "unit": constant.unit,
+    }
+
+
+def _type(kind: FieldType, alike: Mapping[str, str]) -> str:
+    match kind:
+        case Array():
+            return f"{_type(kind.element, alike)}[{kind.count}]"
+        case Sequence():
+            bound = "" if kind.bound is None else f"<={kind.bound}"
+            return f"{_type(kind.element, alike)}[{bound}]"
+        case Message():
+            return kind.name
+        case _:
+            return alike.get(str(kind), str(kind))
+
+
+def _value(value: Value) -> Any:
+    """Make of a value what JSON can carry."""
+    if isinstance(value, tuple):
+        return [_value(item) for item in value]
+    return list(value) if isinstance(value, bytes) else value

@@ -1,0 +1,138 @@
+"""A definition, our reading of it, and what an oracle says: do they agree?"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.identity import md5sum, proto, type_hash
+from firm_hdl.model import Action, Interface, Message, Service
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.facts import Difference, Facts, differences, structure
+from firm_hdl.verify.ts1.known import known_key
+from firm_hdl.verify.ts1.oracle import Accepted, Answer, NotJudged, Oracle, Refused
+from firm_hdl.verify.ts1.universe import Universe
+
+__all__ = ["Outcome", "Verdict", "compare", "judge", "read"]
+
+Verdict: TypeAlias = Literal["agrees", "known", "differs", "not judged"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """What came of one definition before one oracle.
+
+    Attributes
+    ----------
+    oracle : str
+    case : Case
+    verdict : "agrees", "known", "differs" or "not judged"
+    details : tuple of str
+        Keys of known differences; differences; or why it was not judged.
+    is_refused : bool
+        Whether both refuse it.
+    """
+
+    oracle: str
+    case: Case
+    verdict: Verdict
+    details: tuple[str, ...] = ()
+    is_refused: bool = False
+
+
+def judge(universe: Universe, oracle: Oracle, cases: Sequence[Case]) -> Iterator[Outcome]:
+    """Compare our reading of definitions with an oracle's, in order."""
+    taken = [
+        case
+        for case in cases
+        if case.language in oracle.languages.get(case.dialect, ())
+        and (oracle.judges_changes or not case.is_changed)
+    ]
+    for case, answer in zip(taken, oracle.judge(taken), strict=True):
+        ours = read(universe, case)
+        yield compare(oracle, case, ours, answer, universe.show)
+
+
+def read(universe: Universe, case: Case) -> Interface | Exception:
+    """Read a definition as users of firm-hdl do."""
+    try:
+        return universe.interface(case)
+    except Exception as error:  # Whatever it is, the next definition is to be judged, too.
+        return error
+
+
+def compare(
+    oracle: Oracle,
+    case: Case,
+    ours: Interface | Exception,
+    answer: Answer,
+    show: Callable[[Case], str] = lambda case: "",
+) -> Outcome:
+    """Compare what we make of a definition with an oracle's answer.
+
+    Parameters
+    ----------
+    ours : Message, Service, Action or Exception
+        As `read` gives it.
+    show : callable
+        Prints a definition as ``firm-hdl show`` does.
+    """
+    if isinstance(answer, NotJudged):
+        return Outcome(
+            oracle=oracle.name, case=case, verdict="not judged", details=(answer.reason,)
+        )
+    if isinstance(ours, Exception) and not isinstance(ours, DefinitionError):
+        crash = f"verdict: firm-hdl raised {type(ours).__name__}: {ours}"
+        return Outcome(oracle=oracle.name, case=case, verdict="differs", details=(crash,))
+    match ours, answer:
+        case DefinitionError(), Refused():
+            return Outcome(oracle=oracle.name, case=case, verdict="agrees", is_refused=True)
+        case DefinitionError(), _:
+            why = ours.diagnostics[0].message
+            found = [Difference(path="verdict", ours=f"refuses: {why}", theirs="accepts")]
+        case _, Refused(message):
+            found = [Difference(path="verdict", ours="accepts", theirs=f"refuses: {message}")]
+        case _, Accepted(facts):
+            assert not isinstance(ours, Exception)
+            found = list(
+                differences(_facts(ours, facts, oracle.alike(case), lambda: show(case)), facts)
+            )
+    keys = [known_key(oracle.name, case, ours, each) for each in found]
+    unknown = [str(each) for each, key in zip(found, keys, strict=True) if key is None]
+    if unknown:
+        return Outcome(oracle=oracle.name, case=case, verdict="differs", details=tuple(unknown))
+    names = tuple(dict.fromkeys(key for key in keys if key is not None))
+    return Outcome(
+        oracle=oracle.name, case=case, verdict="known" if names else "agrees", details=names
+    )
+
+
+def _facts(
+    ours: Interface, theirs: Facts, alike: Mapping[str, str], show: Callable[[], str]
+) -> Facts:
+    """Say of our model what the oracle says of its own."""
+    makers: dict[str, Callable[[], Any]] = {
+        "structure": lambda: structure(ours, alike),
+        "names": lambda: [ours.name],
+        "show": show,
+        "md5": lambda: _md5(ours),
+        "hash": lambda: {ours.name: type_hash(ours)},
+        "proto": lambda: proto(ours),
+    }
+    return {key: _made(makers[key]) for key in theirs}
+
+
+def _made(make: Callable[[], Any]) -> Any:
+    try:
+        return make()
+    except Exception as error:  # It is ours, and a difference like any other.
+        return f"raises {type(error).__name__}: {error}"
+
+
+def _md5(interface: Interface) -> dict[str, str]:
+    if isinstance(interface, Action):
+        return {each.name: md5sum(each) for each in interface.messages}
+    assert isinstance(interface, Message | Service)
+    return {interface.name: md5sum(interface)}

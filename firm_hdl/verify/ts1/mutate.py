@@ -1,0 +1,198 @@
+"""Definitions with small mistakes, made by rule from real ones.
+
+A mutation is decided by its number alone (and by the definitions that there are), so a report can
+name it and anybody can make it again.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from firm_hdl.verify.ts1.case import Case
+
+__all__ = ["mutate", "mutation"]
+
+_MOST_CHARACTERS = 20_000
+_SIGNS: list[str] = [
+    *"=#\"'\\/<>[](){}:;,.-+_@ \t~é\x0b",
+    "<=",
+    "[]",
+    "[3]",
+    "[<=2]",
+    "---",
+    "  ",
+    " = ",
+]
+_NUMBERS = (
+    "0 1 2 -1 +1 010 0x10 0b1 1_000 127 128 255 256 -129 65536 4294967295 4294967296 1.5 .5 5. 1e3 "
+    "1e400 inf nan true False TRUE \"x\" 'y' [1] [1,2] [] [1,]"
+).split()
+_TYPES = (
+    "bool byte char int8 uint8 int16 uint32 int64 uint64 float32 float64 string wstring string<=4 "
+    "wstring<=2 time duration Header std_msgs/Header std_msgs/String Nothing no_package/Nothing "
+    "int string[] uint8[3] int32[<=4]"
+).split()
+_NAMES = "x a_b a__b a_ _a A aB Ab A_B range a1 1a é message".split()
+
+_Rule = Callable[[random.Random, str], str]
+
+
+def mutation(cases: Sequence[Case], number: int) -> Case:
+    """Make a mutation.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        What to choose from.
+    number : int
+        Which one.
+    """
+    generator = random.Random(f"ts1 {number}")
+    small = [case for case in cases if len(case.text) <= _MOST_CHARACTERS] or list(cases)
+    while True:
+        case = generator.choice(small)
+        text = mutate(case.text, generator)
+        if text != case.text or not case.text:
+            return replace(case, text=text, before=case.text)
+
+
+def mutate(text: str, generator: random.Random) -> str:
+    """Apply one rule, sometimes two."""
+    for _ in range(generator.choice((1, 1, 1, 1, 2))):
+        text = generator.choice(_RULES)(generator, text)
+    return text
+
+
+def _place(generator: random.Random, text: str) -> int:
+    """Choose a place, seldom inside a comment, where hardly anything is wrong."""
+    place = 0
+    for _ in range(4):
+        place = generator.randrange(len(text) + 1)
+        if "#" not in text[text.rfind("\n", 0, place) + 1 : place]:
+            break
+    return place
+
+
+def _span(generator: random.Random, text: str, pattern: str) -> tuple[int, int] | None:
+    found = [match.span() for match in re.finditer(pattern, text)]
+    outside = [
+        (start, end)
+        for start, end in found
+        if "#" not in text[text.rfind("\n", 0, start) + 1 : start]
+    ]
+    return generator.choice(outside or found) if found else None
+
+
+def _put(generator: random.Random, text: str, pattern: str, words: Sequence[str]) -> str:
+    span = _span(generator, text, pattern)
+    return text if span is None else text[: span[0]] + generator.choice(words) + text[span[1] :]
+
+
+def _drop_character(generator: random.Random, text: str) -> str:
+    place = _place(generator, text)
+    return text[:place] + text[place + 1 :]
+
+
+def _double_character(generator: random.Random, text: str) -> str:
+    place = _place(generator, text)
+    return text[:place] + text[place : place + 1] + text[place:]
+
+
+def _swap_characters(generator: random.Random, text: str) -> str:
+    place = _place(generator, text)
+    return text[:place] + text[place : place + 2][::-1] + text[place + 2 :]
+
+
+def _insert_sign(generator: random.Random, text: str) -> str:
+    place = _place(generator, text)
+    return text[:place] + generator.choice(_SIGNS) + text[place:]
+
+
+def _change_digit(generator: random.Random, text: str) -> str:
+    return _put(generator, text, r"\d", "0123456789")
+
+
+def _change_case(generator: random.Random, text: str) -> str:
+    span = _span(generator, text, r"[A-Za-z]")
+    return text if span is None else text[: span[0]] + text[span[0]].swapcase() + text[span[1] :]
+
+
+def _change_value(generator: random.Random, text: str) -> str:
+    return _put(generator, text, r"(?<==)[^\n#]*|(?<=[<=\[])\d+", _NUMBERS)
+
+
+def _change_type(generator: random.Random, text: str) -> str:
+    return _put(generator, text, r"(?m)^[^\s#]+", _TYPES)
+
+
+def _change_name(generator: random.Random, text: str) -> str:
+    return _put(generator, text, r"(?<= )[A-Za-z_]\w*", _NAMES)
+
+
+def _add_value(generator: random.Random, text: str) -> str:
+    span = _span(generator, text, r"(?m)(?<=\w)$")
+    if span is None:
+        return text
+    value = generator.choice((" ", "=", " = ")) + generator.choice(_NUMBERS)
+    return text[: span[0]] + value + text[span[0] :]
+
+
+def _lines(generator: random.Random, text: str) -> str:
+    """Drop, repeat, swap, indent, join or end lines."""
+    lines = text.split("\n")
+    at = generator.randrange(len(lines))
+    match generator.randrange(7):
+        case 0:
+            del lines[at]
+        case 1:
+            lines.insert(at, lines[at])
+        case 2:
+            lines.insert(generator.randrange(len(lines)), lines.pop(at))
+        case 3:
+            lines[at] = generator.choice((" ", "\t", "  ")) + lines[at]
+        case 4:
+            lines[at] += generator.choice((" ", "\t", "\r", " # x", "#x", " [m]"))
+        case 5:
+            lines[at : at + 2] = [generator.choice(("", " ")).join(lines[at : at + 2])]
+        case _:
+            return text.replace("\n", generator.choice(("\r\n", "\r", "\n\n")))
+    return "\n".join(lines)
+
+
+def _tokens(generator: random.Random, text: str) -> str:
+    """Drop, repeat or swap words."""
+    lines = text.split("\n")
+    at = generator.randrange(len(lines))
+    words = lines[at].split(" ")
+    which = generator.randrange(len(words))
+    match generator.randrange(3):
+        case 0:
+            del words[which]
+        case 1:
+            words.insert(which, words[which])
+        case _:
+            words.insert(generator.randrange(len(words)), words.pop(which))
+    lines[at] = " ".join(words)
+    return "\n".join(lines)
+
+
+_RULES: tuple[_Rule, ...] = (
+    _drop_character,
+    _double_character,
+    _swap_characters,
+    _insert_sign,
+    _insert_sign,
+    _change_digit,
+    _change_case,
+    _change_value,
+    _change_value,
+    _change_type,
+    _change_name,
+    _add_value,
+    _add_value,
+    _lines,
+    _tokens,
+)

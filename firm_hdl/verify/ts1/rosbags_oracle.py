@@ -1,0 +1,112 @@
+"""rosbags as an oracle: it reads ``.msg``, and computes type hashes.
+
+It is right about bytes, but reads definitions in its own way; what it is known to refuse or to
+take otherwise is in `firm_hdl.verify.ts1.known`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from importlib import metadata
+from typing import Any, ClassVar
+
+from rosbags.interfaces import Nodetype
+from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
+
+from firm_hdl.model import Dialect
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.facts import Facts
+from firm_hdl.verify.ts1.oracle import Accepted, Answer, NotJudged, Oracle, Refused
+
+__all__ = ["Rosbags"]
+
+# It gives the builtin types of ROS 1 the names that they have in ROS 2.
+_TIMES = {"builtin_interfaces/msg/Time": "time", "builtin_interfaces/msg/Duration": "duration"}
+_PADDING_MEMBER = "structure_needs_at_least_one_member"
+
+
+class Rosbags(Oracle):
+    """rosbags: structure of messages, and in ROS 2 their hashes."""
+
+    name = "rosbags"
+    languages: ClassVar = {"ros1": frozenset({"msg"}), "ros2": frozenset({"msg"})}
+    judges_changes = False
+
+    def missing(self) -> str | None:
+        return None
+
+    def version(self) -> str:
+        return metadata.version("rosbags")
+
+    def judge(self, cases: Sequence[Case]) -> Iterator[Answer]:
+        for case in cases:
+            try:
+                yield self._judge(case)
+            except TypesysError as error:
+                yield Refused(" ".join(str(error).split())[-300:])
+            except RecursionError:
+                yield NotJudged("it is nested too deeply for rosbags")
+
+    def _judge(self, case: Case) -> Answer:
+        full = f"{case.package}/msg/{case.name}"
+        found: dict[str, Any] = {}
+        missing = self._read(case, found)
+        if missing is not None:
+            return Refused(f"{missing} is not there")
+        constants, fields = found[full]
+        facts: Facts = {"structure": {case.full_name: _message(constants, fields, case.dialect)}}
+        if case.dialect == "ros2":
+            store = get_typestore(Stores.EMPTY)
+            store.register(found)
+            facts["hash"] = {case.full_name: store.hash_rihs01(full)}
+        return Accepted(facts)
+
+    def _read(self, root: Case, found: dict[str, Any]) -> str | None:
+        """Read a definition and what it needs; return the name of a type that is nowhere."""
+        pending = [root]
+        while pending:
+            case = pending.pop()
+            full = f"{case.package}/msg/{case.name}"
+            found[full] = get_types_from_msg(case.text, full)[full]
+            for need in _needs(found[full][1]):
+                if need in found or (case.dialect == "ros1" and need in _TIMES):
+                    continue
+                needed = self.universe.message_case(*need.split("/msg/"))
+                if needed is None:
+                    return need
+                if needed.language != "msg":
+                    raise TypesysError(f"{need} is not written as .msg")
+                pending.append(needed)
+        return None
+
+
+def _needs(fields: Any) -> Iterator[str]:
+    for _, (kind, detail) in fields:
+        element, name = (kind, detail) if kind in (Nodetype.NAME, Nodetype.BASE) else detail[0]
+        if element == Nodetype.NAME:
+            yield str(name)
+
+
+def _message(constants: Any, fields: Any, dialect: Dialect) -> Facts:
+    return {
+        "fields": [
+            {"name": name, "type": _type(kind, dialect)}
+            for name, kind in fields
+            if name != _PADDING_MEMBER
+        ],
+        "constants": [{"name": name, "type": kind, "value": v} for name, kind, v in constants],
+    }
+
+
+def _type(description: Any, dialect: Dialect) -> str:
+    kind, detail = description
+    if kind == Nodetype.BASE:
+        name, bound = detail
+        return f"{name}<={bound}" if bound else str(name)
+    if kind == Nodetype.NAME:
+        name = str(detail)
+        return _TIMES.get(name, name.replace("/msg/", "/")) if dialect == "ros1" else name
+    element, count = detail
+    if kind == Nodetype.ARRAY:
+        return f"{_type(element, dialect)}[{count}]"
+    return f"{_type(element, dialect)}[{f'<={count}' if count else ''}]"

@@ -1,0 +1,282 @@
+"""TS1 over many definitions, in several processes."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import tempfile
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from functools import cache
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
+from firm_hdl.verify.processes import in_processes
+from firm_hdl.verify.runner import UnknownTypeError
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.judge import Outcome, judge
+from firm_hdl.verify.ts1.mutate import mutation
+from firm_hdl.verify.ts1.oracle import Oracle
+from firm_hdl.verify.ts1.oracles import ORACLES
+from firm_hdl.verify.ts1.universe import Universe, write_definitions
+
+__all__ = ["Selection", "Tally", "Ts1Run", "selections_of"]
+
+# What one process is given at a time: so many definitions, or so many characters of them.
+_MOST_CASES = 32
+_MOST_CHARACTERS = 30_000
+_MOST_SHOWN = 20
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Selection:
+    """What to judge.
+
+    Attributes
+    ----------
+    distro : str
+    paths : tuple of str
+        As for `Library`.
+    types : tuple of str
+        Names of types; none: all.
+    mutations : int
+        So many changed definitions, made from those of the types, are judged instead of these.
+    seed : int
+        Number of the first mutation.
+    """
+
+    distro: str
+    paths: tuple[str, ...] = ()
+    types: tuple[str, ...] = ()
+    mutations: int = 0
+    seed: int = 0
+
+    def command(self, case: Case, number: int | None = None) -> str:
+        """Write the command that judges one definition, or one mutation, again."""
+        words = ["firm-hdl", "verify", "--systems", "ts1", "--distro", self.distro]
+        for path in self.paths:
+            words += ["--path", path]
+        if number is None:
+            return shlex.join([*words, case.spelled_name])
+        words += ["--mutations", "1", "--seed", str(number)]
+        return shlex.join([*words, *(self.types or ("--all",))])
+
+
+def selections_of(
+    distros: Sequence[str] | None,
+    paths: Sequence[str] = (),
+    types: Sequence[str] = (),
+    *,
+    mutations: int = 0,
+    seed: int = 0,
+) -> list[Selection]:
+    """List what a command asks for, which may be several distributions.
+
+    Where none is named, it is the default one if there are paths, else all that have the types.
+
+    Raises
+    ------
+    UnknownTypeError
+        If no distribution has them.
+    """
+    names = list(distros or ([DEFAULT_DISTRO] if paths else _having(types)))
+    return [
+        Selection(
+            distro=name, paths=tuple(paths), types=tuple(types), mutations=mutations, seed=seed
+        )
+        for name in names
+    ]
+
+
+def _having(types: Sequence[str]) -> list[str]:
+    found = []
+    for distro in DISTROS:
+        try:
+            Universe(distro).select(types)
+        except DefinitionError:
+            continue
+        found.append(distro)
+    if not found:
+        raise UnknownTypeError(f"No distribution has {', '.join(types)}")
+    return found
+
+
+@dataclass(slots=True)
+class Tally:
+    """What came of a number of definitions.
+
+    Attributes
+    ----------
+    verdicts : counter of (oracle, verdict)
+    refused : counter of oracle
+        How often both refuse; among those that agree.
+    details : counter of (oracle, verdict, text)
+        Keys of known differences, and reasons for what was not judged.
+    differing : list of (Outcome, int or None)
+        Those that differ, and the number of the mutation.
+    shown : list of Outcome
+        All outcomes, if only a few definitions were judged.
+    """
+
+    verdicts: Counter[tuple[str, str]] = field(default_factory=Counter)
+    refused: Counter[str] = field(default_factory=Counter)
+    details: Counter[tuple[str, str, str]] = field(default_factory=Counter)
+    differing: list[tuple[Outcome, int | None]] = field(default_factory=list)
+    shown: list[Outcome] = field(default_factory=list)
+
+    def add(self, outcome: Outcome, number: int | None = None) -> None:
+        """Count an outcome."""
+        self.verdicts[outcome.oracle, outcome.verdict] += 1
+        self.refused[outcome.oracle] += outcome.is_refused
+        if outcome.verdict in ("known", "not judged"):
+            for detail in outcome.details:
+                self.details[outcome.oracle, outcome.verdict, detail] += 1
+        if outcome.verdict == "differs":
+            self.differing.append((outcome, number))
+
+    def update(self, other: Tally) -> None:
+        """Count what another one has counted."""
+        self.verdicts.update(other.verdicts)
+        self.refused.update(other.refused)
+        self.details.update(other.details)
+        self.differing += other.differing
+        self.shown += other.shown
+
+
+class Ts1Run:
+    """One run; a context manager, because definitions lie in a folder while it lasts.
+
+    Parameters
+    ----------
+    selection : Selection
+    oracles : sequence of str
+        Names of those to ask; none: all that are here.
+    jobs : int or None
+        Processes; `None`: one per processor.
+
+    Raises
+    ------
+    DefinitionError
+        If a path is no folder, or a type is not there.
+    """
+
+    def __init__(
+        self, selection: Selection, oracles: Sequence[str] = (), jobs: int | None = None
+    ) -> None:
+        self.selection = selection
+        self.jobs = jobs or os.cpu_count()
+        self._stack = ExitStack()
+        with ExitStack() as stack:
+            folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="firm-hdl-ts1-"))
+            universe = Universe(selection.distro, selection.paths, folder)
+            write_definitions(universe)
+            self.cases = universe.select(selection.types)
+            self.versions: dict[str, str] = {}
+            self.missing: dict[str, str] = {}
+            self._ask_who_is_here(universe, oracles or tuple(ORACLES))
+            self._stack = stack.pop_all()
+        self._key = _Key(selection, folder, tuple(self.versions))
+
+    def __enter__(self) -> Ts1Run:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        _end_session(self._key)
+        self._stack.close()
+
+    def _ask_who_is_here(self, universe: Universe, names: Sequence[str]) -> None:
+        for name in names:
+            if universe.dialect not in ORACLES[name].languages:
+                continue
+            oracle = ORACLES[name](universe)
+            try:
+                why = oracle.missing()
+                if why is None:
+                    self.versions[name] = oracle.version()
+                else:
+                    self.missing[name] = why
+            finally:
+                oracle.close()
+
+    @property
+    def total(self) -> int:
+        """Number of definitions that are to be judged."""
+        return self.selection.mutations or len(self.cases)
+
+    def tallies(self) -> Iterator[tuple[int, Tally]]:
+        """Judge everything; yield numbers of definitions, and what came of them, as they come."""
+        if self.selection.mutations:
+            numbers = range(self.selection.seed, self.selection.seed + self.selection.mutations)
+            size = min(_MOST_CASES, max(1, len(numbers) // 8))
+            shares = [tuple(numbers[i : i + size]) for i in range(0, len(numbers), size)]
+        else:
+            shares = _shares(self.cases)
+        tasks = [(share, (self._key, share)) for share in shares]
+        for share, tally in in_processes(_judge_share, tasks, self.jobs):
+            if isinstance(tally, Exception):
+                raise tally
+            yield len(share), tally
+
+
+@dataclass(frozen=True, slots=True)
+class _Key:
+    selection: Selection
+    folder: str
+    oracles: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Session:
+    """What a process has for a run: our reader, the cases in the order of all, and oracles."""
+
+    universe: Universe
+    cases: list[Case]
+    oracles: list[Oracle]
+
+
+@cache
+def _session(key: _Key) -> _Session:
+    universe = Universe(key.selection.distro, key.selection.paths, key.folder)
+    cases = universe.select(key.selection.types)
+    return _Session(universe, cases, [ORACLES[name](universe) for name in key.oracles])
+
+
+def _end_session(key: _Key) -> None:
+    # Those of other processes end with these.
+    if _session.cache_info().currsize:
+        for oracle in _session(key).oracles:
+            oracle.close()
+        _session.cache_clear()
+
+
+def _judge_share(key: _Key, share: tuple[int, ...]) -> Tally:
+    session = _session(key)
+    is_mutated = key.selection.mutations > 0
+    if is_mutated:
+        cases = [mutation(session.cases, number) for number in share]
+    else:
+        cases = [session.cases[index] for index in share]
+    numbers = {id(case): number for case, number in zip(cases, share, strict=True)}
+    tally = Tally()
+    for oracle in session.oracles:
+        for outcome in judge(session.universe, oracle, cases):
+            tally.add(outcome, numbers[id(outcome.case)] if is_mutated else None)
+            if not is_mutated and len(session.cases) <= _MOST_SHOWN:
+                tally.shown.append(outcome)
+    return tally
+
+
+def _shares(cases: Sequence[Case]) -> list[tuple[int, ...]]:
+    """Deal out cases, the longest first: none is to be left with one of those at the end."""
+    shares: list[tuple[int, ...]] = []
+    share: list[int] = []
+    size = 0
+    for index in sorted(range(len(cases)), key=lambda i: (-len(cases[i].text), i)):
+        share.append(index)
+        size += len(cases[index].text)
+        if len(share) >= _MOST_CASES or size >= _MOST_CHARACTERS:
+            shares.append(tuple(share))
+            share, size = [], 0
+    return [*shares, tuple(share)] if share else shares

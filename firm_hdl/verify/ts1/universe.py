@@ -1,0 +1,161 @@
+"""All definitions of a run: for us as a library, for oracles as files in a folder."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from firm_hdl.errors import DefinitionError, Diagnostic, Source
+from firm_hdl.frontend import DISTROS, Library, show
+from firm_hdl.frontend.names import KINDS, Kind
+from firm_hdl.frontend.search import environment_origins
+from firm_hdl.frontend.sources import Definition, EmbeddedOrigin, FolderOrigin, Origin, Sources
+from firm_hdl.model import Dialect, Interface
+from firm_hdl.verify.ts1.case import Case
+
+__all__ = ["Universe", "write_definitions"]
+
+
+class Universe:
+    """The definitions of a distribution and of some folders.
+
+    Parameters
+    ----------
+    distro : str
+    paths : sequence of str
+        As for `Library`. What the environment names is searched, too, as by all commands.
+    folder : str
+        Where `write_definitions` has put the files, ``PACKAGE/msg|srv|action/FILE``.
+    """
+
+    def __init__(self, distro: str, paths: Sequence[str] = (), folder: str = "") -> None:
+        self._folders: list[Origin] = [FolderOrigin(path) for path in paths]
+        environment = environment_origins(DISTROS[distro].dialect, os.environ)
+        self._origins = [*self._folders, *environment, EmbeddedOrigin(distro)]
+        self._sources = Sources(self._origins)
+        self.library = Library(distro, origins=self._origins)
+        self.distro = distro
+        self.folder = folder
+
+    @property
+    def dialect(self) -> Dialect:
+        """Whose rules the definitions follow."""
+        return self.library.dialect
+
+    def select(self, types: Iterable[str]) -> list[Case]:
+        """List the definitions of some types.
+
+        If none is named, these are all that the folders have, or if there are no folders, all.
+
+        Raises
+        ------
+        DefinitionError
+            If a type is not there.
+        """
+        wanted = list(types)
+        if wanted:
+            return [self._selected(name) for name in wanted]
+        names = Sources(self._folders).names or self._sources.names
+        return [self._case(*name)[1] for name in sorted(names)]
+
+    def _selected(self, name: str) -> Case:
+        kinds = KINDS
+        match name.split("/"):
+            case [package, base]:
+                pass
+            case [package, "msg" | "srv" | "action" as kind, base]:
+                kinds = (kind,)
+            case _:
+                package = base = ""
+        for kind in kinds:
+            if (package, kind, base) in self._sources.names:
+                return self._case(package, kind, base)[1]
+        self.library.source(name)  # Says what is wrong with the name.
+        message = f"'{name}' has no definition of its own"
+        raise DefinitionError([Diagnostic(message=message)])
+
+    def message_case(self, package: str, name: str) -> Case | None:
+        """Give the definition of a message; `None` if there is none."""
+        if (package, "msg", name) not in self._sources.names:
+            return None
+        return self._case(package, "msg", name)[1]
+
+    def read_all(self) -> Iterator[tuple[Source, Case]]:
+        """Yield every definition with its source, whose name may be that of a file."""
+        for package, kind, name in sorted(self._sources.names):
+            yield self._case(package, kind, name)
+
+    def _case(self, package: str, kind: Kind, name: str) -> tuple[Source, Case]:
+        try:
+            found = self._sources.find(package, kind, name)
+            assert found is not None
+            source, language = found.source, found.language
+        except DefinitionError as error:
+            # A file that is no text: oracles are to say so, too.
+            source = _source_of(error)
+            language = "idl" if source.name.endswith(".idl") else kind
+        return source, Case(
+            dialect=self.dialect,
+            package=package,
+            kind=kind,
+            name=name,
+            language=language,
+            text=source.text,
+        )
+
+    def interface(self, case: Case) -> Interface:
+        """Read a definition as users do.
+
+        Raises
+        ------
+        DefinitionError
+            If it, or one that it depends on, is refused.
+        """
+        library = self.library
+        if case.is_changed:
+            library = Library(self.distro, origins=[_Changed(case), *self._origins])
+        return library.interface(case.spelled_name)
+
+    def show(self, case: Case) -> str:
+        """Print a definition as ``firm-hdl show`` does."""
+        library = self.library
+        if case.is_changed:
+            library = Library(self.distro, origins=[_Changed(case), *self._origins])
+        return show(library, case.spelled_name)
+
+
+class _Changed:
+    """An origin of one text."""
+
+    def __init__(self, case: Case) -> None:
+        self._case = case
+        self._key = case.package, case.kind, case.name
+
+    def names(self) -> Iterable[tuple[str, Kind, str]]:
+        return [self._key]
+
+    def find(self, package: str, kind: Kind, name: str) -> Definition | None:
+        if (package, kind, name) != self._key:
+            return None
+        source = Source(name=self._case.file, text=self._case.text)
+        return Definition(source=source, language=self._case.language)
+
+
+def write_definitions(universe: Universe) -> None:
+    """Put all definitions where oracles find them: files as links, other texts as files."""
+    for source, case in universe.read_all():
+        folder = Path(universe.folder, case.package, case.kind)
+        folder.mkdir(parents=True, exist_ok=True)
+        original = Path(source.name)
+        if original.is_file():
+            (folder / case.file).symlink_to(original.resolve())
+        else:
+            (folder / case.file).write_bytes(source.text.encode())
+
+
+def _source_of(error: DefinitionError) -> Source:
+    span = error.diagnostics[0].span
+    if span is None:
+        raise error
+    return span.source

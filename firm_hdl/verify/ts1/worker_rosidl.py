@@ -1,0 +1,228 @@
+"""The far end of `worker_script` for ROS 2.
+
+rosidl_adapter makes IDL of ``.msg``, ``.srv`` and ``.action``; rosidl_parser reads IDL.
+"""
+
+import ast
+import functools
+import os
+
+__all__ = ["readers"]
+
+
+def readers(folder):
+    """Load ROS 2's modules; return what answers requests, and which modules these are."""
+    import rosidl_adapter.parser
+    import rosidl_adapter.resource
+    import rosidl_parser.parser
+
+    reader = _Rosidl(rosidl_adapter, rosidl_parser, folder)
+    judges = {"rosidl_adapter": reader.adapter, "rosidl_parser": reader.parser}
+    return judges, tuple(judges)
+
+
+class _RefusedError(Exception):
+    pass
+
+
+class _Rosidl:
+    def __init__(self, rosidl_adapter, rosidl_parser, folder):
+        self.reader = rosidl_adapter.parser
+        self.evaluate = rosidl_adapter.resource.evaluate_template
+        self.parse_idl = rosidl_parser.parser.parse_idl_string
+        self.folder = folder
+        self.known = {}  # Message types by name: None, or why one cannot be used.
+        self.convert = functools.lru_cache(maxsize=512)(self._convert)
+
+    def adapter(self, request):
+        specs, _ = self._read(request)
+        self._check_needs(request, _needs(*specs.values()))
+        return {"structure": {name: _adapter_message(spec) for name, spec in specs.items()}}
+
+    def parser(self, request):
+        if request["file"].endswith(".idl"):
+            facts = _parsed(self.parse_idl(self._text(request)))
+            self._check_needs(request, _idl_needs(facts))
+        else:
+            specs, idl = self._read(request)
+            facts = _parsed(self.parse_idl(idl))
+            self._check_needs(request, _needs(*specs.values()))
+        return {"structure": facts}
+
+    def _read(self, request):
+        key = request["package"], request["kind"], request["name"], self._text(request)
+        return self.convert(*key)
+
+    def _text(self, request):
+        if request["text"] is not None:
+            # Text mode makes one line end of all.
+            return request["text"].replace("\r\n", "\n").replace("\r", "\n")
+        path = os.path.join(self.folder, request["package"], request["kind"], request["file"])
+        with open(path, encoding="utf-8") as lines:
+            return lines.read()
+
+    def _convert(self, package, kind, name, text):
+        """Read a text; return its messages by name, and the IDL that rosidl makes of it."""
+        if kind == "msg":
+            whole = self.reader.parse_message_string(package, name, text)
+            parts = {f"{package}/msg/{name}": whole}
+        elif kind == "srv":
+            whole = self.reader.parse_service_string(package, name, text)
+            parts = {f"_{each}": getattr(whole, each.lower()) for each in ("Request", "Response")}
+        else:
+            whole = self.reader.parse_action_string(package, name, text)
+            ends = "Goal", "Result", "Feedback"
+            parts = {f"_{each}": getattr(whole, each.lower()) for each in ends}
+        parts = {
+            (f"{package}/{kind}/{name}{end}" if end[0] == "_" else end): part
+            for end, part in parts.items()
+        }
+        data = {"pkg_name": package, "relative_input_file": f"{kind}/{name}.{kind}", kind: whole}
+        idl = self.evaluate(f"{kind}.idl.em", data)
+        # It is written in one encoding and read in another, which undoes what its literals do.
+        return parts, idl.encode("iso-8859-1").decode("utf-8")
+
+    def _check_needs(self, request, needs):
+        """Refuse what needs a type that is not there or is refused itself: C++ would."""
+        own = f"{request['package']}/msg/{request['name']}"
+        path = {own} if request["kind"] == "msg" else set()
+        for need in needs:
+            why = self._state(need, path)
+            if why is not None:
+                raise _RefusedError(why)
+
+    def _state(self, name, path):
+        if name in path:
+            return f"{name} contains itself"
+        if name not in self.known:
+            path.add(name)
+            self.known[name] = self._find_state(name, path)
+            path.discard(name)
+        return self.known[name]
+
+    def _find_state(self, name, path):
+        package, _, base = name.split("/")
+        for end in (".msg", ".idl"):
+            request = {"package": package, "kind": "msg", "file": base + end, "text": None}
+            try:
+                text = self._text(request)
+            except OSError:
+                continue
+            except ValueError as error:
+                return f"{name}: {error}"
+            try:
+                if end == ".idl":
+                    needs = _idl_needs(_parsed(self.parse_idl(text)))
+                else:
+                    needs = _needs(self.convert(package, "msg", base, text)[0][name])
+            except Exception as error:
+                return f"{name}: {type(error).__name__}: {error}"
+            for need in needs:
+                why = self._state(need, path)
+                if why is not None:
+                    return why
+            return None
+        return f"{name} is not there"
+
+
+def _idl_needs(messages):
+    types = [field["type"] for message in messages.values() for field in message["fields"]]
+    # Types of other folders are messages of services and actions, whose files we do not look for.
+    return [name for name in (each.partition("[")[0] for each in types) if "/msg/" in name]
+
+
+def _needs(*specs):
+    types = [field.type for spec in specs for field in spec.fields]
+    return [f"{each.pkg_name}/msg/{each.type}" for each in types if not each.is_primitive_type()]
+
+
+def _adapter_message(spec):
+    fields = []
+    for field in spec.fields:
+        entry = {"name": field.name, "type": _adapter_type(field.type), **_remarks(field)}
+        fields.append({**entry, "default": field.default_value})
+    constants = [
+        {"name": each.name, "type": each.type, "value": each.value, **_remarks(each)}
+        for each in spec.constants
+    ]
+    comment = "\n".join(spec.annotations.get("comment", []))
+    return {"fields": fields, "constants": constants, "comment": comment}
+
+
+def _remarks(element):
+    return {
+        "comment": "\n".join(element.annotations.get("comment", [])),
+        "unit": element.annotations.get("unit"),
+    }
+
+
+def _adapter_type(kind):
+    name = kind.type if kind.is_primitive_type() else f"{kind.pkg_name}/msg/{kind.type}"
+    if kind.string_upper_bound is not None:
+        name += f"<={kind.string_upper_bound}"
+    if not kind.is_array:
+        return name
+    at_most = "<=" if kind.is_upper_bound else ""
+    return f"{name}[{at_most}{'' if kind.array_size is None else kind.array_size}]"
+
+
+IDL_NAMES = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
+
+
+def _parsed(content):
+    """Describe what rosidl_parser made of a file: a message, a service or an action."""
+    (element,) = [each for each in content.elements if not hasattr(each, "locator")]
+    messages = []
+    if hasattr(element, "structure"):
+        messages = [element]
+    elif hasattr(element, "request_message"):
+        messages = [element.request_message, element.response_message]
+    else:
+        messages = [element.goal, element.result, element.feedback]
+        for service in (element.send_goal_service, element.get_result_service):
+            messages += [service.request_message, service.response_message]
+        messages.append(element.feedback_message)
+    return {_type(each.structure.namespaced_type): _parsed_message(each) for each in messages}
+
+
+def _parsed_message(message):
+    members = [
+        {"name": each.name, "type": _type(each.type), "default": _default(each)}
+        for each in message.structure.members
+        if each.name != "structure_needs_at_least_one_member"
+    ]
+    constants = []
+    for each in message.constants:
+        kind = type(each.type).__name__
+        # The bound of a constant text is its own length.
+        name = {"BoundedString": "string", "BoundedWString": "wstring"}.get(kind)
+        constants.append({"name": each.name, "type": name or _type(each.type), "value": each.value})
+    return {"fields": members, "constants": constants}
+
+
+def _type(kind):
+    form = type(kind).__name__
+    if form == "BasicType":
+        return IDL_NAMES.get(kind.typename, kind.typename)
+    if form == "NamespacedType":
+        return "/".join([*kind.namespaces, kind.name])
+    if form in ("UnboundedString", "UnboundedWString"):
+        return form.removeprefix("Unbounded").lower()
+    if form in ("BoundedString", "BoundedWString"):
+        return f"{form.removeprefix('Bounded').lower()}<={kind.maximum_size}"
+    if form == "Array":
+        return f"{_type(kind.value_type)}[{kind.size}]"
+    if form == "BoundedSequence":
+        return f"{_type(kind.value_type)}[<={kind.maximum_size}]"
+    if form == "UnboundedSequence":
+        return f"{_type(kind.value_type)}[]"
+    raise _RefusedError(f"{form} has no name in ROS")
+
+
+def _default(member):
+    if not member.has_annotation("default"):
+        return None
+    value = member.get_annotation_value("default")["value"]
+    # Lists are texts of Python's, which generators evaluate.
+    is_list = type(member.type).__name__ in ("Array", "BoundedSequence", "UnboundedSequence")
+    return list(ast.literal_eval(value)) if is_list and isinstance(value, str) else value

@@ -1,0 +1,89 @@
+"""ROS's own readers of definitions, behind lines of JSON.
+
+This file is run by the Python that ROS's modules are installed for, which is seldom the one that
+firm-hdl runs on, so it imports nothing of firm-hdl. It is started with the name of a family of
+oracles (``genmsg`` or ``rosidl``) and a folder of definitions, ``PACKAGE/msg|srv|action/FILE``,
+and says in its first line what it has. Then each line in is a request and gets a line out:
+
+    {"oracle": "genmsg", "package": "p", "kind": "msg", "name": "A", "file": "A.msg", "text": null}
+    {"facts": {...}} or {"refused": "why"} or {"failed": "why"}
+
+Facts are described in `firm_hdl.verify.ts1.facts`. A text that is given stands for the file's. It
+ends when its input does.
+"""
+
+import importlib
+import json
+import os
+import resource
+import signal
+import sys
+from importlib import metadata
+
+__all__ = ["main"]
+
+MOST_SECONDS = 60  # Of the processor's time: the machine may have other things to do.
+MOST_BYTES = 3 << 30
+
+
+def main():
+    """Answer requests until there are no more."""
+    # ROS's modules print, and templates replace sys.stdout: what is ours is out of their way.
+    answers = os.fdopen(os.dup(1), "w", encoding="ascii")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    os.dup2(1, 2)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Whoever started this ends it.
+    signal.signal(signal.SIGPROF, _too_slow)
+    resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
+    try:
+        family = importlib.import_module(f"worker_{sys.argv[1]}")
+        del sys.path[0]  # Our other modules have names that ROS may use, too.
+        judges, modules = family.readers(sys.argv[2])
+    except Exception as error:
+        _say(answers, {"missing": f"{type(error).__name__}: {error}"})
+        return
+    _say(answers, {"ready": sorted(judges), "versions": {name: _version(name) for name in modules}})
+    for line in sys.stdin:
+        request = json.loads(line)
+        _say(answers, _judge(judges[request["oracle"]], request))
+
+
+def _judge(judge, request):
+    signal.setitimer(signal.ITIMER_PROF, MOST_SECONDS)
+    try:
+        return {"facts": judge(request)}
+    except _TooSlowError:
+        return {"failed": f"it took over {MOST_SECONDS} s"}
+    except MemoryError:
+        return {"failed": f"it took over {MOST_BYTES >> 30} GiB"}
+    except RecursionError:
+        return {"refused": "RecursionError: it never ends"}
+    # Templates that fail call sys.exit.
+    except (Exception, SystemExit) as error:
+        return {"refused": f"{type(error).__name__}: {error}"[:1000]}
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+
+
+class _TooSlowError(BaseException):
+    pass
+
+
+def _too_slow(signum, frame):
+    raise _TooSlowError
+
+
+def _say(answers, value):
+    # `json` writes NaN and the infinities as the other end reads them.
+    print(json.dumps(value), file=answers, flush=True)
+
+
+def _version(name):
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return "?"
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,194 @@
+"""TS3 for the command: acceptance of types, with a bar, a table, and how to repeat what failed."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, closing
+from dataclasses import dataclass
+
+from tqdm import tqdm
+
+from firm_hdl.frontend import DISTROS
+from firm_hdl.verify.environment import environment
+from firm_hdl.verify.executors import PROCESSES
+from firm_hdl.verify.options import Options, Result
+from firm_hdl.verify.recorded import record_of, same_circuits, test_of
+from firm_hdl.verify.records import Record
+from firm_hdl.verify.results import ResultsWriter
+from firm_hdl.verify.runner import Task, run_tasks
+from firm_hdl.verify.simulators import simulator
+
+__all__ = ["How", "run_ts3"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class How:
+    """Where tests run, and where their results go.
+
+    Attributes
+    ----------
+    jobs : int or None
+        Processes; `None`: one per processor.
+    executor : str
+        See :func:`firm_hdl.verify.executors.run_each`.
+    results : str or None
+        File of results, which is continued if it is there.
+    share_circuits : bool
+        Whether types with the same circuit are simulated once.
+    """
+
+    jobs: int | None = None
+    executor: str = PROCESSES
+    results: str | None = None
+    share_circuits: bool = False
+
+
+def run_ts3(tasks: Sequence[Task], options: Sequence[Options], how: How | None = None) -> bool:
+    """Run tasks with each of some options, and print what became of them.
+
+    Returns
+    -------
+    bool
+        Whether nothing failed.
+
+    Raises
+    ------
+    SimulatorMissingError
+    ExecutorError
+    ResultsError
+    """
+    how = how or How()
+    for each in options:
+        # Before the first type is run, and once: not by each type.
+        simulator(each.simulator)
+    began = time.perf_counter()
+    with ExitStack() as stack:
+        writer = None
+        if how.results is not None:
+            writer = stack.enter_context(_writer(how, tasks, options))
+        failures = sum(_run(tasks, each, how, writer) for each in options)
+    print(f"{time.perf_counter() - began:.0f} s, {failures} failures")
+    return not failures
+
+
+def _writer(how: How, tasks: Sequence[Task], options: Sequence[Options]) -> ResultsWriter:
+    assert how.results is not None
+    first = options[0]
+    return ResultsWriter(
+        how.results,
+        options={
+            "systems": ["ts3"],
+            "simulator": first.simulator,
+            "bus_bytes": [each.bus_bytes for each in options],
+            "wire": first.wire,
+            "seed": first.seed,
+            "cases": first.most_cases,
+            "stalls": first.stalled,
+            "broken": first.broken,
+            "share_circuits": how.share_circuits,
+            "paths": list(first.paths),
+        },
+        planned=[test_of(task, each) for each in options for task in tasks],
+        session=environment(executor=how.executor),
+    )
+
+
+def _run(tasks: Sequence[Task], options: Options, how: How, writer: ResultsWriter | None) -> int:
+    """Run all tasks with one set of options; return the number of types that failed."""
+    before = {} if writer is None else writer.before.records
+    records = {task: before.get(test_of(task, options).key) for task in tasks}
+    left = [task for task, record in records.items() if record is None]
+    if len(left) < len(tasks):
+        print(f"{len(tasks) - len(left)} of {len(tasks)} types have a result in {how.results}")
+    same = same_circuits(tasks, options) if how.share_circuits else {}
+    results: list[Result] = []
+    bar = tqdm(
+        total=len(tasks),
+        initial=len(tasks) - len(left),
+        unit="type",
+        desc=f"{options.bus_bytes}-byte bus",
+        disable=None,
+    )
+    run = run_tasks(left, options, how.jobs, executor=how.executor, golden_only=same)
+    with bar, closing(run):
+        for task, result in run:
+            results.append(result)
+            other = same.get(task)
+            same_as = "" if other is None else test_of(other, options).key
+            records[task] = record = record_of(task, result, options, same_as)
+            if writer is not None:
+                writer.add(record)
+            for line in _said(task, result):
+                tqdm.write(line)
+            bar.update()
+    _count(records, options)
+    judged = [result for result in results if not result.not_judged]
+    _summarize([result for result in judged if result.simulated_cycles], options)
+    return sum(record is not None and record.status == "fail" for record in records.values())
+
+
+def _said(task: Task, result: Result) -> Iterator[str]:
+    if result.not_judged:
+        yield f"not judged: {task.name} ({task.distro}): {result.not_judged}"
+    if result.failures:
+        yield _describe(task, result)
+    if result.note:
+        yield f"note: {task.name} ({task.distro}): {result.note}"
+
+
+def _count(records: Mapping[Task, Record | None], options: Options) -> None:
+    """Print how many types of each distribution pass."""
+    known = {task: record for task, record in records.items() if record is not None}
+    failed = {record.test.key for record in known.values() if record.status == "fail"}
+    passed: Counter[str] = Counter()
+    total: Counter[str] = Counter()
+    for task, record in known.items():
+        if record.status != "skipped":
+            total.update(task.same)
+        if record.status == "pass" and record.same_as not in failed:
+            passed.update(task.same)
+    for distro in DISTROS:
+        if distro in total:
+            print(f"{distro:8} {passed[distro]:4} of {total[distro]:4} types pass", end="")
+            print(f" ({options.bus_bytes}-byte bus)")
+    if shared := sum(bool(record.same_as) for record in known.values()):
+        print(f"{shared} of {len(known)} types have the circuit of another, which was simulated")
+
+
+def _summarize(results: Sequence[Result], options: Options) -> None:
+    if not results:
+        return
+    seconds = sorted(result.seconds for result in results)
+    cycles = sum(result.simulated_cycles for result in results)
+    print(
+        f"{len(results)} different types, {sum(r.packets for r in results)} packets, "
+        f"{cycles} cycles; seconds per type: median {seconds[len(seconds) // 2]:.2f}, "
+        f"most {seconds[-1]:.1f}, {sum(seconds):.0f} in total"
+    )
+    slowest = sorted(results, key=lambda result: -result.seconds)[:5]
+    print("slowest:", ", ".join(f"{each.name} {each.seconds:.1f} s" for each in slowest))
+    compared = [result.comparison for result in results if result.comparison is not None]
+    if compared:
+        same = sum(not each.failures for each in compared)
+        print(
+            f"{options.simulator}: {same} of {len(compared)} types the same in every cycle; "
+            f"{sum(each.cycles for each in compared)} cycles, "
+            f"{sum(each.packets for each in compared)} packets, "
+            f"{sum(each.transfers for each in compared)} leaf transfers and "
+            f"{sum(each.statuses for each in compared)} statuses seen there, "
+            f"in {sum(each.seconds for each in compared):.0f} s"
+        )
+
+
+def _describe(task: Task, result: Result) -> str:
+    lines = [f"FAIL {task.name} ({', '.join(task.same)})"]
+    lines += [f"    {_clip(failure)}" for failure in result.failures[:8]]
+    if len(result.failures) > 8:
+        lines.append(f"    and {len(result.failures) - 8} more")
+    return "\n".join([*lines, f"    again: {result.command}"])
+
+
+def _clip(text: str, most: int = 600) -> str:
+    return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"

@@ -1,0 +1,102 @@
+"""Generated benches of many types, run in GHDL and compared with rosbags."""
+
+from __future__ import annotations
+
+import pytest
+
+import firm_hdl.verify.benches as benches
+from firm_hdl.export.vhdl_bench import RUN_SCRIPT
+from firm_hdl.verify.benches import BenchRun, run_bench, run_benches
+from firm_hdl.verify.runner import collect_tasks
+from tests.verify.samples import own_package
+
+HEADER = "std_msgs/msg/Header"
+
+# Those of tests/export/test_vhdl_bench.py have no loops and no arrays but of floats.
+SAMPLE = [
+    # Two levels of loops over strings.
+    ("lyrical", "diagnostic_msgs/msg/DiagnosticArray", 8),
+    # Sequences of every kind, `bool` and `byte` among them.
+    ("lyrical", "rcl_interfaces/msg/ParameterValue", 8),
+    # Runs of a constant length in a loop, and structures in another.
+    ("noetic", "shape_msgs/Mesh", 8),
+    # A leaf without bytes among others.
+    ("noetic", "nav_msgs/GetMapActionGoal", 8),
+    # Bounds, and strings of one character a lane.
+    ("lyrical", "shape_msgs/msg/SolidPrimitive", 2),
+]
+
+
+@pytest.mark.parametrize(("distro", "name", "bus_bytes"), SAMPLE)
+def test_bench_passes_with_the_bytes_and_transfers_of_rosbags(ghdl, distro, name, bus_bytes):
+    result = run_bench(distro, name, BenchRun(bus_bytes=bus_bytes, ghdl=ghdl))
+    assert (result.failure, result.not_judged) == ("", "")
+    assert result.packets >= 3 and result.transfers >= result.packets
+
+
+@pytest.mark.parametrize("name", ["own_msgs/msg/Deep", "own_msgs/srv/Ask_Response"])
+def test_types_of_ones_own_pass_as_well(ghdl, tmp_path, name):
+    run = BenchRun(paths=(str(own_package(tmp_path)),), ghdl=ghdl)
+    result = run_bench("lyrical", name, run)
+    assert (result.failure, result.not_judged) == ("", "")
+    assert result.packets
+
+
+def test_type_without_packets_is_not_judged(ghdl, tmp_path):
+    own_package(tmp_path)
+    (tmp_path / "own_msgs" / "msg" / "Wide.msg").write_text("wstring[] text\n")
+    result = run_bench("lyrical", "own_msgs/msg/Wide", BenchRun(paths=(str(tmp_path),), ghdl=ghdl))
+    assert result.failure == ""
+    assert result.not_judged == "rosbags has no wstring, which own_msgs/msg/Wide.text is"
+
+
+FALSIFY = "trap 'sed -i s/00/01/ results.txt' EXIT"
+
+
+def change(monkeypatch, file: str, before: str, after: str) -> None:
+    """Have the first `before` in one of the written files changed."""
+    build = benches.build
+
+    def built(names, folder, **options):
+        done = build(names, folder, **options)
+        paths = list(done[0].folder.rglob(f"*{file}"))
+        assert len(paths) == 1
+        text = paths[0].read_text()
+        assert before in text
+        paths[0].write_text(text.replace(before, after, 1))
+        return done
+
+    monkeypatch.setattr(benches, "build", built)
+
+
+@pytest.mark.parametrize(
+    ("file", "before", "after", "said"),
+    [
+        # A warning of GHDL; an error of it; a bench that fails; bytes, and transfers, that differ.
+        ("_tb.vhd", "\nbegin\n", "\n  signal unused : bit;\nbegin\n", "unused"),
+        ("_deserializer.vhd", "architecture", "architektur", "_deserializer.vhd:"),
+        ("_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ", "FAIL packet 0"),
+        (RUN_SCRIPT, 'exec "$ghdl"', f'{FALSIFY}\n"$ghdl"', "packets that came out: number"),
+        ("_tb.vhd", "stamp.sec.data)", "stamp.nanosec.data)", "transfers of stamp.sec: number 1"),
+        (RUN_SCRIPT, 'exec "$ghdl"', 'echo nothing; exit 0\nexec "$ghdl"', "nothing"),
+    ],
+)
+def test_what_is_wrong_is_found(ghdl, monkeypatch, file, before, after, said):
+    change(monkeypatch, file, before, after)
+    result = run_bench("lyrical", HEADER, BenchRun(ghdl=ghdl))
+    assert said in result.failure
+    assert not result.packets
+
+
+def test_table_and_status_say_what_failed_and_how_to_repeat(ghdl, monkeypatch, capsys):
+    tasks = collect_tasks(["lyrical"], ["std_msgs/msg/Bool"])
+    assert run_benches(tasks, jobs=1)
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert rows[0][:4] == ["8-byte", "bus", "types", "pass"]
+    assert rows[1][:5] == ["lyrical", "1", "1", "0", "0"]
+    change(monkeypatch, "_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ")
+    assert not run_benches(tasks, wire="ros1", widths=[4], jobs=1)
+    said = capsys.readouterr().out
+    assert "FAIL std_msgs/msg/Bool (lyrical)\n" in said
+    again = "firm-hdl verify --systems bench --distro lyrical --wire ros1 --bus-bytes 4"
+    assert f"again: {again} std_msgs/msg/Bool\n" in said

@@ -1,0 +1,106 @@
+"""``firm-hdl verify``: what it takes, what it prints, and its exit status."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+import firm_hdl.verify.command as command
+from firm_hdl.cli import main
+from firm_hdl.verify.__main__ import main as alias
+from tests.verify.samples import own_package
+
+BOOL = ["--distro", "lyrical", "--jobs", "1", "--cases", "2", "std_msgs/msg/Bool"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([], "name types, or all of them with --all"),
+        (["--all", "std_msgs/msg/Bool"], "name types, or all of them with --all"),
+        (["--all", "--systems", "ts3,ts4"], "no test system 'ts4'; there are ts1, ts3, bench"),
+        (["--all", "--jobs", "0"], "must be at least 1, not 0"),
+        (["--all", "--cases", "few"], "'few' is not a number"),
+        (["--all", "--simulator", "abacus"], "invalid choice: 'abacus'"),
+    ],
+)
+def test_wrong_calls_are_refused(capsys, arguments, said):
+    with pytest.raises(SystemExit) as left:
+        main(["verify", *arguments])
+    assert left.value.code == 2
+    assert said in capsys.readouterr().err
+
+
+def test_type_passes_and_the_cross_check_is_counted(ghdl, capsys):
+    assert main(["verify", *BOOL, "--simulator", "ghdl"]) == 0
+    said = capsys.readouterr().out
+    assert "lyrical     1 of    1 types pass (8-byte bus)\n" in said
+    assert "ghdl: 1 of 1 types the same in every cycle; " in said
+
+
+@pytest.mark.parametrize("arguments", [["--simulator", "ghdl"], ["--systems", "bench"]])
+def test_missing_ghdl_is_an_error_without_a_traceback(capsys, monkeypatch, tmp_path, arguments):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("GHDL", raising=False)
+    assert main(["verify", *BOOL, *arguments]) == 1
+    said = capsys.readouterr()
+    assert said.err == "error: GHDL is not installed (Debian, Ubuntu: apt install ghdl-mcode)\n"
+    assert said.out == ""
+
+
+def test_unknown_types_and_folders_are_errors(capsys, tmp_path):
+    assert main(["verify", "no_msgs/Such"]) == 1
+    assert capsys.readouterr().err == "error: No distribution has no_msgs/msg/Such\n"
+    own_package(tmp_path)
+    assert main(["verify", "own_msgs/msg/Such", "--path", str(tmp_path)]) == 1
+    assert capsys.readouterr().err.startswith("error: type 'Such' is not defined in package")
+    assert main(["verify", "--all", "--path", str(tmp_path / "none")]) == 1
+    assert capsys.readouterr().err == f"error: '{tmp_path / 'none'}' is not a folder\n"
+
+
+def test_all_with_a_folder_is_all_in_the_folder(capsys, tmp_path, monkeypatch):
+    own_package(tmp_path)
+    (tmp_path / "own_msgs" / "msg" / "Wide.msg").write_text("wstring text\n")
+    arguments = ["verify", "--all", "--path", str(tmp_path), "--cases", "1", "--jobs", "1"]
+    assert main([*arguments, "--no-stalls", "--no-broken"]) == 0
+    said = capsys.readouterr()
+    wide = "rosbags has no wstring, which own_msgs/msg/Wide.text is"
+    assert f"not judged: own_msgs/msg/Wide (lyrical): {wide}\n" in said.out
+    # Four messages; request, response and event of a service; and one that is not judged.
+    assert "lyrical     7 of    7 types pass (8-byte bus)\n1 of 8 types not judged\n" in said.out
+
+
+def test_every_system_runs_whatever_comes_of_the_first(monkeypatch):
+    ran = []
+
+    def system(name, is_well):
+        return lambda given: ran.append(name) or is_well
+
+    monkeypatch.setattr(command, "SYSTEMS", {"ts1": system("ts1", False), "ts3": system("ts3", 1)})
+    assert main(["verify", "--all", "--systems", "ts1,ts3"]) == 1
+    assert main(["verify", "--all", "--systems", "ts3"]) == 0
+    # The module is the same, and takes all types by itself.
+    assert alias(["--systems", "ts3"]) == 0
+    assert ran == ["ts1", "ts3", "ts3", "ts3"]
+
+
+def test_interruption_has_a_status_of_its_own(monkeypatch, capsys):
+    def interrupted(given):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(command, "SYSTEMS", {"ts3": interrupted})
+    assert main(["verify", "--all"]) == 130
+    assert alias([]) == 130
+    assert capsys.readouterr().err == "interrupted\n" * 2
+
+
+def test_module_runs():
+    done = subprocess.run(
+        [sys.executable, "-m", "firm_hdl.verify", "--help"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert "--simulator" in done.stdout

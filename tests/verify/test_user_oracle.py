@@ -1,0 +1,60 @@
+"""rosbags as the judge of types of one's own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from firm_hdl import load_message
+from firm_hdl.frontend import Library
+from firm_hdl.model import Message
+from firm_hdl.verify.oracle import distro_oracle
+from firm_hdl.verify.user_oracle import NotJudgedError, judge_of, oracle_name
+
+
+def own(folder: Path, text: str, distro: str = "lyrical", name: str = "Own") -> Message:
+    """Load a type of a package of its own."""
+    (folder / "own_msgs" / "msg").mkdir(parents=True, exist_ok=True)
+    (folder / "own_msgs" / "msg" / f"{name}.msg").write_text(text)
+    return load_message(f"own_msgs/{name}", distro=distro, paths=[folder])
+
+
+@pytest.mark.parametrize("distro", ["noetic", "foxy", "lyrical"])
+def test_structure_is_that_of_the_distribution(distro):
+    library = Library(distro)
+    for name in library.names()[::5]:
+        judge = judge_of(library.message(name))
+        right = distro_oracle(distro)
+        assert judge.oracle.structure(judge.name) == right.structure(judge.name)
+        assert judge.note == ""
+        assert judge_of(library.message(name), distro).oracle is right
+
+
+def test_names_are_those_of_rosbags(tmp_path):
+    assert oracle_name(load_message("std_msgs/Header", distro="noetic")) == "std_msgs/msg/Header"
+    assert oracle_name(load_message("std_msgs/msg/Header")) == "std_msgs/msg/Header"
+
+
+def test_wide_strings_are_not_judged(tmp_path):
+    message = own(tmp_path, "Inner[2] inner\n") if own(
+        tmp_path, "wstring<=3[] text\n", name="Inner"
+    ) else None
+    assert message is not None
+    with pytest.raises(
+        NotJudgedError, match=r"^rosbags has no wstring, which own_msgs/msg/Inner\.text is$"
+    ):
+        judge_of(message)
+
+
+def test_definition_that_rosbags_reads_in_another_way_is_noted(tmp_path):
+    # To rosbags the second line is a field, and not a constant.
+    message = own(tmp_path, "uint8 a\nuint8 b=1\n", distro="noetic")
+    judge = judge_of(message)
+    assert [name for name, _ in judge.oracle.fields(judge.name)] == ["a"]
+    assert judge.note.endswith("and was given the fields as they were resolved")
+
+
+def test_definition_that_rosbags_reads_alike_has_no_note(tmp_path):
+    message = own(tmp_path, "uint8 B=1\nHeader head\ntime[] times\nstring s # text\n", "noetic")
+    assert judge_of(message).note == ""

@@ -1,0 +1,99 @@
+"""Facts of a model, and how two of them are compared."""
+
+from __future__ import annotations
+
+from firm_hdl.frontend import load_message
+from firm_hdl.verify.ts1.facts import differences, structure
+from tests.frontend.workspace import make_files
+
+TEXT = """# Head.
+int32 LOW = -3  # lowest
+string<=5[<=3] names ["a", "b"]
+# Speed [m/s].
+float64[2] speed [1.5, .5]
+char c
+std_msgs/Header header
+"""
+
+
+def model(tmp_path, text=TEXT):
+    make_files(tmp_path, {"p/msg/A.msg": text})
+    return load_message("p/msg/A", paths=[tmp_path])
+
+
+def test_facts_say_all_that_a_definition_says(tmp_path):
+    plain = {"default": None, "comment": "", "unit": None}
+    facts = structure(model(tmp_path))["p/msg/A"]
+    assert facts["comment"] == "Head."
+    assert facts["constants"] == [
+        {
+            "name": "LOW",
+            "type": "int32",
+            "value": -3,
+            "text": "-3",
+            "comment": "lowest",
+            "unit": None,
+        }
+    ]
+    assert facts["fields"] == [
+        {**plain, "name": "names", "type": "string<=5[<=3]", "default": ["a", "b"]},
+        {
+            "name": "speed",
+            "type": "float64[2]",
+            "default": [1.5, 0.5],
+            "comment": "Speed.",
+            "unit": "m/s",
+        },
+        {**plain, "name": "c", "type": "char"},
+        {**plain, "name": "header", "type": "std_msgs/msg/Header"},
+    ]
+
+
+def test_primitives_that_an_oracle_cannot_tell_apart_are_one(tmp_path):
+    fields = structure(model(tmp_path), {"char": "uint8"})["p/msg/A"]["fields"]
+    assert fields[2]["type"] == "uint8"
+
+
+def test_equal_facts_have_no_differences(tmp_path):
+    facts = structure(model(tmp_path))
+    assert list(differences(facts, facts)) == []
+
+
+def test_differences_are_listed_by_path(tmp_path):
+    ours = structure(model(tmp_path))
+    changed = TEXT.replace("-3", "-4").replace("<=5", "<=6").replace("1.5", "1.25")
+    theirs = structure(model(tmp_path, changed))
+    assert [str(each) for each in differences(ours, theirs)] == [
+        "p/msg/A/fields/names/type: firm-hdl 'string<=5[<=3]'; oracle 'string<=6[<=3]'",
+        "p/msg/A/fields/speed/default: firm-hdl [1.5, 0.5]; oracle [1.25, 0.5]",
+        "p/msg/A/constants/LOW/value: firm-hdl -3; oracle -4",
+        "p/msg/A/constants/LOW/text: firm-hdl '-3'; oracle '-4'",
+    ]
+
+
+def test_another_set_or_order_of_fields_is_one_difference(tmp_path):
+    ours = structure(model(tmp_path, "int8 a\nint8 b"))
+    for text, listed in [("int8 a", "['a']"), ("int8 b\nint8 a", "['b', 'a']")]:
+        theirs = structure(model(tmp_path, text))
+        assert [str(each) for each in differences(ours, theirs)] == [
+            f"p/msg/A/fields: firm-hdl ['a', 'b']; oracle {listed}"
+        ]
+
+
+def test_what_we_do_not_have_is_a_difference_and_what_the_oracle_does_not_say_is_none():
+    assert [str(each) for each in differences({"a": 1}, {"b": 2})] == [
+        "b: firm-hdl has none; oracle 2"
+    ]
+    assert list(differences({"a": 1, "b": 2}, {"b": 2})) == []
+
+
+def test_values_are_compared_with_their_types_and_signs():
+    nan = float("nan")
+    assert list(differences(nan, nan)) == []
+    for ours, theirs in [(1, True), (1, 1.0), (0.0, -0.0), ("1", 1), (None, 0), ([], "")]:
+        assert len(list(differences(ours, theirs))) == 1, (ours, theirs)
+
+
+def test_long_values_are_shortened():
+    (difference,) = differences("x" * 5000, "y")
+    assert len(str(difference)) < 400

@@ -1,0 +1,186 @@
+"""Verdicts. A front end that errs must be caught: each way of erring is tried here."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.model import Primitive, Sequence, Text
+from firm_hdl.verify.ts1 import judge as judging
+from firm_hdl.verify.ts1.judge import compare, judge
+from firm_hdl.verify.ts1.oracle import Accepted, NotJudged, Refused
+
+GOOD = {
+    "p/msg/A.msg": "int8 LOW=-1\nstring<=8 name\nuint16[<=4] codes\nB b\n",
+    "p/msg/B.msg": "float64[3] x\n",
+}
+ROS1 = {"p/msg/A.msg": "int8 LOW=-1\nstring name\nuint16[] codes\nB b\n", "p/msg/B.msg": "int8 x\n"}
+
+
+class Fake:
+    """An oracle that says what it is told to."""
+
+    name = "genmsg"
+
+    def alike(self, case):
+        return {}
+
+
+def verdict(court, ours, answer):
+    case = court("noetic", ROS1).universe.select(["p/A"])[0]
+    return compare(Fake(), case, ours, answer)
+
+
+def refusal():
+    return DefinitionError([Diagnostic(message="it is wrong")])
+
+
+def test_both_refuse(court):
+    outcome = verdict(court, refusal(), Refused("no"))
+    assert (outcome.verdict, outcome.is_refused) == ("agrees", True)
+
+
+def test_only_we_refuse(court):
+    outcome = verdict(court, refusal(), Accepted({}))
+    assert outcome.verdict == "differs"
+    assert outcome.details == ("verdict: firm-hdl refuses: it is wrong; oracle accepts",)
+
+
+def test_only_the_oracle_refuses(court):
+    model = court("noetic", ROS1).universe.library.message("p/A")
+    outcome = verdict(court, model, Refused("no"))
+    assert outcome.details == ("verdict: firm-hdl accepts; oracle refuses: no",)
+
+
+@pytest.mark.parametrize("answer", [Refused("no"), Accepted({})])
+def test_an_exception_that_is_no_refusal_is_a_difference(court, answer):
+    outcome = verdict(court, RecursionError("deep"), answer)
+    assert outcome.details == ("verdict: firm-hdl raised RecursionError: deep",)
+
+
+def test_what_is_not_judged_is_neither(court):
+    outcome = verdict(court, refusal(), NotJudged("it slept"))
+    assert (outcome.verdict, outcome.details) == ("not judged", ("it slept",))
+
+
+def test_a_part_that_we_cannot_compute_is_a_difference(court):
+    model = court("lyrical", GOOD).universe.library.message("p/A")
+    outcome = compare(Fake(), None, model, Accepted({"md5": {model.name: "0"}}))
+    assert "raises ValueError" in outcome.details[0]
+
+
+MISTAKES = {
+    "a field is dropped": lambda m: replace(m, fields=m.fields[:-1]),
+    "two fields are swapped": lambda m: replace(m, fields=m.fields[::-1]),
+    "a field has another name": lambda m: _with(m, 0, name="nam"),
+    "a text has another bound": lambda m: _with(m, 0, type=Text(bound=9)),
+    "a text has no bound": lambda m: _with(m, 0, type=Text()),
+    "a sequence has another bound": lambda m: _with(m, 1, type=Sequence(element=_u16(m), bound=5)),
+    "a sequence has a wider element": lambda m: _with(
+        m, 1, type=Sequence(element=replace(_u16(m), name="uint32"), bound=4)
+    ),
+    "another message is meant": lambda m: _with(m, 2, type=replace(m.fields[2].type, name="q/B")),
+    "a default is invented": lambda m: _with(m, 0, default="x"),
+    "a constant is dropped": lambda m: replace(m, constants=()),
+    "a constant has another value": lambda m: replace(
+        m, constants=(replace(m.constants[0], value=1),)
+    ),
+}
+
+
+def _u16(message) -> Primitive:
+    return message.fields[1].type.element
+
+
+def _with(message, index, **changes):
+    fields = list(message.fields)
+    fields[index] = replace(fields[index], **changes)
+    return replace(message, fields=tuple(fields))
+
+
+@pytest.mark.parametrize("oracle", ["rosidl_adapter", "rosidl_parser", "rosbags", "genmsg"])
+def test_every_mistake_is_caught(court, oracle, monkeypatch):
+    is_ros1 = oracle == "genmsg"
+    here = court("noetic", ROS1) if is_ros1 else court("lyrical", GOOD)
+    case = here.universe.select(["p/A"])[0]
+    (answer,) = here.oracle(oracle).judge([case])
+    model = here.universe.library.message("p/A")
+
+    def outcome(ours):
+        return compare(here.oracle(oracle), case, ours, answer, here.universe.show)
+
+    assert outcome(model).verdict == "agrees"
+    missed = {name for name, spoil in MISTAKES.items() if outcome(spoil(model)).verdict == "agrees"}
+    if is_ros1:  # It has neither bounds nor defaults to get wrong.
+        assert "a field is dropped" not in missed and "a constant has another value" not in missed
+        missed -= {name for name in missed if "bound" in name or "default" in name}
+    if oracle == "rosbags":
+        missed -= {"a default is invented"}  # It does not keep any.
+    assert missed == set()
+
+
+def test_sums_and_hashes_catch_mistakes_by_themselves(court):
+    for distro, files, oracle, part in [
+        ("noetic", ROS1, "genmsg", "md5"),
+        ("lyrical", GOOD, "rosbags", "hash"),
+    ]:
+        here = court(distro, files)
+        facts = here.answer(oracle, "p/A").facts
+        model = here.universe.library.message("p/A")
+        only = Accepted({part: facts[part]})
+        assert compare(Fake(), None, model, only).verdict == "agrees"
+        assert compare(Fake(), None, replace(model, fields=()), only).verdict == "differs"
+
+
+def _spoil(monkeypatch, mistake):
+    read = judging.read
+    monkeypatch.setattr(judging, "read", lambda universe, case: mistake(read(universe, case)))
+
+
+WRONG = {
+    "lyrical": [
+        "int32 Bad\n",
+        "int32 a__b\n",
+        "int32 a_\n",
+        "Bad a\n",
+        "int32[0] a\n",
+        "int8 A=128\n",
+    ],
+    "noetic": ["int32 a-b\n", "Bad a\n", "int8 A=128\n", "int8 a\nint8 a\n", "int8[][] a\n"],
+}
+
+
+@pytest.mark.parametrize(
+    ("distro", "oracle", "text"),
+    [
+        (distro, oracle, text)
+        for distro, oracle in [("lyrical", "rosidl_adapter"), ("noetic", "genmsg")]
+        for text in WRONG[distro]
+    ],
+)
+def test_a_front_end_that_accepts_too_much_is_caught(court, distro, oracle, text, monkeypatch):
+    here = court(distro, {"p/msg/A.msg": text, "p/msg/Good.msg": "int8 x\n"})
+    outcome = here.outcome(oracle, "p/A")
+    assert (outcome.verdict, outcome.is_refused) == ("agrees", True)
+    good = here.universe.library.message("p/Good")
+    monkeypatch.setattr(judging, "read", lambda universe, case: good)
+    outcome = here.outcome(oracle, "p/A")
+    assert outcome.verdict == "differs" and "firm-hdl accepts" in outcome.details[0]
+
+
+@pytest.mark.parametrize(
+    ("distro", "oracle"), [("lyrical", "rosidl_adapter"), ("noetic", "genmsg")]
+)
+def test_a_front_end_that_accepts_too_little_is_caught(court, distro, oracle, monkeypatch):
+    here = court(distro, {"p/msg/A.msg": "int8 x\n"})
+    monkeypatch.setattr(judging, "read", lambda universe, case: refusal())
+    outcome = here.outcome(oracle, "p/A")
+    assert outcome.verdict == "differs" and "oracle accepts" in outcome.details[0]
+
+
+def test_only_languages_that_an_oracle_reads_are_put_before_it(court):
+    here = court("lyrical", {"p/srv/S.srv": "---\n"})
+    cases = here.universe.select(["p/srv/S"])
+    assert list(judge(here.universe, here.oracle("rosbags"), cases)) == []

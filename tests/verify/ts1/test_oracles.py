@@ -1,0 +1,206 @@
+"""What each oracle says of small definitions, and what becomes of those that it stumbles over."""
+
+from __future__ import annotations
+
+import os
+import signal
+import stat
+
+import pytest
+
+from firm_hdl.verify.ts1.debian import Genmsg
+from firm_hdl.verify.ts1.oracle import Accepted, NotJudged, Refused
+from firm_hdl.verify.ts1.worker import Worker
+from tests.verify.ts1.conftest import need
+
+FILES = {
+    "p/msg/A.msg": "int8 N=010\nq/B[2] bs\nHeader header\nHeader[] headers\n",
+    "p/msg/Header.msg": "string x\n",
+    "p/srv/S.srv": "int8 a\n---\nq/B b\n",
+    "p/action/Do.action": "int8 g\n---\n---\nq/B f\n",
+    "q/msg/B.msg": "float32 x\n",
+}
+
+
+def test_genmsg_gives_structure_text_and_sum(court):
+    answer = court("noetic", FILES).answer("genmsg", "p/A")
+    assert isinstance(answer, Accepted)
+    message = answer.facts["structure"]["p/A"]
+    assert message["constants"] == [{"name": "N", "type": "int8", "value": 10, "text": "010"}]
+    assert message["fields"] == [
+        {"name": "bs", "type": "q/B[2]"},
+        {"name": "header", "type": "std_msgs/Header"},
+        {"name": "headers", "type": "p/Header[]"},
+    ]
+    assert answer.facts["show"].splitlines()[:3] == ["int8 N=010", "q/B[2] bs", "  float32 x"]
+    assert len(answer.facts["md5"]["p/A"]) == 32
+
+
+@pytest.mark.parametrize("type_", ["p/A", "p/S", "p/Do"])
+def test_genmsg_and_we_agree(court, type_):
+    assert court("noetic", FILES).outcome("genmsg", type_).verdict == "agrees"
+
+
+def test_messages_of_ros1_may_name_those_of_actions(court):
+    files = FILES | {"r/msg/M.msg": "p/DoGoal goal\np/DoActionFeedback feedback\n"}
+    outcome = court("noetic", files).outcome("genmsg", "r/M")
+    assert (outcome.verdict, outcome.is_refused) == ("agrees", False)
+
+
+ROS2 = FILES | {
+    "p/msg/A.msg": 'string<=5[<=3] names ["a", "b"]  # Names [m].\nint8 N=0x10\nq/B[] bs\n'
+}
+
+
+def test_rosidl_adapter_gives_structure_defaults_and_comments(court):
+    answer = court("lyrical", ROS2).answer("rosidl_adapter", "p/A")
+    assert answer.facts["structure"]["p/msg/A"] == {
+        "comment": "",
+        "constants": [{"name": "N", "type": "int8", "value": 16, "comment": "", "unit": None}],
+        "fields": [
+            {
+                "name": "names",
+                "type": "string<=5[<=3]",
+                "default": ["a", "b"],
+                "comment": "Names.",
+                "unit": "m",
+            },
+            {"name": "bs", "type": "q/msg/B[]", "default": None, "comment": "", "unit": None},
+        ],
+    }
+
+
+def test_rosidl_parser_gives_derived_messages_too(court):
+    facts = court("lyrical", ROS2).answer("rosidl_parser", "p/Do").facts["structure"]
+    assert list(facts)[:3] == ["p/action/Do_Goal", "p/action/Do_Result", "p/action/Do_Feedback"]
+    assert "p/action/Do_SendGoal_Request" in facts and "p/action/Do_FeedbackMessage" in facts
+
+
+@pytest.mark.parametrize("oracle", ["rosidl_adapter", "rosidl_parser"])
+@pytest.mark.parametrize("type_", ["p/A", "p/S", "p/Do", "q/B"])
+def test_rosidl_and_we_agree(court, oracle, type_):
+    assert court("lyrical", ROS2).outcome(oracle, type_).verdict == "agrees"
+
+
+@pytest.mark.parametrize(
+    ("distro", "oracle"),
+    [("noetic", "genmsg"), ("lyrical", "rosidl_adapter"), ("lyrical", "rosbags")],
+)
+def test_a_type_that_is_nowhere_is_refused(court, distro, oracle):
+    files = {"p/msg/A.msg": "B b\n", "p/msg/B.msg": "C[] c\n"}
+    here = court(distro, files)
+    for type_ in ("p/A", "p/B"):
+        assert isinstance(here.answer(oracle, type_), Refused)
+        assert here.outcome(oracle, type_).is_refused
+
+
+@pytest.mark.parametrize(
+    ("distro", "oracle"), [("noetic", "genmsg"), ("lyrical", "rosidl_adapter")]
+)
+def test_a_type_that_contains_itself_is_refused_by_both(court, distro, oracle):
+    here = court(distro, {"p/msg/A.msg": "B b\n", "p/msg/B.msg": "A[] a\n"})
+    assert here.outcome(oracle, "p/A").is_refused
+
+
+@pytest.mark.parametrize(
+    ("distro", "oracle"), [("noetic", "genmsg"), ("lyrical", "rosidl_adapter")]
+)
+def test_a_file_that_is_no_text_is_refused_by_both(court, distro, oracle, tmp_path):
+    folder = tmp_path / "0" / "src" / "p" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "A.msg").write_bytes(b"int8 x # \xff\n")
+    assert court(distro, {}).outcome(oracle, "p/A").is_refused
+
+
+def test_rosbags_gives_structure_and_hash(court):
+    facts = court("lyrical", ROS2).answer("rosbags", "q/B").facts
+    assert facts["structure"]["q/msg/B"]["fields"] == [{"name": "x", "type": "float32"}]
+    assert facts["hash"]["q/msg/B"].startswith("RIHS01_")
+
+
+def worker(court, distro, family):
+    found = Worker(family, court(distro, FILES).universe.folder)
+    need(family, found.missing)
+    return found
+
+
+def request(**changes):
+    asked = {"oracle": "genmsg", "package": "q", "kind": "msg", "name": "B", "file": "B.msg"}
+    return {**asked, "text": None, **changes}
+
+
+def test_a_worker_that_dies_is_replaced(court):
+    mine = worker(court, "noetic", "genmsg")
+    assert "facts" in mine.ask(request())
+    os.kill(mine._process.pid, signal.SIGKILL)
+    assert mine.ask(request()) == {"failed": "the process that was asked died"}
+    assert "facts" in mine.ask(request())
+    mine.close()
+
+
+def test_a_worker_ends_when_it_is_closed_and_may_be_asked_again(court):
+    mine = worker(court, "noetic", "genmsg")
+    process = mine._process
+    mine.close()
+    assert process.returncode == 0
+    assert "facts" in mine.ask(request())
+    mine.close()
+
+
+def test_whatever_a_definition_is_the_worker_answers(court):
+    mine = worker(court, "lyrical", "rosidl")
+    for text in ["\0", "string X='\\", "]", "int8[", "x" * 100_000, "#" * 5000, "\ud800", "@{x}\n"]:
+        answer = mine.ask(request(oracle="rosidl_parser", text=text))
+        assert set(answer) < {"facts", "refused", "failed"}, text
+    assert "facts" in mine.ask(request(oracle="rosidl_parser"))
+    mine.close()
+
+
+@pytest.mark.parametrize("python", ["/nowhere/python", "/bin/false", "/bin/cat"])
+def test_a_python_that_has_not_what_is_needed(tmp_path, python):
+    assert Worker("genmsg", str(tmp_path), python).missing
+
+
+def test_what_a_worker_says_is_an_answer(court):
+    class Told(Genmsg):
+        _worker = type("W", (), {"ask": lambda self, request: {"failed": "too slow"}})()
+
+    here = court("noetic", FILES)
+    (answer,) = Told(here.universe).judge(here.universe.select(["q/B"]))
+    assert answer == NotJudged("too slow")
+
+
+ROS2_COMMAND = """#!/bin/sh
+case "$1 $2 $3" in
+  "interface proto q/msg/B") printf '"x: 0.0\\n"\\n' ;;
+  "interface proto p/msg/Header") printf '"y: 0\\n"\\n' ;;
+  *) echo "Traceback" >&2; echo "Unknown package 'p'" >&2; exit 1 ;;
+esac
+"""
+
+
+@pytest.fixture
+def ros2_command(tmp_path, monkeypatch):
+    folder = tmp_path / "bin"
+    folder.mkdir()
+    (folder / "ros2").write_text(ROS2_COMMAND)
+    (folder / "ros2").chmod(stat.S_IRWXU)
+    monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
+
+
+def test_ros2_interface_proto_is_compared_with_ours(court, ros2_command):
+    here = court("lyrical", ROS2)
+    assert here.outcome("ros2", "q/B").verdict == "agrees"
+    outcome = here.outcome("ros2", "p/Header")
+    assert outcome.verdict == "differs" and "oracle '\"y: 0\\n\"'" in outcome.details[0]
+    outcome = here.outcome("ros2", "p/S")
+    assert outcome.verdict == "not judged"
+    assert outcome.details == ("ros2 does not have it: Unknown package 'p'",)
+
+
+def test_ros2_is_missing_where_it_is_not_installed(court, monkeypatch):
+    monkeypatch.setenv("PATH", "/nowhere")
+    universe = court("lyrical", {}).universe
+    from firm_hdl.verify.ts1.ros2_oracle import Ros2Proto
+
+    assert Ros2Proto(universe).missing() == "there is no command 'ros2'; source ROS 2's setup"

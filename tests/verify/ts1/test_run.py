@@ -1,0 +1,160 @@
+"""Whole runs: what is judged, what is printed, and what the exit status is."""
+
+from __future__ import annotations
+
+import re
+import shlex
+
+import pytest
+
+from firm_hdl.cli import main
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import DISTROS
+from firm_hdl.verify.ts1 import ORACLES, Selection, Ts1Run, run_ts1, selections_of
+from firm_hdl.verify.ts1 import judge as judging
+from firm_hdl.verify.ts1.oracle import Refused
+from tests.frontend.workspace import make_files
+from tests.verify.ts1.conftest import need
+
+FILES = {
+    "src/p/msg/A.msg": "q/B b\n",
+    "src/p/msg/Bad.msg": "int8[ x\n",
+    "src/p/srv/S.srv": "int8 a\n---\n",
+    "src/q/msg/B.msg": "int8 x\n",
+}
+
+
+@pytest.fixture
+def source(tmp_path):
+    return str(make_files(tmp_path, FILES) / "src")
+
+
+def judged(selection, oracles=(), jobs=1):
+    """Run everything; return the tally, and versions of the oracles that were there."""
+    with Ts1Run(selection, oracles, jobs) as run:
+        for name in oracles:
+            need(name, run.missing.get(name))
+        tallies = [tally for _, tally in run.tallies()]
+        for tally in tallies[1:]:
+            tallies[0].update(tally)
+        return tallies[0], run
+
+
+@pytest.mark.parametrize("distro", DISTROS)
+def test_embedded_types_are_what_fast_oracles_say(distro):
+    oracles = ["genmsg", "rosbags"] if distro == "noetic" else ["rosidl_adapter", "rosbags"]
+    tally, run = judged(Selection(distro=distro), oracles)
+    assert tally.differing == []
+    assert tally.verdicts[oracles[0], "agrees"] == run.total > 140
+    assert sum(tally.refused.values()) == 0
+    # rosbags hashes char otherwise, in a few types of each distribution.
+    assert tally.verdicts["rosbags", "known"] <= 5
+
+
+def test_a_sample_of_embedded_types_is_what_rosidl_parser_says():
+    names = ["Imu", "PointCloud2", "NavSatStatus", "JointState", "CameraInfo", "Range"]
+    types = tuple(f"sensor_msgs/msg/{name}" for name in names)
+    types += ("diagnostic_msgs/msg/DiagnosticArray", "std_msgs/msg/Empty", "std_msgs/msg/Char")
+    tally, _ = judged(Selection(distro="lyrical", types=types), ["rosidl_parser"])
+    assert tally.verdicts == {("rosidl_parser", "agrees"): len(types)}
+
+
+def test_all_of_a_folder_is_judged_and_no_more(source):
+    tally, run = judged(Selection(distro="noetic", paths=(source,)), ["genmsg"])
+    assert [case.full_name for case in run.cases] == ["p/A", "p/Bad", "p/S", "q/B"]
+    assert tally.verdicts == {("genmsg", "agrees"): 4}
+    assert tally.refused == {"genmsg": 1}
+
+
+def test_processes_give_what_one_gives(source):
+    selection = Selection(distro="noetic", paths=(source,))
+    one, two = (judged(selection, ["rosbags"], jobs)[0] for jobs in (1, 2))
+    assert one.verdicts == two.verdicts and len(one.shown) == len(two.shown)
+
+
+def test_the_report_names_oracles_verdicts_and_types(source, capsys):
+    assert run_ts1(Selection(distro="noetic", paths=(source,)), ["rosbags"], 1) == 0
+    out = capsys.readouterr().out
+    assert "p/A  rosbags  agrees\n" in out
+    assert "p/Bad  rosbags  agrees: both refuse\n" in out
+    assert re.search(r"^rosbags \S+ +3 +0 +0 +0  \(1 refused by both\)$", out, re.MULTILINE)
+    assert re.search(r"^4 definitions, \d+ s, 0 differences$", out, re.MULTILINE)
+
+
+def test_a_difference_is_told_with_the_command_that_repeats_it(source, capsys, monkeypatch):
+    monkeypatch.setattr(
+        ORACLES["rosbags"], "judge", lambda self, cases: [Refused("I do not like it")] * len(cases)
+    )
+    words = ["verify", "--systems", "ts1", "--distro", "noetic", "--path", source, "--jobs", "1"]
+    assert main([*words, "--oracle", "rosbags", "q/B"]) == 1
+    said = capsys.readouterr()
+    text = said.out + said.err
+    assert "DIFFERS q/B.msg, rosbags" in text
+    assert "verdict: firm-hdl accepts; oracle refuses: I do not like it" in text
+    again = re.search(r"again: (.*)", text)
+    assert shlex.split(again[1]) == [
+        "firm-hdl",
+        *words[:-2],
+        "q/msg/B",
+    ]
+
+
+def test_an_oracle_that_is_asked_for_and_not_here_fails(source, capsys, monkeypatch):
+    monkeypatch.setenv("PATH", "/nowhere")
+    selection = Selection(distro="lyrical", paths=(source,), types=("q/B",))
+    assert run_ts1(selection, ["ros2"], 1) == 1
+    assert "is not here: there is no command 'ros2'" in capsys.readouterr().out
+
+
+def test_a_type_or_folder_that_is_not_there(source, tmp_path, capsys):
+    words = ["verify", "--systems", "ts1", "--oracle", "rosbags"]
+    assert main([*words, "--path", source, "q/C"]) == 1
+    assert main([*words, "--path", str(tmp_path / "none"), "--all"]) == 1
+    assert main([*words, "q/C"]) == 1
+    errors = [line for line in capsys.readouterr().err.splitlines() if line.startswith("error")]
+    assert len(errors) == 3 and "'C' is not defined in package 'q'" in errors[0]
+
+
+def test_a_message_of_a_service_has_no_definition_of_its_own(source):
+    with pytest.raises(DefinitionError) as error:
+        judged(Selection(distro="lyrical", paths=(source,), types=("p/srv/S_Request",)))
+    assert str(error.value) == "error: 'p/srv/S_Request' has no definition of its own"
+
+
+def test_distributions_that_have_the_types_are_chosen():
+    assert [s.distro for s in selections_of(None, (), ["sensor_msgs/Imu"])] == list(DISTROS)
+    assert [s.distro for s in selections_of(None, (), ["std_msgs/msg/Header"])] == list(DISTROS)
+    assert [s.distro for s in selections_of(None, ("x",))] == ["lyrical"]
+    assert [s.distro for s in selections_of(["foxy"], ("x",))] == ["foxy"]
+
+
+def test_a_crash_of_ours_ends_no_run(source, monkeypatch):
+    def read(universe, case):
+        return RecursionError("deep") if case.name == "A" else universe.interface(case)
+
+    monkeypatch.setattr(judging, "read", read)
+    types = ("p/A", "q/B")
+    tally, _ = judged(Selection(distro="noetic", paths=(source,), types=types), ["rosbags"])
+    assert tally.verdicts == {("rosbags", "differs"): 1, ("rosbags", "agrees"): 1}
+
+
+def test_mutations_are_repeatable_and_told_by_number(source, capsys, monkeypatch):
+    monkeypatch.setattr(
+        ORACLES["genmsg"], "judge", lambda self, cases: [Refused("no")] * len(cases)
+    )
+    monkeypatch.setattr(ORACLES["genmsg"], "missing", lambda self: None)
+    selection = Selection(distro="noetic", paths=(source,), types=("q/B",), mutations=30, seed=7)
+    assert run_ts1(selection, ["genmsg"], 1) > 0
+    said = capsys.readouterr()
+    text = said.out + said.err
+    blocks = re.findall(r"DIFFERS .*\n((?:    .*\n)+)", text)
+    numbers = [int(re.search(r"--mutations 1 --seed (\d+) q/B", block)[1]) for block in blocks]
+    assert all(7 <= number < 37 for number in numbers) and len(set(numbers)) == len(numbers)
+    one = Selection(**{**_fields(selection), "mutations": 1, "seed": numbers[0]})
+    assert run_ts1(one, ["genmsg"], 1) == 1
+    said = capsys.readouterr()
+    assert blocks[0] in said.out + said.err
+
+
+def _fields(selection):
+    return {name: getattr(selection, name) for name in Selection.__slots__}
