@@ -1,0 +1,9 @@
+"""Proof that VHDL is the circuit that Amaranth elaborated."""
+
+from __future__ import annotations
+
+from firm_hdl.equivalence.circuit import ProofError
+from firm_hdl.equivalence.proof import Proof, prove
+from firm_hdl.equivalence.tools import MissingToolError, Tools, find_tools
+
+__all__ = ["MissingToolError", "Proof", "ProofError", "Tools", "find_tools", "prove"]

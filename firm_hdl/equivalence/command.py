@@ -1,0 +1,133 @@
+"""``firm-hdl prove``: one line for each converter, and a summary of many."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from collections.abc import Sequence
+
+from tqdm import tqdm
+
+from firm_hdl.equivalence.converters import Attempt, Task, both, run_tasks
+from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT
+from firm_hdl.equivalence.tools import MissingToolError, find_tools
+from firm_hdl.export.build import load_all, plan_of
+from firm_hdl.frontend import Library
+
+__all__ = ["add_prove_arguments", "run_proofs", "run_prove"]
+
+
+def add_prove_arguments(command: argparse.ArgumentParser) -> None:
+    """Add what is this command's own."""
+    command.add_argument("types", nargs="*", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
+    command.add_argument("--all", action="store_true", help="all types that there are")
+    command.add_argument(
+        "--jobs", type=_positive, metavar="N", help="processes; default: one per processor"
+    )
+    command.add_argument(
+        "--timeout",
+        type=_positive,
+        default=int(DEFAULT_TIMEOUT),
+        metavar="SECONDS",
+        help="for each of two solvers; default: %(default)s",
+    )
+    command.set_defaults(usage_error=command.error)
+
+
+def run_prove(given: argparse.Namespace) -> int:
+    """Run the command; return 0 if all converters are proved equal, and 1 if not.
+
+    Raises
+    ------
+    DefinitionError, BuildError
+        If types cannot be used, or options do not fit them. Nothing was proved.
+    """
+    if given.all == bool(given.types):
+        given.usage_error("name either types or --all")
+    library = Library(given.distro, given.path)
+    names = given.types
+    if given.all:
+        names = library.names()
+    else:
+        messages = load_all(library, names)
+        for message in messages:
+            plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
+        names = [message.name for message in messages]
+    tasks = [
+        task
+        for name in names
+        for task in both(
+            name,
+            distro=given.distro,
+            paths=tuple(given.path),
+            wire=given.wire,
+            bus_bytes=given.bus_bytes,
+            max_message_bytes=given.max_message_bytes,
+            timeout=float(given.timeout),
+        )
+    ]
+    return run_proofs(tasks, given.jobs, bar=given.all)
+
+
+def run_proofs(tasks: Sequence[Task], jobs: int | None, *, bar: bool) -> int:
+    """Do tasks, and print what comes of each; return the exit status.
+
+    Parameters
+    ----------
+    bar : bool
+        Show a progress bar on a terminal, and a summary.
+    """
+    try:
+        find_tools()
+    except MissingToolError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    results: list[tuple[Task, Attempt]] = []
+    disable = None if bar else True
+    with tqdm(total=len(tasks), unit="converter", desc="proofs", disable=disable) as progress:
+        for task, attempt in run_tasks(tasks, 1 if len(tasks) == 1 else jobs):
+            results.append((task, attempt))
+            with progress.external_write_mode():
+                print(_line(task, attempt), flush=True)
+            progress.update()
+    if bar:
+        print(_summary(results))
+    return 0 if all(attempt.result == "equal" for _, attempt in results) else 1
+
+
+def _line(task: Task, attempt: Attempt) -> str:
+    seconds = f"{attempt.proof.seconds:6.1f} s" if attempt.proof is not None else " " * 8
+    wire = f", {task.wire}" if task.wire else ""
+    what = f"{task.name} {task.direction} ({task.distro}{wire}, {task.bus_bytes} bytes)"
+    lines = [f"{attempt.result:9} {seconds}  {what}"]
+    if attempt.proof is None:
+        lines += attempt.problem.splitlines()
+    elif attempt.result != "equal":
+        lines += str(attempt.proof).splitlines()[1:]
+    return "\n    ".join(line.strip() for line in lines)
+
+
+def _summary(results: Sequence[tuple[Task, Attempt]]) -> str:
+    counted = Counter(attempt.result for _, attempt in results)
+    types = {(task.distro, task.name, task.wire) for task, _ in results}
+    seconds = sorted(
+        (attempt.proof.seconds, f"{task.name} {task.direction}")
+        for task, attempt in results
+        if attempt.proof is not None
+    )
+    parts = ", ".join(f"{count} {result}" for result, count in sorted(counted.items()))
+    text = f"{len(results)} converters of {len(types)} types: {parts}"
+    if seconds:
+        most, slowest = seconds[-1]
+        text += (
+            f"\nseconds per converter: median {seconds[len(seconds) // 2][0]:.1f}, most {most:.1f} "
+            f"({slowest}), {sum(each for each, _ in seconds):.0f} in total"
+        )
+    return text
+
+
+def _positive(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"must be a positive number, not {text!r}")
+    return int(text)

@@ -1,0 +1,164 @@
+"""Proofs for the converters of message types, many at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from amaranth.back import rtlil as amaranth_rtlil
+
+from firm_hdl.equivalence.circuit import ProofError
+from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT, Proof, prove
+from firm_hdl.errors import DefinitionError
+from firm_hdl.export.build import BuildError, check_size, plan_of
+from firm_hdl.export.names import identifier
+from firm_hdl.export.top import DIRECTIONS, Direction, Top
+from firm_hdl.export.vhdl import Vhdl, convert
+from firm_hdl.frontend import Library
+from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.model import Message
+from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
+from firm_hdl.verify.processes import in_processes
+from firm_hdl.wire import Wire
+
+__all__ = ["Attempt", "Task", "attempt", "both", "converter_vhdl", "prove_converter", "run_tasks"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """One converter.
+
+    Attributes
+    ----------
+    distro, paths
+        As for `Library`.
+    name : str
+        The type.
+    direction : "deserializer" or "serializer"
+    wire, bus_bytes, max_message_bytes
+        As for the converters.
+    timeout : float
+        Seconds for each solver.
+    """
+
+    distro: str
+    name: str
+    direction: Direction
+    paths: tuple[str, ...] = ()
+    wire: Wire | None = None
+    bus_bytes: int = 8
+    max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
+    timeout: float = DEFAULT_TIMEOUT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Attempt:
+    """What came of a task; with no proof, `problem` says why there is none."""
+
+    proof: Proof | None
+    problem: str = ""
+
+    @property
+    def result(self) -> str:
+        """One word."""
+        return self.proof.result if self.proof is not None else "failed"
+
+
+def converter_vhdl(
+    message: Message,
+    direction: Direction,
+    *,
+    wire: Wire | None = None,
+    bus_bytes: int = 8,
+    max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+) -> tuple[str, Vhdl]:
+    """Give a converter as RTLIL, and as the VHDL that ``firm-hdl build`` makes of it.
+
+    The VHDL is that of the entity with plain ports, without the remarks at the head of the files.
+
+    Raises
+    ------
+    BuildError
+        It cannot be built with these options.
+    """
+    plan = plan_of(message, wire, bus_bytes, max_message_bytes)
+    check_size(plan)
+    core = Deserializer if direction == "deserializer" else Serializer
+    top = Top(
+        core(
+            message, wire=plan.wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes
+        )
+    )
+    base = identifier(f"{identifier(message.name)}_{plan.wire}_{bus_bytes}").lower()
+    name = f"{base}_{direction}_flat"
+    rtlil: str = amaranth_rtlil.convert(top, name=name, emit_src=False)
+    return rtlil, convert(rtlil, name=name)
+
+
+def prove_converter(
+    message: Message,
+    direction: Direction,
+    *,
+    wire: Wire | None = None,
+    bus_bytes: int = 8,
+    max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+    timeout: float = DEFAULT_TIMEOUT,
+) -> Proof:
+    """Prove the VHDL of one converter of a message type.
+
+    Parameters
+    ----------
+    timeout : float
+        Seconds for each solver.
+
+    Raises
+    ------
+    BuildError
+        It cannot be built with these options.
+    ProofError
+        As for `prove`.
+    """
+    rtlil, vhdl = converter_vhdl(
+        message,
+        direction,
+        wire=wire,
+        bus_bytes=bus_bytes,
+        max_message_bytes=max_message_bytes,
+    )
+    return prove(rtlil, vhdl, timeout=timeout)
+
+
+def attempt(task: Task) -> Attempt:
+    """Do a task, whatever comes."""
+    try:
+        message = Library(task.distro, task.paths).message(task.name)
+        return Attempt(
+            proof=prove_converter(
+                message,
+                task.direction,
+                wire=task.wire,
+                bus_bytes=task.bus_bytes,
+                max_message_bytes=task.max_message_bytes,
+                timeout=task.timeout,
+            )
+        )
+    except (ProofError, BuildError, DefinitionError, ValueError) as error:
+        return Attempt(proof=None, problem=str(error))
+
+
+def run_tasks(tasks: Sequence[Task], jobs: int | None = None) -> Iterator[tuple[Task, Attempt]]:
+    """Run tasks in `jobs` processes (`None`: one per processor), and yield results as they come."""
+    work = [(task, (task,)) for task in tasks]
+    for task, result in in_processes(attempt, work, jobs):
+        if isinstance(result, Exception):
+            yield task, Attempt(proof=None, problem=str(result))
+        else:
+            yield task, result
+
+
+def both(name: str, **options: object) -> list[Task]:
+    """Give the tasks for both converters of a type."""
+    return [
+        Task(name=name, direction=direction, **options)  # type: ignore[arg-type]
+        for direction in DIRECTIONS
+    ]

@@ -1,0 +1,94 @@
+"""Types whose converters have everything that a converter can have.
+
+The embedded types are chosen by what their plans have; definitions of our own have what no embedded
+type has. A few types that everybody knows are there, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from firm_hdl.equivalence.converters import Task, both
+from firm_hdl.export.build import plan_of
+from firm_hdl.frontend import Library
+from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
+from firm_hdl.verify.cover import choose, features
+
+__all__ = ["DISTROS", "covering_tasks", "write_definitions"]
+
+DISTROS = ("noetic", "lyrical")
+"""One of each wire format."""
+
+_KNOWN = {
+    "noetic": ("geometry_msgs/Twist", "nav_msgs/Odometry", "sensor_msgs/PointCloud2"),
+    "lyrical": (
+        "geometry_msgs/msg/Twist",
+        "nav_msgs/msg/Odometry",
+        "sensor_msgs/msg/Image",
+        "sensor_msgs/msg/Imu",
+        "sensor_msgs/msg/JointState",
+        "sensor_msgs/msg/LaserScan",
+        "sensor_msgs/msg/PointCloud2",
+        "tf2_msgs/msg/TFMessage",
+    ),
+}
+_PACKAGE = "proved_msgs"
+_COMMON = {
+    "Nothing": "",
+    "Inner": "string label\nuint16[] values\n",
+    "Nested": "Inner[] inners\nuint8 end\n",
+    "Deep": "Nested[] all\nNothing nothing\nfloat64 end\n",
+    "Arrays": "string[3] names\nInner[2] inners\nbool[3] flags\nuint8[13] key\nint16[5] rest\n",
+    "Fixed": "Inner[2] inners\nfloat32[4] corners\nNothing[3] nothing\nuint64 end\n",
+    "Nothings": "Nothing[] nothing\nint8[] small\nint64[] large\n",
+}
+_DEFINITIONS: Mapping[str, Mapping[str, str]] = {
+    "noetic": {**_COMMON, "Times": "time[] stamps\nduration[2] spans\nchar c\nbyte b\n"},
+    "lyrical": {
+        **_COMMON,
+        "Wide": "wstring name\nwstring[] names\nuint8 end\n",
+        "WideFixed": "wstring<=5 name\nwstring[2] names\nfloat64 end\n",
+        "Bounded": "string<=10 name\nfloat32[<=5] few\nstring<=4[<=3] tags\nInner[<=2] inners\n",
+    },
+}
+
+
+def write_definitions(folder: Path) -> None:
+    """Write our own definitions to a folder for each distribution."""
+    for distro, definitions in _DEFINITIONS.items():
+        messages = folder / distro / _PACKAGE / "msg"
+        messages.mkdir(parents=True)
+        for name, text in definitions.items():
+            (messages / f"{name}.msg").write_text(text, encoding="utf-8")
+
+
+def covering_tasks(folder: Path, *, bus_bytes: int = 8, timeout: float) -> list[Task]:
+    """List both converters of all types.
+
+    Parameters
+    ----------
+    folder : Path
+        Where `write_definitions` has written to.
+    """
+    tasks: list[Task] = []
+    for distro in DISTROS:
+        own = str(folder / distro)
+        names = [*_chosen(distro, bus_bytes), *_KNOWN[distro]]
+        for name in dict.fromkeys(names):
+            tasks += both(name, distro=distro, bus_bytes=bus_bytes, timeout=timeout)
+        for name in Library(distro, [own], origins=()).names():
+            tasks += both(name, distro=distro, paths=(own,), bus_bytes=bus_bytes, timeout=timeout)
+    return tasks
+
+
+def _chosen(distro: str, bus_bytes: int) -> list[str]:
+    """Choose types of a distribution that have all that any of them has, the small ones first."""
+    library = Library(distro)
+    types, costs = {}, {}
+    for name in library.names():
+        message = library.message(name)
+        plan = plan_of(message, None, bus_bytes, DEFAULT_MAX_MESSAGE_BYTES)
+        types[name] = features(message, plan)
+        costs[name] = 20.0 + len(plan.steps)
+    return [chosen.name for chosen in choose(types, costs)]

@@ -1,0 +1,182 @@
+"""Read what ``ghdl --synth --out=dump`` prints: GHDL's own netlist, gate by gate.
+
+GHDL can print a netlist as Verilog and as VHDL, too. Both are texts that another tool has to make
+sense of again, and GHDL 2.0's Verilog drops the last arm of a `case`. The dump says what is there,
+in one statement for each gate. Anything that is not known here is an error.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from firm_hdl.equivalence.circuit import ProofError
+
+__all__ = ["Instance", "Module", "Net", "parse_dump"]
+
+_MODULE = re.compile(r"module \{m\d+\} ([\\$]\S+)$")
+_PORT = re.compile(r"(input|output|inout) ([\\$]\S+?)(?:\[(\d+):0\]|\[\?\])?;$")
+_INSTANCE = re.compile(r"instance (\S+?) ?\{i(\d+)\}: (\S+)$")
+_INPUT = re.compile(r"input (\S+)\{p\d+\} <- (\S+)$")
+_NET = re.compile(r"(\S+)\{n(\d+)(?:w(\d+)\}|\}:(\d+))$")
+
+
+@dataclass(frozen=True, slots=True)
+class Net:
+    """An output of an instance."""
+
+    number: int
+    width: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Instance:
+    """A gate (`kind` starts with ``$``) or an instance of a module.
+
+    Attributes
+    ----------
+    inputs : mapping of str to Net
+        In order; by name, or by position where a gate has any number of them.
+    parameters : tuple of int
+        In order.
+    """
+
+    name: str
+    kind: str
+    parameters: tuple[int, ...]
+    inputs: Mapping[str, Net]
+    outputs: Mapping[str, Net]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Module:
+    """A module.
+
+    Attributes
+    ----------
+    ports : mapping of str to int or None
+        Widths of all ports; `None` is any.
+    own : Instance or None
+        Itself seen from inside: its inputs are what drives its output ports, its outputs are what
+        its input ports drive.
+    """
+
+    name: str
+    ports: Mapping[str, int | None]
+    own: Instance | None
+    instances: tuple[Instance, ...]
+
+
+def parse_dump(text: str) -> dict[str, Module]:
+    """Parse a dump.
+
+    Returns
+    -------
+    dict of str to Module
+        The user's modules by name, without the backslash, the outermost one first.
+
+    Raises
+    ------
+    ProofError
+        The text has something that is not known.
+    """
+    lines = [line.strip() for line in text.splitlines()]
+    lines = [line for line in lines if line and not line.startswith("#")]
+    modules = {}
+    for block in _blocks(lines, "module "):
+        module = _module(block)
+        if not module.name.startswith("$"):
+            modules[module.name] = module
+    if not modules:
+        raise ProofError("GHDL's netlist is empty")
+    return modules
+
+
+def _blocks(lines: list[str], start: str) -> Iterator[list[str]]:
+    """Split lines in front of each that starts with `start`."""
+    block: list[str] = []
+    for line in lines:
+        if line.startswith(start) and block:
+            yield block
+            block = []
+        block.append(line)
+    if block:
+        yield block
+
+
+def _module(block: list[str]) -> Module:
+    match = _MODULE.match(block[0]) or _unknown(block[0])
+    name = match[1].removeprefix("\\")
+    ports: dict[str, int | None] = {}
+    place = 1
+    while place < len(block) and not block[place].startswith("instance "):
+        line = block[place]
+        place += 1
+        # What gates are like is known; and the last lines tell who reads a net, once more.
+        if name.startswith("$") or line.startswith("connect "):
+            continue
+        port = _PORT.match(line) or _unknown(line)
+        if port[1] == "inout":
+            raise ProofError(f"{name} has a port of mode inout, which no proof can be made of")
+        ports[_plain(port[2])] = int(port[3] or 0) + 1
+    instances = [_instance(lines) for lines in _blocks(block[place:], "instance ")]
+    # What encloses all modules stands behind the last one.
+    instances = [i for i in instances if i.kind != "$top"]
+    own = [i for i in instances if i.kind == name and i.name == name]
+    others = tuple(i for i in instances if i is not own[0]) if own else tuple(instances)
+    return Module(name=name, ports=ports, own=own[0] if own else None, instances=others)
+
+
+def _instance(block: list[str]) -> Instance:
+    match = _INSTANCE.match(block[0]) or _unknown(block[0])
+    name, kind = match[1], match[3]
+    parameters: tuple[int, ...] = ()
+    inputs: dict[str, Net] = {}
+    outputs: dict[str, Net] = {}
+    for line in block[1:]:
+        if line.startswith("parameters"):
+            parameters = tuple(int(word.rpartition("=")[2]) for word in line.split()[1:])
+        elif line.startswith("outputs "):
+            for word in line.split()[1:]:
+                port, net = _net(word, name)
+                _add(outputs, port, net, line)
+        elif line.startswith("input "):
+            found = _INPUT.match(line) or _unknown(line)
+            _add(inputs, _port_of(found[1], name), _net(found[2], None)[1], line)
+        elif not line.startswith("connect "):
+            _unknown(line)
+    return Instance(
+        name=_plain(name),
+        kind=kind.removeprefix("\\"),
+        parameters=parameters,
+        inputs=inputs,
+        outputs=outputs,
+    )
+
+
+def _add(nets: dict[str, Net], port: str, net: Net, line: str) -> None:
+    if port in nets:
+        _unknown(line)
+    nets[port] = net
+
+
+def _net(text: str, instance: str | None) -> tuple[str, Net]:
+    """Read ``name.port{n12w3}``; the port, if the name is that of the instance."""
+    match = _NET.match(text) or _unknown(text)
+    port = _port_of(match[1], instance) if instance is not None else ""
+    return port, Net(int(match[2]), int(match[3] or match[4]))
+
+
+def _port_of(text: str, instance: str) -> str:
+    if not text.startswith(f"{instance}."):
+        _unknown(text)
+    return _plain(text[len(instance) + 1 :])
+
+
+def _plain(name: str) -> str:
+    return name.removeprefix("\\").removeprefix("$") if name[:1] in "\\$" else name
+
+
+def _unknown(line: str) -> re.Match[str]:
+    raise ProofError(f"GHDL's netlist has a line that is not known: {line!r}")

@@ -1,0 +1,259 @@
+"""GHDL's gates as cells of Yosys.
+
+What a gate does is what GHDL's own writer of VHDL prints for it. Gates that only rename bits
+(signals, concatenations, slices, extensions) leave no cell behind. Where GHDL says that a value is
+unknown ('X'), any value may be there: a proof then has to hold for all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from firm_hdl.equivalence.circuit import Bit, Bits, Cell, ProofError
+from firm_hdl.equivalence.dump import Instance
+
+__all__ = ["Fresh", "Gate", "divided", "gate_cells", "renamed"]
+
+Fresh = Callable[[int], tuple[int, ...]]
+"""Makes new nets that nothing drives."""
+
+_BINARY = {
+    "$and": "$and",
+    "$or": "$or",
+    "$xor": "$xor",
+    "$xnor": "$xnor",
+    "$add": "$add",
+    "$sub": "$sub",
+    "$umul": "$mul",
+    "$smul": "$mul",
+    "$udiv": "$div",
+    "$sdiv": "$div",
+    "$umod": "$mod",
+    "$srem": "$mod",
+    "$smod": "$modfloor",
+    "$eq": "$eq",
+    "$ne": "$ne",
+    "$ult": "$lt",
+    "$ule": "$le",
+    "$ugt": "$gt",
+    "$uge": "$ge",
+    "$slt": "$lt",
+    "$sle": "$le",
+    "$sgt": "$gt",
+    "$sge": "$ge",
+    "$lsl": "$shl",
+    "$lsr": "$shr",
+    "$asr": "$sshr",
+}
+_SIGNED = frozenset("$smul $sdiv $srem $smod $slt $sle $sgt $sge $asr".split())
+_INVERTED = {"$nand": "$and", "$nor": "$or"}
+_UNARY = {
+    "$not": "$not",
+    "$neg": "$neg",
+    "$red_and": "$reduce_and",
+    "$red_or": "$reduce_or",
+    "$red_xor": "$reduce_xor",
+}
+_SAME = frozenset("$signal $isignal $output $ioutput $port $nop".split())
+_CONCATENATIONS = frozenset("$concat2 $concat3 $concat4 $concatn".split())
+
+
+class Gate:
+    """A gate and what it is connected to.
+
+    Parameters
+    ----------
+    instance : Instance
+    inputs : mapping of str to Bits
+    width : int
+        Of its output.
+    fresh : callable
+        Makes nets that may have any value.
+    """
+
+    def __init__(
+        self, instance: Instance, inputs: Mapping[str, Bits], width: int, fresh: Fresh
+    ) -> None:
+        self.kind = instance.kind
+        self.name = instance.name
+        self.parameters = instance.parameters
+        self.inputs = inputs
+        self.width = width
+        self.fresh = fresh
+
+    def parameter(self) -> int:
+        """Give the only parameter."""
+        if len(self.parameters) != 1:
+            count = len(self.parameters)
+            raise ProofError(f"GHDL's {self.kind} {self.name} has {count} parameters")
+        return self.parameters[0]
+
+    def check(self, holds: bool) -> None:
+        """Complain about a gate that is not of the form that is known."""
+        if not holds:
+            raise ProofError(f"GHDL's {self.kind} {self.name} has a form that is not known")
+
+
+def renamed(gate: Gate) -> Bits | None:
+    """Give the bits that a gate's output is, if it does nothing but name them."""
+    kind, width = gate.kind, gate.width
+    values = list(gate.inputs.values())
+    if kind in _SAME:
+        gate.check(len(values[0]) == width)
+        return values[0]
+    if kind in _CONCATENATIONS:
+        result = tuple(bit for value in reversed(values) for bit in value)
+        gate.check(len(result) == width)
+        return result
+    if kind == "$extract":
+        low = gate.parameter()
+        gate.check(low + width <= len(values[0]))
+        return values[0][low : low + width]
+    if kind in ("$utrunc", "$strunc"):
+        gate.check(width <= len(values[0]))
+        return values[0][:width]
+    if kind in ("$uextend", "$sextend"):
+        gate.check(0 < len(values[0]) <= width)
+        top = values[0][-1] if kind == "$sextend" else "0"
+        return values[0] + (top,) * (width - len(values[0]))
+    return _constant(gate) if kind.startswith("$const_") else None
+
+
+def _constant(gate: Gate) -> Bits:
+    width, words = gate.width, gate.parameters
+    unknown = 0
+    if gate.kind == "$const_X":
+        return gate.fresh(width)
+    if gate.kind == "$const_UB32":
+        value = gate.parameter()
+    elif gate.kind == "$const_SB32":
+        value = gate.parameter()
+        # Printed as an unsigned number, whatever it is.
+        value -= value >> 31 << 32
+    elif gate.kind == "$const_UL32":
+        gate.check(len(words) == 2)
+        value, unknown = words
+    elif gate.kind == "$const_bit":
+        gate.check(len(words) == (width + 31) // 32)
+        value = sum(word << 32 * place for place, word in enumerate(words))
+    elif gate.kind == "$const_log":
+        gate.check(len(words) == 2 * ((width + 31) // 32))
+        value = sum(word << 32 * place for place, word in enumerate(words[::2]))
+        unknown = sum(word << 32 * place for place, word in enumerate(words[1::2]))
+    else:
+        raise ProofError(f"GHDL's netlist has {gate.kind}, which no proof can be made of")
+    # 2 is 'Z' and 3 is 'X'; neither says anything about the value.
+    return tuple(
+        gate.fresh(1)[0] if unknown >> place & 1 else "01"[value >> place & 1]
+        for place in range(width)
+    )
+
+
+def gate_cells(gate: Gate, output: tuple[int, ...]) -> list[Cell]:
+    """Give the cells that drive a gate's output."""
+    kind = gate.kind
+    values = list(gate.inputs.values())
+    if kind in _BINARY:
+        return _binary(gate, values, output)
+    if kind in _INVERTED:
+        between = gate.fresh(gate.width)
+        gate.check(len(values[0]) == len(values[1]) == gate.width)
+        return [
+            _cell(_INVERTED[kind], between, A=values[0], B=values[1]),
+            _cell("$not", output, A=between),
+        ]
+    if kind in _UNARY:
+        if kind in ("$not", "$neg"):
+            gate.check(len(values[0]) == gate.width)
+        return [_cell(_UNARY[kind], output, A=values[0])]
+    if kind == "$mux2":
+        gate.check([len(value) for value in values] == [1, gate.width, gate.width])
+        select, low, high = values
+        return [_mux(output, select[0], low, high)]
+    if kind == "$mux4":
+        return _mux4(gate, values, output)
+    if kind == "$pmux":
+        return _pmux(gate, values, output)
+    raise ProofError(f"GHDL's netlist has {kind}, which no proof can be made of")
+
+
+def _binary(gate: Gate, values: list[Bits], output: tuple[int, ...]) -> list[Cell]:
+    kind = _BINARY[gate.kind]
+    left, right = values
+    if kind not in ("$shl", "$shr", "$sshr"):
+        gate.check(len(left) == len(right))
+    if kind in ("$eq", "$ne", "$lt", "$le", "$gt", "$ge"):
+        gate.check(gate.width == 1)
+    else:
+        gate.check(len(left) == gate.width)
+    signed = gate.kind in _SIGNED
+    if kind in ("$shl", "$shr", "$sshr"):
+        # Only what is shifted can be signed.
+        return [_cell(kind, output, signed=signed, second_signed=False, A=left, B=right)]
+    if kind not in ("$div", "$mod", "$modfloor"):
+        return [_cell(kind, output, signed=signed, A=left, B=right)]
+    return divided(kind, signed, left, right, output, gate.fresh)
+
+
+def divided(
+    kind: str, signed: bool, left: Bits, right: Bits, output: tuple[int, ...], fresh: Fresh
+) -> list[Cell]:
+    """Give a division whose result is anything if the divisor is 0."""
+    result, by_zero = fresh(len(output)), fresh(1)
+    return [
+        _cell(kind, result, signed=signed, A=left, B=right),
+        _cell("$logic_not", by_zero, A=right),
+        _mux(output, by_zero[0], result, fresh(len(output))),
+    ]
+
+
+def _mux4(gate: Gate, values: list[Bits], output: tuple[int, ...]) -> list[Cell]:
+    gate.check([len(value) for value in values] == [2, *[gate.width] * 4])
+    select, *choices = values
+    low, high = gate.fresh(gate.width), gate.fresh(gate.width)
+    return [
+        _mux(low, select[0], choices[0], choices[1]),
+        _mux(high, select[0], choices[2], choices[3]),
+        _mux(output, select[1], low, high),
+    ]
+
+
+def _pmux(gate: Gate, values: list[Bits], output: tuple[int, ...]) -> list[Cell]:
+    """Give a chain of choices: at most one bit of the selector is 1, as choices exclude another."""
+    select, default, *choices = values
+    gate.check(len(select) == len(choices))
+    gate.check(all(len(value) == gate.width for value in values[1:]))
+    cells = []
+    value = default
+    for place, (bit, choice) in enumerate(zip(select, choices, strict=True)):
+        last = place == len(choices) - 1
+        target = output if last else gate.fresh(gate.width)
+        cells.append(_mux(target, bit, value, choice))
+        value = target
+    return cells
+
+
+def _mux(output: tuple[int, ...], select: Bit, low: Bits, high: Bits) -> Cell:
+    return Cell(
+        kind="$mux",
+        parameters={"WIDTH": len(output)},
+        inputs={"A": low, "B": high, "S": (select,)},
+        outputs={"Y": output},
+    )
+
+
+def _cell(
+    kind: str,
+    output: tuple[int, ...],
+    *,
+    signed: bool = False,
+    second_signed: bool | None = None,
+    **inputs: Bits,
+) -> Cell:
+    parameters: dict[str, int | str] = {"Y_WIDTH": len(output)}
+    for port, bits in inputs.items():
+        parameters[f"{port}_WIDTH"] = len(bits)
+        parameters[f"{port}_SIGNED"] = int(signed)
+    if second_signed is not None:
+        parameters["B_SIGNED"] = int(second_signed)
+    return Cell(kind=kind, parameters=parameters, inputs=inputs, outputs={"Y": output})

@@ -1,0 +1,151 @@
+"""Prove that a design's VHDL is the design: `prove`."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal, TypeAlias
+
+from amaranth.back import rtlil as amaranth_rtlil
+
+from firm_hdl.equivalence.match import vhdl_paths
+from firm_hdl.equivalence.miter import Miter, make_miter
+from firm_hdl.equivalence.rtlil_side import read_rtlil
+from firm_hdl.equivalence.solve import solve
+from firm_hdl.equivalence.tools import Tools, find_tools
+from firm_hdl.equivalence.vhdl_side import read_vhdl
+from firm_hdl.export.vhdl import Vhdl, convert
+
+__all__ = ["DEFAULT_TIMEOUT", "Proof", "Result", "prove"]
+
+DEFAULT_TIMEOUT = 300.0
+"""Seconds that each solver may take."""
+
+Result: TypeAlias = Literal["equal", "unequal", "undecided"]
+_RESULTS: Mapping[bool | None, Result] = {True: "equal", False: "unequal", None: "undecided"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Proof:
+    """What came of an attempt to prove the VHDL of a design equal to its RTLIL.
+
+    Attributes
+    ----------
+    result : "equal", "unequal" or "undecided"
+        Undecided: the solvers gave up. Nothing is known then.
+    differences : tuple of str
+        What differs, if `result` is unequal; what is open, if it is undecided.
+    counterexample : mapping of str to int
+        Inputs and registers for which it does; those that are not named are 0. Empty if a glance
+        was enough, as at another initial value. The registers may have values that they never
+        reach; then the circuits may still do the same, but are not proved to.
+    unmatched : tuple of str
+        Registers that only one side has, because what they hold is never used.
+    registers : int
+        Bits of registers that both sides have.
+    claims : int
+        How many outputs, next states and so on were compared by a solver.
+    seconds : float
+    """
+
+    result: Result
+    differences: tuple[str, ...] = ()
+    counterexample: Mapping[str, int] = field(default_factory=dict)
+    unmatched: tuple[str, ...] = ()
+    registers: int
+    claims: int
+    seconds: float
+
+    def __str__(self) -> str:
+        if self.result == "equal":
+            return f"equal ({self.registers} bits of registers, {self.seconds:.1f} s)"
+        lines = [f"{self.result} ({self.seconds:.1f} s)", *self.differences]
+        if self.counterexample:
+            lines.append("for")
+            lines += [f"  {name} = {value:#x}" for name, value in self.counterexample.items()]
+        if self.unmatched:
+            lines.append(f"without a partner: {', '.join(self.unmatched)}")
+        return "\n    ".join(lines)
+
+
+def prove(
+    design: Any,
+    vhdl: Vhdl | None = None,
+    *,
+    name: str = "top",
+    ports: Any = None,
+    platform: Any = None,
+    timeout: float = DEFAULT_TIMEOUT,
+    tools: Tools | None = None,
+) -> Proof:
+    """Prove that VHDL and RTLIL of a design are the same circuit, sequentially.
+
+    Parameters
+    ----------
+    design : elaboratable or str
+        An Amaranth component or other elaboratable, or RTLIL text of `amaranth.back.rtlil`.
+    vhdl : Vhdl or None
+        What `firm_hdl.export.vhdl.convert` has made of it; made here by default.
+    name, ports, platform
+        As for `convert`.
+    timeout : float
+        Seconds for each solver.
+    tools : Tools or None
+        GHDL and Yosys; looked for by default.
+
+    Raises
+    ------
+    MissingToolError
+        GHDL or Yosys is not installed.
+    ProofError
+        The design has something that no proof can be made of, such as a foreign instance, or a
+        tool failed.
+    """
+    began = time.perf_counter()
+    found = tools or find_tools()
+    rtlil: str = (
+        design
+        if isinstance(design, str)
+        else amaranth_rtlil.convert(
+            design, name=name, ports=ports, platform=platform, emit_src=False
+        )
+    )
+    vhdl = convert(rtlil, name=name) if vhdl is None else vhdl
+    with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
+        miter = _miter(rtlil, vhdl, found, Path(folder), timeout)
+        result: Result = "unequal"
+        differences, example = miter.differences, {}
+        if not differences:
+            verdict = solve(miter, found, Path(folder), timeout)
+            result = _RESULTS[verdict.equal]
+            differences = verdict.open
+            if verdict.difference is not None:
+                differences = verdict.difference.where
+                example = dict(verdict.difference.inputs)
+    return Proof(
+        result=result,
+        differences=differences,
+        counterexample=example,
+        unmatched=miter.unmatched,
+        registers=miter.registers,
+        claims=len(miter.claims),
+        seconds=time.perf_counter() - began,
+    )
+
+
+def _miter(rtlil: str, vhdl: Vhdl, tools: Tools, folder: Path, timeout: float) -> Miter:
+    for name, text in vhdl.files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    tools.run_ghdl(folder, "-a", "--std=08", *vhdl.files, timeout=timeout)
+    dump = tools.run_ghdl(folder, "--synth", "--std=08", "--out=dump", vhdl.top, timeout=timeout)
+    # The outermost module is the last one.
+    top = list(vhdl.entities)[-1]
+    return make_miter(
+        read_rtlil(rtlil, tools, folder, timeout),
+        read_vhdl(dump),
+        ports=vhdl.entities[top].ports,
+        signals=vhdl_paths(rtlil, top, vhdl.entities),
+    )

@@ -1,0 +1,150 @@
+"""Amaranth's own RTLIL as Yosys reads it: to a flat circuit."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+from firm_hdl.equivalence.circuit import Bit, Bits, Cell, Circuit, Flop, ProofError
+from firm_hdl.equivalence.gates import divided
+from firm_hdl.equivalence.tools import Tools
+
+__all__ = ["read_rtlil"]
+
+# Processes become multiplexers, nothing is simplified, and messages of the simulation go.
+_SCRIPT = (
+    "read_rtlil {name}.il; hierarchy -check; delete t:$print t:$check; proc -noopt -norom; "
+    "flatten; write_json {name}.json"
+)
+_DIVISIONS = frozenset("$div $mod $divfloor $modfloor".split())
+_REFUSED = frozenset("$tribuf $anyseq $anyconst $allseq $allconst $initstate".split())
+
+
+def read_rtlil(text: str, tools: Tools, folder: Path, timeout: float | None = None) -> Circuit:
+    """Read a design.
+
+    Parameters
+    ----------
+    text : str
+        As `amaranth.back.rtlil.convert` returns it.
+    folder : Path
+        For temporary files.
+    """
+    (folder / "amaranth.il").write_text(text, encoding="utf-8")
+    tools.run_yosys(folder, _SCRIPT.format(name="amaranth"), timeout)
+    found = json.loads((folder / "amaranth.json").read_text(encoding="utf-8"))
+    tops = [m for m in found["modules"].values() if int(m["attributes"].get("top", "0"), 2)]
+    if len(tops) != 1:
+        raise ProofError(f"the RTLIL has {len(tops)} outermost modules")
+    return _Reader(tops[0]).circuit()
+
+
+class _Reader:
+    def __init__(self, module: Mapping[str, Any]) -> None:
+        self._module = module
+        self._nets = module["netnames"]
+        used = [bit for net in self._nets.values() for bit in net["bits"]]
+        used += [
+            bit
+            for cell in module["cells"].values()
+            for bits in cell["connections"].values()
+            for bit in bits
+        ]
+        self._numbers = count(max((bit for bit in used if isinstance(bit, int)), default=1) + 1)
+
+    def circuit(self) -> Circuit:
+        ports: dict[str, dict[str, Bits]] = {"input": {}, "output": {}}
+        for name, port in self._module["ports"].items():
+            if port["direction"] not in ports:
+                raise ProofError(f"{name} is a port of mode inout, which no proof can be made of")
+            if port["bits"]:
+                ports[port["direction"]][name] = self._bits(port["bits"])
+        cells: list[Cell] = []
+        flops: dict[int, Flop] = {}
+        inits = self._inits()
+        for name, cell in self._module["cells"].items():
+            if cell["type"] in ("$dff", "$adff"):
+                flops.update(self._flops(cell, inits))
+            else:
+                cells += self._cell(name, cell)
+        return Circuit(
+            inputs=ports["input"],
+            outputs=ports["output"],
+            signals=self._signals(flops),
+            cells=cells,
+            flops=flops,
+        )
+
+    def _fresh(self, width: int) -> tuple[int, ...]:
+        return tuple(next(self._numbers) for _ in range(width))
+
+    def _bits(self, bits: Sequence[Bit]) -> Bits:
+        """Let anything be where nothing is said."""
+        return tuple(
+            bit if isinstance(bit, int) or bit in ("0", "1") else next(self._numbers)
+            for bit in bits
+        )
+
+    def _inits(self) -> dict[int, str]:
+        """Give initial values by net."""
+        inits: dict[int, str] = {}
+        for name, net in self._nets.items():
+            init = net["attributes"].get("init")
+            if init is None:
+                continue
+            for bit, value in zip(net["bits"], reversed(init), strict=True):
+                if not isinstance(bit, int) or inits.setdefault(bit, value) != value:
+                    raise ProofError(f"{name} has an initial value, but is no register")
+        return inits
+
+    def _flops(self, cell: Mapping[str, Any], inits: Mapping[int, str]) -> dict[int, Flop]:
+        parameters, ports = cell["parameters"], cell["connections"]
+        reset = None
+        value = "0" * len(ports["Q"])
+        if cell["type"] == "$adff":
+            reset = self._bits(ports["ARST"])[0]
+            value = parameters["ARST_VALUE"]
+        return {
+            bit: Flop(
+                data=self._bits([data])[0],
+                clock=self._bits(ports["CLK"])[0],
+                rising=bool(int(parameters["CLK_POLARITY"], 2)),
+                init=inits.get(bit, "x"),
+                reset=reset,
+                reset_level=bool(int(parameters.get("ARST_POLARITY", "1"), 2)),
+                reset_value=start,
+            )
+            for bit, data, start in zip(ports["Q"], ports["D"], reversed(value), strict=True)
+        }
+
+    def _signals(self, flops: Mapping[int, Flop]) -> dict[tuple[str, ...], Bits]:
+        """Find the wires that registers are: those with initial values."""
+        signals: dict[tuple[str, ...], Bits] = {}
+        for name, net in self._nets.items():
+            if "init" in net["attributes"] and all(bit in flops for bit in net["bits"]):
+                path = net["attributes"].get("hdlname", name).split(" ")
+                signals[tuple(path)] = tuple(net["bits"])
+        named = {bit for bits in signals.values() for bit in bits}
+        for bit in flops:
+            if bit not in named:
+                raise ProofError(f"a register of the RTLIL has no name (net {bit})")
+        return signals
+
+    def _cell(self, name: str, cell: Mapping[str, Any]) -> list[Cell]:
+        kind = cell["type"]
+        if not kind.startswith("$"):
+            raise ProofError(f"the design has an instance of {kind}, which is not in it")
+        if kind in _REFUSED or kind.startswith("$mem"):
+            raise ProofError(f"the design has {kind}, which no proof can be made of")
+        ways = cell["port_directions"]
+        ports = {port: self._bits(bits) for port, bits in cell["connections"].items()}
+        inputs = {port: bits for port, bits in ports.items() if ways[port] == "input"}
+        outputs = {port: bits for port, bits in ports.items() if ways[port] == "output"}
+        result = tuple(bit for bit in outputs.get("Y", ()) if isinstance(bit, int))
+        if kind in _DIVISIONS:
+            signed = bool(int(cell["parameters"]["A_SIGNED"], 2))
+            return divided(kind, signed, ports["A"], ports["B"], result, self._fresh)
+        return [Cell(kind=kind, parameters=cell["parameters"], inputs=inputs, outputs=outputs)]

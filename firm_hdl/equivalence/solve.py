@@ -1,0 +1,155 @@
+"""Can the outputs of a miter ever be 1?
+
+ABC answers, by way of Yosys; and where it gives up, the SAT solver of Yosys.
+
+ABC simplifies the combined circuit by finding nets that are equal. What is left of a claim that
+holds is the constant 0, and the answer is read off the netlist that comes back. Nothing is taken
+from what tools print.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from firm_hdl.equivalence.circuit import ProofError
+from firm_hdl.equivalence.miter import Miter
+from firm_hdl.equivalence.tools import ToolError, Tools, TooSlowError
+
+__all__ = ["Difference", "Verdict", "solve"]
+
+# Equal cells of the two sides become one before they become gates. No part of this may see an
+# undefined value: there is none in a miter. `check` finds loops, whose value would be anything.
+_GATES = (
+    "read_json {name}.json; opt_expr; opt_merge; opt_clean; simplemap; techmap; check -assert"
+)
+_ABC = (
+    "abc -g AND -script +strash;&get,-n;&fraig,-x;&put; opt_clean; write_json answer.json"
+)
+_SAT = "sat -timeout {seconds} -prove differs 0 -show-ports -dump_json model.json"
+_FEW = 4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Difference:
+    """Inputs and registers for which the two sides differ.
+
+    Attributes
+    ----------
+    where : tuple of str
+        Claims that do not hold, with the values of both sides.
+    inputs : mapping of str to int
+        Those that are not 0.
+    """
+
+    where: tuple[str, ...]
+    inputs: Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """What came of it.
+
+    Attributes
+    ----------
+    equal : bool or None
+        `None`: the solvers gave up.
+    difference : Difference or None
+    open : tuple of str
+        Claims that nothing was found out about, if `equal` is `None`.
+    """
+
+    equal: bool | None
+    difference: Difference | None = None
+    open: tuple[str, ...] = ()
+
+
+def solve(miter: Miter, tools: Tools, folder: Path, timeout: float) -> Verdict:
+    """Prove all claims of a miter, or find inputs for which one does not hold.
+
+    Parameters
+    ----------
+    folder : Path
+        For temporary files.
+    timeout : float
+        Seconds for each of the two solvers.
+    """
+    if not miter.claims:
+        return Verdict(equal=True)
+    _write(folder / "miter.json", miter, values=False)
+    try:
+        tools.run_yosys(folder, f"{_GATES.format(name='miter')}; {_ABC}", timeout)
+    except ToolError as error:
+        if "problems in 'check -assert'" in str(error):
+            raise ProofError("one of the circuits has a combinational loop, or a latch") from None
+        raise
+    except TooSlowError:
+        left = list(range(len(miter.claims)))
+    else:
+        left = _left(folder / "answer.json", len(miter.claims))
+    # A difference shows in many claims; a few of them make a small problem.
+    for part in filter(None, (left[:_FEW], left[_FEW:])):
+        verdict = _search(miter, part, tools, folder, timeout)
+        if not verdict.equal:
+            return verdict
+    return Verdict(equal=True)
+
+
+def _write(path: Path, miter: Miter, *, values: bool) -> None:
+    path.write_text(json.dumps(miter.netlist(values=values)), encoding="utf-8")
+
+
+def _left(path: Path, claims: int) -> list[int]:
+    """Read which bits of the answer are not the constant 0."""
+    answer = json.loads(path.read_text(encoding="utf-8"))
+    bits = answer["modules"]["miter"]["ports"]["differs"]["bits"]
+    if len(bits) != claims:
+        raise ProofError(f"Yosys returned {len(bits)} claims instead of {claims}")
+    return [number for number, bit in enumerate(bits) if bit != "0"]
+
+
+def _search(miter: Miter, left: list[int], tools: Tools, folder: Path, timeout: float) -> Verdict:
+    """Let the SAT solver look for a difference in what ABC has left over."""
+    rest = Miter(
+        differences=(),
+        claims=tuple(miter.claims[number] for number in left),
+        inputs=miter.inputs,
+        cells=miter.cells,
+        unmatched=miter.unmatched,
+        registers=miter.registers,
+    )
+    _write(folder / "rest.json", rest, values=True)
+    names = tuple(claim.what for claim in rest.claims)
+    script = f"{_GATES.format(name='rest')}; tee -q -o sat.txt {_SAT.format(seconds=int(timeout))}"
+    try:
+        tools.run_yosys(folder, script, timeout * 2 + 60)
+    except TooSlowError:
+        return Verdict(equal=None, open=names)
+    said = (folder / "sat.txt").read_text(encoding="utf-8")
+    if "SAT proof finished - no model found: SUCCESS!" in said:
+        return Verdict(equal=True)
+    if "SAT proof finished - model found: FAIL!" not in said:
+        return Verdict(equal=None, open=names)
+    return Verdict(equal=False, difference=_model(rest, folder / "model.json"))
+
+
+def _model(miter: Miter, path: Path) -> Difference:
+    """Read the values that the solver found."""
+    # WaveJSON has the value of one bit in its wave, and that of more beside it.
+    found = {
+        signal["name"]: int(re.sub("[^01]", "0", signal.get("data", signal["wave"])[0]), 2)
+        for signal in json.loads(path.read_text(encoding="utf-8"))["signal"]
+    }
+    inputs = {name: found.get(f"in{n}", 0) for n, name in enumerate(miter.inputs)}
+    wrong = [n for n in range(len(miter.claims)) if found.get("differs", 0) >> n & 1]
+    return Difference(
+        where=tuple(
+            f"{miter.claims[n].what} is {found.get(f'amaranth{n}', 0):#x} in the RTLIL and "
+            f"{found.get(f'vhdl{n}', 0):#x} in the VHDL"
+            for n in wrong
+        ),
+        inputs={name: value for name, value in inputs.items() if value},
+    )

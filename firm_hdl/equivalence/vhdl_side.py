@@ -1,0 +1,184 @@
+"""The VHDL as GHDL understands it: from its dump to a flat circuit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import count
+
+from firm_hdl.equivalence.circuit import Bit, Bits, Cell, Circuit, Flop, ProofError
+from firm_hdl.equivalence.dump import Instance, Module, Net, parse_dump
+from firm_hdl.equivalence.gates import Gate, gate_cells, renamed
+
+__all__ = ["read_vhdl"]
+
+_FLOPS = frozenset("$dff $idff $adff $iadff".split())
+_EDGES = {"$posedge": True, "$negedge": False}
+_IGNORED = frozenset("$assert $assume $cover $assert_cover".split())
+
+
+def read_vhdl(dump: str) -> Circuit:
+    """Read the outermost entity of a dump.
+
+    Parameters
+    ----------
+    dump : str
+        As ``ghdl --synth --out=dump`` prints it.
+
+    Returns
+    -------
+    Circuit
+        Signals are in lower case, as VHDL does not tell the cases apart.
+    """
+    return _Flattener(parse_dump(dump)).run()
+
+
+class _Flattener:
+    def __init__(self, modules: Mapping[str, Module]) -> None:
+        self._modules = modules
+        self._numbers = count(2)
+        # Which bits the output of a gate is made of; and which net merely is another.
+        self._nets: dict[tuple[tuple[str, ...], int], tuple[int, ...]] = {}
+        self._same: dict[int, Bit] = {}
+        self._cells: list[Cell] = []
+        self._signals: dict[tuple[str, ...], Bits] = {}
+        self._edges: dict[int, tuple[Bit, bool]] = {}
+        self._flops: list[tuple[Instance, Mapping[str, Bits], tuple[int, ...]]] = []
+
+    def run(self) -> Circuit:
+        tops = set(self._modules)
+        for module in self._modules.values():
+            tops -= {instance.kind for instance in module.instances}
+        if len(tops) != 1:
+            raise ProofError(f"GHDL's netlist has {len(tops)} outermost entities")
+        top = self._modules[tops.pop()]
+        if top.own is None:
+            raise ProofError(f"GHDL's netlist does not say what is in {top.name}")
+        self._module(top, ())
+        outputs = {name: self._bits((), net) for name, net in top.own.inputs.items()}
+        circuit = Circuit(
+            inputs={name.lower(): self._net((), net) for name, net in top.own.outputs.items()},
+            outputs={name.lower(): self._resolved(bits) for name, bits in outputs.items()},
+            signals={path: self._resolved(bits) for path, bits in self._signals.items()},
+            flops=self._all_flops(),
+            cells=[
+                Cell(
+                    kind=cell.kind,
+                    parameters=cell.parameters,
+                    inputs={port: self._resolved(bits) for port, bits in cell.inputs.items()},
+                    outputs=cell.outputs,
+                )
+                for cell in self._cells
+            ],
+        )
+        if not circuit.driven.isdisjoint(self._same):
+            raise ProofError("GHDL's netlist drives a net twice")
+        return circuit
+
+    def _fresh(self, width: int) -> tuple[int, ...]:
+        return tuple(next(self._numbers) for _ in range(width))
+
+    def _net(self, path: tuple[str, ...], net: Net) -> tuple[int, ...]:
+        """Give the bits of a net, those that it was declared with."""
+        bits = self._nets.get((path, net.number))
+        if bits is None:
+            bits = self._nets[path, net.number] = self._fresh(net.width)
+        if len(bits) != net.width:
+            raise ProofError(f"GHDL's net {net.number} has two widths")
+        return bits
+
+    def _bits(self, path: tuple[str, ...], net: Net) -> Bits:
+        return self._net(path, net)
+
+    def _resolved(self, bits: Bits) -> Bits:
+        return tuple(self._root(bit) for bit in bits)
+
+    def _root(self, bit: Bit) -> Bit:
+        """Follow names to what has them."""
+        seen: list[int] = []
+        while isinstance(bit, int) and bit in self._same:
+            seen.append(bit)
+            bit = self._same[bit]
+            if len(seen) > len(self._same):
+                raise ProofError("a signal of the VHDL is defined by itself")
+        for name in seen:
+            self._same[name] = bit
+        return bit
+
+    def _alias(self, names: tuple[int, ...], bits: Bits) -> None:
+        if len(names) != len(bits):
+            raise ProofError("GHDL's netlist connects nets of different widths")
+        for name, bit in zip(names, bits, strict=True):
+            if name in self._same:
+                raise ProofError(f"GHDL's netlist drives a net twice ({name})")
+            self._same[name] = bit
+
+    def _module(self, module: Module, path: tuple[str, ...]) -> None:
+        for instance in module.instances:
+            if instance.kind.startswith("$"):
+                self._gate(instance, path)
+            else:
+                self._submodule(instance, path)
+
+    def _submodule(self, instance: Instance, path: tuple[str, ...]) -> None:
+        module = self._modules.get(instance.kind)
+        if module is None or module.own is None:
+            raise ProofError(f"the VHDL has an instance of {instance.kind}, which is not in it")
+        inner = (*path, instance.name.lower())
+        own = module.own
+        if list(instance.inputs) != list(own.outputs) or list(instance.outputs) != list(own.inputs):
+            raise ProofError(f"GHDL's instance {instance.name} does not fit its module")
+        for port, net in instance.inputs.items():
+            self._alias(self._net(inner, own.outputs[port]), self._bits(path, net))
+        for port, net in instance.outputs.items():
+            self._alias(self._net(path, net), self._bits(inner, own.inputs[port]))
+        self._module(module, inner)
+
+    def _gate(self, instance: Instance, path: tuple[str, ...]) -> None:
+        if instance.kind in _IGNORED:
+            return
+        if len(instance.outputs) != 1:
+            raise ProofError(f"GHDL's netlist has {instance.kind}, which no proof can be made of")
+        (net,) = instance.outputs.values()
+        output = self._net(path, net)
+        inputs = {port: self._bits(path, each) for port, each in instance.inputs.items()}
+        if instance.kind in _FLOPS:
+            self._flops.append((instance, inputs, output))
+            return
+        if instance.kind in _EDGES:
+            self._edges[output[0]] = (inputs["i"][0], _EDGES[instance.kind])
+            return
+        gate = Gate(instance, inputs, net.width, self._fresh)
+        same = renamed(gate)
+        if same is None:
+            self._cells += gate_cells(gate, output)
+            return
+        self._alias(output, same)
+        if instance.kind in ("$signal", "$isignal", "$output", "$ioutput"):
+            name = (*path, instance.name.lower())
+            if name in self._signals:
+                raise ProofError(f"GHDL's netlist has two signals {instance.name}")
+            self._signals[name] = output
+
+    def _all_flops(self) -> dict[int, Flop]:
+        flops: dict[int, Flop] = {}
+        for instance, inputs, output in self._flops:
+            clock = self._root(inputs["clk"][0])
+            if clock not in self._edges:
+                raise ProofError(f"a register of the VHDL has no clock edge ({instance.name})")
+            source, rising = self._edges[int(clock)]
+            found = {port: self._resolved(bits) for port, bits in inputs.items()}
+            reset = found["rst"][0] if "rst" in found else None
+            for place, bit in enumerate(output):
+                init = found["init"][place] if "init" in found else "x"
+                value = found["rst_val"][place] if "rst_val" in found else "0"
+                if not isinstance(value, str):
+                    raise ProofError("an asynchronous reset of the VHDL has no constant value")
+                flops[bit] = Flop(
+                    data=found["d"][place],
+                    clock=self._root(source),
+                    rising=rising,
+                    init=init if isinstance(init, str) else "x",
+                    reset=reset,
+                    reset_value=value,
+                )
+        return flops

@@ -1,0 +1,18 @@
+"""What proofs need from outside."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.equivalence import MissingToolError, Tools, find_tools
+from tests.export.conftest import need
+
+
+@pytest.fixture
+def tools() -> Tools:
+    """GHDL and Yosys."""
+    try:
+        return find_tools()
+    except MissingToolError as error:
+        need(str(error), None)
+        raise

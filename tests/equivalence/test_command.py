@@ -1,0 +1,98 @@
+"""``firm-hdl prove``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.cli import main
+from firm_hdl.equivalence import Proof, Tools, command, converters, tools
+from firm_hdl.equivalence.converters import Attempt, Task
+from firm_hdl.equivalence.covering import covering_tasks, write_definitions
+
+TASK = Task(distro="lyrical", name="a/msg/B", direction="serializer")
+EQUAL = Attempt(proof=Proof(result="equal", registers=1, claims=1, seconds=1.0))
+UNEQUAL = Attempt(
+    proof=Proof(
+        result="unequal",
+        differences=("output o is 0x1 in the RTLIL and 0x0 in the VHDL",),
+        counterexample={"input i": 5},
+        registers=1,
+        claims=1,
+        seconds=2.0,
+    )
+)
+
+
+@pytest.mark.usefixtures("tools")
+def test_both_converters_are_proved(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["prove", "std_msgs/msg/Bool"]) == 0
+    lines = sorted(line[:9] + line.split("s  ")[1] for line in capsys.readouterr().out.splitlines())
+    assert lines == [
+        "equal    std_msgs/msg/Bool deserializer (lyrical, 8 bytes)",
+        "equal    std_msgs/msg/Bool serializer (lyrical, 8 bytes)",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("attempt", "status"),
+    [(EQUAL, 0), (UNEQUAL, 1), (Attempt(proof=None, problem="no"), 1)],
+)
+def test_status_says_whether_all_are_equal(
+    attempt: Attempt,
+    status: int,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(command, "find_tools", lambda: Tools(ghdl=(), yosys=()))
+    monkeypatch.setattr(
+        command, "run_tasks", lambda tasks, jobs: iter([(TASK, EQUAL), (TASK, attempt)])
+    )
+    assert command.run_proofs([TASK, TASK], 1, bar=True) == status
+    out = capsys.readouterr().out
+    assert f"{'2 equal' if status == 0 else '1 equal, 1 ' + attempt.result}" in out
+    if attempt is UNEQUAL:
+        assert "input i = 0x5" in out
+
+
+def test_missing_tools_are_said_with_how_to_install_them(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(tools.shutil, "which", lambda name: None)
+    monkeypatch.setattr(tools.importlib.util, "find_spec", lambda name: None)
+    tools.find_tools.cache_clear()
+    try:
+        assert main(["prove", "std_msgs/msg/Bool"]) == 1
+    finally:
+        tools.find_tools.cache_clear()
+    said = capsys.readouterr().err
+    assert "GHDL is not installed" in said and "apt-get install ghdl-mcode" in said
+    assert "pip install 'firm-hdl[prove]'" in said
+
+
+def test_types_or_all(capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments in (["prove"], ["prove", "--all", "std_msgs/msg/Bool"]):
+        with pytest.raises(SystemExit, match="2"):
+            main(arguments)
+    assert "name either types or --all" in capsys.readouterr().err
+
+
+def test_unknown_types_are_an_error(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["prove", "std_msgs/msg/Boo"]) == 1
+    assert "did you mean" in capsys.readouterr().err
+
+
+def test_what_cannot_be_built_is_a_failure() -> None:
+    attempt = converters.attempt(Task(distro="lyrical", name="no/msg/T", direction="serializer"))
+    assert attempt.result == "failed"
+    assert "no/msg/T" in attempt.problem or "package 'no'" in attempt.problem
+
+
+def test_at_least_50_types_of_both_wires_are_covered(tmp_path: Path) -> None:
+    write_definitions(tmp_path)
+    tasks = covering_tasks(tmp_path, timeout=1.0)
+    names = {(task.distro, task.name) for task in tasks}
+    assert len(names) * 2 == len(tasks) >= 100
+    assert {distro for distro, _ in names} == {"noetic", "lyrical"}
+    assert ("lyrical", "proved_msgs/msg/Wide") in names
