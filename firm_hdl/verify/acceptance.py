@@ -24,7 +24,7 @@ from firm_hdl.export.names import identifier
 from firm_hdl.frontend import Library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
-from firm_hdl.plan import Edge, Payload, Plan
+from firm_hdl.plan import Edge, Payload, Plan, build_plan
 from firm_hdl.plan.edges import edges
 from firm_hdl.plan.interpret import decode, encode
 from firm_hdl.sim.harness import Harness
@@ -38,6 +38,7 @@ from firm_hdl.verify.options import Options, Result
 from firm_hdl.verify.oracle import Oracle, Transfers
 from firm_hdl.verify.simulators import simulator
 from firm_hdl.verify.user_oracle import NotJudgedError, judge_of
+from firm_hdl.wire import Wire, lay_out
 
 __all__ = [
     "Options",
@@ -104,7 +105,7 @@ def accept_message(
 ) -> None:
     """Run all cases of a message type that the oracle knows by `name`, and add to `result`."""
     began = time.perf_counter()
-    wire = options.wire or message.wire
+    wire: Any = options.wire or message.wire
     run = _Acceptance(message, wire, options, result)
     cases = run.cases(oracle, name)
     bare = bare_packets(run.plan, cases)
@@ -150,7 +151,7 @@ def broken_packets(plan: Plan, cases: Sequence[Case], rng: random.Random) -> Ite
 class _Acceptance:
     """The runs of one type."""
 
-    def __init__(self, message: Message, wire: str, options: Options, result: Result):
+    def __init__(self, message: Message, wire: Wire, options: Options, result: Result):
         self.options = options
         self.result = result
         self.message = message
@@ -159,13 +160,17 @@ class _Acceptance:
             "bus_bytes": options.bus_bytes,
             "max_message_bytes": MAX_MESSAGE_BYTES,
         }
-        rx, tx = self.converters()
-        self.plan = rx.plan
+        self.plan = build_plan(
+            lay_out(message, wire),
+            bus_bytes=options.bus_bytes,
+            max_message_bytes=MAX_MESSAGE_BYTES,
+        )
         result.wire, result.shape = self.plan.wire, digest(self.plan)
         self.runs = 0
         self.rng = random.Random(f"{options.seed}/{message.name}/broken")
         if not options.simulated:
             return
+        rx, tx = self.converters()
         other = simulator(options.simulator)
         self.cross = (
             None if other is None else Crosscheck(other, (rx, tx), self.converters, message.name)

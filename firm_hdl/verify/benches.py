@@ -239,7 +239,7 @@ def _results(
 
 
 def _table(results: dict[tuple[str, str], BenchResult], bus_bytes: int) -> None:
-    columns = ("types", "pass", "fail", "not judged", "packets", "transfers", "CPU s")
+    columns = ("types", "pass", "fail", "not judged", "packets", "transfers", "seconds")
     print(f"{f'{bus_bytes}-byte bus':12} " + " ".join(f"{name:>10}" for name in columns))
     for distro in DISTROS:
         mine = [result for key, result in results.items() if key[0] == distro]

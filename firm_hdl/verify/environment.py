@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import platform
 from datetime import datetime, timezone
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 
 import firm_hdl
 
-__all__ = ["environment"]
+__all__ = ["code_digest", "environment"]
 
 PACKAGES = ("amaranth", "rosbags", "numpy", "lark", "distributed")
 
@@ -35,3 +37,14 @@ def environment(**more: str) -> dict[str, str]:
         except PackageNotFoundError:
             continue
     return {**found, **more}
+
+
+def code_digest() -> str:
+    """Return a digest of the package's own files: results of other code are other results."""
+    root = Path(firm_hdl.__file__).parent
+    digest = hashlib.sha256()
+    for path in sorted(root.rglob("*")):
+        if path.suffix in (".py", ".lark"):
+            digest.update(f"{path.relative_to(root).as_posix()}\0".encode())
+            digest.update(path.read_bytes() + b"\0")
+    return digest.hexdigest()[:12]

@@ -133,13 +133,23 @@ def _prepare(folder: str, parent: int) -> None:
 
 def _end_with(parent: int, folder: str) -> None:
     """End this process when its parent has been killed, which tells nobody."""
-    while True:
-        try:
-            os.kill(parent, 0)
-        except ProcessLookupError:
-            shutil.rmtree(folder, ignore_errors=True)
-            _stop(signal.SIGKILL, None)
+    # Whoever forked it: the parent, or a server that ends with the parent. An orphan gets another,
+    # also as long as nobody has taken notice that the parent is dead.
+    forked_by = os.getppid()
+    while os.getppid() == forked_by and _is_there(parent):
         time.sleep(1)
+    for process in list(_running):
+        _kill(process)
+    shutil.rmtree(folder, ignore_errors=True)
+    os._exit(128 + signal.SIGKILL)
+
+
+def _is_there(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    return True
 
 
 def _stop(number: int, frame: object) -> None:

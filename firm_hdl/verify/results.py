@@ -172,7 +172,7 @@ class ResultsWriter:
             tests = [_test(test) for test in planned]
             self._write({"format": FORMAT, "options": options, "planned": tests})
             _sync_folder(self.path.parent)
-            return found
+            return Results(options=options, planned=tuple(planned))
         if different := "; ".join(_differences(found, options, planned)):
             raise ResultsError(
                 f"'{self.path}' is of another run: {different}; name another file, or remove it"

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from tqdm import tqdm
 
 from firm_hdl.frontend import DISTROS
-from firm_hdl.verify.environment import environment
+from firm_hdl.verify.environment import code_digest, environment
 from firm_hdl.verify.executors import PROCESSES
 from firm_hdl.verify.options import Options, Result
 from firm_hdl.verify.recorded import record_of, same_circuits, test_of
@@ -89,6 +89,7 @@ def _writer(how: How, tasks: Sequence[Task], options: Sequence[Options]) -> Resu
             "broken": first.broken,
             "share_circuits": how.share_circuits,
             "paths": list(first.paths),
+            "code": code_digest(),
         },
         planned=[test_of(task, each) for each in options for task in tasks],
         session=environment(executor=how.executor),

@@ -25,7 +25,7 @@ COLOURS = 6
 """How many colours the style sheet has, ``c1`` and so on."""
 
 MOST_DOTS = 1200
-BAR_WIDTH = 160
+BAR_WIDTH = 110
 PARTS = (("passed", "pass"), ("failed", "fail"), ("skipped", "skip"), ("not_run", "none"))
 
 
@@ -121,15 +121,16 @@ def _signed(value: float) -> str:
 
 def scatter(trend: Trend) -> str:
     """Draw times over a figure, and the functions that were fitted to them."""
-    figure = Figure(372, 290, f"Time over {trend.metric}")
+    name = trend.metric.replace("_", " ")
+    figure = Figure(372, 290, f"Time over {name}")
     points = [(a, b) for a, b in trend.points if a > 0 and b > 0]
-    x = Scale.of((a for a, _ in points), 62, 360, is_log=True)
+    x = Scale.of((a for a, _ in points), 62, 346, is_log=True)
     y = Scale.of((b for _, b in points), 236, 14, is_log=True)
-    figure.x_axis(x, 236, f"{trend.metric}, logarithmic", 14)
-    figure.y_axis(y, 62, "time in s, logarithmic", 360)
+    figure.x_axis(x, 236, f"{name}, logarithmic", 14)
+    figure.y_axis(y, 62, "time in s, logarithmic", 346)
     step = -(-len(points) // MOST_DOTS)
     for a, b in points[::step]:
-        figure.dot(x(a), y(b), "point c1", f"{trend.metric} {number(a)}: {seconds(b)}", 2.2)
+        figure.dot(x(a), y(b), "point c1", f"{name} {number(a)}: {seconds(b)}", 2.2)
     low, high = min(a for a, _ in points), max(a for a, _ in points)
     across = [low * (high / low) ** (n / 60) for n in range(61)]
     law, line = trend.correlation.power, trend.correlation.linear

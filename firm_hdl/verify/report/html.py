@@ -36,7 +36,9 @@ __all__ = ["to_html"]
 # The page loads nothing, and what is in a name or in a text cannot make it.
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 
-MOST_CHARTS = 4
+MOST_CHARTS = 6
+MOST_OPEN_ROWS = 40
+SHORT = 40
 
 
 def to_html(summary: Summary) -> str:
@@ -118,7 +120,9 @@ def _results(summary: Summary) -> Iterator[str]:
 def _packages(summary: Summary) -> Iterator[str]:
     if summary.by_package:
         table = group_table(summary.by_package, "Test system|Distribution|Package")
-        yield _table(table, "packages", "Find a package")
+        is_open = " open" if len(table.rows) <= MOST_OPEN_ROWS else ""
+        yield f"<details{is_open}><summary>{len(table.rows)} packages</summary>"
+        yield _table(table, "packages", "Find a package") + "</details>"
 
 
 def _time(summary: Summary) -> Iterator[str]:
@@ -211,8 +215,8 @@ def _table(table: Table, name: str = "", hint: str = "") -> str:
         for text in table.headings
     )
     rows = "".join(f"<tr>{''.join(map(_cell, row))}</tr>\n" for row in table.rows)
-    found = f'<input type="search" data-table="{name}" placeholder="{hint}">' if name else ""
-    mark = f' id="{name}"' if name else ""
+    found = f'<input type="search" data-table="table-{name}" placeholder="{hint}">' if name else ""
+    mark = f' id="table-{name}"' if name else ""
     return (
         f'{found}<div class="wide"><table{mark}><thead><tr>{heads}</tr></thead>'
         f"<tbody>\n{rows}</tbody></table></div>"
@@ -225,4 +229,7 @@ def _cell(cell: Cell) -> str:
     if cell.value is not None:
         return f'<td class="n" data-v="{cell.value:.9g}">{escape(cell.text)}</td>'
     kind = f' class="t {_class(cell.verdict)}"' if cell.verdict else ""
+    if len(cell.text) < SHORT:
+        # Nothing is gained by breaking it.
+        kind = kind or ' class="t"'
     return f"<td{kind}>{escape(cell.text)}</td>"

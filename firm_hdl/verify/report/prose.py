@@ -43,7 +43,10 @@ SECTIONS = {
     "trends": (
         "What makes a test slow",
         "Figures of types against the time of their tests, with the power law and the line that "
-        "fit best by least squares. R² of a power law is that of the logarithms.",
+        "fit best by least squares. R² of a power law is that of the logarithms. Leaves are fields "
+        "of all levels; dynamic leaves are of no fixed size; streams are those of the message side "
+        "of a converter; steps and decisions are those of its plan; shifting counts places on the "
+        "wire whose padding differs from message to message; case bytes are those of all cases.",
     ),
     "extremes": ("Slowest and most complex", ""),
     "tests": ("All tests", ""),
@@ -117,7 +120,7 @@ def caption_of_fit(trend: Trend) -> str:
     law, line = trend.correlation.power, trend.correlation.linear
     parts = [f"power law {law_text(law)} s (R² {law.r2:.2f})"] if law else []
     parts += [f"line {line_text(line)} s (R² {line.r2:.2f})"] if line else []
-    return f"{trend.suite}; x = {trend.metric}: {', '.join(parts)}"
+    return f"{trend.suite}; x = {trend.metric.replace('_', ' ')}: {', '.join(parts)}"
 
 
 def sources(summary: Summary) -> Iterator[tuple[str, list[str]]]:

@@ -71,7 +71,17 @@ def _time(value: float) -> Cell:
 
 
 def _of(headings: str, rows: Iterable[Iterable[Cell]]) -> Table:
-    return Table(tuple(headings.split("|")), tuple(tuple(row) for row in rows))
+    """Make a table, without columns that are empty."""
+    names, made = headings.split("|"), [tuple(row) for row in rows]
+    kept = [
+        column
+        for column in range(len(names))
+        if not made or any(row[column].text or row[column].counts for row in made)
+    ]
+    return Table(
+        tuple(names[column] for column in kept),
+        tuple(tuple(row[column] for column in kept) for row in made),
+    )
 
 
 def title_of(outcome: Outcome) -> str:
@@ -148,7 +158,7 @@ def trend_table(trends: Iterable[Trend]) -> Table:
             found = trend.correlation
             yield (
                 Cell(trend.suite),
-                Cell(trend.metric),
+                Cell(trend.metric.replace("_", " ")),
                 Cell(trend.time),
                 _count(found.count),
                 *(Cell(f"{value:+.2f}", value) for value in (found.spearman, found.pearson)),
@@ -190,7 +200,7 @@ def every_table(outcomes: Iterable[Outcome]) -> Table:
             )
 
     columns = "Time#|CPU#|Leaves#|Steps#|Packets#|Cycles#|Plan coverage#|Circuit of"
-    return _of(f"Type|Distributions|System|Wire, bus|Result|{columns}", rows())
+    return _of(f"Type|Distributions|Test system|Wire|Result|{columns}", rows())
 
 
 def _covered(outcome: Outcome) -> Cell:

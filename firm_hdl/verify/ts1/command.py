@@ -41,7 +41,7 @@ def run_ts1(selection: Selection, oracles: Sequence[str] = (), jobs: int | None 
                 bar.update(count)
         for line in _summary(run, tally):
             print(line)
-        what = "mutations" if selection.mutations else "definitions"
+        what = ("mutation" if selection.mutations else "definition") + "s" * (run.total != 1)
         seconds = time.perf_counter() - began
         print(f"{run.total} {what}, {seconds:.0f} s, {len(tally.differing)} differences")
         return len(tally.differing) + (len(run.missing) if oracles else 0)

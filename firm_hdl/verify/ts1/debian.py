@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, ClassVar
 
 from firm_hdl.verify.ts1.case import Case
@@ -21,7 +21,7 @@ class _Worked(Oracle):
 
     @cached_property
     def _worker(self) -> Worker:
-        return Worker(self.family, self.universe.folder)
+        return _shared_worker(self.family, self.universe.folder)
 
     def missing(self) -> str | None:
         return self._worker.missing
@@ -46,6 +46,12 @@ class _Worked(Oracle):
     def close(self) -> None:
         if "_worker" in self.__dict__:
             self._worker.close()
+
+
+@cache
+def _shared_worker(family: str, folder: str) -> Worker:
+    # Two oracles of one family ask about the same texts, which it then reads once.
+    return Worker(family, folder)
 
 
 def _answer(answer: dict[str, Any]) -> Answer:

@@ -158,7 +158,22 @@ def _is_bool_constant(message: str, line: str) -> bool:
     return match is not None and match[1] == "bool" and "is not a truth value" in message
 
 
+_LIMITS = ("9223372036854775808", "18446744073709551616")
+
+
+def _is_one_too_many(message: str, line: str) -> bool:
+    digits = line.replace("_", "")
+    return "64 must be in" in message and any(limit in digits for limit in _LIMITS)
+
+
 # ROS 2's own.
+
+_ESCAPE_IN_LIST = re.compile(r"""(?m)^w?string\S*\]\s.*\[[^#]*\\["'][^#]*\]""")
+
+
+def _escaped_quotes(case: Case, ours: _Reading, difference: Difference) -> bool:
+    is_about = difference.path == "verdict" or "default" in difference.path
+    return is_about and _ESCAPE_IN_LIST.search(case.text) is not None
 
 
 def _comment_blanks(case: Case, ours: _Reading, difference: Difference) -> bool:
@@ -235,6 +250,30 @@ KNOWN: tuple[Known, ...] = (
         "genmsg",
         _all_lines(_is_bool_constant),
         "genmsg takes any literal of Python for a truth value.",
+    ),
+    _entry(
+        "ros1-indented-texts",
+        "genmsg",
+        _all_lines(lambda message, line: message.startswith("a string constant must start in")),
+        "genmsg takes an indented string constant for one called 'string X'.",
+    ),
+    _entry(
+        "ros1-64-bit-limits",
+        "genmsg",
+        _all_lines(_is_one_too_many),
+        "genmsg compares with rounded limits, and takes one more than 64 bits hold.",
+    ),
+    _entry(
+        "ascii-only",
+        "genmsg rosidl_adapter rosidl_parser",
+        _all_lines(lambda message, line: not message.isascii()),
+        "Names and numbers are written in ASCII.",
+    ),
+    _entry(
+        "ros2-escaped-quotes",
+        "rosidl_adapter",
+        _escaped_quotes,
+        "rosidl_adapter loses count of escaped quotes in a list of strings.",
     ),
     _entry(
         "sizes-of-32-bits",

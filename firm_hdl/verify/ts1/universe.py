@@ -144,14 +144,24 @@ class _Changed:
 
 def write_definitions(universe: Universe) -> None:
     """Put all definitions where oracles find them: files as links, other texts as files."""
+    folders: dict[tuple[str, str], list[tuple[str, Case]]] = {}
     for source, case in universe.read_all():
-        folder = Path(universe.folder, case.package, case.kind)
-        folder.mkdir(parents=True, exist_ok=True)
-        original = Path(source.name)
-        if original.is_file():
-            (folder / case.file).symlink_to(original.resolve())
-        else:
-            (folder / case.file).write_bytes(source.text.encode())
+        folders.setdefault((case.package, case.kind), []).append((source.name, case))
+    for (package, kind), found in folders.items():
+        folder = os.path.join(universe.folder, package, kind)
+        os.makedirs(os.path.dirname(folder), exist_ok=True)
+        origins = {os.path.dirname(name) for name, _ in found}
+        if len(origins) == 1 and all(os.path.isfile(name) for name, _ in found):
+            # The usual case, which saves thousands of links.
+            os.symlink(os.path.abspath(origins.pop()), folder)
+            continue
+        os.makedirs(folder)
+        for name, case in found:
+            file = os.path.join(folder, case.file)
+            if os.path.isfile(name):
+                os.symlink(os.path.abspath(name), file)
+            else:
+                Path(file).write_bytes(case.text.encode())
 
 
 def _source_of(error: DefinitionError) -> Source:

@@ -30,25 +30,6 @@ class _Genmsg:
             kind: {package: [os.path.join(folder, package, kind)] for package in packages}
             for kind in ("msg", "srv")
         }
-        for package in packages:
-            self._expand_actions(package)
-
-    def _expand_actions(self, package):
-        """Write the messages of all actions where messages may name them, as catkin does."""
-        source = os.path.join(self.folder, package, "action")
-        for file in sorted(os.listdir(source)) if os.path.isdir(source) else ():
-            try:
-                with open(os.path.join(source, file)) as lines:
-                    texts = _action_messages(file.rpartition(".")[0], lines.read())
-            except (ValueError, OSError):
-                continue
-            target = os.path.join(self.temporary.name, package)
-            os.makedirs(target, exist_ok=True)
-            for name, text in texts.items():
-                with open(os.path.join(target, f"{name}.msg"), "w") as out:
-                    out.write(text)
-            if target not in self.paths["msg"][package]:
-                self.paths["msg"][package].append(target)
 
     def judge(self, request):
         full_name = f"{request['package']}/{request['name']}"

@@ -23,6 +23,10 @@ EXAMPLES = {
     "ros1-constant-names": ("noetic", "genmsg", "int8 a-b=1\n"),
     "ros1-bool-literals": ("noetic", "genmsg", "bool ON=[1]\n"),
     "ros1-empty-arrays": ("noetic", "genmsg", "int8[0] x\n"),
+    "ros1-indented-texts": ("noetic", "genmsg", "  string X=1\n"),
+    "ros1-64-bit-limits": ("noetic", "genmsg", "int64 X=9223372036854775808\n"),
+    "ascii-only": ("noetic", "genmsg", "int8 größe\n"),
+    "ros2-escaped-quotes": ("lyrical", "rosidl_adapter", 'string[] x ["\\""]\n'),
     "sizes-of-32-bits": ("lyrical", "rosidl_adapter", "int8[4294967296] x\n"),
     "idl-names": (
         "lyrical",

@@ -158,3 +158,14 @@ def test_mutations_are_repeatable_and_told_by_number(source, capsys, monkeypatch
 
 def _fields(selection):
     return {name: getattr(selection, name) for name in Selection.__slots__}
+
+
+def test_oracles_read_the_text_that_we_take(tmp_path):
+    # One type overrides another of the same package, and the rest of that package stays.
+    files = {"one/std_msgs/msg/Header.msg": "int8 x\n", "two/p/msg/A.msg": "std_msgs/Header h\n"}
+    files |= {"three/p/msg/A.msg": "int8 x\n", "three/p/msg/B.msg": "A a\nstd_msgs/String s\n"}
+    make_files(tmp_path, files)
+    paths = tuple(str(tmp_path / name) for name in ("one", "two", "three"))
+    tally, run = judged(Selection(distro="noetic", paths=paths), ["genmsg"])
+    assert [case.full_name for case in run.cases] == ["p/A", "p/B", "std_msgs/Header"]
+    assert tally.verdicts == {("genmsg", "agrees"): 3}

@@ -1,0 +1,261 @@
+"""Reports: all that is in the results, in every form, and nothing that is not."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import pytest
+
+from firm_hdl.cli import main
+from firm_hdl.verify.records import PlanCoverage, Seconds
+from firm_hdl.verify.report import FORMATS, count, outcomes_of, summarise
+from firm_hdl.verify.results import Results, ResultsWriter
+from tests.verify.report.samples import a_record, a_run, a_test
+
+FAILED = a_record(
+    a_test("nav_msgs/msg/Path"),
+    status="fail",
+    failures=("hardware: packet 3 of 14 differs", "and more"),
+    command="firm-hdl verify nav_msgs/msg/Path",
+    waveform_command="firm-hdl verify --vcd waveforms nav_msgs/msg/Path",
+)
+
+
+def run_of(*records, planned=None):
+    tests = tuple(record.test for record in records) if planned is None else planned
+    return Results(planned=tests, records={record.test.key: record for record in records})
+
+
+def made(form, *runs):
+    return FORMATS[form](summarise({f"run{n}.jsonl": run for n, run in enumerate(runs)}))
+
+
+class Page(HTMLParser):
+    """Checks that elements are closed in order, and keeps what is in them."""
+
+    VOID = ("meta", "input", "line", "rect", "circle", "path")
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.tags, self.text, self.attributes = [], [], [], []
+        self.feed(text)
+        self.close()
+        assert not self.open
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.attributes += attrs
+        if tag not in ("meta", "input"):
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.tags.append(tag)
+        self.attributes += attrs
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text.append(data)
+
+
+@pytest.mark.parametrize("form", list(FORMATS))
+def test_failure_is_one_in_every_form(form):
+    passed = made(form, run_of(a_record()))
+    failed = made(form, run_of(a_record(), FAILED))
+    for text in (FAILED.failures[0], FAILED.command, FAILED.waveform_command):
+        assert text in failed and text not in passed
+    said = {"html": "1 of 2 tests passed, 1 failed", "md": "1 of 2 tests passed, 1 failed"}
+    if form == "json":
+        assert json.loads(passed)["verdict"] == "pass"
+        found = json.loads(failed)
+        assert found["verdict"] == "fail" and found["failed"] == [FAILED.test.key]
+        assert found["counts"] == {"passed": 1, "failed": 1, "skipped": 0, "not_run": 0}
+    else:
+        assert said[form] in failed and "1 of 1 tests passed" in passed
+        assert "✗ fail" in failed and "✗" not in passed
+
+
+@pytest.mark.parametrize("form", list(FORMATS))
+def test_missing_record_is_no_pass(form):
+    missing = a_test("nav_msgs/msg/Path")
+    text = made(form, run_of(a_record(), planned=(a_test(), missing)))
+    if form == "json":
+        found = json.loads(text)
+        assert found["verdict"] == "not run" and found["not_run"] == [missing.key]
+    else:
+        assert "1 of 2 tests passed, 1 not run" in text and "nav_msgs/msg/Path" in text
+        assert "? not run" in text
+
+
+def test_no_results_are_no_pass():
+    assert count([]).verdict == "not run"
+    for form in ("html", "md"):
+        assert "? no tests" in made(form, Results())
+    assert json.loads(made("json", Results()))["verdict"] == "not run"
+
+
+def test_test_that_failed_once_failed():
+    passed = replace(FAILED, status="pass", failures=())
+    for files in ([run_of(FAILED), run_of(passed)], [run_of(passed), run_of(FAILED)]):
+        assert [outcome.verdict for outcome in outcomes_of(files)] == ["fail"]
+
+
+def test_skipped_tests_are_no_passes_and_have_their_reason():
+    skipped = a_record(a_test("a/msg/W"), status="skipped", reason="no oracle for wstring")
+    outcomes = outcomes_of([run_of(a_record(), skipped)])
+    assert count(outcomes).skipped == 1 and count(outcomes).passed == 1
+    for form in FORMATS:
+        assert "no oracle for wstring" in made(form, run_of(a_record(), skipped))
+
+
+@pytest.mark.parametrize(
+    ("other", "verdict", "why"),
+    [
+        (a_record(shape="aa"), "pass", ""),
+        (a_record(shape="bb"), "fail", "not the circuit of 'KEY', as its record says"),
+        (
+            replace(FAILED, test=a_test(), shape="aa"),
+            "fail",
+            "has the circuit of 'KEY', which failed",
+        ),
+        (None, "not run", ""),
+        (a_record(status="skipped", reason="x", shape="aa"), "not run", ""),
+    ],
+)
+def test_shared_circuit_is_worth_what_its_own_test_is(other, verdict, why):
+    twin = a_record(a_test("a/msg/Twin"), same_as=a_test().key, shape="aa")
+    records = [twin] if other is None else [twin, other]
+    (outcome,) = (o for o in outcomes_of([run_of(*records)]) if o.test == twin.test)
+    assert outcome.verdict == verdict
+    assert outcome.failures == ((why.replace("KEY", a_test().key),) if why else ())
+
+
+def test_distributions_and_packages_are_counted():
+    one = a_record(a_test("a_msgs/msg/A", distro="humble", same=("humble", "iron")))
+    two = replace(FAILED, test=a_test("b_msgs/msg/B", distro="iron", same=("iron",)))
+    summary = summarise({"r": run_of(one, two)})
+    suite = "ts3, python, 8-byte bus"
+    assert {g.labels: (g.counts.passed, g.counts.failed) for g in summary.by_distro} == {
+        (suite, "humble"): (1, 0),
+        (suite, "iron"): (1, 1),
+    }
+    assert {g.labels[1:]: g.counts.total for g in summary.by_package} == {
+        ("humble", "a_msgs"): 1,
+        ("iron", "a_msgs"): 1,
+        ("iron", "b_msgs"): 1,
+    }
+
+
+EVIL = "</title><script>alert(1)</script>\"'&`|*_<b>\n```"
+
+
+def test_what_users_name_is_text_in_every_form():
+    record = replace(
+        FAILED,
+        test=a_test(f"a/msg/{EVIL}", distro=EVIL, same=(EVIL,), options=EVIL),
+        failures=(EVIL, EVIL),
+        command=EVIL,
+        waveform_command=EVIL,
+        coverage=PlanCoverage(taken=0, possible=1, missing=(EVIL,)),
+        metrics={EVIL: 3.0},
+        same_as=EVIL,
+    )
+    more = [
+        replace(a_record(a_test(f"a/msg/T{n}")), metrics={EVIL: n + 1.0}, seconds=s)
+        for n, s in enumerate(Seconds(simulation=0.1 * x) for x in (1, 2, 3, 5, 4, 7))
+    ]
+    run = replace(run_of(record, *more), options={EVIL: EVIL}, sessions=({EVIL: EVIL},))
+    calm = replace(run_of(a_record()), options={"x": "y"})
+    page, plain = Page(made("html", run)), Page(made("html", calm))
+    assert page.tags.count("script") == plain.tags.count("script") == 1
+    assert page.tags.count("b") == page.attributes.count(("class", "tile"))
+    assert "alert(1)" in "".join(page.text)
+    assert not [name for name, _ in page.attributes if name.startswith("on")]
+    assert json.loads(made("json", run))["outcomes"][0]["failures"] == [EVIL, EVIL]
+    text = made("md", run)
+    outside = re.sub(r"(?ms)^(`{3,})$.*?^\1$", "", text)
+    assert not re.search(r"(?<!\\)<", outside)
+
+
+def test_page_needs_nothing_else_and_is_well_formed():
+    text = made("html", a_run())
+    page = Page(text)
+    assert not set(page.tags) & {"link", "img", "iframe", "object", "base", "image", "use"}
+    links = [value for name, value in page.attributes if name in ("src", "href", "xlink:href")]
+    assert links and all(link.startswith("#") for link in links)
+    assert (
+        "url(" not in text
+        and "@import" not in text
+        and "http" not in text.replace("http-equiv", "")
+    )
+    assert "prefers-color-scheme: dark" in text
+    targets = {value for name, value in page.attributes if name == "id"}
+    assert {link[1:] for link in links} <= targets
+    # A search field finds its table, and no section of the same name.
+    assert len(targets) == len([name for name, _ in page.attributes if name == "id"])
+    searched = {value for name, value in page.attributes if name == "data-table"}
+    assert searched and searched <= targets
+
+
+def test_charts_have_axes_with_units_and_titles():
+    text = made("html", a_run())
+    for label in (
+        "time per test in s, logarithmic",
+        "share of tests completed",
+        "leaves, logarithmic",
+    ):
+        assert label in text
+    assert "<title>power law " in text and "<title>leaves " in text
+
+
+def test_reports_are_the_same_each_time():
+    for form in FORMATS:
+        assert made(form, a_run()) == made(form, a_run())
+
+
+def test_coverage_that_is_missing_is_named():
+    coverage = PlanCoverage(taken=4, possible=5, missing=("step 3: padding 5",))
+    run = run_of(a_record(), a_record(a_test("a/msg/A"), coverage=coverage))
+    for form in ("html", "md"):
+        text = made(form, run)
+        assert "step 3: padding 5" in text and "90.0" in text and "4 of 5" in text
+    assert json.loads(made("json", run))["coverage"][0]["taken"] == 9
+
+
+def test_nothing_rounds_up_to_all():
+    coverage = PlanCoverage(taken=99_999, possible=100_000)
+    run = run_of(a_record(coverage=coverage))
+    assert "99.99%" in made("md", run) and "100.00%" not in made("md", run)
+
+
+def written(path, run):
+    with ResultsWriter(path, options=run.options, planned=run.planned) as writer:
+        for record in run.records.values():
+            writer.add(record)
+    return str(path)
+
+
+@pytest.mark.parametrize("form", list(FORMATS))
+def test_command_writes_what_the_name_says(tmp_path, form, capsys):
+    path = written(tmp_path / "r.jsonl", a_run(8))
+    out = tmp_path / "new" / f"report.{form}"
+    assert main(["report", path, "--out", str(out)]) == 0
+    assert capsys.readouterr().out == f"wrote   {out}\n"
+    assert main(["report", path, "--format", form]) == 0
+    assert capsys.readouterr().out == out.read_text()
+    assert [each.name for each in out.parent.iterdir()] == [out.name]
+
+
+def test_command_refuses_what_is_no_results(tmp_path, capsys):
+    (tmp_path / "x").write_text("hello\n")
+    assert main(["report", str(tmp_path / "x")]) == 1
+    assert capsys.readouterr().err == (f"error: '{tmp_path}/x' has no results of firm-hdl verify\n")
+    assert main(["report", str(tmp_path / "y")]) == 1
+    assert "No such file" in capsys.readouterr().err
+    path = written(tmp_path / "r.jsonl", a_run(2))
+    assert main(["report", path, "--out", str(tmp_path / "r.pdf")]) == 1
+    assert "must end in .html, .md, .json" in capsys.readouterr().err

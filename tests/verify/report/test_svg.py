@@ -1,0 +1,73 @@
+"""Scales: round figures, in order, inside the picture."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from firm_hdl.verify.report.svg import Scale, number, seconds, spread
+
+POSITIVE = st.floats(min_value=1e-6, max_value=1e9)
+
+
+@given(st.lists(POSITIVE, min_size=1), st.booleans())
+def test_values_and_ticks_are_inside(values, is_log):
+    scale = Scale.of(values, 10, 200, is_log=is_log)
+    for value in values:
+        assert 10 <= scale(value) <= 200
+    ticks = scale.ticks()
+    assert 1 <= len(ticks) <= 12 and ticks == sorted(set(ticks))
+    assert all(10 <= scale(tick) <= 200 for tick in ticks)
+
+
+@given(POSITIVE, POSITIVE)
+def test_larger_values_are_further_on(one, other):
+    scale = Scale.of([one, other], 200, 10, is_log=True)
+    assert (scale(one) - scale(other)) * (one - other) <= 0
+
+
+def test_logarithms_are_even():
+    scale = Scale.of([0.01, 100], 0, 400, is_log=True)
+    assert [scale(value) for value in (0.01, 0.1, 1, 10, 100)] == [0, 100, 200, 300, 400]
+    assert scale.ticks() == pytest.approx([0.01, 0.1, 1, 10, 100])
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0, "0"),
+        (3, "3"),
+        (12345.6, "12,346"),
+        (0.12345, "0.123"),
+        (1e-7, "1.0e-07"),
+        (math.nan, "-"),
+    ],
+)
+def test_numbers(value, text):
+    assert number(value) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0, "0 s"),
+        (2e-6, "2 µs"),
+        (0.0123, "12.3 ms"),
+        (1.5, "1.5 s"),
+        (119.4, "119 s"),
+        (150, "2 min 30 s"),
+        (7500, "2 h 5 min"),
+    ],
+)
+def test_times_have_units_that_suit(value, text):
+    assert seconds(value) == text
+
+
+def test_neighbours_are_spread():
+    values = [spread(index) for index in range(50)]
+    assert all(0 <= value < 1 for value in values)
+    assert min(abs(a - b) for a, b in pairwise(values)) > 0.3
