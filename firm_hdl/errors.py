@@ -69,12 +69,27 @@ class Diagnostic:
         if self.span is None:
             return f"error: {self.message}"
         span = self.span
-        text = span.line_text
+        column = span.column
+        where = f"{span.source.name}:{span.line}:{column}"
+        text, before = _clip(span.line_text, column - 1)
         # Tabs stay tabs in front of the caret, so that it stands right at any tab width.
-        indent = "".join("\t" if c == "\t" else " " for c in text[: span.column - 1])
-        carets = "^" * max(1, min(span.end - span.start, len(text) - span.column + 1))
-        where = f"{span.source.name}:{span.line}:{span.column}"
+        indent = "".join("\t" if c == "\t" else " " for c in text[:before])
+        carets = "^" * max(1, min(span.end - span.start, len(text) - before))
         return f"{where}: error: {self.message}\n{text}\n{indent}{carets}"
+
+
+# A file may be one line, with all of its mistakes.
+_MOST_SHOWN = 400
+
+
+def _clip(text: str, before: int) -> tuple[str, int]:
+    """Cut a long line to what stands around a place; give the characters in front of it, too."""
+    if len(text) <= _MOST_SHOWN:
+        return text, before
+    start = max(0, before - _MOST_SHOWN // 2)
+    end = start + _MOST_SHOWN
+    head, tail = "..." if start else "", "..." if end < len(text) else ""
+    return head + text[start:end] + tail, before - start + len(head)
 
 
 # A text with a thousand mistakes must not be searched from its start for each of them.

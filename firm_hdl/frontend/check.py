@@ -50,13 +50,15 @@ def check_type_name(
 def check_members(syntax: MessageSyntax) -> Iterator[Diagnostic]:
     """Check every line of a text for itself, then the names against each other."""
     primitives = IDL_PRIMITIVES if syntax.language == "idl" else PRIMITIVES[syntax.dialect]
+    checked: ListSyntax | None = None
     for member in syntax.members:
         yield from _check_sizes(member.type)
         if isinstance(member, ConstantSyntax):
             yield from _check_value(member.value, member.type, primitives)
         elif isinstance(member.default, ValueSyntax):
             yield from _check_value(member.default, member.type, primitives)
-        elif isinstance(member.default, ListSyntax):
+        elif isinstance(member.default, ListSyntax) and member.default is not checked:
+            checked = member.default  # In IDL, several names may share it.
             yield from _check_list(member.default, member.type, primitives)
     yield from _check_names(syntax)
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 
 from firm_hdl.errors import Diagnostic, Source, Span
 from firm_hdl.frontend.check import check_members, check_type_name
+from firm_hdl.frontend.idl import read_idl
 from firm_hdl.frontend.names import Kind, TypeName
 from firm_hdl.frontend.parse import lines_of, read_message
 from firm_hdl.frontend.sources import Definition, Language
@@ -95,8 +96,6 @@ def read_unit(
     source = definition.source
     diagnostics: list[Diagnostic] = []
     if definition.language == "idl":
-        from firm_hdl.frontend.idl import read_idl
-
         messages, wrong = read_idl(source, _beside(name, include))
         wrong = wrong or list(_check_structs(name, source, messages))
         # Nobody can ask for a struct of another name.

@@ -18,7 +18,7 @@ from lark.exceptions import UnexpectedInput
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
 from firm_hdl.frontend.comments import CommentCollector, condense
-from firm_hdl.frontend.explain import explain
+from firm_hdl.frontend.explain import clip, explain
 from firm_hdl.frontend.syntax import (
     ConstantSyntax,
     FieldSyntax,
@@ -195,7 +195,7 @@ class _Reader:
         self._dialect = dialect
 
     def draft(self, tree: Tree[Token]) -> _Draft | Diagnostic:
-        """Read a definition. A number too long for Python to read is reported here."""
+        """Read a definition. What a grammar cannot say is reported here."""
         children = [child for child in tree.children if child is not None]
         at_name = next(i for i, c in enumerate(children) if _kind(c) in _NAMES)
         name = children[at_name]
@@ -203,10 +203,14 @@ class _Reader:
         try:
             type_ = self._type(children[:at_name])
             value = self._value(children[at_name + 1 :])
-        except _TooLongError as error:
-            message = f"a number of {len(error.token)} digits is too long"
-            return Diagnostic(message=message, span=self._span(error.token))
+        except _TokenError as error:
+            return Diagnostic(message=error.message, span=self._span(error.token))
         is_constant = tree.data == "constant"
+        indent = self._source.text[self._offset : type_.span.start]
+        if is_constant and type_.name == "string" and self._dialect == "ros1" and " " in indent:
+            message = "a string constant must start in the first column: genmsg would take "
+            message += f"'string {name}' for its name"
+            return Diagnostic(message=message, span=type_.span)
         if is_constant and value is None:
             # ``string NAME=`` is the empty text.
             assert name.end_pos is not None
@@ -286,13 +290,16 @@ class _Reader:
 
 
 _NAMES = frozenset({"NAME", "FIELD_NAME", "CONSTANT_NAME"})
-_BRACKETS = frozenset({"EMPTY_LIST", "LIST_OPEN", "LIST_CLOSE"})
+_BRACKETS = frozenset({"EMPTY_LIST", "LIST_OPEN", "LIST_CLOSE", "LAST_CLOSE"})
 
 
-class _TooLongError(Exception):
-    def __init__(self, token: Token) -> None:
-        super().__init__()
+class _TokenError(Exception):
+    """A word that the grammar lets through, and that means nothing."""
+
+    def __init__(self, token: Token, message: str) -> None:
+        super().__init__(message)
         self.token = token
+        self.message = message
 
 
 def _kind(node: Token | Tree[Token]) -> str:
@@ -314,7 +321,7 @@ def _integer(token: Token) -> int:
         except ValueError:
             continue
     # The grammar lets through nothing but integers, so it is Python's limit on digits.
-    raise _TooLongError(token)
+    raise _TokenError(token, f"a number of {len(token)} digits is too long")
 
 
 def _boolean(token: Token) -> bool:
@@ -327,11 +334,15 @@ def _unquoted(text: str) -> str:
     return text[1:-1].replace("\\" + quote, quote)
 
 
-def _item(text: str) -> str:
+def _item(token: Token) -> str:
     """Read an element of a list of texts as rosidl does, which unquotes and strips it twice."""
-    text = str(text)  # A plain one, no token.
+    text = str(token)  # A plain one, no token.
     if text[0] in "\"'":
         text = _unquoted(text).strip()
-    if len(text) > 1 and text[0] in "\"'" and text[0] == text[-1]:
+    if text and text[0] in "\"'" and text[0] == text[-1]:
+        if re.search(rf"(?<!\\){text[0]}", text[1:-1]):
+            raise _TokenError(
+                token, f"{clip(text)} is not a text: a quote inside it needs a backslash"
+            )
         text = _unquoted(text)
     return text

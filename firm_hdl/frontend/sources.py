@@ -121,7 +121,7 @@ class FolderOrigin:
         """Read what an ``#include "package/folder/file.idl"`` names; `None` if it is not here."""
         package, _, rest = path.partition("/")
         folder = self._packages.get(package)
-        if folder is None or ".." in rest.split("/"):
+        if folder is None or rest.startswith("/") or ".." in rest.split("/"):
             return None
         file = os.path.join(folder, rest)
         return _read(file) if os.path.isfile(file) else None

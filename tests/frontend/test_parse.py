@@ -206,7 +206,7 @@ def test_what_is_no_truth_value_is_refused(dialect, text):
         ("string X='", "'"),
         ("string X=", ""),
         ("string X=   ", ""),
-        ("  string  X=a", "a"),
+        ("\tstring  X=a", "a"),
         ("string X=\ta\t b\t", "a\t b"),
     ],
 )
@@ -251,7 +251,25 @@ def test_ros2_text_constant_may_be_empty_and_contain_equals():
     assert constant('string X="=" # c').value.value == "="
 
 
-@pytest.mark.parametrize("text", ['"a"b"', "'a'b'", '"', "'", '"a" "b"'])
+def test_ros1_text_constants_are_not_indented_with_spaces():
+    # genmsg would call it 'string X', which is no name in any language.
+    for line in ("  string X=a", "\t string X=a", " string\t X = a"):
+        assert refused(line, "ros1") == (
+            "a string constant must start in the first column: genmsg would take 'string X' for "
+            "its name"
+        )
+    assert constant("  int8 X=1", "ros1").name.text == "X"
+
+
+@pytest.mark.parametrize("quote", ["'", '"'])
+def test_ros2_lone_quote_is_the_empty_text(quote):
+    for line in (f"string x {quote}", f"string x {quote}  # c"):
+        assert field(line).default.value == ""
+    assert constant(f"string X={quote}").value.value == ""
+    refused(f"string x {quote}#{quote}=", "ros1")
+
+
+@pytest.mark.parametrize("text", ['"a"b"', "'a'b'", '"a" "b"'])
 def test_ros2_refuses_loose_quotes(text):
     refused(f"string x {text}", "ros2")
     refused(f"string X={text}", "ros2")
@@ -276,6 +294,8 @@ def test_ros2_default_cannot_contain_equals():
         ("""string[] x ["a,b", 'c"]']""", ("a,b", 'c"]')),
         (r"""string[] x ["H\"el'lo", 'Wo\'r"ld']""", ("H\"el'lo", "Wo'r\"ld")),
         ('string[] x ["a",]', ("a",)),
+        ("""string[] x ["a" 'b',"c""d" e]""", ("a", "b", "c", "d", "e")),
+        ("""string[] x [a "b", 'c' ]""", ('a "b"', "c")),
         ('string[] x [""]', ("",)),
         ('string[] x [" a "]', ("a",)),
     ],

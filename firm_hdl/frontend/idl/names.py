@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from firm_hdl.errors import Diagnostic, Source
+from firm_hdl.errors import DefinitionError, Diagnostic, Source
 from firm_hdl.frontend.explain import clip
 from firm_hdl.frontend.idl.parse import parse_file
 from firm_hdl.frontend.idl.tree import (
@@ -62,33 +62,44 @@ def definitions(file: FileSyntax) -> Iterator[tuple[Path, Definition]]:
 def included(file: FileSyntax, include: Callable[[str], Source | None]) -> list[FileSyntax]:
     """Read all files that a file includes, directly or not; each follows those that it includes.
 
-    What is not found or is no IDL is left out: rosidl_parser does not look at it at all. Whoever
-    needs something from it will miss it.
+    A path is looked for as it is written, then beside the file that includes it. What is not found
+    or is no IDL is left out: rosidl_parser does not look at it at all, and whoever needs something
+    from it will miss it.
     """
-    found: dict[str, FileSyntax] = {}
+    found: list[FileSyntax] = []
     seen = {file.source.name}
 
-    def children(parent: FileSyntax) -> Iterator[FileSyntax]:
+    def children(parent: FileSyntax, folder: str) -> Iterator[tuple[FileSyntax, str]]:
         for _, definition in definitions(parent):
-            if isinstance(definition, Include):
-                source = include(definition.path)
+            if not isinstance(definition, Include):
+                continue
+            for path in dict.fromkeys((definition.path, f"{folder}{definition.path}")):
+                source = _source(path, include)
                 if source is not None and source.name not in seen:
                     seen.add(source.name)
                     child = parse_file(source)
                     if not isinstance(child, Diagnostic):
-                        yield child
+                        yield child, path[: path.rfind("/") + 1]
+                if source is not None:
+                    break
 
-    path = [(file, children(file))]
-    while path:
-        parent, pending = path[-1]
-        child = next(pending, None)
+    pending = [(file, children(file, ""))]
+    while pending:
+        parent, others = pending[-1]
+        child, folder = next(others, (None, ""))
         if child is not None:
-            path.append((child, children(child)))
+            pending.append((child, children(child, folder)))
         else:
-            path.pop()
-            found[parent.source.name] = parent
-    del found[file.source.name]
-    return list(found.values())
+            found.append(parent)
+            pending.pop()
+    return found[:-1]
+
+
+def _source(path: str, include: Callable[[str], Source | None]) -> Source | None:
+    try:
+        return include(path)
+    except DefinitionError:
+        return None  # It is there, but cannot be read.
 
 
 @dataclass(slots=True)

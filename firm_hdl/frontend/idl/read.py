@@ -46,6 +46,7 @@ from firm_hdl.frontend.idl.values import (
 from firm_hdl.frontend.syntax import (
     ConstantSyntax,
     FieldSyntax,
+    ListSyntax,
     MemberSyntax,
     MessageSyntax,
     NameSyntax,
@@ -101,7 +102,7 @@ def read_idl(
 
 def _place(diagnostic: Diagnostic, source: Source) -> int:
     span = diagnostic.span
-    return -1 if span is None or span.source is not source else span.start
+    return -1 if span is None or span.source.name != source.name else span.start
 
 
 class _Reader:
@@ -256,7 +257,10 @@ class _Reader:
 
     def _fields(self, node: Member, path: Path, struct: Struct) -> Iterator[FieldSyntax]:
         self.wrong += refusals(node.annotations)
+        comment, unit = comment_of(node.annotations), unit_of(node.annotations)
         array: Declarator | None = None
+        # Long types and defaults in front of many names are read once.
+        known: dict[bool, tuple[TypeSyntax, ValueSyntax | ListSyntax | None]] = {}
         for declarator in node.declarators:
             name = declarator.name
             if array is not None:
@@ -265,26 +269,35 @@ class _Reader:
                     "gives it too; declare it in a line of its own"
                 )
                 self.wrong.append(Diagnostic(message=message, span=name.span))
+                return
             if declarator.sizes:
                 array = declarator
-            try:
-                type_ = self._expander.member(node.type, declarator, path, struct.name.text)
-            except IdlError as error:
-                self._note(error)
-                continue
-            lookup = partial(self._names.constant, path=path, struct=struct.name.text)
-            try:
-                default = default_of(node.annotations, type_, lookup)
-            except IdlError as error:
-                self._note(error)
-                default = None
+            is_array = array is not None
+            if is_array not in known:
+                try:
+                    type_ = self._expander.member(node.type, declarator, path, struct.name.text)
+                except IdlError as error:
+                    self._note(error)
+                    return
+                known[is_array] = type_, self._default(node, type_, path, struct)
+            type_, default = known[is_array]
             yield FieldSyntax(
                 type=type_,
                 name=NameSyntax(text=name.text, span=name.span),
                 default=default,
-                comment=comment_of(node.annotations),
-                unit=unit_of(node.annotations),
+                comment=comment,
+                unit=unit,
             )
+
+    def _default(
+        self, node: Member, type_: TypeSyntax, path: Path, struct: Struct
+    ) -> ValueSyntax | ListSyntax | None:
+        lookup = partial(self._names.constant, path=path, struct=struct.name.text)
+        try:
+            return default_of(node.annotations, type_, lookup)
+        except IdlError as error:
+            self._note(error)
+            return None
 
     def _note(self, error: IdlError) -> None:
         if not isinstance(error, AlreadyReportedError):

@@ -1,0 +1,54 @@
+"""How errors are printed."""
+
+from __future__ import annotations
+
+import pickle
+import time
+
+from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
+
+
+def diagnostic(text, start, end, message="no"):
+    source = Source(name="a.msg", text=text)
+    return Diagnostic(message=message, span=Span(source=source, start=start, end=end))
+
+
+def test_caret_stands_under_the_words():
+    text = "int8 a\r\n\tint9 b\n"
+    assert str(diagnostic(text, 9, 13)) == "a.msg:2:2: error: no\n\tint9 b\n\t^^^^"
+
+
+def test_place_behind_the_last_line_has_a_caret():
+    assert str(diagnostic("a\n", 2, 2)) == "a.msg:2:1: error: no\n\n^"
+
+
+def test_lines_are_counted_from_1():
+    text = "\na\n\nb"
+    spans = [diagnostic(text, start, start).span for start in range(len(text) + 1)]
+    assert [(s.line, s.column) for s in spans] == [(1, 1), (2, 1), (2, 2), (3, 1), (4, 1), (4, 2)]
+
+
+def test_long_line_is_cut_around_the_place():
+    text = "x" * 1000 + "here" + "y" * 1000
+    first, line, carets = str(diagnostic(text, 1000, 1004)).split("\n")
+    assert first == "a.msg:1:1001: error: no"
+    assert line == "..." + "x" * 200 + "here" + "y" * 196 + "..."
+    assert carets == " " * 203 + "^^^^"
+    _, line, carets = str(diagnostic(text, 0, 2)).split("\n")
+    assert line == "x" * 400 + "..." and carets == "^^"
+    _, line, carets = str(diagnostic(text, 2000, 2004)).split("\n")
+    assert line.endswith("y") and len(line) == 207 and carets == " " * 203 + "^^^^"
+
+
+def test_many_errors_in_one_line_are_printed_in_time():
+    text = "x " * 50_000
+    start = time.process_time()
+    error = DefinitionError(diagnostic(text, 2 * i, 2 * i + 1) for i in range(1000))
+    assert len(str(error).splitlines()) == 3000
+    assert time.process_time() - start < 5
+
+
+def test_error_survives_pickling():
+    error = DefinitionError([diagnostic("a b", 2, 3)])
+    again = pickle.loads(pickle.dumps(error))
+    assert str(again) == str(error) and again.diagnostics == error.diagnostics
