@@ -16,11 +16,13 @@ from firm_hdl.plan import BUS_BYTES
 from firm_hdl.verify.benches import run_benches
 from firm_hdl.verify.executors import PROCESSES, ExecutorError, check_executor
 from firm_hdl.verify.options import Options
+from firm_hdl.verify.processes import unwound_when_terminated
 from firm_hdl.verify.report.command import write_report
 from firm_hdl.verify.results import ResultsError
 from firm_hdl.verify.runner import Task, UnknownTypeError, collect_own, collect_tasks
 from firm_hdl.verify.simulators import SIMULATORS, SimulatorMissingError
 from firm_hdl.verify.ts1 import ORACLES, run_ts1, selections_of
+from firm_hdl.verify.ts2 import run_ts2
 from firm_hdl.verify.ts3 import How, run_ts3
 
 __all__ = ["SYSTEMS", "add_verify_arguments", "run_verify"]
@@ -41,8 +43,9 @@ def run_verify(given: argparse.Namespace) -> int:
     if given.results is not None and "ts3" not in given.systems:
         given.refuse("--results are of ts3")
     try:
-        # Each of them, whatever comes of the first.
-        results = [SYSTEMS[name](given) for name in given.systems]
+        with unwound_when_terminated():
+            # Each of them, whatever comes of the first.
+            results = [SYSTEMS[name](given) for name in given.systems]
         if given.report is not None:
             write_report([given.results], given.report)
             print(f"wrote   {given.report}")
@@ -100,8 +103,19 @@ def _ts1(given: argparse.Namespace) -> bool:
     return not any(counts)
 
 
+def _ts2(given: argparse.Namespace) -> bool:
+    return run_ts2(
+        _tasks(given),
+        paths=given.path,
+        wire=given.wire,
+        widths=given.bus_bytes or [8],
+        golden=given.golden,
+    )
+
+
 SYSTEMS: dict[str, Callable[[argparse.Namespace], bool]] = {
     "ts1": _ts1,
+    "ts2": _ts2,
     "ts3": _ts3,
     "bench": _bench,
 }
@@ -170,6 +184,8 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
         "--no-broken", dest="broken", action="store_false", help="do not run damaged packets"
     )
     _add_results(parser.add_argument_group("options of ts3"))
+    ts2 = parser.add_argument_group("options of ts2")
+    ts2.add_argument("--golden", metavar="DIR", help="compare with the golden plans there, too")
     ts1 = parser.add_argument_group("options of ts1")
     ts1.add_argument(
         "--oracle",

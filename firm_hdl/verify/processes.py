@@ -12,6 +12,7 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -21,7 +22,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
-__all__ = ["ToolError", "in_processes", "run_tool", "worker_pool"]
+__all__ = ["ToolError", "in_processes", "run_tool", "unwound_when_terminated", "worker_pool"]
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -118,6 +119,23 @@ def worker_pool(jobs: int | None) -> Iterator[ProcessPoolExecutor]:
                 for child in set(multiprocessing.active_children()) - before:
                     child.terminate()
                 raise
+
+
+@contextmanager
+def unwound_when_terminated() -> Iterator[None]:
+    """Let SIGTERM end this process as an exception does, so that it puts things in order."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def leave(number: int, frame: object) -> None:
+        sys.exit(128 + number)
+
+    before = signal.signal(signal.SIGTERM, leave)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _prepare(folder: str, parent: int) -> None:
