@@ -175,7 +175,12 @@ class Library:
         others = [message for message in found.values() if message.name not in given]
         for message in [*roots, *sorted(others, key=str)]:
             text = message.text.replace("\r\n", "\n").replace("\r", "\n")
-            for part in (message.name, text):
+            parts = [message.name, text]
+            if "#include" in text:
+                # Constants and typedefs of files that are no type's: what they came to.
+                parts += [f"{item.type} {item.name} {item.default!r}" for item in message.fields]
+                parts += [f"{c.type} {c.name} {c.value!r}" for c in message.constants]
+            for part in parts:
                 # The length in front keeps neighbours apart.
                 data = part.encode()
                 digest.update(b"%d:" % len(data) + data)

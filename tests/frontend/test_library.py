@@ -248,6 +248,23 @@ def test_hash_changes_with_every_text_that_matters_and_no_other(tmp_path):
         assert (after == before) is (name == "p/E")
 
 
+def test_hash_changes_with_what_an_included_file_says(tmp_path):
+    def digest(size, tail=""):
+        folder = tmp_path / f"{size}{len(tail)}"
+        idl = "module p { module msg { struct T { sequence<long, N> x; }; }; };"
+        make_files(
+            folder,
+            {
+                "p/msg/T.idl": f'#include "p/msg/sizes.idl"\n{idl}',
+                "p/msg/sizes.idl": f"module p {{ module msg {{ const long N = {size}; }}; }};{tail}",
+            },
+        )
+        return Library("lyrical", [folder]).definition_hash("p/msg/T")
+
+    assert digest(3) != digest(4)
+    assert digest(3) == digest(3, " // The same.")
+
+
 def test_hash_tells_where_a_text_ends(tmp_path):
     one = library(tmp_path / "1", {"p/A": "B b\n#", "p/B": "#\n"})
     two = library(tmp_path / "2", {"p/A": "B b\n", "p/B": "##\n"})
