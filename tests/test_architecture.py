@@ -16,14 +16,18 @@ MAY_IMPORT = {
     "errors": set[str](),
     "model": {"errors"},
     "frontend": {"errors", "model"},
+    "identity": {"errors", "model", "frontend"},
     "wire": {"errors", "model"},
+    "metrics": {"errors", "model", "frontend", "identity", "wire"},
     "plan": {"errors", "model", "wire"},
     "gateware": {"errors", "model", "wire", "plan"},
     "sim": {"errors", "model", "frontend", "wire", "plan", "gateware"},
     "export": {"firm_hdl", "errors", "model", "frontend", "wire", "plan", "gateware"},
 }
-MAY_IMPORT["verify"] = {*MAY_IMPORT["export"], "export", "sim"}
-MAY_IMPORT["cli"] = {*MAY_IMPORT["verify"], "verify"}
+MAY_IMPORT["verify"] = {*MAY_IMPORT["export"], "export", "identity", "metrics", "sim"}
+# Of `verify`, it uses what runs many processes.
+MAY_IMPORT["equivalence"] = {*MAY_IMPORT["verify"], "verify"}
+MAY_IMPORT["cli"] = {*MAY_IMPORT["verify"], "verify", "identity", "metrics", "equivalence"}
 # The package's own face.
 MAY_IMPORT["firm_hdl"] = {"errors", "frontend", "gateware"}
 

@@ -110,7 +110,7 @@ def test_wrong_definition_leaves_what_was_built(here, capsys):
         ),
         (
             ["info", "Imu"],
-            "error: 'Imu' is not the name of a message type, which is 'package/msg/Name'; "
+            "error: 'Imu' is not the name of a type, which is 'package/msg/Name'; "
             "did you mean 'sensor_msgs/msg/Imu'?\n",
         ),
         (["list", "--path", "nowhere"], "error: 'nowhere' is not a folder\n"),
@@ -190,6 +190,35 @@ def test_plan_reads_back(here, capsys):
     assert from_yaml(capsys.readouterr().out) == plan
 
 
+def test_services_and_actions_stand_for_all_their_messages(here, capsys):
+    for name, text in {"srv/Ask.srv": "int8 a\n---\n", "action/Go.action": "---\n---\n"}.items():
+        path = Path("src/my_msgs", name)
+        path.parent.mkdir(parents=True)
+        path.write_text(text)
+    options = ["--distro", "humble", "--path", "src"]
+    assert main(["list", *options]) == 0
+    assert {"my_msgs/srv/Ask", "my_msgs/action/Go"} <= {*capsys.readouterr().out.splitlines()}
+    assert main(["show", "my_msgs/srv/Ask", *options]) == 0
+    assert capsys.readouterr().out == "int8 a\n---\n"
+    library = firm_hdl.Library("humble", ["src"])
+    for name in ("my_msgs/srv/Ask", "my_msgs/action/Go"):
+        messages = library.interface(name).messages
+        assert main(["plan", name, *options]) == 0
+        plans = [from_yaml(text) for text in capsys.readouterr().out.split("---\n")]
+        assert plans == [build_plan(lay_out(message)) for message in messages]
+        assert main(["info", name, *options]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        heads = [line.split(" on cdr")[0] for line in lines if not line.startswith(" ")]
+        assert heads == [message.name for message in messages]
+    assert main(["build", "my_msgs/srv/Ask", "my_msgs/srv/Ask_Request", *options]) == 0
+    folders = sorted(path.name for path in Path("vhdl_out/humble").iterdir())
+    assert folders == [f"my_msgs_srv_Ask_{part}_cdr_8" for part in ("Request", "Response")]
+    assert main(["build", "my_msgs/srv/Aks", *options]) == 1
+    assert capsys.readouterr().err == (
+        "error: type 'Aks' is not defined in package 'my_msgs'; did you mean 'my_msgs/srv/Ask'?\n"
+    )
+
+
 def test_version(capsys):
     with pytest.raises(SystemExit) as caught:
         main(["--version"])
@@ -255,7 +284,7 @@ def test_build_that_is_interrupted_leaves_whole_folders(here, capsys, monkeypatc
     assert [path.name for path in here.glob("vhdl_out/lyrical/*")] == [
         "std_msgs_msg_Bool_cdr_8"
     ] * (calls // 2)
-    assert all(len(list(path.iterdir())) == 6 for path in here.glob("vhdl_out/lyrical/*"))
+    assert all(len(list(path.iterdir())) == 7 for path in here.glob("vhdl_out/lyrical/*"))
     assert not list(here.glob("vhdl_out/lyrical/.*"))
     # The converters that were not used complain when they are collected.
     gc.collect()

@@ -16,6 +16,8 @@ import pytest
 import firm_hdl
 from firm_hdl.cli import main as firm_hdl_command
 
+from .frontend.recordings import make_recording
+
 ROOT = Path(firm_hdl.__file__).parent.parent
 PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").glob("*.md")])
 EXAMPLES = sorted(path.stem for path in (ROOT / "examples").glob("*.py"))
@@ -59,9 +61,10 @@ def rows(page: str) -> set[str]:
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
-    """A working directory in which the documentation can be found, and nothing else."""
+    """A working directory with the documentation and the recording that it speaks of."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "docs").symlink_to(ROOT / "docs")
+    make_recording(tmp_path, "bag")
     return tmp_path
 
 

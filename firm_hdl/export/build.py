@@ -7,23 +7,22 @@ written. A folder appears, or is replaced, as a whole; one that is current is le
 from __future__ import annotations
 
 import hashlib
-import json
 import os
-import shutil
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.export.folder import is_current, is_empty, read_manifest, replace
 from firm_hdl.export.manifest import MANIFEST, inputs_of, make_manifest, module_name, to_json
 from firm_hdl.export.names import identifier
+from firm_hdl.export.packaging import packaging
 from firm_hdl.export.picture import to_svg
-from firm_hdl.export.timing import describe, timing
+from firm_hdl.export.timing import Timing, describe, timing
 from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, Direction, Top, ports_of
-from firm_hdl.export.verilog import to_verilog
-from firm_hdl.export.vhdl_user_build import to_vhdl
+from firm_hdl.export.verilog import WAIVERS, to_verilog, waivers
+from firm_hdl.export.vhdl_user_build import FOLDER, Ports, to_vhdl
 from firm_hdl.frontend import DEFAULT_DISTRO, Library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
@@ -31,10 +30,6 @@ from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan, to_yaml
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["BuildError", "Built", "build", "check_size", "load_all", "plan_of"]
-
-
-VHDL_FOLDER = "vhdl"
-"""Where in a type's folder the VHDL is."""
 
 
 class BuildError(Exception):
@@ -77,9 +72,11 @@ def build(
     *,
     distro: str = DEFAULT_DISTRO,
     paths: Iterable[str | os.PathLike[str]] = (),
+    library: Library | None = None,
     wire: Wire | None = None,
     bus_bytes: int = 8,
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+    ports: Ports = "records",
     force: bool = False,
     stimuli: Callable[[Message, Plan], Sequence[bytes]] | None = None,
     report: Callable[[Built], None] | None = None,
@@ -89,13 +86,17 @@ def build(
     Parameters
     ----------
     types : iterable of str
-        As for `Library.message`.
+        As for `Library.interface`. All messages of services and actions are built.
     out : path
         Made if need be.
     distro, paths
         As for `Library`.
+    library : Library or None
+        What to take the types from, instead of `distro` and `paths`.
     wire, bus_bytes, max_message_bytes
         As for the converters.
+    ports : "records" or "flat"
+        Whether the VHDL has a layer with records; "flat" is for tools that dislike them.
     force : bool
         Whether to write folders that are current, too.
     stimuli : callable or None
@@ -111,24 +112,14 @@ def build(
         If a type cannot be built with these options, and nothing was written; or if writing fails,
         and all folders are whole, old or new.
     """
-    library = Library(distro, paths)
+    if library is None:
+        library = Library(distro, paths)
     tasks = []
     for message in load_all(library, types):
         plan = plan_of(message, wire, bus_bytes, max_message_bytes)
         check_size(plan)
-        name = f"{identifier(message.name)}_{plan.wire}_{plan.bus_bytes}"
-        inputs = inputs_of(
-            message,
-            plan,
-            distro=library.distro,
-            definition_sha256=library.definition_hash(message.name),
-        )
         packets = list(stimuli(message, plan)) if stimuli is not None else []
-        inputs["stimuli_sha256"] = _digest(packets)
-        folder = Path(out) / library.distro / name
-        tasks.append(
-            _Task(message=message, plan=plan, folder=folder, inputs=inputs, stimuli=packets)
-        )
+        tasks.append(_task(library, message, plan, Path(out), ports, packets))
     _check_folders(tasks)
     built = []
     for task in tasks:
@@ -138,12 +129,33 @@ def build(
     return built
 
 
+def _task(
+    library: Library,
+    message: Message,
+    plan: Plan,
+    out: Path,
+    ports: Ports,
+    packets: Sequence[bytes],
+) -> _Task:
+    inputs = inputs_of(
+        message,
+        plan,
+        distro=library.distro,
+        definition_sha256=library.definition_hash(message),
+        ports=ports,
+    )
+    inputs["stimuli_sha256"] = _digest(packets)
+    name = f"{identifier(message.name)}_{plan.wire}_{plan.bus_bytes}"
+    folder = out / library.distro / name
+    return _Task(message=message, plan=plan, folder=folder, inputs=inputs, stimuli=packets)
+
+
 def _digest(packets: Sequence[bytes]) -> str:
     return hashlib.sha256("".join(f"{packet.hex()}\n" for packet in packets).encode()).hexdigest()
 
 
 def load_all(library: Library, types: Iterable[str]) -> list[Message]:
-    """Load types, each once.
+    """Load messages, each once; a service or an action stands for all messages that it has.
 
     Raises
     ------
@@ -154,11 +166,11 @@ def load_all(library: Library, types: Iterable[str]) -> list[Message]:
     problems: dict[str, Diagnostic] = {}
     for name in types:
         try:
-            message = library.message(name)
+            found = library.interface(name).messages
         except DefinitionError as error:
             problems.update((str(problem), problem) for problem in error.diagnostics)
         else:
-            messages[message.name] = message
+            messages.update((message.name, message) for message in found)
     if problems:
         raise DefinitionError(problems.values())
     return list(messages.values())
@@ -196,12 +208,12 @@ def _check_folders(tasks: list[_Task]) -> None:
             raise BuildError(
                 f"{task.message.name}: its folder '{task.folder}' is that of {other}, too"
             )
-        found = _read_manifest(task.folder)
+        found = read_manifest(task.folder)
         if found is not None:
             other = str(found.get("inputs", {}).get("message"))
             if other != task.message.name:
                 raise BuildError(f"{task.message.name}: '{task.folder}' holds {other}")
-        elif task.folder.exists() and not _is_empty(task.folder):
+        elif task.folder.exists() and not is_empty(task.folder):
             raise BuildError(f"'{task.folder}' is not a folder that firm-hdl made; move it away")
 
 
@@ -210,40 +222,57 @@ def _do(task: _Task, force: bool) -> Built:
     built = Built(
         name=task.message.name,
         folder=task.folder,
-        was_current=not force and _is_current(task),
+        was_current=not force and is_current(task.folder, task.inputs),
         description=describe(task.message.name, task.plan, figures),
     )
     if built.was_current:
         return built
-    files, vhdl = _texts(task)
-    manifest = make_manifest(
-        task.message,
-        task.plan,
-        figures,
-        inputs=task.inputs,
-        folder=task.folder.name,
-        files=files,
-        vhdl=vhdl,
-    )
+    files = _files(task, figures)
     try:
-        _replace(task.folder, {**files, MANIFEST: to_json(manifest)})
+        replace(task.folder, files)
     except OSError as error:
         where = error.filename or task.folder
         raise BuildError(f"'{where}' cannot be written: {error.strerror}") from None
     return built
 
 
+def _files(task: _Task, figures: Timing) -> dict[str, str]:
+    """Write all files of a folder."""
+    files, vhdl = _texts(task)
+
+    def manifest() -> dict[str, Any]:
+        return make_manifest(
+            task.message,
+            task.plan,
+            figures,
+            inputs=task.inputs,
+            folder=task.folder.name,
+            files=files,
+            vhdl=vhdl,
+        )
+
+    files.update((f"{FOLDER}/{name}", text) for name, text in packaging(manifest()).items())
+    # Once more, now that all files are known.
+    return {**files, MANIFEST: to_json(manifest())}
+
+
 def _texts(task: _Task) -> tuple[dict[str, str], dict[str, Any]]:
-    """Write all files but the manifest; also what the manifest says of the VHDL."""
-    message, plan = task.message, task.plan
-    options: dict[str, Any] = dict(task.inputs["options"])
+    """Write what a manifest is about; also what it says of the VHDL."""
+    message, plan, name = task.message, task.plan, task.folder.name
     tops: dict[Direction, Top] = {}
-    files = {}
+    files = {WAIVERS: waivers(module_name(name, direction) for direction in DIRECTIONS)}
     for direction in DIRECTIONS:
         converter = Deserializer if direction == "deserializer" else Serializer
-        module = module_name(task.folder.name, direction)
+        tops[direction] = Top(
+            converter(
+                message,
+                wire=plan.wire,
+                bus_bytes=plan.bus_bytes,
+                max_message_bytes=plan.max_message_bytes,
+            )
+        )
+        module = module_name(name, direction)
         header = _header(task, module, f"the {direction}")
-        tops[direction] = Top(converter(message, **options))
         files[f"{module}.v"] = to_verilog(tops[direction], module=module, header=header)
     files["plan.yaml"] = to_yaml(plan)
     files["layout.svg"] = to_svg(lay_out(message, plan.wire), f"{message.name} on {plan.wire}")
@@ -251,11 +280,12 @@ def _texts(task: _Task) -> tuple[dict[str, str], dict[str, Any]]:
         message,
         plan,
         tops,
-        name=task.folder.name,
-        header=_header(task, task.folder.name, "converters"),
+        name=name,
+        header=_header(task, name, "converters"),
         stimuli=task.stimuli,
+        ports=task.inputs["options"]["ports"],
     )
-    files.update((f"{VHDL_FOLDER}/{name}", text) for name, text in vhdl.files.items())
+    files.update((f"{FOLDER}/{file}", text) for file, text in vhdl.files.items())
     return files, vhdl.manifest
 
 
@@ -268,77 +298,3 @@ def _header(task: _Task, name: str, what: str) -> str:
         f"definition (SHA-256): {task.inputs['definition_sha256']}\n"
         f"What each port means: {MANIFEST}.\n"
     )
-
-
-def _read_manifest(folder: Path) -> dict[str, Any] | None:
-    try:
-        found = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    return found if isinstance(found, dict) and "inputs_sha256" in found else None
-
-
-def _is_empty(folder: Path) -> bool:
-    return folder.is_dir() and next(folder.iterdir(), None) is None
-
-
-def _is_current(task: _Task) -> bool:
-    found = _read_manifest(task.folder)
-    if found is None or found.get("inputs") != task.inputs:
-        return False
-    try:
-        return all(
-            hashlib.sha256((task.folder / name).read_bytes()).hexdigest() == digest
-            for name, digest in found["files"].items()
-        )
-    except (OSError, KeyError, AttributeError):
-        return False
-
-
-def _replace(folder: Path, files: dict[str, str]) -> None:
-    """Make a folder have these files; whoever looks sees the old one or the new one."""
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    staging = folder.with_name(f".{folder.name}.{os.getpid()}.new")
-    old = folder.with_name(f".{folder.name}.{os.getpid()}.old")
-    try:
-        staging.mkdir()
-        for name, text in files.items():
-            (staging / name).parent.mkdir(exist_ok=True)
-            (staging / name).write_text(text, encoding="utf-8", newline="\n")
-            if name.endswith(".sh"):
-                (staging / name).chmod(0o755)
-        if folder.exists():
-            _keep_others(folder, staging, files)
-            folder.rename(old)
-        staging.rename(folder)
-    except BaseException:
-        if old.exists() and not folder.exists():
-            old.rename(folder)
-        raise
-    finally:
-        for leftover in (staging, old):
-            with suppress(OSError):
-                shutil.rmtree(leftover)
-
-
-def _keep_others(folder: Path, staging: Path, files: dict[str, str]) -> None:
-    """Copy what users have added to a folder."""
-    ours = {*files, MANIFEST, *(_read_manifest(folder) or {}).get("files", {})}
-    shared = {name.partition("/")[0] for name in ours if "/" in name}
-    entries = [
-        *(entry for entry in folder.iterdir() if entry.name not in shared),
-        *(entry for name in sorted(shared) for entry in _entries(folder / name)),
-    ]
-    for entry in entries:
-        name = entry.relative_to(folder).as_posix()
-        if name in ours:
-            continue
-        (staging / name).parent.mkdir(exist_ok=True)
-        if entry.is_dir() and not entry.is_symlink():
-            shutil.copytree(entry, staging / name, symlinks=True)
-        else:
-            shutil.copy2(entry, staging / name, follow_symlinks=False)
-
-
-def _entries(folder: Path) -> list[Path]:
-    return list(folder.iterdir()) if folder.is_dir() else []

@@ -1,14 +1,14 @@
 """Words that VHDL or Verilog keeps for itself, in lower case.
 
-IEEE Std 1076-2008, clause 15.10 (VHDL), and IEEE Std 1800-2017, annex B (SystemVerilog), which
-contains those of IEEE Std 1364-2005 (Verilog).
+IEEE Std 1076-2008, clause 15.10 (VHDL), what IEEE Std 1076-2019 adds to it, and IEEE Std 1800-2017,
+annex B (SystemVerilog), which contains those of IEEE Std 1364-2005 (Verilog).
 """
 
 from __future__ import annotations
 
 __all__ = ["KEYWORDS", "VERILOG", "VHDL"]
 
-VHDL = frozenset(
+_VHDL_2008 = frozenset(
     """
     abs access after alias all and architecture array assert assume assume_guarantee attribute
     begin block body buffer bus case component configuration constant context cover default
@@ -21,6 +21,14 @@ VHDL = frozenset(
     wait when while with xnor xor
     """.split()
 )
+
+# Our text is of 2008, but nobody should have to tell a tool that reads 2019 apart.
+_VHDL_2019 = frozenset(["private", "view"])
+
+# PSL has the word; the standard does not list it, but GHDL 2.0 keeps it in VHDL-2008.
+_GHDL = frozenset(["inherit"])
+
+VHDL = _VHDL_2008 | _VHDL_2019 | _GHDL
 
 VERILOG = frozenset(
     """

@@ -29,7 +29,7 @@ MANIFEST = "manifest.json"
 
 
 def inputs_of(
-    message: Message, plan: Plan, *, distro: str, definition_sha256: str
+    message: Message, plan: Plan, *, distro: str, definition_sha256: str, ports: str = "records"
 ) -> dict[str, Any]:
     """Return all that decides what generated files are."""
     return {
@@ -42,6 +42,7 @@ def inputs_of(
             "wire": plan.wire,
             "bus_bytes": plan.bus_bytes,
             "max_message_bytes": plan.max_message_bytes,
+            "ports": ports,
         },
         "plan_sha256": _digest(to_yaml(plan)),
         "generator": {

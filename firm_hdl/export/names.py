@@ -12,12 +12,12 @@ that nobody else has.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import TypeVar
 
 from firm_hdl.export.keywords import KEYWORDS
 
-__all__ = ["flat_names", "identifier", "scope_names"]
+__all__ = ["first_free", "flat_names", "identifier", "plain", "scope_names"]
 
 KEYWORD_SUFFIX = "_field"
 """What a name gets that is a keyword. VHDL forbids the customary trailing underscore."""
@@ -26,11 +26,44 @@ _NOT_ALLOWED = re.compile(r"[^A-Za-z0-9]+")
 _Key = TypeVar("_Key")
 
 
+def plain(name: str, initial: str) -> str:
+    """Give a name without what VHDL's basic identifiers may not have (IEEE Std 1076-2008, 15.4).
+
+    Parameters
+    ----------
+    initial : str
+        A letter to start with if the name starts with none.
+    """
+    text = _NOT_ALLOWED.sub("_", name).strip("_")
+    return text if text[:1].isalpha() else f"{initial}{text}"
+
+
+def first_free(
+    wanted: str,
+    taken: Collection[str],
+    derived: Callable[[str], Iterable[str]] = lambda name: (name,),
+) -> str:
+    """Give a name that nothing has, case not counting: the wanted one, or that with a number.
+
+    Parameters
+    ----------
+    taken : collection of str
+        In lower case.
+    derived : callable
+        Gives all identifiers that the name leads to, which have to be free, too.
+
+    >>> first_free("Vector", {"vector", "vector_2"})
+    'Vector_3'
+    """
+    text, number = wanted, 2
+    while any(name.lower() in taken for name in derived(text)):
+        text, number = f"{wanted}_{number}", number + 1
+    return text
+
+
 def identifier(name: str) -> str:
     """Give the identifier for a name on its own: itself, if it is a legal one."""
-    text = _NOT_ALLOWED.sub("_", name).strip("_")
-    if not text[:1].isalpha():
-        text = f"f{text}"
+    text = plain(name, "f")
     return text + KEYWORD_SUFFIX if text.lower() in KEYWORDS else text
 
 
@@ -76,11 +109,7 @@ def _give(wanted: Mapping[_Key, str], reserved: Collection[str]) -> dict[_Key, s
             taken.add(text.lower())
             given[key] = text
     for key in (key for key in wanted if key not in given):
-        base = text = identifier(wanted[key])
-        number = 2
-        while text.lower() in taken:
-            text = f"{base}_{number}"
-            number += 1
+        text = first_free(identifier(wanted[key]), taken)
         taken.add(text.lower())
         given[key] = text
     return {key: given[key] for key in wanted}

@@ -176,9 +176,12 @@ class Top(wiring.Component):
         super().__init__(
             {
                 port.name: flows[port.direction](Shape(port.width, port.signed))
-                for port in ports_of(core.plan, self.direction)
+                for port in self._ports()
             }
         )
+
+    def _ports(self) -> tuple[Port, ...]:
+        return ports_of(self.core.plan, self.direction)
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -197,7 +200,7 @@ class Top(wiring.Component):
             self.m_axis_status_tvalid.eq(self.core.status.valid),
             self.core.status.ready.eq(self.m_axis_status_tready),
         ]
-        m.d.comb += list(self._leaves())
+        self._message(m)
         return m
 
     def _packets_in(self, m: Module) -> None:
@@ -222,6 +225,9 @@ class Top(wiring.Component):
             self.m_axis_tvalid.eq(packets.valid),
             packets.ready.eq(self.m_axis_tready),
         ]
+
+    def _message(self, m: Module) -> None:
+        m.d.comb += list(self._leaves())
 
     def _leaves(self) -> Iterator[Any]:
         names = leaf_names(self.core.plan)

@@ -94,17 +94,11 @@ def convert(
         design = amaranth_rtlil.convert(
             design, name=name, platform=platform, ports=ports, emit_src=False
         )
-    netlist = parse(design)
-    if not netlist.modules:
-        raise ValueError("The design is empty: it has no module with anything in it")
-    _refuse(netlist)
-    netlist = Design(
-        modules={module.name: simplified(module) for module in netlist.modules.values()}
-    )
-    scope = Scope([PACKAGE_NAME])
+    netlist = _read(design)
     prefix = netlist.top.name
-    wanted = {module: name + module.removeprefix(prefix) for module in netlist.modules}
-    entities = scope.give_all(wanted)
+    entities = Scope([PACKAGE_NAME]).give_all(
+        {module: name + module.removeprefix(prefix) for module in netlist.modules}
+    )
     port_names = {module.name: _port_names(module, entities) for module in netlist.modules.values()}
     remark = "".join(f"-- {line}".rstrip() + "\n" for line in header.splitlines())
     files = {f"{PACKAGE_NAME}.vhd": PACKAGE}
@@ -120,6 +114,15 @@ def convert(
         files[f"{entities[module.name]}.vhd"] = remark + writer.text()
         names[module.name] = writer.names()
     return Vhdl(top=entities[netlist.top.name], files=files, entities=names)
+
+
+def _read(text: str) -> Design:
+    """Read and simplify a netlist; refuse what VHDL has nothing for."""
+    netlist = parse(text)
+    if not netlist.modules:
+        raise ValueError("The design is empty: it has no module with anything in it")
+    _refuse(netlist)
+    return Design(modules={module.name: simplified(module) for module in netlist.modules.values()})
 
 
 def _port_names(module: Module, entities: Mapping[str, str]) -> dict[str, str]:

@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterable, Mapping
 
 from firm_hdl.export.keywords import VHDL
+from firm_hdl.export.names import first_free, plain
 
 __all__ = ["USED", "Scope", "is_identifier", "legal"]
 
@@ -27,7 +28,6 @@ USED = frozenset(
 """Identifiers with a meaning in the text that we write; a signal of that name would hide them."""
 
 _IDENTIFIER = re.compile(r"[A-Za-z](?:_?[A-Za-z0-9])*\Z")
-_NOT_ALLOWED = re.compile(r"[^A-Za-z0-9]+")
 
 
 def is_identifier(name: str) -> bool:
@@ -37,9 +37,7 @@ def is_identifier(name: str) -> bool:
 
 def legal(name: str) -> str:
     """Make a name a basic identifier that is no keyword, whatever its neighbours are called."""
-    text = _NOT_ALLOWED.sub("_", name).strip("_")
-    if not text[:1].isalpha():
-        text = f"n{text}"
+    text = plain(name, "n")
     return f"{text}_sig" if text.lower() in VHDL or text.lower() in USED else text
 
 
@@ -57,11 +55,7 @@ class Scope:
 
     def give(self, wanted: str) -> str:
         """Take the identifier nearest to `wanted` that nobody has."""
-        base = text = legal(wanted)
-        number = 2
-        while text.lower() in self._taken:
-            text = f"{base}_{number}"
-            number += 1
+        text = first_free(legal(wanted), self._taken)
         self._taken.add(text.lower())
         return text
 

@@ -1,8 +1,9 @@
 """The user's layer in VHDL: a message as nested records, and converters that speak them.
 
 For each message type: a package with the records of its fields, its constants and components, and
-an entity per direction around the core, whose flat ports stay usable on their own. What the records
-are is decided in :mod:`firm_hdl.export.vhdl_user_tree`.
+an entity per direction around the core, whose flat ports stay usable on their own. A message of
+fixed size also gets entities that give, and take, all of it at once. What the records are is
+decided in :mod:`firm_hdl.export.vhdl_user_tree` and :mod:`firm_hdl.export.vhdl_user_values`.
 """
 
 from __future__ import annotations
@@ -11,24 +12,33 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from firm_hdl.export.top import DIRECTIONS, Direction, Port, leaf_names, ports_of
-from firm_hdl.export.vhdl_user_constants import Named, comment, declarations, named_constants
+from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
+from firm_hdl.export.vhdl_user_constants import (
+    Named,
+    comment,
+    declarations,
+    named_constants,
+    origin,
+)
 from firm_hdl.export.vhdl_user_tree import Node, Tree, tree_of
-from firm_hdl.export.vhdl_user_types import TYPES_NAME, primitive_name, types_package
+from firm_hdl.export.vhdl_user_types import SHARED_TYPES, TYPES_NAME, types_package
+from firm_hdl.export.vhdl_user_values import Values, values_of
+from firm_hdl.export.vhdl_user_wrapper import (
+    IEEE,
+    LIBRARIES,
+    Core,
+    component,
+    plain_lines,
+    record_lines,
+    record_wrapper,
+    stream_lines,
+    stream_wrapper,
+)
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
-__all__ = ["UserLayer", "user_layer"]
-
-_LIBRARIES = f"""\
-library ieee;
-use ieee.std_logic_1164.all;
-use ieee.numeric_std.all;
-
-use work.{TYPES_NAME}.all;
-"""
-
+__all__ = ["UserLayer", "flat_package", "user_layer"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UserLayer:
@@ -40,7 +50,11 @@ class UserLayer:
         What all its names start with.
     package : str
     entities : mapping of direction to str
+        With a record of streams.
+    record_entities : mapping of direction to str
+        With a record of values; empty if the message has none.
     tree : Tree
+    values : Values or None
     constants : list of Named
     packages : mapping of str to str
         Texts by file name, in compile order.
@@ -51,7 +65,9 @@ class UserLayer:
     name: str
     package: str
     entities: Mapping[Direction, str]
+    record_entities: Mapping[Direction, str]
     tree: Tree
+    values: Values | None
     constants: list[Named]
     packages: Mapping[str, str]
     wrappers: Mapping[str, str]
@@ -62,8 +78,8 @@ def user_layer(
     plan: Plan,
     *,
     name: str,
-    cores: Mapping[Direction, str],
-    core_ports: Mapping[Direction, Mapping[str, str]] | None = None,
+    cores: Mapping[Direction, Core],
+    record_cores: Mapping[Direction, Core] | None = None,
     header: str = "",
 ) -> UserLayer:
     """Write the user's layer of a message type.
@@ -73,47 +89,41 @@ def user_layer(
     name : str
         A legal identifier; the package is ``name_pkg``, the entities ``name_deserializer`` and
         ``name_serializer``.
-    cores : mapping of direction to str
+    cores : mapping of direction to Core
         The entities with flat ports.
-    core_ports : mapping, or None
-        What ports of these are called, by direction and name of :func:`ports_of`, where the names
-        differ.
+    record_cores : mapping of direction to Core, or None
+        Those of the record view, if there is one.
     header : str
         Lines for a comment at the head of every file.
     """
-    entities = {direction: f"{name}_{direction}" for direction in DIRECTIONS}
     package = f"{name}_pkg"
-    tree = tree_of(message, plan, _reserved(package, entities))
-    constants = named_constants(message, tree.taken)
-    nodes = {node.leaf: node for node in tree.root.leaves() if node.leaf is not None}
-    remark = "".join(comment(header, ""))
-    layer = _Writer(message, plan, tree, nodes, leaf_names(plan), remark)
-    renamed = core_ports or {}
-    wrappers = {
-        f"{entities[direction]}.vhd": layer.wrapper(
-            direction, entities[direction], package, cores[direction], renamed.get(direction, {})
-        )
-        for direction in DIRECTIONS
-    }
-    packages = {
-        f"{TYPES_NAME}.vhd": types_package(),
-        f"{package}.vhd": layer.package(package, entities, constants),
-    }
+    entities = {direction: f"{name}_{direction}" for direction in DIRECTIONS}
+    whole = {way: f"{entity}_record" for way, entity in entities.items() if record_cores}
+    tree = tree_of(message, plan, _reserved(package, (*entities.values(), *whole.values())))
+    values = values_of(message, plan, tree.taken, tree.members) if record_cores else None
+    writer = _Writer(message, plan, tree, values, header)
+    constants = named_constants(message, writer.taken)
     return UserLayer(
         name=name,
         package=package,
         entities=entities,
+        record_entities=whole,
         tree=tree,
+        values=values,
         constants=constants,
-        packages=packages,
-        wrappers=wrappers,
+        packages={
+            f"{TYPES_NAME}.vhd": types_package(),
+            f"{package}.vhd": writer.package(package, entities, whole, constants),
+        },
+        wrappers={
+            **writer.wrappers(package, entities, cores),
+            **writer.record_wrappers(package, whole, record_cores or {}),
+        },
     )
 
 
-def _reserved(package: str, entities: Mapping[Direction, str]) -> frozenset[str]:
+def _reserved(package: str, entities: tuple[str, ...]) -> frozenset[str]:
     """Name all that the shared package declares, and ours, in lower case."""
-    integers = (f"{sign}int{8 << k}" for sign in ("", "u") for k in range(4))
-    primitives = ("bool", "float32", "float64", *integers)
     statuses: Any = Status
     return frozenset(
         [
@@ -122,9 +132,9 @@ def _reserved(package: str, entities: Mapping[Direction, str]) -> frozenset[str]
             "to_slv",
             "status_name",
             *(f"status_{status.name.lower()}" for status in statuses),
-            *(f"{kind}_{what}_t" for kind in primitives for what in ("stream", "items")),
-            *(f"to_{kind}_items" for kind in primitives),
-            *(entity.lower() for entity in entities.values()),
+            *SHARED_TYPES,
+            *(f"to_{name.removesuffix('_t')}" for name in SHARED_TYPES),
+            *(entity.lower() for entity in entities),
         ]
     )
 
@@ -134,31 +144,79 @@ class _Writer:
     message: Message
     plan: Plan
     tree: Tree
-    nodes: dict[int, Node]
-    names: dict[tuple[str, ...], str]
+    values: Values | None
     header: str
 
+    @property
+    def taken(self) -> frozenset[str]:
+        """Identifiers of the package, but for constants."""
+        return self.tree.taken | (self.values.taken if self.values is not None else frozenset())
+
+    def remark(self) -> str:
+        return "".join(comment(self.header, ""))
+
+    def wrappers(
+        self, package: str, entities: Mapping[Direction, str], cores: Mapping[Direction, Core]
+    ) -> dict[str, str]:
+        return {
+            f"{entity}.vhd": self.remark()
+            + stream_wrapper(
+                self.message, self.plan, self.tree, way, entity, package, cores[way]
+            )
+            for way, entity in entities.items()
+        }
+
+    def record_wrappers(
+        self, package: str, entities: Mapping[Direction, str], cores: Mapping[Direction, Core]
+    ) -> dict[str, str]:
+        if self.values is None:
+            return {}
+        return {
+            f"{entity}.vhd": self.remark()
+            + record_wrapper(
+                self.message, self.plan, self.values, way, entity, package, cores[way]
+            )
+            for way, entity in entities.items()
+        }
+
     def package(
-        self, name: str, entities: Mapping[Direction, str], constants: list[Named]
+        self,
+        name: str,
+        entities: Mapping[Direction, str],
+        whole: Mapping[Direction, str],
+        constants: list[Named],
     ) -> str:
-        return "".join(
-            [
-                self.header,
-                *comment(
-                    f"{self.message.name} as records: {self.tree.root.type} has data and valid of "
-                    f"every field, {self.tree.root.ready_type} has ready, the other way.",
-                    "",
-                ),
-                *(["--\n"] if self.message.comment else []),
-                *comment(self.message.comment, ""),
-                f"\n{_LIBRARIES}\npackage {name} is\n",
-                *self.items(),
-                *self.records(),
-                *declarations(constants, self.tree.taken),
-                *(text for way in DIRECTIONS for text in self.component(way, entities[way])),
-                f"\nend package {name};\n",
+        root = self.tree.root
+        text = [
+            self.remark(),
+            *comment(
+                f"{self.message.name} as records: {root.type} has data and valid of "
+                f"every field, {root.ready_type} has ready, the other way.",
+                "",
+            ),
+            *(["--\n"] if self.message.comment else []),
+            *comment(self.message.comment, ""),
+            f"\n{LIBRARIES}\npackage {name} is\n",
+            *self.items(),
+            *self.records(),
+        ]
+        if self.values is not None:
+            text += self.values.declarations()
+        text += declarations(constants, self.taken)
+        for way, entity in entities.items():
+            text += component(entity, stream_lines(self.message, self.plan, self.tree, way))
+        if self.values is not None:
+            for way, entity in whole.items():
+                lines = record_lines(self.message, self.plan, self.values, way)
+                text += component(entity, lines)
+        text.append(f"\nend package {name};\n")
+        if self.values is not None:
+            text += [
+                f"\npackage body {name} is\n",
+                *self.values.bodies(),
+                f"\nend package body {name};\n",
             ]
-        )
+        return "".join(text)
 
     def items(self) -> Iterator[str]:
         for name, (primitive, lanes) in self.tree.items.items():
@@ -182,7 +240,7 @@ class _Writer:
             for child in node.children:
                 if child.source is not None and child.source.comment:
                     yield from comment(child.source.comment, "    ")
-                line = f"    {child.name:{width}} : {child.type + ';':{kinds}}{self.remark(child)}"
+                line = f"    {child.name:{width}} : {child.type + ';':{kinds}}{self.origin(child)}"
                 yield f"{line.rstrip()}\n"
             yield "  end record;\n"
             yield f"\n  type {node.ready_type} is record\n"
@@ -190,129 +248,43 @@ class _Writer:
                 yield f"    {child.name:{width}} : {child.ready_type};\n"
             yield "  end record;\n"
 
-    def remark(self, node: Node) -> str:
+    def origin(self, node: Node) -> str:
         """Say of a member what ROS calls it."""
         if node.source is not None:
-            what = str(node.source.type)
-            if node.source.name != node.name:
-                what = f"{node.source.name}: {what}"
-            return f"  -- {what} [{node.source.unit}]" if node.source.unit else f"  -- {what}"
+            return origin(node.source, node.name)
         if node.leaf is not None and self.plan.leaves[node.leaf].kind == "length":
             return "  -- how many follow"
         return ""
 
-    def component(self, direction: Direction, entity: str) -> Iterator[str]:
-        yield f"\n  component {entity} is\n"
-        yield from (f"  {line}" for line in self.ports(direction, meanings=False))
-        yield "  end component;\n"
 
-    def ports(self, direction: Direction, *, meanings: bool = True) -> Iterator[str]:
-        """Yield a port clause, a line each: clock, packets, message, status."""
-        forwards, backwards = ("out", "in ") if direction == "deserializer" else ("in ", "out")
-        lines = [self.port(port) for port in ports_of(self.plan, direction) if port.leaf is None]
-        status = next(k for k, line in enumerate(lines) if "m_axis_status" in line[0])
-        root = self.tree.root
-        lines[status:status] = [
-            ("msg", f"{forwards} {root.type}", f"The fields of {self.message.name}."),
-            ("rdy", f"{backwards} {root.ready_type}", "Which of them are taken."),
-        ]
-        names = max(len(name) for name, _, _ in lines)
-        kinds = max(len(kind) for _, kind, _ in lines) + 1
-        yield "  port (\n"
-        for index, (name, kind, meaning) in enumerate(lines):
-            end = ";" if index < len(lines) - 1 else ""
-            line = f"    {name:{names}} : {kind + end:{kinds}}  -- {meaning}"
-            if not meanings or len(line) > 100:
-                if meanings:
-                    yield from comment(meaning, "    ")
-                line = f"    {name:{names}} : {kind}{end}"
-            yield f"{line}\n"
-        yield "  );\n"
+def flat_package(
+    message: Message,
+    plan: Plan,
+    *,
+    name: str,
+    cores: Mapping[Direction, Core],
+    header: str = "",
+) -> tuple[str, list[Named]]:
+    """Write a package without any record: constants of a message, and the flat entities.
 
-    @staticmethod
-    def port(port: Port) -> tuple[str, str, str]:
-        kind = "std_logic" if port.width == 1 and not _is_vector(port.name) else (
-            f"std_logic_vector({port.width - 1} downto 0)"
-        )
-        return port.name, f"{port.direction:3} {kind}", port.meaning
-
-    def wrapper(
-        self, direction: Direction, entity: str, package: str, core: str, names: Mapping[str, str]
-    ) -> str:
-        signals: list[tuple[str, str]] = []
-        assignments: list[str] = []
-        parts = {
-            port.name: self.actual(port, direction, signals, assignments)
-            for port in ports_of(self.plan, direction)
-        }
-        width = max(len(names.get(port, port)) for port in parts)
-        joined = ",\n".join(
-            f"      {names.get(port, port):{width}} => {actual}" for port, actual in parts.items()
-        )
-        return "".join(
-            [
-                self.header,
-                f"-- The {direction} of {self.message.name} with records.\n",
-                f"-- {core} has flat ports.\n",
-                f"\n{_LIBRARIES}use work.{package}.all;\n",
-                f"\nentity {entity} is\n",
-                *self.ports(direction),
-                f"end entity;\n\narchitecture wrapper of {entity} is\n",
-                *(["\n"] if signals else []),
-                *_aligned(signals),
-                f"\nbegin\n\n  core : entity work.{core}\n    port map (\n{joined}\n    );\n",
-                *(["\n"] if assignments else []),
-                *assignments,
-                "\nend architecture;\n",
-            ]
-        )
-
-    def actual(
-        self,
-        port: Port,
-        direction: Direction,
-        signals: list[tuple[str, str]],
-        assignments: list[str],
-    ) -> str:
-        """Give what a port of the core is connected to; conversions get a signal of their own.
-
-        Some synthesis tools take no conversion in a port map.
-        """
-        if port.leaf is None:
-            # A vector of one bit is a bit to the core.
-            return f"{port.name}(0)" if port.width == 1 and _is_vector(port.name) else port.name
-        leaf = self.plan.leaves[port.leaf]
-        node = self.nodes[port.leaf]
-        member = port.name.removeprefix(f"{self.names[leaf.path]}_")
-        if member == "ready":
-            return f"rdy.{node.access}"
-        whole = f"msg.{node.access}.{member}"
-        if member != "data":
-            return whole
-        primitive = primitive_name(leaf)
-        if leaf.kind == "items" and port.width == 1:
-            return f"{whole}(0)"
-        if leaf.kind != "items" and (primitive == "bool" or primitive.startswith("float")):
-            return whole
-        signals.append((port.name, f"std_logic_vector({port.width - 1} downto 0)"))
-        if direction == "serializer":
-            convert = "to_slv" if leaf.kind == "items" else "std_logic_vector"
-            assignments.append(f"  {port.name} <= {convert}({whole});\n")
-        else:
-            convert = (
-                f"to_{primitive}_items"
-                if leaf.kind == "items"
-                else "signed" if leaf.signed else "unsigned"
-            )
-            assignments.append(f"  {whole} <= {convert}({port.name});\n")
-        return port.name
-
-
-def _aligned(signals: list[tuple[str, str]]) -> Iterator[str]:
-    width = max((len(name) for name, _ in signals), default=0)
-    return (f"  signal {name:{width}} : {kind};\n" for name, kind in signals)
-
-
-def _is_vector(name: str) -> bool:
-    """Tell whether a packet port is a vector whatever the bus: AXI4-Stream's ``tkeep`` is."""
-    return name.endswith("_tkeep")
+    Parameters
+    ----------
+    name : str
+        The package.
+    cores, header
+        As for :func:`user_layer`.
+    """
+    taken = frozenset([name.lower(), *(core.entity.lower() for core in cores.values())])
+    constants = named_constants(message, taken)
+    text = [
+        *comment(header, ""),
+        *comment(f"Constants of {message.name}, and its converters with flat ports.", ""),
+        *(["--\n"] if message.comment else []),
+        *comment(message.comment, ""),
+        f"\n{IEEE}\npackage {name} is\n",
+        *declarations(constants, taken),
+    ]
+    for direction, core in cores.items():
+        text += component(core.entity, plain_lines(ports_of(plan, direction), core.names))
+    text.append(f"\nend package {name};\n")
+    return "".join(text), constants

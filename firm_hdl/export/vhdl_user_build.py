@@ -1,21 +1,36 @@
-"""The VHDL folder of a message type: cores, the user's layer, test bench, stimuli and script."""
+"""The VHDL folder of a message type: cores, the user's layer, test benches, stimuli and script."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeAlias
 
 from firm_hdl.export.names import identifier
+from firm_hdl.export.record_top import RecordTop, why_no_record
 from firm_hdl.export.top import DIRECTIONS, Direction, Top
 from firm_hdl.export.vhdl import convert
-from firm_hdl.export.vhdl_bench import RUN_SCRIPT, STIMULI, Bench, bench, run_script
-from firm_hdl.export.vhdl_types import UserLayer, user_layer
-from firm_hdl.export.vhdl_user_parts import packets_text
+from firm_hdl.export.vhdl_bench import RUN_SCRIPT, STIMULI, bench, run_script
+from firm_hdl.export.vhdl_bench_views import View, flat_view, record_view, stream_view
+from firm_hdl.export.vhdl_package import PACKAGE_NAME
+from firm_hdl.export.vhdl_types import flat_package, user_layer
+from firm_hdl.export.vhdl_user_constants import Named
+from firm_hdl.export.vhdl_user_parts import PARTS, packets_text
+from firm_hdl.export.vhdl_user_types import TYPES_NAME
+from firm_hdl.export.vhdl_user_wrapper import Core
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
-__all__ = ["VhdlFolder", "to_vhdl"]
+__all__ = ["FOLDER", "PORTS", "Ports", "VhdlFolder", "to_vhdl"]
+
+Ports: TypeAlias = Literal["records", "flat"]
+PORTS: tuple[Ports, ...] = ("records", "flat")
+
+FOLDER = "vhdl"
+"""Where in a type's folder the VHDL is."""
+
+COMMON = (f"{TYPES_NAME}.vhd", f"{PACKAGE_NAME}.vhd")
+"""Files that are the same for all types."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,6 +49,30 @@ class VhdlFolder:
     manifest: dict[str, Any]
 
 
+@dataclass(slots=True, kw_only=True)
+class _Parts:
+    """What there is so far; `design` and `benches` are texts by file name, in compile order."""
+
+    base: str
+    header: str
+    design: dict[str, str] = field(default_factory=dict)
+    benches: dict[str, str] = field(default_factory=dict)
+    section: dict[str, Any] = field(default_factory=dict)
+
+    def core(self, top: Top, name: str) -> Core:
+        made = convert(top, name=name, header=self.header)
+        self.design.update(made.files)
+        # The outermost entity is the last one.
+        return Core(entity=made.top, names=list(made.entities.values())[-1].ports)
+
+    def add_bench(self, view: View, plan: Plan, kind: str = "") -> None:
+        top = f"{self.base}{kind}_tb"
+        what = f"{plan.message}{kind.replace('_', ' ')}, {plan.wire}, bus of {plan.bus_bytes} bytes"
+        self.benches[top] = bench(
+            top, view, bus_bytes=plan.bus_bytes, what=what, files=kind, header=self.header
+        )
+
+
 def to_vhdl(
     message: Message,
     plan: Plan,
@@ -42,6 +81,7 @@ def to_vhdl(
     name: str,
     header: str = "",
     stimuli: Sequence[bytes] = (),
+    ports: Ports = "records",
 ) -> VhdlFolder:
     """Write the VHDL of a message type.
 
@@ -54,57 +94,117 @@ def to_vhdl(
     header : str
         Lines for a comment at the head of every file that is the type's own.
     stimuli : sequence of bytes
-        Packets for the test bench. Without any, there is no file of them.
+        Packets for the test benches. Without any, there is no file of them.
+    ports : "records" or "flat"
+        Whether there is a layer with records around the converters.
     """
-    base = identifier(name).lower()
-    cores: dict[Direction, str] = {}
-    ports: dict[Direction, Mapping[str, str]] = {}
-    design: dict[str, str] = {}
-    for direction in DIRECTIONS:
-        core = convert(tops[direction], name=f"{base}_{direction}_flat", header=header)
-        cores[direction] = core.top
-        # The outermost entity is the last one.
-        ports[direction] = list(core.entities.values())[-1].ports
-        design.update(core.files)
-    layer = user_layer(
-        message, plan, name=base, cores=cores, core_ports=ports, header=header
-    )
-    design = {**layer.packages, **design, **layer.wrappers}
-    made = bench(message, plan, layer, header=header)
+    parts = _Parts(base=identifier(name).lower(), header=header)
+    cores = {way: parts.core(tops[way], f"{parts.base}_{way}_flat") for way in DIRECTIONS}
+    if ports == "records":
+        _add_records(parts, message, plan, cores)
+    else:
+        _add_flat(parts, message, plan, cores)
+    common = [file for file in COMMON if file in parts.design]
+    design = [*common, *(file for file in parts.design if file not in common)]
+    benches = {**PARTS, **{f"{top}.vhd": text for top, text in parts.benches.items()}}
+    entities = list(parts.benches)
     files = {
-        **design,
-        **made.files,
-        RUN_SCRIPT: run_script([*design, *made.files], made.top),
+        **{file: parts.design[file] for file in design},
+        **benches,
+        RUN_SCRIPT: run_script([*design, *benches], entities[0]),
     }
     if stimuli:
         remark = f"Packets of {message.name}, {plan.wire}, written by rosbags; one a line."
         files[STIMULI] = packets_text(list(stimuli), remark)
-    return VhdlFolder(files=files, manifest=_section(layer, cores, list(design), made, plan))
-
-
-def _section(
-    layer: UserLayer, cores: Mapping[Direction, str], design: list[str], made: Bench, plan: Plan
-) -> dict[str, Any]:
-    return {
-        "folder": "vhdl",
+    section = {
+        "folder": FOLDER,
+        "name": parts.base,
         "standard": "2008",
+        "ports": ports,
+        **parts.section,
+        # In the order in which they compile.
+        "files": design,
+        "common_files": common,
+        "bench": {
+            "entity": entities[0],
+            "entities": entities,
+            "files": list(benches),
+            "common_files": list(PARTS),
+            "script": RUN_SCRIPT,
+            "stimuli": STIMULI if stimuli else None,
+        },
+    }
+    return VhdlFolder(files=files, manifest=section)
+
+
+def _add_records(
+    parts: _Parts, message: Message, plan: Plan, cores: Mapping[Direction, Core]
+) -> None:
+    """Add the layer with records, and its benches."""
+    reason = why_no_record(message, plan)
+    whole: dict[Direction, Core] = {}
+    if not reason:
+        options: dict[str, Any] = {"wire": plan.wire, "bus_bytes": plan.bus_bytes}
+        for way in DIRECTIONS:
+            top = RecordTop.of(message, way, max_message_bytes=plan.max_message_bytes, **options)
+            whole[way] = parts.core(top, f"{parts.base}_{way}_record_flat")
+    layer = user_layer(
+        message,
+        plan,
+        name=parts.base,
+        cores=cores,
+        record_cores=whole,
+        header=parts.header,
+    )
+    parts.design = {**layer.packages, **parts.design, **layer.wrappers}
+    parts.add_bench(stream_view(plan, layer), plan)
+    record: dict[str, Any] = {"built": False, "reason": reason}
+    if layer.values is not None:
+        parts.add_bench(record_view(layer), plan, "_record")
+        root = layer.values.root
+        record = {"built": True, "message_type": root.name, "bits": root.bits}
+    parts.section = {
         "package": layer.package,
         "entities": {
-            direction: {"records": layer.entities[direction], "flat": cores[direction]}
-            for direction in DIRECTIONS
+            way: {
+                "records": layer.entities[way],
+                "flat": cores[way].entity,
+                **({"record": layer.record_entities[way]} if whole else {}),
+            }
+            for way in DIRECTIONS
         },
         "message_type": layer.tree.root.type,
         "ready_type": layer.tree.root.ready_type,
-        # In the order in which they compile.
-        "files": design,
-        "bench": {"entity": made.top, "files": list(made.files), "script": RUN_SCRIPT},
+        "record_view": record,
         "leaves": {
             str(plan.leaves[node.leaf]): node.access
             for node in layer.tree.root.leaves()
             if node.leaf is not None
         },
-        "constants": [
-            {"type": entry.owner.name, "constant": entry.constant.name, "name": entry.name}
-            for entry in layer.constants
-        ],
+        "constants": _constants(layer.constants),
     }
+
+
+def _add_flat(
+    parts: _Parts, message: Message, plan: Plan, cores: Mapping[Direction, Core]
+) -> None:
+    """Add a package without records, and a bench."""
+    package = f"{parts.base}_pkg"
+    text, constants = flat_package(
+        message, plan, name=package, cores=cores, header=parts.header
+    )
+    parts.design = {f"{package}.vhd": text, **parts.design}
+    parts.add_bench(flat_view(plan, package, cores), plan)
+    parts.section = {
+        "package": package,
+        "entities": {way: {"flat": cores[way].entity} for way in DIRECTIONS},
+        "record_view": {"built": False, "reason": "The ports are flat"},
+        "constants": _constants(constants),
+    }
+
+
+def _constants(named: Iterable[Named]) -> list[dict[str, str]]:
+    return [
+        {"type": entry.owner.name, "constant": entry.constant.name, "name": entry.name}
+        for entry in named
+    ]

@@ -13,12 +13,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from math import isfinite
 
-from firm_hdl.export.names import scope_names
+from firm_hdl.export.names import first_free, scope_names
 from firm_hdl.export.vhdl_names import USED
-from firm_hdl.export.vhdl_user_tree import TOOLS_WORDS, snake
-from firm_hdl.model import Array, Constant, Message, Primitive, Sequence
+from firm_hdl.export.vhdl_user_tree import snake
+from firm_hdl.model import Array, Constant, Field, Message, Primitive, Sequence
 
-__all__ = ["Named", "comment", "declarations", "named_constants"]
+__all__ = ["Named", "comment", "declarations", "named_constants", "origin"]
 
 _PLAIN = str.maketrans(
     {
@@ -61,6 +61,20 @@ def comment(text: str, indent: str = "  ") -> Iterator[str]:
             yield f"{indent}-- {part}".rstrip() + "\n"
 
 
+def origin(source: Field, name: str) -> str:
+    """Say in a comment what a member of a record is in ROS.
+
+    Parameters
+    ----------
+    name : str
+        What it is called in VHDL.
+    """
+    what = str(source.type)
+    if source.name != name:
+        what = f"{source.name}: {what}"
+    return f"  -- {what} [{source.unit}]" if source.unit else f"  -- {what}"
+
+
 def named_constants(message: Message, taken: Iterable[str]) -> list[Named]:
     """Name the constants of a message and of all types in it; `taken` is in lower case.
 
@@ -68,7 +82,7 @@ def named_constants(message: Message, taken: Iterable[str]) -> list[Named]:
     a severity, too); the others start with the name of their type.
     """
     found: dict[str, tuple[Message, Constant]] = {}
-    hiding = {*USED, *taken, *TOOLS_WORDS}
+    hiding = {*USED, *taken}
     for owner in _types(message):
         prefix = "" if owner is message else f"{snake(owner.base_name).upper()}_"
         for constant in owner.constants:
@@ -142,10 +156,7 @@ def _number(
         number_ = float(value)
         if isfinite(number_):
             yield f"  constant {name} : real := {_real(number_)};  -- {kind}{unit}\n"
-        base = bits_name = f"{name.rstrip()}_BITS"
-        count = 2
-        while bits_name.lower() in used:
-            bits_name, count = f"{base}_{count}", count + 1
+        bits_name = first_free(f"{name.rstrip()}_BITS", used)
         used.add(bits_name.lower())
         image = _float_bits(number_, kind.bytes)
         yield (

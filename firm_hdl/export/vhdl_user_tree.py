@@ -7,18 +7,15 @@ record type, so that a user's procedure for a vector serves every vector of the 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from firm_hdl.export.names import scope_names
-from firm_hdl.export.vhdl_user_types import primitive_name
+from firm_hdl.export.names import first_free, scope_names
+from firm_hdl.export.vhdl_user_types import SHARED_TYPES, primitive_name
 from firm_hdl.model import Array, Field, FieldType, Message, Sequence, Text
 from firm_hdl.plan import Leaf, Plan
 
-__all__ = ["TOOLS_WORDS", "Node", "Tree", "snake", "tree_of"]
-
-TOOLS_WORDS = ("inherit",)
-"""What GHDL 2.0 keeps for itself in VHDL-2008: PSL has the word, but the standard does not."""
+__all__ = ["Node", "Tree", "member_names", "snake", "tree_of"]
 
 _Paths = dict[str, "_Paths | int"]
 _Key = tuple[object, ...]
@@ -77,11 +74,14 @@ class Tree:
         Stream types of items that the package declares: the primitive's name, and lanes.
     taken : frozenset of str
         Identifiers of the package, in lower case, `reserved` included.
+    members : frozenset of str
+        Identifiers of all members of records, in lower case.
     """
 
     root: Node
     items: Mapping[str, tuple[str, int]]
     taken: frozenset[str]
+    members: frozenset[str]
 
 
 def snake(name: str) -> str:
@@ -92,6 +92,16 @@ def snake(name: str) -> str:
     """
     text = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name)
     return re.sub("_+", "_", text).lower().strip("_")
+
+
+def member_names(names: Iterable[str]) -> dict[str, str]:
+    """Give the identifiers for the members of a record.
+
+    >>> member_names(["x", "range", "float64_stream_t"])
+    {'x': 'x', 'range': 'range_field', 'float64_stream_t': 'float64_stream_t_2'}
+    """
+    # A member that has the name of a type would hide it from its neighbours.
+    return scope_names(names, SHARED_TYPES)
 
 
 def tree_of(message: Message, plan: Plan, reserved: frozenset[str]) -> Tree:
@@ -114,7 +124,9 @@ def tree_of(message: Message, plan: Plan, reserved: frozenset[str]) -> Tree:
     root = maker.node(paths, message, "", "")
     maker.name_types(root)
     items = dict(sorted(maker.items.items()))
-    return Tree(root=root, items=items, taken=frozenset(maker.taken))
+    return Tree(
+        root=root, items=items, taken=frozenset(maker.taken), members=frozenset(maker.members)
+    )
 
 
 @dataclass(slots=True)
@@ -124,11 +136,12 @@ class _Maker:
     items: dict[str, tuple[str, int]] = field(default_factory=dict)
     wanted: dict[_Key, str] = field(default_factory=dict)
     keys: dict[int, _Key] = field(default_factory=dict)
+    members: set[str] = field(default_factory=set)
 
     def node(self, paths: _Paths, kind: FieldType | None, name: str, access: str) -> Node:
         node = Node(name=name, access=access)
-        # A member called `std_logic` would hide the type of its neighbours.
-        for child, vhdl in scope_names(paths, ("std_logic", *TOOLS_WORDS)).items():
+        for child, vhdl in member_names(paths).items():
+            self.members.add(vhdl.lower())
             below = paths[child]
             member, child_kind = _below(kind, child)
             path = f"{access}.{vhdl}".lstrip(".")
@@ -161,15 +174,17 @@ class _Maker:
         top = self.keys[id(root)]
         given: dict[_Key, str] = {}
         for key, wanted in {top: self.wanted[top], **self.wanted}.items():
-            text, number = wanted, 2
-            # A type takes its `_ready_t` along, so both have to be free.
-            while not self.taken.isdisjoint((f"{text}_t", f"{text}_ready_t")):
-                text, number = f"{wanted}_{number}", number + 1
-            self.taken.update((f"{text}_t", f"{text}_ready_t"))
+            # Members hide types, too.
+            text = first_free(wanted, self.taken | self.members, _type_and_ready)
+            self.taken.update(_type_and_ready(text))
             given[key] = f"{text}_t"
         for node in root.walk():
             if node.leaf is None:
                 node.type = given[self.keys[id(node)]]
+
+
+def _type_and_ready(name: str) -> tuple[str, str]:
+    return f"{name}_t", f"{name}_ready_t"
 
 
 def _below(kind: FieldType | None, name: str) -> tuple[Field | None, FieldType | None]:

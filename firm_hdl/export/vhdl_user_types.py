@@ -12,7 +12,7 @@ from typing import Any
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.plan import Leaf
 
-__all__ = ["TYPES_NAME", "primitive_name", "types_package"]
+__all__ = ["SHARED_TYPES", "TYPES_NAME", "data_type", "primitive_name", "types_package"]
 
 TYPES_NAME = "firm_hdl_types_pkg"
 """What the package is called."""
@@ -28,6 +28,14 @@ _DATA = {
     "float64": ("std_logic_vector(63 downto 0)", "IEEE 754 bits"),
 }
 _BITS = {"bool": 1, "float32": 32, "float64": 64, **dict(_INTEGERS)}
+
+SHARED_TYPES = frozenset(
+    [
+        *("std_logic", "std_logic_vector", "unsigned", "signed"),
+        *(f"{kind}_{what}_t" for kind in _DATA for what in ("stream", "items")),
+    ]
+)
+"""Types that records have members of, besides those of the message's own package."""
 
 _HEAD = f"""\
 -- Streams of ROS's primitive types, for all message types and bus widths.
@@ -57,6 +65,15 @@ def primitive_name(leaf: Leaf) -> str:
     if primitive.kind != "int":
         return primitive.kind if primitive.kind == "bool" else primitive.name
     return f"{'' if leaf.signed else 'u'}int{8 * primitive.bytes}"
+
+
+def data_type(primitive: str) -> str:
+    """Give the VHDL type of a primitive's value.
+
+    >>> data_type("int16"), data_type("bool")
+    ('signed(15 downto 0)', 'std_logic')
+    """
+    return _DATA[primitive][0]
 
 
 def types_package() -> str:

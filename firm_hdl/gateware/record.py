@@ -183,21 +183,14 @@ def _empty_member(path: Path, leaves: dict[Path, Leaf]) -> str:
     return next(leaf[-1] for leaf in leaves if leaf[:-1] == path)
 
 
-def _first_bit(layout: Shapes, place: Place) -> int:
-    """Return where in a record a value starts."""
+def _bits_at(layout: Shapes, place: Place) -> slice:
+    """Return which bits of a record a value has."""
     bit = 0
     for key in place:
         assert isinstance(layout, data.Layout)
         member = layout[key]
         bit, layout = bit + member.offset, member.shape
-    return bit
-
-
-def _shape(layout: Shapes, place: Place) -> Shapes:
-    for key in place:
-        assert isinstance(layout, data.Layout)
-        layout = layout[key].shape
-    return layout
+    return slice(bit, bit + Shape.cast(layout).width)
 
 
 class _Adapter(wiring.Component):
@@ -233,9 +226,8 @@ class _Adapter(wiring.Component):
 
     def _bits(self, places: list[Place]) -> slice:
         """Return which bits of the record a transfer has: items of an array are neighbours."""
-        layout = self._record.layout
-        ends = [_first_bit(layout, place) for place in places]
-        return slice(ends[0], ends[-1] + Shape.cast(_shape(layout, places[-1])).width)
+        ends = [_bits_at(self._record.layout, place) for place in (places[0], places[-1])]
+        return slice(ends[0].start, ends[1].stop)
 
     def _streams(self) -> Iterator[tuple[list[list[Place]], stream.Interface]]:
         for index, path in self.tree.leaves():

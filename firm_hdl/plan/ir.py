@@ -72,7 +72,8 @@ class Leaf:
     def primitive(self) -> Primitive:
         """The primitive that `type` names; of `byte` and `char`, that with the sign."""
         # Only a plan that is wrong has the other sign, and the check of plans says so.
-        return PRIMITIVE_OF.get((self.type, self.signed)) or PRIMITIVE_OF[self.type, not self.signed]
+        found = PRIMITIVE_OF.get((self.type, self.signed))
+        return found or PRIMITIVE_OF[self.type, not self.signed]
 
     @property
     def item_bytes(self) -> int:

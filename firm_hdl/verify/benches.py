@@ -3,7 +3,8 @@
 For each type, what ``firm-hdl build`` writes goes to a temporary folder. GHDL analyses all of its
 VHDL with warnings as errors; then the folder's own script runs the bench, which sends the packets
 of rosbags through both converters with random stalls. The packets that came out, and every transfer
-of every leaf, have to be what rosbags says.
+of every leaf, have to be what rosbags says. Types of fixed size have a second bench, of the record
+view.
 """
 
 from __future__ import annotations
@@ -130,19 +131,30 @@ def _run_bench(distro: str, name: str, run: BenchRun, folder: Path) -> tuple[int
         bus_bytes=run.bus_bytes,
         stimuli=lambda *_: [case.packet for case in cases],
     )
-    vhdl = _analyse(built[0], run.ghdl)
-    environment = {"GHDL": run.ghdl, "WORK": ""}
-    said = run_tool(["sh", str(vhdl / RUN_SCRIPT)], vhdl, environment=environment)
-    if not said.startswith("PASS "):
-        raise ToolError(said)
+    vhdl, entities = _analyse(built[0], run.ghdl)
     right = "".join(f"{case.packet.hex()}\n" for case in cases)
-    _compare("packets that came out", (vhdl / "work" / "results.txt").read_text(), right)
-    transfers = _check_transfers(plan, cases, (vhdl / "work" / "transfers.txt").read_text())
-    return len(cases), transfers
+    transfers = 0
+    for entity in entities:
+        work = vhdl / f"work_{entity}"
+        environment = {"GHDL": run.ghdl, "WORK": str(work), "BENCH": entity}
+        names = [f"-g{what}={what}.txt" for what in ("results", "transfers")]
+        said = run_tool(["sh", str(vhdl / RUN_SCRIPT), *names], vhdl, environment=environment)
+        if not said.startswith("PASS "):
+            raise ToolError(said)
+        _compare("packets that came out", (work / "results.txt").read_text(), right)
+        if entity == entities[0]:
+            transfers = _check_transfers(plan, cases, (work / "transfers.txt").read_text())
+    return len(cases) * len(entities), transfers
 
 
-def _analyse(built: Built, ghdl: str) -> Path:
-    """Analyse everything in a folder of its own; GHDL must have nothing to say."""
+def _analyse(built: Built, ghdl: str) -> tuple[Path, list[str]]:
+    """Analyse everything in a folder of its own; GHDL must have nothing to say.
+
+    Returns
+    -------
+    folder, benches
+        Where the VHDL is, and the entities to run.
+    """
     manifest = json.loads((built.folder / MANIFEST).read_text(encoding="utf-8"))["vhdl"]
     vhdl = built.folder.resolve() / str(manifest["folder"])
     files = [str(vhdl / name) for name in [*manifest["files"], *manifest["bench"]["files"]]]
@@ -150,7 +162,7 @@ def _analyse(built: Built, ghdl: str) -> Path:
         said = run_tool([ghdl, "-a", "--std=08", *WARNINGS, *files], Path(work))
     if said:
         raise ToolError(said)
-    return vhdl
+    return vhdl, list(manifest["bench"]["entities"])
 
 
 def _check_transfers(plan: Plan, cases: Sequence[Case], text: str) -> int:

@@ -154,6 +154,8 @@ def _count(records: Mapping[Task, Record | None], options: Options) -> None:
         if distro in total:
             print(f"{distro:8} {passed[distro]:4} of {total[distro]:4} types pass", end="")
             print(f" ({options.bus_bytes}-byte bus)")
+    if skipped := sum(record.status == "skipped" for record in known.values()):
+        print(f"{skipped} of {len(known)} types not judged")
     if shared := sum(bool(record.same_as) for record in known.values()):
         print(f"{shared} of {len(known)} types have the circuit of another, which was simulated")
 

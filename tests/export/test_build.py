@@ -53,6 +53,9 @@ def quick(monkeypatch):
         "to_vhdl",
         lambda *args, header, **options: VhdlFolder(files={"a.vhd": f"-- {header}"}, manifest={}),
     )
+    monkeypatch.setattr(
+        build_module, "packaging", lambda manifest: {"files.txt": "".join(manifest["files"])}
+    )
 
 
 def test_folder_is_complete(tmp_path):
@@ -72,22 +75,41 @@ def test_folder_is_complete(tmp_path):
             "layout.svg",
             "manifest.json",
             "plan.yaml",
+            "vhdl/Makefile",
+            "vhdl/bench_files.txt",
+            "vhdl/files.txt",
             "vhdl/firm_hdl_axis_sink.vhd",
             "vhdl/firm_hdl_axis_source.vhd",
+            "vhdl/firm_hdl_bench.core",
             "vhdl/firm_hdl_bench_pkg.vhd",
+            "vhdl/firm_hdl_common.core",
             "vhdl/firm_hdl_pkg.vhd",
             "vhdl/firm_hdl_types_pkg.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8.core",
             "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_window.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_window.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_record.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_pkg.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_record_tb.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_serializer.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_flat.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_flat_core.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_packer.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_tb.vhd",
             "vhdl/run_ghdl.sh",
+            "vhdl/vivado.tcl",
+            "waivers.vlt",
         )
     ]
 
@@ -96,9 +118,9 @@ def test_vhdl_compiles_in_the_order_of_the_manifest_and_stimuli_are_the_callers(
     options = {"stimuli": lambda message, plan: [b"\x00\x01\x00\x00\x01"]}
     built = build_one(tmp_path, **options)
     vhdl = json.loads((built.folder / "manifest.json").read_text())["vhdl"]
-    there = {path.name for path in (built.folder / "vhdl").iterdir()}
+    there = {path.name for path in (built.folder / "vhdl").glob("*.vhd")}
     listed = [*vhdl["files"], *vhdl["bench"]["files"]]
-    assert there == {*listed, "run_ghdl.sh", "stimuli.txt"}
+    assert there == {*listed, "tb_std_msgs_msg_bool_cdr_8_vunit.vhd"}
     for place, name in enumerate(listed):
         text = (built.folder / "vhdl" / name).read_text()
         for later in listed[place:]:
@@ -128,6 +150,7 @@ def test_manifest_tells_all(tmp_path):
         "wire": "cdr",
         "bus_bytes": 4,
         "max_message_bytes": 999,
+        "ports": "records",
     }
     assert manifest["inputs"]["generator"]["firm-hdl"] == firm_hdl.__version__
     assert {"name": "ULTRASOUND", "type": "uint8", "value": 0} in manifest["constants"]
@@ -341,7 +364,7 @@ def test_output_is_the_same_everywhere(tmp_path):
         command = [sys.executable, "-c", script, "out"]
         subprocess.run(command, cwd=home, env=environment, check=True)
         trees.append(tree(home / "out"))
-    assert len(trees[0]) == 10 + 2 * 16
+    assert len(trees[0]) == 58
     assert trees[0] == trees[1]
     for text in trees[0].values():
         assert str(ROOT).encode() not in text

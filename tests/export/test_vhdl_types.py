@@ -13,9 +13,10 @@ from typing import Any
 import pytest
 
 from firm_hdl import Deserializer, Serializer, load_message
-from firm_hdl.export.top import Top
+from firm_hdl.export.top import Direction, Top
 from firm_hdl.export.vhdl_types import UserLayer, user_layer
-from firm_hdl.export.vhdl_user_build import VhdlFolder, to_vhdl
+from firm_hdl.export.vhdl_user_build import Ports, VhdlFolder, to_vhdl
+from firm_hdl.export.vhdl_user_wrapper import Core
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan, build_plan
 from firm_hdl.wire import lay_out
@@ -53,13 +54,31 @@ float64[] aclk
 Empty nothing
 uint8 unsigned
 uint8 string_t
+string after_string_t
 bool inherit
+uint8 uint8_stream_t
+uint8 after_uint8_stream_t
+bool view
 """
 INNER = "uint32 process\nuint32 Process\nfloat64[2] units\n"
 
 
+# All that GHDL 2.0 has for VHDL-2008.
+WARNINGS = [
+    f"--warn-{name}"
+    for name in (
+        "analyze-assert attribute binding body default-binding delayed-checks delta-cycle "
+        "directive hide library nested-comment others parenthesis port port-bounds pragma pure "
+        "reserved runtime-error shared specs static universal unused useless vital-generic"
+    ).split()
+]
+
+
 def vhdl_of(
-    message: Message, bus_bytes: int = 8, stimuli: Iterable[bytes] = ()
+    message: Message,
+    bus_bytes: int = 8,
+    stimuli: Iterable[bytes] = (),
+    ports: Ports = "records",
 ) -> tuple[VhdlFolder, Plan]:
     tops: Any = {
         "deserializer": Top(Deserializer(message, bus_bytes=bus_bytes)),
@@ -67,7 +86,8 @@ def vhdl_of(
     }
     plan = tops["deserializer"].core.plan
     name = f"{message.name}_{plan.wire}_{bus_bytes}"
-    return to_vhdl(message, plan, tops, name=name, stimuli=list(stimuli)), plan
+    made = to_vhdl(message, plan, tops, name=name, stimuli=list(stimuli), ports=ports)
+    return made, plan
 
 
 def write(folder: Path, files: dict[str, str]) -> None:
@@ -79,7 +99,7 @@ def write(folder: Path, files: dict[str, str]) -> None:
 def analyse(ghdl: str, folder: Path, files: Iterable[str]) -> None:
     """Analyse in GHDL, which must have nothing to say."""
     done = subprocess.run(
-        [ghdl, "-a", "--std=08", "--warn-error", *files],
+        [ghdl, "-a", "--std=08", "--warn-error", *WARNINGS, *files],
         cwd=folder,
         capture_output=True,
         text=True,
@@ -100,9 +120,11 @@ def nasty(tmp_path: Path) -> Message:
 
 def layer(message: Message, bus_bytes: int = 8) -> UserLayer:
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
-    return user_layer(
-        message, plan, name="t", cores={"deserializer": "rx_flat", "serializer": "tx_flat"}
-    )
+    cores: dict[Direction, Core] = {
+        "deserializer": Core(entity="rx_flat", names={}),
+        "serializer": Core(entity="tx_flat", names={}),
+    }
+    return user_layer(message, plan, name="t", cores=cores)
 
 
 def test_package_reads_like_the_definition():

@@ -161,6 +161,14 @@ def test_the_wrong_alignment_is_named(plan):
     assert first == f"step {index}: b is aligned to 4, not 8"
 
 
+def test_the_wrong_alignment_of_items_is_named_where_they_are():
+    behind_a_string = build_plan(lay_out(make("ros2", {"s": "string", "q": "uint64[]"})))
+    index = len(behind_a_string.steps) - 1
+    assert behind_a_string.steps[index].align == 8
+    first, *_ = check(with_step(behind_a_string, index, align=4))
+    assert first == f"step {index}: q.items is aligned to 4, not 8"
+
+
 def test_a_needless_alignment_is_named(plan):
     index, _ = find(plan, "w.length")
     assert plan.steps[index].align == 1

@@ -73,11 +73,11 @@ def change(monkeypatch, file: str, before: str, after: str) -> None:
     ("file", "before", "after", "said"),
     [
         # A warning of GHDL; an error of it; a bench that fails; bytes, and transfers, that differ.
-        ("_tb.vhd", "\nbegin\n", "\n  signal unused : bit;\nbegin\n", "unused"),
+        ("8_tb.vhd", "\nbegin\n", "\n  signal unused : bit;\nbegin\n", "unused"),
         ("_deserializer.vhd", "architecture", "architektur", "_deserializer.vhd:"),
         ("_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ", "FAIL packet 0"),
         (RUN_SCRIPT, 'exec "$ghdl"', f'{FALSIFY}\n"$ghdl"', "packets that came out: number"),
-        ("_tb.vhd", "stamp.sec.data)", "stamp.nanosec.data)", "transfers of stamp.sec: number 1"),
+        ("8_tb.vhd", "stamp.sec.data)", "stamp.nanosec.data)", "transfers of stamp.sec: number 1"),
         (RUN_SCRIPT, 'exec "$ghdl"', 'echo nothing; exit 0\nexec "$ghdl"', "nothing"),
     ],
 )
@@ -86,6 +86,17 @@ def test_what_is_wrong_is_found(ghdl, monkeypatch, file, before, after, said):
     result = run_bench("lyrical", HEADER, BenchRun(ghdl=ghdl))
     assert said in result.failure
     assert not result.packets
+
+
+def test_bench_of_the_record_view_is_run_as_well(ghdl, monkeypatch):
+    run = BenchRun(ghdl=ghdl)
+    alone = run_bench("lyrical", HEADER, run)
+    both = run_bench("lyrical", "geometry_msgs/msg/Vector3", run)
+    assert (alone.failure, both.failure) == ("", "")
+    # Three leaves, in the first bench; each packet is sent in both.
+    assert 2 * both.transfers == 3 * both.packets
+    change(monkeypatch, "8_serializer_record.vhd", "<= to_slv(msg", "<= not to_slv(msg")
+    assert "FAIL packet 0" in run_bench("lyrical", "geometry_msgs/msg/Vector3", run).failure
 
 
 def test_table_and_status_say_what_failed_and_how_to_repeat(ghdl, monkeypatch, capsys):

@@ -75,6 +75,13 @@ def test_every_definition_has_its_place_and_its_parts():
     assert isinstance(minus, Unary) and words(minus) == "-2"
 
 
+def test_what_the_end_lacks_is_missed_right_behind_the_text():
+    text = "module m {"
+    found = parse_file(Source(name="test.idl", text=text + "\n"))
+    assert isinstance(found, Diagnostic) and found.span is not None
+    assert (found.span.start, found.span.end) == (len(text), len(text) + 1)
+
+
 def test_names_know_whether_they_are_absolute():
     (struct,) = parse("struct T { ::a::b::C c; a :: b /* here */ ::C d; };")
     types = [member.type for member in struct.members]

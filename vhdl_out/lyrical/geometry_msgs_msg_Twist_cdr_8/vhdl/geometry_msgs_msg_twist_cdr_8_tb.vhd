@@ -2,7 +2,7 @@
 -- lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
 -- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 -- What each port means: manifest.json.
--- Test bench of the converters of geometry_msgs/msg/Twist. Simulation only.
+-- Test bench of the converters of geometry_msgs/msg/Twist, cdr, bus of 8 bytes. Simulation only.
 --
 -- Ends by itself, with a line that starts with PASS, or with a failure.
 
@@ -20,10 +20,13 @@ entity geometry_msgs_msg_twist_cdr_8_tb is
     stimuli   : string  := "stimuli.txt";    -- packets to send, one a line, in hexadecimal
     expected  : string  := "stimuli.txt";    -- packets that have to come out
     results   : string  := "results.txt";    -- packets that came out
-    transfers : string  := "transfers.txt";  -- cycle, leaf and data of each transfer of a leaf
+    transfers : string  := "transfers.txt";  -- cycle, leaf and data of each leaf's transfer
     seed      : natural := 1;
     stalls    : natural range 0 to 99 := 40; -- percent of the cycles in which a stream stalls
     patience  : positive := 100_000          -- cycles without a beat after which it has failed
+  );
+  port (
+    over : out boolean := false  -- that it has passed
   );
 end entity;
 
@@ -34,7 +37,6 @@ architecture sim of geometry_msgs_msg_twist_cdr_8_tb is
 
   signal aclk    : std_logic := '0';
   signal aresetn : std_logic := '0';
-  signal over    : boolean := false;
   signal cycle   : natural := 0;
 
   signal i_tdata, o_tdata   : std_logic_vector(8 * BUS_BYTES - 1 downto 0);
@@ -54,14 +56,14 @@ architecture sim of geometry_msgs_msg_twist_cdr_8_tb is
   signal rx_tready, tx_tready : std_logic := '0';
   signal rx_count, tx_count   : natural := 0;
 
-  -- From the deserializer, and to the serializer.
-  signal rx_msg, tx_msg : twist_t;
-  signal rx_rdy, tx_rdy : twist_ready_t;
-
   -- Per leaf: whether it may pass, whether it is offered, whether it would be taken.
   signal gate    : std_logic_vector(LEAVES - 1 downto 0) := (others => '1');
   signal offered : std_logic_vector(LEAVES - 1 downto 0);
   signal taken   : std_logic_vector(LEAVES - 1 downto 0);
+
+  -- From the deserializer, and to the serializer.
+  signal rx_msg, tx_msg : twist_t;
+  signal rx_rdy, tx_rdy : twist_ready_t;
 
 begin
 
@@ -85,18 +87,35 @@ begin
 
   rx : geometry_msgs_msg_twist_cdr_8_deserializer
     port map (
-      aclk => aclk, aresetn => aresetn, s_axis_tdata => i_tdata, s_axis_tkeep => i_tkeep,
-      s_axis_tlast => i_tlast, s_axis_tvalid => i_tvalid, s_axis_tready => i_tready,
-      msg => rx_msg, rdy => rx_rdy, m_axis_status_tdata => rx_tdata,
-      m_axis_status_tvalid => rx_tvalid, m_axis_status_tready => rx_tready
+      aclk                 => aclk,
+      aresetn              => aresetn,
+      s_axis_tdata         => i_tdata,
+      s_axis_tkeep         => i_tkeep,
+      s_axis_tlast         => i_tlast,
+      s_axis_tvalid        => i_tvalid,
+      s_axis_tready        => i_tready,
+      msg                  => rx_msg,
+      rdy                  => rx_rdy,
+      m_axis_status_tdata  => rx_tdata,
+      m_axis_status_tvalid => rx_tvalid,
+      m_axis_status_tready => rx_tready
     );
 
   tx : geometry_msgs_msg_twist_cdr_8_serializer
     port map (
-      aclk => aclk, aresetn => aresetn, m_axis_tdata => o_tdata, m_axis_tkeep => o_tkeep,
-      m_axis_tlast => o_tlast, m_axis_tuser => o_tuser, m_axis_tvalid => o_tvalid,
-      m_axis_tready => o_tready, msg => tx_msg, rdy => tx_rdy, m_axis_status_tdata => tx_tdata,
-      m_axis_status_tvalid => tx_tvalid, m_axis_status_tready => tx_tready
+      aclk                 => aclk,
+      aresetn              => aresetn,
+      m_axis_tdata         => o_tdata,
+      m_axis_tkeep         => o_tkeep,
+      m_axis_tlast         => o_tlast,
+      m_axis_tuser         => o_tuser,
+      m_axis_tvalid        => o_tvalid,
+      m_axis_tready        => o_tready,
+      msg                  => tx_msg,
+      rdy                  => tx_rdy,
+      m_axis_status_tdata  => tx_tdata,
+      m_axis_status_tvalid => tx_tvalid,
+      m_axis_status_tready => tx_tready
     );
 
   -- The accelerator: it does nothing, but stalls.
@@ -138,18 +157,17 @@ begin
   taken(5) <= tx_rdy.angular.z;
 
   -- What was offered stays offered until it is taken.
-  stalling : process (aclk)
+  stalling : process
     variable random : random_t := random_from(seed, 3);
     variable stall : boolean;
   begin
-    if rising_edge(aclk) then
-      for k in gate'range loop
-        if offered(k) = '1' and (gate(k) = '0' or taken(k) = '1') then
-          draw(random, stalls, stall);
-          gate(k) <= '0' when stall else '1';
-        end if;
-      end loop;
-    end if;
+    wait until rising_edge(aclk);
+    for k in gate'range loop
+      if offered(k) = '1' and (gate(k) = '0' or taken(k) = '1') then
+        draw(random, stalls, stall);
+        gate(k) <= '0' when stall else '1';
+      end if;
+    end loop;
   end process;
 
   -- Items are written with the first one to the right; a last transfer has an asterisk.
@@ -189,7 +207,7 @@ begin
 
   aclk <= not aclk after 5 ns when not over;
 
-  control : process (aclk)
+  control : process
     variable random : random_t := random_from(seed, 4);
     variable stall : boolean;
     variable idle, first, final : natural := 0;
@@ -203,53 +221,54 @@ begin
         severity failure;
     end procedure;
   begin
-    if rising_edge(aclk) and not over then
-      cycle <= cycle + 1;
-      if cycle = 3 then
-        aresetn <= '1';
-      end if;
+    wait until rising_edge(aclk) and not over;
+    cycle <= cycle + 1;
+    if cycle = 3 then
+      aresetn <= '1';
+    end if;
 
-      if (rx_tvalid and rx_tready) = '1' then
-        check("deserializer", rx_tdata, rx_count);
-        rx_count <= rx_count + 1;
-      end if;
-      draw(random, stalls, stall);
-      rx_tready <= '0' when stall else '1';
-      if (tx_tvalid and tx_tready) = '1' then
-        check("serializer", tx_tdata, tx_count);
-        tx_count <= tx_count + 1;
-      end if;
-      draw(random, stalls, stall);
-      tx_tready <= '0' when stall else '1';
+    if (rx_tvalid and rx_tready) = '1' then
+      check("deserializer", rx_tdata, rx_count);
+      rx_count <= rx_count + 1;
+    end if;
+    draw(random, stalls, stall);
+    rx_tready <= '0' when stall else '1';
+    if (tx_tvalid and tx_tready) = '1' then
+      check("serializer", tx_tdata, tx_count);
+      tx_count <= tx_count + 1;
+    end if;
+    draw(random, stalls, stall);
+    tx_tready <= '0' when stall else '1';
 
-      idle := idle + 1;
-      if (i_tvalid and i_tready) = '1' then
-        idle := 0;
-        if not started then
-          first := cycle;
-          started := true;
-        end if;
+    idle := idle + 1;
+    if (i_tvalid and i_tready) = '1' then
+      idle := 0;
+      if not started then
+        first := cycle;
+        started := true;
       end if;
-      if (o_tvalid and o_tready) = '1' then
-        idle := 0;
-        final := cycle;
-      end if;
-      assert idle < patience
-        report "FAIL nothing moves: " & integer'image(o_packets) & " of " & integer'image(o_total) &
-          " packets came out, " & integer'image(i_packets) & " went in, with " &
-          integer'image(rx_count) & " and " & integer'image(tx_count) & " statuses"
-        severity failure;
+    end if;
+    if (o_tvalid and o_tready) = '1' then
+      idle := 0;
+      final := cycle;
+    end if;
+    assert idle < patience
+      report "FAIL nothing moves: " & integer'image(o_packets) & " of " & integer'image(o_total) &
+        " packets came out, " & integer'image(i_packets) & " went in, with " &
+        integer'image(rx_count) & " and " & integer'image(tx_count) & " statuses"
+      severity failure;
 
-      -- A while longer, in case that something comes that should not.
-      if i_done and o_packets = o_total and i_packets = o_total and rx_count = o_total and
-          tx_count = o_total and idle > 100 then
-        assert o_total > 0 report "FAIL there are no packets" severity failure;
-        assert (o_tvalid or rx_tvalid or tx_tvalid or (or offered)) = '0'
-          report "FAIL something is left over" severity failure;
-        write(output, "PASS geometry_msgs/msg/Twist, cdr, bus of 8 bytes: " & integer'image(o_packets) & " packets, " &
-          integer'image(o_bytes) & " bytes, " & integer'image(final - first + 1) & " cycles" & LF);
-        over <= true;
-      end if;
+    -- A while longer, in case that something comes that should not.
+    if i_done and o_packets = o_total and i_packets = o_total and rx_count = o_total and
+        tx_count = o_total and idle > 100 then
+      assert o_total > 0 report "FAIL there are no packets" severity failure;
+      assert (o_tvalid or rx_tvalid or tx_tvalid or (or offered)) = '0'
+        report "FAIL something is left over" severity failure;
+      write(output,
+        "PASS geometry_msgs/msg/Twist, cdr, bus of 8 bytes: " &
+        integer'image(o_packets) & " packets, " & integer'image(o_bytes) & " bytes, " &
+        integer'image(final - first + 1) & " cycles" & LF);
+      over <= true;
     end if;
   end process;
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Run the test bench in GHDL. Arguments go to the simulation, such as -gseed=7 or --wave=tb.ghw.
-# What GHDL and the bench write is in work/ beside this script; WORK names another folder, and GHDL
-# another command than the first that is found.
+# What GHDL and the bench write is in work/ beside this script; WORK names another folder, GHDL
+# another command than the first that is found, and BENCH another bench of the folder.
 set -eu
 here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 work=${WORK:-$here/work}
@@ -24,19 +24,30 @@ cd "$work"
 printf '*\n' > .gitignore
 "$ghdl" -a --std=08 \
   "$here/firm_hdl_types_pkg.vhd" \
-  "$here/geometry_msgs_msg_twist_cdr_8_pkg.vhd" \
   "$here/firm_hdl_pkg.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_pkg.vhd" \
   "$here/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_window.vhd" \
   "$here/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core.vhd" \
   "$here/geometry_msgs_msg_twist_cdr_8_deserializer_flat.vhd" \
   "$here/geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer.vhd" \
   "$here/geometry_msgs_msg_twist_cdr_8_serializer_flat_core.vhd" \
   "$here/geometry_msgs_msg_twist_cdr_8_serializer_flat.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_window.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_record.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_packer.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_serializer_record_flat.vhd" \
   "$here/geometry_msgs_msg_twist_cdr_8_deserializer.vhd" \
   "$here/geometry_msgs_msg_twist_cdr_8_serializer.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_deserializer_record.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_serializer_record.vhd" \
   "$here/firm_hdl_bench_pkg.vhd" \
   "$here/firm_hdl_axis_source.vhd" \
   "$here/firm_hdl_axis_sink.vhd" \
-  "$here/geometry_msgs_msg_twist_cdr_8_tb.vhd"
-exec "$ghdl" --elab-run --std=08 geometry_msgs_msg_twist_cdr_8_tb --ieee-asserts=disable-at-0 \
+  "$here/geometry_msgs_msg_twist_cdr_8_tb.vhd" \
+  "$here/geometry_msgs_msg_twist_cdr_8_record_tb.vhd"
+exec "$ghdl" --elab-run --std=08 "${BENCH:-geometry_msgs_msg_twist_cdr_8_tb}" --ieee-asserts=disable-at-0 \
   -gstimuli="$here/stimuli.txt" -gexpected="$here/stimuli.txt" "$@"

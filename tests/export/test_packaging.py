@@ -1,0 +1,226 @@
+"""What tools are told of a folder's VHDL: that they accept it, and run the benches with it."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from firm_hdl.export.build import build
+from firm_hdl.export.packaging import packaging
+from firm_hdl.verify.stimuli import stimuli
+from tests.export.conftest import need
+
+TYPES = ("geometry_msgs/msg/Vector3", "std_msgs/msg/Header")
+VECTOR, HEADER = "geometry_msgs_msg_vector3_cdr_8", "std_msgs_msg_header_cdr_8"
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory) -> list[Path]:
+    """Folders of two types, one of them with a record view."""
+    out = tmp_path_factory.mktemp("built")
+    return [each.folder / "vhdl" for each in build(TYPES, out, stimuli=stimuli)]
+
+
+def manifest_of(folder: Path) -> dict[str, Any]:
+    found = json.loads((folder.parent / "manifest.json").read_text())
+    assert isinstance(found, dict)
+    return found
+
+
+def copied(folder: Path, to: Path) -> Path:
+    shutil.copytree(folder.parent, to / folder.parent.name)
+    return to / folder.parent.name / "vhdl"
+
+
+def run(command: list[str], folder: Path) -> tuple[int, str]:
+    done = subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, timeout=300, check=False
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def spoil(folder: Path) -> None:
+    """Let the bench expect another byte than that which it sends."""
+    script = folder / "firm_hdl_axis_sink.vhd"
+    text = script.read_text()
+    assert "assert got = byte_at" in text
+    script.write_text(text.replace("assert got = byte_at", "assert got /= byte_at"))
+
+
+def test_everything_comes_from_the_manifest(folders):
+    for folder in folders:
+        made = packaging(manifest_of(folder))
+        assert made == {name: (folder / name).read_text() for name in made}
+        listed = manifest_of(folder)["files"]
+        assert {f"vhdl/{name}" for name in made} <= set(listed)
+
+
+def test_lists_compile_in_their_order(ghdl, folders, tmp_path):
+    for folder in folders:
+        files = (folder / "files.txt").read_text().splitlines()
+        bench = (folder / "bench_files.txt").read_text().splitlines()
+        work = tmp_path / folder.parent.name
+        work.mkdir()
+        options = ["-a", "--std=08", f"--workdir={work}", "--warn-error"]
+        assert run([ghdl, *options, *files, *bench], folder) == (0, "")
+        # The order matters.
+        other = tmp_path / f"{folder.parent.name}_other"
+        other.mkdir()
+        command = [ghdl, "-a", "--std=08", f"--workdir={other}", *reversed(files)]
+        assert run(command, folder)[0] != 0
+
+
+def test_what_types_share_is_one_text(folders):
+    for name in ("firm_hdl_common.core", "firm_hdl_bench.core", "firm_hdl_pkg.vhd"):
+        assert len({(folder / name).read_text() for folder in folders}) == 1
+
+
+STUBS = """\
+proc read_vhdl {args} { puts "read_vhdl $args" }
+foreach script $argv { source $script }
+"""
+
+
+def test_vivado_reads_everything_once_and_in_order(folders, tmp_path):
+    tclsh = need("tclsh", shutil.which("tclsh"))
+    (tmp_path / "stubs.tcl").write_text(STUBS)
+    scripts = [str(folder / "vivado.tcl") for folder in folders]
+    status, said = run([tclsh, "stubs.tcl", *scripts], tmp_path)
+    assert status == 0, said
+    want = []
+    for folder in folders:
+        manifest = manifest_of(folder)["vhdl"]
+        skip = manifest["common_files"] if want else []
+        want += [
+            f"read_vhdl -vhdl2008 {folder / name}"
+            for name in manifest["files"]
+            if name not in skip
+        ]
+    assert said.splitlines() == want
+    assert not [line for line in want if "_tb" in line or "axis_s" in line]
+
+
+def test_make_runs_all_benches(ghdl, folders, tmp_path):
+    make = need("make", shutil.which("make"))
+    folder = copied(folders[0], tmp_path)
+    status, said = run([make, "SEED=3", "STALLS=0", f"GHDL={ghdl}"], folder)
+    assert status == 0, said
+    assert said.count("PASS geometry_msgs/msg/Vector3") == 2
+    status, said = run([make, "lint", f"GHDL={ghdl}"], folder)
+    assert (status, said.count("warning")) == (0, 0), said
+    spoil(folder)
+    status, said = run([make, f"GHDL={ghdl}"], folder)
+    assert status != 0
+    assert "FAIL packet 0" in said and "PASS" not in said
+    assert run([make, "clean"], folder)[0] == 0
+    assert not (folder / "work").exists()
+
+
+def fusesoc() -> list[str]:
+    need("FuseSoC", "here" if find_spec("fusesoc") else None)
+    return [sys.executable, "-m", "fusesoc.main", "--cores-root", "."]
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_fusesoc_runs_the_benches(folders, tmp_path):
+    command = fusesoc()
+    folder = copied(folders[0], tmp_path)
+    status, said = run([*command, "core", "list"], tmp_path)
+    assert status == 0, said
+    cores = ["lyrical:" + VECTOR, "vhdl:common", "vhdl:bench"]
+    assert [said.count(f"firm-hdl:{name}:") for name in cores] == [1, 1, 1]
+    core = f"firm-hdl:lyrical:{VECTOR}"
+    for target, options, what in (
+        ("sim", [], "geometry_msgs/msg/Vector3, cdr"),
+        ("sim_record", ["--seed=4", "--stalls=0"], "geometry_msgs/msg/Vector3 record, cdr"),
+    ):
+        status, said = run([*command, "run", f"--target={target}", core, *options], tmp_path)
+        assert status == 0, said
+        assert said.count(f"PASS {what}") == 1
+    assert "-gseed=4 -gstalls=0" in said
+    spoil(folder)
+    status, said = run([*command, "run", "--target=sim", core], tmp_path)
+    assert status != 0
+    assert "FAIL packet 0" in said and "PASS" not in said
+
+
+USERS_CORE = f"""\
+CAPI=2:
+name: me:my:design:1.0
+filesets:
+  all:
+    depend: ["firm-hdl:lyrical:{VECTOR}", "firm-hdl:lyrical:{HEADER}"]
+    files: [design.vhd: {{file_type: vhdlSource-2008}}]
+targets:
+  default: {{filesets: [all]}}
+  sim: {{filesets: [all], default_tool: ghdl, toplevel: design}}
+"""
+USERS_DESIGN = f"""\
+library ieee;
+use ieee.std_logic_1164.all;
+use work.{VECTOR}_pkg.all;
+entity design is end entity;
+architecture sim of design is
+  signal clk : std_logic := '0';
+  signal vector : vector3_t;
+  signal header : work.{HEADER}_pkg.header_t;
+begin
+  v : {VECTOR}_deserializer port map (
+    aclk => clk, aresetn => '0', s_axis_tdata => (others => '0'), s_axis_tkeep => (others => '0'),
+    s_axis_tlast => '0', s_axis_tvalid => '0', msg => vector, rdy => (others => '1'),
+    m_axis_status_tready => '1');
+  h : work.{HEADER}_pkg.{HEADER}_deserializer port map (
+    aclk => clk, aresetn => '0', s_axis_tdata => (others => '0'), s_axis_tkeep => (others => '0'),
+    s_axis_tlast => '0', s_axis_tvalid => '0', msg => header,
+    rdy => (stamp => (others => '1'), frame_id => (others => '1')), m_axis_status_tready => '1');
+  process begin
+    clk <= '1';
+    wait for 1 ns;
+    report "BOTH " & to_string(vector.x.valid) & to_string(header.stamp.sec.valid);
+    wait;
+  end process;
+end architecture;
+"""
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_fusesoc_takes_several_types_in_one_design(folders, tmp_path):
+    command = fusesoc()
+    for folder in folders:
+        copied(folder, tmp_path)
+    (tmp_path / "design.core").write_text(USERS_CORE)
+    (tmp_path / "design.vhd").write_text(USERS_DESIGN)
+    status, said = run([*command, "run", "--target=sim", "me:my:design"], tmp_path)
+    assert status == 0, said
+    assert "BOTH 00" in said
+    # What they share is there once.
+    imported = next(line for line in said.splitlines() if "ghdl -i" in line)
+    assert imported.count("firm_hdl_pkg.vhd") == imported.count("firm_hdl_types_pkg.vhd") == 1
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_vunit_runs_the_benches(folders, tmp_path):
+    need("VUnit", "here" if find_spec("vunit") else None)
+    folder = copied(folders[0], tmp_path)
+    command = [sys.executable, "vunit_run.py", "--no-color", "-o", str(tmp_path / "vunit_out")]
+    status, said = run(command, folder)
+    assert status == 0, said
+    assert "pass 4 of 4" in said
+    spoil(folder)
+    status, said = run(command, folder)
+    assert status != 0
+    assert "fail 4 of 4" in said
+
+
+def test_without_packets_nothing_runs_them(tmp_path):
+    [built] = build(TYPES[:1], tmp_path)
+    names = {path.name for path in (built.folder / "vhdl").iterdir()}
+    assert "vunit_run.py" not in names and "stimuli.txt" not in names
+    assert "sim" not in (built.folder / "vhdl" / f"{VECTOR}.core").read_text()

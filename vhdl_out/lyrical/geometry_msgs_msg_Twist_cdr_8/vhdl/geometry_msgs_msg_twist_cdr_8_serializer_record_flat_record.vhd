@@ -1,0 +1,141 @@
+-- geometry_msgs_msg_Twist_cdr_8: converters of geometry_msgs/msg/Twist, made by firm-hdl 0.1.0.
+-- lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
+-- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
+-- What each port means: manifest.json.
+-- Module geometry_msgs_msg_twist_cdr_8_serializer_record_flat.record of the Amaranth design.
+-- 6 registers at rising_edge(aclk), synchronous reset rst = '1'.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use work.firm_hdl_pkg.all;
+
+entity geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record is
+  port (
+    rst                       : in  std_logic;
+    aclk                      : in  std_logic;
+    record_payload            : in  unsigned(383 downto 0);
+    record_valid              : in  std_logic;
+    message_linear_x_valid    : out std_logic;
+    message_linear_y_valid    : out std_logic;
+    message_linear_z_valid    : out std_logic;
+    message_angular_x_valid   : out std_logic;
+    message_angular_y_valid   : out std_logic;
+    message_angular_z_valid   : out std_logic;
+    taken                     : out std_logic;
+    message_linear_x_ready    : in  std_logic;
+    message_linear_y_ready    : in  std_logic;
+    message_linear_z_ready    : in  std_logic;
+    message_angular_x_ready   : in  std_logic;
+    message_angular_y_ready   : in  std_logic;
+    message_angular_z_ready   : in  std_logic;
+    message_linear_x_payload  : out unsigned(63 downto 0);
+    message_linear_y_payload  : out unsigned(63 downto 0);
+    message_linear_z_payload  : out unsigned(63 downto 0);
+    message_angular_x_payload : out unsigned(63 downto 0);
+    message_angular_y_payload : out unsigned(63 downto 0);
+    message_angular_z_payload : out unsigned(63 downto 0)
+  );
+end entity;
+
+architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record is
+
+  -- Registers.
+  signal index    : std_logic := '0';
+  signal index_6  : std_logic := '0';
+  signal index_9  : std_logic := '0';
+  signal index_12 : std_logic := '0';
+  signal index_15 : std_logic := '0';
+  signal index_18 : std_logic := '0';
+
+  -- Combinational signals.
+  signal and_43 : std_logic;
+
+  -- More names of values, for whoever looks at a simulation.
+  signal record_ready : std_logic;
+begin
+
+  message_linear_x_valid <= record_valid and not index;
+  message_linear_y_valid <= record_valid and not index_6;
+  message_linear_z_valid <= record_valid and not index_9;
+  message_angular_x_valid <= record_valid and not index_12;
+  message_angular_y_valid <= record_valid and not index_15;
+  message_angular_z_valid <= record_valid and not index_18;
+  and_43 <= and unsigned'((index_18 or (to_std_logic(resize(index_18, 1) = 0) and
+      message_angular_z_valid and message_angular_z_ready)) & (index_15 or
+      (to_std_logic(resize(index_15, 1) = 0) and message_angular_y_valid and
+      message_angular_y_ready)) & (index_12 or (to_std_logic(resize(index_12, 1) = 0) and
+      message_angular_x_valid and message_angular_x_ready)) & (index_9 or
+      (to_std_logic(resize(index_9, 1) = 0) and message_linear_z_valid and
+      message_linear_z_ready)) & (index_6 or (to_std_logic(resize(index_6, 1) = 0) and
+      message_linear_y_valid and message_linear_y_ready)) & (index or (to_std_logic(resize(index,
+      1) = 0) and message_linear_x_valid and message_linear_x_ready)));
+  taken <= record_valid and and_43;
+
+  message_linear_x_payload <= record_payload(63 downto 0) when index = '0' else
+                              (others => '0');
+
+  message_linear_y_payload <= record_payload(127 downto 64) when index_6 = '0' else
+                              (others => '0');
+
+  message_linear_z_payload <= record_payload(191 downto 128) when index_9 = '0' else
+                              (others => '0');
+
+  message_angular_x_payload <= record_payload(255 downto 192) when index_12 = '0' else
+                               (others => '0');
+
+  message_angular_y_payload <= record_payload(319 downto 256) when index_15 = '0' else
+                               (others => '0');
+
+  message_angular_z_payload <= record_payload(383 downto 320) when index_18 = '0' else
+                               (others => '0');
+
+  p_aclk : process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if rst = '1' then
+        index <= '0';
+        index_6 <= '0';
+        index_9 <= '0';
+        index_12 <= '0';
+        index_15 <= '0';
+        index_18 <= '0';
+      else
+        if taken = '1' then
+          index <= '0';
+        elsif message_linear_x_valid = '1' and message_linear_x_ready = '1' then
+          index <= index xor '1';
+        end if;
+        if taken = '1' then
+          index_6 <= '0';
+        elsif message_linear_y_valid = '1' and message_linear_y_ready = '1' then
+          index_6 <= index_6 xor '1';
+        end if;
+        if taken = '1' then
+          index_9 <= '0';
+        elsif message_linear_z_valid = '1' and message_linear_z_ready = '1' then
+          index_9 <= index_9 xor '1';
+        end if;
+        if taken = '1' then
+          index_12 <= '0';
+        elsif message_angular_x_valid = '1' and message_angular_x_ready = '1' then
+          index_12 <= index_12 xor '1';
+        end if;
+        if taken = '1' then
+          index_15 <= '0';
+        elsif message_angular_y_valid = '1' and message_angular_y_ready = '1' then
+          index_15 <= index_15 xor '1';
+        end if;
+        if taken = '1' then
+          index_18 <= '0';
+        elsif message_angular_z_valid = '1' and message_angular_z_ready = '1' then
+          index_18 <= index_18 xor '1';
+        end if;
+      end if;
+    end if;
+  end process;
+
+  record_ready <= taken;
+
+end architecture;

@@ -1,0 +1,43 @@
+# Read the converters of geometry_msgs/msg/Twist (lyrical, cdr, bus of 8 bytes) into Vivado:
+#
+#   source .../vivado.tcl
+#
+# In the order in which they compile, as VHDL-2008, into the library that is current. Test benches
+# are left out.
+
+set firm_hdl_folder [file dirname [file normalize [info script]]]
+
+# The same in the folder of every type: the first script that is sourced reads them for all.
+foreach firm_hdl_file {
+  firm_hdl_types_pkg.vhd
+  firm_hdl_pkg.vhd
+} {
+  if {![info exists firm_hdl_read($firm_hdl_file)]} {
+    set firm_hdl_read($firm_hdl_file) 1
+    read_vhdl -vhdl2008 [file join $firm_hdl_folder $firm_hdl_file]
+  }
+}
+
+foreach firm_hdl_file {
+  geometry_msgs_msg_twist_cdr_8_pkg.vhd
+  geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_window.vhd
+  geometry_msgs_msg_twist_cdr_8_deserializer_flat_core.vhd
+  geometry_msgs_msg_twist_cdr_8_deserializer_flat.vhd
+  geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer.vhd
+  geometry_msgs_msg_twist_cdr_8_serializer_flat_core.vhd
+  geometry_msgs_msg_twist_cdr_8_serializer_flat.vhd
+  geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_window.vhd
+  geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core.vhd
+  geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_record.vhd
+  geometry_msgs_msg_twist_cdr_8_deserializer_record_flat.vhd
+  geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_packer.vhd
+  geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core.vhd
+  geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record.vhd
+  geometry_msgs_msg_twist_cdr_8_serializer_record_flat.vhd
+  geometry_msgs_msg_twist_cdr_8_deserializer.vhd
+  geometry_msgs_msg_twist_cdr_8_serializer.vhd
+  geometry_msgs_msg_twist_cdr_8_deserializer_record.vhd
+  geometry_msgs_msg_twist_cdr_8_serializer_record.vhd
+} {
+  read_vhdl -vhdl2008 [file join $firm_hdl_folder $firm_hdl_file]
+}
