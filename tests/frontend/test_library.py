@@ -252,11 +252,12 @@ def test_hash_changes_with_what_an_included_file_says(tmp_path):
     def digest(size, tail=""):
         folder = tmp_path / f"{size}{len(tail)}"
         idl = "module p { module msg { struct T { sequence<long, N> x; }; }; };"
+        sizes = f"module p {{ module msg {{ const long N = {size}; }}; }};"
         make_files(
             folder,
             {
                 "p/msg/T.idl": f'#include "p/msg/sizes.idl"\n{idl}',
-                "p/msg/sizes.idl": f"module p {{ module msg {{ const long N = {size}; }}; }};{tail}",
+                "p/msg/sizes.idl": sizes + tail,
             },
         )
         return Library("lyrical", [folder]).definition_hash("p/msg/T")
