@@ -10,6 +10,7 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 
+from firm_hdl.errors import Diagnostic
 from firm_hdl.export.build import BuildError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.plan import BUS_BYTES
@@ -34,7 +35,8 @@ def run_verify(given: argparse.Namespace) -> int:
     Raises
     ------
     DefinitionError
-        If a user's definition cannot be used.
+        If a definition that is named cannot be used. Of all types, those that can are tested, and
+        then the others are printed.
     """
     if bool(given.types) == given.all:
         given.refuse("name types, or all of them with --all")
@@ -42,6 +44,7 @@ def run_verify(given: argparse.Namespace) -> int:
         given.refuse("--report needs --results")
     if given.results is not None and "ts3" not in given.systems:
         given.refuse("--results are of ts3")
+    given.problems = {}
     try:
         with unwound_when_terminated():
             # Each of them, whatever comes of the first.
@@ -58,7 +61,9 @@ def run_verify(given: argparse.Namespace) -> int:
     ) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
-    return 0 if all(results) else 1
+    for problem in given.problems:
+        print(problem, file=sys.stderr)
+    return 0 if all(results) and not given.problems else 1
 
 
 def _ts3(given: argparse.Namespace) -> bool:
@@ -124,7 +129,10 @@ SYSTEMS: dict[str, Callable[[argparse.Namespace], bool]] = {
 
 def _tasks(given: argparse.Namespace) -> list[Task]:
     if given.path:
-        return collect_own(given.distro or [DEFAULT_DISTRO], given.types, given.path)
+        # Of all types in a workspace, one that is wrong does not keep the others from being tested.
+        problems: dict[str, Diagnostic] | None = given.problems if given.all else None
+        distros = given.distro or [DEFAULT_DISTRO]
+        return collect_own(distros, given.types, given.path, problems=problems)
     return collect_tasks(given.distro or (), given.types)
 
 

@@ -72,7 +72,13 @@ def collect_tasks(distros: Iterable[str] = (), names: Sequence[str] = ()) -> lis
     return [Task(distro=found[k][-1], name=k[0], same=tuple(found[k])) for k in keys]
 
 
-def collect_own(distros: Iterable[str], names: Sequence[str], paths: Sequence[str]) -> list[Task]:
+def collect_own(
+    distros: Iterable[str],
+    names: Sequence[str],
+    paths: Sequence[str],
+    *,
+    problems: dict[str, Diagnostic] | None = None,
+) -> list[Task]:
     """List what to run of the types in folders, the largest types first.
 
     Parameters
@@ -82,25 +88,27 @@ def collect_own(distros: Iterable[str], names: Sequence[str], paths: Sequence[st
     names : sequence of str
         Types, services or actions; none: all that are in the folders.
     paths : sequence of str
+    problems : dict or None
+        Takes what is wrong with definitions, by its text; they are left out then.
 
     Raises
     ------
     DefinitionError
-        With the problems of all of them.
+        Without `problems`: with those of all of them.
     """
     found: dict[tuple[str, str], int] = {}
-    problems: dict[str, Diagnostic] = {}
+    wrong: dict[str, Diagnostic] = {} if problems is None else problems
     for distro in distros:
         library = Library(distro, paths)
         for name in names or Library(distro, paths, origins=()).interfaces():
             try:
                 messages = library.interface(name).messages
             except DefinitionError as error:
-                problems.update((str(problem), problem) for problem in error.diagnostics)
+                wrong.update((str(problem), problem) for problem in error.diagnostics)
                 continue
             found.update(((distro, message.name), _weight(message)) for message in messages)
-    if problems:
-        raise DefinitionError(problems.values())
+    if wrong and problems is None:
+        raise DefinitionError(wrong.values())
     keys = sorted(found, key=lambda key: (-found[key], key))
     return [Task(distro=distro, name=name, same=(distro,)) for distro, name in keys]
 

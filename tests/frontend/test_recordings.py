@@ -132,6 +132,13 @@ def test_texts_are_cut_at_headings_alone(tmp_path):
     assert ours.source("p/D").text == ""
 
 
+def test_empty_lines_at_the_end_are_of_the_last_text(tmp_path):
+    text = f"B b\n\n\n{SEPARATOR}\nMSG: p/B\nint8 x\n\n"
+    ours = open_library(bags=[record(tmp_path / "r", "p/msg/A", text)])
+    assert ours.source("p/A").text == "B b\n\n"
+    assert ours.source("p/B").text == "int8 x\n\n"
+
+
 def test_mistake_is_shown_where_it_is_in_its_type(tmp_path):
     path = record(tmp_path / "r", "p/msg/A", f"B b\n{SEPARATOR}\nMSG: p/B\nint8 x\nint33 y\n")
     with pytest.raises(DefinitionError) as error:

@@ -20,7 +20,7 @@ BOOL = ["--distro", "lyrical", "--jobs", "1", "--cases", "2", "std_msgs/msg/Bool
     [
         ([], "name types, or all of them with --all"),
         (["--all", "std_msgs/msg/Bool"], "name types, or all of them with --all"),
-        (["--all", "--systems", "ts3,ts4"], "no test system 'ts4'; there are ts1, ts3, bench"),
+        (["--all", "--systems", "ts3,ts4"], "no test system 'ts4'; there are ts1, ts2, ts3, bench"),
         (["--all", "--jobs", "0"], "must be at least 1, not 0"),
         (["--all", "--cases", "few"], "'few' is not a number"),
         (["--all", "--simulator", "abacus"], "invalid choice: 'abacus'"),
@@ -71,6 +71,20 @@ def test_all_with_a_folder_is_all_in_the_folder(capsys, tmp_path, monkeypatch):
     # Four messages; request, response and event of a service; and one that is not judged.
     assert "lyrical     7 of    7 types pass (8-byte bus)\n" in said.out
     assert "\n1 of 8 types not judged\n" in said.out
+
+
+def test_one_wrong_definition_does_not_keep_the_others_of_a_folder(capsys, tmp_path):
+    folder = tmp_path / "own_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Good.msg").write_text("int8 a\n")
+    (folder / "Bad.msg").write_text("Such a\n")
+    assert main(["verify", "--systems", "ts2", "--all", "--path", str(tmp_path)]) == 1
+    said = capsys.readouterr()
+    assert "lyrical     1 of    1 plans are sound" in said.out
+    assert "Bad.msg:1:1: error: type 'Such' is not defined" in said.err
+    # Whoever names it wants to know at once.
+    assert main(["verify", "--systems", "ts2", "own_msgs/msg/Bad", "--path", str(tmp_path)]) == 1
+    assert capsys.readouterr().out == ""
 
 
 def test_every_system_runs_whatever_comes_of_the_first(monkeypatch):

@@ -97,6 +97,14 @@ def test_two_angles_end_two_types_and_shift_elsewhere():
     assert words(b.bound) == "1<<4"
 
 
+@pytest.mark.parametrize("sign", ["|", "^", "&", "<<", "+", "-", "*", "/", "%"])
+def test_operators_stand_between_angles_as_elsewhere(sign):
+    (struct,) = parse(f"struct T {{ sequence<long, 8 {sign} 2> a; string<8 {sign} 2> b; }};")
+    for bound in (member.type.bound for member in struct.members):
+        assert isinstance(bound, Chain) and bound.operators == (sign,)
+        assert [words(operand) for operand in bound.operands] == ["8", "2"]
+
+
 def test_operators_bind_as_in_c():
     (module,) = parse("module m { const long A = 1|2^3&4<<5+6*-7; };")
     node = module.definitions[0].value
