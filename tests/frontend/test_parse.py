@@ -322,6 +322,7 @@ def test_ros2_defaults_of_arrays(line, values):
         "bool[] x [2]",
         "string[] x [a, ]b",
         'string[] x ["a]',
+        '''string[] x ["'a'b'"]''',
         "Foo x 1",
         "Foo[] x []",
     ],
@@ -384,6 +385,14 @@ def test_malformed_types_are_refused(dialect, type_):
 )  # fmt: skip
 def test_malformed_types_of_ros2_are_refused(type_):
     refused(f"{type_} x", "ros2")
+
+
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+@pytest.mark.parametrize("tail", ["b/C", "B/C", "B/"])
+def test_all_that_stands_for_the_name_of_a_type_is_wrong(dialect, tail):
+    for package in ("a", "int8"):
+        complaint = refused(f"{package}/{tail} x", dialect)
+        assert complaint.startswith(f"'{tail}' is not a legal message name: ")
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])

@@ -136,10 +136,27 @@ def test_comments_units_and_defaults_are_in_the_model(tmp_path):
     assert f.default is True
 
 
+def test_sizes_have_32_bits(tmp_path):
+    members = "octet a[~4294967290]; octet b[4294967295]; sequence<octet, 4294967295> c; char d[1];"
+    assert types(message(tmp_path, members)) == {
+        "a": "byte[5]",
+        "b": "byte[4294967295]",
+        "c": "byte[<=4294967295]",
+        "d": "char[1]",
+    }
+    for member in ("octet a[4294967296]", "octet a[0]", "sequence<octet, 4294967296> a"):
+        with pytest.raises(DefinitionError, match="must be at "):
+            message(tmp_path, member + ";")
+
+
 def test_padding_member_alone_is_an_empty_message(tmp_path):
     member = "uint8 structure_needs_at_least_one_member;"
     assert message(tmp_path, member).fields == ()
     assert len(message(tmp_path, member + " long a;").fields) == 2
+    # As in ROS, its name alone counts, and only in IDL.
+    assert message(tmp_path, member.replace("uint8", "long")).fields == ()
+    files = {"q/msg/T.msg": member.rstrip(";")}
+    assert len(library(tmp_path, files).message("q/msg/T").fields) == 1
 
 
 def test_spans_point_at_the_words():

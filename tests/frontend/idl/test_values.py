@@ -44,6 +44,15 @@ def value(text, bits=None):
         ("m::ANSWER + 1", 43),
         ("18446744073709551615", 2**64 - 1),
         ("-9223372036854775808", -(2**63)),
+        ("3 << 0", 3),
+        ("3 >> 0", 3),
+        ("1 << 63", 2**63),
+        ("18446744073709551615 >> 63", 1),
+        ("0 / 3", 0),
+        ("0 / -3", 0),
+        ("0 % -3", 0),
+        ("-6 / -2", 3),
+        ("-7 % -2", -1),
     ],
 )
 def test_integers(text, want):
@@ -114,6 +123,28 @@ def test_values_become_those_of_a_type(name, text, want):
     span = Source(name="x", text="x")
     got = fit(value(text), name, span)
     assert got == want and type(got) is type(want)
+
+
+@pytest.mark.parametrize("text", ["1 << 64", "1 << -1", "1 >> 64", "-9223372036854775808 - 1"])
+def test_what_64_bits_do_not_hold_is_refused(text):
+    with pytest.raises(IdlError):
+        value(text)
+    with pytest.raises(IdlError):
+        value("18446744073709551615 + 1")
+
+
+@pytest.mark.parametrize("bits", [8, 16, 32, 64])
+def test_integers_reach_from_border_to_border(bits):
+    span = Source(name="x", text="x")
+    for name, low, high in (
+        (f"int{bits}", -(2 ** (bits - 1)), 2 ** (bits - 1) - 1),
+        (f"uint{bits}", 0, 2**bits - 1),
+    ):
+        for number in (low, high):
+            assert fit(Value("integer", number), name, span) == number
+        for number in (low - 1, high + 1):
+            with pytest.raises(IdlError):
+                fit(Value("integer", number), name, span)
 
 
 @pytest.mark.parametrize(
