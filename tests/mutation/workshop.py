@@ -1,0 +1,146 @@
+"""A private copy of the repository, in which one place at a time is wrong."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.mutation.mutants import Mutant
+
+__all__ = ["Run", "Workshop", "copy_tree"]
+
+LEFT_OUT = shutil.ignore_patterns(
+    ".git", ".venv", "__pycache__", ".*_cache", ".hypothesis", "*.egg-info", "build", "dist"
+)
+OPTIONS = ["-x", "-q", "--no-header", "--tb=line", "-p", "no:cacheprovider", "-p", "no:xdist"]
+# Hypothesis is loaded before pytest could rewrite what it asserts.
+OPTIONS += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]
+SECONDS = 1800
+FAILED = re.compile(r"^(?:FAILED|ERROR) (\S.*?)(?: - .*)?$", re.MULTILINE)
+WRONG_COPY = 98
+# No test was collected: of what is there, nothing judges.
+NOTHING = 5
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a run of pytest came to.
+
+    Attributes
+    ----------
+    status : str
+        ``passed``, ``failed`` or ``timeout``.
+    by : str
+        The first test that failed.
+    cpu_seconds : float
+    """
+
+    status: str
+    by: str
+    cpu_seconds: float
+
+
+def copy_tree(source: Path, to: Path) -> None:
+    """Copy a repository without what tools have made."""
+    shutil.copytree(source, to, ignore=LEFT_OUT, dirs_exist_ok=True, symlinks=True)
+
+
+class Workshop:
+    """A copy, and a process that runs its tests; a context manager.
+
+    Parameters
+    ----------
+    root : Path
+        The copy. It is changed, and as it was at the end.
+    nice : int
+    """
+
+    def __init__(self, root: Path, nice: int = 0) -> None:
+        self.root = root
+        self._log = root.parent / f"{root.name}.log"
+        # Times of changed files, each later than all before: compiled files are told by them.
+        self._now = 2_000_000_000
+        environment = {
+            **os.environ,
+            "PYTHONPATH": str(root),
+            "HYPOTHESIS_STORAGE_DIRECTORY": str(root.parent / f"{root.name}.hypothesis"),
+            "OPENBLAS_NUM_THREADS": "1",
+        }
+        environment.pop("PYTEST_ADDOPTS", None)
+        self._server = subprocess.Popen(
+            [sys.executable, "-m", "tests.mutation.warm"],
+            cwd=root,
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            preexec_fn=lambda: os.nice(nice) and None,
+        )
+
+    def __enter__(self) -> Workshop:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        assert self._server.stdin and self._server.stdout
+        with contextlib.suppress(BrokenPipeError):
+            self._server.stdin.close()
+        self._server.terminate()
+        self._server.wait()
+        self._server.stdout.close()
+
+    @contextlib.contextmanager
+    def with_fault(self, mutant: Mutant) -> Iterator[None]:
+        """Put a fault in, and take it out again."""
+        path = self.root / mutant.path
+        before = path.read_bytes()
+        try:
+            self._write(path, mutant.change.apply(before.decode()).encode())
+            yield
+        finally:
+            self._write(path, before)
+            # It would bring examples that an earlier mutant failed on to a later one.
+            storage = self.root.parent / f"{self.root.name}.hypothesis"
+            shutil.rmtree(storage, ignore_errors=True)
+
+    def _write(self, path: Path, data: bytes) -> None:
+        path.write_bytes(data)
+        self._now += 1
+        os.utime(path, (self._now, self._now))
+
+    def run(self, files: Sequence[str], cpu_seconds: float) -> Run:
+        """Run test files until one test fails."""
+        job = {
+            "args": [*OPTIONS, *files],
+            "log": str(self._log),
+            "cpu_seconds": int(cpu_seconds) + 1,
+            "seconds": SECONDS,
+        }
+        assert self._server.stdin and self._server.stdout
+        self._server.stdin.write(json.dumps(job) + "\n")
+        self._server.stdin.flush()
+        line = self._server.stdout.readline()
+        if not line:
+            raise RuntimeError("the process that runs tests has ended")
+        answer = json.loads(line)
+        text = self._log.read_text(errors="replace")
+        if answer["code"] == WRONG_COPY:
+            raise RuntimeError(text[-300:])
+        status = "passed" if answer["code"] in (0, NOTHING) else "failed"
+        status = "timeout" if answer["timeout"] else status
+        match = FAILED.search(text)
+        by = match[1] if match and status == "failed" else ""
+        if status == "failed" and not by:
+            by = f"exit status {answer['code']}"
+        return Run(status=status, by=by, cpu_seconds=answer["cpu"])
+
+    def output(self) -> str:
+        """Return what the last run printed."""
+        return self._log.read_text(errors="replace")
