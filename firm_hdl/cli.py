@@ -170,6 +170,12 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("types", nargs="+", metavar="TYPE")
     _add_options(command)
 
+    _add_test_commands(commands)
+    _add_identity_commands(commands)
+    return parser
+
+
+def _add_test_commands(commands: _Commands) -> None:
     text = "test converters against real ROS parts"
     command = commands.add_parser("verify", help=text, description=f"T{text[1:]}.")
     command.set_defaults(run=run_verify)
@@ -193,9 +199,6 @@ def _parser() -> argparse.ArgumentParser:
     command = _command(commands, "cover", run_cover, text, bags=True)
     command.add_argument("types", nargs="*", metavar="TYPE", help="to choose from; default: all")
     _add_options(command)
-
-    _add_identity_commands(commands)
-    return parser
 
 
 def _add_identity_commands(commands: _Commands) -> None:

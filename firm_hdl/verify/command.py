@@ -163,12 +163,6 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME,...",
         help=f"test systems: {', '.join(SYSTEMS)}; default: ts3",
     )
-    parser.add_argument(
-        "--simulator",
-        choices=["python", *SIMULATORS],
-        default="python",
-        help="of ts3: replay everything in this one as well; default: %(default)s",
-    )
     parser.add_argument("--wire", choices=["ros1", "cdr"], help="default: the distribution's own")
     parser.add_argument(
         "--bus-bytes",
@@ -178,36 +172,50 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help=f"bytes per beat: {', '.join(map(str, BUS_BYTES))}; repeatable; default: 8",
     )
-    parser.add_argument(
-        "--cases", type=_positive, metavar="N", help="most cases per type; default: all"
-    )
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="default: %(default)s")
     parser.add_argument(
         "--jobs", type=_positive, metavar="N", help="processes; default: one per processor"
     )
-    parser.add_argument(
-        "--no-stalls", dest="stalls", action="store_false", help="do not run with stalls"
-    )
-    parser.add_argument(
-        "--no-broken", dest="broken", action="store_false", help="do not run damaged packets"
-    )
-    _add_results(parser.add_argument_group("options of ts3"))
+    _add_ts1(parser.add_argument_group("options of ts1"))
     ts2 = parser.add_argument_group("options of ts2")
     ts2.add_argument("--golden", metavar="DIR", help="compare with the golden plans there, too")
-    ts1 = parser.add_argument_group("options of ts1")
-    ts1.add_argument(
+    ts3 = parser.add_argument_group("options of ts3")
+    _add_cases(ts3)
+    _add_results(ts3)
+
+
+def _add_ts1(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
         "--oracle",
         action="append",
         default=[],
         choices=list(ORACLES),
         help="whom to ask; repeatable; default: all that are here",
     )
-    ts1.add_argument(
+    group.add_argument(
         "--mutations",
         type=_positive,
         default=0,
         metavar="N",
         help="judge N texts with small mistakes, made from the types' own, instead of these",
+    )
+
+
+def _add_cases(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--simulator",
+        choices=["python", *SIMULATORS],
+        default="python",
+        help="replay everything in this one as well; default: %(default)s",
+    )
+    group.add_argument(
+        "--cases", type=_positive, metavar="N", help="most cases per type; default: all"
+    )
+    group.add_argument(
+        "--no-stalls", dest="stalls", action="store_false", help="do not run with stalls"
+    )
+    group.add_argument(
+        "--no-broken", dest="broken", action="store_false", help="do not run damaged packets"
     )
 
 
