@@ -138,6 +138,24 @@ def test_gives_a_header_and_unsigned_ports() -> None:
 
 
 @pytest.mark.usefixtures("ghdl")
+def test_assigns_to_several_wires_at_once() -> None:
+    # Amaranth 0.5 prints no such connection; RTLIL has them.
+    rtlil = r"""
+attribute \top 1
+module \top
+  wire width 8 input 0 \i
+  wire width 1 output 1 \a
+  wire width 3 output 2 \b
+  wire width 4 output 3 \c
+  connect { \c \b \a } \i
+end
+"""
+    text = list(convert(rtlil).files.values())[-1]
+    assert "a <= i(0);" in text
+    assert "b <= std_logic_vector(unsigned(i(3 downto 1)));" in text
+    assert "c <= std_logic_vector(unsigned(i(7 downto 4)));" in text
+
+
 def test_names_are_legal_and_never_merged(tmp_path: Path) -> None:
     names = "signal a__b a_b A_B _a a_ range RANGE 0x a$b a.b resize work top rtl p_clk".split()
     module = Module()
