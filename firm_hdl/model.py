@@ -48,9 +48,10 @@ class Primitive:
     ----------
     name : str
         As ROS writes it: ``bool``, ``byte``, ``char``, ``int8`` ... ``uint64``, ``float32``,
-        ``float64``; from IDL also ``wchar``.
+        ``float64``; from IDL also ``wchar`` and ``long double``.
     bytes : int
-        Size on every wire, in bytes: 1, 2, 4 or 8.
+        Size on every wire, in bytes: 1, 2, 4 or 8. For `long double` 16, which is that of the
+        standard; it is on no wire, see `has_wire_format`.
     signed : bool
         Whether an integer is two's complement. `byte` is signed in ROS 1 only, `char` in IDL only.
     kind : "bool", "int" or "float"
@@ -64,6 +65,15 @@ class Primitive:
 
     def __str__(self) -> str:
         return self.name
+
+    @property
+    def has_wire_format(self) -> bool:
+        """Whether all systems agree about its bytes; of `long double` they do not.
+
+        By OMG CDR it is an IEEE quadruple. ROS 2 leaves it to the compiler's type of that name,
+        and Fast CDR warns that Windows and Unix do not understand each other's.
+        """
+        return self.name != "long double"
 
 
 def _primitives(dialect: Dialect) -> dict[str, Primitive]:
@@ -92,6 +102,7 @@ IDL_PRIMITIVES: dict[str, Primitive] = PRIMITIVES["ros2"] | {
     # A C `signed char`, unlike the `char` of .msg files; Fast CDR gives a wchar_t four bytes.
     "char": Primitive(name="char", bytes=1, signed=True, kind="int"),
     "wchar": Primitive(name="wchar", bytes=4, signed=False, kind="int"),
+    "long double": Primitive(name="long double", bytes=16, signed=True, kind="float"),
 }
 """Every primitive that a definition in OMG IDL can name."""
 
@@ -99,8 +110,9 @@ PRIMITIVE_OF: dict[tuple[str, bool], Primitive] = {
     (item.name, item.signed and item.kind == "int"): item
     for table in (*PRIMITIVES.values(), IDL_PRIMITIVES)
     for item in table.values()
+    if item.has_wire_format
 }
-"""Every primitive of all languages, by its name and whether it is a signed integer."""
+"""Every primitive that a wire can have, by its name and whether it is a signed integer."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

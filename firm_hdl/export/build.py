@@ -27,7 +27,7 @@ from firm_hdl.frontend import DEFAULT_DISTRO, Library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan, to_yaml
-from firm_hdl.wire import Wire, lay_out
+from firm_hdl.wire import Wire, lay_out, refusals
 
 __all__ = ["BuildError", "Built", "build", "check_size", "load_all", "plan_of"]
 
@@ -155,12 +155,14 @@ def _digest(packets: Sequence[bytes]) -> str:
 
 
 def load_all(library: Library, types: Iterable[str]) -> list[Message]:
-    """Load messages, each once; a service or an action stands for all messages that it has.
+    """Load messages that are to be put on a wire, each once.
+
+    A service or an action stands for all messages that it has.
 
     Raises
     ------
     DefinitionError
-        With the problems of all of them.
+        With the problems of all of them, fields that no wire has included.
     """
     messages: dict[str, Message] = {}
     problems: dict[str, Diagnostic] = {}
@@ -168,9 +170,11 @@ def load_all(library: Library, types: Iterable[str]) -> list[Message]:
         try:
             found = library.interface(name).messages
         except DefinitionError as error:
-            problems.update((str(problem), problem) for problem in error.diagnostics)
+            wrong = list(error.diagnostics)
         else:
+            wrong = [each for message in found for each in refusals(message)]
             messages.update((message.name, message) for message in found)
+        problems.update((str(problem), problem) for problem in wrong)
     if problems:
         raise DefinitionError(problems.values())
     return list(messages.values())

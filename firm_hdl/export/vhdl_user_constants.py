@@ -156,6 +156,8 @@ def _number(
         number_ = float(value)
         if isfinite(number_):
             yield f"  constant {name} : real := {_real(number_)};  -- {kind}{unit}\n"
+        if not kind.has_wire_format:
+            return  # Nobody knows its bits.
         bits_name = first_free(f"{name.rstrip()}_BITS", used)
         used.add(bits_name.lower())
         image = _float_bits(number_, kind.bytes)

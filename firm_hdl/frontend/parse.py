@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from functools import cache
 from importlib import resources
 from typing import NamedTuple
@@ -32,7 +33,7 @@ from firm_hdl.frontend.syntax import (
 )
 from firm_hdl.model import Dialect
 
-__all__ = ["is_type_name", "lines_of", "parse_message", "read_message"]
+__all__ = ["is_type_name", "line_trees", "lines_of", "parse_message", "read_message"]
 
 _LINE_ENDS = {
     # genmsg and rosidl_adapter read files in text mode; the latter then splits at all that Python
@@ -112,6 +113,13 @@ def read_message(
         source=source, dialect=dialect, members=members, comment=comment, text=text
     )
     return syntax, diagnostics
+
+
+def line_trees(text: str, dialect: Dialect) -> Iterator[Tree[Token]]:
+    """Yield the parse trees of all lines that are sentences of the language."""
+    for _, line in lines_of(text, dialect):
+        with suppress(UnexpectedInput):
+            yield _parser(dialect).parse(line, start="line")
 
 
 def is_type_name(name: str, dialect: Dialect) -> bool:

@@ -32,6 +32,7 @@ _TYPE_IDS = {
     **{name: number for number, name in enumerate(_INTEGERS, start=2)},
     "float32": 10,
     "float64": 11,
+    "long double": 12,
     "wchar": 14,
     "bool": 15,
     "byte": 16,

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from firm_hdl.identity import in_order
 from firm_hdl.metrics.features import FEATURES, features_of
 from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text
-from firm_hdl.wire import CDR, ROS1, Wire, WireRules
+from firm_hdl.wire import CDR, ROS1, Wire, WireRules, refusals
 from firm_hdl.wire import residues as rs
 
 __all__ = ["Analyses", "Metrics", "metrics_of"]
@@ -47,11 +47,11 @@ class Metrics:
     fixed_leaves, dynamic_leaves : int
         Those that have the same number of bytes in each message, and the others: strings,
         sequences, and all that is in sequences of messages.
-    min_bytes : int
+    min_bytes : int or None
         Size of the shortest message, encapsulation header included, as encoders write it.
     max_bytes : int or None
         Size of the longest message; `None` if there is none.
-    aligned, padded, shifting : int
+    aligned, padded, shifting : int or None
         Places on the wire, lengths of sequences and strings included, which never have padding in
         front, or the same in each message (but some), or padding that differs.
     features : tuple of str
@@ -59,6 +59,9 @@ class Metrics:
     definition_bytes : int
         Size of the text that defines the type; that of the whole file for a message of a service or
         an action.
+    unsized : str
+        Why there are no sizes and no places: the type has a field that no wire has
+        (:func:`firm_hdl.wire.refusals`). Empty for all others.
     """
 
     name: str
@@ -70,13 +73,14 @@ class Metrics:
     leaves: int
     fixed_leaves: int
     dynamic_leaves: int
-    min_bytes: int
+    min_bytes: int | None
     max_bytes: int | None
-    aligned: int
-    padded: int
-    shifting: int
+    aligned: int | None
+    padded: int | None
+    shifting: int | None
     features: tuple[str, ...]
     definition_bytes: int
+    unsized: str = ""
 
 
 def metrics_of(message: Message, wire: Wire | None = None) -> Metrics:
@@ -131,8 +135,9 @@ class Analyses:
             if part not in self._types:
                 self._types[part] = self._analyse(part)
         known = self._types[message]
-        header = self._rules.header_bytes
-        aligned, padded, shifting = self._alignment(message)
+        wrong = refusals(message) if "long_doubles" in known.features else []
+        sizes = self._sizes(message) if not wrong else (None,) * 5
+        min_bytes, max_bytes, aligned, padded, shifting = sizes
         return Metrics(
             name=message.name,
             wire=self.wire,
@@ -143,14 +148,20 @@ class Analyses:
             leaves=known.fixed + known.dynamic,
             fixed_leaves=known.fixed,
             dynamic_leaves=known.dynamic,
-            min_bytes=header + known.least[0],
-            max_bytes=None if known.most is None else header + known.most[0],
+            min_bytes=min_bytes,
+            max_bytes=max_bytes,
             aligned=aligned,
             padded=padded,
             shifting=shifting,
             features=tuple(name for name in FEATURES if name in known.features),
             definition_bytes=len(message.text.encode()),
+            unsized=wrong[0].message if wrong else "",
         )
+
+    def _sizes(self, message: Message) -> tuple[int | None, ...]:
+        known, header = self._types[message], self._rules.header_bytes
+        most = None if known.most is None else header + known.most[0]
+        return header + known.least[0], most, *self._alignment(message)
 
     # Attributes of a type from those of its parts, which are known.
 

@@ -13,6 +13,7 @@ FEATURES: dict[str, str] = {
     "defaults": "a field with a default value",
     "messages": "a field that is a message",
     "empty_messages": "a message without fields",
+    "long_doubles": "a long double, so that there are no sizes",
     "strings": "a string",
     "bounded_strings": "a string with a bound",
     "wstrings": "a wstring",
@@ -49,6 +50,8 @@ def _features_of_field(item: Field, parts: Mapping[Message, frozenset[str]]) -> 
     match element:
         case Primitive():
             of = "primitives"
+            if not element.has_wire_format:
+                yield "long_doubles"
         case Text(bound=bound, wide=wide):
             of = "strings"
             yield ("wstrings" if wide else "strings") if bound is None else (

@@ -53,7 +53,8 @@ def _table(rows: list[Metrics]) -> str:
             for name, cell, width in zip(_HEADINGS, line, widths, strict=True)
         ]
         text += "  ".join(cells).rstrip() + "\n"
-    return text
+    unsized = (f"{row.name} has no sizes: {row.unsized}\n" for row in rows if row.unsized)
+    return text + "".join(unsized)
 
 
 def _cell(row: Metrics, name: str) -> str:
@@ -69,7 +70,7 @@ def _csv(rows: list[Metrics]) -> str:
     writer.writerow(_COLUMNS)
     for row in rows:
         values = asdict(row) | {"features": " ".join(row.features)}
-        # An empty cell for what has no maximum.
+        # An empty cell for what has no maximum, or no size at all.
         writer.writerow([values[name] for name in _COLUMNS])
     return text.getvalue()
 

@@ -2,6 +2,7 @@
 
 from firm_hdl.wire.cdr import CDR
 from firm_hdl.wire.layout import Gap, Layout, Loop, Node, Path, Run, Scalar, Trigger, lay_out, walk
+from firm_hdl.wire.refusals import refusals
 from firm_hdl.wire.ros1 import ROS1
 from firm_hdl.wire.rules import Wire, WireRules
 
@@ -19,5 +20,6 @@ __all__ = [
     "Wire",
     "WireRules",
     "lay_out",
+    "refusals",
     "walk",
 ]

@@ -11,9 +11,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from firm_hdl.errors import DefinitionError
 from firm_hdl.model import PRIMITIVES, Array, Field, FieldType, Message, Primitive, Sequence, Text
 from firm_hdl.wire import residues as rs
 from firm_hdl.wire.cdr import CDR
+from firm_hdl.wire.refusals import refusals
 from firm_hdl.wire.ros1 import ROS1
 from firm_hdl.wire.rules import Wire, WireRules
 
@@ -122,9 +124,19 @@ class Layout:
 
 
 def lay_out(message: Message, wire: Wire | None = None) -> Layout:
-    """Lay a message out on a wire (by default that of its dialect)."""
+    """Lay a message out on a wire (by default that of its dialect).
+
+    Raises
+    ------
+    DefinitionError
+        If a field of it, or of a message in it, is of a type that no wire has (`refusals`).
+    ValueError
+        If there is no such wire.
+    """
     if wire is not None and wire not in RULES:
         raise ValueError(f"Wire must be one of {', '.join(map(repr, RULES))}, not {wire!r}")
+    if wrong := refusals(message):
+        raise DefinitionError(wrong)
     rules = RULES[wire or message.wire]
     builder = _Builder(rules)
     nodes, _ = builder.message(message, (), rs.single(0))

@@ -172,6 +172,9 @@ def test_hashes_of_the_corpus_are_those_of_rosbags(corpus):
 KINDS = [
     (IDL_PRIMITIVES["char"], (13, 0, 0)),
     (IDL_PRIMITIVES["wchar"], (14, 0, 0)),
+    (IDL_PRIMITIVES["long double"], (12, 0, 0)),
+    (Array(element=IDL_PRIMITIVES["long double"], count=3), (60, 3, 0)),
+    (Sequence(element=IDL_PRIMITIVES["long double"], bound=4), (108, 4, 0)),
     (Text(), (17, 0, 0)),
     (Text(wide=True), (18, 0, 0)),
     (Text(bound=12), (21, 0, 12)),

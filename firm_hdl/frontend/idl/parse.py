@@ -11,7 +11,7 @@ from functools import cache, lru_cache
 from importlib import resources
 from typing import Any
 
-from lark import Lark, Token, Transformer_NonRecursive, v_args
+from lark import Lark, Token, Transformer_NonRecursive, Tree, v_args
 from lark.exceptions import UnexpectedInput
 from lark.tree import Meta
 
@@ -40,7 +40,7 @@ from firm_hdl.frontend.idl.tree import (
     Unary,
 )
 
-__all__ = ["parse_file"]
+__all__ = ["idl_tree", "parse_file"]
 
 # Entries on the parser's stack. A parenthesis takes one to twelve of them, a module six.
 _MOST_NESTED = 200
@@ -97,6 +97,14 @@ def parse_file(source: Source) -> FileSyntax | Diagnostic:
     file = _Builder(source).transform(tree)
     assert isinstance(file, FileSyntax)
     return file
+
+
+def idl_tree(text: str) -> list[Tree[Token]]:
+    """Return the parse tree of a text, or nothing if it is no sentence of the language."""
+    try:
+        return [_parser().parse(text)]
+    except UnexpectedInput:
+        return []
 
 
 @cache

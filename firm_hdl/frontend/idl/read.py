@@ -200,11 +200,10 @@ class _Reader:
             case StringType():
                 # ROS 2 forgets the bound.
                 name = "wstring" if node.type.wide else "string"
-            case BasicType() if node.type.name != "long double":
+            case BasicType():
                 name = node.type.name
-            case BasicType() | FixedType():
-                what = "long double" if isinstance(node.type, BasicType) else "fixed"
-                raise IdlError(f"type '{what}' is not supported", node.type.span)
+            case FixedType():
+                raise IdlError("type 'fixed' is not supported", node.type.span)
             case _:
                 message = "the type of a constant must be a builtin one"
                 raise IdlError(message, node.type.span)
@@ -308,6 +307,7 @@ _KINDS: dict[str, Literal["integer", "float", "boolean", "text"]] = {
     "bool": "boolean",
     "float32": "float",
     "float64": "float",
+    "long double": "float",
     "string": "text",
     "wstring": "text",
 }

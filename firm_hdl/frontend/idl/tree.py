@@ -129,7 +129,7 @@ class BasicType:
     Attributes
     ----------
     name : str
-        As ROS writes it; ``long double``, which ROS has not, as IDL does.
+        As ROS writes it; ``long double``, which only IDL has, as IDL does.
     """
 
     name: str

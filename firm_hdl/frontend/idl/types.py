@@ -173,8 +173,6 @@ class Expander:
             case FixedType():
                 raise IdlError("type 'fixed' is not supported", core.span)
         assert not isinstance(core, SequenceType)
-        if core.name == "long double":
-            raise IdlError("type 'long double' is not supported", core.span)
         return _Shape(core.name)
 
     def _reference(self, name: ScopedName) -> _Shape:

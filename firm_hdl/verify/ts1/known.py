@@ -186,6 +186,36 @@ def _comment_blanks(case: Case, ours: _Reading, difference: Difference) -> bool:
     )
 
 
+_BOUND_BY_NAME = re.compile(r"(wstring<=)([A-Za-z_]\w*)(.*)")
+
+
+def _idl_bounds(case: Case, ours: _Reading, difference: Difference) -> bool:
+    our, their = (str(value) for value in difference.values)
+    match = _BOUND_BY_NAME.fullmatch(their)
+    if match is None or not difference.path.endswith("/type") or isinstance(ours, Exception):
+        return False
+    before, name, behind = match.groups()
+    bound = re.fullmatch(rf"{re.escape(before)}(\d+){re.escape(behind)}", our)
+    # Those of an included file have no value here.
+    values = {
+        constant.value
+        for message in ours.messages
+        for constant in message.constants
+        if constant.name == name
+    }
+    return bound is not None and (not values or int(bound[1]) in values)
+
+
+def _idl_whole_numbers(case: Case, ours: _Reading, difference: Difference) -> bool:
+    our, their = (value if isinstance(value, list) else [value] for value in difference.values)
+    return (
+        difference.path.endswith(("/value", "/default"))
+        and our == their
+        and all(type(value) is float for value in our)
+        and all(type(value) in (int, float) for value in their)
+    )
+
+
 def _entry(key: str, oracles: str, applies: _Rule, text: str) -> Known:
     return Known(key=key, oracles=frozenset(oracles.split()), applies=applies, text=text)
 
@@ -298,6 +328,18 @@ KNOWN: tuple[Known, ...] = (
         "rosidl_parser",
         _all_lines(lambda message, line: message.startswith("this file must declare")),
         "A file in IDL must declare what it is called; rosidl_parser does not see file names.",
+    ),
+    _entry(
+        "idl-bounds-by-name",
+        "rosidl_parser",
+        _idl_bounds,
+        "rosidl_parser keeps the name of a constant that bounds a wstring; we have its value.",
+    ),
+    _entry(
+        "idl-whole-numbers",
+        "rosidl_parser",
+        _idl_whole_numbers,
+        "rosidl_parser keeps an integer that is given for a floating-point number an integer.",
     ),
     _entry(
         "idl-unsupported",

@@ -25,6 +25,23 @@ AGREED: dict[str, str] = {
     # Accepted.
     **{f"type {word}": _struct(f"{word} a;") for word in _WORDS.split("; ")},
     "long long": _struct("long long a;"),
+    "long double": _struct("long double a; long  double b, c; long/**/double double;"),
+    "long double in arrays": _struct(
+        "long double a[3]; sequence<long double> b; sequence<long double, 4> c;"
+    ),
+    "long double by typedefs": _struct(
+        "A a; A b[2]; sequence<A, 3> c; B d; C e;",
+        "typedef long double A; typedef long double B[9]; typedef sequence<long double> C;",
+    ),
+    "long double with a default": _struct(
+        '@default(value=1.5) long double a; @default(value=-2) @unit(value="m") long double b; '
+        '@default(value=1.5d) long double c; @default(value="(1.5, 2.0)") long double d[2];'
+    ),
+    "long double as a constant": _constant(
+        "const long double A = 0.1; const long double B = -2; const long double C = 1e300;"
+    ),
+    "long double in a service": "module p { module srv { struct A_Request { long double a; }; "
+    "struct A_Response { sequence<long double> b; }; }; };",
     "array": _struct("long a[23];"),
     "array of strings": _struct("string<3> a[23];"),
     "array of structs": _struct("q::msg::X a[2];"),
@@ -235,7 +252,6 @@ ALLOWED_HERE: dict[str, str] = {
 
 REFUSED_HERE: dict[str, str] = {
     # Named by the standard or by us as not supported.
-    "long double": _struct("long double a;"),
     "optional": _struct("@optional long a;"),
     "mutable": _struct().replace("struct", "@mutable struct"),
     "extensibility mutable": _struct().replace("struct", "@extensibility(MUTABLE) struct"),
@@ -280,6 +296,10 @@ REFUSED_HERE: dict[str, str] = {
     "words run together": _struct("shortvalue;"),
     "member called long": _struct("long long;"),
     "member called double": _struct("long double;"),
+    "long double in one word": _struct("longdouble a;"),
+    "long double of a text": _struct('@default(value="x") long double a;'),
+    "long double constant of a text": _constant('const long double A = "x";'),
+    "long double too large": _constant("const long double A = 1e400;"),
 }
 
 OTHERWISE: dict[str, str] = {

@@ -38,10 +38,22 @@ EXAMPLES = {
         "rosidl_parser",
         "module p { module msg { struct B { long x; }; }; };",
     ),
+    "idl-bounds-by-name": (
+        "lyrical",
+        "rosidl_parser",
+        "module p { module msg { module A_Constants { const long N = 3; }; "
+        "struct A { sequence<wstring<N>, 2> x; }; }; };",
+    ),
+    "idl-whole-numbers": (
+        "lyrical",
+        "rosidl_parser",
+        "module p { module msg { module A_Constants { const long double N = 3; }; "
+        'struct A { @default(value=3) double x; @default(value="(1, 2)") double y[2]; }; }; };',
+    ),
     "idl-unsupported": (
         "lyrical",
         "rosidl_parser",
-        "module p { module msg { struct A { long double x; }; }; };",
+        "module p { module msg { struct A { @optional long x; }; }; };",
     ),
     "ros2-comment-blanks": ("lyrical", "rosidl_adapter", "# Head. \n\nint8 x\n"),
 }
