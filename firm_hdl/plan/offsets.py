@@ -7,7 +7,7 @@ of n bytes stands at a multiple of n, and there is no more padding than that tak
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -46,8 +46,12 @@ def check_offsets(plan: Plan) -> list[str]:
 
 
 def paddings(plan: Plan) -> dict[int, frozenset[int]]:
-    """Return, for each step that is aligned, the numbers of bytes that may be skipped before it."""
-    walk = _Walk(plan)
+    """Return, for each step that is aligned, the numbers of bytes that may be skipped before it.
+
+    Unlike the layout, this counts on limits: what stands in front of the second element of a loop
+    is nothing to a loop that has at most one.
+    """
+    walk = _Walk(plan, limited=True)
     walk.region(0, len(plan.steps) - 1, 0, {(-plan.header_bytes % 8, 0)})
     return {index: frozenset(found) for index, found in walk.skipped.items()}
 
@@ -65,6 +69,8 @@ def jumps(plan: Plan) -> Iterator[Jump]:
 @dataclass(slots=True)
 class _Walk:
     plan: Plan
+    # Whether counts that a packet says are within their limits, and not just any.
+    limited: bool = False
     spans: dict[Span, int] = field(init=False)
     # Constant counts by level (or "run") and first step.
     counts: dict[tuple[int | str, int], int] = field(default_factory=dict)
@@ -133,12 +139,16 @@ class _Walk:
             places = self.region(first, last, depth, places)
         return places
 
-    def any_number(self, first: int, last: int, depth: int, places: set[Place]) -> set[Place]:
-        while True:
+    def any_number(
+        self, first: int, last: int, depth: int, places: set[Place], most: int | None
+    ) -> set[Place]:
+        while most is None or most > 0:
             more = places | self.region(first, last, depth, places)
             if more == places:
-                return places
+                break
             places = more
+            most = None if most is None else most - 1
+        return places
 
     def step(self, index: int, depth: int, places: set[Place]) -> tuple[set[Place], int]:
         """Run a step and what it starts; return also the step behind all that."""
@@ -159,7 +169,8 @@ class _Walk:
             self.settle(places, f"step {index}")
         if begin.level is not None:
             end = self.spans.get((depth, index + 1), index + 1)
-            return self.any_number(index + 1, end, depth + 1, places), end + 1
+            most = begin.limit if self.limited else None
+            return self.any_number(index + 1, end, depth + 1, places, most), end + 1
         return self.begin_run(index, begin, places), index + (1 if begin.body is None else 2)
 
     def pad(self, index: int, places: set[Place]) -> None:
@@ -220,9 +231,15 @@ class _Walk:
                 start = residue + pad + begin.gap
             else:
                 start = residue + -residue % body_align
-            counts = range(1, 9) if begin.count is None else [begin.count]
-            result |= {((start + count * size) % 8, 0) for count in counts}
+            result |= {((start + count * size) % 8, 0) for count in self.run_counts(begin)}
         return result
+
+    def run_counts(self, begin: Begin) -> Sequence[int]:
+        """Return the counts of a run that is not empty, as far as they make a difference."""
+        if begin.count is not None:
+            return [begin.count]
+        most = begin.limit + begin.terminated if self.limited else 8
+        return range(1, min(most, 8) + 1)
 
     def constant_run(self, index: int, run: int, places: set[Place]) -> set[Place]:
         leaf = self.plan.leaves[self.plan.runs[run].items]

@@ -67,3 +67,25 @@ def test_what_limits_forbid_is_no_decision():
     assert Edge(1, "again") in edges(plan(name))
     # 8 bytes of header and length leave 8 for text and NUL: one bus word.
     assert Edge(1, "again") not in edges(plan(name, max_message_bytes=16))
+
+
+@pytest.mark.parametrize(("bound", "ways"), [("<=1", {0}), ("<=2", {0, 3}), ("", {0, 3})])
+def test_paddings_count_on_bounds(tmp_path, bound, ways):
+    # Three bytes of padding stand in front of the second element alone.
+    folder = tmp_path / "demo" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Outer.msg").write_text(f"Inner[{bound}] inner\n")
+    (folder / "Inner.msg").write_text("int32 number\nbool flag\n")
+    built = build_plan(lay_out(load_message("demo/msg/Outer", paths=[tmp_path])))
+    found = {edge.way for edge in edges(built) if edge.way.startswith("padding")}
+    assert found == {f"padding {count}" for count in ways}
+
+
+@pytest.mark.parametrize("bound", [1, 3])
+def test_paddings_count_on_bounds_of_runs(tmp_path, bound):
+    folder = tmp_path / "demo" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Outer.msg").write_text(f"uint8[<={bound}] items\nstring text\n")
+    built = build_plan(lay_out(load_message("demo/msg/Outer", paths=[tmp_path])), bus_bytes=1)
+    found = {edge.way for edge in edges(built) if edge.way.startswith("padding")}
+    assert found == {f"padding {-count % 4}" for count in range(bound + 1)}
