@@ -24,7 +24,8 @@ from firm_hdl.metrics import FORMATS
 from firm_hdl.metrics.command import metrics_text
 from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, to_yaml
 from firm_hdl.verify.command import add_verify_arguments, run_verify
-from firm_hdl.verify.golden_command import add_golden_arguments, run_cover, run_golden
+from firm_hdl.verify.cover_command import add_cover_arguments, run_cover
+from firm_hdl.verify.golden_command import add_golden_arguments, run_golden
 from firm_hdl.verify.report.command import add_report_arguments, run_report
 from firm_hdl.verify.stimuli import stimuli
 
@@ -187,17 +188,18 @@ def _add_test_commands(commands: _Commands) -> None:
     add_report_arguments(command)
 
     text = "prove that the VHDL is the circuit that Amaranth elaborated"
-    command = _command(commands, "prove", run_prove, text)
+    command = _command(commands, "prove", run_prove, text, bags=True)
     add_prove_arguments(command)
     _add_options(command)
 
-    command = _command(commands, "golden", run_golden, "compare plans with golden ones, by meaning")
+    text = "compare plans with golden ones, by meaning"
+    command = _command(commands, "golden", run_golden, text, bags=True)
     add_golden_arguments(command)
     _add_options(command)
 
     text = "choose few types that have all features"
     command = _command(commands, "cover", run_cover, text, bags=True)
-    command.add_argument("types", nargs="*", metavar="TYPE", help="to choose from; default: all")
+    add_cover_arguments(command)
     _add_options(command)
 
 

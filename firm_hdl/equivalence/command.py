@@ -13,7 +13,7 @@ from firm_hdl.equivalence.converters import Attempt, Task, both, run_tasks
 from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT
 from firm_hdl.equivalence.tools import MissingToolError, find_tools
 from firm_hdl.export.build import load_all, plan_of
-from firm_hdl.frontend import Library
+from firm_hdl.frontend import open_library
 
 __all__ = ["add_prove_arguments", "run_proofs", "run_prove"]
 
@@ -45,7 +45,7 @@ def run_prove(given: argparse.Namespace) -> int:
     """
     if given.all == bool(given.types):
         given.usage_error("name either types or --all")
-    library = Library(given.distro, given.path)
+    library = open_library(given.distro, given.path, given.bag)
     names = given.types
     if given.all:
         names = library.names()
@@ -59,8 +59,9 @@ def run_prove(given: argparse.Namespace) -> int:
         for name in names
         for task in both(
             name,
-            distro=given.distro,
+            distro=library.distro,
             paths=tuple(given.path),
+            bags=tuple(given.bag),
             wire=given.wire,
             bus_bytes=given.bus_bytes,
             max_message_bytes=given.max_message_bytes,

@@ -14,7 +14,7 @@ from firm_hdl.export.build import BuildError, check_size, plan_of
 from firm_hdl.export.names import identifier
 from firm_hdl.export.top import DIRECTIONS, Direction, Top
 from firm_hdl.export.vhdl import Vhdl, convert
-from firm_hdl.frontend import Library
+from firm_hdl.frontend import open_library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
@@ -30,8 +30,8 @@ class Task:
 
     Attributes
     ----------
-    distro, paths
-        As for `Library`.
+    distro, paths, bags
+        As for `open_library`.
     name : str
         The type.
     direction : "deserializer" or "serializer"
@@ -45,6 +45,7 @@ class Task:
     name: str
     direction: Direction
     paths: tuple[str, ...] = ()
+    bags: tuple[str, ...] = ()
     wire: Wire | None = None
     bus_bytes: int = 8
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
@@ -131,7 +132,7 @@ def prove_converter(
 def attempt(task: Task) -> Attempt:
     """Do a task, whatever comes."""
     try:
-        message = Library(task.distro, task.paths).message(task.name)
+        message = open_library(task.distro, task.paths, task.bags).message(task.name)
         return Attempt(
             proof=prove_converter(
                 message,

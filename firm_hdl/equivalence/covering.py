@@ -13,7 +13,7 @@ from firm_hdl.equivalence.converters import Task, both
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
-from firm_hdl.verify.cover import choose, features
+from firm_hdl.verify.cover import choose, cost, features
 
 __all__ = ["DISTROS", "covering_tasks", "write_definitions"]
 
@@ -90,5 +90,5 @@ def _chosen(distro: str, bus_bytes: int) -> list[str]:
         message = library.message(name)
         plan = plan_of(message, None, bus_bytes, DEFAULT_MAX_MESSAGE_BYTES)
         types[name] = features(message, plan)
-        costs[name] = 20.0 + len(plan.steps)
+        costs[name] = cost(plan)
     return [chosen.name for chosen in choose(types, costs)]

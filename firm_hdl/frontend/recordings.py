@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
+from typing import TypeAlias, TypeVar
 
 from rosbags.interfaces import Connection, MessageDefinitionFormat
 from rosbags.rosbag1 import Reader as Reader1
@@ -25,9 +26,13 @@ from firm_hdl.frontend.names import Kind
 from firm_hdl.frontend.sources import Definition, Language
 from firm_hdl.model import Dialect
 
-__all__ = ["RecordingOrigin"]
+__all__ = ["Reader", "RecordingOrigin", "use_recording"]
+
+Reader: TypeAlias = "Reader1 | Reader2"
+"""rosbags' reader of a recording."""
 
 _Name = tuple[str, Kind, str]
+_T = TypeVar("_T")
 
 _KINDS: dict[str, Kind] = {"msg": "msg", "srv": "srv", "action": "action"}
 
@@ -60,8 +65,7 @@ class RecordingOrigin:
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = os.fspath(path)
-        is_bag = self.path.lower().endswith(".bag") and not os.path.isdir(self.path)
-        self.dialect: Dialect = "ros1" if is_bag else "ros2"
+        self.dialect: Dialect = _dialect(self.path)
         self.distro: str | None = None
         self._definitions: dict[_Name, Definition] = {}
         self._missing: set[_Name] = set()
@@ -69,7 +73,7 @@ class RecordingOrigin:
             self._add(connection)
         self._missing -= self._definitions.keys()
         if not self._definitions:
-            raise self._error(self._why_empty())
+            raise _refusal(self._why_empty())
 
     def names(self) -> Iterable[_Name]:
         """List all that the recording defines."""
@@ -78,36 +82,20 @@ class RecordingOrigin:
     def find(self, package: str, kind: Kind, name: str) -> Definition | None:
         """Give a definition. A topic's type that has none is a `DefinitionError`."""
         if (package, kind, name) in self._missing:
-            raise self._error(
+            raise _refusal(
                 f"'{self.path}' has a topic of type '{package}/{kind}/{name}', but not its "
                 "definition"
             )
         return self._definitions.get((package, kind, name))
 
     def _connections(self) -> list[Connection]:
-        if not os.path.exists(self.path):
-            raise self._error(f"'{self.path}' does not exist")
-        is_folder = os.path.isdir(self.path)
-        if is_folder and not os.path.exists(os.path.join(self.path, "metadata.yaml")):
-            raise self._error(f"'{self.path}' is a folder without the metadata.yaml of a recording")
-        reader = Reader1 if self.dialect == "ros1" else Reader2
-        try:
-            with reader(Path(self.path)) as recording:
-                distro = getattr(recording, "ros_distro", None)
-                if distro in DISTROS and DISTROS[distro].dialect == self.dialect:
-                    self.distro = distro
-                return list(recording.connections)
-        except OSError as error:
-            reason = error.strerror or str(error)
-        except (ReaderError1, ReaderError2) as error:
-            reason = str(error)
-        except KeyError as error:
-            # Such as the language of the definitions.
-            reason = f"rosbags does not know {error}"
-        except Exception as error:
-            # A damaged file makes a reader fail in ways that nobody has listed.
-            reason = f"{type(error).__name__}: {error}"
-        raise self._error(f"'{self.path}' cannot be read as a recording: {reason}")
+        def look(recording: Reader) -> list[Connection]:
+            distro = getattr(recording, "ros_distro", None)
+            if distro in DISTROS and DISTROS[distro].dialect == self.dialect:
+                self.distro = distro
+            return list(recording.connections)
+
+        return use_recording(self.path, look)
 
     def _add(self, connection: Connection) -> None:
         name = _parse(connection.msgtype)
@@ -135,8 +123,49 @@ class RecordingOrigin:
             "instead of --bag"
         )
 
-    def _error(self, message: str) -> DefinitionError:
-        return DefinitionError([Diagnostic(message=message)])
+
+def use_recording(path: str, use: Callable[[Reader], _T]) -> _T:
+    """Open a recording for as long as a function uses it, and return what that returns.
+
+    Parameters
+    ----------
+    use : callable
+        Gets rosbags' reader. It is to do no more than to read: whatever fails in it is taken for
+        damage of the file.
+
+    Raises
+    ------
+    DefinitionError
+        If the file cannot be read. It has no span.
+    """
+    if not os.path.exists(path):
+        raise _refusal(f"'{path}' does not exist")
+    if os.path.isdir(path) and not os.path.exists(os.path.join(path, "metadata.yaml")):
+        raise _refusal(f"'{path}' is a folder without the metadata.yaml of a recording")
+    reader = Reader1 if _dialect(path) == "ros1" else Reader2
+    try:
+        with reader(Path(path)) as recording:
+            return use(recording)
+    except OSError as error:
+        reason = error.strerror or str(error)
+    except (ReaderError1, ReaderError2) as error:
+        reason = str(error)
+    except KeyError as error:
+        # Such as the language of the definitions.
+        reason = f"rosbags does not know {error}"
+    except Exception as error:
+        # A damaged file makes a reader fail in ways that nobody has listed.
+        reason = f"{type(error).__name__}: {error}"
+    raise _refusal(f"'{path}' cannot be read as a recording: {reason}")
+
+
+def _dialect(path: str) -> Dialect:
+    is_bag = path.lower().endswith(".bag") and not os.path.isdir(path)
+    return "ros1" if is_bag else "ros2"
+
+
+def _refusal(message: str) -> DefinitionError:
+    return DefinitionError([Diagnostic(message=message)])
 
 
 def _parse(name: str) -> _Name | None:

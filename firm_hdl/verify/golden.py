@@ -17,7 +17,7 @@ from pathlib import Path
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.export.names import identifier
-from firm_hdl.frontend import DISTROS, Library
+from firm_hdl.frontend import DISTROS, Library, open_library
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan, check, from_yaml, to_yaml
 from firm_hdl.plan.compare import Change, compare
@@ -94,14 +94,22 @@ def read_golden(folder: str | os.PathLike[str]) -> list[Golden]:
 
 
 def check_golden(
-    goldens: Iterable[Golden], paths: Sequence[str | os.PathLike[str]] = ()
+    goldens: Iterable[Golden],
+    paths: Sequence[str | os.PathLike[str]] = (),
+    bags: Sequence[str | os.PathLike[str]] = (),
 ) -> list[Checked]:
-    """Plan each type again, and compare; every plan is checked for its invariants, too."""
+    """Plan each type again, and compare; every plan is checked for its invariants, too.
+
+    Parameters
+    ----------
+    paths, bags
+        As for `open_library`; each plan is of its own distribution.
+    """
     libraries: dict[str, Library] = {}
     results = []
     for golden in goldens:
         if golden.distro not in libraries:
-            libraries[golden.distro] = Library(golden.distro, paths)
+            libraries[golden.distro] = open_library(golden.distro, paths, bags)
         results.append(_check(golden, libraries[golden.distro]))
     return results
 

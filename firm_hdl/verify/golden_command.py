@@ -1,4 +1,4 @@
-"""``firm-hdl golden`` and ``firm-hdl cover``: golden plans, and which types to keep them for."""
+"""``firm-hdl golden``: golden plans, checked, accepted and added."""
 
 from __future__ import annotations
 
@@ -7,12 +7,10 @@ import sys
 from collections.abc import Sequence
 
 from firm_hdl.export.build import BuildError, load_all, plan_of
-from firm_hdl.frontend import Library, open_library
-from firm_hdl.plan.shape import shape
-from firm_hdl.verify.cover import choose, features
+from firm_hdl.frontend import open_library
 from firm_hdl.verify.golden import Checked, add, check_golden, read_golden, summarise
 
-__all__ = ["add_golden_arguments", "run_cover", "run_golden"]
+__all__ = ["add_golden_arguments", "run_golden"]
 
 
 def add_golden_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,7 +38,7 @@ def run_golden(given: argparse.Namespace) -> int:
     if not goldens:
         raise BuildError(f"'{given.folder}' has no golden plans")
     chosen = [golden for golden in goldens if not wanted or golden.plan.message in wanted]
-    results = check_golden(chosen, given.path)
+    results = check_golden(chosen, given.path, given.bag)
     differing = [result for result in results if not result.is_same]
     for result in differing:
         _print(result)
@@ -75,31 +73,8 @@ def _accept(differing: Sequence[Checked]) -> int:
 def _add(given: argparse.Namespace) -> int:
     if not given.types:
         raise BuildError("name the types to add")
-    library = Library(given.distro, given.path)
+    library = open_library(given.distro, given.path, given.bag)
     for message in load_all(library, given.types):
         plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
         print(f"added {add(given.folder, library.distro, message, plan)}")
-    return 0
-
-
-def run_cover(given: argparse.Namespace) -> int:
-    """Run ``firm-hdl cover``: print a covering set of types, and what each one adds."""
-    library = open_library(given.distro, given.path, given.bag)
-    names = given.types or library.names()
-    types, costs, shapes = {}, {}, set()
-    for message in load_all(library, names):
-        plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
-        types[message.name] = features(message, plan)
-        # What a simulation costs: its set-up, and then about as much as there are steps.
-        costs[message.name] = 20 + len(plan.steps)
-        shapes.add(shape(plan))
-    chosen = choose(types, costs)
-    for each in chosen:
-        print(f"{each.name}: {', '.join(each.adds)}")
-    everything = set().union(*types.values()) if types else set()
-    print(
-        f"{len(chosen)} of {len(types)} types have all of the {len(everything)} features; "
-        f"{len(shapes)} different circuits",
-        file=sys.stderr,
-    )
     return 0

@@ -10,6 +10,7 @@ from firm_hdl.cli import main
 from firm_hdl.equivalence import Proof, Tools, command, converters, tools
 from firm_hdl.equivalence.converters import Attempt, Task
 from firm_hdl.equivalence.covering import covering_tasks, write_definitions
+from tests.frontend.recordings import make_recording
 
 TASK = Task(distro="lyrical", name="a/msg/B", direction="serializer")
 EQUAL = Attempt(proof=Proof(result="equal", registers=1, claims=1, seconds=1.0))
@@ -33,6 +34,24 @@ def test_both_converters_are_proved(capsys: pytest.CaptureFixture[str]) -> None:
         "equal    std_msgs/msg/Bool deserializer (lyrical, 8 bytes)",
         "equal    std_msgs/msg/Bool serializer (lyrical, 8 bytes)",
     ]
+
+
+def test_types_of_recordings_can_be_proved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    bag = str(make_recording(tmp_path, "bag"))
+    done: list[Attempt] = []
+    asked: list[str] = []
+    monkeypatch.setattr(
+        converters, "prove_converter", lambda message, *a, **o: asked.append(str(message.name))
+    )
+    monkeypatch.setattr(
+        command,
+        "run_proofs",
+        lambda tasks, jobs, bar: done.extend(map(converters.attempt, tasks)) or 0,
+    )
+    assert main(["prove", "my_msgs/Spot", "--bag", bag]) == 0
+    assert asked == ["my_msgs/Spot"] * 2 and not any(each.problem for each in done)
+    # It is nowhere else.
+    assert main(["prove", "my_msgs/Spot", "--distro", "noetic"]) == 1
 
 
 @pytest.mark.parametrize(

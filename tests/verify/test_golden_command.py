@@ -1,10 +1,11 @@
-"""``firm-hdl golden`` and ``firm-hdl cover``, as users call them."""
+"""``firm-hdl golden``, as users call it."""
 
 from __future__ import annotations
 
 import pytest
 
 from firm_hdl.cli import main
+from tests.frontend.recordings import make_recording
 
 TYPES = ["sensor_msgs/msg/Imu", "std_msgs/msg/String"]
 
@@ -72,11 +73,11 @@ def test_wrong_calls_are_explained(tmp_path, capsys, arguments, message):
     assert capsys.readouterr().err == message.format(folder=tmp_path) + "\n"
 
 
-def test_cover_prints_types_and_what_they_add(capsys):
-    names = ["geometry_msgs/msg/Point", "geometry_msgs/msg/Vector3", "std_msgs/msg/Bool"]
-    assert main(["cover", *names]) == 0
-    out, err = capsys.readouterr()
-    assert [line.partition(":")[0] for line in out.splitlines()] == [names[0], names[2]]
-    assert "field bool" in out
-    assert err.startswith("2 of 3 types have all of the ")
-    assert err.endswith(" features; 2 different circuits\n")
+def test_plans_of_recorded_types_are_kept_and_checked(tmp_path, capsys):
+    bag = ["--bag", str(make_recording(tmp_path, "mcap"))]
+    folder = str(tmp_path / "golden")
+    assert main(["golden", "add", folder, "my_msgs/msg/Wheel", *bag]) == 0
+    assert main(["golden", "check", folder, *bag]) == 0
+    # No other source has it.
+    assert main(["golden", "check", folder]) == 1
+    assert "package 'my_msgs'" in capsys.readouterr().out
