@@ -190,7 +190,9 @@ class _Beats:
         data, keep, last, user = payload
         count = keep[::-1].find("0") if "0" in keep else len(keep)
         lanes = [data[at : at + 8] for at in range(len(data) - 8, -1, -8)]
-        self.parts.append(bytes(int(lane, 2) for lane in lanes[:count]))
+        # What is undefined is no byte: the packet is too short, and differs.
+        defined = [lane for lane in lanes[:count] if not set(lane) - {"0", "1"}]
+        self.parts.append(bytes(int(lane, 2) for lane in defined))
         if last == "1":
             run.packets.append(b"".join(self.parts))
             run.marked.append(user == "1")

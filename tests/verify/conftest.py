@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.verify.simulators import SimulatorMissingError, find_ghdl
+from firm_hdl.verify.simulators import SimulatorMissingError, TextSimulator, find_ghdl, simulator
 from tests.export.conftest import need
 
 
@@ -15,3 +15,15 @@ def ghdl() -> str:
         return find_ghdl()
     except SimulatorMissingError:
         return need("GHDL", None)
+
+
+@pytest.fixture
+def of_verilog(request: pytest.FixtureRequest) -> TextSimulator:
+    """A simulator of Verilog, by the name that is the parameter."""
+    found = None
+    try:
+        found = simulator(request.param)
+    except SimulatorMissingError:
+        need(request.param, None)
+    assert found is not None
+    return found

@@ -7,7 +7,7 @@ import re
 import pytest
 
 import firm_hdl.verify.acceptance as acceptance
-import firm_hdl.verify.simulators as simulators
+import firm_hdl.verify.simulators.ghdl as exported
 from firm_hdl.verify import Options, Result, accept
 from firm_hdl.verify.processes import ToolError
 from firm_hdl.verify.simulators import Ghdl, SimulatorMissingError, find_ghdl
@@ -51,7 +51,7 @@ def test_types_of_ones_own_do_as_well(ghdl, tmp_path, name, bus_bytes):
 
 def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
     """Have one line of one file of the VHDL changed, the first where `pattern` is found."""
-    convert = simulators.convert
+    convert = exported.convert
 
     def converted(top, **options):
         vhdl = convert(top, **options)
@@ -63,7 +63,7 @@ def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
                 vhdl.files[name] = after
         return vhdl
 
-    monkeypatch.setattr(simulators, "convert", converted)
+    monkeypatch.setattr(exported, "convert", converted)
 
 
 @pytest.mark.parametrize(

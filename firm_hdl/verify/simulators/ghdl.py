@@ -1,0 +1,58 @@
+"""GHDL, on exported VHDL."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from firm_hdl.export.top import Top
+from firm_hdl.export.vhdl import convert
+from firm_hdl.verify.processes import run_tool
+from firm_hdl.verify.replay_bench import replay_bench
+from firm_hdl.verify.simulators.interface import find_program
+from firm_hdl.verify.trace import Trace
+
+__all__ = ["Ghdl", "find_ghdl"]
+
+NAMES = ("ghdl", "ghdl-mcode", "ghdl-llvm", "ghdl-gcc")
+RUN = ("--ieee-asserts=disable-at-0",)
+
+
+class Ghdl:
+    """GHDL, on the VHDL that ``firm-hdl build`` writes for the ``_flat`` entities.
+
+    Raises
+    ------
+    SimulatorMissingError
+    """
+
+    title = "GHDL"
+
+    def __init__(self) -> None:
+        self.path = find_ghdl()
+
+    def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:
+        files: dict[str, str] = {}
+        ports: list[Mapping[str, str]] = []
+        for device, top in zip(trace.devices, tops(), strict=True):
+            vhdl = convert(top, name=device.name)
+            files.update(vhdl.files)
+            # The outermost entity is the last one.
+            ports.append(list(vhdl.entities.values())[-1].ports)
+        files["replay.vhd"] = replay_bench(trace, ports)
+        for name, text in files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        (folder / "stimuli.txt").write_text("".join(f"{row}\n" for row in trace.stimuli))
+        run_tool([self.path, "-a", "--std=08", *files], folder)
+        run_tool([self.path, "--elab-run", "--std=08", "replay", *RUN], folder)
+        return (folder / "results.txt").read_text().splitlines()
+
+
+def find_ghdl() -> str:
+    """Return the command of GHDL: the environment's ``GHDL``, or the first that is installed.
+
+    Raises
+    ------
+    SimulatorMissingError
+    """
+    return find_program("GHDL", "GHDL", NAMES, "ghdl-mcode")

@@ -1,0 +1,176 @@
+"""Verilator, on exported Verilog: compiled to C++, and quick to run.
+
+Verilator knows 0 and 1 only. What the text does not define, such as a register without an initial
+value, is 0 in one copy of the devices and 1 in another; a bit of an output that differs between
+the two is reported as ``X``.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import re
+import shlex
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from firm_hdl.export.top import Top
+from firm_hdl.verify.processes import ToolError, run_tool
+from firm_hdl.verify.simulators.interface import SimulatorMissingError, find_program
+from firm_hdl.verify.simulators.verilog import (
+    RESULTS,
+    STIMULI,
+    instances,
+    vector,
+    write_inputs,
+)
+from firm_hdl.verify.trace import ARESETN, Trace
+
+__all__ = ["Verilator"]
+
+PACKAGE = "verilator g++"
+COMPILERS = ("g++", "c++", "clang++")
+# What is compiled runs for less than a second: anything that is optimized takes longer to compile.
+COMPILE = ("-O0", "-w", "-std=gnu++17")
+MODELS = "model"
+HERE = Path(__file__).parent
+VERILATE = (
+    # Warnings are the business of `waivers.vlt`; what is no Verilog fails all the same.
+    *("--cc", "-Wno-lint", "-Wno-style", "-Wno-fatal"),
+    *("--x-initial", "unique", "--x-assign", "unique"),
+    *("--prefix", "Vreplay", "--top-module", "replay", "--Mdir", MODELS),
+)
+
+_MAIN = """
+#include "replay.h"
+
+static Vreplay* copies[COPIES];
+
+static void tick(int level) {
+    for (Vreplay* copy : copies) {
+        copy->aclk = level;
+        copy->eval();
+    }
+}
+
+template <class T> static void* at(T& port) { return &port; }
+
+int main() {
+    for (int copy = 0; copy < COPIES; ++copy) {
+        // What the text does not define is all zeros in one, and all ones in the other: what
+        // variables hold initially, and undefined values that are assigned.
+        Verilated::randReset(copy);
+        copies[copy] = new Vreplay;
+        copies[copy]->aclk = 0;
+        copies[copy]->eval();
+    }
+    Vreplay &a = *copies[0], &b = *copies[1];
+"""
+
+
+class Verilator:
+    """Verilator, on the Verilog that ``firm-hdl build`` writes.
+
+    Raises
+    ------
+    SimulatorMissingError
+    """
+
+    title = "Verilator"
+
+    def __init__(self) -> None:
+        self.path = find_program(self.title, "VERILATOR", ["verilator"], PACKAGE)
+        self.compiler = _find_compiler()
+
+    def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:
+        files = write_inputs(trace, tops(), folder)
+        (folder / "replay.v").write_text("".join(_wrapper(trace)), encoding="utf-8")
+        run_tool([self.path, *VERILATE, "replay.v", *files], folder)
+        models = folder / MODELS
+        # As one file, since most of what the compiler reads are Verilator's headers.
+        sources = sorted(path.name for path in models.glob("*.cpp"))
+        text = "".join(f'#include "{name}"\n' for name in sources)
+        (models / "main.cc").write_text("".join([text, *_main(trace)]), encoding="utf-8")
+        runtime = _runtime(self.path, self.compiler, _runtime_parts(models))
+        command = [*self.compiler, *COMPILE, *runtime.includes, f"{MODELS}/main.cc"]
+        run_tool([*command, *runtime.objects, "-pthread", "-o", "replay"], folder)
+        run_tool([str(folder / "replay")], folder)
+        return (folder / RESULTS).read_text().splitlines()
+
+
+def _find_compiler() -> tuple[str, ...]:
+    """Return the command of a C++ compiler: the environment's ``CXX``, with its options."""
+    given = shlex.split(os.environ.get("CXX", ""))
+    for name in given[:1] or COMPILERS:
+        if path := shutil.which(name):
+            return (path, *given[1:])
+    if given:
+        raise SimulatorMissingError(f"CXX is '{given[0]}' in the environment, and no such command")
+    raise SimulatorMissingError(
+        "Verilator needs a C++ compiler, and none is installed (Debian, Ubuntu: apt install g++)"
+    )
+
+
+def _wrapper(trace: Trace) -> Iterator[str]:
+    """Write a module of both devices, whose ports have names that C++ takes as they are."""
+    ports = ["input aclk", "input aresetn"]
+    ports += [f"input {vector(pin)}i{pin.number}" for pin in trace.inputs]
+    ports += [f"output {vector(pin)}o{pin.number}" for pin in trace.outputs]
+    yield f"module replay({', '.join(ports)});\n"
+    yield from instances(trace)
+    yield "endmodule\n"
+
+
+def _main(trace: Trace) -> Iterator[str]:
+    """Write a program that knows nothing but ports: rows of inputs in, rows of outputs out."""
+    inputs = {ARESETN: ("aresetn", 1)}
+    inputs.update((pin.number, (f"i{pin.number}", pin.port.width)) for pin in trace.inputs)
+    outputs = {pin.number: (f"o{pin.number}", pin.port.width) for pin in trace.outputs}
+    yield _MAIN
+    for name, ports in (("inputs", inputs), ("outputs", outputs)):
+        yield f"    const std::vector<Pin> {name} = {{\n"
+        for number, (port, width) in sorted(ports.items()):
+            yield f"        {{{number}, {width}, {{at(a.{port}), at(b.{port})}}}},\n"
+        yield "    };\n"
+    yield f'    return replay("{STIMULI}", "{RESULTS}", inputs, outputs, tick);\n}}\n'
+
+
+class _Runtime:
+    """What every program of Verilator is linked with, compiled once in a process.
+
+    Attributes
+    ----------
+    includes : list of str
+        Options that say where its headers are.
+    objects : list of str
+    """
+
+    def __init__(self, verilator: str, compiler: Sequence[str], parts: Sequence[str]):
+        root = run_tool([verilator, "--getenv", "VERILATOR_ROOT"], HERE).strip()
+        library = Path(root, "include")
+        self.includes = [f"-I{library}", f"-I{HERE}"]
+        # Removed with this object, at the end of the process.
+        self._folder = tempfile.TemporaryDirectory(prefix="firm-hdl-")
+        folder = Path(self._folder.name)
+        self.objects = []
+        for source in [HERE / "replay.cpp", *(library / f"{part}.cpp" for part in parts)]:
+            self.objects.append(str(folder / f"{source.stem}.o"))
+            command = [*compiler, *COMPILE, *self.includes, "-c", str(source)]
+            run_tool([*command, "-o", self.objects[-1]], folder)
+
+
+@functools.cache
+def _runtime(verilator: str, compiler: tuple[str, ...], parts: tuple[str, ...]) -> _Runtime:
+    return _Runtime(verilator, compiler, parts)
+
+
+def _runtime_parts(models: Path) -> tuple[str, ...]:
+    """Return the sources that Verilator's makefile names for its runtime; versions differ."""
+    text = (models / "Vreplay_classes.mk").read_text(encoding="utf-8")
+    found = re.search(r"^VM_GLOBAL_FAST \+= ((?:\\\n|[^\n])*)", text, re.MULTILINE)
+    parts = found[1].replace("\\", " ").split() if found else []
+    if not parts:
+        raise ToolError("Verilator did not say which parts of its runtime are to be compiled")
+    return tuple(parts)
