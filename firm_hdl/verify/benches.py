@@ -14,9 +14,12 @@ import shlex
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Generator, Iterable, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from tqdm import tqdm
 
@@ -28,14 +31,17 @@ from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
 from firm_hdl.sim.payloads import encoder_of
 from firm_hdl.verify.acceptance import library_of
 from firm_hdl.verify.cases import Case
-from firm_hdl.verify.processes import ToolError, in_processes, run_tool
+from firm_hdl.verify.executors import run_each
+from firm_hdl.verify.processes import ToolError, cpu_seconds, run_tool
+from firm_hdl.verify.records import Record, Seconds, Test, clipped
 from firm_hdl.verify.runner import Task
 from firm_hdl.verify.simulators import find_ghdl
 from firm_hdl.verify.stimuli import stimulus_cases
-from firm_hdl.verify.user_oracle import NotJudgedError, judge_of
+from firm_hdl.verify.system import Recorder, System, wire_of
+from firm_hdl.verify.user_oracle import NotJudgedError, check_wire, judge_of
 from firm_hdl.wire import Wire
 
-__all__ = ["BenchResult", "BenchRun", "run_bench", "run_benches"]
+__all__ = ["BenchResult", "BenchRun", "Benches", "run_bench"]
 
 WARNINGS = ("--warn-error", "--warn-unused", "--warn-body", "--warn-default-binding")
 
@@ -79,7 +85,10 @@ class BenchResult:
         Why there was nothing to run; empty if there was.
     packets, transfers : int
         Packets and leaf transfers that were right.
-    seconds : float
+    seconds, cpu_seconds : float
+        By the clock on the wall, and of all processors.
+    setup_seconds, simulation_seconds : float
+        Until GHDL had analysed everything, and while it ran.
     """
 
     failure: str = ""
@@ -87,16 +96,20 @@ class BenchResult:
     packets: int = 0
     transfers: int = 0
     seconds: float = 0.0
+    cpu_seconds: float = 0.0
+    setup_seconds: float = 0.0
+    simulation_seconds: float = 0.0
 
 
 def run_bench(distro: str, name: str, run: BenchRun) -> BenchResult:
     """Build a type and run its bench. Nothing is raised: what goes wrong is in the result."""
-    began = time.perf_counter()
+    began, began_cpu = time.perf_counter(), cpu_seconds()
     failure = not_judged = ""
     packets = transfers = 0
+    simulation: list[tuple[float, float]] = []
     try:
         with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
-            packets, transfers = _run_bench(distro, name, run, Path(folder))
+            packets, transfers = _run_bench(distro, name, run, Path(folder), simulation)
     except NotJudgedError as error:
         not_judged = str(error)
     except (AssertionError, ToolError) as error:
@@ -109,12 +122,19 @@ def run_bench(distro: str, name: str, run: BenchRun) -> BenchResult:
         packets=packets,
         transfers=transfers,
         seconds=time.perf_counter() - began,
+        cpu_seconds=cpu_seconds() - began_cpu,
+        setup_seconds=(simulation[0][0] if simulation else time.perf_counter()) - began,
+        simulation_seconds=sum(end - start for start, end in simulation),
     )
 
 
-def _run_bench(distro: str, name: str, run: BenchRun, folder: Path) -> tuple[int, int]:
+def _run_bench(
+    distro: str, name: str, run: BenchRun, folder: Path, simulation: list[tuple[float, float]]
+) -> tuple[int, int]:
+    """Return numbers of packets and transfers; add when each simulation began and ended."""
     library = library_of(distro, run.paths)
     message = library.message(name)
+    check_wire(message)
     plan = plan_of(message, run.wire, run.bus_bytes, DEFAULT_MAX_MESSAGE_BYTES)
     try:
         check_size(plan)
@@ -138,7 +158,9 @@ def _run_bench(distro: str, name: str, run: BenchRun, folder: Path) -> tuple[int
         work = vhdl / f"work_{entity}"
         environment = {"GHDL": run.ghdl, "WORK": str(work), "BENCH": entity}
         names = [f"-g{what}={what}.txt" for what in ("results", "transfers")]
+        began = time.perf_counter()
         said = run_tool(["sh", str(vhdl / RUN_SCRIPT), *names], vhdl, environment=environment)
+        simulation.append((began, time.perf_counter()))
         if not said.startswith("PASS "):
             raise ToolError(said)
         _compare("packets that came out", (work / "results.txt").read_text(), right)
@@ -198,76 +220,144 @@ def _compare(what: str, got: str, right: str) -> None:
     )
 
 
-def run_benches(
-    tasks: Sequence[Task],
-    *,
-    paths: Iterable[str] = (),
-    wire: Wire | None = None,
-    widths: Iterable[int] = (8,),
-    jobs: int | None = None,
-) -> bool:
-    """Run the benches of many types, and print a table; return whether nothing failed.
+class Benches(System):
+    """Generated benches; a test is the bench of a type of one distribution.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+    paths : iterable of str
+        Folders with ROS packages, searched first.
+    wire : "ros1", "cdr" or None
+    widths : iterable of int
+        Buses, in bytes.
+    jobs : int or None
+        Processes; `None`: one per processor.
 
     Raises
     ------
     SimulatorMissingError
     """
-    ghdl = find_ghdl()
-    # Each distribution's bench of its own, even if another has the same type: its header differs.
-    work = [(distro, task.name) for task in tasks for distro in task.same]
-    is_well = True
-    for width in widths:
-        run = BenchRun(paths=tuple(paths), wire=wire, bus_bytes=width, ghdl=ghdl)
-        is_well &= _run_all(work, run, jobs)
-    return is_well
+
+    name = "bench"
+
+    def __init__(
+        self,
+        tasks: Sequence[Task],
+        *,
+        paths: Iterable[str] = (),
+        wire: Wire | None = None,
+        widths: Iterable[int] = (8,),
+        jobs: int | None = None,
+    ):
+        ghdl = find_ghdl()
+        # Each distribution's bench of its own, even if another has the same type: its header
+        # differs.
+        self._work = [(distro, task.name) for task in tasks for distro in task.same]
+        self._runs = [
+            BenchRun(paths=tuple(paths), wire=wire, bus_bytes=width, ghdl=ghdl) for width in widths
+        ]
+        self._jobs = jobs
+
+    @cached_property
+    def tests(self) -> Sequence[Test]:
+        """All types with all buses."""
+        return [_test(run, *work) for run in self._runs for work in self._work]
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """Nothing but what all systems have."""
+        return {}
+
+    def run(self, recorder: Recorder) -> bool:
+        """Run all benches, and print a table for each bus."""
+        return not sum([self._run(run, recorder) for run in self._runs])
+
+    def _run(self, run: BenchRun, recorder: Recorder) -> int:
+        """Run the benches with one bus; return how many failed."""
+        began = time.perf_counter()
+        found = ((work, recorder.known(_test(run, *work))) for work in self._work)
+        records = {work: record for work, record in found if record is not None}
+        for line in recorder.said(len(records), len(self._work), "types"):
+            print(line)
+        left = [work for work in self._work if work not in records]
+        total, known = len(self._work), len(records)
+        label = f"{run.bus_bytes}-byte bus"
+        bar = tqdm(total=total, initial=known, unit="type", desc=label, disable=None)
+        with bar, closing(_results(left, run, self._jobs)) as results:
+            for (distro, name), result in results:
+                records[distro, name] = record = _record(run, distro, name, result)
+                recorder.add(record)
+                if result.failure:
+                    tqdm.write(
+                        f"FAIL {name} ({distro})\n    {result.failure[:2000]}\n"
+                        f"    again: {record.command}"
+                    )
+                if result.not_judged:
+                    tqdm.write(f"not judged: {name} ({distro}): {result.not_judged}")
+                bar.update()
+        _table(records, run.bus_bytes)
+        print(f"{time.perf_counter() - began:.0f} s")
+        return sum(record.status == "fail" for record in records.values())
 
 
-def _run_all(work: Sequence[tuple[str, str]], run: BenchRun, jobs: int | None) -> bool:
-    began = time.perf_counter()
-    results: dict[tuple[str, str], BenchResult] = {}
-    bar = tqdm(total=len(work), unit="type", desc=f"{run.bus_bytes}-byte bus", disable=None)
-    with bar:
-        for (distro, name), result in _results(work, run, jobs):
-            results[distro, name] = result
-            if result.failure:
-                tqdm.write(
-                    f"FAIL {name} ({distro})\n    {result.failure[:2000]}\n"
-                    f"    again: {run.command(distro, name)}"
-                )
-            if result.not_judged:
-                tqdm.write(f"not judged: {name} ({distro}): {result.not_judged}")
-            bar.update()
-    _table(results, run.bus_bytes)
-    print(f"{time.perf_counter() - began:.0f} s")
-    return not any(result.failure for result in results.values())
+def _test(run: BenchRun, distro: str, name: str) -> Test:
+    return Test(
+        system=Benches.name,
+        simulator="ghdl",
+        distro=distro,
+        type=name,
+        same=(distro,),
+        wire=wire_of(distro, run.wire),
+        bus_bytes=run.bus_bytes,
+        options=",".join(f"path={path}" for path in run.paths),
+    )
+
+
+def _record(run: BenchRun, distro: str, name: str, result: BenchResult) -> Record:
+    testing = result.seconds - result.setup_seconds - result.simulation_seconds
+    return Record(
+        test=_test(run, distro, name),
+        status="fail" if result.failure else "skipped" if result.not_judged else "pass",
+        reason=result.not_judged,
+        failures=clipped([result.failure] if result.failure else []),
+        seconds=Seconds(
+            generation=result.setup_seconds,
+            simulation=result.simulation_seconds,
+            testing=max(0.0, testing),
+        ),
+        cpu_seconds=result.cpu_seconds,
+        packets=result.packets,
+        metrics={"transfers": float(result.transfers)},
+        command=run.command(distro, name),
+    )
 
 
 def _results(
     work: Sequence[tuple[str, str]], run: BenchRun, jobs: int | None
-) -> Iterator[tuple[tuple[str, str], BenchResult]]:
+) -> Generator[tuple[tuple[str, str], BenchResult], None, None]:
     tasks = [((distro, name), (distro, name, run)) for distro, name in work]
-    for key, result in in_processes(run_bench, tasks, jobs):
-        yield key, BenchResult(failure=str(result)) if isinstance(result, Exception) else result
+    for key, result in run_each(run_bench, tasks, jobs=jobs):
+        if isinstance(result, Exception):
+            result = BenchResult(failure=f"{type(result).__name__}: {result}")
+        yield key, result
 
 
-def _table(results: dict[tuple[str, str], BenchResult], bus_bytes: int) -> None:
+def _table(records: Mapping[tuple[str, str], Record], bus_bytes: int) -> None:
     columns = ("types", "pass", "fail", "not judged", "packets", "transfers", "seconds")
     print(f"{f'{bus_bytes}-byte bus':12} " + " ".join(f"{name:>10}" for name in columns))
     for distro in DISTROS:
-        mine = [result for key, result in results.items() if key[0] == distro]
+        mine = [record for key, record in records.items() if key[0] == distro]
         if not mine:
             continue
-        counts: Counter[str] = Counter(
-            "fail" if each.failure else "not judged" if each.not_judged else "pass"
-            for each in mine
-        )
+        counts = Counter(each.status for each in mine)
         row = [
             len(mine),
             counts["pass"],
             counts["fail"],
-            counts["not judged"],
+            counts["skipped"],
             sum(each.packets for each in mine),
-            sum(each.transfers for each in mine),
-            round(sum(each.seconds for each in mine)),
+            round(sum(each.metrics.get("transfers", 0) for each in mine)),
+            round(sum(each.seconds.total for each in mine)),
         ]
         print(f"{distro:12} " + " ".join(f"{number:>10}" for number in row))

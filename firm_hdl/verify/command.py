@@ -1,7 +1,7 @@
 """``firm-hdl verify``: the test systems, behind one set of arguments.
 
-A test system is a line in :data:`SYSTEMS`: a function that gets the arguments, prints what it found
-and says whether all is well.
+A test system is a line in :data:`SYSTEMS`: a function that makes it of the arguments. What each of
+them finds out goes to one file of results, which says first what all of them are to test.
 """
 
 from __future__ import annotations
@@ -9,22 +9,38 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 
 from firm_hdl.errors import Diagnostic
 from firm_hdl.export.build import BuildError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.plan import BUS_BYTES
-from firm_hdl.verify.benches import run_benches
+from firm_hdl.verify.benches import Benches
+from firm_hdl.verify.environment import code_digest, environment
 from firm_hdl.verify.executors import PROCESSES, ExecutorError, check_executor
-from firm_hdl.verify.options import Options
+from firm_hdl.verify.options import LONGEST, Options
 from firm_hdl.verify.processes import unwound_when_terminated
+from firm_hdl.verify.replay_command import (
+    add_replay_arguments,
+    check_replay,
+    collect_recorded,
+)
 from firm_hdl.verify.report.command import write_report
-from firm_hdl.verify.results import ResultsError
+from firm_hdl.verify.results import ResultsError, ResultsWriter
 from firm_hdl.verify.runner import Task, UnknownTypeError, collect_own, collect_tasks
 from firm_hdl.verify.simulators import SIMULATORS, SimulatorMissingError
-from firm_hdl.verify.ts1 import ORACLES, run_ts1, selections_of
-from firm_hdl.verify.ts2 import run_ts2
-from firm_hdl.verify.ts3 import How, run_ts3
+from firm_hdl.verify.sut.arguments import (
+    add_sut_arguments,
+    check_sut,
+    references_of,
+    sut_options,
+)
+from firm_hdl.verify.sut.client import ClientMissingError
+from firm_hdl.verify.sut.command import run_sut
+from firm_hdl.verify.system import Recorder, System
+from firm_hdl.verify.ts1 import ORACLES, Ts1, selections_of
+from firm_hdl.verify.ts2 import Ts2, Ts2Options
+from firm_hdl.verify.ts3 import How, Ts3
 
 __all__ = ["SYSTEMS", "add_verify_arguments", "run_verify"]
 
@@ -38,22 +54,28 @@ def run_verify(given: argparse.Namespace) -> int:
         If a definition that is named cannot be used. Of all types, those that can are tested, and
         then the others are printed.
     """
+    check_replay(given)
+    check_sut(given)
     if bool(given.types) == given.all:
         given.refuse("name types, or all of them with --all")
     if given.report is not None and given.results is None:
         given.refuse("--report needs --results")
-    if given.results is not None and "ts3" not in given.systems:
-        given.refuse("--results are of ts3")
+    if given.results is not None and given.mutations:
+        given.refuse("--results keeps nothing of --mutations")
     given.problems = {}
+    given.tasks = None
     try:
         with unwound_when_terminated():
-            # Each of them, whatever comes of the first.
-            results = [SYSTEMS[name](given) for name in given.systems]
+            if given.sut:
+                is_well = run_sut(_tasks(given), sut_options(given), given.jobs)
+            else:
+                is_well = _run_systems(given)
         if given.report is not None:
             write_report([given.results], given.report)
             print(f"wrote   {given.report}")
     except (
         BuildError,
+        ClientMissingError,
         ExecutorError,
         ResultsError,
         SimulatorMissingError,
@@ -63,10 +85,47 @@ def run_verify(given: argparse.Namespace) -> int:
         return 1
     for problem in given.problems:
         print(problem, file=sys.stderr)
-    return 0 if all(results) and not given.problems else 1
+    return 0 if is_well and not given.problems else 1
 
 
-def _ts3(given: argparse.Namespace) -> bool:
+def _run_systems(given: argparse.Namespace) -> bool:
+    """Run the test systems; say whether nothing failed."""
+    with ExitStack() as stack:
+        systems = [SYSTEMS[name](given) for name in given.systems]
+        for system in systems:
+            stack.enter_context(system)
+        writer = None
+        if given.results is not None:
+            writer = stack.enter_context(_writer(given, systems))
+        # Each of them, whatever comes of the first.
+        results = [system.run(Recorder(writer)) for system in systems]
+    return all(results)
+
+
+def _writer(given: argparse.Namespace, systems: Sequence[System]) -> ResultsWriter:
+    """Open the file of results, new or to be continued."""
+    options = {
+        "systems": [system.name for system in systems],
+        "bus_bytes": _widths(given),
+        "wire": given.wire,
+        "paths": list(given.path),
+        "code": code_digest(),
+    }
+    for system in systems:
+        options |= system.options
+    more = {"executor": given.executor}
+    if given.problems:
+        # They are no tests of TS2 and of what follows, and nobody is to think that all is well.
+        more["definitions that are refused"] = f"{len(given.problems)}: {min(given.problems)}"
+    return ResultsWriter(
+        given.results,
+        options=options,
+        planned=[test for system in systems for test in system.tests],
+        session=environment(**more),
+    )
+
+
+def _ts3(given: argparse.Namespace) -> System:
     options = [
         Options(
             bus_bytes=bus_bytes,
@@ -77,48 +136,45 @@ def _ts3(given: argparse.Namespace) -> bool:
             most_cases=given.cases,
             simulator=given.simulator,
             paths=tuple(given.path),
+            bags=tuple(given.bag),
+            longest=given.max_message_bytes or LONGEST,
+            references=references_of(given),
             vcd=given.vcd,
         )
-        for bus_bytes in dict.fromkeys(given.bus_bytes or [8])
+        for bus_bytes in _widths(given)
     ]
-    how = How(
-        jobs=given.jobs,
-        executor=given.executor,
-        results=given.results,
-        share_circuits=given.share_circuits,
-    )
-    return run_ts3(_tasks(given), options, how)
+    how = How(jobs=given.jobs, executor=given.executor, share_circuits=given.share_circuits)
+    return Ts3(_tasks(given), options, how)
 
 
-def _bench(given: argparse.Namespace) -> bool:
-    return run_benches(
+def _bench(given: argparse.Namespace) -> System:
+    return Benches(
         _tasks(given),
         paths=given.path,
         wire=given.wire,
-        widths=given.bus_bytes or [8],
+        widths=_widths(given),
         jobs=given.jobs,
     )
 
 
-def _ts1(given: argparse.Namespace) -> bool:
+def _ts1(given: argparse.Namespace) -> System:
     selections = selections_of(
         given.distro, given.path, given.types, mutations=given.mutations, seed=given.seed
     )
-    counts = [run_ts1(each, given.oracle, given.jobs) for each in selections]
-    return not any(counts)
+    return Ts1(selections, given.oracle, given.jobs)
 
 
-def _ts2(given: argparse.Namespace) -> bool:
-    return run_ts2(
-        _tasks(given),
-        paths=given.path,
+def _ts2(given: argparse.Namespace) -> System:
+    options = Ts2Options(
+        paths=tuple(given.path),
         wire=given.wire,
-        widths=given.bus_bytes or [8],
+        widths=tuple(_widths(given)),
         golden=given.golden,
     )
+    return Ts2(_tasks(given), options, jobs=given.jobs, executor=given.executor)
 
 
-SYSTEMS: dict[str, Callable[[argparse.Namespace], bool]] = {
+SYSTEMS: dict[str, Callable[[argparse.Namespace], System]] = {
     "ts1": _ts1,
     "ts2": _ts2,
     "ts3": _ts3,
@@ -127,7 +183,21 @@ SYSTEMS: dict[str, Callable[[argparse.Namespace], bool]] = {
 """By the name that ``--systems`` takes."""
 
 
+def _widths(given: argparse.Namespace) -> list[int]:
+    return list(dict.fromkeys(given.bus_bytes or [8]))
+
+
 def _tasks(given: argparse.Namespace) -> list[Task]:
+    # The same for all test systems, and slow for thousands of types.
+    if given.tasks is None:
+        given.tasks = _collected(given)
+    tasks: list[Task] = given.tasks
+    return tasks
+
+
+def _collected(given: argparse.Namespace) -> list[Task]:
+    if given.bag:
+        return collect_recorded(given)
     if given.path:
         # Of all types in a workspace, one that is wrong does not keep the others from being tested.
         problems: dict[str, Diagnostic] | None = given.problems if given.all else None
@@ -141,7 +211,9 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(refuse=parser.error)
     parser.add_argument("types", nargs="*", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
     parser.add_argument(
-        "--all", action="store_true", help="all types; with --path, all in those folders"
+        "--all",
+        action="store_true",
+        help="all types; with --path, all in those folders; with --bag, all that have topics",
     )
     parser.add_argument(
         "--distro",
@@ -181,7 +253,9 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
     ts2.add_argument("--golden", metavar="DIR", help="compare with the golden plans there, too")
     ts3 = parser.add_argument_group("options of ts3")
     _add_cases(ts3)
-    _add_results(ts3)
+    add_replay_arguments(parser.add_argument_group("options of ts3 with recordings"))
+    add_sut_arguments(parser.add_argument_group("client libraries"), ts3)
+    _add_results(parser.add_argument_group("results"))
 
 
 def _add_ts1(group: argparse._ArgumentGroup) -> None:
@@ -206,10 +280,14 @@ def _add_cases(group: argparse._ArgumentGroup) -> None:
         "--simulator",
         choices=["python", *SIMULATORS],
         default="python",
-        help="replay everything in this one as well; default: %(default)s",
+        help="replay everything as well: the exported VHDL in ghdl, or the Verilog in iverilog or "
+        "verilator; default: %(default)s",
     )
     group.add_argument(
-        "--cases", type=_positive, metavar="N", help="most cases per type; default: all"
+        "--cases",
+        type=_positive,
+        metavar="N",
+        help="most cases per type; default: all, of recordings some",
     )
     group.add_argument(
         "--no-stalls", dest="stalls", action="store_false", help="do not run with stalls"
@@ -217,6 +295,12 @@ def _add_cases(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--no-broken", dest="broken", action="store_false", help="do not run damaged packets"
     )
+    group.add_argument(
+        "--share-circuits",
+        action="store_true",
+        help="simulate types whose circuits are the same once",
+    )
+    group.add_argument("--vcd", metavar="DIR", help="write the waveform of each run there")
 
 
 def _add_results(group: argparse._ArgumentGroup) -> None:
@@ -235,14 +319,9 @@ def _add_results(group: argparse._ArgumentGroup) -> None:
         type=_executor,
         default=PROCESSES,
         metavar="NAME",
-        help=f"{PROCESSES}, or dask://HOST:PORT for a cluster; default: %(default)s",
+        help=f"{PROCESSES}, or dask://HOST:PORT for a cluster that runs ts2 and ts3; "
+        "default: %(default)s",
     )
-    group.add_argument(
-        "--share-circuits",
-        action="store_true",
-        help="simulate types whose circuits are the same once",
-    )
-    group.add_argument("--vcd", metavar="DIR", help="write the waveform of each run there")
 
 
 def _executor(text: str) -> str:

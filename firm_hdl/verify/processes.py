@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -22,12 +23,25 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
-__all__ = ["ToolError", "in_processes", "run_tool", "unwound_when_terminated", "worker_pool"]
+__all__ = [
+    "ToolError",
+    "cpu_seconds",
+    "in_processes",
+    "run_tool",
+    "unwound_when_terminated",
+    "worker_pool",
+]
 
 T = TypeVar("T")
 R = TypeVar("R")
 
 _running: set[subprocess.Popen[str]] = set()
+
+
+def cpu_seconds() -> float:
+    """Return the processor time of this thread, and of programs that it has waited for."""
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.thread_time() + children.ru_utime + children.ru_stime
 
 
 class ToolError(Exception):

@@ -8,17 +8,16 @@ from typing import Any
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
-from firm_hdl.frontend import DISTROS
-from firm_hdl.verify.acceptance import MAX_MESSAGE_BYTES, library_of
+from firm_hdl.verify.acceptance import library_of
+from firm_hdl.verify.effort import message_limit
 from firm_hdl.verify.figures import digest
-from firm_hdl.verify.options import Options, Result
-from firm_hdl.verify.records import PlanCoverage, Record, Seconds, Status, Test
+from firm_hdl.verify.options import LONGEST, Options, Result
+from firm_hdl.verify.records import PlanCoverage, Record, Seconds, Status, Test, clipped
 from firm_hdl.verify.runner import Task
+from firm_hdl.verify.system import wire_of
+from firm_hdl.wire import lay_out
 
 __all__ = ["record_of", "same_circuits", "test_of"]
-
-MOST_FAILURES = 20
-MOST_CHARACTERS = 4000
 
 # What people have a look at first; the command makes it.
 WAVEFORM_FOLDER = "waveforms"
@@ -30,14 +29,17 @@ def test_of(task: Task, options: Options) -> Test:
     own += [] if options.most_cases is None else [f"cases={options.most_cases}"]
     own += [] if options.stalled else ["no-stalls"]
     own += [] if options.broken else ["no-broken"]
+    own += [] if options.references is None else [f"references={'+'.join(options.references)}"]
     own += [f"path={path}" for path in options.paths]
+    own += [f"bag={bag}" for bag in options.bags]
+    own += [] if options.longest == LONGEST else [f"longest={options.longest}"]
     return Test(
         system="ts3",
         simulator=options.simulator,
         distro=task.distro,
         type=task.name,
         same=task.same,
-        wire=options.wire or ("ros1" if DISTROS[task.distro].dialect == "ros1" else "cdr"),
+        wire=wire_of(task.distro, options.wire),
         bus_bytes=options.bus_bytes,
         options=",".join(own),
     )
@@ -62,7 +64,7 @@ def record_of(task: Task, result: Result, options: Options, same_as: str = "") -
         test=test_of(task, options),
         status=status,
         reason="" if result.failures else result.not_judged,
-        failures=_clipped(result.failures),
+        failures=clipped(result.failures),
         note=result.note,
         seconds=Seconds(
             generation=result.setup_seconds,
@@ -94,18 +96,6 @@ def _coverage(result: Result) -> PlanCoverage | None:
     )
 
 
-def _clipped(failures: Sequence[str]) -> tuple[str, ...]:
-    found = [
-        text
-        if len(text) <= MOST_CHARACTERS
-        else f"{text[:MOST_CHARACTERS]}... ({len(text)} characters)"
-        for text in failures[:MOST_FAILURES]
-    ]
-    if len(failures) > MOST_FAILURES:
-        found.append(f"and {len(failures) - MOST_FAILURES} more")
-    return tuple(found)
-
-
 def same_circuits(tasks: Sequence[Task], options: Options) -> dict[Task, Task]:
     """Return tasks whose circuit is that of an earlier task, and that task.
 
@@ -117,7 +107,8 @@ def same_circuits(tasks: Sequence[Task], options: Options) -> dict[Task, Task]:
         try:
             message = library_of(task.distro, options.paths).message(task.name)
             wire: Any = options.wire or message.wire
-            plan = plan_of(message, wire, options.bus_bytes, MAX_MESSAGE_BYTES)
+            limit = message_limit(lay_out(message, wire).min_bytes)
+            plan = plan_of(message, wire, options.bus_bytes, limit)
         except (DefinitionError, BuildError, ValueError):
             # Whatever is wrong with it, its own test says.
             continue

@@ -6,14 +6,30 @@ what became of it. Both are written as JSON and read back by :mod:`firm_hdl.veri
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal, get_args
 
-__all__ = ["STAGES", "STATUSES", "PlanCoverage", "Record", "Seconds", "Status", "Test"]
+__all__ = [
+    "STAGES",
+    "STATUSES",
+    "OracleVerdict",
+    "PlanCoverage",
+    "Record",
+    "Seconds",
+    "Status",
+    "Test",
+    "Verdict",
+    "clipped",
+]
 
 Status = Literal["pass", "fail", "skipped"]
 STATUSES: tuple[Status, ...] = get_args(Status)
+
+Verdict = Literal["agrees", "known", "differs", "not judged"]
+
+MOST_FAILURES = 20
+MOST_CHARACTERS = 4000
 
 STAGES = ("generation", "simulation", "testing")
 """The stages of a test, in order; `Seconds` has them."""
@@ -26,8 +42,9 @@ class Test:
     Attributes
     ----------
     system : str
-        ``ts1``, ``ts2`` or ``ts3``.
+        ``ts1``, ``ts2``, ``ts3`` or ``bench``.
     distro, type : str
+        The type is a message; that of ``ts1`` is what a file defines, which may be a service.
     same : tuple of str
         All distributions that the result counts for, `distro` included: those that have the type
         just so.
@@ -60,6 +77,18 @@ class Test:
         parts = (self.system, self.simulator, self.distro, self.type, circuit, self.options)
         return " ".join(part for part in parts if part)
 
+    @classmethod
+    def from_json(cls, given: object) -> Test:
+        """Return a test that was written as an object of its attributes.
+
+        Raises
+        ------
+        ValueError
+            If it is none.
+        """
+        test: Test = _made(cls, given)
+        return test
+
     @property
     def distros(self) -> tuple[str, ...]:
         """The distributions that the result counts for."""
@@ -78,10 +107,12 @@ class Seconds:
     Attributes
     ----------
     generation : float
-        From the definition to cases and to a circuit that is ready to run.
+        From the definition to what is tested: the model, the plan, or a circuit that is ready to
+        run, with its cases.
     simulation : float
     testing : float
-        Comparing what came out with the oracle and with the golden model.
+        Asking oracles and comparing: what came out with the oracle and with the golden model, the
+        plan with its layout, the model with what others read.
     """
 
     generation: float = 0.0
@@ -111,6 +142,26 @@ class PlanCoverage:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class OracleVerdict:
+    """What an oracle of definitions says of a type.
+
+    Attributes
+    ----------
+    oracle : str
+    verdict : "agrees", "known", "differs" or "not judged"
+    details : tuple of str
+        Keys of known differences; differences; or why it was not judged.
+    is_refused : bool
+        Whether both refuse the definition.
+    """
+
+    oracle: str
+    verdict: Verdict
+    details: tuple[str, ...] = ()
+    is_refused: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Record:
     """What became of a test.
 
@@ -135,6 +186,8 @@ class Record:
     same_as : str
         Name of the type whose circuit, tested by the same test, is this one's; empty if this one's
         own was simulated.
+    verdicts : tuple of OracleVerdict
+        Of all oracles that read the definition.
     command : str
         Repeats the test.
     waveform_command : str
@@ -156,6 +209,7 @@ class Record:
     metrics: Mapping[str, float] = field(default_factory=dict)
     shape: str = ""
     same_as: str = ""
+    verdicts: tuple[OracleVerdict, ...] = ()
     command: str = ""
     waveform_command: str = ""
 
@@ -175,7 +229,7 @@ class Record:
         return replace(self, seconds=Seconds(), cpu_seconds=0.0)
 
     def as_json(self) -> dict[str, Any]:
-        """Return what `from_json` reads; what is empty is left out."""
+        """Return what `from_json` reads: without what is empty, and times in microseconds."""
         return _without_empty(asdict(self))
 
     @classmethod
@@ -188,13 +242,28 @@ class Record:
             If it is none.
         """
         values = dict(_mapping(given, "A record"))
-        values["test"] = _made(Test, values.get("test"))
+        values["test"] = Test.from_json(values.get("test"))
         if "seconds" in values:
             values["seconds"] = _made(Seconds, values["seconds"])
+        if "verdicts" in values:
+            values["verdicts"] = tuple(_made(OracleVerdict, each) for each in values["verdicts"])
         if "coverage" in values:
             values["coverage"] = _made(PlanCoverage, values["coverage"])
         record: Record = _made(cls, values)
         return record
+
+
+def clipped(failures: Sequence[str]) -> tuple[str, ...]:
+    """Return failures as a record keeps them: not too many, and none too long."""
+    found = [
+        text
+        if len(text) <= MOST_CHARACTERS
+        else f"{text[:MOST_CHARACTERS]}... ({len(text)} characters)"
+        for text in failures[:MOST_FAILURES]
+    ]
+    if len(failures) > MOST_FAILURES:
+        found.append(f"and {len(failures) - MOST_FAILURES} more")
+    return tuple(found)
 
 
 def _without_empty(values: dict[str, Any]) -> dict[str, Any]:
@@ -202,6 +271,10 @@ def _without_empty(values: dict[str, Any]) -> dict[str, Any]:
     for name, value in values.items():
         if isinstance(value, dict) and name != "coverage":
             value = _without_empty(value)
+        if name == "verdicts":
+            value = [_without_empty(each) for each in value]
+        if isinstance(value, float):
+            value = round(value, 6)
         if value or name in ("status", "test"):
             found[name] = value
     return found
@@ -216,12 +289,9 @@ def _mapping(given: object, what: str) -> dict[str, Any]:
 def _made(kind: type[Any], given: object) -> Any:
     """Make a dataclass of an object that JSON was read to, lists as tuples."""
     values = _mapping(given, kind.__name__)
-    known = {item.name for item in fields(kind)}
-    if unknown := sorted(set(values) - known):
+    if unknown := sorted(values.keys() - kind.__dataclass_fields__.keys()):
         raise ValueError(f"{kind.__name__} has no {', '.join(unknown)}")
     try:
-        return kind(
-            **{n: tuple(v) if isinstance(v, list) else v for n, v in values.items()},
-        )
+        return kind(**{n: tuple(v) if type(v) is list else v for n, v in values.items()})
     except TypeError as error:
         raise ValueError(f"{kind.__name__}: {error}") from None

@@ -1,7 +1,7 @@
 """Results of a run as JSON lines, so that nothing is lost when the run is.
 
-The first line says what is tested and how; each other line is a record, on the disk before the next
-one is begun, or what a session ran on. A run that was stopped goes on with the same file: what is
+The first line says what is tested and how; each other line is a record, on the disk before it is
+counted, or what a session ran on. A run that was stopped goes on with the same file: what is
 in it is not tested again. A last line without an end is what a killed process was writing, and is
 dropped. A file is continued only by a run with the same options and the same tests, for otherwise
 nobody could say what its figures are of.
@@ -108,8 +108,7 @@ def _header(path: Path, line: bytes) -> tuple[Mapping[str, Any], tuple[Test, ...
         given = json.loads(line)
         if given["format"] != FORMAT:
             raise ValueError
-        planned = [Record.from_json({"test": test, "status": "pass"}) for test in given["planned"]]
-        return given["options"], tuple(each.test for each in planned)
+        return given["options"], tuple(Test.from_json(test) for test in given["planned"])
     except (ValueError, KeyError, TypeError):
         raise ResultsError(f"'{path}' has no results of firm-hdl verify") from None
 
@@ -179,16 +178,17 @@ class ResultsWriter:
             )
         return found
 
-    def add(self, record: Record) -> None:
-        """Add a record; it is on the disk when this returns."""
-        self._write({"record": record.as_json()})
+    def add(self, *records: Record) -> None:
+        """Add records; they are on the disk when this returns."""
+        self._write(*({"record": record.as_json()} for record in records))
 
     def missing(self) -> list[Test]:
         """Return the tests that were still to be run when the file was opened."""
         return list(self.before.missing)
 
-    def _write(self, what: Mapping[str, Any]) -> None:
-        left = memoryview(json.dumps(what, allow_nan=False).encode() + b"\n")
+    def _write(self, *lines: Mapping[str, Any]) -> None:
+        text = "".join(f"{json.dumps(line, allow_nan=False)}\n" for line in lines)
+        left = memoryview(text.encode())
         while left:
             left = left[self._file.write(left) :]
         os.fsync(self._file.fileno())

@@ -7,26 +7,37 @@ given, those of the types that were asked for must mean the same as today's.
 
 from __future__ import annotations
 
+import shlex
+import time
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
 
 from tqdm import tqdm
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
-from firm_hdl.frontend import Library
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, check, from_yaml, to_yaml
-from firm_hdl.plan.shape import shape
-from firm_hdl.verify.golden import check_golden, read_golden
+from firm_hdl.verify.acceptance import library_of
+from firm_hdl.verify.executors import PROCESSES
+from firm_hdl.verify.figures import digest, figures
+from firm_hdl.verify.golden import Checked, Golden, check_golden, read_golden
+from firm_hdl.verify.processes import cpu_seconds
+from firm_hdl.verify.records import Record, Seconds, Test, clipped
 from firm_hdl.verify.runner import Task
-from firm_hdl.wire import Wire, lay_out
+from firm_hdl.verify.system import Recorder, System, run_shares, shares_of, wire_of
+from firm_hdl.wire import Wire, lay_out, refusals
 
-__all__ = ["Invariants", "check_plan", "run_ts2"]
+__all__ = ["Invariants", "Ts2", "Ts2Options", "check_plan"]
 
 YAML_STEPS = 2000
 """Longer plans are not printed and read back: it takes a second per some thousand steps."""
+
+MOST_IN_A_SHARE = 16
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,93 +48,280 @@ class Invariants:
     ----------
     problems : tuple of str
         Empty if all is well.
-    shape : int
-        Hash of the plan without names.
-    steps : int
+    not_judged : str
+        Why there can be no plan; empty if there can.
+    shape : str
+        Digest of the plan without names.
+    metrics : dict of str to float
+        Figures of the type and of its plan.
+    planning_seconds, checking_seconds, cpu_seconds : float
+        From the definition to the plan; for everything that is checked; of the processor.
     """
 
-    problems: tuple[str, ...]
-    shape: int = 0
-    steps: int = 0
+    problems: tuple[str, ...] = ()
+    not_judged: str = ""
+    shape: str = ""
+    metrics: dict[str, float] = field(default_factory=dict)
+    planning_seconds: float = 0.0
+    checking_seconds: float = 0.0
+    cpu_seconds: float = 0.0
 
 
 def check_plan(message: Message, wire: Wire | None, bus_bytes: int) -> Invariants:
     """Plan a type, and check the plan. Nothing is raised for what is wrong with it."""
+    if wrong := refusals(message):
+        return Invariants(not_judged=wrong[0].message)
+    began = time.perf_counter()
     try:
         plan = plan_of(message, wire, bus_bytes, DEFAULT_MAX_MESSAGE_BYTES)
     except (BuildError, DefinitionError) as error:
         return Invariants(problems=(str(error),))
+    planned = time.perf_counter()
     problems = list(check(plan, lay_out(message, wire)))
     if len(plan.steps) <= YAML_STEPS and from_yaml(to_yaml(plan)) != plan:
         problems.append("the plan in YAML, read back, is another one")
-    return Invariants(problems=tuple(problems), shape=hash(shape(plan)), steps=len(plan.steps))
+    checked = time.perf_counter()
+    metrics = figures(message, plan, ())
+    # There are no cases.
+    metrics.pop("case_bytes", None)
+    return Invariants(
+        problems=tuple(problems),
+        shape=digest(plan),
+        metrics=metrics,
+        planning_seconds=planned - began,
+        checking_seconds=checked - planned,
+    )
 
 
-def run_ts2(
-    tasks: Sequence[Task],
-    *,
-    paths: Sequence[str] = (),
-    wire: Wire | None = None,
-    widths: Sequence[int] = (8,),
-    golden: str | None = None,
-) -> bool:
-    """Check the plans of types, print what is wrong with them, and say whether nothing is.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ts2Options:
+    """How to plan types.
 
-    Parameters
+    Attributes
     ----------
-    paths : sequence of str
+    paths : tuple of str
         Folders with ROS packages, searched first.
-    widths : sequence of int
+    wire : "ros1", "cdr" or None
+        `None`: that of the distribution.
+    widths : tuple of int
         Buses, in bytes.
     golden : str or None
         Folder of golden plans.
+    """
+
+    paths: tuple[str, ...] = ()
+    wire: Wire | None = None
+    widths: tuple[int, ...] = (8,)
+    golden: str | None = None
+
+    def command(self, distro: str, name: str, bus_bytes: int | None, golden: str = "") -> str:
+        """Return the command that checks one type again."""
+        parts = [f"firm-hdl verify --systems ts2 --distro {distro}"]
+        parts += [f"--path {shlex.quote(path)}" for path in self.paths]
+        parts += [f"--wire {self.wire}"] if self.wire else []
+        parts += [f"--bus-bytes {bus_bytes}"] if bus_bytes else []
+        parts += [f"--golden {shlex.quote(golden)}"] if golden else []
+        return " ".join([*parts, name])
+
+
+@dataclass(frozen=True, slots=True)
+class _Item:
+    """A plan to check."""
+
+    task: Task
+    bus_bytes: int
+
+
+class Ts2(System):
+    """Plans of types; a test is one plan, or one golden plan.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+    options : Ts2Options
+    jobs : int or None
+        Processes; `None`: one per processor.
+    executor : str
+        See :func:`firm_hdl.verify.executors.run_each`.
 
     Raises
     ------
     BuildError
-        If that folder is not one of golden plans.
+        When its tests are asked for, if the folder is not one of golden plans.
     """
-    libraries: dict[str, Library] = {}
-    good: Counter[tuple[str, int]] = Counter()
-    total: Counter[tuple[str, int]] = Counter()
-    shapes: set[int] = set()
-    failed = 0
-    for task in tqdm(tasks, unit="type", desc="TS2", disable=None):
-        if task.distro not in libraries:
-            libraries[task.distro] = Library(task.distro, paths)
-        message = libraries[task.distro].message(task.name)
-        for bus_bytes in widths:
-            found = check_plan(message, wire, bus_bytes)
-            keys = [(distro, bus_bytes) for distro in task.same]
-            total.update(keys)
-            if found.problems:
-                failed += 1
-                _report(f"{task.name} ({task.distro}), {bus_bytes}-byte bus", found.problems)
-            else:
+
+    name = "ts2"
+
+    def __init__(
+        self,
+        tasks: Sequence[Task],
+        options: Ts2Options | None = None,
+        *,
+        jobs: int | None = None,
+        executor: str = PROCESSES,
+    ):
+        self._how = options or Ts2Options()
+        self._items = [_Item(task, width) for task in tasks for width in self._how.widths]
+        self._tasks, self._jobs, self._executor = tasks, jobs, executor
+
+    @cached_property
+    def tests(self) -> Sequence[Test]:
+        """Those of plans, and those of golden plans."""
+        return [*map(self._test, self._items), *map(self._golden_test, self._goldens)]
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """Where golden plans are."""
+        return {"golden": self._how.golden}
+
+    def run(self, recorder: Recorder) -> bool:
+        """Check all plans, and compare golden ones."""
+        # Before the first plan is made.
+        goldens = self._goldens
+        records: dict[_Item, Record] = {}
+        for item in self._items:
+            record = recorder.known(self._test(item))
+            if record is not None:
+                records[item] = record
+        for line in recorder.said(len(records), len(self._items), "plans"):
+            print(line)
+        self._check(records, recorder)
+        self._count(records)
+        failed = sum(record.status == "fail" for record in records.values())
+        if self._how.golden is not None:
+            failed += self._compare(goldens, recorder)
+        return not failed
+
+    def _check(self, records: dict[_Item, Record], recorder: Recorder) -> None:
+        """Check the plans that have no record yet, and add their records."""
+        left = [item for item in self._items if item not in records]
+        shares = shares_of(left, MOST_IN_A_SHARE)
+        run = run_shares(_check_share, self._how, shares, executor=self._executor, jobs=self._jobs)
+        total, known = len(self._items), len(records)
+        bar = tqdm(total=total, initial=known, unit="plan", desc="TS2", disable=None)
+        with bar, closing(run):
+            for share, result in run:
+                found = (
+                    [Invariants(problems=(f"{type(result).__name__}: {result}",))] * len(share)
+                    if isinstance(result, Exception)
+                    else result
+                )
+                made = {i: self._record(i, each) for i, each in zip(share, found, strict=True)}
+                recorder.add(*made.values())
+                records |= made
+                for item, record in made.items():
+                    _say(item, record)
+                bar.update(len(share))
+
+    def _count(self, records: Mapping[_Item, Record]) -> None:
+        good: Counter[tuple[str, int]] = Counter()
+        total: Counter[tuple[str, int]] = Counter()
+        for item in self._items:
+            keys = [(distro, item.bus_bytes) for distro in item.task.same]
+            if records[item].status != "skipped":
+                total.update(keys)
+            if records[item].status == "pass":
                 good.update(keys)
-                shapes.add(found.shape)
-    for distro, bus_bytes in total:
-        key = distro, bus_bytes
-        print(f"{distro:8} {good[key]:4} of {total[key]:4} plans are sound ({bus_bytes}-byte bus)")
-    print(f"{len(shapes)} different circuits")
-    if golden is not None:
-        failed += _golden(tasks, golden, paths)
-    return not failed
+        for key in total:
+            print(f"{key[0]:8} {good[key]:4} of {total[key]:4} plans are sound ({key[1]}-byte bus)")
+        shapes = {record.shape for record in records.values() if record.status == "pass"}
+        if skipped := sum(record.status == "skipped" for record in records.values()):
+            print(f"{skipped} of {len(records)} plans not judged")
+        print(f"{len(shapes)} different circuits")
+
+    def _test(self, item: _Item) -> Test:
+        task = item.task
+        return Test(
+            system=self.name,
+            distro=task.distro,
+            type=task.name,
+            same=task.same,
+            wire=wire_of(task.distro, self._how.wire),
+            bus_bytes=item.bus_bytes,
+            options=",".join(f"path={path}" for path in self._how.paths),
+        )
+
+    def _record(self, item: _Item, found: Invariants) -> Record:
+        return Record(
+            test=self._test(item),
+            status="fail" if found.problems else "skipped" if found.not_judged else "pass",
+            reason=found.not_judged,
+            failures=clipped(found.problems),
+            seconds=Seconds(generation=found.planning_seconds, testing=found.checking_seconds),
+            cpu_seconds=found.cpu_seconds,
+            metrics=found.metrics,
+            shape=found.shape,
+            command=self._how.command(item.task.distro, item.task.name, item.bus_bytes),
+        )
+
+    @cached_property
+    def _goldens(self) -> list[Golden]:
+        """The golden plans of the types that were asked for."""
+        if self._how.golden is None:
+            return []
+        try:
+            goldens = read_golden(self._how.golden)
+        except ValueError as error:
+            raise BuildError(str(error)) from None
+        wanted = {(distro, _plain(task.name)) for task in self._tasks for distro in task.same}
+        return [each for each in goldens if (each.distro, _plain(each.plan.message)) in wanted]
+
+    def _compare(self, goldens: Sequence[Golden], recorder: Recorder) -> int:
+        """Compare golden plans; return how many differ."""
+        known = {
+            golden.path: record
+            for golden in goldens
+            if (record := recorder.known(self._golden_test(golden))) is not None
+        }
+        for result in check_golden([g for g in goldens if g.path not in known], self._how.paths):
+            known[result.golden.path] = record = self._golden_record(result)
+            recorder.add(record)
+            if record.status == "fail":
+                _report(str(result.golden.path), record.failures)
+        differing = sum(record.status == "fail" for record in known.values())
+        print(f"golden plans: {len(goldens)} compared, {differing} differ")
+        return differing
+
+    def _golden_test(self, golden: Golden) -> Test:
+        return Test(
+            system=self.name,
+            distro=golden.distro,
+            type=golden.plan.message,
+            wire=golden.plan.wire,
+            bus_bytes=golden.plan.bus_bytes,
+            options=f"golden={golden.path}",
+        )
+
+    def _golden_record(self, result: Checked) -> Record:
+        test = self._golden_test(result.golden)
+        return Record(
+            test=test,
+            status="pass" if result.is_same else "fail",
+            failures=clipped([*result.problems, *map(str, result.changes)]),
+            command=self._how.command(test.distro, test.type, None, golden=self._how.golden or ""),
+        )
 
 
-def _golden(tasks: Sequence[Task], folder: str, paths: Sequence[str]) -> int:
-    """Compare the golden plans of some types; return how many differ."""
+def _check_share(options: Ts2Options, share: tuple[_Item, ...]) -> list[Invariants]:
+    return [_checked(options, item) for item in share]
+
+
+def _checked(options: Ts2Options, item: _Item) -> Invariants:
+    """Read, plan and check one type. Nothing is raised: what goes wrong is in the result."""
+    began, began_cpu = time.perf_counter(), cpu_seconds()
     try:
-        goldens = read_golden(folder)
-    except ValueError as error:
-        raise BuildError(str(error)) from None
-    wanted = {(distro, _plain(task.name)) for task in tasks for distro in task.same}
-    chosen = [each for each in goldens if (each.distro, _plain(each.plan.message)) in wanted]
-    differing = [result for result in check_golden(chosen, paths) if not result.is_same]
-    for result in differing:
-        _report(str(result.golden.path), [*result.problems, *map(str, result.changes)])
-    print(f"golden plans: {len(chosen)} compared, {len(differing)} differ")
-    return len(differing)
+        message = library_of(item.task.distro, options.paths).message(item.task.name)
+        read = time.perf_counter() - began
+        found = check_plan(message, options.wire, item.bus_bytes)
+    except Exception as error:  # Whatever it is, the other types are to go on.
+        is_own = isinstance(error, DefinitionError)
+        problem = str(error) if is_own else f"{type(error).__name__}: {error}"
+        return Invariants(problems=(problem,), cpu_seconds=cpu_seconds() - began_cpu)
+    return replace(
+        found,
+        planning_seconds=read + found.planning_seconds,
+        cpu_seconds=cpu_seconds() - began_cpu,
+    )
 
 
 def _plain(name: str) -> str:
@@ -131,5 +329,13 @@ def _plain(name: str) -> str:
     return name.replace("/msg/", "/")
 
 
-def _report(what: str, lines: Sequence[str]) -> None:
+def _say(item: _Item, record: Record) -> None:
+    task = item.task
+    if record.status == "fail":
+        _report(f"{task.name} ({task.distro}), {item.bus_bytes}-byte bus", record.failures)
+    if record.status == "skipped":
+        tqdm.write(f"not judged: {task.name} ({task.distro}): {record.reason}")
+
+
+def _report(what: str, lines: Iterable[str]) -> None:
     tqdm.write("\n".join([f"FAIL {what}", *(f"    {line}" for line in lines)]))

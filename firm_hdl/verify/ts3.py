@@ -5,27 +5,28 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, closing
+from contextlib import closing
 from dataclasses import dataclass
+from typing import Any
 
 from tqdm import tqdm
 
 from firm_hdl.frontend import DISTROS
-from firm_hdl.verify.environment import code_digest, environment
 from firm_hdl.verify.executors import PROCESSES
 from firm_hdl.verify.options import Options, Result
 from firm_hdl.verify.recorded import record_of, same_circuits, test_of
-from firm_hdl.verify.records import Record
-from firm_hdl.verify.results import ResultsWriter
+from firm_hdl.verify.records import Record, Test
+from firm_hdl.verify.references import find_references
 from firm_hdl.verify.runner import Task, run_tasks
 from firm_hdl.verify.simulators import simulator
+from firm_hdl.verify.system import Recorder, System, wire_of
 
-__all__ = ["How", "run_ts3"]
+__all__ = ["How", "Ts3"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class How:
-    """Where tests run, and where their results go.
+    """Where tests run.
 
     Attributes
     ----------
@@ -33,101 +34,106 @@ class How:
         Processes; `None`: one per processor.
     executor : str
         See :func:`firm_hdl.verify.executors.run_each`.
-    results : str or None
-        File of results, which is continued if it is there.
     share_circuits : bool
         Whether types with the same circuit are simulated once.
     """
 
     jobs: int | None = None
     executor: str = PROCESSES
-    results: str | None = None
     share_circuits: bool = False
 
 
-def run_ts3(tasks: Sequence[Task], options: Sequence[Options], how: How | None = None) -> bool:
-    """Run tasks with each of some options, and print what became of them.
+class Ts3(System):
+    """Acceptance; a test is one type with one set of options.
 
-    Returns
-    -------
-    bool
-        Whether nothing failed.
+    Parameters
+    ----------
+    tasks : sequence of Task
+    options : sequence of Options
+        Which differ in the width of the bus.
 
     Raises
     ------
-    SimulatorMissingError
-    ExecutorError
-    ResultsError
+    SimulatorMissingError, ClientMissingError
+        When it is entered.
     """
-    how = how or How()
-    for each in options:
-        # Before the first type is run, and once: not by each type.
-        simulator(each.simulator)
-    began = time.perf_counter()
-    with ExitStack() as stack:
-        writer = None
-        if how.results is not None:
-            writer = stack.enter_context(_writer(how, tasks, options))
-        failures = sum(_run(tasks, each, how, writer) for each in options)
-    print(f"{time.perf_counter() - began:.0f} s, {failures} failures")
-    return not failures
 
+    name = "ts3"
 
-def _writer(how: How, tasks: Sequence[Task], options: Sequence[Options]) -> ResultsWriter:
-    assert how.results is not None
-    first = options[0]
-    return ResultsWriter(
-        how.results,
-        options={
-            "systems": ["ts3"],
+    def __init__(self, tasks: Sequence[Task], options: Sequence[Options], how: How | None = None):
+        self._tasks, self._options, self._how = tasks, options, how or How()
+
+    def __enter__(self) -> Ts3:
+        for each in self._options:
+            # Before the first type is run, and once: not by each type.
+            simulator(each.simulator)
+        first = self._options[0]
+        if not first.bags:
+            wires = [wire_of(task.distro, first.wire) for task in self._tasks]
+            for line in find_references(first.references, wires):
+                print(line)
+        return self
+
+    @property
+    def tests(self) -> Sequence[Test]:
+        """All types with all options."""
+        return [test_of(task, each) for each in self._options for task in self._tasks]
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """What cases there are, and what becomes of them."""
+        first = self._options[0]
+        return {
             "simulator": first.simulator,
-            "bus_bytes": [each.bus_bytes for each in options],
-            "wire": first.wire,
             "seed": first.seed,
             "cases": first.most_cases,
             "stalls": first.stalled,
             "broken": first.broken,
-            "share_circuits": how.share_circuits,
-            "paths": list(first.paths),
-            "code": code_digest(),
-        },
-        planned=[test_of(task, each) for each in options for task in tasks],
-        session=environment(executor=how.executor),
-    )
+            "share_circuits": self._how.share_circuits,
+            "bags": list(first.bags),
+            "longest": first.longest,
+            "references": None if first.references is None else list(first.references),
+        }
 
+    def run(self, recorder: Recorder) -> bool:
+        """Run all tasks with each of the options.
 
-def _run(tasks: Sequence[Task], options: Options, how: How, writer: ResultsWriter | None) -> int:
-    """Run all tasks with one set of options; return the number of types that failed."""
-    before = {} if writer is None else writer.before.records
-    records = {task: before.get(test_of(task, options).key) for task in tasks}
-    left = [task for task, record in records.items() if record is None]
-    if len(left) < len(tasks):
-        print(f"{len(tasks) - len(left)} of {len(tasks)} types have a result in {how.results}")
-    same = same_circuits(tasks, options) if how.share_circuits else {}
-    results: list[Result] = []
-    bar = tqdm(
-        total=len(tasks),
-        initial=len(tasks) - len(left),
-        unit="type",
-        desc=f"{options.bus_bytes}-byte bus",
-        disable=None,
-    )
-    run = run_tasks(left, options, how.jobs, executor=how.executor, golden_only=same)
-    with bar, closing(run):
-        for task, result in run:
-            results.append(result)
-            other = same.get(task)
-            same_as = "" if other is None else test_of(other, options).key
-            records[task] = record = record_of(task, result, options, same_as)
-            if writer is not None:
-                writer.add(record)
-            for line in _said(task, result):
-                tqdm.write(line)
-            bar.update()
-    _count(records, options)
-    judged = [result for result in results if not result.not_judged]
-    _summarize([result for result in judged if result.simulated_cycles], options)
-    return sum(record is not None and record.status == "fail" for record in records.values())
+        Raises
+        ------
+        ExecutorError
+        """
+        began = time.perf_counter()
+        failures = sum([self._run(each, recorder) for each in self._options])
+        print(f"{time.perf_counter() - began:.0f} s, {failures} failures")
+        return not failures
+
+    def _run(self, options: Options, recorder: Recorder) -> int:
+        """Run all tasks with one set of options; return the number of types that failed."""
+        tasks, how = self._tasks, self._how
+        records = {task: recorder.known(test_of(task, options)) for task in tasks}
+        left = [task for task, record in records.items() if record is None]
+        known = len(tasks) - len(left)
+        for line in recorder.said(known, len(tasks), "types"):
+            print(line)
+        same = same_circuits(tasks, options) if how.share_circuits else {}
+        results: list[Result] = []
+        label = f"{options.bus_bytes}-byte bus"
+        bar = tqdm(total=len(tasks), initial=known, unit="type", desc=label, disable=None)
+        run = run_tasks(left, options, how.jobs, executor=how.executor, golden_only=same)
+        with bar, closing(run):
+            for task, result in run:
+                results.append(result)
+                other = same.get(task)
+                same_as = "" if other is None else test_of(other, options).key
+                records[task] = record = record_of(task, result, options, same_as)
+                recorder.add(record)
+                for line in _said(task, result):
+                    tqdm.write(line)
+                bar.update()
+        _count(records, options)
+        judged = [result for result in results if not result.not_judged]
+        _summarize([result for result in judged if result.simulated_cycles], options)
+        return sum(record is not None and record.status == "fail" for record in records.values())
 
 
 def _said(task: Task, result: Result) -> Iterator[str]:
@@ -172,6 +178,8 @@ def _summarize(results: Sequence[Result], options: Options) -> None:
     )
     slowest = sorted(results, key=lambda result: -result.seconds)[:5]
     print("slowest:", ", ".join(f"{each.name} {each.seconds:.1f} s" for each in slowest))
+    writers = Counter(name for result in results for name in ("rosbags", *result.written_by))
+    print("wire bytes:", ", ".join(f"{name} {count} types" for name, count in writers.items()))
     compared = [result.comparison for result in results if result.comparison is not None]
     if compared:
         same = sum(not each.failures for each in compared)

@@ -6,8 +6,9 @@ import pytest
 
 import firm_hdl.verify.benches as benches
 from firm_hdl.export.vhdl_bench import RUN_SCRIPT
-from firm_hdl.verify.benches import BenchRun, run_bench, run_benches
+from firm_hdl.verify.benches import Benches, BenchRun, run_bench
 from firm_hdl.verify.runner import collect_tasks
+from firm_hdl.verify.system import Recorder
 from tests.verify.samples import own_package
 
 HEADER = "std_msgs/msg/Header"
@@ -101,12 +102,12 @@ def test_bench_of_the_record_view_is_run_as_well(ghdl, monkeypatch):
 
 def test_table_and_status_say_what_failed_and_how_to_repeat(ghdl, monkeypatch, capsys):
     tasks = collect_tasks(["lyrical"], ["std_msgs/msg/Bool"])
-    assert run_benches(tasks, jobs=1)
+    assert Benches(tasks, jobs=1).run(Recorder())
     rows = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert rows[0][:4] == ["8-byte", "bus", "types", "pass"]
     assert rows[1][:5] == ["lyrical", "1", "1", "0", "0"]
     change(monkeypatch, "_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ")
-    assert not run_benches(tasks, wire="ros1", widths=[4], jobs=1)
+    assert not Benches(tasks, wire="ros1", widths=[4], jobs=1).run(Recorder())
     said = capsys.readouterr().out
     assert "FAIL std_msgs/msg/Bool (lyrical)\n" in said
     again = "firm-hdl verify --systems bench --distro lyrical --wire ros1 --bus-bytes 4"

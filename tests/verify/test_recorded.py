@@ -100,7 +100,7 @@ def test_results_of_another_run_are_refused(tmp_path, capsys):
 def test_results_of_other_code_are_refused(tmp_path, capsys, monkeypatch):
     path = tmp_path / "r.jsonl"
     assert verify("--results", str(path), "std_msgs/Bool") == 0
-    monkeypatch.setattr("firm_hdl.verify.ts3.code_digest", lambda: "other")
+    monkeypatch.setattr("firm_hdl.verify.command.code_digest", lambda: "other")
     assert verify("--results", str(path), "std_msgs/Bool") == 1
     assert re.search(r'code was "[0-9a-f]{12}", and is "other"', capsys.readouterr().err)
 
@@ -116,7 +116,10 @@ def test_report_is_written_with_the_results(tmp_path, capsys):
     ("arguments", "said"),
     [
         (["--report", "r.html"], "--report needs --results"),
-        (["--results", "r", "--systems", "bench"], "--results are of ts3"),
+        (
+            ["--results", "r", "--systems", "ts1", "--mutations", "3"],
+            "--results keeps nothing of --mutations",
+        ),
         (["--executor", "x"], "executor must be 'processes' or 'dask://HOST:PORT', not 'x'"),
     ],
 )
@@ -161,9 +164,9 @@ def test_same_circuits_are_simulated_once(tmp_path, capsys):
 
 def test_circuit_that_fails_fails_all_that_have_it(tmp_path, monkeypatch, capsys):
     path = tmp_path / "r.jsonl"
-    good = acceptance._Acceptance.good
+    good = acceptance.Acceptance.good
     monkeypatch.setattr(
-        acceptance._Acceptance, "good", lambda run, *a: (good(run, *a), run.fail("hardware: no"))
+        acceptance.Acceptance, "good", lambda run, *a: (good(run, *a), run.fail("hardware: no"))
     )
     assert verify("--results", str(path), "--share-circuits", *TWINS) == 1
     assert "humble      0 of    2 types pass" in capsys.readouterr().out

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from importlib.resources import files
 
@@ -13,23 +13,32 @@ from firm_hdl.verify.report.prose import (
     caption_of_fit,
     facts,
     headline,
-    reasons,
+    note_of,
+    shown_packages,
+    shown_tests,
     shown_trends,
     sources,
 )
-from firm_hdl.verify.report.summary import Curve, Summary
+from firm_hdl.verify.report.summary import Curve, Summary, Trend
 from firm_hdl.verify.report.tables import (
+    MOST_ROWS,
     Cell,
     Table,
+    circuits_table,
     coverage_table,
+    cut,
     every_table,
+    failure_table,
     group_table,
     missing_table,
+    oracle_table,
+    said_table,
     stage_table,
     title_of,
     trend_table,
     within_table,
 )
+from firm_hdl.verify.report.verdicts import Reason, reason_groups
 
 __all__ = ["to_html"]
 
@@ -38,6 +47,8 @@ POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inli
 
 MOST_CHARTS = 6
 MOST_OPEN_ROWS = 40
+MOST_ARTICLES = 20
+MOST_NAMES = 50
 SHORT = 40
 
 
@@ -83,7 +94,8 @@ def _class(verdict: str) -> str:
 
 
 def _failures(summary: Summary) -> Iterator[str]:
-    for outcome in summary.failed:
+    failed = summary.failed
+    for outcome in failed[:MOST_ARTICLES]:
         yield f"<article><h3>{escape(title_of(outcome))}</h3>"
         texts = [escape(text) for text in outcome.failures]
         yield f"<pre>{texts[0]}</pre>"
@@ -96,33 +108,59 @@ def _failures(summary: Summary) -> Iterator[str]:
             yield '<div class="soft">With a waveform</div>'
             yield f"<pre>{escape(outcome.record.waveform_command)}</pre>"
         yield "</article>"
+    if failed[MOST_ARTICLES:]:
+        table, rest = cut(failure_table(failed[MOST_ARTICLES:]))
+        yield f"<details><summary>{len(failed) - MOST_ARTICLES} more tests failed</summary>"
+        yield _table(table, "failed", "Find failures", rest) + "</details>"
 
 
 def _rest(summary: Summary) -> Iterator[str]:
     for name, outcomes in (("not run", summary.not_run), ("skipped", summary.skipped)):
         if outcomes:
-            tests = "test" if len(outcomes) == 1 else "tests"
-            was = "was" if len(outcomes) == 1 else "were"
-            yield f"<details><summary>{len(outcomes)} {tests} {was} {name}</summary>"
-            yield _list(outcomes) + "</details>"
+            tests = "test was" if len(outcomes) == 1 else "tests were"
+            yield f"<h3>{len(outcomes)} {tests} {name}</h3>"
+            yield from map(_group, reason_groups(outcomes))
+    if summary.noted:
+        yield "<h3>Notes</h3>"
+        yield from map(_group, reason_groups(summary.noted, note_of))
 
 
-def _list(outcomes: Iterable[Outcome]) -> str:
-    items = "".join(f"<li>{escape(text)}</li>" for text in map(reasons, outcomes))
-    return f"<ul>{items}</ul>"
+def _group(group: Reason) -> str:
+    head = f"{len(group.outcomes)}: {escape(group.text)}"
+    return f"<details><summary>{head}</summary>{_list(group.outcomes)}</details>"
+
+
+def _list(outcomes: Sequence[Outcome]) -> str:
+    items = "".join(f"<li>{escape(title_of(each))}</li>" for each in outcomes[:MOST_NAMES])
+    left = len(outcomes) - MOST_NAMES
+    return f"<ul>{items}{f'<li>and {left} more</li>' if left > 0 else ''}</ul>"
 
 
 def _results(summary: Summary) -> Iterator[str]:
     if summary.by_distro:
+        yield _table(group_table(summary.by_suite, "Test system"))
         yield _table(group_table(summary.by_distro, "Test system|Distribution"))
+
+
+def _oracles(summary: Summary) -> Iterator[str]:
+    if summary.oracles:
+        yield _table(oracle_table(summary))
+    if summary.said:
+        yield _table(said_table(summary))
+
+
+def _circuits(summary: Summary) -> Iterator[str]:
+    if summary.circuits:
+        yield _table(circuits_table(summary))
 
 
 def _packages(summary: Summary) -> Iterator[str]:
     if summary.by_package:
-        table = group_table(summary.by_package, "Test system|Distribution|Package")
+        shown, rest = shown_packages(summary, MOST_ROWS)
+        table = group_table(shown, "Test system|Distribution|Package")
         is_open = " open" if len(table.rows) <= MOST_OPEN_ROWS else ""
-        yield f"<details{is_open}><summary>{len(table.rows)} packages</summary>"
-        yield _table(table, "packages", "Find a package") + "</details>"
+        yield f"<details{is_open}><summary>Show {len(summary.by_package)} rows</summary>"
+        yield _table(table, "packages", "Find a package", rest) + "</details>"
 
 
 def _time(summary: Summary) -> Iterator[str]:
@@ -153,15 +191,25 @@ def _trends(summary: Summary) -> Iterator[str]:
         return
     yield '<div class="key"><span><i class="fit-law-key"></i>power law</span>'
     yield '<span><i class="dash fit-line-key"></i>line (bent by the logarithmic axes)</span></div>'
+    # The suite that takes most time is the one that people ask about.
+    spent = {curve.suite: curve.seconds.total for curve in summary.curves if curve.seconds}
+    suites = list(dict.fromkeys(trend.suite for trend in summary.trends))
+    slowest = max(suites, key=lambda suite: spent.get(suite, 0))
+    for suite in suites:
+        yield f"<details{' open' if suite == slowest else ''}><summary>{escape(suite)}</summary>"
+        yield from _trends_of([trend for trend in summary.trends if trend.suite == suite])
+        yield "</details>"
+
+
+def _trends_of(trends: Sequence[Trend]) -> Iterator[str]:
     yield '<div class="pair">'
-    for trend in shown_trends(summary, MOST_CHARTS):
+    for trend in shown_trends(trends, MOST_CHARTS):
         yield f"<figure>{scatter(trend)}<figcaption>{escape(caption_of_fit(trend))}"
         yield "</figcaption></figure>"
     yield "</div>"
-    total = [trend for trend in summary.trends if trend.time == "total"]
-    yield _table(trend_table(total))
+    yield _table(trend_table(trend for trend in trends if trend.time == "total"))
     yield "<details><summary>By stage</summary>"
-    yield _table(trend_table(t for t in summary.trends if t.time != "total")) + "</details>"
+    yield _table(trend_table(trend for trend in trends if trend.time != "total")) + "</details>"
 
 
 def _coverage(summary: Summary) -> Iterator[str]:
@@ -170,7 +218,8 @@ def _coverage(summary: Summary) -> Iterator[str]:
     yield _table(coverage_table(summary))
     if summary.uncovered:
         yield f"<details open><summary>{len(summary.uncovered)} tests did not take all</summary>"
-        yield _table(missing_table(summary.uncovered)) + "</details>"
+        table, rest = cut(missing_table(summary.uncovered))
+        yield _table(table, rest=rest) + "</details>"
 
 
 def _extremes(summary: Summary) -> Iterator[str]:
@@ -184,8 +233,9 @@ def _extremes(summary: Summary) -> Iterator[str]:
 
 def _tests(summary: Summary) -> Iterator[str]:
     if summary.outcomes:
-        yield f"<details><summary>Show all {len(summary.outcomes)} tests</summary>"
-        yield _table(every_table(summary.outcomes), "tests", "Find tests, such as nav_msgs fail")
+        shown, rest = shown_tests(summary, MOST_ROWS)
+        yield f"<details><summary>Show {len(shown)} of {len(summary.outcomes)} tests</summary>"
+        yield _table(every_table(shown), "tests", "Find tests, such as nav_msgs fail", rest)
         yield "</details>"
 
 
@@ -197,8 +247,10 @@ def _environment(summary: Summary) -> Iterator[str]:
 _SECTIONS = {
     "failures": _failures,
     "results": _results,
+    "oracles": _oracles,
     "rest": _rest,
     "packages": _packages,
+    "circuits": _circuits,
     "coverage": _coverage,
     "time": _time,
     "trends": _trends,
@@ -208,7 +260,7 @@ _SECTIONS = {
 }
 
 
-def _table(table: Table, name: str = "", hint: str = "") -> str:
+def _table(table: Table, name: str = "", hint: str = "", rest: str = "") -> str:
     heads = "".join(
         f'<th data-sort class="{"n" if text.endswith("#") else "t"}">{escape(text.rstrip("#"))}'
         "</th>"
@@ -217,9 +269,10 @@ def _table(table: Table, name: str = "", hint: str = "") -> str:
     rows = "".join(f"<tr>{''.join(map(_cell, row))}</tr>\n" for row in table.rows)
     found = f'<input type="search" data-table="table-{name}" placeholder="{hint}">' if name else ""
     mark = f' id="table-{name}"' if name else ""
+    more = f'<p class="soft">{escape(rest)}</p>' if rest else ""
     return (
         f'{found}<div class="wide"><table{mark}><thead><tr>{heads}</tr></thead>'
-        f"<tbody>\n{rows}</tbody></table></div>"
+        f"<tbody>\n{rows}</tbody></table></div>{more}"
     )
 
 
@@ -227,7 +280,8 @@ def _cell(cell: Cell) -> str:
     if cell.counts is not None:
         return f'<td data-v="{cell.value}">{counts_bar(cell.counts)}</td>'
     if cell.value is not None:
-        return f'<td class="n" data-v="{cell.value:.9g}">{escape(cell.text)}</td>'
+        kind = f"n {_class(cell.verdict)}".strip()
+        return f'<td class="{kind}" data-v="{cell.value:.9g}">{escape(cell.text)}</td>'
     kind = f' class="t {_class(cell.verdict)}"' if cell.verdict else ""
     if len(cell.text) < SHORT:
         # Nothing is gained by breaking it.

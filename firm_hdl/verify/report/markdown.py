@@ -5,22 +5,41 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from firm_hdl.verify.report.prose import SECTIONS, facts, headline, reasons, sources
+from firm_hdl.verify.report.outcomes import Outcome
+from firm_hdl.verify.report.prose import (
+    SECTIONS,
+    facts,
+    headline,
+    note_of,
+    shown_packages,
+    shown_tests,
+    sources,
+)
 from firm_hdl.verify.report.summary import Summary
 from firm_hdl.verify.report.tables import (
+    MOST_ROWS,
     Cell,
     Table,
+    circuits_table,
     coverage_table,
+    cut,
     every_table,
+    failure_table,
     group_table,
     missing_table,
+    oracle_table,
+    said_table,
     stage_table,
     title_of,
     trend_table,
     within_table,
 )
+from firm_hdl.verify.report.verdicts import reason_groups
 
 __all__ = ["to_markdown"]
+
+MOST_FAILURES = 20
+MOST_NAMES = 50
 
 
 def to_markdown(summary: Summary) -> str:
@@ -36,26 +55,55 @@ def to_markdown(summary: Summary) -> str:
 
 
 def _failures(summary: Summary) -> Iterator[str]:
-    for outcome in summary.failed:
+    failed = summary.failed
+    for outcome in failed[:MOST_FAILURES]:
         yield from (f"### {_text(title_of(outcome))}", "", *_block(*outcome.failures))
         if outcome.record is not None and outcome.record.command:
             yield from ("Repeat it:", "", *_block(outcome.record.command))
         if outcome.record is not None and outcome.record.waveform_command:
             yield from ("With a waveform:", "", *_block(outcome.record.waveform_command))
+    if failed[MOST_FAILURES:]:
+        yield from (f"{len(failed) - MOST_FAILURES} more tests failed:", "")
+        yield from _cut(failure_table(failed[MOST_FAILURES:]))
 
 
 def _rest(summary: Summary) -> Iterator[str]:
-    for name, outcomes in (("Not run", summary.not_run), ("Skipped", summary.skipped)):
-        if outcomes:
-            yield from (f"{name}:", "", *(f"* {_text(reasons(each))}" for each in outcomes), "")
+    parts = [(name, reason_groups(outcomes)) for name, outcomes in _untested(summary)]
+    parts.append(("Note", reason_groups(summary.noted, note_of)))
+    for name, groups in parts:
+        for group in groups:
+            yield from (f"{name}, {len(group.outcomes)}: {_text(group.text)}", "")
+            shown = group.outcomes[:MOST_NAMES]
+            yield from (f"* {_text(title_of(each))}" for each in shown)
+            left = len(group.outcomes) - len(shown)
+            yield from ([f"* and {left} more"] if left else [])
+            yield ""
+
+
+def _untested(summary: Summary) -> Iterator[tuple[str, list[Outcome]]]:
+    yield "Not run", summary.not_run
+    yield "Skipped", summary.skipped
+
+
+def _oracles(summary: Summary) -> Iterator[str]:
+    yield from _table(oracle_table(summary))
+    yield from _table(said_table(summary))
+
+
+def _circuits(summary: Summary) -> Iterator[str]:
+    if summary.circuits:
+        yield from _table(circuits_table(summary))
 
 
 def _results(summary: Summary) -> Iterator[str]:
+    yield from _table(group_table(summary.by_suite, "Test system"))
     yield from _table(group_table(summary.by_distro, "Test system|Distribution"))
 
 
 def _packages(summary: Summary) -> Iterator[str]:
-    yield from _table(group_table(summary.by_package, "Test system|Distribution|Package"))
+    shown, rest = shown_packages(summary, MOST_ROWS)
+    yield from _table(group_table(shown, "Test system|Distribution|Package"))
+    yield from (_text(rest), "")
 
 
 def _time(summary: Summary) -> Iterator[str]:
@@ -74,7 +122,7 @@ def _coverage(summary: Summary) -> Iterator[str]:
     yield from _table(coverage_table(summary))
     if summary.uncovered:
         yield from (f"{len(summary.uncovered)} tests did not take all:", "")
-        yield from _table(missing_table(summary.uncovered))
+        yield from _cut(missing_table(summary.uncovered))
 
 
 def _extremes(summary: Summary) -> Iterator[str]:
@@ -87,7 +135,9 @@ def _extremes(summary: Summary) -> Iterator[str]:
 
 
 def _tests(summary: Summary) -> Iterator[str]:
-    yield from _table(every_table(summary.outcomes))
+    shown, rest = shown_tests(summary, MOST_ROWS)
+    yield from _table(every_table(shown))
+    yield from (_text(rest), "")
 
 
 def _environment(summary: Summary) -> Iterator[str]:
@@ -98,8 +148,10 @@ def _environment(summary: Summary) -> Iterator[str]:
 _SECTIONS = {
     "failures": _failures,
     "results": _results,
+    "oracles": _oracles,
     "rest": _rest,
     "packages": _packages,
+    "circuits": _circuits,
     "coverage": _coverage,
     "time": _time,
     "trends": _trends,
@@ -107,6 +159,12 @@ _SECTIONS = {
     "tests": _tests,
     "environment": _environment,
 }
+
+
+def _cut(table: Table) -> Iterator[str]:
+    shown, rest = cut(table)
+    yield from _table(shown)
+    yield from (_text(rest), "")
 
 
 def _table(table: Table) -> Iterator[str]:

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
 
 from firm_hdl.verify.report.charts import law_text, line_text
 from firm_hdl.verify.report.outcomes import Outcome
-from firm_hdl.verify.report.summary import Summary, Trend
+from firm_hdl.verify.report.summary import Group, Summary, Trend
 from firm_hdl.verify.report.svg import number, seconds
-from firm_hdl.verify.report.tables import title_of
 
 __all__ = [
     "SECTIONS",
     "caption_of_fit",
     "facts",
     "headline",
-    "reasons",
+    "note_of",
+    "shown_packages",
+    "shown_tests",
     "shown_trends",
     "sources",
 ]
@@ -23,10 +25,23 @@ __all__ = [
 SECTIONS = {
     "failures": ("Failures", ""),
     "results": (
-        "Results by distribution",
+        "Results",
         "A type that is the same in several distributions is tested once, and counts in each.",
     ),
-    "rest": ("Not tested", "A test that there is no result of is not counted as passed."),
+    "oracles": (
+        "Definitions and oracles",
+        "TS1: each oracle reads the definitions with code of its own. A known difference is one "
+        "that docs/errata.md explains under its key.",
+    ),
+    "rest": (
+        "Not tested, and notes",
+        "A test that there is no result of is not counted as passed. Reasons and notes that differ "
+        "in names and numbers only are one.",
+    ),
+    "circuits": (
+        "Different circuits",
+        "Plans that differ in names only are the same circuit.",
+    ),
     "packages": ("Results by package", ""),
     "coverage": (
         "Plan coverage",
@@ -37,8 +52,9 @@ SECTIONS = {
     "time": (
         "Time",
         "By the clock on the wall, per test, on one processor. Generation: from the definition to "
-        "test cases and a circuit that is ready to run. Simulation: running it. Testing: comparing "
-        "what came out with the oracle and the golden model.",
+        "the model (TS1), to the plan (TS2), or to test cases and a circuit that is ready to run. "
+        "Simulation: running it. Testing: asking oracles and comparing the model with what they "
+        "say, the plan with its layout, or what came out with the oracle and the golden model.",
     ),
     "trends": (
         "What makes a test slow",
@@ -46,7 +62,8 @@ SECTIONS = {
         "fit best by least squares. R² of a power law is that of the logarithms. Leaves are fields "
         "of all levels; dynamic leaves are of no fixed size; streams are those of the message side "
         "of a converter; steps and decisions are those of its plan; shifting counts places on the "
-        "wire whose padding differs from message to message; case bytes are those of all cases.",
+        "wire whose padding differs from message to message; case bytes are those of all cases; "
+        "characters and fields are those of the file of a definition.",
     ),
     "extremes": ("Slowest and most complex", ""),
     "tests": ("All tests", ""),
@@ -73,46 +90,87 @@ def facts(summary: Summary) -> Iterator[tuple[str, str]]:
     counts = summary.counts
     yield number(counts.failed), "failed"
     yield number(counts.total), "tests"
-    yield number(len({outcome.test.type for outcome in summary.outcomes})), "types"
+    # ROS 1 does not say the kind of a message.
+    names = {outcome.test.type.replace("/msg/", "/") for outcome in summary.outcomes}
+    yield number(len(names)), "types"
     if summary.circuits:
-        different = sum(shapes for shapes, _ in summary.circuits.values())
-        yield number(different), "different circuits"
+        # Each test system has the same ones.
+        systems: dict[str, set[str]] = {}
+        for outcome in summary.outcomes:
+            if outcome.record is not None and outcome.record.shape:
+                systems.setdefault(outcome.test.system, set()).add(outcome.record.shape)
+        yield number(max(map(len, systems.values()))), "different circuits"
     if summary.coverage:
         taken = sum(each.taken for each in summary.coverage)
         possible = sum(each.possible for each in summary.coverage)
         share = f"{taken / max(1, possible):.2%}"
         yield "99.99%" if share == "100.00%" and taken < possible else share, "plan coverage"
-    records = [outcome.record for outcome in summary.outcomes if outcome.record is not None]
-    cpu = sorted(record.cpu_seconds for record in records if record.cpu_seconds)
-    if cpu:
-        yield seconds(cpu[len(cpu) // 2]), "median CPU time per test"
-        yield seconds(sum(cpu)), "CPU time in total"
+    yield from _cpu_facts(summary)
 
 
-def reasons(outcome: Outcome) -> str:
-    """Say which test was not run, or why it was skipped."""
-    record = outcome.record
-    if outcome.circuit_of:
-        return f"{title_of(outcome)}: has the circuit of {outcome.circuit_of}, which was not run"
-    reason = record.reason if record is not None else ""
-    return f"{title_of(outcome)}{': ' if reason else ''}{reason}"
+def _cpu_facts(summary: Summary) -> Iterator[tuple[str, str]]:
+    """Yield processor times: of the types that have tests of all suites, and of everything."""
+    spent: dict[tuple[str, str], float] = defaultdict(float)
+    tests: dict[tuple[str, str], int] = defaultdict(int)
+    for outcome in summary.outcomes:
+        if outcome.record is not None and outcome.record.cpu_seconds:
+            key = outcome.test.distro, outcome.test.type.replace("/msg/", "/")
+            spent[key] += outcome.record.cpu_seconds
+            tests[key] += 1
+    if not spent:
+        return
+    most = max(tests.values())
+    whole = sorted(spent[key] for key, count in tests.items() if count == most)
+    what = "test" if most == 1 else f"type, {most} tests of each"
+    yield seconds(whole[len(whole) // 2]), f"median CPU time per {what}"
+    yield seconds(sum(spent.values())), "CPU time in total"
 
 
-def shown_trends(summary: Summary, most: int) -> list[Trend]:
-    """Choose which trends to draw: for each test system those that explain most."""
+def note_of(outcome: Outcome) -> str:
+    """Return what is to be known about a test; empty in most cases."""
+    return "" if outcome.record is None else outcome.record.note
+
+
+def shown_tests(summary: Summary, most: int) -> tuple[list[Outcome], str]:
+    """Choose which tests to list: all, or those that did not pass and then the slowest.
+
+    Returns
+    -------
+    tests, rest
+        And a word on those that are left out, which is empty if there are none.
+    """
+    found = list(summary.outcomes)
+    left = len(found) - most
+    if left <= 0:
+        return found, ""
+
+    def order(outcome: Outcome) -> tuple[int, float]:
+        record = outcome.record
+        place = ("fail", "not run", "skipped", "pass").index(outcome.verdict)
+        return place, -record.seconds.total if record is not None else 0.0
+
+    found.sort(key=order)
+    text = "those that did not pass come first, then the slowest; the report as JSON has all"
+    return found[:most], f"and {number(left)} more: {text}"
+
+
+def shown_packages(summary: Summary, most: int) -> tuple[list[Group], str]:
+    """Choose which packages to list: all, or those first that did not pass."""
+    found = list(summary.by_package)
+    left = len(found) - most
+    if left <= 0:
+        return found, ""
+    found.sort(key=lambda group: group.counts.verdict == "pass")
+    return found[:most], f"and {number(left)} more; the report as JSON has all"
+
+
+def shown_trends(trends: Iterable[Trend], most: int) -> list[Trend]:
+    """Choose which trends of a suite to draw: those that explain most."""
     found = [
-        trend
-        for trend in summary.trends
-        if trend.time == "total" and trend.correlation.power is not None
+        trend for trend in trends if trend.time == "total" and trend.correlation.power is not None
     ]
     found.sort(key=lambda trend: -abs(trend.correlation.spearman))
-    suites: dict[str, int] = {}
-    chosen = []
-    for trend in found:
-        suites[trend.suite] = suites.get(trend.suite, 0) + 1
-        if suites[trend.suite] <= most:
-            chosen.append(trend)
-    return sorted(chosen, key=lambda trend: list(suites).index(trend.suite))
+    return found[:most]
 
 
 def caption_of_fit(trend: Trend) -> str:

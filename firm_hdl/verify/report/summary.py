@@ -7,15 +7,21 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from firm_hdl.verify.records import STAGES, Record
 from firm_hdl.verify.report.outcomes import Counts, Outcome, count, outcomes_of
 from firm_hdl.verify.report.stats import Box, Correlation, box_of, correlate, curve_of, share_within
+from firm_hdl.verify.report.verdicts import OracleSum, Said, oracle_sums, said_of
 from firm_hdl.verify.results import Results
 
 __all__ = ["LIMITS", "TOP", "CoverageSum", "Curve", "Group", "Run", "Summary", "Trend", "summarise"]
 
-LIMITS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 60)
+LIMITS = (0.01, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 60)
 """Seconds that shares of tests are given for."""
+
+MOST_POINTS = 1000
+"""So many points of a chart are kept; statistics are of all."""
 
 TOP = 15
 """How many of the slowest and of the most complex types are listed."""
@@ -54,6 +60,7 @@ class Curve:
     stages : mapping of str to Box
         Times of each stage that took any.
     stage_values : mapping of str to tuple of float
+        At most `MOST_POINTS` of them.
     """
 
     suite: str
@@ -75,7 +82,7 @@ class Trend:
         `time` is the name of a stage, or ``total``.
     correlation : Correlation
     points : tuple of (float, float)
-        Figure and seconds; those of `time` ``total`` alone.
+        Figure and seconds, at most `MOST_POINTS` of them; those of `time` ``total`` alone.
     """
 
     suite: str
@@ -140,6 +147,10 @@ class Summary:
     curves : tuple of Curve
     trends : tuple of Trend
     coverage : tuple of CoverageSum
+    oracles : tuple of OracleSum
+        What readers of definitions said.
+    said : tuple of Said
+        Known differences from them, and why they did not judge.
     runs : tuple of Run
     """
 
@@ -153,6 +164,8 @@ class Summary:
     curves: tuple[Curve, ...]
     trends: tuple[Trend, ...]
     coverage: tuple[CoverageSum, ...]
+    oracles: tuple[OracleSum, ...]
+    said: tuple[Said, ...]
     runs: tuple[Run, ...]
 
     @property
@@ -171,14 +184,25 @@ class Summary:
         return [each for each in self.outcomes if each.verdict == "skipped"]
 
     @property
+    def noted(self) -> list[Outcome]:
+        """Tests with a note, but for definitions: known differences from oracles are in `said`."""
+        records = ((each, each.record) for each in self.outcomes)
+        return [each for each, r in records if r is not None and r.note and not r.verdicts]
+
+    @property
     def slowest(self) -> list[Outcome]:
         """Tests that took longest, the slowest first."""
         return self._top(lambda record: record.seconds.total)
 
     @property
     def most_complex(self) -> list[Outcome]:
-        """Tests of the types with most leaves, of the steps of their plans among equals."""
-        return self._top(lambda r: (r.metrics.get("leaves", 0), r.metrics.get("steps", 0)))
+        """The types with most leaves, of the steps of their plans among equals: a test of each."""
+
+        def by(record: Record) -> tuple[float, float, float]:
+            figures = record.metrics
+            return figures.get("leaves", 0), figures.get("steps", 0), record.seconds.total
+
+        return self._top(lambda record: by(record) if record.metrics.get("leaves") else 0, True)
 
     @property
     def uncovered(self) -> list[Outcome]:
@@ -191,10 +215,16 @@ class Summary:
             and coverage.taken < coverage.possible
         ]
 
-    def _top(self, by: Callable[[Record], Any]) -> list[Outcome]:
+    def _top(self, by: Callable[[Record], Any], of_types: bool = False) -> list[Outcome]:
         known = [(by(each.record), each) for each in self.outcomes if each.record is not None]
+        known = [pair for pair in known if pair[0]]
         known.sort(key=lambda pair: pair[0], reverse=True)
-        return [each for figure, each in known[:TOP] if figure]
+        first: dict[object, Outcome] = {}
+        for _, each in known:
+            if len(first) == TOP:
+                break
+            first.setdefault(each.test.type if of_types else each.test.key, each)
+        return list(first.values())
 
 
 def summarise(files: Mapping[str, Results], title: str = "Verification of firm-hdl") -> Summary:
@@ -226,6 +256,8 @@ def summarise(files: Mapping[str, Results], title: str = "Verification of firm-h
         coverage=tuple(
             found for suite, own in suites.items() if (found := _coverage(suite, own)).types
         ),
+        oracles=oracle_sums(outcomes),
+        said=said_of(outcomes),
         runs=tuple(_run(name, results) for name, results in files.items()),
     )
 
@@ -278,24 +310,33 @@ def _curve(suite: str, outcomes: Sequence[Outcome]) -> Curve:
         seconds=box_of(totals),
         cpu_seconds=box_of([record.cpu_seconds for record in records if record.cpu_seconds]),
         stages={stage: box for stage, box in boxes.items() if box is not None},
-        stage_values=stages,
+        stage_values={
+            stage: some[:: -(-len(some) // MOST_POINTS)] for stage, some in stages.items()
+        },
     )
 
 
 def _trends(suite: str, outcomes: Sequence[Outcome]) -> Iterable[Trend]:
     # Whose circuit was not simulated has no time to speak of.
     records = [record for record in _ran(outcomes) if not record.same_as]
+    times = {
+        time: np.array([getattr(record.seconds, time) for record in records], dtype=float)
+        for time in ("total", *STAGES)
+    }
     for metric in sorted({name for record in records for name in record.metrics}):
-        for time in ("total", *STAGES):
-            points = [
-                (float(record.metrics[metric]), seconds)
-                for record in records
-                if metric in record.metrics and (seconds := getattr(record.seconds, time)) > 0
-            ]
-            found = correlate([x for x, _ in points], [y for _, y in points])
-            if found is not None:
-                kept = tuple(points) if time == "total" else ()
-                yield Trend(suite=suite, metric=metric, time=time, correlation=found, points=kept)
+        figures = [record.metrics.get(metric, np.nan) for record in records]
+        x = np.array(figures, dtype=float)
+        for time, seconds in times.items():
+            chosen = ~np.isnan(x) & (seconds > 0)
+            xs, ys = x[chosen], seconds[chosen]
+            found = correlate(xs, ys)
+            if found is None:
+                continue
+            points: tuple[tuple[float, float], ...] = ()
+            if time == "total":
+                step = -(-len(xs) // MOST_POINTS)
+                points = tuple(zip(xs[::step].tolist(), ys[::step].tolist(), strict=True))
+            yield Trend(suite=suite, metric=metric, time=time, correlation=found, points=points)
 
 
 def _coverage(suite: str, outcomes: Iterable[Outcome]) -> CoverageSum:

@@ -16,18 +16,29 @@ from firm_hdl.verify.report.summary import LIMITS, Curve, Group, Summary, Trend
 from firm_hdl.verify.report.svg import number, seconds
 
 __all__ = [
+    "MOST_ROWS",
     "SIGNS",
     "Cell",
     "Table",
+    "circuits_table",
     "coverage_table",
+    "cut",
     "every_table",
+    "failure_table",
     "group_table",
     "missing_table",
+    "oracle_table",
+    "said_table",
     "stage_table",
     "title_of",
     "trend_table",
     "within_table",
 ]
+
+MOST_ROWS = 1000
+"""How long a table of tests or packages may be on a page; JSON has all of them."""
+
+MOST_TEXT = 300
 
 SIGNS = {"pass": "✓ pass", "fail": "✗ fail", "skipped": "- skipped", "not run": "? not run"}
 """How verdicts are written: never by colour alone."""
@@ -84,6 +95,14 @@ def _of(headings: str, rows: Iterable[Iterable[Cell]]) -> Table:
     )
 
 
+def cut(table: Table, most: int = MOST_ROWS) -> tuple[Table, str]:
+    """Return the first rows of a table, and a word on the rest, which is empty if there is none."""
+    left = len(table.rows) - most
+    if left <= 0:
+        return table, ""
+    return Table(table.headings, table.rows[:most]), f"and {number(left)} more"
+
+
 def title_of(outcome: Outcome) -> str:
     """Name a test in a line."""
     test = outcome.test
@@ -110,6 +129,62 @@ def group_table(groups: Iterable[Group], names: str) -> Table:
             )
 
     return _of(f"{names}|Result|Share|Passed#|Failed#|Skipped#|Not run#|CPU time#", rows())
+
+
+def circuits_table(summary: Summary) -> Table:
+    """Count different circuits by suite."""
+    return _of(
+        "Test system|Different circuits#|Tested with that of another type#",
+        (
+            (Cell(suite), _count(shapes), _count(shared))
+            for suite, (shapes, shared) in summary.circuits.items()
+        ),
+    )
+
+
+def oracle_table(summary: Summary) -> Table:
+    """Count what oracles said of definitions."""
+    return _of(
+        "Distribution|Oracle|Agree#|Of these, both refuse#|Known difference#|Differ#|Not judged#",
+        (
+            (
+                Cell(each.distro),
+                Cell(each.oracle),
+                *map(_count, (each.agree, each.refused, each.known)),
+                Cell(number(each.differ), each.differ, verdict="fail" if each.differ else ""),
+                _count(each.not_judged),
+            )
+            for each in summary.oracles
+        ),
+    )
+
+
+def said_table(summary: Summary) -> Table:
+    """List known differences from oracles, and why they did not judge."""
+    return _of(
+        "Oracle|Verdict|Key or reason|Definitions#|Such as",
+        (
+            (
+                *map(Cell, (each.oracle, each.verdict, each.what)),
+                _count(each.count),
+                Cell(each.example),
+            )
+            for each in summary.said
+        ),
+    )
+
+
+def failure_table(outcomes: Iterable[Outcome]) -> Table:
+    """List failed tests in a line each."""
+
+    def rows() -> Iterator[Iterable[Cell]]:
+        for outcome in outcomes:
+            text = outcome.failures[0]
+            shown = text if len(text) <= MOST_TEXT else f"{text[:MOST_TEXT]}..."
+            command = outcome.record.command if outcome.record is not None else ""
+            yield Cell(title_of(outcome)), Cell(shown), Cell(command)
+
+    return _of("Test|Failure|Repeat it", rows())
 
 
 def within_table(curves: Iterable[Curve]) -> Table:

@@ -1,18 +1,178 @@
-"""What ``firm-hdl verify --systems ts1`` prints."""
+"""TS1 as a test system: what is recorded of each definition, and what is printed."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack, closing
+from functools import cached_property
+from typing import Any
 
 from tqdm import tqdm
 
-from firm_hdl.verify.ts1.judge import Outcome
+from firm_hdl.verify.records import OracleVerdict, Record, Seconds, Status, Test, clipped
+from firm_hdl.verify.system import Recorder, System
+from firm_hdl.verify.ts1.judge import Judgement, Outcome
 from firm_hdl.verify.ts1.run import Selection, Tally, Ts1Run
 
-__all__ = ["run_ts1"]
+__all__ = ["Ts1", "run_ts1"]
 
 _MOST_DETAILS = 8
+
+
+class Ts1(System):
+    """Definitions before oracles; a test is one definition before all of them.
+
+    Parameters
+    ----------
+    selections : sequence of Selection
+        Nothing is recorded of mutations.
+    oracles : sequence of str
+        Names of those to ask, all of which have to be here; none: all that are here.
+    jobs : int or None
+        Processes here; oracles read files, so it is never a cluster.
+
+    Raises
+    ------
+    DefinitionError
+        When it is entered: as `Ts1Run` does.
+    """
+
+    name = "ts1"
+
+    def __init__(
+        self, selections: Sequence[Selection], oracles: Sequence[str] = (), jobs: int | None = None
+    ):
+        self._selections, self._oracles, self._jobs = selections, tuple(oracles), jobs
+        self._stack = ExitStack()
+        self._runs: list[Ts1Run] = []
+
+    def __enter__(self) -> Ts1:
+        with ExitStack() as stack:
+            for each in self._selections:
+                run = stack.enter_context(Ts1Run(each, self._oracles, self._jobs))
+                self._runs.append(run)
+            self._stack = stack.pop_all()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._stack.close()
+
+    @cached_property
+    def tests(self) -> Sequence[Test]:
+        """All definitions of all distributions; no mutations."""
+        return [
+            self._test(run, number)
+            for run in self._runs
+            if not run.selection.mutations
+            for number in run.numbers
+        ]
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """The oracles that are asked, with their versions."""
+        here = {f"{name} {v}".strip() for run in self._runs for name, v in run.versions.items()}
+        return {"oracles": sorted(here)}
+
+    def run(self, recorder: Recorder) -> bool:
+        """Judge everything."""
+        return not sum([self.judge(run, recorder) for run in self._runs])
+
+    def judge(self, run: Ts1Run, recorder: Recorder) -> int:
+        """Judge the definitions of one run; return how many differ or cannot be judged as asked."""
+        began = time.perf_counter()
+        selection = run.selection
+        numbers = run.numbers
+        known: dict[int, Record] = {}
+        if not selection.mutations:
+            found = ((number, recorder.known(self._test(run, number))) for number in numbers)
+            known = {number: record for number, record in found if record is not None}
+        for line in recorder.said(len(known), run.total, "definitions"):
+            print(line)
+        tally = run.tally((number, record.verdicts) for number, record in known.items())
+        left = [number for number in numbers if number not in known]
+        label = f"ts1 {selection.distro}"
+        with (
+            tqdm(
+                total=run.total, initial=len(known), unit="definition", desc=label, disable=None
+            ) as bar,
+            closing(run.judgements(left)) as shares,
+        ):
+            for share in shares:
+                if not selection.mutations:
+                    recorder.add(*(self._record(run, number, each) for number, each in share))
+                part = run.tally((number, each.said) for number, each in share)
+                for outcome, mutated in part.differing:
+                    tqdm.write(_difference(selection, outcome, mutated))
+                tally.update(part)
+                bar.update(len(share))
+        for line in _summary(run, tally):
+            print(line)
+        what = ("mutation" if selection.mutations else "definition") + "s" * (run.total != 1)
+        seconds = time.perf_counter() - began
+        print(f"{run.total} {what}, {seconds:.0f} s, {len(tally.differing)} differences")
+        return len(tally.differing) + (len(run.missing) if self._oracles else 0)
+
+    def _test(self, run: Ts1Run, number: int) -> Test:
+        selection = run.selection
+        own = [f"path={path}" for path in selection.paths]
+        own += [f"oracle={name}" for name in self._oracles]
+        return Test(
+            system=self.name,
+            distro=selection.distro,
+            type=run.case(number).spelled_name,
+            same=(selection.distro,),
+            options=",".join(own),
+        )
+
+    def _record(self, run: Ts1Run, number: int, found: Judgement) -> Record:
+        case = run.case(number)
+        failures = [
+            f"{each.oracle}: {detail}"
+            for each in found.said
+            if each.verdict == "differs"
+            for detail in each.details
+        ]
+        status = _status(found.said)
+        known = [
+            f"known difference from {each.oracle}: {key}"
+            for each in found.said
+            if each.verdict == "known"
+            for key in each.details
+        ]
+        return Record(
+            test=self._test(run, number),
+            status=status,
+            reason=_reason(case.language, found.said) if status == "skipped" else "",
+            failures=clipped(failures),
+            note="; ".join(known),
+            seconds=Seconds(generation=found.reading_seconds, testing=found.asking_seconds),
+            cpu_seconds=found.cpu_seconds,
+            metrics=found.metrics,
+            verdicts=tuple(_clipped(each) for each in found.said),
+            command=run.selection.command(case, oracles=self._oracles),
+        )
+
+
+def _clipped(said: OracleVerdict) -> OracleVerdict:
+    return OracleVerdict(
+        oracle=said.oracle,
+        verdict=said.verdict,
+        details=clipped(said.details),
+        is_refused=said.is_refused,
+    )
+
+
+def _status(said: Sequence[OracleVerdict]) -> Status:
+    verdicts = {each.verdict for each in said}
+    if "differs" in verdicts:
+        return "fail"
+    return "pass" if verdicts & {"agrees", "known"} else "skipped"
+
+
+def _reason(language: str, said: Sequence[OracleVerdict]) -> str:
+    found = [f"{each.oracle}: {detail}" for each in said for detail in each.details]
+    return "; ".join(found) or f"no oracle that was asked reads .{language} files"
 
 
 def run_ts1(selection: Selection, oracles: Sequence[str] = (), jobs: int | None = None) -> int:
@@ -29,22 +189,9 @@ def run_ts1(selection: Selection, oracles: Sequence[str] = (), jobs: int | None 
     DefinitionError
         As `Ts1Run` does.
     """
-    began = time.perf_counter()
-    tally = Tally()
+    system = Ts1([selection], oracles, jobs)
     with Ts1Run(selection, oracles, jobs) as run:
-        label = f"ts1 {selection.distro}"
-        with tqdm(total=run.total, unit="definition", desc=label, disable=None) as bar:
-            for count, part in run.tallies():
-                for outcome, number in part.differing:
-                    tqdm.write(_difference(selection, outcome, number))
-                tally.update(part)
-                bar.update(count)
-        for line in _summary(run, tally):
-            print(line)
-        what = ("mutation" if selection.mutations else "definition") + "s" * (run.total != 1)
-        seconds = time.perf_counter() - began
-        print(f"{run.total} {what}, {seconds:.0f} s, {len(tally.differing)} differences")
-        return len(tally.differing) + (len(run.missing) if oracles else 0)
+        return system.judge(run, Recorder())
 
 
 def _difference(selection: Selection, outcome: Outcome, number: int | None) -> str:

@@ -43,6 +43,9 @@ class _Worked(Oracle):
             "text": case.text if case.is_changed else None,
         }
 
+    def cpu_seconds(self) -> float:
+        return self._worker.cpu_seconds
+
     def close(self) -> None:
         if "_worker" in self.__dict__:
             self._worker.close()

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from dataclasses import dataclass, field
+from typing import Any
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.identity import md5sum, proto, type_hash
 from firm_hdl.model import Action, Interface, Message, Service
+from firm_hdl.verify.processes import cpu_seconds
+from firm_hdl.verify.records import OracleVerdict, Verdict
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.facts import Difference, Facts, differences, structure
 from firm_hdl.verify.ts1.known import known_key
 from firm_hdl.verify.ts1.oracle import Accepted, Answer, NotJudged, Oracle, Refused
 from firm_hdl.verify.ts1.universe import Universe
 
-__all__ = ["Outcome", "Verdict", "compare", "judge", "read"]
-
-Verdict: TypeAlias = Literal["agrees", "known", "differs", "not judged"]
+__all__ = ["Judgement", "Outcome", "Verdict", "compare", "judge", "judge_case", "read"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,9 +42,97 @@ class Outcome:
     details: tuple[str, ...] = ()
     is_refused: bool = False
 
+    @classmethod
+    def of(cls, case: Case, said: OracleVerdict) -> Outcome:
+        """Say it of a definition again."""
+        return cls(
+            oracle=said.oracle,
+            case=case,
+            verdict=said.verdict,
+            details=said.details,
+            is_refused=said.is_refused,
+        )
 
-def judge(universe: Universe, oracle: Oracle, cases: Sequence[Case]) -> Iterator[Outcome]:
-    """Compare our reading of definitions with an oracle's, in order."""
+    @property
+    def said(self) -> OracleVerdict:
+        """The same without the definition."""
+        return OracleVerdict(
+            oracle=self.oracle,
+            verdict=self.verdict,
+            details=self.details,
+            is_refused=self.is_refused,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Judgement:
+    """What came of one definition before all oracles.
+
+    Attributes
+    ----------
+    said : tuple of OracleVerdict
+        Of those that read definitions of its language.
+    reading_seconds, asking_seconds : float
+        Until we had read it; for the oracles and for comparing.
+    cpu_seconds : float
+        Of this process and of those of oracles.
+    metrics : dict of str to float
+        Figures of the definition.
+    """
+
+    said: tuple[OracleVerdict, ...] = ()
+    reading_seconds: float = 0.0
+    asking_seconds: float = 0.0
+    cpu_seconds: float = 0.0
+    metrics: dict[str, float] = field(default_factory=dict)
+
+
+def judge_case(universe: Universe, oracles: Sequence[Oracle], case: Case) -> Judgement:
+    """Compare our reading of one definition with those of oracles."""
+    began, began_cpu = time.perf_counter(), cpu_seconds()
+    ours = read(universe, case)
+    had_read = time.perf_counter()
+    said: list[OracleVerdict] = []
+    elsewhere = 0.0
+    for oracle in oracles:
+        # Two of them may share a process, so it is the difference that is the one's own.
+        before = oracle.cpu_seconds()
+        try:
+            said += [out.said for out in judge(universe, oracle, [case], lambda _: ours)]
+        except Exception as error:  # As with ours: the next definition is to be judged, too.
+            why = f"the oracle raised {type(error).__name__}: {error}"
+            said.append(OracleVerdict(oracle=oracle.name, verdict="differs", details=(why,)))
+        elsewhere += max(0.0, oracle.cpu_seconds() - before)
+    return Judgement(
+        said=tuple(said),
+        reading_seconds=had_read - began,
+        asking_seconds=time.perf_counter() - had_read,
+        cpu_seconds=cpu_seconds() - began_cpu + elsewhere,
+        metrics=_metrics(case, ours),
+    )
+
+
+def _metrics(case: Case, ours: Interface | Exception) -> dict[str, float]:
+    found = {"characters": len(case.text)}
+    if not isinstance(ours, Exception):
+        found["fields"] = sum(len(message.fields) for message in ours.messages)
+        found["depth"] = max(message.depth for message in ours.messages)
+    return {name: float(value) for name, value in found.items()}
+
+
+def judge(
+    universe: Universe,
+    oracle: Oracle,
+    cases: Sequence[Case],
+    ours: Callable[[Case], Interface | Exception] | None = None,
+) -> Iterator[Outcome]:
+    """Compare our reading of definitions with an oracle's, in order.
+
+    Parameters
+    ----------
+    ours : callable or None
+        Gives our reading of a case; `None`: as `read` does.
+    """
     taken = [
         case
         for case in cases
@@ -51,8 +140,8 @@ def judge(universe: Universe, oracle: Oracle, cases: Sequence[Case]) -> Iterator
         and (oracle.judges_changes or not case.is_changed)
     ]
     for case, answer in zip(taken, oracle.judge(taken), strict=True):
-        ours = read(universe, case)
-        yield compare(oracle, case, ours, answer, universe.show)
+        mine = read(universe, case) if ours is None else ours(case)
+        yield compare(oracle, case, mine, answer, universe.show)
 
 
 def read(universe: Universe, case: Case) -> Interface | Exception:

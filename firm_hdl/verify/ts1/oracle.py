@@ -76,5 +76,9 @@ class Oracle(ABC):
         """Tell which release answers, as far as it is known."""
         return ""
 
+    def cpu_seconds(self) -> float:
+        """Tell how much processor time a process of its own has used."""
+        return 0.0
+
     def close(self) -> None:  # noqa: B027 - most have nothing to do.
         """End what the oracle has started."""

@@ -6,17 +6,18 @@ import os
 import shlex
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
+from collections.abc import Generator, Iterable, Sequence
+from contextlib import ExitStack, closing
 from dataclasses import dataclass, field
-from functools import cache
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
-from firm_hdl.verify.processes import in_processes
+from firm_hdl.verify.executors import ExecutorError
+from firm_hdl.verify.records import OracleVerdict
 from firm_hdl.verify.runner import UnknownTypeError
+from firm_hdl.verify.system import run_shares, shares_of
 from firm_hdl.verify.ts1.case import Case
-from firm_hdl.verify.ts1.judge import Outcome, judge
+from firm_hdl.verify.ts1.judge import Judgement, Outcome, judge_case
 from firm_hdl.verify.ts1.mutate import mutation
 from firm_hdl.verify.ts1.oracle import Oracle
 from firm_hdl.verify.ts1.oracles import ORACLES
@@ -27,6 +28,7 @@ __all__ = ["Selection", "Tally", "Ts1Run", "selections_of"]
 # What one process is given at a time: so many definitions, or so many characters of them.
 _MOST_CASES = 32
 _MOST_CHARACTERS = 30_000
+_LEAST_SHARES = 64
 _MOST_SHOWN = 20
 
 
@@ -53,11 +55,13 @@ class Selection:
     mutations: int = 0
     seed: int = 0
 
-    def command(self, case: Case, number: int | None = None) -> str:
+    def command(self, case: Case, number: int | None = None, oracles: Sequence[str] = ()) -> str:
         """Write the command that judges one definition, or one mutation, again."""
         words = ["firm-hdl", "verify", "--systems", "ts1", "--distro", self.distro]
         for path in self.paths:
             words += ["--path", path]
+        for name in oracles:
+            words += ["--oracle", name]
         if number is None:
             return shlex.join([*words, case.spelled_name])
         words += ["--mutations", "1", "--seed", str(number)]
@@ -205,19 +209,60 @@ class Ts1Run:
         """Number of definitions that are to be judged."""
         return self.selection.mutations or len(self.cases)
 
-    def tallies(self) -> Iterator[tuple[int, Tally]]:
-        """Judge everything; yield numbers of definitions, and what came of them, as they come."""
+    def case(self, number: int) -> Case:
+        """Return the definition of a number, or the mutation."""
         if self.selection.mutations:
-            numbers = range(self.selection.seed, self.selection.seed + self.selection.mutations)
-            size = min(_MOST_CASES, max(1, len(numbers) // 8))
-            shares = [tuple(numbers[i : i + size]) for i in range(0, len(numbers), size)]
+            return mutation(self.cases, number)
+        return self.cases[number]
+
+    @property
+    def numbers(self) -> range:
+        """Numbers of all that is to be judged."""
+        first = self.selection.seed if self.selection.mutations else 0
+        return range(first, first + self.total)
+
+    def judgements(
+        self, numbers: Sequence[int] | None = None
+    ) -> Generator[list[tuple[int, Judgement]], None, None]:
+        """Judge definitions; yield their numbers and what came of them, as they come, in shares.
+
+        Parameters
+        ----------
+        numbers : sequence of int or None
+            Which of `numbers`; `None`: all.
+        """
+        left = self.numbers if numbers is None else numbers
+        if self.selection.mutations:
+            shares = shares_of(left, _MOST_CASES, 8)
         else:
-            shares = _shares(self.cases)
-        tasks = [(share, (self._key, share)) for share in shares]
-        for share, tally in in_processes(_judge_share, tasks, self.jobs):
-            if isinstance(tally, Exception):
-                raise tally
-            yield len(share), tally
+            shares = _shares(self.cases, left)
+        with closing(run_shares(_judge_share, self._key, shares, jobs=self.jobs)) as run:
+            for share, result in run:
+                if isinstance(result, ExecutorError):
+                    # One definition, alone in its process.
+                    result = [_died(str(result))]
+                if isinstance(result, Exception):
+                    raise result
+                yield list(zip(share, result, strict=True))
+
+    def tally(self, judged: Iterable[tuple[int, Sequence[OracleVerdict]]]) -> Tally:
+        """Count what oracles said of definitions."""
+        is_mutated = self.selection.mutations > 0
+        tally = Tally()
+        for number, said in judged:
+            case = self.case(number)
+            for each in said:
+                outcome = Outcome.of(case, each)
+                tally.add(outcome, number if is_mutated else None)
+                if not is_mutated and len(self.cases) <= _MOST_SHOWN:
+                    tally.shown.append(outcome)
+        return tally
+
+    def tallies(self) -> Generator[tuple[int, Tally], None, None]:
+        """Judge everything; yield numbers of definitions, and what came of them, as they come."""
+        with closing(self.judgements()) as run:
+            for share in run:
+                yield len(share), self.tally((number, found.said) for number, found in share)
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,47 +281,56 @@ class _Session:
     oracles: list[Oracle]
 
 
-@cache
+_sessions: dict[_Key, _Session] = {}
+
+
 def _session(key: _Key) -> _Session:
-    universe = Universe(key.selection.distro, key.selection.paths, key.folder)
-    cases = universe.select(key.selection.types)
-    return _Session(universe, cases, [ORACLES[name](universe) for name in key.oracles])
+    if key not in _sessions:
+        universe = Universe(key.selection.distro, key.selection.paths, key.folder)
+        cases = universe.select(key.selection.types)
+        oracles = [ORACLES[name](universe) for name in key.oracles]
+        for oracle in oracles:
+            # Starts its process: no definition is to be blamed for the time that takes.
+            oracle.missing()
+        _sessions[key] = _Session(universe, cases, oracles)
+    return _sessions[key]
 
 
 def _end_session(key: _Key) -> None:
     # Those of other processes end with these.
-    if _session.cache_info().currsize:
-        for oracle in _session(key).oracles:
+    if key in _sessions:
+        for oracle in _sessions.pop(key).oracles:
             oracle.close()
-        _session.cache_clear()
 
 
-def _judge_share(key: _Key, share: tuple[int, ...]) -> Tally:
+def _died(why: str) -> Judgement:
+    said = OracleVerdict(oracle="its process", verdict="differs", details=(why,))
+    return Judgement(said=(said,))
+
+
+def _judge_share(key: _Key, share: tuple[int, ...]) -> list[Judgement]:
     session = _session(key)
     is_mutated = key.selection.mutations > 0
-    if is_mutated:
-        cases = [mutation(session.cases, number) for number in share]
-    else:
-        cases = [session.cases[index] for index in share]
-    numbers = {id(case): number for case, number in zip(cases, share, strict=True)}
-    tally = Tally()
-    for oracle in session.oracles:
-        for outcome in judge(session.universe, oracle, cases):
-            tally.add(outcome, numbers[id(outcome.case)] if is_mutated else None)
-            if not is_mutated and len(session.cases) <= _MOST_SHOWN:
-                tally.shown.append(outcome)
-    return tally
+    return [
+        judge_case(
+            session.universe,
+            session.oracles,
+            mutation(session.cases, number) if is_mutated else session.cases[number],
+        )
+        for number in share
+    ]
 
 
-def _shares(cases: Sequence[Case]) -> list[tuple[int, ...]]:
+def _shares(cases: Sequence[Case], numbers: Sequence[int]) -> list[tuple[int, ...]]:
     """Deal out cases, the longest first: none is to be left with one of those at the end."""
     shares: list[tuple[int, ...]] = []
     share: list[int] = []
     size = 0
-    for index in sorted(range(len(cases)), key=lambda i: (-len(cases[i].text), i)):
+    most = min(_MOST_CASES, max(1, len(numbers) // _LEAST_SHARES))
+    for index in sorted(numbers, key=lambda i: (-len(cases[i].text), i)):
         share.append(index)
         size += len(cases[index].text)
-        if len(share) >= _MOST_CASES or size >= _MOST_CHARACTERS:
+        if len(share) >= most or size >= _MOST_CHARACTERS:
             shares.append(tuple(share))
             share, size = [], 0
     return [*shares, tuple(share)] if share else shares

@@ -2,8 +2,9 @@
 
 This file is run by the Python that ROS's modules are installed for, which is seldom the one that
 firm-hdl runs on, so it imports nothing of firm-hdl. It is started with the name of a family of
-oracles (``genmsg`` or ``rosidl``) and a folder of definitions, ``PACKAGE/msg|srv|action/FILE``,
-and says in its first line what it has. Then each line in is a request and gets a line out:
+oracles (``genmsg`` or ``rosidl``), a folder of definitions, ``PACKAGE/msg|srv|action/FILE``, and
+the folder of the module ``worker_FAMILY``. It says in its first line what it has. Then each line in
+is a request and gets a line out:
 
     {"oracle": "genmsg", "package": "p", "kind": "msg", "name": "A", "file": "A.msg", "text": null}
     {"facts": {...}} or {"refused": "why"} or {"failed": "why"}
@@ -35,6 +36,7 @@ def main():
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Whoever started this ends it.
     signal.signal(signal.SIGPROF, _too_slow)
     resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
+    sys.path[0] = sys.argv[3]
     try:
         family = importlib.import_module(f"worker_{sys.argv[1]}")
         del sys.path[0]  # Our other modules have names that ROS may use, too.

@@ -10,8 +10,11 @@ from html.parser import HTMLParser
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.verify.records import PlanCoverage, Seconds
+from firm_hdl.verify.records import OracleVerdict, PlanCoverage, Seconds
 from firm_hdl.verify.report import FORMATS, count, outcomes_of, summarise
+from firm_hdl.verify.report import html as page_writer
+from firm_hdl.verify.report import summary as summary_of
+from firm_hdl.verify.report.verdicts import reason_groups
 from firm_hdl.verify.results import Results, ResultsWriter
 from tests.verify.report.samples import a_record, a_run, a_test
 
@@ -232,6 +235,91 @@ def test_nothing_rounds_up_to_all():
     assert "99.99%" in made("md", run) and "100.00%" not in made("md", run)
 
 
+def definition(name, *verdicts, **more):
+    """Return a record of TS1 with an oracle's verdicts, given as (oracle, verdict, details...)."""
+    said = tuple(OracleVerdict(oracle=o, verdict=v, details=tuple(d)) for o, v, *d in verdicts)
+    test = a_test(name, system="ts1", simulator="", wire="", bus_bytes=0, options="")
+    known = {"coverage": None, "shape": "", "metrics": {}, "seconds": Seconds(testing=0.1)}
+    return a_record(test, verdicts=said, **{**known, **more})
+
+
+def test_verdicts_of_oracles_are_counted_and_known_differences_named():
+    run = run_of(
+        definition("a/msg/A", ("genmsg", "agrees"), ("rosbags", "known", "a-key")),
+        definition("a/msg/B", ("genmsg", "agrees"), ("rosbags", "known", "a-key", "b-key")),
+        definition("a/msg/C", ("rosbags", "not judged", "a/msg/C is too deep")),
+        definition("a/msg/D", ("rosbags", "not judged", "a/msg/D is too deep")),
+        definition("a/msg/E", ("rosbags", "differs", "x"), status="fail", failures=("rosbags: x",)),
+    )
+    summary = summarise({"r": run})
+    assert [(s.oracle, s.agree, s.known, s.differ, s.not_judged) for s in summary.oracles] == [
+        ("genmsg", 2, 0, 0, 0),
+        ("rosbags", 0, 2, 1, 2),
+    ]
+    assert [(s.verdict, s.what, s.count, s.example) for s in summary.said] == [
+        ("known", "a-key", 2, "a/msg/A"),
+        ("known", "b-key", 1, "a/msg/B"),
+        ("not judged", "a/msg/C is too deep", 2, "a/msg/C"),
+    ]
+    for form in FORMATS:
+        text = made(form, run)
+        assert "a-key" in text and "rosbags: x" in text
+    assert 'id="oracles"' not in made("html", run_of(a_record()))
+
+
+def test_skipped_tests_and_notes_are_grouped_by_reason():
+    text = "rosbags has no wstring, which {}.text is"
+    names = [f"a/msg/W{number}" for number in range(60)]
+    skipped = [a_record(a_test(n), status="skipped", reason=text.format(n)) for n in names]
+    other = a_record(a_test("b/msg/B"), status="skipped", reason="it is too large: 8 bytes")
+    noted = a_record(a_test("c/msg/C"), note="simulated in part: 7 of 28 packets")
+    run = run_of(*skipped, other, noted)
+    groups = reason_groups(outcomes_of([run_of(*skipped, other)]))
+    assert [len(group.outcomes) for group in groups] == [60, 1]
+    for form in ("html", "md"):
+        said = made(form, run)
+        assert text.format("a/msg/W0") in said and "and 10 more" in said
+        assert "it is too large: 8 bytes" in said and noted.note in said
+
+
+def test_most_complex_types_are_named_once():
+    big = {"leaves": 99, "steps": 9}
+    systems = [a_test("a/msg/Big", system=name) for name in ("ts2", "ts3")]
+    run = run_of(*(a_record(test, metrics=big) for test in systems), a_record())
+    names = [outcome.test.type for outcome in summarise({"r": run}).most_complex]
+    assert names == ["a/msg/Big", "std_msgs/msg/Header"]
+
+
+def test_circuits_are_counted_for_each_test_system():
+    runs = [a_test(f"a/msg/T{n}", system=name) for name in ("ts2", "ts3") for n in range(3)]
+    run = run_of(
+        *(a_record(test, shape=test.type[-1] if n else "0") for n, test in enumerate(runs))
+    )
+    assert {suite[:3]: shapes for suite, (shapes, _) in summarise({"r": run}).circuits.items()} == {
+        "ts2": 3,
+        "ts3": 3,
+    }
+    assert '<div class="tile"><b>3</b><span>different circuits</span>' in made("html", run)
+
+
+def test_long_reports_are_cut_and_say_so(monkeypatch):
+    for name, most in (("MOST_ROWS", 20), ("MOST_ARTICLES", 2)):
+        monkeypatch.setattr(page_writer, name, most)
+    failed = [
+        replace(FAILED, test=a_test(f"z{n}_msgs/msg/F{n}"), failures=(f"it is {n}",))
+        for n in range(4)
+    ]
+    run = run_of(*a_run(60).records.values(), *failed)
+    text = made("html", run)
+    assert text.count("<article>") == 2 and "2 more tests failed" in text
+    assert "Show 20 of 64 tests" in text and "and 44 more: those that did not pass" in text
+    # Those that failed are not among those that are left out.
+    assert all(f"it is {number}" in text for number in range(4))
+    assert text.count("z3_msgs/msg/F3, ") == 1 and '<td class="t">z3_msgs/msg/F3</td>' in text
+    assert len(json.loads(made("json", run))["outcomes"]) == 64
+    assert Page(text)
+
+
 def written(path, run):
     with ResultsWriter(path, options=run.options, planned=run.planned) as writer:
         for record in run.records.values():
@@ -259,3 +347,12 @@ def test_command_refuses_what_is_no_results(tmp_path, capsys):
     path = written(tmp_path / "r.jsonl", a_run(2))
     assert main(["report", path, "--out", str(tmp_path / "r.pdf")]) == 1
     assert "must end in .html, .md, .json" in capsys.readouterr().err
+
+
+def test_whiskers_end_inside_the_axis_though_few_points_are_drawn(monkeypatch):
+    monkeypatch.setattr(summary_of, "MOST_POINTS", 3)
+    run = a_run(60)
+    longest = a_record(a_test("z/msg/Z"), seconds=Seconds(simulation=5000.0))
+    text = made("html", run_of(*run.records.values(), longest))
+    places = [float(x) for x in re.findall(r'x2="([\d.]+)"[^>]*class="whisker', text)]
+    assert places and max(places) <= 740

@@ -1,0 +1,150 @@
+"""What a report says of oracles, and of tests that were skipped: counts, and reasons in groups."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from firm_hdl.verify.report.outcomes import Outcome
+
+__all__ = ["OracleSum", "Reason", "Said", "oracle_sums", "reason_groups", "reason_of", "said_of"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OracleSum:
+    """What an oracle said of the definitions of a distribution.
+
+    Attributes
+    ----------
+    distro, oracle : str
+    agree, refused, known, differ, not_judged : int
+        Definitions; `refused` are those among `agree` that both refuse.
+    """
+
+    distro: str
+    oracle: str
+    agree: int = 0
+    refused: int = 0
+    known: int = 0
+    differ: int = 0
+    not_judged: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Said:
+    """A known difference from an oracle, or why it did not judge.
+
+    Attributes
+    ----------
+    oracle : str
+    verdict : str
+        ``known`` or ``not judged``.
+    what : str
+        Key of a known difference, or a reason.
+    count : int
+        Of definitions.
+    example : str
+        Name of one of them.
+    """
+
+    oracle: str
+    verdict: str
+    what: str
+    count: int
+    example: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reason:
+    """Tests of which the same is to be said, but for names and numbers.
+
+    Attributes
+    ----------
+    text : str
+        Of the first of them.
+    outcomes : tuple of Outcome
+    """
+
+    text: str
+    outcomes: tuple[Outcome, ...]
+
+
+def oracle_sums(outcomes: Iterable[Outcome]) -> tuple[OracleSum, ...]:
+    """Count verdicts by distribution and oracle."""
+    counts: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
+    for outcome in outcomes:
+        for each in outcome.record.verdicts if outcome.record is not None else ():
+            found = counts[outcome.test.distro, each.oracle]
+            found[each.verdict] += 1
+            found["refused"] += each.is_refused
+    return tuple(
+        OracleSum(
+            distro=distro,
+            oracle=oracle,
+            agree=found["agrees"],
+            refused=found["refused"],
+            known=found["known"],
+            differ=found["differs"],
+            not_judged=found["not judged"],
+        )
+        for (distro, oracle), found in sorted(counts.items())
+    )
+
+
+def said_of(outcomes: Iterable[Outcome]) -> tuple[Said, ...]:
+    """List known differences and reasons not to judge, the most frequent of an oracle first."""
+    names: dict[tuple[str, str, str], list[str]] = defaultdict(list)
+    texts: dict[tuple[str, str, str], str] = {}
+    for outcome in outcomes:
+        for each in outcome.record.verdicts if outcome.record is not None else ():
+            for detail in each.details if each.verdict in ("known", "not judged") else ():
+                key = (each.oracle, each.verdict, _without_names(detail))
+                texts.setdefault(key, detail)
+                names[key].append(outcome.test.type)
+    ordered = sorted(names, key=lambda key: (key[0], key[1], -len(names[key]), key[2]))
+    return tuple(
+        Said(
+            oracle=key[0],
+            verdict=key[1],
+            what=texts[key],
+            count=len(names[key]),
+            example=names[key][0],
+        )
+        for key in ordered
+    )
+
+
+def reason_groups(
+    outcomes: Iterable[Outcome], text_of: Callable[[Outcome], str] | None = None
+) -> list[Reason]:
+    """Put tests together that were skipped for the same reason, the largest group first.
+
+    Parameters
+    ----------
+    text_of : callable or None
+        Gives what is the same for a group; `None`: why a test was skipped or not run.
+    """
+    groups: dict[str, list[Outcome]] = defaultdict(list)
+    texts: dict[str, str] = {}
+    for outcome in outcomes:
+        text = (text_of or reason_of)(outcome)
+        key = _without_names(text)
+        texts.setdefault(key, text)
+        groups[key].append(outcome)
+    found = [Reason(text=texts[key], outcomes=tuple(own)) for key, own in groups.items()]
+    return sorted(found, key=lambda reason: -len(reason.outcomes))
+
+
+def reason_of(outcome: Outcome) -> str:
+    """Say why a test was skipped or not run."""
+    if outcome.circuit_of:
+        return f"has the circuit of {outcome.circuit_of}, which was not run"
+    record = outcome.record
+    return record.reason if record is not None else "there is no result of it"
+
+
+def _without_names(text: str) -> str:
+    """Return a text without what differs from type to type: names with a ``/``, and numbers."""
+    return re.sub(r"\d[\d,.]*", "0", re.sub(r"[^\s'\"]*/[^\s'\",;:]*", "...", text))

@@ -1,0 +1,276 @@
+"""Results of all test systems: recorded as they were, resumed after a kill, and never made up."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import random
+import signal
+import sys
+from collections import Counter
+from dataclasses import replace
+
+import pytest
+
+from firm_hdl.cli import main
+from firm_hdl.export.build import plan_of
+from firm_hdl.frontend import Library
+from firm_hdl.verify import ts2
+from firm_hdl.verify.records import Record
+from firm_hdl.verify.results import ResultsWriter, read_results
+from firm_hdl.verify.system import run_shares, shares_of
+from firm_hdl.verify.ts1 import ORACLES
+from firm_hdl.verify.ts1 import run as ts1_run
+from firm_hdl.verify.ts1.oracle import Refused
+from tests.frontend.workspace import make_files
+
+BOOL, CHAR = "std_msgs/msg/Bool", "std_msgs/msg/Char"
+# rosbags is always here.
+FAST = ["--jobs", "1", "--distro", "lyrical", "--oracle", "rosbags", "--cases", "2"]
+ALL = ["--systems", "ts1,ts2,ts3"]
+
+
+def verify(*arguments):
+    return main(["verify", *FAST, *map(str, arguments)])
+
+
+def records_of(path):
+    return {key: record.without_times for key, record in read_results(path).records.items()}
+
+
+def written(path):
+    """Count the lines that each test has in a file."""
+    found = Counter()
+    for line in path.read_bytes().splitlines(keepends=True):
+        if line.startswith(b'{"record"') and line.endswith(b"\n"):
+            found[line[: line.index(b'"status"')]] += 1
+    return found
+
+
+def test_every_system_has_a_record_of_each_type_that_can_be_read_back(tmp_path):
+    path = tmp_path / "r.jsonl"
+    assert verify(*ALL, "--bus-bytes", 4, "--bus-bytes", 8, "--results", path, BOOL, CHAR) == 0
+    found = read_results(path)
+    assert not found.missing and found.options["systems"] == ["ts1", "ts2", "ts3"]
+    records = found.records.values()
+    assert Counter(record.test.system for record in records) == {"ts1": 2, "ts2": 4, "ts3": 4}
+    assert [test.key for test in found.planned if test.type == BOOL] == [
+        f"ts1 lyrical {BOOL} oracle=rosbags",
+        f"ts2 lyrical {BOOL} cdr/4",
+        f"ts2 lyrical {BOOL} cdr/8",
+        f"ts3 python lyrical {BOOL} cdr/4 seed=0,cases=2",
+        f"ts3 python lyrical {BOOL} cdr/8 seed=0,cases=2",
+    ]
+    for record in records:
+        assert record.status == "pass" and record.cpu_seconds > 0 and record.metrics
+        assert min(record.seconds.generation, record.seconds.testing) > 0
+        assert bool(record.seconds.simulation) == (record.test.system == "ts3")
+        assert bool(record.shape) == (record.test.system != "ts1") == (not record.verdicts)
+        assert Record.from_json(record.as_json()) == record
+    commands = {record.test.system: record.command for record in records}
+    for command in commands.values():
+        assert main([*command.split()[1:], "--jobs", "1"]) == 0
+
+
+def test_known_differences_are_passes_that_name_their_key(tmp_path):
+    path, page = tmp_path / "r.jsonl", tmp_path / "r.html"
+    assert verify("--systems", "ts1", "--results", path, "--report", page, CHAR) == 0
+    (record,) = read_results(path).records.values()
+    (said,) = record.verdicts
+    assert (record.status, said.oracle, said.verdict) == ("pass", "rosbags", "known")
+    assert record.note == f"known difference from rosbags: {said.details[0]}"
+    assert f'<td class="t">{said.details[0]}</td>' in page.read_text()
+
+
+def test_definition_that_nobody_reads_is_skipped_for_a_reason(tmp_path, capsys):
+    text = "module p { module msg { struct A { long a; }; }; };"
+    make_files(tmp_path, {"src/p/msg/A.idl": text})
+    path, page = tmp_path / "r.jsonl", tmp_path / "r.html"
+    command = ["--systems", "ts1", "--all", "--path", tmp_path / "src", "--results", path]
+    assert verify(*command, "--report", page) == 0
+    (record,) = read_results(path).records.values()
+    assert record.status == "skipped"
+    assert record.reason == "no oracle that was asked reads .idl files"
+    assert record.reason in page.read_text()
+
+
+def test_definitions_that_are_refused_are_tests_of_ts1_and_named(tmp_path, capsys):
+    make_files(tmp_path, {"src/p/msg/A.msg": "int8 x\n", "src/p/msg/Bad.msg": "int8[ x\n"})
+    path, page = tmp_path / "r.jsonl", tmp_path / "r.html"
+    command = ["--systems", "ts1,ts2", "--all", "--path", tmp_path / "src", "--results", path]
+    assert verify(*command, "--report", page) == 1
+    found = read_results(path)
+    assert sorted(key.split()[0] + key.split()[2] for key in found.records) == [
+        "ts1p/msg/A",
+        "ts1p/msg/Bad",
+        "ts2p/msg/A",
+    ]
+    (said,) = (r.verdicts for r in found.records.values() if r.test.type == "p/msg/Bad")
+    assert said[0].is_refused
+    assert found.sessions[0]["definitions that are refused"].startswith("1: ")
+    assert "definitions that are refused: 1: " in page.read_text()
+
+
+def misread(monkeypatch):
+    refuse = lambda self, cases: [Refused("I do not like it")] * len(cases)  # noqa: E731
+    monkeypatch.setattr(ORACLES["rosbags"], "judge", refuse)
+
+
+def misplan(monkeypatch):
+    def misaligned(*arguments):
+        plan = plan_of(*arguments)
+        return replace(plan, steps=tuple(replace(step, align=1) for step in plan.steps))
+
+    monkeypatch.setattr(ts2, "plan_of", misaligned)
+
+
+@pytest.mark.parametrize(
+    ("system", "breaks", "said"),
+    [
+        ("ts1", misread, "oracle refuses: I do not like it"),
+        ("ts2", misplan, "bytes of padding in front"),
+    ],
+)
+def test_what_is_wrong_fails_in_the_record_and_on_the_page(
+    tmp_path, monkeypatch, capsys, system, breaks, said
+):
+    path, page = tmp_path / "r.jsonl", tmp_path / "r.html"
+    command = ["--systems", system, "--results", path, "--report", page]
+    name = "sensor_msgs/msg/JointState"
+    breaks(monkeypatch)
+    assert verify(*command, name, BOOL) == 1
+    failed = {r.test.type: r for r in read_results(path).records.values() if r.status == "fail"}
+    assert said in failed[name].failures[0]
+    text = page.read_text()
+    assert said in text and failed[name].command in text and "✗" in text
+    printed = capsys.readouterr().out
+    monkeypatch.undo()
+    # All is well now; the file still says what it said, and so does the command.
+    assert verify(*command, name, BOOL) == 1
+    again = capsys.readouterr().out
+    assert f"have a result in {path}" in again
+    assert summary_of(printed) == summary_of(again)
+
+
+def summary_of(text):
+    """What is counted, and no times."""
+    marks = ("rosbags 0", "lyrical  ", "different circuits", "golden plans")
+    return [line for line in text.splitlines() if any(mark in line for mark in marks)]
+
+
+def test_golden_plans_have_records_of_their_own(tmp_path, capsys):
+    golden, path = tmp_path / "golden", tmp_path / "r.jsonl"
+    name = "sensor_msgs/msg/Imu"
+    assert main(["golden", "add", "--distro", "lyrical", str(golden), name]) == 0
+    command = ["--systems", "ts2", "--golden", golden, name]
+    assert verify(*command, "--results", path) == 0
+    plan, kept = read_results(path).records.values()
+    assert plan.shape and not kept.shape and f"golden={golden}" in kept.test.options
+    (file,) = golden.glob("*/*.yaml")
+    file.write_text(file.read_text().replace("align: 8", "align: 4"))
+    assert verify(*command, "--results", tmp_path / "new.jsonl") == 1
+    statuses = [r.status for r in read_results(tmp_path / "new.jsonl").records.values()]
+    assert statuses == ["pass", "fail"]
+
+
+def test_what_has_a_record_is_not_tested_again(tmp_path, monkeypatch, capsys):
+    path = tmp_path / "r.jsonl"
+    assert verify(*ALL, "--results", path, BOOL, CHAR) == 0
+    first = capsys.readouterr().out
+
+    def never(*arguments):
+        raise AssertionError("it was tested before")
+
+    for where in ("ts2._checked", "ts1.run.judge_case", "runner.accept"):
+        monkeypatch.setattr(f"firm_hdl.verify.{where}", never)
+    assert verify(*ALL, "--results", path, BOOL, CHAR) == 0
+    again = capsys.readouterr().out
+    for what in ("2 of 2 definitions", "2 of 2 plans", "2 of 2 types"):
+        assert f"{what} have a result in {path}\n" in again
+    assert summary_of(again) == summary_of(first) != []
+    # What has no record is tested, or this would see nothing.
+    with pytest.raises(AssertionError, match="it was tested before"):
+        verify(*ALL, "--results", tmp_path / "new.jsonl", BOOL)
+
+
+def test_other_oracles_are_another_run(tmp_path, monkeypatch, capsys):
+    path = tmp_path / "r.jsonl"
+    assert verify("--systems", "ts1", "--results", path, BOOL) == 0
+    monkeypatch.setattr(ORACLES["rosbags"], "version", lambda self: "9.9")
+    assert verify("--systems", "ts1", "--results", path, BOOL) == 1
+    assert 'and is ["rosbags 9.9"]' in capsys.readouterr().err
+
+
+def run_until_killed(command, calls):
+    """Run the command, and end this process right behind so many calls of `add`."""
+    add, left = ResultsWriter.add, iter(range(calls))
+
+    def counted(writer, *records):
+        add(writer, *records)
+        if next(left, None) is None:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    ResultsWriter.add = counted
+    sys.exit(verify(*command))
+
+
+@pytest.mark.parametrize("system", ["ts1", "ts2"])
+def test_system_that_was_killed_goes_on_and_ends_the_same(tmp_path, system):
+    whole, killed = tmp_path / "whole", tmp_path / "killed"
+    names = [name for name in Library("lyrical").interfaces() if name.startswith("sensor_msgs/msg")]
+    command = ["--systems", system, *names]
+    assert verify(*command, "--results", whole) == 0
+    seed = random.randrange(1 << 32)
+    print(f"seed {seed}")
+    rng = random.Random(seed)
+    kills = before = 0
+    while True:
+        arguments = ([*command, "--results", killed], rng.randint(2, 12))
+        process = multiprocessing.Process(target=run_until_killed, args=arguments)
+        process.start()
+        process.join()
+        found = records_of(killed)
+        assert len(found) >= before, "results were lost"
+        before = len(found)
+        if process.exitcode != -signal.SIGKILL:
+            break
+        kills += 1
+    assert process.exitcode == 0 and kills >= 2
+    assert found == records_of(whole) and len(found) == len(names)
+    assert set(written(killed).values()) == {1}, "something ran twice"
+
+
+def halve(divisor, share):
+    if 13 in share:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return [number // divisor for number in share]
+
+
+def test_share_that_ends_its_process_blames_one_item():
+    shares = shares_of(range(40), 8, parts=5)
+    assert [len(share) for share in shares] == [8] * 5
+    found = {}
+    for share, result in run_shares(halve, 2, shares, jobs=2):
+        if isinstance(result, Exception):
+            assert share == (13,) and "died" in str(result)
+        else:
+            found.update(zip(share, result, strict=True))
+    assert found == {number: number // 2 for number in range(40) if number != 13}
+
+
+def test_definition_that_ends_our_process_is_the_only_one_that_fails(tmp_path, monkeypatch):
+    judge_case = ts1_run.judge_case
+
+    def dies(universe, oracles, case):
+        if case.name == "B":
+            os.kill(os.getpid(), signal.SIGKILL)
+        return judge_case(universe, oracles, case)
+
+    monkeypatch.setattr(ts1_run, "judge_case", dies)
+    texts = {f"src/p/msg/{name}.msg": "int8 x\n" for name in "ABC"}
+    source, path = str(make_files(tmp_path, texts) / "src"), tmp_path / "r.jsonl"
+    command = ["--systems", "ts1", "--all", "--path", source, "--results", path, "--jobs", "2"]
+    assert verify(*command) == 1
+    records = {record.test.type: record for record in read_results(path).records.values()}
+    assert [records[f"p/msg/{name}"].status for name in "ABC"] == ["pass", "fail", "pass"]
+    assert "died" in records["p/msg/B"].failures[0]
