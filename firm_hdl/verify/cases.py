@@ -18,6 +18,7 @@ import numpy as np
 from rosbags.interfaces import Nodetype
 from rosbags.typesys.base import normalize_fieldname
 
+from firm_hdl.plan import DecodeStatus
 from firm_hdl.verify.oracle import EMPTY_MEMBER, SIZES, FieldType, Oracle, Transfers
 
 __all__ = ["Case", "make_cases", "run_lengths"]
@@ -66,12 +67,23 @@ class Case:
         What rosbags writes for it.
     transfers : dict of path to list
         What its leaves transfer, from what rosbags reads in the packet.
+    given : bytes or None
+        What the deserializer gets, if that is another form of `packet`, or damaged.
+    status : str
+        What the deserializer says of it.
     """
 
     what: str
     value: object = field(repr=False)
     packet: bytes
     transfers: Transfers = field(repr=False)
+    given: bytes | None = None
+    status: DecodeStatus = "OK"
+
+    @property
+    def sent(self) -> bytes:
+        """What the deserializer gets."""
+        return self.packet if self.given is None else self.given
 
 
 def run_lengths(item_bytes: int, bus_bytes: int, bound: int | None) -> list[int]:

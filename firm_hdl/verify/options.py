@@ -8,7 +8,10 @@ from dataclasses import dataclass, field
 from firm_hdl.verify.crosscheck import Comparison
 from firm_hdl.verify.directed import Coverage
 
-__all__ = ["Options", "Result"]
+__all__ = ["LONGEST", "Options", "Result"]
+
+LONGEST = 1 << 18
+"""Longest recorded message to replay, if nobody says otherwise: it takes a minute or so."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +32,12 @@ class Options:
         :data:`firm_hdl.verify.simulators.SIMULATORS`.
     paths : tuple of str
         Folders with ROS packages, searched before the distribution's own types.
+    bags : tuple of str
+        Recordings whose messages are replayed; definitions come from nowhere else then.
+    longest : int
+        Longest recorded message to replay, in bytes.
+    references : tuple of str or None
+        Libraries that have to write the same bytes as rosbags; `None`: all that are here.
     vcd : str or None
         Folder for a waveform of each run.
     simulated : bool
@@ -44,6 +53,9 @@ class Options:
     most_cases: int | None = None
     simulator: str = "python"
     paths: tuple[str, ...] = ()
+    bags: tuple[str, ...] = ()
+    longest: int = LONGEST
+    references: tuple[str, ...] | None = None
     vcd: str | None = None
     simulated: bool = True
 
@@ -51,6 +63,9 @@ class Options:
         """Return the command that runs one type again."""
         parts = ["firm-hdl verify", f"--distro {distro}"]
         parts += [f"--path {shlex.quote(path)}" for path in self.paths]
+        parts += [f"--bag {shlex.quote(bag)}" for bag in self.bags]
+        if self.longest != LONGEST:
+            parts.append(f"--max-message-bytes {self.longest}")
         parts += [] if self.simulator == "python" else [f"--simulator {self.simulator}"]
         parts += [f"--bus-bytes {self.bus_bytes}"]
         parts += [f"--wire {self.wire}"] if self.wire else []
@@ -58,6 +73,8 @@ class Options:
         parts += [] if self.stalled else ["--no-stalls"]
         parts += [] if self.broken else ["--no-broken"]
         parts += [] if self.most_cases is None else [f"--cases {self.most_cases}"]
+        if self.references is not None:
+            parts += [f"--reference {name}" for name in self.references or ("none",)]
         parts += [] if self.vcd is None else [f"--vcd {shlex.quote(self.vcd)}"]
         return " ".join([*parts, name])
 
@@ -93,6 +110,8 @@ class Result:
         Why there is no oracle for the type, and nothing was run; empty if there is.
     note : str
         What is to be known about the oracle; empty in most cases.
+    written_by : tuple of str
+        Who wrote the same bytes as rosbags.
     comparison : Comparison or None
         With another simulator, if there was one.
     """
@@ -116,4 +135,5 @@ class Result:
     command: str = ""
     not_judged: str = ""
     note: str = ""
+    written_by: tuple[str, ...] = ()
     comparison: Comparison | None = None

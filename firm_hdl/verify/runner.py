@@ -15,6 +15,7 @@ from firm_hdl.model import Message
 from firm_hdl.verify.acceptance import Options, Result, accept
 from firm_hdl.verify.executors import PROCESSES, run_each
 from firm_hdl.verify.oracle import DISTRO_STORES, distro_oracle
+from firm_hdl.verify.replay import replay
 
 __all__ = ["Task", "UnknownTypeError", "collect_own", "collect_tasks", "run_tasks"]
 
@@ -148,7 +149,8 @@ def run_tasks(
         (task, (task.distro, task.name, without if task in golden_only else options))
         for task in tasks
     ]
-    for task, result in run_each(accept, work, executor=executor, jobs=jobs):
+    run = replay if options.bags else accept
+    for task, result in run_each(run, work, executor=executor, jobs=jobs):
         if isinstance(result, Exception):
             failed = Result(distro=task.distro, name=task.name)
             failed.failures.append(f"{type(result).__name__}: {result}")
