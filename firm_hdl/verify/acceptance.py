@@ -13,51 +13,61 @@ from __future__ import annotations
 
 import os
 import random
-import resource
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Set as AbstractSet
 from functools import cache
 from itertools import chain
 from typing import Any
 
 from firm_hdl.export.names import identifier
-from firm_hdl.frontend import Library
+from firm_hdl.frontend import Library, open_library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
-from firm_hdl.plan import Edge, Payload, Plan, build_plan
+from firm_hdl.plan import Edge, Payload, build_plan
 from firm_hdl.plan.edges import edges
 from firm_hdl.plan.interpret import decode, encode
 from firm_hdl.sim.harness import Harness
 from firm_hdl.sim.record import Seen
 from firm_hdl.sim.stalls import Stalls
 from firm_hdl.verify.cases import Case, make_cases
+from firm_hdl.verify.compare import (
+    packet_differences,
+    status_differences,
+    transfer_differences,
+)
 from firm_hdl.verify.crosscheck import Crosscheck
+from firm_hdl.verify.damage import broken_packets, stalls_for
 from firm_hdl.verify.directed import Coverage, bare_packets, more_cases
+from firm_hdl.verify.effort import (
+    LARGE_STRIDE,
+    LARGE_WORK,
+    MOST_CASE_BYTES,
+    chosen,
+    message_limit,
+    some_cases,
+    too_large,
+    work_of,
+)
 from firm_hdl.verify.figures import digest, figures
 from firm_hdl.verify.options import Options, Result
 from firm_hdl.verify.oracle import Oracle, Transfers
+from firm_hdl.verify.processes import cpu_seconds
+from firm_hdl.verify.references import WIDE_REFERENCE, confirm, may_stand_in
 from firm_hdl.verify.simulators import simulator
-from firm_hdl.verify.user_oracle import NotJudgedError, judge_of
+from firm_hdl.verify.user_oracle import Judge, NotJudgedError, judge_of
+from firm_hdl.verify.wide_oracle import WideOracle
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = [
+    "Acceptance",
     "Options",
     "Result",
     "accept",
     "accept_message",
-    "broken_packets",
     "library_of",
-    "stalls_for",
+    "measured",
 ]
-
-MAX_MESSAGE_BYTES = 1 << 16
-"""Small enough that a length over what it leaves room for can be completed in simulation."""
-
-
-LARGE = 300_000
-"""Beats times leaves, to which simulation time is roughly proportional, of a large type's cases."""
-
-LARGE_STRIDE = 4
 
 
 def accept(distro: str, name: str, options: Options | None = None) -> Result:
@@ -69,35 +79,52 @@ def accept(distro: str, name: str, options: Options | None = None) -> Result:
     name : str
         ``package/Type`` or ``package/msg/Type``.
     """
-    options = options or Options()
+
+    def run(message: Message, judge: Judge, options: Options, result: Result) -> None:
+        accept_message(message, judge.oracle, judge.name, options, result)
+
+    return measured(distro, name, options or Options(), run)
+
+
+def measured(
+    distro: str,
+    name: str,
+    options: Options,
+    run: Callable[[Message, Judge, Options, Result], None],
+) -> Result:
+    """Find a type and its oracle, run something on it, and return what became of it, and when.
+
+    Parameters
+    ----------
+    run : callable
+        Adds to the result. It may raise anything, which goes to the result as well.
+    """
     result = Result(distro=distro, name=name, command=options.command(distro, name))
-    began, began_cpu = time.perf_counter(), _cpu_seconds()
+    began, began_cpu = time.perf_counter(), cpu_seconds()
     try:
-        message = library_of(distro, options.paths).message(name)
-        judge = judge_of(message, None if options.paths else distro)
+        message = library_of(distro, options.paths, options.bags).message(name)
+        judge = judge_of(
+            message,
+            None if options.paths or options.bags else distro,
+            stand_in=not options.bags and may_stand_in(message, options.references),
+        )
         result.note = judge.note
         prepared = time.perf_counter() - began
-        accept_message(message, judge.oracle, judge.name, options, result)
+        run(message, judge, options, result)
         result.setup_seconds += prepared
     except NotJudgedError as error:
         result.not_judged = str(error)
     except Exception as error:  # Whatever it is, the other types are to go on.
         result.failures.append(f"{type(error).__name__}: {error}")
     result.seconds = time.perf_counter() - began
-    result.cpu_seconds = _cpu_seconds() - began_cpu
+    result.cpu_seconds = cpu_seconds() - began_cpu
     return result
 
 
-def _cpu_seconds() -> float:
-    """Return the processor time of this thread, and of programs that it has waited for."""
-    children = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return time.thread_time() + children.ru_utime + children.ru_stime
-
-
 @cache
-def library_of(distro: str, paths: tuple[str, ...]) -> Library:
+def library_of(distro: str, paths: tuple[str, ...], bags: tuple[str, ...] = ()) -> Library:
     """Return a library, which is opened once in a process."""
-    return Library(distro, paths)
+    return open_library(distro, bags=bags) if bags else Library(distro, paths)
 
 
 def accept_message(
@@ -106,15 +133,18 @@ def accept_message(
     """Run all cases of a message type that the oracle knows by `name`, and add to `result`."""
     began = time.perf_counter()
     wire: Any = options.wire or message.wire
-    run = _Acceptance(message, wire, options, result)
+    run = Acceptance(message, wire, options, result)
     cases = run.cases(oracle, name)
     bare = bare_packets(run.plan, cases)
     result.cases = len(cases)
     result.metrics = figures(message, run.plan, [case.packet for case in cases])
+    run.confirm(cases, is_needed=isinstance(oracle, WideOracle))
     result.setup_seconds = time.perf_counter() - began
-    run.golden(cases, bare)
+    taken = run.golden(cases, bare)
     if not options.simulated:
         return
+    if options.most_cases is None:
+        cases, bare = run.affordable(cases, bare, taken)
     run.good(cases, None, bare)
     if run.is_large(cases):
         cases = cases[::LARGE_STRIDE]
@@ -125,46 +155,55 @@ def accept_message(
     run.crosscheck()
 
 
-def stalls_for(seed: str | float) -> Stalls:
-    """Draw stalls: rare and long, frequent and short, or in between."""
-    rng = random.Random(seed)
-    probability, most = rng.choice(((0.05, 30), (0.2, 6), (0.5, 2), (0.8, 1), (0.3, 12)))
-    return Stalls(probability, 1, most, seed=rng.getrandbits(32))
+def size_of(cases: Sequence[Case]) -> int:
+    """Return the size of packets together, in bytes."""
+    return sum(len(case.packet) for case in cases)
 
 
-def broken_packets(plan: Plan, cases: Sequence[Case], rng: random.Random) -> Iterator[bytes]:
-    """Yield packets that are cut, too long, just not too long, or of a wrong representation."""
-    for case in cases:
-        packet = case.packet
-        kind = rng.choice(("cut", "cut", "long", "slack", "header"))
-        if kind == "header" and plan.header_bytes:
-            yield bytes((0, rng.choice((0, 2, 3, 7)))) + packet[2:]
-        elif kind == "cut" and packet:
-            yield packet[: rng.randrange(len(packet))]
-        elif kind == "long":
-            yield packet + rng.randbytes(plan.slack_bytes + rng.randint(1, 2 * plan.bus_bytes))
-        else:
-            # As many as are allowed, or one more.
-            yield packet + rng.randbytes(plan.slack_bytes + rng.randint(0, 1))
+class Acceptance:
+    """The runs of one type.
 
+    Parameters
+    ----------
+    message : Message
+    wire : "ros1" or "cdr"
+    options : Options
+    result : Result
+        Takes failures and figures.
+    max_message_bytes : int or None
+        Of the converters; `None`: what the type needs.
 
-class _Acceptance:
-    """The runs of one type."""
+    Raises
+    ------
+    NotJudgedError
+        If the type is too large to simulate.
+    """
 
-    def __init__(self, message: Message, wire: Wire, options: Options, result: Result):
+    def __init__(
+        self,
+        message: Message,
+        wire: Wire,
+        options: Options,
+        result: Result,
+        max_message_bytes: int | None = None,
+    ):
         self.options = options
         self.result = result
         self.message = message
+        layout = lay_out(message, wire)
+        if max_message_bytes is None:
+            max_message_bytes = message_limit(layout.min_bytes)
         self.settings: dict[str, Any] = {
             "wire": wire,
             "bus_bytes": options.bus_bytes,
-            "max_message_bytes": MAX_MESSAGE_BYTES,
+            "max_message_bytes": max_message_bytes,
         }
         self.plan = build_plan(
-            lay_out(message, wire),
-            bus_bytes=options.bus_bytes,
-            max_message_bytes=MAX_MESSAGE_BYTES,
+            layout, bus_bytes=options.bus_bytes, max_message_bytes=max_message_bytes
         )
+        if reason := too_large(self.plan, layout.min_bytes):
+            raise NotJudgedError(reason)
+        self.leaves = {leaf.path: number for number, leaf in enumerate(self.plan.leaves)}
         result.wire, result.shape = self.plan.wire, digest(self.plan)
         self.runs = 0
         self.rng = random.Random(f"{options.seed}/{message.name}/broken")
@@ -181,17 +220,16 @@ class _Acceptance:
     def cases(self, oracle: Oracle, name: str) -> list[Case]:
         """Make the cases, and those that the plan's other decisions need if there is no limit."""
         options, plan = self.options, self.plan
-        cases = list(
-            make_cases(
-                oracle,
-                name,
-                wire=plan.wire,
-                bus_bytes=plan.bus_bytes,
-                seed=options.seed,
-                most=options.most_cases,
-            )
+        made = make_cases(
+            oracle,
+            name,
+            wire=plan.wire,
+            bus_bytes=plan.bus_bytes,
+            seed=options.seed,
+            most=options.most_cases,
         )
-        if options.most_cases is None:
+        cases = list(some_cases(made))
+        if options.most_cases is None and size_of(cases) < MOST_CASE_BYTES:
             cases += more_cases(oracle, name, plan, cases, seed=options.seed)
         return cases
 
@@ -200,25 +238,51 @@ class _Acceptance:
             self.message, **self.settings
         )
 
+    def confirm(self, cases: Sequence[Case], *, is_needed: bool) -> None:
+        """Have other libraries write the cases; `is_needed`: rosbags' word is not enough."""
+        found = confirm(self.message, self.plan.wire, cases, self.options.references)
+        self.result.written_by = found.by
+        self.result.failures += found.failures
+        if is_needed and WIDE_REFERENCE not in found.by:
+            self.fail(f"{WIDE_REFERENCE} could not write wide text, which rosbags has not")
+
     def is_large(self, cases: Sequence[Case]) -> bool:
-        """Whether a type takes minutes to simulate; it is stalled and broken less often."""
-        beats = sum(len(case.packet) for case in cases) // self.options.bus_bytes
-        return beats * len(self.plan.leaves) > LARGE
+        """Whether a type takes long to simulate; it is stalled and broken less often."""
+        return work_of(self.plan, size_of(cases)) > LARGE_WORK
+
+    def affordable(
+        self,
+        cases: Sequence[Case],
+        bare: Sequence[tuple[Case, bytes]],
+        taken: Sequence[AbstractSet[Edge]],
+    ) -> tuple[list[Case], list[tuple[Case, bytes]]]:
+        """Choose what to simulate; `taken`: decisions of cases, then of bare packets."""
+        packets = [*(case.sent for case in cases), *(packet for _, packet in bare)]
+        numbers = set(chosen(self.plan, packets, taken))
+        if len(numbers) < len(packets):
+            note = f"simulated in part: {len(numbers)} of {len(packets)} packets"
+            self.result.note = "; ".join(filter(None, [self.result.note, note]))
+            self.cover(taken[number] for number in numbers)
+        some = [case for number, case in enumerate(cases) if number in numbers]
+        rest = [pair for number, pair in enumerate(bare, len(cases)) if number in numbers]
+        return some, rest
 
     def fail(self, what: str) -> None:
         self.result.failures.append(what)
 
-    def golden(self, cases: Sequence[Case], bare: Sequence[tuple[Case, bytes]]) -> None:
-        """Check the golden model against the oracle, and note which decisions packets take."""
-        taken: set[Edge] = set()
-        for case, packet in chain(((case, case.packet) for case in cases), bare):
+    def golden(
+        self, cases: Sequence[Case], bare: Sequence[tuple[Case, bytes]]
+    ) -> list[AbstractSet[Edge]]:
+        """Check the golden model against the oracle; return the decisions of each packet."""
+        taken: list[AbstractSet[Edge]] = []
+        for case, packet in chain(((case, case.sent) for case in cases), bare):
             decoded = decode(self.plan, packet)
-            taken |= decoded.edges
-            if decoded.status != "OK":
+            taken.append(decoded.edges)
+            if decoded.status != case.status:
                 self.fail(f"golden model, {case.what}: status {decoded.status}")
             self.transfers("golden model, " + case.what, decoded.streams, [case.transfers])
         for case in cases:
-            streams = {self.leaf(path): list(items) for path, items in case.transfers.items()}
+            streams = {self.leaves[path]: list(items) for path, items in case.transfers.items()}
             try:
                 packet, status = encode(self.plan, streams)
             except ValueError as error:
@@ -227,14 +291,14 @@ class _Acceptance:
             self.packets("golden model, " + case.what, [packet], [case.packet])
             if status != "OK":
                 self.fail(f"golden model, {case.what}: status {status} when encoding")
-        possible = edges(self.plan)
-        self.result.coverage = Coverage(possible=possible, taken=possible & taken)
+        self.cover(taken)
+        return taken
 
-    def leaf(self, path: tuple[str, ...]) -> int:
-        for number, leaf in enumerate(self.plan.leaves):
-            if leaf.path == path:
-                return number
-        raise AssertionError(f"The plan has no leaf {'.'.join(path)}")
+    def cover(self, taken: Iterable[AbstractSet[Edge]]) -> None:
+        """Note which decisions of the plan some packets take."""
+        possible = edges(self.plan)
+        reached = possible.intersection(chain.from_iterable(taken))
+        self.result.coverage = Coverage(possible=possible, taken=reached)
 
     def send(self, where: str, packets: Sequence[bytes], stalls: Stalls | None) -> Seen:
         observe = None if self.cross is None else self.cross.start(where)
@@ -275,8 +339,9 @@ class _Acceptance:
         bare: Sequence[tuple[Case, bytes]] = (),
     ) -> None:
         """Check the hardware against the oracle; `bare` packets are to come out as their cases."""
-        sent = [case.packet for case in cases] + [packet for _, packet in bare]
+        sent = [case.sent for case in cases] + [packet for _, packet in bare]
         cases = [*cases, *(case for case, _ in bare)]
+        names = [case.what for case in cases]
         where = "hardware" if stalls is None else f"hardware, {stalls}"
         try:
             seen = self.send(where, sent, stalls)
@@ -285,12 +350,14 @@ class _Acceptance:
             return
         if stalls is None:
             self.result.beats, self.result.cycles = seen.beats_in, seen.cycles
-        self.packets(where, seen.packets, [case.packet for case in cases])
-        self.transfers(where, seen.transfers, [case.transfers for case in cases])
-        for what, statuses in (("status", seen.statuses), ("sent_status", seen.sent_statuses)):
-            names = [status.name for status in statuses]
-            if set(names) - {"OK"}:
-                self.fail(f"{where}: {what} is {' '.join(names)}")
+        self.packets(where, seen.packets, [case.packet for case in cases], names)
+        self.transfers(where, seen.transfers, [case.transfers for case in cases], names)
+        for what, statuses, right in (
+            ("status", seen.statuses, [case.status for case in cases]),
+            ("sent_status", seen.sent_statuses, ["OK"] * len(cases)),
+        ):
+            got = [status.name for status in statuses]
+            self.result.failures += status_differences(f"{where}: {what}", got, right, names)
         if any(seen.marked):
             self.fail(f"{where}: packet_error is {seen.marked}")
 
@@ -320,36 +387,18 @@ class _Acceptance:
         self.transfers(where, seen.transfers, by_path)
         self.packets(where, seen.packets, [encode(self.plan, g.streams)[0] for g in expected])
 
-    def packets(self, where: str, got: Sequence[bytes], wanted: Sequence[bytes]) -> None:
-        """Compare packets, and report the first that differs."""
-        for number, (one, other) in enumerate(zip(got, wanted, strict=True)):
-            if one != other:
-                at = next(
-                    (n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), -1
-                )
-                self.fail(
-                    f"{where}: packet {number} of {len(wanted)} differs at byte {at}: "
-                    f"{one.hex()} instead of {other.hex()}"
-                )
-                return
+    def packets(
+        self, where: str, got: Sequence[bytes], wanted: Sequence[bytes], names: Sequence[str] = ()
+    ) -> None:
+        """Compare packets; `names` are those of the messages."""
+        self.result.failures += packet_differences(where, got, wanted, names)
 
     def transfers(
-        self, where: str, got: dict[int, list[Payload]], wanted: Sequence[Transfers]
+        self,
+        where: str,
+        got: dict[int, list[Payload]],
+        wanted: Sequence[Transfers],
+        names: Sequence[str] = (),
     ) -> None:
-        """Compare transfers, and report the first that differs of each leaf."""
-        joined: dict[tuple[str, ...], list[Payload]] = {}
-        for each in wanted:
-            for path, payloads in each.items():
-                joined.setdefault(path, []).extend(payloads)
-        for number, leaf in enumerate(self.plan.leaves):
-            mine, right = got.get(number, []), joined.pop(leaf.path, [])
-            if mine == right:
-                continue
-            pairs = enumerate(zip(mine, right, strict=False))
-            at = next((n for n, (a, b) in pairs if a != b), min(len(mine), len(right)))
-            self.fail(
-                f"{where}: leaf {leaf}, transfer {at} of {len(right)}: "
-                f"{mine[at : at + 1]} instead of {right[at : at + 1]}"
-            )
-        if joined:
-            self.fail(f"{where}: no leaves {', '.join('.'.join(path) for path in joined)}")
+        """Compare transfers; `names` are those of the messages."""
+        self.result.failures += transfer_differences(where, self.plan, got, wanted, names)
