@@ -1,20 +1,31 @@
 """Which types are worth testing: a small set with everything in it that the whole set has.
 
-Features of a type are the constructs of its plan and of its definition. The subset is chosen
-greedily: each time the type that adds most, the cheaper of two; that is within a logarithmic factor
-of the smallest set (Chvatal, 1979), and the same on every run.
+Features of a type are of five families: the productions of the grammar that its text uses, what
+its definition means, the constructs of its layout and of its plan, and the branches that the
+generator takes for it (:mod:`firm_hdl.verify.branches`). The subset is chosen greedily: each time
+the type that adds most, the cheaper of two; that is within a logarithmic factor of the smallest set
+(Chvatal, 1979), and the same on every run.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 
+from firm_hdl.frontend import Library
+from firm_hdl.frontend.productions import productions
 from firm_hdl.model import Array, Field, Message, Primitive, Sequence, Text
 from firm_hdl.plan import Plan
 from firm_hdl.plan.shape import constructs
+from firm_hdl.verify.branches import branches
+from firm_hdl.wire import Wire, lay_out
+from firm_hdl.wire.layout import Gap, Loop, Node, Run, Scalar, walk
 
-__all__ = ["Chosen", "choose", "features"]
+__all__ = ["FAMILIES", "Chosen", "all_features", "choose", "cost", "features"]
+
+FAMILIES = ("grammar", "definition", "layout", "plan", "branch")
+"""Which families of features there are; ``family: `` is in front of what `all_features` gives."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,17 +45,94 @@ class Chosen:
 
 def features(message: Message, plan: Plan) -> frozenset[str]:
     """Name what a type is made of: in its definition and in its plan."""
-    found = set(constructs(plan))
+    return frozenset(_meaning(message)) | constructs(plan)
+
+
+def all_features(
+    library: Library, message: Message, plan: Plan, *, with_branches: bool = False
+) -> frozenset[str]:
+    """Name what a type has of every family.
+
+    Parameters
+    ----------
+    library : Library
+        What the message is from: it knows what definitions are written in.
+    with_branches : bool
+        Whether to elaborate the type's converters, which takes some tenths of a second.
+    """
+    found = {f"grammar: {name}" for name in _grammar(library, message)}
+    found |= {f"definition: {name}" for name in _meaning(message)}
+    found |= {f"layout: {name}" for name in _layout(message, plan.wire)}
+    found |= {f"plan: {name}" for name in constructs(plan)}
+    if with_branches:
+        found |= {f"branch: {name}" for name in branches(message, plan)}
+    return frozenset(found)
+
+
+def cost(plan: Plan) -> float:
+    """Estimate what a type costs to simulate: its set-up, then about as much as there are steps."""
+    return 20.0 + len(plan.steps)
+
+
+def _all_messages(message: Message) -> Iterator[Message]:
+    """Yield a message and all that are in it, each once."""
     pending = [message]
     seen = {message.name}
     while pending:
         current = pending.pop()
-        found.update(_own(current))
+        yield current
         for child in current.children:
             if child.name not in seen:
                 seen.add(child.name)
                 pending.append(child)
-    return frozenset(found)
+
+
+def _grammar(library: Library, message: Message) -> Iterator[str]:
+    for each in _all_messages(message):
+        # The builtin types of ROS 1 have no text.
+        if each.package:
+            is_idl = library.is_idl(each.name)
+            language = "idl" if is_idl else each.dialect
+            for production in _productions(each, is_idl):
+                yield f"{language} {production}"
+
+
+@cache
+def _productions(message: Message, is_idl: bool) -> frozenset[str]:
+    return productions(message.text, message.dialect, is_idl=is_idl)
+
+
+def _meaning(message: Message) -> Iterator[str]:
+    for each in _all_messages(message):
+        yield from _own(each)
+
+
+def _layout(message: Message, wire: Wire) -> Iterator[str]:
+    for node in walk(lay_out(message, wire).nodes):
+        yield _node(node)
+
+
+def _node(node: Node) -> str:
+    match node:
+        case Scalar():
+            return f"scalar of {node.type.bytes} bytes, {_gap(node.gap)}"
+        case Run() | Loop():
+            words = [f"run of {node.item.bytes} bytes" if isinstance(node, Run) else "loop"]
+            words.append(
+                "of a constant length" if node.gap is None else f"length: {_gap(node.gap)}"
+            )
+            words += [f"items: {_gap(node.item_gap)}"] if isinstance(node, Run) else []
+            words += [] if node.bound is None else ["bounded"]
+            words += ["NUL"] if isinstance(node, Run) and node.terminated else []
+            return ", ".join(words)
+        case _:
+            return "trigger"
+
+
+def _gap(gap: Gap) -> str:
+    if gap.bytes is None:
+        return f"gap to a multiple of {gap.align}, by packet"
+    return f"gap of {gap.bytes}"
 
 
 def _own(message: Message) -> Iterator[str]:

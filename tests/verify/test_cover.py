@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.cover import choose, features
+from firm_hdl.verify.cover import FAMILIES, all_features, choose, features
 from firm_hdl.wire import lay_out
 
 PARTS = {"a": "xyz", "b": "x", "c": "yzw", "d": "w"}
@@ -48,3 +48,45 @@ def test_features_are_found_in_nested_types():
     found = features(message, build_plan(lay_out(message)))
     assert {"sequence of message", "field float32", "field string"} <= found
     assert "field float64" not in found
+
+
+def every_feature(library, name, **options):
+    message = library.message(name)
+    return all_features(library, message, build_plan(lay_out(message)), **options)
+
+
+def test_families_are_told_apart_and_branches_come_on_request():
+    library = Library("lyrical")
+    few = every_feature(library, "geometry_msgs/msg/PolygonStamped")
+    assert {
+        "grammar: ros2 array: OPEN CLOSE",
+        "definition: sequence of message",
+        "layout: loop, length: gap to a multiple of 4, by packet",
+        "layout: run of 1 bytes, length: gap of 0, items: gap of 0, NUL",
+        "plan: wire cdr",
+    } <= few
+    assert {feature.partition(": ")[0] for feature in few} == {*FAMILIES} - {"branch"}
+    all_ = every_feature(library, "geometry_msgs/msg/PolygonStamped", with_branches=True)
+    assert {feature.partition(": ")[0] for feature in all_ - few} == {"branch"}
+
+
+def test_padding_and_bounds_make_layouts_differ():
+    library = Library("lyrical")
+    solid = every_feature(library, "shape_msgs/msg/SolidPrimitive")
+    joy = every_feature(library, "sensor_msgs/msg/Joy")
+    assert any("bounded" in feature for feature in solid if feature.startswith("layout: "))
+    assert not any("bounded" in feature for feature in joy)
+    noetic = every_feature(Library("noetic"), "sensor_msgs/Joy")
+    assert not any("by packet" in feature for feature in noetic)
+
+
+def test_definitions_in_idl_have_productions_of_idl(tmp_path):
+    folder = tmp_path / "own_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (tmp_path / "own_msgs" / "package.xml").write_text("<package><name>own_msgs</name></package>")
+    text = "module own_msgs { module msg { struct Mine { sequence<long, 3> x; }; }; };"
+    (folder / "Mine.idl").write_text(text)
+    found = every_feature(Library("lyrical", [tmp_path]), "own_msgs/msg/Mine")
+    grammar = {feature for feature in found if feature.startswith("grammar: ")}
+    assert grammar and all(feature.startswith("grammar: idl ") for feature in grammar)
+    assert any("sequence_type" in feature for feature in grammar)

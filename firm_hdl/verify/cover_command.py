@@ -1,0 +1,113 @@
+"""``firm-hdl cover``: few types that have every feature of all, chosen or checked."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from tqdm import tqdm
+
+from firm_hdl.export.build import BuildError, load_all, plan_of
+from firm_hdl.frontend import open_library
+from firm_hdl.plan.shape import shape
+from firm_hdl.verify.cover import FAMILIES, all_features, choose, cost
+
+__all__ = ["add_cover_arguments", "read_chosen", "run_cover"]
+
+_HEAD = """\
+# Types that together have every feature that any of {distro} has; bus of {bus_bytes} bytes.
+# Written by `firm-hdl cover`, which --check FILE compares with today's features.
+"""
+
+
+def add_cover_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what ``firm-hdl cover`` takes, beside ``--distro``, ``--path`` and the options."""
+    parser.add_argument("types", nargs="*", metavar="TYPE", help="to choose from; default: all")
+    parser.add_argument(
+        "--branches",
+        action="store_true",
+        help="count the generator's branches as features, too (some tenths of a second per type)",
+    )
+    do = parser.add_mutually_exclusive_group()
+    do.add_argument("--out", metavar="FILE", help="write the names of the chosen types to a file")
+    do.add_argument(
+        "--check", metavar="FILE", help="choose nothing; say what the types of such a file lack"
+    )
+
+
+def read_chosen(path: str | Path) -> list[str]:
+    """Read the names of types from a file that ``--out`` wrote.
+
+    Raises
+    ------
+    BuildError
+        If it names none.
+    """
+    lines = Path(path).read_text(encoding="utf-8").splitlines()
+    names = [line.strip() for line in lines if line.strip() and not line.startswith("#")]
+    if not names:
+        raise BuildError(f"'{path}' names no types")
+    return names
+
+
+def run_cover(given: argparse.Namespace) -> int:
+    """Run ``firm-hdl cover``; return 1 if types that are checked lack something."""
+    library = open_library(given.distro, given.path, given.bag)
+    kept = None if given.check is None else read_chosen(given.check)
+    messages = load_all(library, given.types or library.names())
+    types: dict[str, frozenset[str]] = {}
+    costs, shapes = {}, set()
+    bar = tqdm(messages, unit="type", desc="features", disable=None if given.branches else True)
+    for message in bar:
+        plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
+        types[message.name] = all_features(library, message, plan, with_branches=given.branches)
+        costs[message.name] = cost(plan)
+        shapes.add(shape(plan))
+    if kept is not None:
+        return _check(types, kept, given.check)
+    chosen = choose(types, costs)
+    for each in chosen:
+        print(f"{each.name}: {', '.join(each.adds)}")
+    names = [each.name for each in chosen]
+    if given.out is not None:
+        head = _HEAD.format(distro=library.distro, bus_bytes=given.bus_bytes)
+        text = head + "".join(f"{name}\n" for name in sorted(names))
+        Path(given.out).parent.mkdir(parents=True, exist_ok=True)
+        Path(given.out).write_text(text, encoding="utf-8", newline="\n")
+    print(f"{_share(types, names)}; {len(shapes)} different circuits", file=sys.stderr)
+    return 0
+
+
+def _check(types: Mapping[str, frozenset[str]], kept: list[str], path: str) -> int:
+    if unknown := [name for name in kept if name not in types]:
+        raise BuildError(f"'{path}' names {', '.join(unknown)}, not among the types")
+    missing = _union(types.values()) - _union(types[name] for name in kept)
+    for feature in sorted(missing):
+        # The smallest one shows it best.
+        having = [name for name in types if feature in types[name]]
+        least = min(having, key=lambda name: (len(types[name]), name))
+        print(f"missing: {feature} (in {least})")
+    print(_share(types, kept), file=sys.stderr)
+    return 1 if missing else 0
+
+
+def _share(types: Mapping[str, frozenset[str]], names: list[str]) -> str:
+    """Say how many features of all types some of them have, by family."""
+    all_of = Counter(feature.partition(":")[0] for feature in _union(types.values()))
+    some_of = Counter(
+        feature.partition(":")[0] for feature in _union(types[name] for name in names)
+    )
+    families = ", ".join(
+        f"{family} {some_of[family]} of {all_of[family]}" for family in FAMILIES if all_of[family]
+    )
+    have, all_ = some_of.total(), all_of.total()
+    # Rounded down: 100 % is all of them.
+    share = 100 * have // all_ if all_ else 100
+    return f"{len(names)} of {len(types)} types have {share} % of the {all_} features ({families})"
+
+
+def _union(sets: Iterable[frozenset[str]]) -> frozenset[str]:
+    return frozenset().union(*sets)
