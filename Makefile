@@ -8,7 +8,8 @@ JOBS   ?= 2
 VERIFY_ARGS ?= --bus-bytes 4 --bus-bytes 8
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint verify verify-ts1 verify-vhdl prove oracles fuzz mutate bench tools ghdl verilog clean
+.PHONY: help demo test lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
+  report prove oracles fuzz mutate bench tools ghdl verilog clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' Makefile
@@ -16,19 +17,49 @@ help: ## list the targets
 demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware
 	$(BIN)/python examples/demo.py
 
-test: lint ghdl verilog oracles ## linters, types and all tests
+test: lint pytest ## linters, types and all tests
+
+pytest: $(VENV)/.installed-dev tools ## tests only; PYTEST_ARGS=tests/export takes some
 	$(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
 lint: $(VENV)/.installed-dev ## ruff and mypy only
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 
+coverage: $(VENV)/.installed-dev tools ## lines and branches of firm_hdl that the tests run
+	rm -rf build/coverage
+	mkdir -p build/coverage
+	$(BIN)/python -m coverage run -m pytest -n $(JOBS) $(PYTEST_ARGS)
+	$(BIN)/python -m coverage combine --quiet
+	$(BIN)/python -m coverage html --quiet
+	$(BIN)/python -m coverage report
+
+# Types that have every feature of all: what `make test` simulates in full depth, and what the two
+# targets below are about. COVER=--check compares the files with today's features instead.
+COVERING := tests/verify/covering
+COVER    ?= --out
+cover: $(VENV)/.installed ## choose the types that tests simulate in full depth (2 minutes)
+	$(BIN)/firm-hdl cover --distro lyrical --branches $(COVER) $(COVERING)/lyrical.txt
+	$(BIN)/firm-hdl cover --distro noetic --branches $(COVER) $(COVERING)/noetic.txt
+
+GENERATED ?= build/vhdl_out
+generate: $(VENV)/.installed ## Verilog, VHDL and benches of a covering set, in build/vhdl_out
+	for distro in lyrical noetic; do \
+	  $(BIN)/firm-hdl build --distro $$distro --out $(GENERATED) \
+	    $$(grep -v '^#' $(COVERING)/$$distro.txt) || exit; \
+	done
+
+simulate: ghdl ## the benches that `make generate` wrote, in GHDL
+	@benches=$$(ls $(GENERATED)/*/*/vhdl/run_ghdl.sh) && echo "$$benches" | \
+	  xargs -P $(JOBS) -I BENCH sh -c \
+	  'said=$$(sh BENCH 2>&1) && echo "pass BENCH" || { echo "$$said"; echo "FAIL BENCH"; exit 1; }'
+
 # Results and their report go to VERIFY_OUT. `make verify RESUME=1` goes on with a run that was stopped.
 VERIFY_OUT ?= build/verify
-verify: $(VENV)/.installed ## every type of every distribution against rosbags (10 minutes)
-	$(if $(RESUME),,rm -f $(VERIFY_OUT)/ts3.jsonl)
-	$(BIN)/python -m firm_hdl.verify $(VERIFY_ARGS) \
-	  --results $(VERIFY_OUT)/ts3.jsonl --report $(VERIFY_OUT)/ts3.html
+verify: $(VENV)/.installed oracles ## every type of every distribution through TS1, TS2 and TS3 (15 minutes)
+	$(if $(RESUME),,rm -f $(VERIFY_OUT)/results.jsonl)
+	$(BIN)/python -m firm_hdl.verify --systems ts1,ts2,ts3 $(VERIFY_ARGS) \
+	  --results $(VERIFY_OUT)/results.jsonl --report $(VERIFY_OUT)/report.html
 
 # `TS1_CORPUS=DIR` has folders `ros1/` and `ros2/` with packages, and `invalid/` with others.
 TS1_CORPUS ?= $(FIRM_HDL_CORPUS)
@@ -37,6 +68,9 @@ verify-ts1: $(VENV)/.installed oracles ## every definition against ROS's own rea
 	$(TS1)
 	$(if $(TS1_CORPUS),$(TS1) --distro noetic --path $(TS1_CORPUS)/invalid/ros1 --path $(TS1_CORPUS)/ros1)
 	$(if $(TS1_CORPUS),$(TS1) --distro lyrical --path $(TS1_CORPUS)/invalid/ros2 --path $(TS1_CORPUS)/ros2)
+
+report: $(VENV)/.installed ## one page of all results that are in build/verify
+	$(BIN)/firm-hdl report $(VERIFY_OUT)/*.jsonl --out $(VERIFY_OUT)/report.html
 
 verify-vhdl: $(VENV)/.installed ghdl ## every bench of lyrical and noetic in GHDL (10 minutes)
 	$(BIN)/python -m firm_hdl.verify --systems bench --distro lyrical --distro noetic --jobs $(JOBS)
@@ -61,13 +95,15 @@ ghdl:
 	@$(call need,ghdl-mcode,command -v ghdl >/dev/null || command -v ghdl-mcode >/dev/null)
 
 verilog:
-	@$(call need,iverilog verilator tcl,command -v iverilog >/dev/null \
-	  && command -v verilator >/dev/null && command -v tclsh >/dev/null)
+	@$(call need,iverilog verilator g++ tcl,command -v iverilog >/dev/null \
+	  && command -v verilator >/dev/null && command -v g++ >/dev/null && command -v tclsh >/dev/null)
 
-# ROS's own readers of definitions, for Debian's Python.
+# ROS's own readers of definitions and serializers: for Debian's Python, and Fast CDR for C++.
 oracles:
-	@$(call need,python3-genmsg python3-rosmsg python3-rosidl python3-empy,/usr/bin/python3 -c \
-	  'import em; import genmsg; import rosidl_adapter; import rosidl_parser; import rosmsg' 2>/dev/null)
+	@$(call need,python3-genmsg python3-genpy python3-rosmsg python3-rosidl python3-empy,\
+	  /usr/bin/python3 -c 'import em; import genmsg; import genpy; import rosidl_adapter; \
+	  import rosidl_parser; import rosmsg' 2>/dev/null)
+	@$(call need,g++ libfastcdr-dev,g++ -E -include fastcdr/Cdr.h -x c++ /dev/null >/dev/null 2>&1)
 
 # $(call need,packages,test that they are there)
 need = { $(2); } || { \
