@@ -137,6 +137,20 @@ def test_records_come_through_with_the_rest_beside_them(bus_bytes, fields):
     assert through(SHAPE, packets, bus_bytes=bus_bytes, fields=fields) == packets
 
 
+@pytest.mark.parametrize(
+    ("dialect", "member"), [("ros1", "trigger"), ("ros2", "structure_needs_at_least_one_member")]
+)
+@pytest.mark.parametrize("bus_bytes", [1, 8])
+def test_an_empty_message_is_a_member_of_a_record(dialect, member, bus_bytes):
+    empty = make(dialect, {}, "Empty")
+    message = make(dialect, {"a": "uint8", "e": empty, "b": "uint16", "es": (empty, "[2]")})
+    layout = record_layout(message)
+    assert [name for name, _ in layout["e"].shape] == [member]
+    octet = {"a": 7, "e": {}, "b": 515, "es": [{}, {}]}
+    packets = packets_of(message, [octet, {**octet, "a": 9}], bus_bytes)
+    assert through(message, packets, bus_bytes=bus_bytes) == packets
+
+
 def test_a_record_is_offered_when_all_of_it_is_there():
     dut = RecordReader(POINT)
 
@@ -172,6 +186,12 @@ def test_a_record_is_offered_when_all_of_it_is_there():
             make("ros1", {"a": "uint64[1025]"}),
             None,
             "Record of p/T is too wide: a has 65600 bits, and Amaranth elaborates at most 65535",
+        ),
+        (
+            make("ros1", {"a": "uint64[600]", "b": "uint64[600]"}),
+            None,
+            "Record of p/T is too wide: record has 76800 bits, and Amaranth elaborates at most "
+            "65535",
         ),
     ],
 )

@@ -213,12 +213,12 @@ def test_large_arrays_and_deep_nesting_cost_nothing():
         count = 1 << 23 if level in (0, 700) else 1
         kind = Array(element=top, count=count)
         top = Message(name=f"p/msg/L{level}", dialect="ros2", fields=(Field(name="f", type=kind),))
-    start = time.perf_counter()
+    start = time.process_time()
     figures = metrics_of(top)
     # 1+3 and 4+1 or 4+3, up to the next multiple of 8, and 8.
     assert figures.min_bytes == figures.max_bytes == 4 + (24 << 46)
     assert (figures.depth, figures.leaves) == (1501, 3)
-    assert time.perf_counter() - start < 20
+    assert time.process_time() - start < 20
 
 
 def test_the_whole_corpus_takes_seconds(corpus):
@@ -230,10 +230,10 @@ def test_the_whole_corpus_takes_seconds(corpus):
             with suppress(DefinitionError):
                 found += ours.interface(name).messages
         analyses = Analyses("ros1" if dialect == "ros1" else "cdr")
-        start = time.perf_counter()
+        start = time.process_time()
         rows = [analyses.metrics(message) for message in found]
-        # 2 to 3 s on the machine of 2025 that this was written on.
-        assert time.perf_counter() - start < 30
+        # 2 to 3 s of processor time on the machine of 2025 that this was written on.
+        assert time.process_time() - start < 30
         assert len(rows) > 5000
         if dialect == "ros1":
             assert max(row.leaves for row in rows) == 37138

@@ -227,3 +227,73 @@ def test_leaves_out_of_order_are_named():
 def test_a_plan_of_another_layout_is_named(plan):
     other = lay_out(make("ros2", {"a": "uint8"}))
     assert "leaves are not those of the layout" in check(plan, other)
+
+
+def with_leaf(plan, name, **changes):
+    """Change one leaf of a plan."""
+    leaves = [replace(leaf, **changes) if str(leaf) == name else leaf for leaf in plan.leaves]
+    assert tuple(leaves) != plan.leaves
+    return replace(plan, leaves=tuple(leaves))
+
+
+@pytest.mark.parametrize(
+    ("leaf", "changes", "said"),
+    [
+        ("a", {"type": "uint7"}, "type 'uint7' is not a primitive"),
+        ("a", {"type": "int8"}, "signedness is not that of int8"),
+        ("q.length", {"type": "uint16"}, "a length is of type uint32, not uint16"),
+        ("q.length", {"path": ("q", "size")}, "path does not end in 'length'"),
+    ],
+)
+def test_a_leaf_that_cannot_be_is_named(plan, leaf, changes, said):
+    assert any(said in problem for problem in check(with_leaf(plan, leaf, **changes)))
+
+
+def test_a_plan_without_steps_is_named(plan):
+    assert "there are no steps" in check(replace(plan, steps=()))
+
+
+def begun(plan, name):
+    """The number and the beginning of the step that takes a length."""
+    number = next(n for n, leaf in enumerate(plan.leaves) if str(leaf) == name)
+    for index, step in enumerate(plan.steps):
+        if step.begin is not None and step.begin.length == number:
+            return index, step.begin
+    raise AssertionError(name)
+
+
+def test_a_count_that_is_not_its_limit_is_named():
+    plan = build_plan(lay_out(make("ros2", {"a": "uint8[21]"})), bus_bytes=8)
+    index, step = next((n, s) for n, s in enumerate(plan.steps) if s.begin is not None)
+    for wrong in (22, -1):
+        problems = check(with_step(plan, index, begin=replace(step.begin, limit=wrong)))
+        assert any(problem.endswith(f"a count has the limit {wrong}") for problem in problems)
+
+
+def test_padding_that_no_alignment_needs_is_named():
+    plan = build_plan(lay_out(make("ros2", {"a": "uint8"})), bus_bytes=16)
+    step = plan.steps[0]
+    slices = (*step.slices, Pad(at=5, bytes=8))
+    problems = check(with_step(plan, 0, slices=slices, bytes=13))
+    assert "step 0: 8 padding bytes or more" in problems
+
+
+def test_a_bound_that_is_not_that_of_the_type_is_named(plan):
+    index, begin = begun(plan, "ps.length")
+    assert begin.limit == 4
+    problems = check(with_step(plan, index, begin=replace(begin, limit=5)), LAYOUTS[0])
+    assert problems == ["ps may have more than 4 elements"]
+    # Fewer are what `max_message_bytes` may leave room for.
+    assert check(with_step(plan, index, begin=replace(begin, limit=3)), LAYOUTS[0]) == []
+
+
+@pytest.mark.parametrize("sequence", ["uint8[]", "string"])
+def test_a_sequence_of_another_kind_is_named(sequence):
+    other = {"uint8[]": "string", "string": "uint8[]"}[sequence]
+    plan = build_plan(lay_out(make("ros2", {"a": sequence})))
+    assert "a has the NUL wrong" in check(plan, lay_out(make("ros2", {"a": other})))
+
+
+def test_a_length_that_nothing_counts_by_is_named():
+    plan = build_plan(lay_out(make("ros2", {"a": "uint8"})))
+    assert "a has no length" in check(plan, lay_out(make("ros2", {"a": "string"})))

@@ -89,3 +89,12 @@ def test_kinds_leave_out_what_belongs_to_one_type():
 def test_what_is_no_plan_is_refused(text):
     with pytest.raises(ValueError, match=r"^Not (YAML|a plan): "):
         compare(text, text)
+
+
+def test_what_is_new_or_gone_is_a_kind_of_its_own():
+    old = plan("sensor_msgs/msg/JointState")
+    new = replace(old, steps=old.steps[:-1])
+    gone = {change.kind for change in compare(to_yaml(old), to_yaml(new))}
+    came = {change.kind for change in compare(to_yaml(new), to_yaml(old))}
+    assert any(kind.endswith(": gone") for kind in gone)
+    assert {kind.replace(": gone", ": new") for kind in gone} == came

@@ -243,3 +243,21 @@ def test_visits_count_the_bytes_of_every_cycle():
     padding = 2 + 4
     assert sum(visit.bytes for visit in decoded.steps) == len(packet) - padding
     assert [visit.step for visit in decoded.steps] == sorted(v.step for v in decoded.steps)
+
+
+@pytest.mark.parametrize(
+    ("leaf", "given", "said"),
+    [
+        (0, ((1,), True), "Leaf s.length takes a number, not ((1,), True)"),
+        (1, 5, "Leaf s.items takes at least 3 lanes and last, not 5"),
+        (1, ((97,), True), "Leaf s.items takes at least 3 lanes and last, not ((97,), True)"),
+    ],
+)
+def test_transfers_of_another_form_are_refused(leaf, given, said):
+    message = make("ros2", {"s": "string"})
+    plan = plan_for(8, message)
+    streams = to_transfers(plan, message, {"s": "abc"})
+    streams[leaf][0] = given
+    with pytest.raises(ValueError) as caught:
+        encode(plan, streams)
+    assert str(caught.value) == said
