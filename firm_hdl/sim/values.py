@@ -62,19 +62,29 @@ def to_transfers(
 
 
 def from_transfers(
-    plan: Plan, message: Message, transfers: Mapping[int, Iterable[Payload]]
+    plan: Plan,
+    message: Message,
+    transfers: Mapping[int, Iterable[Payload]],
+    *,
+    exact: bool = False,
 ) -> dict[str, Any]:
     """Return the value that the transfers of one message say.
 
     Numbers become `int`, `float` and `bool`, text `str` (or `bytes` if it is not UTF-8, a list of
     numbers if a `wstring` has units over 0xFFFF), arrays and sequences lists, messages dicts.
 
+    Parameters
+    ----------
+    exact : bool
+        Give floats as the numbers of their bits, since a Python float does not keep each NaN, text
+        always as `bytes`, and wide text always as a list of numbers.
+
     Raises
     ------
     ValueError
         If transfers are missing or left over, or `last` is not exactly on the last one.
     """
-    joiner = _Joiner(plan, transfers)
+    joiner = _Joiner(plan, transfers, exact)
     value = joiner.message(message, ())
     for leaf, stream in joiner.streams.items():
         if any(True for _ in stream):
@@ -159,8 +169,9 @@ class _Splitter(_Leaves):
 
 
 class _Joiner(_Leaves):
-    def __init__(self, plan: Plan, transfers: Mapping[int, Iterable[Payload]]):
+    def __init__(self, plan: Plan, transfers: Mapping[int, Iterable[Payload]], exact: bool):
         super().__init__(plan)
+        self.exact = exact
         self.streams: dict[int, Iterator[Payload]] = {n: iter(t) for n, t in transfers.items()}
 
     def receive(self, number: int) -> Payload:
@@ -182,15 +193,16 @@ class _Joiner(_Leaves):
     def field(self, kind: FieldType, path: Path) -> Any:
         match kind:
             case Primitive():
-                return _number(kind, self.number(self.leaf(path)[0]))
+                return _number(kind, self.number(self.leaf(path)[0]), self.exact)
             case Message():
                 return self.message(kind, path)
             case Text():
-                return _text(kind, self.items(self.length(path), path))
+                return _text(kind, self.items(self.length(path), path), self.exact)
             case Array(element=element) | Sequence(element=element):
                 count = kind.count if isinstance(kind, Array) else self.length(path)
                 if isinstance(element, Primitive):
-                    return [_number(element, bits) for bits in self.items(count, path)]
+                    items = self.items(count, path)
+                    return [_number(element, bits, self.exact) for bits in items]
                 return [self.field(element, (*path, "item")) for _ in range(count)]
 
     def length(self, path: Path) -> int:
@@ -306,23 +318,25 @@ def _text_items(kind: Text, value: Any, where: str) -> list[int]:
     raise TypeError(f"{where} must be a {kind}, not {value!r}")
 
 
-def _number(kind: Primitive, bits: int) -> int | float | bool:
+def _number(kind: Primitive, bits: int, exact: bool) -> int | float | bool:
     if kind.kind == "bool":
         return bool(bits)
-    if kind.kind == "int":
+    if kind.kind == "int" or exact:
         return bits
     value: float = struct.unpack(FLOATS[kind.bytes], bits.to_bytes(kind.bytes, "little"))[0]
     return value
 
 
-def _text(kind: Text, items: list[int]) -> str | bytes | list[int]:
+def _text(kind: Text, items: list[int], exact: bool) -> str | bytes | list[int]:
     if kind.wide:
-        if any(unit >> 16 for unit in items):
+        if exact or any(unit >> 16 for unit in items):
             return items
         return b"".join(unit.to_bytes(2, "little") for unit in items).decode(
             "utf-16-le", "surrogatepass"
         )
     data = bytes(items)
+    if exact:
+        return data
     try:
         return data.decode()
     except UnicodeDecodeError:

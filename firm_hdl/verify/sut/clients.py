@@ -1,0 +1,47 @@
+"""All client libraries, and which of them ROS itself uses."""
+
+from __future__ import annotations
+
+import atexit
+import os
+from functools import cache
+
+from firm_hdl.verify.sut.client import Client
+from firm_hdl.verify.sut.fastcdr import FastCdr
+from firm_hdl.verify.sut.genpy import Genpy
+from firm_hdl.verify.sut.libraries import CycloneDds, McapRos1, McapRos2, Rosbags
+from firm_hdl.verify.sut.own import FirmHdl
+
+__all__ = ["CLIENTS", "REFERENCES", "client", "close_clients"]
+
+CLIENTS: dict[str, type[Client]] = {
+    kind.name: kind for kind in (FirmHdl, Rosbags, Genpy, FastCdr, CycloneDds, McapRos1, McapRos2)
+}
+"""Every client library by name, in the order of reports."""
+
+REFERENCES = {"ros1": ("genpy", "rosbags"), "cdr": ("fastcdr", "rosbags")}
+"""Who judges a library on a wire: ROS's own serializer, and who comes next if it is not here, or
+is the one that is judged."""
+
+
+def client(name: str) -> Client:
+    """Return a client library, of which there is one in a process."""
+    return _client(name, os.getpid())
+
+
+@cache
+def _client(name: str, process: int) -> Client:
+    # A process that was forked must not talk to what its parent has started.
+    return CLIENTS[name]()
+
+
+def close_clients() -> None:
+    """End what client libraries of this process have started."""
+    if _client.cache_info().currsize:
+        for name in CLIENTS:
+            client(name).close()
+        _client.cache_clear()
+
+
+# Processes that they started wait for more otherwise.
+atexit.register(close_clients)

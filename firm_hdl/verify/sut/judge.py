@@ -1,0 +1,204 @@
+"""A client library against ROS's own serializer, on one message type."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from firm_hdl.model import Message
+from firm_hdl.verify.sut.client import Client, Codec, Refusal, UnsupportedError
+from firm_hdl.verify.sut.finding import Finding
+from firm_hdl.verify.sut.known import known_keys
+from firm_hdl.verify.sut.odd import (
+    ODDITIES,
+    odd_packet,
+    odd_packets,
+    odd_value,
+    odd_values,
+    plain_packet,
+)
+from firm_hdl.verify.sut.values import Plain
+from firm_hdl.wire import Wire
+
+__all__ = ["Contest", "Verdict"]
+
+
+@dataclass(slots=True, kw_only=True)
+class Verdict:
+    """What came of a library and a type.
+
+    Attributes
+    ----------
+    library, reference : str
+    type : str
+    comparisons : int
+        How often both were asked for the same.
+    known : counter of str
+        Keys of differences that are known.
+    findings : list of Finding
+        Others, the first of each kind.
+    unknown : int
+        How many others there are.
+    not_judged : str
+        Why there is nothing; empty if there is.
+    """
+
+    library: str
+    reference: str
+    type: str
+    comparisons: int = 0
+    known: Counter[str] = field(default_factory=Counter)
+    findings: list[Finding] = field(default_factory=list)
+    unknown: int = 0
+    not_judged: str = ""
+
+    @property
+    def name(self) -> str:
+        """One of ``agree``, ``known``, ``differ`` and ``not judged``."""
+        if self.not_judged:
+            return "not judged"
+        return "differ" if self.unknown else "known" if self.known else "agree"
+
+    def add(self, finding: Finding, codecs: tuple[Codec, Codec]) -> None:
+        """Count a difference."""
+        if keys := known_keys(finding, *codecs):
+            self.known.update(keys)
+            return
+        self.unknown += 1
+        if all(each.what != finding.what for each in self.findings):
+            self.findings.append(finding)
+
+
+class Contest:
+    """A library and its reference.
+
+    Parameters
+    ----------
+    library, reference : Client
+    wire : Wire
+    """
+
+    def __init__(self, library: Client, reference: Client, wire: Wire):
+        self.library, self.reference, self.wire = library, reference, wire
+
+    def judge(self, message: Message, values: Sequence[Plain]) -> Verdict:
+        """Compare what they make of values, and of packets that come from these."""
+        verdict = Verdict(
+            library=self.library.name, reference=self.reference.name, type=message.name
+        )
+        try:
+            self._judge(verdict, message, values, *self._open(message))
+        except UnsupportedError as error:
+            verdict.not_judged = str(error)
+        return verdict
+
+    def _open(self, message: Message) -> tuple[Codec, Codec]:
+        for client in (self.library, self.reference):
+            if self.wire not in client.wires:
+                raise UnsupportedError(f"{client.name} does not speak {self.wire}")
+        return self.library.open(message, self.wire), self.reference.open(message, self.wire)
+
+    def _judge(
+        self,
+        verdict: Verdict,
+        message: Message,
+        values: Sequence[Plain],
+        theirs: Codec,
+        right: Codec,
+    ) -> None:
+        packets = right.encode_all(values)
+        asked = [_Asked("encode", value, None) for value in values]
+        pairs = [(v, p) for v, p in zip(values, packets, strict=True) if isinstance(p, bytes)]
+        asked += [_Asked("decode", value, packet) for value, packet in pairs]
+        asked += [
+            _Asked(f"encode {name}", value, None) for name, value in odd_values(message, values)
+        ]
+        usable = [v for v, p in pairs if plain_packet(message, self.wire, v) == p]
+        asked += [
+            _Asked(oddity.name, value, packet)
+            for oddity, value, packet in odd_packets(message, self.wire, usable)
+            if self._reads(oddity.name)
+        ]
+        answers = zip(asked, _answers(right, asked), _answers(theirs, asked), strict=True)
+        for each, expected, got in answers:
+            verdict.comparisons += 1
+            if expected != got:
+                verdict.add(self._finding(message, each, expected, got), (theirs, right))
+
+    def _reads(self, oddity: str) -> bool:
+        both = (self.library, self.reference)
+        return oddity != "big-endian" or all("big" in each.byte_orders for each in both)
+
+    def _finding(self, message: Message, asked: _Asked, expected: Any, got: Any) -> Finding:
+        return Finding(
+            library=self.library.name,
+            reference=self.reference.name,
+            wire=self.wire,
+            what=asked.what,
+            message=message,
+            value=asked.value,
+            packet=asked.packet or b"",
+            expected=expected,
+            got=got,
+        )
+
+    def ask(
+        self, message: Message, what: str, value: Plain
+    ) -> tuple[Finding, Sequence[str]] | None:
+        """Ask for one thing, and return a difference and what explains it; `None` if there is none.
+
+        Parameters
+        ----------
+        what : str
+            See `Finding`. What is odd is done to `value`, or to its packet.
+        """
+        try:
+            theirs, right = self._open(message)
+            asked = self._asked(message, what, value, right)
+            if asked is None:
+                return None
+            (expected,), (got,) = (_answers(codec, [asked]) for codec in (right, theirs))
+        except UnsupportedError:
+            return None
+        finding = self._finding(message, asked, expected, got)
+        return None if expected == got else (finding, known_keys(finding, theirs, right))
+
+    def again(self, message: Message, what: str, value: Plain) -> Finding | None:
+        """Ask for one thing; return a difference that nothing explains."""
+        found = self.ask(message, what, value)
+        return None if found is None or found[1] else found[0]
+
+    def _asked(self, message: Message, what: str, value: Plain, right: Codec) -> _Asked | None:
+        if what.startswith("encode"):
+            odd = what.removeprefix("encode").strip()
+            changed = odd_value(message, value, odd) if odd else value
+            return None if changed is None else _Asked(what, changed, None)
+        (plain,) = right.encode_all([value])
+        if isinstance(plain, Refusal):
+            return None
+        if what == "decode":
+            return _Asked(what, value, plain)
+        if plain != plain_packet(message, self.wire, value):
+            return None
+        packet = odd_packet(message, self.wire, value, ODDITIES[what])
+        return None if packet is None else _Asked(what, value, packet)
+
+
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    """What both are asked: to write a value, or, if there is a packet, to read that."""
+
+    what: str
+    value: Plain
+    packet: bytes | None
+
+
+def _answers(codec: Codec, asked: Sequence[_Asked]) -> list[Any]:
+    """Ask a library, all values and all packets at once."""
+    values = [each.value for each in asked if each.packet is None]
+    packets = [each.packet for each in asked if each.packet is not None]
+    written = iter(codec.encode_all(values) if values else ())
+    read = iter(codec.decode_all(packets) if packets else ())
+    return [next(written) if each.packet is None else next(read) for each in asked]

@@ -1,0 +1,127 @@
+"""Client libraries against ROS's own serializers, over many types, in several processes."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.plan import build_plan
+from firm_hdl.verify.acceptance import library_of
+from firm_hdl.verify.cases import make_cases
+from firm_hdl.verify.directed import more_cases
+from firm_hdl.verify.effort import some_cases
+from firm_hdl.verify.processes import in_processes
+from firm_hdl.verify.runner import Task
+from firm_hdl.verify.sut.clients import REFERENCES, client
+from firm_hdl.verify.sut.judge import Contest, Verdict
+from firm_hdl.verify.sut.values import Plain, from_objects
+from firm_hdl.verify.user_oracle import NotJudgedError, judge_of
+from firm_hdl.wire import Wire, lay_out
+
+__all__ = ["SutOptions", "contest_of", "judge_type", "judge_types", "reference_of"]
+
+BUS_BYTES = 8
+"""Lengths of sequences and texts are chosen as for a bus of so many bytes."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SutOptions:
+    """What to judge, and how.
+
+    Attributes
+    ----------
+    libraries : tuple of str
+        Systems under test.
+    here : tuple of str
+        References that can be used.
+    wire : Wire or None
+        `None`: that of the distribution.
+    seed : int
+    most_cases : int or None
+    paths : tuple of str
+        Folders with ROS packages, searched first.
+    """
+
+    libraries: tuple[str, ...]
+    here: tuple[str, ...] = ()
+    wire: Wire | None = None
+    seed: int = 0
+    most_cases: int | None = None
+    paths: tuple[str, ...] = ()
+
+    def command(self, distro: str, name: str, library: str) -> str:
+        """Return the command that judges one library on one type again."""
+        parts = ["firm-hdl", "verify", "--sut", library, "--distro", distro]
+        for path in self.paths:
+            parts += ["--path", path]
+        parts += ["--wire", self.wire] if self.wire else []
+        parts += ["--seed", str(self.seed)] if self.seed else []
+        parts += [] if self.most_cases is None else ["--cases", str(self.most_cases)]
+        return shlex.join([*parts, name])
+
+
+def reference_of(library: str, wire: Wire, here: Sequence[str]) -> str | None:
+    """Return who judges a library on a wire; `None` if nobody is here."""
+    return next((name for name in REFERENCES[wire] if name in here and name != library), None)
+
+
+def contest_of(verdict: Verdict, wire: Wire) -> Contest:
+    """Return what a verdict came from, to ask again."""
+    return Contest(client(verdict.library), client(verdict.reference), wire)
+
+
+def judge_type(distro: str, name: str, options: SutOptions) -> list[Verdict]:
+    """Judge all libraries on one type. Nothing is raised: what goes wrong is in the verdicts."""
+    try:
+        message = library_of(distro, options.paths).message(name)
+        wire = options.wire or message.wire
+        values = _values(distro, name, wire, options)
+    # Whatever it is, the other types are to go on.
+    except (NotJudgedError, DefinitionError, ValueError) as error:
+        return [_not_judged(library, name, str(error)) for library in options.libraries]
+    verdicts = []
+    for library in options.libraries:
+        reference = reference_of(library, wire, options.here)
+        if reference is None:
+            verdicts.append(_not_judged(library, name, f"nobody is here who judges it on {wire}"))
+            continue
+        contest = Contest(client(library), client(reference), wire)
+        verdicts.append(contest.judge(message, values))
+    return verdicts
+
+
+def _not_judged(library: str, name: str, why: str) -> Verdict:
+    return Verdict(library=library, reference="", type=name, not_judged=why)
+
+
+def _values(distro: str, name: str, wire: Wire, options: SutOptions) -> list[Plain]:
+    """Choose values as TS3 does: all lengths and extremes, and what decisions of a plan need."""
+    message = library_of(distro, options.paths).message(name)
+    judge = judge_of(message, None if options.paths else distro, stand_in=True)
+    made = make_cases(
+        judge.oracle,
+        judge.name,
+        wire=wire,
+        bus_bytes=BUS_BYTES,
+        seed=options.seed,
+        most=options.most_cases,
+    )
+    cases = list(some_cases(made))
+    if options.most_cases is None:
+        plan = build_plan(lay_out(message, wire), bus_bytes=BUS_BYTES)
+        cases += more_cases(judge.oracle, judge.name, plan, cases, seed=options.seed)
+    return [from_objects(message, case.value) for case in cases]
+
+
+def judge_types(
+    tasks: Sequence[Task], options: SutOptions, jobs: int | None
+) -> Generator[tuple[Task, list[Verdict]], None, None]:
+    """Judge all libraries on types, and yield what comes of each, as it comes."""
+    work = [(task, (task.distro, task.name, options)) for task in tasks]
+    for task, verdicts in in_processes(judge_type, work, jobs):
+        if isinstance(verdicts, Exception):
+            # In one process: an exception of our own code. Such a run is no result.
+            raise verdicts
+        yield task, verdicts
