@@ -12,10 +12,13 @@ from collections.abc import Mapping
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from firm_hdl.model import Array, Message, Sequence, Text
+from firm_hdl import model
+from firm_hdl.model import IDL_PRIMITIVES, Array, Message, Primitive, Sequence, Text
 from firm_hdl.verify.oracle import FieldType, Oracle, distro_oracle
+from firm_hdl.verify.wide_oracle import STAND_IN_NOTE, WideOracle, stand_in_type, stand_ins
+from firm_hdl.wire import refusals
 
-__all__ = ["Judge", "NotJudgedError", "judge_of", "oracle_name"]
+__all__ = ["Judge", "NotJudgedError", "check_wire", "judge_of", "oracle_name", "resolved_oracle"]
 
 _BUILTIN = {"time": "builtin_interfaces/msg/Time", "duration": "builtin_interfaces/msg/Duration"}
 _TIMES = dict.fromkeys(_BUILTIN, "int32 sec\nuint32 nanosec\n")
@@ -41,32 +44,70 @@ class Judge:
         self.oracle, self.name, self.note = oracle, name, note
 
 
-def judge_of(message: Message, distro: str | None = None) -> Judge:
+def judge_of(message: Message, distro: str | None = None, *, stand_in: bool = False) -> Judge:
     """Find the oracle of a type.
 
     Parameters
     ----------
     distro : str or None
         The distribution, if `message` is one of its own types: rosbags has its own definition then.
+    stand_in : bool
+        Whether a wstring may be a message of numbers, see :mod:`firm_hdl.verify.wide_oracle`.
+        Somebody who has wstring has to say whether the bytes are right.
 
     Raises
     ------
     NotJudgedError
     """
+    check_wire(message)
     name = oracle_name(message)
     if distro is not None:
         oracle = distro_oracle(distro)
         if name in oracle.store.fielddefs:
             return Judge(oracle, name)
-    _refuse_wide(message)
+    oracle = resolved_oracle(message, stand_in=stand_in)
+    if isinstance(oracle, WideOracle):
+        return Judge(oracle, name, STAND_IN_NOTE)
+    return Judge(oracle, name, _note(message, oracle, name))
+
+
+def resolved_oracle(message: Message, *, stand_in: bool = False) -> Oracle:
+    """Return an oracle that has the type and all that it is made of, as they were resolved.
+
+    Raises
+    ------
+    NotJudgedError
+    """
+    wide: dict[str, str] = {}
+    if stand_in:
+        wide = stand_ins(_all_messages(message))
+    else:
+        _refuse_wide(message)
     resolved = {
-        kind.name: "".join(f"{item.type} {item.name}\n" for item in kind.fields)
+        kind.name: "".join(f"{_spelled(item.type)} {item.name}\n" for item in kind.fields)
         for kind in _all_messages(message)
     }
-    oracle = _oracle(message, resolved)
-    if missing := _unknown(oracle, name):
+    oracle = _oracle(message, resolved, wide)
+    if missing := _unknown(oracle, oracle_name(message)):
         raise NotJudgedError(f"rosbags has no {missing}")
-    return Judge(oracle, name, _note(message, oracle, name))
+    return oracle
+
+
+def _spelled(kind: model.FieldType) -> str:
+    """Return a type as rosbags has it, whose ``char`` is that of ``.msg`` files: not signed."""
+    inner = kind.element if isinstance(kind, Array | Sequence) else kind
+    if isinstance(inner, Text) and inner.wide:
+        return stand_in_type(kind, inner)
+    if isinstance(inner, Primitive) and inner in (IDL_PRIMITIVES["char"], IDL_PRIMITIVES["wchar"]):
+        integer = f"{'' if inner.signed else 'u'}int{8 * inner.bytes}"
+        return str(kind).replace(inner.name, integer, 1)
+    return str(kind)
+
+
+def check_wire(message: Message) -> None:
+    """Raise `NotJudgedError` if a message has a field that no wire has: there is no packet."""
+    if wrong := refusals(message):
+        raise NotJudgedError(wrong[0].message)
 
 
 def oracle_name(message: Message) -> str:
@@ -97,17 +138,21 @@ def _refuse_wide(message: Message) -> None:
                 raise NotJudgedError(f"rosbags has no wstring, which {kind.name}.{item.name} is")
 
 
-def _oracle(message: Message, texts: Mapping[str, str]) -> Oracle:
+def _oracle(
+    message: Message, texts: Mapping[str, str], wide: Mapping[str, str] | None = None
+) -> Oracle:
     store = get_typestore(Stores.EMPTY)
     names = {kind.name: oracle_name(kind) for kind in _all_messages(message)}
     try:
         for name, text in {**texts, **{k: v for k, v in _TIMES.items() if k in texts}}.items():
             store.register(get_types_from_msg(text, names[name]))
+        for name, text in (wide or {}).items():
+            store.register(get_types_from_msg(text, name))
     # What rosbags raises for what it does not know has no common base.
     except Exception as error:
         said = str(error).strip().splitlines() or [type(error).__name__]
         raise NotJudgedError(f"rosbags refuses the definition: {said[0]}") from None
-    return Oracle(store, message.dialect)
+    return (WideOracle if wide else Oracle)(store, message.dialect)
 
 
 def _unknown(oracle: Oracle, name: str) -> str:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from typing import ClassVar
 
 import pytest
 
 import firm_hdl.verify.command as command
 from firm_hdl.cli import main
 from firm_hdl.verify.__main__ import main as alias
+from firm_hdl.verify.system import System
 from tests.verify.samples import own_package
 
 BOOL = ["--distro", "lyrical", "--jobs", "1", "--cases", "2", "std_msgs/msg/Bool"]
@@ -64,7 +66,7 @@ def test_all_with_a_folder_is_all_in_the_folder(capsys, tmp_path, monkeypatch):
     own_package(tmp_path)
     (tmp_path / "own_msgs" / "msg" / "Wide.msg").write_text("wstring text\n")
     arguments = ["verify", "--all", "--path", str(tmp_path), "--cases", "1", "--jobs", "1"]
-    assert main([*arguments, "--no-stalls", "--no-broken"]) == 0
+    assert main([*arguments, "--no-stalls", "--no-broken", "--reference", "none"]) == 0
     said = capsys.readouterr()
     wide = "rosbags has no wstring, which own_msgs/msg/Wide.text is"
     assert f"not judged: own_msgs/msg/Wide (lyrical): {wide}\n" in said.out
@@ -90,10 +92,22 @@ def test_one_wrong_definition_does_not_keep_the_others_of_a_folder(capsys, tmp_p
 def test_every_system_runs_whatever_comes_of_the_first(monkeypatch):
     ran = []
 
-    def system(name, is_well):
-        return lambda given: ran.append(name) or is_well
+    class Fake(System):
+        """Passes, or does not."""
 
-    monkeypatch.setattr(command, "SYSTEMS", {"ts1": system("ts1", False), "ts3": system("ts3", 1)})
+        tests = ()
+        options: ClassVar = {}
+
+        def __init__(self, name, is_well):
+            self.name, self.is_well = name, is_well
+
+        def run(self, recorder):
+            ran.append(self.name)
+            return self.is_well
+
+    made = {name: Fake(name, name != "ts1") for name in ("ts1", "ts3")}
+    systems = {name: lambda given, name=name: made[name] for name in made}
+    monkeypatch.setattr(command, "SYSTEMS", systems)
     assert main(["verify", "--all", "--systems", "ts1,ts3"]) == 1
     assert main(["verify", "--all", "--systems", "ts3"]) == 0
     # The module is the same, and takes all types by itself.

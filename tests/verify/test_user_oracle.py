@@ -9,6 +9,7 @@ import pytest
 from firm_hdl import load_message
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message
+from firm_hdl.verify import Options, accept
 from firm_hdl.verify.oracle import distro_oracle
 from firm_hdl.verify.user_oracle import NotJudgedError, judge_of, oracle_name
 
@@ -58,3 +59,25 @@ def test_definition_that_rosbags_reads_in_another_way_is_noted(tmp_path):
 def test_definition_that_rosbags_reads_alike_has_no_note(tmp_path):
     message = own(tmp_path, "uint8 B=1\nHeader head\ntime[] times\nstring s # text\n", "noetic")
     assert judge_of(message).note == ""
+
+
+IDL = """\
+module own_msgs { module msg {
+  typedef char char__3[3];
+  struct Chars { char one; char__3 three; sequence<char> many; wchar wide; octet byte; };
+}; };
+"""
+
+
+def test_chars_of_idl_are_signed(tmp_path):
+    (tmp_path / "own_msgs" / "msg").mkdir(parents=True)
+    (tmp_path / "own_msgs" / "msg" / "Chars.idl").write_text(IDL)
+    (tmp_path / "own_msgs" / "msg" / "Plain.msg").write_text("char one\n")
+    judge = judge_of(load_message("own_msgs/Chars", paths=[tmp_path]))
+    fields = dict(judge.oracle.fields(judge.name))
+    assert fields["one"][1][0] == "int8" and fields["wide"][1][0] == "uint32"
+    assert fields["three"][1][0][1][0] == fields["many"][1][0][1][0] == "int8"
+    plain = judge_of(load_message("own_msgs/Plain", paths=[tmp_path]))
+    assert dict(plain.oracle.fields(plain.name))["one"][1][0] == "char" and plain.note == ""
+    result = accept("lyrical", "own_msgs/msg/Chars", Options(paths=(str(tmp_path),)))
+    assert not result.failures and not result.not_judged

@@ -1,0 +1,147 @@
+"""Reference libraries of TS3: who else has to write the bytes that rosbags writes for a case.
+
+Cases, and what their leaves transfer, come from rosbags. Every other library that is here is given
+the same value and has to write the same packet, so that a mistake of rosbags alone does not pass.
+Known divergences (docs/divergences.md) are excused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from firm_hdl.model import Message
+from firm_hdl.verify.cases import Case
+from firm_hdl.verify.sut.client import ClientMissingError, Refusal, UnsupportedError
+from firm_hdl.verify.sut.clients import client, close_clients
+from firm_hdl.verify.sut.known import known_writing
+from firm_hdl.verify.sut.values import Plain, from_objects, messages_of
+from firm_hdl.verify.wide_oracle import stand_ins
+from firm_hdl.wire import Wire
+
+__all__ = [
+    "NO_REFERENCE",
+    "WIDE_REFERENCE",
+    "WRITERS",
+    "Confirmation",
+    "confirm",
+    "find_references",
+    "may_stand_in",
+    "references_here",
+]
+
+WRITERS: dict[str, tuple[Wire, ...]] = {
+    "genpy": ("ros1",),
+    "fastcdr": ("cdr",),
+    "cyclonedds": ("cdr",),
+}
+"""Libraries that may confirm what rosbags writes, and on which wires."""
+
+NO_REFERENCE = "none"
+
+WIDE_REFERENCE = "fastcdr"
+"""Who has wide text, which rosbags has not."""
+
+MOST_BYTES = 1 << 18
+"""Of all packets of a type that are written again; the first one always is."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Confirmation:
+    """What other libraries make of the cases of a type.
+
+    Attributes
+    ----------
+    by : tuple of str
+        Those that wrote all of them.
+    failures : tuple of str
+        What they write in another way, and nobody knows why.
+    """
+
+    by: tuple[str, ...]
+    failures: tuple[str, ...] = ()
+
+
+def references_here(wanted: Sequence[str] | None = None) -> tuple[str, ...]:
+    """Return the libraries that can be asked in this process, `None`: of all."""
+    names = WRITERS if wanted is None else [name for name in WRITERS if name in wanted]
+    return tuple(name for name in names if client(name).missing() is None)
+
+
+def may_stand_in(message: Message, wanted: Sequence[str] | None = None) -> bool:
+    """Whether a type has wide text, and somebody is here who knows how it is written."""
+    return bool(stand_ins(messages_of(message))) and bool(
+        (wanted is None or WIDE_REFERENCE in wanted) and references_here([WIDE_REFERENCE])
+    )
+
+
+def find_references(wanted: Sequence[str] | None, wires: Sequence[str]) -> list[str]:
+    """Say which libraries are not here; for a process that starts others.
+
+    Raises
+    ------
+    ClientMissingError
+        If one of those that are wanted by name is not.
+    """
+    said = []
+    for name in WRITERS if wanted is None else wanted:
+        if wanted is None and not set(wires) & set(WRITERS[name]):
+            continue
+        why = client(name).missing()
+        if why is not None and wanted is not None:
+            raise ClientMissingError(why)
+        if why is not None:
+            said.append(f"{name} does not confirm bytes: {why}")
+    # Processes that are forked must not have ours.
+    close_clients()
+    return said
+
+
+def confirm(
+    message: Message, wire: Wire, cases: Sequence[Case], wanted: Sequence[str] | None = None
+) -> Confirmation:
+    """Have cases written by other libraries.
+
+    Parameters
+    ----------
+    wanted : sequence of str or None
+        `None`: all that are here.
+    """
+    names = [name for name in references_here(wanted) if wire in WRITERS[name]]
+    some = _some(cases)
+    values = [from_objects(message, case.value) for case in some] if names else []
+    by: list[str] = []
+    failures: list[str] = []
+    for name in names:
+        try:
+            failures += _differences(message, wire, some, values, name)
+        except UnsupportedError:
+            # It has no such type.
+            continue
+        by.append(name)
+    return Confirmation(by=tuple(by), failures=tuple(failures))
+
+
+def _some(cases: Sequence[Case]) -> list[Case]:
+    found: list[Case] = []
+    size = 0
+    for case in cases:
+        size += len(case.packet)
+        if not found or size <= MOST_BYTES:
+            found.append(case)
+    return found
+
+
+def _differences(
+    message: Message, wire: Wire, cases: Sequence[Case], values: Sequence[Plain], name: str
+) -> list[str]:
+    codec = client(name).open(message, wire)
+    found = []
+    for case, value, answer in zip(cases, values, codec.encode_all(values), strict=True):
+        if answer == case.packet:
+            continue
+        if known_writing(message, wire, value, name, "rosbags", codec):
+            continue
+        said = f"refuses: {answer}" if isinstance(answer, Refusal) else f"writes {answer.hex()}"
+        found.append(f"{case.what}: {name} {said}, rosbags writes {case.packet.hex()}")
+    return found
