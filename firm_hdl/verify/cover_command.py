@@ -10,8 +10,10 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, load_all, plan_of
-from firm_hdl.frontend import open_library
+from firm_hdl.frontend import Library, open_library
+from firm_hdl.model import Message
 from firm_hdl.plan.shape import shape
 from firm_hdl.verify.cover import FAMILIES, all_features, choose, cost
 
@@ -57,7 +59,7 @@ def run_cover(given: argparse.Namespace) -> int:
     """Run ``firm-hdl cover``; return 1 if types that are checked lack something."""
     library = open_library(given.distro, given.path, given.bag)
     kept = None if given.check is None else read_chosen(given.check)
-    messages = load_all(library, given.types or library.names())
+    messages = load_all(library, given.types) if given.types else _usable(library)
     types: dict[str, frozenset[str]] = {}
     costs, shapes = {}, set()
     bar = tqdm(messages, unit="type", desc="features", disable=None if given.branches else True)
@@ -79,6 +81,18 @@ def run_cover(given: argparse.Namespace) -> int:
         Path(given.out).write_text(text, encoding="utf-8", newline="\n")
     print(f"{_share(types, names)}; {len(shapes)} different circuits", file=sys.stderr)
     return 0
+
+
+def _usable(library: Library) -> list[Message]:
+    """Return all types that have a layout; say what is wrong with the others."""
+    found = []
+    for name in library.names():
+        try:
+            found += load_all(library, [name])
+        except DefinitionError as error:
+            for problem in error.diagnostics:
+                print(f"left out: {name}: {problem.message}", file=sys.stderr)
+    return found
 
 
 def _check(types: Mapping[str, frozenset[str]], kept: list[str], path: str) -> int:

@@ -68,3 +68,16 @@ def test_out_and_check_exclude_each_other(capsys):
         main(["cover", "--out", "a", "--check", "b"])
     assert stopped.value.code == 2
     assert "not allowed with argument" in capsys.readouterr().err
+
+
+def test_a_type_that_cannot_be_used_does_not_keep_the_others_out(tmp_path, capsys):
+    folder = tmp_path / "own_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Good.msg").write_text("wstring<=3[4] text\n")
+    (folder / "Bad.msg").write_text("int32 a\nint32 a\n")
+    assert main(["cover", "--path", str(tmp_path)]) == 0
+    out, err = capsys.readouterr()
+    assert "own_msgs/msg/Good: " in out and "own_msgs/msg/Bad" not in out
+    assert err.startswith("left out: own_msgs/msg/Bad: ")
+    # Who names it has to know.
+    assert main(["cover", "--path", str(tmp_path), "own_msgs/msg/Bad"]) == 1
