@@ -38,6 +38,9 @@ LARGE_STRIDE = 4
 MOST_WORK = 1_000_000
 """Of all cases of a type that are simulated."""
 
+MORE_FOR_NEW = 4
+"""Times so much may be spent on packets that take a decision which no other takes."""
+
 MOST_WORK_OF_ONE = 2_500_000
 """Of the smallest message of a type that is simulated at all."""
 
@@ -97,7 +100,8 @@ def chosen(
     taken : sequence of set of Edge
         The decisions that each packet takes.
     most : int
-        Work that all of them together may be; the first that is chosen may be more.
+        Work that all of them together may be. The first that is chosen may be more, and so may
+        those that take decisions which none before takes, up to `MORE_FOR_NEW` times this.
 
     Returns
     -------
@@ -110,13 +114,15 @@ def chosen(
     left = set(range(len(packets)))
     found: list[int] = []
     seen: set[Edge] = set()
+    spent = 0
     while left:
         # The most that is new for its work; where nothing is, the least work.
         best = max(left, key=lambda n: (len(taken[n] - seen) / works[n], -works[n], -n))
         left.remove(best)
-        if found and works[best] > most:
+        limit = most if taken[best] <= seen else MORE_FOR_NEW * most
+        if found and spent + works[best] > limit:
             continue
         found.append(best)
         seen |= taken[best]
-        most -= works[best]
+        spent += works[best]
     return sorted(found)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 import tempfile
 from collections.abc import Iterable, Sequence
@@ -11,11 +12,13 @@ from pathlib import Path
 from queue import Queue
 from threading import Lock
 
+from tests.mutation.coverage_map import BrokenTreeError, read_map, tree_digest
 from tests.mutation.explained import read_explanations
-from tests.mutation.judge import BrokenTreeError, Judge
+from tests.mutation.judge import Judge
 from tests.mutation.mutants import Mutant
 from tests.mutation.report import markdown
 from tests.mutation.results import Record, append, read
+from tests.mutation.systems import test_files
 from tests.mutation.targets import TARGETS, all_mutants, sample
 from tests.mutation.workshop import Workshop, copy_tree
 
@@ -25,19 +28,26 @@ ROOT = Path(__file__).parents[2]
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     options = _parser().parse_args(arguments)
+    # As Ctrl-C does it: ends tests, and removes copies.
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
     root = Path(options.root).resolve()
+    files = test_files(root, options.tests or ())
+    if not files:
+        print("error: no tests there", file=sys.stderr)
+        return 1
     mutants = all_mutants(root, options.target or list(TARGETS))
     chosen = sample(root, mutants, options.count, options.seed)
     out = Path(options.out)
     known = read(out)
-    todo = [mutant for mutant in chosen if _is_due(known.get(mutant.key), options)]
+    tree = tree_digest(root, files)
+    todo = [mutant for mutant in chosen if _is_due(known.get(mutant.key), tree, options)]
     print(f"{len(mutants)} faults, {len(chosen)} chosen, {len(todo)} to run", file=sys.stderr)
     if options.list:
         for mutant in chosen:
             print(f"{mutant.key} {mutant.path}:{mutant.line} {mutant.change.rule}")
         return 0
     try:
-        _run(root, todo, options, out)
+        _run(root, todo, files, options)
     except BrokenTreeError as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
@@ -45,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.confirm and not _confirm(root, known.values(), options.nice):
         return 1
     records = [known[mutant.key] for mutant in chosen if mutant.key in known]
-    text = markdown(records, read_explanations())
+    text = markdown(records, read_explanations(), tree)
     print(text)
     if options.report:
         Path(options.report).write_text(text)
@@ -58,14 +68,17 @@ def _parser() -> argparse.ArgumentParser:
     add("--count", type=int, default=240, help="faults to inject (default %(default)s)")
     add("--seed", type=int, default=0, help="chooses them (default %(default)s)")
     add("--target", action="append", choices=list(TARGETS), help="only this one; repeatable")
-    add("--first", action="store_true", help="stop at the first system that notices a fault")
-    add("--no-rest", action="store_true", help="run no tests beside those of the test systems")
-    add("--depth", type=int, help="run only so many stages of each system, fast ones first")
-    add("--trust", type=int, metavar="SECONDS", help="tests pass without a fault, in less time")
+    add("--first", action="store_true", help="stop at the first test that notices a fault")
+    add("--tests", action="append", metavar="PATH", help="only tests below this; repeatable")
+    add("--few", type=int, metavar="N", help="of each test, only N sets of parameters")
+    add("--most", type=float, metavar="SECONDS", help="leave faults open that need longer tests")
+    add("--least", type=float, default=30, metavar="SECONDS", help="what any run of tests may take")
     add("--retry", action="store_true", help="run again what was not killed")
+    add("--keep", action="store_true", help="run nothing again only because files have changed")
     add("--jobs", type=int, default=1, help="faults at the same time, each in its own copy")
     add("--nice", type=int, default=0, help="niceness of tests")
-    add("--out", default="build/mutation.jsonl", help="results; what is there is not run again")
+    add("--map", default="build/mutation/map", help="which tests run which lines")
+    add("--out", default="build/mutation/results.jsonl", help="what is there is not run again")
     add("--report", help="write the table and the survivors to this file")
     add("--confirm", action="store_true", help="check that tests that noticed pass without a fault")
     add("--list", action="store_true", help="list the faults, and run nothing")
@@ -73,44 +86,54 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _is_due(record: Record | None, options: argparse.Namespace) -> bool:
-    if record is None:
+def _is_due(record: Record | None, tree: str, options: argparse.Namespace) -> bool:
+    if record is None or record.status == "error":
         return True
-    if record.status == "open":
-        return bool(options.retry or not options.no_rest)
-    return bool(options.retry and record.status == "survived")
+    if record.tree != tree and not options.keep:
+        return True
+    # What was left open may have been so for lack of time.
+    return record.status == "open" or bool(options.retry and record.status == "survived")
 
 
-def _run(root: Path, todo: list[Mutant], options: argparse.Namespace, out: Path) -> None:
+def _run(root: Path, todo: list[Mutant], files: list[str], options: argparse.Namespace) -> None:
     """Run mutants, each in the first copy that is free."""
     if not todo:
         return
-    judge = Judge(
-        first=options.first,
-        with_rest=not options.no_rest,
-        depth=options.depth,
-        trusted_cpu_seconds=options.trust,
-    )
     lock = Lock()
     with tempfile.TemporaryDirectory(prefix="firm-hdl-mutation-") as folder:
         free: Queue[Workshop] = Queue()
-        shops = [Path(folder) / str(number) for number in range(options.jobs)]
-        for shop in shops:
+        for number in range(options.jobs):
+            shop = Path(folder) / str(number)
             copy_tree(root, shop)
             free.put(Workshop(shop, options.nice))
-
-        def one(mutant: Mutant) -> None:
-            workshop = free.get()
-            try:
-                record = judge.judge(workshop, mutant)
-            finally:
-                free.put(workshop)
-            with lock:
-                append(out, record)
-                _show(record)
-
         pool = ThreadPoolExecutor(options.jobs)
         try:
+            found = read_map(
+                root,
+                Path(options.map),
+                files,
+                few=options.few,
+                complete=not options.tests,
+                workshops=free,
+                say=lambda text: print(text, file=sys.stderr, flush=True),
+            )
+            judge = Judge(
+                found,
+                first=options.first,
+                least_cpu_seconds=options.least,
+                most_cpu_seconds=options.most,
+            )
+
+            def one(mutant: Mutant) -> None:
+                workshop = free.get()
+                try:
+                    record = judge.judge(workshop, mutant)
+                finally:
+                    free.put(workshop)
+                with lock:
+                    append(Path(options.out), record)
+                    _show(record)
+
             for done in [pool.submit(one, mutant) for mutant in todo]:
                 done.result()
         finally:
@@ -127,7 +150,7 @@ def _confirm(root: Path, records: Iterable[Record], nice: int) -> bool:
     with tempfile.TemporaryDirectory(prefix="firm-hdl-mutation-") as folder:
         copy_tree(root, Path(folder) / "0")
         with Workshop(Path(folder) / "0", nice) as workshop:
-            run = workshop.run(sorted(tests), 3600)
+            run = workshop.run(sorted(tests), 3600, seconds=7200)
     if run.status != "passed":
         print(f"error: fails without a fault, too: {run.by}", file=sys.stderr)
     else:
@@ -137,8 +160,9 @@ def _confirm(root: Path, records: Iterable[Record], nice: int) -> bool:
 
 def _show(record: Record) -> None:
     by = next((f"{name}: {record.runs[name].by}" for name in record.killers), "")
-    where = f"{record.path}:{record.line}"
-    print(f"{record.status:8} {where}, {record.rule} {by}", file=sys.stderr, flush=True)
+    seconds = max((run.cpu_seconds for run in record.runs.values()), default=0)
+    where = f"{record.path}:{record.line}, {record.rule}, {record.tests} tests, {seconds} s"
+    print(f"{record.status:8} {where} {by}", file=sys.stderr, flush=True)
 
 
 if __name__ == "__main__":

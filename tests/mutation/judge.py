@@ -1,92 +1,103 @@
-"""Lets test systems at a mutant."""
+"""Lets tests at a mutant."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from threading import Lock
+from collections.abc import Sequence
 
+from tests.mutation.coverage_map import CoverageMap, Test
 from tests.mutation.mutants import Mutant
 from tests.mutation.results import Record
-from tests.mutation.systems import ORDER, SYSTEMS, rest, stages
+from tests.mutation.selection import batches, judges
+from tests.mutation.systems import REST, SYSTEMS, system_of
 from tests.mutation.workshop import Run, Workshop
 
-__all__ = ["BrokenTreeError", "Judge"]
+__all__ = ["Judge"]
 
 # A fault may make tests slower, but not by so much.
-LEAST_CPU_SECONDS = 30
 FACTOR = 5
-
-
-class BrokenTreeError(Exception):
-    """Tests fail without any fault."""
+# Others may use the machine, too.
+WALL_FACTOR = 10
+WALL_SECONDS = 120
+# A run that something ended from outside says nothing; so often it is repeated.
+ATTEMPTS = 2
 
 
 class Judge:
-    """Runs test systems, and knows how long their stages take without a fault.
+    """Runs the tests that may notice a mutant.
 
     Parameters
     ----------
+    found : CoverageMap
     first : bool
-        Stop at the first system that notices, and leave out those that hardly can.
-    with_rest : bool
-        If no system noticed, run all other tests.
-    depth : int or None
-        Run only so many stages of each system.
-    trusted_cpu_seconds : int or None
-        Do not find out what a stage takes without a fault, and whether it passes: it does, and a
-        run may take so long.
+        Stop at the first test that notices. Otherwise all test systems are asked, one by one.
+    least_cpu_seconds : float
+        What any run of tests may take at least.
+    most_cpu_seconds : float or None
+        Leave a mutant open whose tests would take longer altogether.
     """
 
     def __init__(
         self,
+        found: CoverageMap,
         *,
         first: bool,
-        with_rest: bool,
-        depth: int | None = None,
-        trusted_cpu_seconds: int | None = None,
+        least_cpu_seconds: float = 30,
+        most_cpu_seconds: float | None = None,
     ) -> None:
+        self._found = found
         self._first = first
-        self._with_rest = with_rest
-        self._depth = depth
-        self._trusted = trusted_cpu_seconds
-        self._seconds: dict[frozenset[str], float] = {}
-        self._lock = Lock()
+        self._least = least_cpu_seconds
+        self._most = most_cpu_seconds
 
     def judge(self, workshop: Workshop, mutant: Mutant) -> Record:
-        """Return what test systems say of a mutant."""
+        """Return what tests say of a mutant."""
+        tests = judges(workshop.root, self._found, mutant)
+        asked = affordable(tests, self._most)
         runs: dict[str, Run] = {}
-        done: set[str] = set()
-        for system in ORDER[mutant.target] if self._first else SYSTEMS:
-            groups = stages(workshop.root, system, mutant.path)[: self._depth]
-            runs[system] = self._run(workshop, mutant, groups)
-            done.update(file for group in groups for file in group)
-            if self._first and runs[system].status != "passed":
-                break
-        if self._with_rest and all(run.status == "passed" for run in runs.values()):
-            others = rest(workshop.root, mutant.path, done)
-            runs["rest"] = self._run(workshop, mutant, [others] if others else [])
-        return Record.of(mutant, runs)
+        for system in [None] if self._first else [*SYSTEMS, REST]:
+            mine = [test for test in asked if system in (None, system_of(test.name))]
+            run = self._run(workshop, mutant, mine)
+            # Of systems that have all passed, each says so.
+            names = {system_of(test.name) for test in mine}
+            if run.status != "passed":
+                names = {system or system_of(run.by)}
+            runs.update(dict.fromkeys(sorted(names), run))
+        complete = self._found.complete and len(asked) == len(tests)
+        return Record.of(mutant, runs, tests=len(tests), complete=complete, tree=self._found.tree)
 
-    def _run(self, workshop: Workshop, mutant: Mutant, groups: Iterable[Sequence[str]]) -> Run:
-        """Run stages until one of them notices."""
+    def _run(self, workshop: Workshop, mutant: Mutant, tests: Sequence[Test]) -> Run:
+        """Run batches until one test notices."""
         seconds = 0.0
-        for group in groups:
-            most = self._trusted or max(LEAST_CPU_SECONDS, FACTOR * self._usual(workshop, group))
-            with workshop.with_fault(mutant):
-                run = workshop.run(group, most)
+        status, by = "passed", ""
+        for batch in batches(tests):
+            run = self._batch(workshop, mutant, batch)
             seconds += run.cpu_seconds
             if run.status != "passed":
-                return Run(status=run.status, by=run.by, cpu_seconds=round(seconds, 1))
-        return Run(status="passed", by="", cpu_seconds=round(seconds, 1))
+                status, by = run.status, run.by
+                break
+        return Run(status=status, by=by, cpu_seconds=round(seconds, 1))
 
-    def _usual(self, workshop: Workshop, group: Sequence[str]) -> float:
-        """Run a stage without a fault, once; return its processor time."""
-        key = frozenset(group)
-        if key not in self._seconds:
-            with self._lock:
-                if key not in self._seconds:
-                    run = workshop.run(group, 3600)
-                    if run.status != "passed":
-                        raise BrokenTreeError(f"fails without a fault: {run.by}")
-                    self._seconds[key] = run.cpu_seconds
-        return self._seconds[key]
+    def _batch(self, workshop: Workshop, mutant: Mutant, batch: Sequence[Test]) -> Run:
+        usual = sum(test.cpu_seconds for test in batch)
+        most = max(self._least, FACTOR * usual)
+        for _ in range(ATTEMPTS):
+            with workshop.with_fault(mutant):
+                run = workshop.run_tests(
+                    [test.name for test in batch], most, WALL_SECONDS + WALL_FACTOR * usual
+                )
+            if run.status != "error":
+                break
+        return run
+
+
+def affordable(tests: Sequence[Test], cpu_seconds: float | None) -> list[Test]:
+    """Return the first tests, as far as a time goes; at least one."""
+    if cpu_seconds is None:
+        return list(tests)
+    result: list[Test] = []
+    for test in tests:
+        cpu_seconds -= test.cpu_seconds
+        if cpu_seconds < 0 and result:
+            break
+        result.append(test)
+    return result

@@ -24,8 +24,8 @@ COLUMNS = (
 )
 
 
-def markdown(records: Iterable[Record], explanations: Sequence[Explanation]) -> str:
-    """Write a report.
+def markdown(records: Iterable[Record], explanations: Sequence[Explanation], tree: str) -> str:
+    """Write a report on the tree of that name.
 
     The score is what was killed, of all that was judged. What is open, not noticed by those tests
     that were run, counts as not killed.
@@ -45,9 +45,13 @@ def markdown(records: Iterable[Record], explanations: Sequence[Explanation]) -> 
         "Under each test system: how many mutants it killed. Without `--first` a mutant may",
     ]
     lines += ["be killed by several; with it, only the first one counts.", ""]
+    other = sum(each.tree != tree for each in given)
+    if other:
+        lines += [f"{other} of these were found before files changed.", ""]
     for title, status, wanted in (
         ("Survivors without an explanation", "survived", False),
-        ("Not noticed so far; the rest of the tests was not run", "open", False),
+        ("Not noticed so far; not all tests were run", "open", False),
+        ("Runs that were ended from outside, to be repeated", "error", False),
         ("Survivors with an explanation", None, True),
     ):
         chosen = [

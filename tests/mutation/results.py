@@ -23,7 +23,13 @@ class Record:
     key, target, path, line, rule, scope, old, new
         As in `Mutant`.
     runs : mapping of str to Run
-        Test system to what it said, in the order in which they were run.
+        Test system to what it said, of those that had anything to say.
+    tests : int
+        How many tests may notice it.
+    complete : bool
+        Whether these are all, and all were run as far as nobody noticed.
+    tree : str
+        Names the program and the tests that it was found with.
     """
 
     key: str
@@ -35,9 +41,14 @@ class Record:
     old: str
     new: str
     runs: Mapping[str, Run] = field(default_factory=dict)
+    tests: int = 0
+    complete: bool = False
+    tree: str = ""
 
     @classmethod
-    def of(cls, mutant: Mutant, runs: Mapping[str, Run]) -> Record:
+    def of(
+        cls, mutant: Mutant, runs: Mapping[str, Run], *, tests: int, complete: bool, tree: str
+    ) -> Record:
         """Make the record of a mutant."""
         return cls(
             key=mutant.key,
@@ -49,19 +60,24 @@ class Record:
             old=mutant.place.old,
             new=mutant.place.new,
             runs=runs,
+            tests=tests,
+            complete=complete,
+            tree=tree,
         )
 
     @property
     def killers(self) -> list[str]:
         """The test systems that noticed."""
-        return [system for system, run in self.runs.items() if run.status != "passed"]
+        return [name for name, run in self.runs.items() if run.status in ("failed", "timeout")]
 
     @property
     def status(self) -> str:
-        """``killed``; ``survived`` all of the tests; ``open`` if some of them were not run."""
+        """``killed``; ``survived`` all tests; ``open`` if some were not run, or ``error``."""
         if self.killers:
             return "killed"
-        return "survived" if "rest" in self.runs else "open"
+        if any(run.status == "error" for run in self.runs.values()):
+            return "error"
+        return "survived" if self.complete else "open"
 
 
 def read(path: Path) -> dict[str, Record]:

@@ -41,7 +41,7 @@ def main() -> None:
 
 
 def _serve(job: dict[str, Any]) -> dict[str, Any]:
-    """Run one job: `args` of pytest, `log`, and limits `cpu_seconds` and `seconds`."""
+    """Run one job: `args` of pytest, `log`, `environment`, limits `cpu_seconds` and `seconds`."""
     sys.stdout.flush()
     child = os.fork()
     if child == 0:
@@ -76,6 +76,7 @@ def _run(job: dict[str, Any]) -> None:
         seconds = job["cpu_seconds"]
         resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
         resource.setrlimit(resource.RLIMIT_DATA, (MOST_BYTES, MOST_BYTES))
+        os.environ.update(job["environment"])
         import pytest
 
         code = int(pytest.main(job["args"]))

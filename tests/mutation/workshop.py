@@ -7,12 +7,14 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from tests.mutation.chosen import CHOSEN, RUNNING
 from tests.mutation.mutants import Mutant
 
 __all__ = ["Run", "Workshop", "copy_tree"]
@@ -37,9 +39,9 @@ class Run:
     Attributes
     ----------
     status : str
-        ``passed``, ``failed`` or ``timeout``.
+        ``passed``, ``failed``, ``timeout``, or ``error`` if something else ended it.
     by : str
-        The first test that failed.
+        The first test that failed, or that ran when time was over.
     cpu_seconds : float
     """
 
@@ -115,13 +117,48 @@ class Workshop:
         self._now += 1
         os.utime(path, (self._now, self._now))
 
-    def run(self, files: Sequence[str], cpu_seconds: float) -> Run:
-        """Run test files until one test fails."""
+    def run_tests(self, names: Sequence[str], cpu_seconds: float, seconds: float) -> Run:
+        """Run tests, in this order, until one fails. What is not there does not count."""
+        beside = self.root.parent / self.root.name
+        chosen, running = beside.with_suffix(".chosen"), beside.with_suffix(".running")
+        chosen.write_text(json.dumps(list(names)))
+        running.write_text("")
+        files = dict.fromkeys(name.partition("::")[0] for name in names)
+        environment = {CHOSEN: str(chosen), RUNNING: str(running)}
+        run = self.run(
+            ["-p", "tests.mutation.chosen", *files], cpu_seconds, environment, seconds=seconds
+        )
+        if run.status == "passed" or run.by.startswith("tests/"):
+            return run
+        return replace(run, by=running.read_text() or run.by)
+
+    def run(
+        self,
+        arguments: Sequence[str],
+        cpu_seconds: float,
+        environment: Mapping[str, str] | None = None,
+        *,
+        seconds: float | None = None,
+    ) -> Run:
+        """Run pytest until one test fails.
+
+        Parameters
+        ----------
+        arguments : sequence of str
+            Test files, and options beside the usual ones.
+        cpu_seconds : float
+            Of the process of pytest, without those that tests start.
+        environment : mapping, optional
+            Variables beside the usual ones.
+        seconds : float, optional
+            How long it may take altogether.
+        """
         job = {
-            "args": [*OPTIONS, *files],
+            "args": [*OPTIONS, *arguments],
             "log": str(self._log),
             "cpu_seconds": int(cpu_seconds) + 1,
-            "seconds": SECONDS,
+            "seconds": SECONDS if seconds is None else seconds,
+            "environment": dict(environment or {}),
         }
         assert self._server.stdin and self._server.stdout
         self._server.stdin.write(json.dumps(job) + "\n")
@@ -133,14 +170,22 @@ class Workshop:
         text = self._log.read_text(errors="replace")
         if answer["code"] == WRONG_COPY:
             raise RuntimeError(text[-300:])
-        status = "passed" if answer["code"] in (0, NOTHING) else "failed"
-        status = "timeout" if answer["timeout"] else status
+        status = _status(answer["code"], answer["timeout"])
         match = FAILED.search(text)
         by = match[1] if match and status == "failed" else ""
-        if status == "failed" and not by:
+        if status in ("failed", "error") and not by:
             by = f"exit status {answer['code']}"
         return Run(status=status, by=by, cpu_seconds=answer["cpu"])
 
     def output(self) -> str:
         """Return what the last run printed."""
         return self._log.read_text(errors="replace")
+
+
+def _status(code: int, timeout: bool) -> str:
+    if timeout:
+        return "timeout"
+    # Killed by whoever needed the memory, or wanted an end of it: says nothing about the fault.
+    if code in (-signal.SIGKILL, -signal.SIGTERM, -signal.SIGINT, -signal.SIGHUP):
+        return "error"
+    return "passed" if code in (0, NOTHING) else "failed"

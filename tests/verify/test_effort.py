@@ -30,10 +30,16 @@ def test_everything_if_it_is_not_much(plan):
 def test_what_takes_most_for_its_size(plan):
     packets = [bytes(8000), bytes(80), bytes(8), bytes(16)]
     taken = [some_edges(1, 2, 3), some_edges(1, 2), some_edges(1), some_edges(3)]
-    work = effort.work_of(plan, 104)
-    # The last one is as large as what is left; the first would take nothing new.
-    assert effort.chosen(plan, packets, taken, most=work) == [1, 2, 3]
-    assert effort.chosen(plan, packets, taken, most=work - 1) == [2, 3]
+    work = effort.work_of(plan, 24)
+    # The second takes something new, and may cost more; the first takes nothing that is.
+    assert effort.chosen(plan, packets, taken, most=work) == [2, 3]
+    assert effort.chosen(plan, packets, taken, most=2 * work) == [1, 2, 3]
+
+
+def test_what_takes_nothing_new_has_no_more_than_what_is_left(plan):
+    packets, taken = [bytes(8), bytes(8), bytes(8)], [some_edges(1)] * 3
+    work = effort.work_of(plan, 8)
+    assert effort.chosen(plan, packets, taken, most=2 * work) == [0, 1]
 
 
 def test_one_in_any_case(plan):
@@ -45,7 +51,7 @@ def test_types_are_simulated_in_part(monkeypatch):
     monkeypatch.setattr(
         acceptance,
         "chosen",
-        lambda plan, *given: effort.chosen(plan, *given, most=effort.work_of(plan, 40)),
+        lambda plan, *given: effort.chosen(plan, *given, most=effort.work_of(plan, 8)),
     )
     part = accept("lyrical", HEADER)
     assert not part.failures and 0 < part.cycles < whole.cycles
