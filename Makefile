@@ -81,7 +81,7 @@ prove: $(VENV)/.installed-dev ghdl ## proofs that VHDL equals RTLIL, for types w
 fuzz: $(VENV)/.installed-dev ## a million damaged definitions through the front end; FUZZ_ARGS='-n 1000'
 	$(BIN)/python -m tests.fuzz_frontend --jobs $(JOBS) $(FUZZ_ARGS)
 
-mutate: $(VENV)/.installed-dev ghdl ## faults in the program, and which tests notice (hours); MUTATE_ARGS='--count 24'
+mutate: $(VENV)/.installed-dev tools ## faults in the program, and which tests notice (hours); MUTATE_ARGS='--count 24'
 	$(BIN)/python -m tests.mutation --first --jobs $(JOBS) $(MUTATE_ARGS)
 
 bench: $(VENV)/.installed ## cycles per beat of long and short messages, on several bus widths

@@ -28,8 +28,6 @@ ROOT = Path(__file__).parents[2]
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     options = _parser().parse_args(arguments)
-    # As Ctrl-C does it: ends tests, and removes copies.
-    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
     root = Path(options.root).resolve()
     files = test_files(root, options.tests or ())
     if not files:
@@ -39,7 +37,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = sample(root, mutants, options.count, options.seed)
     out = Path(options.out)
     known = read(out)
-    tree = tree_digest(root, files)
+    tree = tree_digest(root, test_files(root))
     todo = [mutant for mutant in chosen if _is_due(known.get(mutant.key), tree, options)]
     print(f"{len(mutants)} faults, {len(chosen)} chosen, {len(todo)} to run", file=sys.stderr)
     if options.list:
@@ -91,8 +89,9 @@ def _is_due(record: Record | None, tree: str, options: argparse.Namespace) -> bo
         return True
     if record.tree != tree and not options.keep:
         return True
-    # What was left open may have been so for lack of time.
-    return record.status == "open" or bool(options.retry and record.status == "survived")
+    if record.status == "open" and not (options.few or options.tests or options.most):
+        return True
+    return bool(options.retry and record.status != "killed")
 
 
 def _run(root: Path, todo: list[Mutant], files: list[str], options: argparse.Namespace) -> None:
@@ -166,4 +165,6 @@ def _show(record: Record) -> None:
 
 
 if __name__ == "__main__":
+    # As with Ctrl-C, tests end and copies are removed.
+    signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
     sys.exit(main())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from pathlib import Path
 
@@ -13,12 +14,16 @@ from tests.mutation.mutants import identify
 from tests.mutation.python_rules import changes
 from tests.mutation.report import markdown
 from tests.mutation.results import Record, append, read
-from tests.mutation.systems import SYSTEMS, mirrored, rest, stages
 from tests.mutation.targets import TARGETS, all_mutants, files, sample
 from tests.mutation.workshop import Run
 
 ROOT = Path(__file__).parents[2]
 MODULE = """
+from functools import cache
+
+LIMIT = 7
+
+
 def double(x):
     return x + x
 
@@ -33,20 +38,66 @@ def halve(x):
 
 def untested(x):
     return x < x
+
+
+@cache
+def table():
+    return ["a"] * 3
+
+
+def elsewhere(x):
+    return x // 3
+
+
+def hidden(x):
+    return x ** 3
+
+
+def deadly(x):
+    return x & 2
 """
-TESTS = """
-from firm_hdl.wire.toy import double, halve
-
+HEAD = """
+import os, signal, subprocess, sys
+import pytest
+from firm_hdl.wire import toy
+"""
+TESTS = f"""{HEAD}
 def test_double():
-    assert double(3) == 6
+    assert toy.double(3) == 6
 
-def test_halve():
-    assert halve(8) == 4
+@pytest.mark.parametrize("x", [0, 8])
+def test_halve(x):
+    assert toy.halve(x) == x / 2
+
+def test_that_needs_the_table_first():
+    toy.table()
+
+def test_the_table():
+    assert len(toy.table()) == 3
+
+def test_the_limit():
+    assert toy.LIMIT == 7
+"""
+PROCESSES = f"""{HEAD}
+def run(what):
+    code = f"import sys, os; from firm_hdl.wire.toy import *; {{what}}"
+    return subprocess.run([sys.executable, "-c", code]).returncode
+
+def test_elsewhere():
+    assert run("sys.exit(elsewhere(27))") == 9
+
+def test_hidden():
+    assert run("os._exit(hidden(3))") == 27
+
+def test_deadly():
+    if toy.deadly(3) != 2:
+        os.kill(os.getpid(), signal.SIGKILL)
 """
 
 
 @pytest.fixture
 def toy(tmp_path):
+    """A repository."""
     root = tmp_path / "toy"
     for name, text in {
         "firm_hdl/__init__.py": "",
@@ -55,48 +106,125 @@ def toy(tmp_path):
         "tests/__init__.py": "",
         "tests/wire/__init__.py": "",
         "tests/wire/test_toy.py": TESTS,
+        "tests/test_processes.py": PROCESSES,
     }.items():
         path = root / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-    shutil.copytree(Path(__file__).parent, root / "tests" / "mutation")
+    shutil.copytree(
+        Path(__file__).parent, root / "tests/mutation", ignore=shutil.ignore_patterns("__pycache__")
+    )
     return root
 
 
 def run(toy, *more):
+    """Run the command; return its results by what they are about."""
     out = toy.parent / "out.jsonl"
-    options = ["--root", str(toy), "--out", str(out), "--first", "--trust", "2", *more]
-    assert main(options) == 0
-    return out, read(out)
+    places = ["--root", str(toy), "--out", str(out), "--map", str(toy.parent / "map")]
+    assert main([*places, "--first", "--least", "2", *more]) == 0
+    return {(each.scope, each.rule): each for each in read(out).values()}
 
 
-def test_mutants_are_killed_or_survive_or_time_out_and_runs_resume(toy, capsys):
-    out, found = run(toy)
-    assert f"{len(found)} to run" in capsys.readouterr().err
-    records = {(each.scope, each.rule): each for each in found.values()}
-    assert records["double", "operator"].status == "killed"
-    assert records["double", "operator"].runs["ts2"].by == "tests/wire/test_toy.py::test_double"
-    # It never ends.
-    assert records["halve", "delete assignment"].runs["ts2"].status == "timeout"
-    assert records["untested", "comparison"].status == "survived"
+def parts(toy):
+    """Return the parts of the map: the name of a test file, and where its part is."""
+    found = {}
+    for path in (toy.parent / "map").glob("*.json"):
+        found[json.loads(path.read_text())["tests"][0]["name"].partition("::")[0]] = path
+    return found
+
+
+def test_just_the_tests_that_run_a_line_judge_it_and_runs_resume(toy, capsys):
+    found = run(toy)
+    lines = (toy.parent / "out.jsonl").read_bytes().splitlines(keepends=True)
+    assert f"{len(lines)} to run" in capsys.readouterr().err
     assert (toy / "firm_hdl/wire/toy.py").read_text() == MODULE
+    by = {place: run.by for place, each in found.items() for run in each.runs.values()}
+    # Beside those that run the line, the one with a process that nobody sees may notice.
+    double = found["double", "operator"]
+    assert (double.status, double.tests) == ("killed", 2)
+    assert by["double", "operator"] == "tests/wire/test_toy.py::test_double"
+    # It never ends; the test that runs is named.
+    assert found["halve", "delete assignment"].killers == ["ts2"]
+    assert found["halve", "delete assignment"].runs["ts2"].status == "timeout"
+    assert by["halve", "delete assignment"] == "tests/wire/test_toy.py::test_halve[8]"
+    assert (found["untested", "comparison"].status, found["untested", "comparison"].tests) == (
+        "survived",
+        1,
+    )
+    # What ran before the test, and what ran for another one.
+    assert by["", "number + 1"] == "tests/wire/test_toy.py::test_the_limit"
+    assert by["table", "number + 1"] == "tests/wire/test_toy.py::test_the_table"
+    # In other processes.
+    assert by["elsewhere", "operator"] == "tests/test_processes.py::test_elsewhere"
+    assert found["elsewhere", "operator"].killers == ["rest"]
+    assert by["hidden", "operator"] == "tests/test_processes.py::test_hidden"
+    # Whoever killed the process, it says nothing about the fault.
+    assert found["deadly", "operator"].status == "error"
 
-    # An interrupted run: the last line is half there.
-    lines = out.read_bytes().splitlines(keepends=True)
-    out.write_bytes(b"".join(lines[:-1]) + lines[-1][:20])
-    _, again = run(toy)
-    assert "1 to run" in capsys.readouterr().err
-    assert {key: each.status for key, each in again.items()} == {
-        key: each.status for key, each in found.items()
+    # An interrupted run: the last line that counts is half there. The map is.
+    kept = [line for line in lines if b"error" not in line]
+    errors = len(lines) - len(kept)
+    (toy.parent / "out.jsonl").write_bytes(b"".join(kept[:-1]) + kept[-1][:20])
+    again = run(toy)
+    printed = capsys.readouterr().err
+    assert f"{errors + 1} to run" in printed and "map" not in printed
+    assert {place: each.status for place, each in again.items()} == {
+        place: each.status for place, each in found.items()
     }
+
+
+def test_a_test_that_the_map_lacks_notices_nothing(toy, capsys):
+    more = ["--count", "4", "--target", "layout"]
+    (toy / "firm_hdl/wire/toy.py").write_text("def double(x):\n    return x + x\n")
+    (toy / "tests/wire/test_toy.py").write_text(TESTS.partition("@")[0])
+    (toy / "tests/test_processes.py").unlink()
+    found = run(toy, *more)
+    assert {each.status for each in found.values()} == {"killed"}
+    (part,) = parts(toy).values()
+    given = json.loads(part.read_text())
+    part.write_text(json.dumps({**given, "lines": {}}))
+    (toy.parent / "out.jsonl").unlink()
+    assert {(each.status, each.tests) for each in run(toy, *more).values()} == {("survived", 0)}
+
+    # Another file does not change this part; the file itself does, and makes results old.
+    capsys.readouterr()
+    (toy / "tests/wire/test_other.py").write_text("def test_it():\n    pass\n")
+    run(toy, *more, "--keep")
+    assert "0 to run" in capsys.readouterr().err
+    run(toy, *more)
+    printed = capsys.readouterr().err
+    assert "1 to run" in printed and "test_other.py" in printed and "test_toy.py" not in printed
+    with (toy / "tests/wire/test_toy.py").open("a") as file:
+        file.write("\n")
+    assert {each.status for each in run(toy, *more).values()} == {"killed"}
+
+
+def test_what_not_all_tests_met_stays_open(toy):
+    (toy / "firm_hdl/wire/toy.py").write_text("def half(x):\n    return x // 2\n")
+    test = "import pytest\nfrom firm_hdl.wire.toy import half\n\n"
+    test += (
+        "@pytest.mark.parametrize('x', [0, 8])\ndef test_half(x):\n    assert half(x) == x / 2\n"
+    )
+    (toy / "tests/wire/test_toy.py").write_text(test)
+    (toy / "tests/test_processes.py").write_text("def test_it():\n    pass\n")
+    # The set of parameters that would notice is left out, and then that file.
+    assert run(toy, "--few", "1")["half", "operator"].status == "open"
+    alone = ["--tests", "tests/test_processes.py", "--retry"]
+    assert run(toy, *alone)["half", "operator"].status == "open"
+    more = ["--tests", "tests/wire"]
+    assert run(toy, *more)["half", "operator"].status == "open"
+    assert run(toy, *more, "--retry")["half", "operator"].status == "killed"
 
 
 def test_a_project_whose_tests_fail_is_not_judged(toy, capsys):
     (toy / "tests/wire/test_toy.py").write_text("def test_it():\n    assert False\n")
     out = str(toy.parent / "out.jsonl")
-    assert main(["--root", str(toy), "--out", out, "--count", "1"]) == 1
+    options = ["--map", str(toy.parent / "map"), "--count", "1"]
+    assert main(["--root", str(toy), "--out", out, *options]) == 1
     assert "fails without a fault: tests/wire/test_toy.py::test_it" in capsys.readouterr().err
     assert not Path(out).exists()
+    assert main(["--root", str(toy), "--out", out, *options, "--tests", "tests/nowhere"]) == 1
+    assert "error: no tests there" in capsys.readouterr().err
 
 
 def test_keys_outlive_moved_lines():
@@ -116,40 +244,26 @@ def test_samples_are_spread_and_repeatable():
     assert len({each.path for each in chosen}) >= 5
 
 
-def test_all_targets_and_test_files_exist():
+def test_all_targets_exist():
     for target in TARGETS:
         assert files(ROOT, target), target
-    for system, groups in SYSTEMS.items():
-        for group in groups:
-            for pattern in group:
-                assert list(ROOT.glob(pattern)), (system, pattern)
-
-
-def test_what_mirrors_a_module_comes_first_and_every_test_once():
-    path = "firm_hdl/frontend/idl/values.py"
-    assert mirrored(path) == "tests/frontend/idl"
-    groups = stages(ROOT, "ts1", path)
-    assert groups[0][0] == "tests/frontend/idl/test_values.py"
-    assert all(name.startswith("tests/frontend/idl") for name in groups[0][:3])
-    met = {name for group in groups for name in group}
-    others = rest(ROOT, path, met)
-    assert met.isdisjoint(others)
-    assert not any(name.startswith("tests/mutation") for name in others)
 
 
 def test_an_explanation_is_of_one_change_wherever_it_is(tmp_path):
     out = tmp_path / "out.jsonl"
     (mutant, *_) = identify("firm_hdl/wire/toy.py", "layout", MODULE, changes(MODULE))
-    record = Record.of(mutant, {"rest": Run(status="passed", by="", cpu_seconds=1.0)})
+    runs = {"rest": Run(status="passed", by="", cpu_seconds=1.0)}
+    record = Record.of(mutant, runs, tests=1, complete=True, tree="a")
     append(out, record)
     assert list(read(out).values()) == [record]
     given = {name: getattr(record, name) for name in ("path", "scope", "rule", "old", "new")}
     known = [Explanation(**given, kind="cost", why="It is as good.")]
     assert explain(record, known) is known[0]
-    assert "Survivors with" in markdown([record], known)
+    assert "Survivors with" in markdown([record], known, "a")
     other = [Explanation(**{**given, "new": "return 1"}, kind="cost", why="It is as good.")]
     assert explain(record, other) is None
-    assert "Survivors without" in markdown([record], other)
+    assert "Survivors without" in markdown([record], other, "a")
+    assert "1 of these were found before files changed" in markdown([record], other, "b")
 
 
 def test_explanations_are_of_what_is_there():

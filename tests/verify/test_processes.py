@@ -65,12 +65,15 @@ def test_process_that_dies_is_told():
 
 
 INTERRUPTED = """
+import signal
 import sys
 from pathlib import Path
 from firm_hdl.verify.processes import in_processes, run_tool
 from tests.verify.test_processes import work
 
 if __name__ == "__main__":
+    # Shells have it ignored by what they start in the background, and so these tests may have.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         list(in_processes(work, [(n, (sys.argv[1], n)) for n in range(9)], 2))
     except KeyboardInterrupt:
