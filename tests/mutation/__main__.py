@@ -68,7 +68,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--target", action="append", choices=list(TARGETS), help="only this one; repeatable")
     add("--first", action="store_true", help="stop at the first test that notices a fault")
     add("--tests", action="append", metavar="PATH", help="only tests below this; repeatable")
-    add("--few", type=int, metavar="N", help="of each test, only N sets of parameters")
+    add("--each", type=float, metavar="SECONDS", help="of each test, fewer sets of parameters")
     add("--most", type=float, metavar="SECONDS", help="leave faults open that need longer tests")
     add("--least", type=float, default=30, metavar="SECONDS", help="what any run of tests may take")
     add("--retry", action="store_true", help="run again what was not killed")
@@ -89,7 +89,7 @@ def _is_due(record: Record | None, tree: str, options: argparse.Namespace) -> bo
         return True
     if record.tree != tree and not options.keep:
         return True
-    if record.status == "open" and not (options.few or options.tests or options.most):
+    if record.status == "open" and not (options.each or options.tests or options.most):
         return True
     return bool(options.retry and record.status != "killed")
 
@@ -111,7 +111,7 @@ def _run(root: Path, todo: list[Mutant], files: list[str], options: argparse.Nam
                 root,
                 Path(options.map),
                 files,
-                few=options.few,
+                each=options.each,
                 complete=not options.tests,
                 workshops=free,
                 say=lambda text: print(text, file=sys.stderr, flush=True),

@@ -208,7 +208,7 @@ def test_what_not_all_tests_met_stays_open(toy):
     (toy / "tests/wire/test_toy.py").write_text(test)
     (toy / "tests/test_processes.py").write_text("def test_it():\n    pass\n")
     # The set of parameters that would notice is left out, and then that file.
-    assert run(toy, "--few", "1")["half", "operator"].status == "open"
+    assert run(toy, "--each", "1e-9")["half", "operator"].status == "open"
     alone = ["--tests", "tests/test_processes.py", "--retry"]
     assert run(toy, *alone)["half", "operator"].status == "open"
     more = ["--tests", "tests/wire"]
