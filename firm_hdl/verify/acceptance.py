@@ -47,6 +47,7 @@ from firm_hdl.verify.effort import (
     message_limit,
     some_cases,
     too_large,
+    within,
     work_of,
 )
 from firm_hdl.verify.figures import digest, figures
@@ -147,10 +148,10 @@ def accept_message(
         cases, bare = run.affordable(cases, bare, taken)
     run.good(cases, None, bare)
     if run.is_large(cases):
-        cases = cases[::LARGE_STRIDE]
-    if options.stalled:
+        cases = run.disturbed(cases)
+    if options.stalled and cases:
         run.good(cases, stalls_for(f"{options.seed}/{name}"))
-    if options.broken:
+    if options.broken and cases:
         run.broken(cases)
     run.crosscheck()
 
@@ -250,6 +251,13 @@ class Acceptance:
         """Whether a type takes long to simulate; it is stalled and broken less often."""
         return work_of(self.plan, size_of(cases)) > LARGE_WORK
 
+    def disturbed(self, cases: Sequence[Case]) -> list[Case]:
+        """Choose what to stall and damage of a large type's cases; nothing if all are too large."""
+        found = within(self.plan, cases[::LARGE_STRIDE], LARGE_WORK)
+        if not found:
+            self.say("neither stalled nor damaged")
+        return found
+
     def affordable(
         self,
         cases: Sequence[Case],
@@ -260,12 +268,15 @@ class Acceptance:
         packets = [*(case.sent for case in cases), *(packet for _, packet in bare)]
         numbers = set(chosen(self.plan, packets, taken))
         if len(numbers) < len(packets):
-            note = f"simulated in part: {len(numbers)} of {len(packets)} packets"
-            self.result.note = "; ".join(filter(None, [self.result.note, note]))
+            self.say(f"simulated in part: {len(numbers)} of {len(packets)} packets")
             self.cover(taken[number] for number in numbers)
         some = [case for number, case in enumerate(cases) if number in numbers]
         rest = [pair for number, pair in enumerate(bare, len(cases)) if number in numbers]
         return some, rest
+
+    def say(self, what: str) -> None:
+        """Add to the note."""
+        self.result.note = "; ".join(filter(None, [self.result.note, what]))
 
     def fail(self, what: str) -> None:
         self.result.failures.append(what)

@@ -23,6 +23,7 @@ __all__ = [
     "message_limit",
     "some_cases",
     "too_large",
+    "within",
     "work_of",
 ]
 
@@ -41,7 +42,7 @@ MOST_WORK = 1_000_000
 MORE_FOR_NEW = 4
 """Times so much may be spent on packets that take a decision which no other takes."""
 
-MOST_WORK_OF_ONE = 2_500_000
+MOST_WORK_OF_ONE = 1_500_000
 """Of the smallest message of a type that is simulated at all."""
 
 MOST_CASE_BYTES = 1 << 18
@@ -85,6 +86,14 @@ def some_cases(cases: Iterable[Case]) -> Iterator[Case]:
         size += len(case.packet)
         if size >= MOST_CASE_BYTES:
             return
+
+
+def within(plan: Plan, cases: Sequence[Case], most: int) -> list[Case]:
+    """Return cases in their order, without the largest of them if all would be too much work."""
+    left = sorted(range(len(cases)), key=lambda number: (len(cases[number].packet), number))
+    while sum(work_of(plan, len(cases[number].packet)) for number in left) > most:
+        left.pop()
+    return [cases[number] for number in sorted(left)]
 
 
 def chosen(

@@ -9,6 +9,7 @@ import firm_hdl.verify.effort as effort
 from firm_hdl.frontend import Library
 from firm_hdl.plan import Edge, build_plan
 from firm_hdl.verify import Options, accept
+from firm_hdl.verify.cases import Case
 from firm_hdl.wire import lay_out
 
 HEADER = "std_msgs/msg/Header"
@@ -61,6 +62,21 @@ def test_types_are_simulated_in_part(monkeypatch):
     assert f"of {whole.cases + 1} packets" in part.note and not whole.note
     # Who says how many cases gets as many.
     assert not accept("lyrical", HEADER, Options(most_cases=3)).note
+
+
+def test_without_the_largest(plan):
+    cases = [Case(what="", value=None, packet=bytes(8 * n), transfers={}) for n in (3, 1, 2, 9)]
+    assert effort.within(plan, cases, effort.work_of(plan, 48)) == cases[:3]
+    assert effort.within(plan, cases, effort.work_of(plan, 40)) == cases[1:3]
+    assert effort.within(plan, cases, 0) == []
+
+
+def test_what_is_too_large_for_more_is_not_stalled(monkeypatch):
+    whole = accept("lyrical", HEADER)
+    monkeypatch.setattr(acceptance, "LARGE_WORK", 1)
+    once = accept("lyrical", HEADER)
+    assert not once.failures and once.note == "neither stalled nor damaged"
+    assert once.cycles == whole.cycles and once.packets < whole.packets / 2
 
 
 @pytest.fixture
