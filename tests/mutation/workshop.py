@@ -130,7 +130,8 @@ class Workshop:
         )
         if run.status == "passed" or run.by.startswith("tests/"):
             return run
-        return replace(run, by=running.read_text() or run.by)
+        # If no test has begun, loading has not ended: of the first file, most likely.
+        return replace(run, by=running.read_text() or next(iter(files)))
 
     def run(
         self,

@@ -1,0 +1,144 @@
+"""Which tests a mutant meets, and in which order.
+
+Only a test that runs a changed line can notice the change, or one that has processes whose lines
+are not known. Of a statement over several lines, any line counts. A change of a grammar is noticed
+where the grammar is loaded, once for each test file that does.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from pathlib import Path, PurePosixPath
+
+from tests.mutation.coverage_map import CoverageMap, Test
+from tests.mutation.mutants import Mutant
+from tests.mutation.systems import mirrored, mirrors
+
+__all__ = ["BATCH_SECONDS", "batches", "changed_lines", "judges"]
+
+# Processor time of the tests of each run; the last one is repeated.
+BATCH_SECONDS = (5.0, 15.0, 60.0, 300.0)
+# What the sets of parameters of one test take, before it is another one's turn; then twice as much.
+TURN_SECONDS = 0.25
+Place = tuple[str, frozenset[int]]
+
+
+def changed_lines(root: Path, mutant: Mutant) -> list[Place]:
+    """Return files and lines of which one has to run before a change can be noticed."""
+    path = root / mutant.path
+    if path.suffix == ".lark":
+        return list(_loaders(root, path))
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    return [(mutant.path, frozenset(_statement(tree, mutant.line)))]
+
+
+def judges(root: Path, found: CoverageMap, mutant: Mutant) -> list[Test]:
+    """Return the tests that may notice a mutant, most promising first.
+
+    Those that run the line themselves come first, if everybody does that for himself; then those
+    that run something else of the file, or of its folder; then those that do what nobody sees.
+    Among them come those of tests of which less has been run so far, in seconds; then what mirrors
+    the module, and what is cheap.
+    """
+    own: set[str] = set()
+    tests: dict[str, Test] = {}
+    same_file: set[str] = set()
+    for path, lines in changed_lines(root, mutant):
+        same_file |= found.touching(path)
+        for test, itself in found.running(path, lines):
+            tests[test.name] = test
+            own |= {test.name} if itself else set()
+    # Who loads what all use may be a process that does nothing else.
+    shared = len(own) < len(tests)
+    same_folder = found.touching(str(PurePosixPath(mutant.path).parent) + "/")
+    unseen = {test.name: test for test in found.opaque() if test.name not in tests}
+
+    def group(test: Test) -> int:
+        mine = test.name in own
+        near = (mine and not shared, mine or test.name in same_file, test.name in same_folder)
+        return 4 if test.name in unseen else near.index(True) if any(near) else 3
+
+    seconds: dict[str, float] = defaultdict(float)
+    ranks: dict[str, tuple[int, bool, int, bool, float]] = {}
+    every = [*tests.values(), *unseen.values()]
+    for test in sorted(every, key=lambda each: (each.cpu_seconds, each.name)):
+        seconds[test.function] += test.cpu_seconds
+        turn = int(seconds[test.function] / TURN_SECONDS).bit_length()
+        mirror = mirrors(test.file, mutant.path)
+        # Of tests that do not run the line, those beside the module know what it is for.
+        beside = mirror or test.file.startswith(mirrored(mutant.path) + "/")
+        first = group(test)
+        ranks[test.name] = first, first > 0 and not beside, turn, not mirror, test.cpu_seconds
+    return sorted(every, key=lambda each: (ranks[each.name], each.name))
+
+
+def batches(tests: Sequence[Test]) -> list[list[Test]]:
+    """Cut a sequence of tests into runs; within each, a file's tests stay together."""
+    result: list[list[Test]] = []
+    batch: list[Test] = []
+    seconds = 0.0
+    for test in tests:
+        most = BATCH_SECONDS[min(len(result), len(BATCH_SECONDS) - 1)]
+        if batch and seconds + test.cpu_seconds > most:
+            result.append(batch)
+            batch, seconds = [], 0.0
+        batch.append(test)
+        seconds += test.cpu_seconds
+    if batch:
+        result.append(batch)
+    return [_by_file(batch) for batch in result]
+
+
+def _by_file(tests: list[Test]) -> list[Test]:
+    files = list(dict.fromkeys(test.file for test in tests))
+    return sorted(tests, key=lambda test: files.index(test.file))
+
+
+def _statement(tree: ast.Module, line: int) -> set[int]:
+    """Return the lines of the smallest statement around one, without those of its body."""
+    lines, above = {line}, line
+    for node in ast.walk(tree):  # From outer to inner ones.
+        first, head, last = _span(node)
+        if first <= line <= last:
+            lines = {*range(first, head + 1), line}
+            if isinstance(node, ast.match_case):
+                # Whether it is looked at shows in what chooses among all cases.
+                lines.add(above)
+            above = first
+    return lines
+
+
+def _span(node: ast.AST) -> tuple[int, int, int]:
+    """Return the first line of a statement, the last one before its body, and its last one."""
+    if isinstance(node, ast.match_case):
+        first, last = node.pattern.lineno, node.body[-1].end_lineno or 0
+    elif isinstance(node, (ast.stmt, ast.ExceptHandler)):
+        first, last = node.lineno, node.end_lineno or 0
+    else:
+        return 0, 0, -1
+    inner = getattr(node, "body", None) or getattr(node, "cases", None)
+    if not inner:
+        return first, last, last
+    start = inner[0].pattern if isinstance(inner[0], ast.match_case) else inner[0]
+    decorators = getattr(start, "decorator_list", [])
+    behind = min([start.lineno, *(each.lineno for each in decorators)])
+    return first, max(first, behind - 1), last
+
+
+def _loaders(root: Path, grammar: Path) -> Iterator[Place]:
+    """Yield the lines that name a grammar, or the end of its name, to load it."""
+    for path in sorted(grammar.parent.glob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        lines = {
+            node.lineno
+            for function in ast.walk(tree)
+            if isinstance(function, ast.FunctionDef)
+            for node in ast.walk(function)
+            if isinstance(node, ast.Constant)
+            and str(node.value).endswith(".lark")
+            and grammar.name.endswith(str(node.value))
+        }
+        if lines:
+            yield path.relative_to(root).as_posix(), frozenset(lines)

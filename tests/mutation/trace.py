@@ -1,0 +1,235 @@
+"""A plugin of pytest: which lines each test runs, in all processes that it starts, and its time.
+
+``-p tests.mutation.trace``, with the name of a folder in the environment. Each test is a context
+of coverage, named by its number. What runs for several tests, and only once, is marked: imports
+have no context, and cached functions and fixtures of a wider scope have one with a ``+`` before
+the number of the test that happened to need them first.
+
+Processes that leave without a word (killed ones, and those that were started without this
+environment) leave no lines. Tests with such processes are reported as opaque.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import json
+import multiprocessing.process
+import os
+import resource
+import sys
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import coverage
+import pytest
+
+__all__ = ["CONTEXT", "EACH", "FOLDER", "SETTINGS"]
+
+FOLDER = "FIRM_HDL_MUTATION_TRACE"
+EACH = "FIRM_HDL_MUTATION_EACH"
+CONTEXT = "FIRM_HDL_MUTATION_TEST"
+# Other processes than the first one have one context: that of the test that started them. The name
+# of their data says it, too, if they run nothing of the program.
+SETTINGS = f"""[run]
+data_file = {{folder}}/data.${{{{{CONTEXT}-}}}}
+parallel = true
+source = {{source}}
+concurrency = multiprocessing,thread
+context = ${{{{{CONTEXT}-}}}}
+disable_warnings = no-data-collected,module-not-measured,module-not-imported,already-imported,
+  trace-changed,couldnt-parse,no-sysmon,no-ctracer
+"""
+PROGRAMS = ("python", "firm-hdl")
+OURS = os.path.dirname(coverage.__file__)
+
+
+class _Trace:
+    """The contexts, and what becomes of the tests."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        settings = folder / "settings"
+        os.environ["COVERAGE_PROCESS_START"] = str(settings)
+        os.environ[CONTEXT] = ""
+        self._coverage = coverage.Coverage(config_file=str(settings), context="")
+        self._depth = 0
+        self._test = ""
+        self.tests: list[dict[str, Any]] = []
+        # By test without parameters.
+        self.seconds: dict[str, float] = defaultdict(float)
+        self._coverage.start()
+
+    def enter(self, nodeid: str) -> None:
+        """Begin a test."""
+        self._test = str(len(self.tests))
+        self.tests.append({"id": nodeid, "started": 0, "lost": False})
+        self.tests[-1]["cpu"] = -_cpu_seconds()
+        os.environ[CONTEXT] = self._test
+        self._coverage.switch_context(self._test)
+
+    def leave(self) -> None:
+        """End it."""
+        self.tests[-1]["cpu"] += _cpu_seconds()
+        self.seconds[self.tests[-1]["id"].partition("[")[0]] += self.tests[-1]["cpu"]
+        self._test = ""
+        os.environ[CONTEXT] = ""
+        self._coverage.switch_context("")
+
+    @contextlib.contextmanager
+    def shared(self) -> Iterator[None]:
+        """Mark what runs for other tests, too."""
+        self._depth += 1
+        if self._depth == 1 and self._test:
+            self._coverage.switch_context(f"+{self._test}")
+        try:
+            yield
+        finally:
+            self._depth -= 1
+            if self._depth == 0 and self._test:
+                self._coverage.switch_context(self._test)
+
+    def lose(self) -> None:
+        """Note that lines are hidden."""
+        if self._test:
+            self.tests[-1]["lost"] = True
+
+    def count_process(self) -> None:
+        """Expect lines of one more process."""
+        if self._test:
+            self.tests[-1]["started"] += 1
+
+    def end(self) -> None:
+        """Write all down."""
+        self._coverage.stop()
+        self._coverage.save()
+        (self._folder / "tests.json").write_text(json.dumps(self.tests))
+
+
+_trace: _Trace | None = None
+_main = os.getpid()
+
+
+def _cpu_seconds() -> float:
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(each.ru_utime + each.ru_stime for each in used)
+
+
+def _here() -> _Trace | None:
+    """Return the trace in its own process, not in forks."""
+    return _trace if os.getpid() == _main else None
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_load_initial_conftests() -> None:
+    """Begin before anything of the program is loaded."""
+    global _trace, _main
+    _main = os.getpid()
+    _trace = _Trace(Path(os.environ[FOLDER]))
+    _watch_caches()
+    _watch_processes()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
+    """Leave out further sets of parameters of a test that has had its time, if so asked."""
+    assert _trace
+    if _trace.seconds[item.nodeid.partition("[")[0]] <= float(os.environ.get(EACH) or "inf"):
+        return None
+    # The test before has left what this one would use.
+    item.session._setupstate.teardown_exact(nextitem)
+    return True
+
+
+def pytest_runtest_logstart(nodeid: str) -> None:
+    """Let each test be a context."""
+    assert _trace
+    _trace.enter(nodeid)
+
+
+def pytest_runtest_logfinish() -> None:
+    """Let it end."""
+    assert _trace
+    _trace.leave()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any]) -> Iterator[None]:
+    """Mark what fixtures do for several tests."""
+    assert _trace
+    wide = fixturedef.scope != "function"
+    with _trace.shared() if wide else contextlib.nullcontext():
+        return (yield)
+
+
+def pytest_sessionfinish() -> None:
+    """Leave what was seen."""
+    assert _trace
+    _trace.end()
+
+
+def _watch_caches() -> None:
+    """Mark what caches keep: a later test that uses it does not run it."""
+    lru_cache, cached_property = functools.lru_cache, functools.cached_property
+
+    def watched(function: Callable[..., Any]) -> Callable[..., Any]:
+        if not getattr(function, "__module__", "").startswith(("firm_hdl", "tests")):
+            return function
+
+        @functools.wraps(function)
+        def run(*args: Any, **keywords: Any) -> Any:
+            trace = _here()
+            with trace.shared() if trace else contextlib.nullcontext():
+                return function(*args, **keywords)
+
+        return run
+
+    def watched_cache(maxsize: Any = 128, typed: bool = False) -> Any:
+        if callable(maxsize):
+            return lru_cache(watched(maxsize))
+        return lambda function: lru_cache(maxsize, typed)(watched(function))
+
+    class WatchedProperty(cached_property):  # type: ignore[misc, valid-type]
+        def __init__(self, function: Callable[..., Any]) -> None:
+            super().__init__(watched(function))
+
+    functools.lru_cache = watched_cache
+    functools.cache = watched_cache(None)
+    functools.cached_property = WatchedProperty  # type: ignore[assignment, misc]
+
+
+def _watch_processes() -> None:
+    """Count the processes that should leave lines, and note what hides lines in this one."""
+
+    def audit(event: str, arguments: tuple[Any, ...]) -> None:
+        if event not in ("subprocess.Popen", "sys.settrace", "os.fork"):
+            return
+        trace = _here()
+        if trace is None:
+            return
+        if event == "subprocess.Popen":
+            name = os.path.basename(os.fsdecode(arguments[0] or ""))
+            if name.startswith(PROGRAMS) and not str(arguments[0]).startswith("/usr/"):
+                trace.count_process()
+        elif event == "os.fork" and not _starting:
+            trace.count_process()
+        elif event == "sys.settrace" and not sys._getframe(1).f_code.co_filename.startswith(OURS):
+            trace.lose()
+
+    _starting: list[bool] = []
+    start = multiprocessing.process.BaseProcess.start
+
+    def started(process: multiprocessing.process.BaseProcess) -> None:
+        trace = _here()
+        if trace:
+            trace.count_process()
+        _starting.append(True)
+        try:
+            start(process)
+        finally:
+            _starting.pop()
+
+    multiprocessing.process.BaseProcess.start = started  # type: ignore[assignment, method-assign]
+    sys.addaudithook(audit)
