@@ -30,6 +30,11 @@ def one(text: str) -> Cell | Process:
     return item
 
 
+def test_the_first_line_counts() -> None:
+    with pytest.raises(ValueError, match=r"^RTLIL line 1: expected a module, not 'wires'$"):
+        parse(f"wires\n{HEAD}end\n")
+
+
 def test_reads_wires_with_attributes() -> None:
     text = 'attribute \\init 4\'0101\nattribute \\note "say \\"a\\"\\n"\nwire width 4 \\c\n'
     wires = parse(f"{HEAD}{WIRES}{text}end\n").top.wires

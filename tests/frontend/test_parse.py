@@ -129,7 +129,7 @@ def test_ros1_constant_names(name):
 
 
 @pytest.mark.parametrize(
-    ("text", "value"), [("0", 0), ("-5", -5), ("+5", 5), ("010", 10), ("1_000", 1000)]
+    ("text", "value"), [("0", 0), ("-5", -5), ("+5", 5), ("010", 10), ("1_000", 1000), ("1_9", 19)]
 )
 @pytest.mark.parametrize("dialect", ["ros1", "ros2"])
 def test_integers_are_decimal_even_with_a_leading_zero(dialect, text, value):

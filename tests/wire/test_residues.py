@@ -84,3 +84,7 @@ def test_repeat_of_an_unknown_count_is_the_union_of_all_images(residues, body):
         everything |= now
         now = image(body, now)
     assert rs.repeat(residues, lambda at: image(body, at), None) == (everything, everything)
+
+
+def test_repeat_goes_around_a_cycle_in_its_direction():
+    assert rs.repeat(rs.single(0), lambda at: rs.advance(at, 1), 11) == (rs.ALL, rs.single(3))

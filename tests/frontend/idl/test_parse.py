@@ -146,6 +146,13 @@ def test_what_is_nested_deeper_than_anybody_writes_is_read():
     assert len(parse(deep)) == 1
 
 
+def test_nesting_ends_at_its_limit():
+    for depth, is_read in ((192, True), (193, False)):
+        text = "const long A = " + "(" * depth + "1" + ")" * depth + ";"
+        found = parse_file(Source(name="test.idl", text=text))
+        assert isinstance(found, FileSyntax) == is_read
+
+
 def test_chains_may_be_long():
     (module,) = parse("module m { const long A = " + "+".join("1" * 20_000) + "; };")
     assert len(module.definitions[0].value.operands) == 20_000

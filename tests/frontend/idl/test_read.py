@@ -230,6 +230,12 @@ def test_a_constant_that_is_wrong_is_reported_once():
     assert [d.message for d in read(text)[1]] == ["division by zero"]
 
 
+def test_annotations_of_others_promise_nothing():
+    assert read("module p { struct T { @vendor::optional long a; }; };")[1] == []
+    (only,) = read("module p { struct T { @optional long a; }; };")[1]
+    assert only.message == "annotation '@optional' is not supported"
+
+
 def test_enumerators_do_not_disturb():
     text = "module p { enum E { a, T }; struct T { long a; }; };"
     messages, wrong = read(text)
