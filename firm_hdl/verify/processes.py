@@ -26,6 +26,7 @@ from typing import Any, TypeVar
 __all__ = [
     "ToolError",
     "cpu_seconds",
+    "hang_up",
     "in_processes",
     "run_tool",
     "unwound_when_terminated",
@@ -86,6 +87,18 @@ def run_tool(
     if process.returncode:
         raise ToolError(said.strip() or f"exit status {process.returncode}")
     return said
+
+
+def hang_up(process: subprocess.Popen[Any], seconds: float = 0.0) -> None:
+    """Close the pipes of a process, and kill it if it has not ended some seconds later."""
+    assert process.stdin is not None and process.stdout is not None
+    with suppress(OSError):  # It may be dead, with something still to be said to it.
+        process.stdin.close()
+    process.stdout.close()
+    with suppress(subprocess.TimeoutExpired):
+        process.wait(seconds)
+    process.kill()
+    process.wait()
 
 
 def in_processes(

@@ -14,14 +14,13 @@ import struct
 import subprocess
 import tempfile
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
 from firm_hdl.model import Array, FieldType, Message, Primitive, Text
 from firm_hdl.model import Sequence as SequenceType
-from firm_hdl.verify.processes import ToolError, run_tool
+from firm_hdl.verify.processes import ToolError, hang_up, run_tool
 from firm_hdl.verify.sut.client import BatchCodec, Client, Codec, Refusal, UnsupportedError
 from firm_hdl.verify.sut.values import Plain, messages_of, packed, unpacked
 from firm_hdl.wire import Wire
@@ -164,13 +163,8 @@ class _Program:
         if self._process is None:
             return
         process, self._process = self._process, None
-        assert process.stdin is not None and process.stdout is not None
-        with suppress(OSError):  # It may be dead, with something still to be said to it.
-            process.stdin.close()
-        process.stdout.close()
         # It has nothing to put in order; and a process that was forked may hold its input open.
-        process.kill()
-        process.wait()
+        hang_up(process)
 
 
 def _items(answer: bytes) -> Iterator[bytes | Refusal]:

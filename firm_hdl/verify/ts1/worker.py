@@ -10,6 +10,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from firm_hdl.verify.processes import hang_up
+
 __all__ = ["ROS_PYTHON", "Worker"]
 
 ROS_PYTHON = os.environ.get("FIRM_HDL_ROS_PYTHON", "/usr/bin/python3")
@@ -70,15 +72,7 @@ class Worker:
         if self._process is None:
             return
         process, self._process = self._process, None
-        assert process.stdin is not None and process.stdout is not None
-        with suppress(OSError):  # It may be dead, with something still to be said to it.
-            process.stdin.close()
-        process.stdout.close()
-        try:
-            process.wait(10)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+        hang_up(process, 10)
 
     def _start(self) -> None:
         try:
