@@ -138,6 +138,27 @@ def test_gives_a_header_and_unsigned_ports() -> None:
 
 
 @pytest.mark.usefixtures("ghdl")
+class Unless(wiring.Component):
+    """A register that is written in an `else` alone."""
+
+    def __init__(self) -> None:
+        super().__init__({"hold": In(1), "a": In(2), "o": Out(2)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        with m.If(self.hold):
+            pass
+        with m.Else():
+            m.d.sync += self.o.eq(self.a)
+        return m
+
+
+def test_an_if_without_anything_is_turned_round() -> None:
+    text = convert(Unless(), name="unless").files["unless.vhd"]
+    assert "if hold = '0' then\n          o_q <= unsigned(a);\n        end if;" in text
+    assert "null" not in text
+
+
 def test_assigns_to_several_wires_at_once() -> None:
     # Amaranth 0.5 prints no such connection; RTLIL has them.
     rtlil = r"""

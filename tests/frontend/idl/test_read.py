@@ -95,6 +95,13 @@ def test_constants_are_looked_up_from_the_inside_to_the_outside():
     assert read(text)[1] == []
 
 
+def test_constants_of_other_modules_need_their_scope():
+    text = """module a { module b { const long N = 3; }; };
+      module p { module msg { struct T { long x[N]; long y[a::b::N]; }; }; };"""
+    (wrong,) = read(text)[1]
+    assert wrong.message == "constant 'N' is not declared above"
+
+
 def test_constants_belong_to_the_struct_that_their_module_is_called_after(tmp_path):
     text = """module p { module srv {
       module S_Request_Constants {
