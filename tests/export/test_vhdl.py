@@ -137,7 +137,6 @@ def test_gives_a_header_and_unsigned_ports() -> None:
     assert "limit  : in  unsigned(3 downto 0);" in text
 
 
-@pytest.mark.usefixtures("ghdl")
 class Unless(wiring.Component):
     """A register that is written in an `else` alone."""
 
@@ -157,6 +156,29 @@ def test_an_if_without_anything_is_turned_round() -> None:
     text = convert(Unless(), name="unless").files["unless.vhd"]
     assert "if hold = '0' then\n          o_q <= unsigned(a);\n        end if;" in text
     assert "null" not in text
+
+
+def test_a_condition_with_two_arms_is_written_in_place() -> None:
+    m = Module()
+    a, b, o = (Signal(4, name=name) for name in "abo")
+    with m.Switch(a == b):
+        with m.Case(0):
+            m.d.comb += o.eq(a)
+        with m.Case(1):
+            m.d.comb += o.eq(~b)
+    text = convert(m, name="arms", ports=[a, b, o]).files["arms.vhd"]
+    assert "when unsigned(a) /= unsigned(b) else" in text
+    assert "signal" not in text
+
+
+def test_what_a_port_alone_reads_is_written_in_place() -> None:
+    m = Module()
+    a, b = (Signal(4, name=name) for name in "ab")
+    o = Signal(8)
+    m.d.comb += o.eq(Cat(a & b, b))
+    text = convert(m, name="place", ports=[a, b, o]).files["place.vhd"]
+    assert "unsigned(b) & (unsigned(a) and unsigned(b))" in text
+    assert "signal" not in text
 
 
 def test_assigns_to_several_wires_at_once() -> None:

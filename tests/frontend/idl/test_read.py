@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 
 import pytest
 
@@ -207,6 +208,20 @@ def test_included_files_that_are_wrong_are_their_own_business(tmp_path):
     assert types(lib.message("p/msg/T")) == {"a": "int32"}
     with pytest.raises(DefinitionError, match=r"constant 'q::msg::N' is not declared above"):
         lib.message("p/msg/U")
+
+
+def test_what_is_wrong_in_included_files_comes_first(tmp_path):
+    files = {
+        "q/msg/Base.idl": "module q { typedef fixed<3, 1> Bad; struct Base { long a; }; };",
+        "p/msg/T.idl": '#include "q/msg/Base.idl"\nmodule p { typedef Bad A; };',
+    }
+    with pytest.raises(DefinitionError) as caught:
+        library(tmp_path, files).message("p/msg/T")
+    places = [(Path(d.span.source.name).name, d.message) for d in caught.value.diagnostics]
+    assert places == [
+        ("Base.idl", "type 'fixed' is not supported"),
+        ("T.idl", "this file declares no struct"),
+    ]
 
 
 def test_included_files_that_cannot_be_read_are_not_there(tmp_path):
