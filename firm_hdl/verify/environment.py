@@ -13,7 +13,16 @@ import firm_hdl
 
 __all__ = ["code_digest", "environment"]
 
-PACKAGES = ("amaranth", "rosbags", "numpy", "lark", "distributed")
+PACKAGES = (
+    "amaranth",
+    "rosbags",
+    "cyclonedds",
+    "mcap-ros1-support",
+    "mcap-ros2-support",
+    "numpy",
+    "lark",
+    "distributed",
+)
 
 
 def environment(**more: str) -> dict[str, str]:

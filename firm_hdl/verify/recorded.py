@@ -80,6 +80,7 @@ def record_of(task: Task, result: Result, options: Options, same_as: str = "") -
         metrics=result.metrics,
         shape=result.shape,
         same_as=same_as,
+        written_by=("rosbags", *result.written_by) if result.cases else (),
         command=result.command,
         waveform_command=waveform.command(task.distro, task.name),
     )

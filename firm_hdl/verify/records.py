@@ -188,6 +188,8 @@ class Record:
         own was simulated.
     verdicts : tuple of OracleVerdict
         Of all oracles that read the definition.
+    written_by : tuple of str
+        Libraries that wrote its packets, all from the same values.
     command : str
         Repeats the test.
     waveform_command : str
@@ -210,6 +212,7 @@ class Record:
     shape: str = ""
     same_as: str = ""
     verdicts: tuple[OracleVerdict, ...] = ()
+    written_by: tuple[str, ...] = ()
     command: str = ""
     waveform_command: str = ""
 

@@ -42,6 +42,7 @@ def test_records_say_what_was_found():
     assert record.status == "pass" and not record.failures
     assert record.test.key == "ts3 python humble std_msgs/msg/Header cdr/8 seed=0"
     assert record.cases and record.packets > record.cases and record.cycles > record.beats > 0
+    assert record.written_by[0] == "rosbags"
     assert record.coverage.taken == record.coverage.possible > 0 and not record.coverage.missing
     assert min(record.seconds.generation, record.seconds.simulation, record.seconds.testing) > 0
     assert record.cpu_seconds > 0 and len(record.shape) == 16

@@ -37,6 +37,7 @@ from firm_hdl.verify.report.tables import (
     title_of,
     trend_table,
     within_table,
+    writer_table,
 )
 from firm_hdl.verify.report.verdicts import Reason, reason_groups
 
@@ -149,6 +150,11 @@ def _oracles(summary: Summary) -> Iterator[str]:
         yield _table(said_table(summary))
 
 
+def _writers(summary: Summary) -> Iterator[str]:
+    if summary.writers:
+        yield _table(writer_table(summary))
+
+
 def _circuits(summary: Summary) -> Iterator[str]:
     if summary.circuits:
         yield _table(circuits_table(summary))
@@ -251,6 +257,7 @@ _SECTIONS = {
     "rest": _rest,
     "packages": _packages,
     "circuits": _circuits,
+    "writers": _writers,
     "coverage": _coverage,
     "time": _time,
     "trends": _trends,

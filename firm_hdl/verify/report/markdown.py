@@ -33,6 +33,7 @@ from firm_hdl.verify.report.tables import (
     title_of,
     trend_table,
     within_table,
+    writer_table,
 )
 from firm_hdl.verify.report.verdicts import reason_groups
 
@@ -88,6 +89,11 @@ def _untested(summary: Summary) -> Iterator[tuple[str, list[Outcome]]]:
 def _oracles(summary: Summary) -> Iterator[str]:
     yield from _table(oracle_table(summary))
     yield from _table(said_table(summary))
+
+
+def _writers(summary: Summary) -> Iterator[str]:
+    if summary.writers:
+        yield from _table(writer_table(summary))
 
 
 def _circuits(summary: Summary) -> Iterator[str]:
@@ -152,6 +158,7 @@ _SECTIONS = {
     "rest": _rest,
     "packages": _packages,
     "circuits": _circuits,
+    "writers": _writers,
     "coverage": _coverage,
     "time": _time,
     "trends": _trends,

@@ -42,6 +42,11 @@ SECTIONS = {
         "Different circuits",
         "Plans that differ in names only are the same circuit.",
     ),
+    "writers": (
+        "Wire bytes",
+        "Libraries that wrote the packets of a test, each from the same values. Other bytes than "
+        "those of the first one fail the test, but for what docs/divergences.md explains.",
+    ),
     "packages": ("Results by package", ""),
     "coverage": (
         "Plan coverage",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -144,6 +144,8 @@ class Summary:
     outcomes : tuple of Outcome
     circuits : mapping of str to (int, int)
         By suite: different circuits, and tests that rest on that of another type.
+    writers : mapping of str to (mapping of str to int)
+        By suite: libraries that wrote the packets, and of how many tests.
     curves : tuple of Curve
     trends : tuple of Trend
     coverage : tuple of CoverageSum
@@ -161,6 +163,7 @@ class Summary:
     by_package: tuple[Group, ...]
     outcomes: tuple[Outcome, ...]
     circuits: Mapping[str, tuple[int, int]]
+    writers: Mapping[str, Mapping[str, int]]
     curves: tuple[Curve, ...]
     trends: tuple[Trend, ...]
     coverage: tuple[CoverageSum, ...]
@@ -251,6 +254,7 @@ def summarise(files: Mapping[str, Results], title: str = "Verification of firm-h
         circuits={
             suite: known for suite, own in suites.items() if (known := _circuits(own)) != (0, 0)
         },
+        writers={suite: names for suite, own in suites.items() if (names := _writers(own))},
         curves=tuple(_curve(suite, own) for suite, own in suites.items() if _ran(own)),
         trends=tuple(trend for suite, own in suites.items() for trend in _trends(suite, own)),
         coverage=tuple(
@@ -292,6 +296,11 @@ def _circuits(outcomes: Iterable[Outcome]) -> tuple[int, int]:
     records = [outcome.record for outcome in outcomes if outcome.record is not None]
     shapes = {record.shape for record in records if record.shape}
     return len(shapes), sum(bool(record.same_as) for record in records)
+
+
+def _writers(outcomes: Iterable[Outcome]) -> dict[str, int]:
+    records = [outcome.record for outcome in outcomes if outcome.record is not None]
+    return dict(Counter(name for record in records for name in record.written_by))
 
 
 def _curve(suite: str, outcomes: Sequence[Outcome]) -> Curve:

@@ -33,6 +33,7 @@ __all__ = [
     "title_of",
     "trend_table",
     "within_table",
+    "writer_table",
 ]
 
 MOST_ROWS = 1000
@@ -129,6 +130,18 @@ def group_table(groups: Iterable[Group], names: str) -> Table:
             )
 
     return _of(f"{names}|Result|Share|Passed#|Failed#|Skipped#|Not run#|CPU time#", rows())
+
+
+def writer_table(summary: Summary) -> Table:
+    """Count tests by the libraries that wrote their packets."""
+    return _of(
+        "Test system|Library|Tests#",
+        (
+            (Cell(suite), Cell(name), _count(tests))
+            for suite, writers in summary.writers.items()
+            for name, tests in writers.items()
+        ),
+    )
 
 
 def circuits_table(summary: Summary) -> Table:

@@ -302,6 +302,18 @@ def test_circuits_are_counted_for_each_test_system():
     assert '<div class="tile"><b>3</b><span>different circuits</span>' in made("html", run)
 
 
+def test_who_wrote_the_packets_is_counted():
+    run = run_of(
+        a_record(written_by=("rosbags", "fastcdr")),
+        a_record(a_test("a/msg/A"), written_by=("rosbags",)),
+    )
+    counted = {"ts3, python, 8-byte bus": {"rosbags": 2, "fastcdr": 1}}
+    assert json.loads(made("json", run))["writers"] == counted
+    assert "| ts3, python, 8-byte bus | fastcdr | 1 |" in made("md", run)
+    assert 'id="writers"' in made("html", run)
+    assert 'id="writers"' not in made("html", run_of(a_record()))
+
+
 def test_long_reports_are_cut_and_say_so(monkeypatch):
     for name, most in (("MOST_ROWS", 20), ("MOST_ARTICLES", 2)):
         monkeypatch.setattr(page_writer, name, most)
