@@ -34,11 +34,13 @@ from firm_hdl.verify.cases import Case
 from firm_hdl.verify.executors import run_each
 from firm_hdl.verify.processes import ToolError, cpu_seconds, run_tool
 from firm_hdl.verify.records import Record, Seconds, Test, clipped
+from firm_hdl.verify.references import WIDE_REFERENCE, confirm, may_stand_in
 from firm_hdl.verify.runner import Task
 from firm_hdl.verify.simulators import find_ghdl
 from firm_hdl.verify.stimuli import stimulus_cases
 from firm_hdl.verify.system import Recorder, System, wire_of
 from firm_hdl.verify.user_oracle import NotJudgedError, check_wire, judge_of
+from firm_hdl.verify.wide_oracle import WideOracle
 from firm_hdl.wire import Wire
 
 __all__ = ["BenchResult", "BenchRun", "Benches", "run_bench"]
@@ -140,9 +142,16 @@ def _run_bench(
         check_size(plan)
     except BuildError as error:
         raise NotJudgedError(str(error)) from None
-    cases = list(stimulus_cases(judge_of(message, None if run.paths else distro), plan))
+    judge = judge_of(
+        message, None if run.paths else distro, stand_in=may_stand_in(message, [WIDE_REFERENCE])
+    )
+    cases = list(stimulus_cases(judge, plan))
     if not cases:
         raise NotJudgedError("it has no packet that is short enough")
+    if isinstance(judge.oracle, WideOracle):
+        found = confirm(message, plan.wire, cases, [WIDE_REFERENCE])
+        assert not found.failures, found.failures[0]
+        assert found.by, f"{WIDE_REFERENCE} could not write wide text, which rosbags has not"
     built = build(
         [name],
         folder,

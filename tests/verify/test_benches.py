@@ -5,10 +5,17 @@ from __future__ import annotations
 import pytest
 
 import firm_hdl.verify.benches as benches
+import firm_hdl.verify.references as references
+from firm_hdl.cli import main
 from firm_hdl.export.vhdl_bench import RUN_SCRIPT
+from firm_hdl.frontend import Library
 from firm_hdl.verify.benches import Benches, BenchRun, run_bench
+from firm_hdl.verify.references import WIDE_REFERENCE
+from firm_hdl.verify.results import read_results
 from firm_hdl.verify.runner import collect_tasks
+from firm_hdl.verify.sut import client
 from firm_hdl.verify.system import Recorder
+from tests.export.conftest import need
 from tests.verify.samples import own_package
 
 HEADER = "std_msgs/msg/Header"
@@ -43,12 +50,29 @@ def test_types_of_ones_own_pass_as_well(ghdl, tmp_path, name):
     assert result.packets
 
 
-def test_type_without_packets_is_not_judged(ghdl, tmp_path):
-    own_package(tmp_path)
-    (tmp_path / "own_msgs" / "msg" / "Wide.msg").write_text("wstring[] text\n")
-    result = run_bench("lyrical", "own_msgs/msg/Wide", BenchRun(paths=(str(tmp_path),), ghdl=ghdl))
+def wide(folder, ghdl):
+    """Run the bench of a type with wide text."""
+    own_package(folder)
+    (folder / "own_msgs" / "msg" / "Wide.msg").write_text("wstring[] text\nuint8 x\n")
+    return run_bench("lyrical", "own_msgs/msg/Wide", BenchRun(paths=(str(folder),), ghdl=ghdl))
+
+
+def test_wide_text_is_not_judged_unless_somebody_has_it(ghdl, tmp_path, monkeypatch):
+    monkeypatch.setattr(references, "references_here", lambda wanted=None: ())
+    result = wide(tmp_path, ghdl)
     assert result.failure == ""
     assert result.not_judged == "rosbags has no wstring, which own_msgs/msg/Wide.text is"
+
+
+def test_wide_text_is_confirmed(ghdl, tmp_path, monkeypatch):
+    if (missing := client(WIDE_REFERENCE).missing()) is not None:
+        need(f"{WIDE_REFERENCE} ({missing})", None)
+    result = wide(tmp_path, ghdl)
+    assert (result.failure, result.not_judged) == ("", "")
+    assert result.packets >= 3 and result.transfers > result.packets
+    codec = client(WIDE_REFERENCE).open(Library("lyrical").message("std_msgs/msg/Bool"), "cdr")
+    monkeypatch.setattr(type(codec), "encode_all", lambda self, values: [b"\0"] * len(values))
+    assert "fastcdr writes 00, rosbags writes 00010000" in wide(tmp_path, ghdl).failure
 
 
 FALSIFY = "trap 'sed -i s/00/01/ results.txt' EXIT"
@@ -112,3 +136,22 @@ def test_table_and_status_say_what_failed_and_how_to_repeat(ghdl, monkeypatch, c
     assert "FAIL std_msgs/msg/Bool (lyrical)\n" in said
     again = "firm-hdl verify --systems bench --distro lyrical --wire ros1 --bus-bytes 4"
     assert f"again: {again} std_msgs/msg/Bool\n" in said
+
+
+def test_results_are_kept_and_not_found_out_again(ghdl, tmp_path, monkeypatch, capsys):
+    file = tmp_path / "r.jsonl"
+    names = ["std_msgs/msg/Bool", "std_msgs/msg/Empty"]
+    call = ["verify", "--systems", "bench", "--distro", "lyrical", "--jobs", "1", *names]
+    call += ["--results", str(file)]
+    assert main(call) == 0
+    first = read_results(file)
+    assert sorted(record.test.type for record in first.records.values()) == names
+    assert all(record.packets and record.seconds.simulation for record in first.records.values())
+    lines = file.read_text().splitlines(keepends=True)
+    (last,) = [line for line in lines if "std_msgs/msg/Empty" in line and '"status"' in line]
+    file.write_text("".join(line for line in lines if line != last))
+    change(monkeypatch, "_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ")
+    assert main(call) == 1
+    verdicts = {r.test.type: r.status for r in read_results(file).records.values()}
+    assert verdicts == dict(zip(names, ("pass", "fail"), strict=True))
+    assert "1 of 2 types" in capsys.readouterr().out

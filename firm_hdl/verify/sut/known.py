@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from firm_hdl.model import Message
-from firm_hdl.verify.sut.client import Codec, Refusal
+from firm_hdl.verify.sut.client import Codec, Refusal, UnsupportedError
 from firm_hdl.verify.sut.clients import client
 from firm_hdl.verify.sut.divergences import KNOWN
 from firm_hdl.verify.sut.finding import Finding, Known, changed
@@ -63,13 +63,18 @@ def known_writing(
     """Return the keys of what explains that two libraries write a value in different ways.
 
     It does if the library writes the value without what is known in the way of the reference.
+    Nothing does if the reference does not have the type.
 
     Parameters
     ----------
     codec : Codec
         Of `library`. That of the reference is opened here.
     """
-    right = client(reference).open(message, wire)
+    try:
+        right = client(reference).open(message, wire)
+    except UnsupportedError:
+        # Without the type, there is nothing in its way.
+        return ()
     finding = Finding(
         library=library,
         reference=reference,
