@@ -9,10 +9,10 @@ VERIFY_ARGS ?= --bus-bytes 4 --bus-bytes 8
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
-  report prove oracles fuzz mutate bench tools ghdl verilog clean
+  verify-corpus report prove oracles fuzz mutate bench tools ghdl verilog clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
 
 demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware
 	$(BIN)/python examples/demo.py
@@ -68,6 +68,20 @@ verify-ts1: $(VENV)/.installed oracles ## every definition against ROS's own rea
 	$(TS1)
 	$(if $(TS1_CORPUS),$(TS1) --distro noetic --path $(TS1_CORPUS)/invalid/ros1 --path $(TS1_CORPUS)/ros1)
 	$(if $(TS1_CORPUS),$(TS1) --distro lyrical --path $(TS1_CORPUS)/invalid/ros2 --path $(TS1_CORPUS)/ros2)
+
+# `CORPUS=DIR` has folders `ros1/` and `ros2/` with packages, or one of them. The same command goes on
+# with a run that was stopped; results of an older program have to be removed.
+CORPUS ?= $(FIRM_HDL_CORPUS)
+verify-corpus: $(VENV)/.installed oracles ## every type in CORPUS=DIR through TS1, TS2 and TS3 (hours)
+	@[ -n "$(CORPUS)" ] || { echo "Which definitions? make $@ CORPUS=DIR" >&2; exit 2; }
+	@mkdir -p $(VERIFY_OUT)
+	status=0; for corpus in noetic:ros1 lyrical:ros2; do \
+	  [ -d "$(CORPUS)/$${corpus#*:}" ] || continue; \
+	  $(BIN)/firm-hdl verify --all --distro $${corpus%:*} --path "$(CORPUS)/$${corpus#*:}" \
+	    --systems ts1,ts2,ts3 --share-circuits --jobs $(JOBS) \
+	    --results $(VERIFY_OUT)/$${corpus#*:}.jsonl --report $(VERIFY_OUT)/$${corpus#*:}.html \
+	    || status=$$?; \
+	done; exit $$status
 
 report: $(VENV)/.installed ## one page of all results that are in build/verify
 	$(BIN)/firm-hdl report $(VERIFY_OUT)/*.jsonl --out $(VERIFY_OUT)/report.html

@@ -117,6 +117,7 @@ class Ts3(System):
             print(line)
         same = same_circuits(tasks, options) if how.share_circuits else {}
         results: list[Result] = []
+        notes: Counter[str] = Counter()
         label = f"{options.bus_bytes}-byte bus"
         bar = tqdm(total=len(tasks), initial=known, unit="type", desc=label, disable=None)
         run = run_tasks(left, options, how.jobs, executor=how.executor, golden_only=same)
@@ -127,22 +128,35 @@ class Ts3(System):
                 same_as = "" if other is None else test_of(other, options).key
                 records[task] = record = record_of(task, result, options, same_as)
                 recorder.add(record)
-                for line in _said(task, result):
+                notes[result.note] += 1
+                # A replay says of each type how many messages there were.
+                is_new = notes[result.note] == 1 or bool(options.bags)
+                for line in _said(task, result, is_new=is_new):
                     tqdm.write(line)
                 bar.update()
+        if not options.bags:
+            _repeat(notes)
         _count(records, options)
         judged = [result for result in results if not result.not_judged]
         _summarize([result for result in judged if result.simulated_cycles], options)
         return sum(record is not None and record.status == "fail" for record in records.values())
 
 
-def _said(task: Task, result: Result) -> Iterator[str]:
+def _said(task: Task, result: Result, *, is_new: bool) -> Iterator[str]:
+    """Say what is to be known of a type; what is said of many types, of the first one only."""
     if result.not_judged:
         yield f"not judged: {task.name} ({task.distro}): {result.not_judged}"
     if result.failures:
         yield _describe(task, result)
-    if result.note:
+    if result.note and is_new:
         yield f"note: {task.name} ({task.distro}): {result.note}"
+
+
+def _repeat(notes: Mapping[str, int]) -> None:
+    """Print how many types a note was left out of."""
+    for note, count in notes.items():
+        if note and count > 1:
+            print(f"note: {count - 1} more types: {note}")
 
 
 def _count(records: Mapping[Task, Record | None], options: Options) -> None:

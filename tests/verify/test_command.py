@@ -89,6 +89,18 @@ def test_one_wrong_definition_does_not_keep_the_others_of_a_folder(capsys, tmp_p
     assert capsys.readouterr().out == ""
 
 
+def test_what_is_to_be_known_of_many_types_is_said_once(capsys, tmp_path):
+    (tmp_path / "p" / "msg").mkdir(parents=True)
+    for name in ("A", "B", "C"):
+        # To rosbags the second line is a field.
+        (tmp_path / "p" / "msg" / f"{name}.msg").write_text("uint8 a\nuint8 b=1\n")
+    arguments = ["--all", "--path", str(tmp_path), "--distro", "noetic", "--cases", "1"]
+    assert main(["verify", "--jobs", "1", *arguments, "--no-stalls", "--no-broken"]) == 0
+    notes = [line for line in capsys.readouterr().out.splitlines() if line.startswith("note: ")]
+    why = "rosbags cannot read the definition, and was given the fields as they were resolved"
+    assert notes == [f"note: p/A (noetic): {why}", f"note: 2 more types: {why}"]
+
+
 def test_every_system_runs_whatever_comes_of_the_first(monkeypatch):
     ran = []
 
