@@ -8,7 +8,7 @@ that has a package wins, as for ROS itself; here, type by type.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from pathlib import Path
 
 from firm_hdl.errors import DefinitionError, Diagnostic
@@ -19,7 +19,7 @@ from firm_hdl.frontend.recordings import RecordingOrigin
 from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin, Origin
 from firm_hdl.model import Dialect
 
-__all__ = ["ENVIRONMENT", "environment_origins", "open_library"]
+__all__ = ["ENVIRONMENT", "environment_origins", "open_library", "workspace_folders"]
 
 ENVIRONMENT: dict[Dialect, str] = {"ros1": "ROS_PACKAGE_PATH", "ros2": "AMENT_PREFIX_PATH"}
 """The variable that says where packages are."""
@@ -67,17 +67,39 @@ def open_library(
 
 def environment_origins(dialect: Dialect, environment: Mapping[str, str]) -> Iterator[Origin]:
     """Give the folders of packages that the environment names; what is no folder is left out."""
+    return map(FolderOrigin, _folders(dialect, environment))
+
+
+def workspace_folders(
+    distro: str, packages: Container[str], environment: Mapping[str, str] | None = None
+) -> list[str]:
+    """List the folders that the environment names and that have one of some packages.
+
+    Parameters
+    ----------
+    environment : mapping or None
+        Variables to read (by default those of the process).
+    """
+    variables = os.environ if environment is None else environment
+    return [
+        folder
+        for folder in _folders(DISTROS[distro].dialect, variables)
+        if any(package in packages for package, _, _ in FolderOrigin(folder).names())
+    ]
+
+
+def _folders(dialect: Dialect, environment: Mapping[str, str]) -> Iterator[str]:
     for place in environment.get(ENVIRONMENT[dialect], "").split(os.pathsep):
         if not os.path.isdir(place):
             continue  # So do ROS's tools. An empty entry is no folder, either.
         if dialect == "ros1":
-            yield FolderOrigin(place)
+            yield place
         else:
             # A prefix may be all of ``/usr``: only packages are looked into.
             share = Path(place, "share")
             for package in sorted(share.iterdir()) if share.is_dir() else []:
                 if any((package / kind).is_dir() for kind in KINDS):
-                    yield FolderOrigin(package)
+                    yield str(package)
 
 
 def _of_recordings(distro: str | None, recordings: list[RecordingOrigin]) -> Library:

@@ -16,12 +16,10 @@ import random
 import time
 from collections.abc import Callable, Iterable, Sequence
 from collections.abc import Set as AbstractSet
-from functools import cache
 from itertools import chain
 from typing import Any
 
 from firm_hdl.export.names import identifier
-from firm_hdl.frontend import Library, open_library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
 from firm_hdl.plan import Edge, Payload, build_plan
@@ -51,6 +49,7 @@ from firm_hdl.verify.effort import (
     work_of,
 )
 from firm_hdl.verify.figures import digest, figures
+from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.options import Options, Result
 from firm_hdl.verify.oracle import Oracle, Transfers
 from firm_hdl.verify.processes import cpu_seconds
@@ -66,7 +65,6 @@ __all__ = [
     "Result",
     "accept",
     "accept_message",
-    "library_of",
     "measured",
 ]
 
@@ -120,12 +118,6 @@ def measured(
     result.seconds = time.perf_counter() - began
     result.cpu_seconds = cpu_seconds() - began_cpu
     return result
-
-
-@cache
-def library_of(distro: str, paths: tuple[str, ...], bags: tuple[str, ...] = ()) -> Library:
-    """Return a library, which is opened once in a process."""
-    return open_library(distro, bags=bags) if bags else Library(distro, paths)
 
 
 def accept_message(

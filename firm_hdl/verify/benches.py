@@ -29,9 +29,9 @@ from firm_hdl.export.vhdl_bench import RUN_SCRIPT
 from firm_hdl.frontend import DISTROS
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
 from firm_hdl.sim.payloads import encoder_of
-from firm_hdl.verify.acceptance import library_of
 from firm_hdl.verify.cases import Case
 from firm_hdl.verify.executors import run_each
+from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.processes import ToolError, cpu_seconds, run_tool
 from firm_hdl.verify.records import Record, Seconds, Test, clipped
 from firm_hdl.verify.references import WIDE_REFERENCE, confirm, may_stand_in

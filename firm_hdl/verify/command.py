@@ -14,6 +14,7 @@ from contextlib import ExitStack
 from firm_hdl.errors import Diagnostic
 from firm_hdl.export.build import BuildError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
+from firm_hdl.frontend.search import workspace_folders
 from firm_hdl.plan import BUS_BYTES
 from firm_hdl.verify.benches import Benches
 from firm_hdl.verify.environment import code_digest, environment
@@ -65,6 +66,7 @@ def run_verify(given: argparse.Namespace) -> int:
     given.problems = {}
     given.tasks = None
     try:
+        _search_workspace(given)
         with unwound_when_terminated():
             if given.sut:
                 is_well = run_sut(_tasks(given), sut_options(given), given.jobs)
@@ -86,6 +88,23 @@ def run_verify(given: argparse.Namespace) -> int:
     for problem in given.problems:
         print(problem, file=sys.stderr)
     return 0 if is_well and not given.problems else 1
+
+
+def _search_workspace(given: argparse.Namespace) -> None:
+    """Have types that no distribution has looked up in the active workspace, as if by ``--path``.
+
+    TS1 alone does so anyway.
+    """
+    if not given.types or given.path or given.bag or (given.systems == ["ts1"] and not given.sut):
+        return
+    try:
+        _tasks(given)
+    except UnknownTypeError:
+        packages = {name.partition("/")[0] for name in given.types}
+        distros = given.distro or [DEFAULT_DISTRO]
+        given.path = [f for distro in distros for f in workspace_folders(distro, packages)]
+        if not given.path:
+            raise
 
 
 def _run_systems(given: argparse.Namespace) -> bool:

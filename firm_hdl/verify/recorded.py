@@ -8,9 +8,9 @@ from typing import Any
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
-from firm_hdl.verify.acceptance import library_of
 from firm_hdl.verify.effort import message_limit
 from firm_hdl.verify.figures import digest
+from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.options import LONGEST, Options, Result
 from firm_hdl.verify.records import PlanCoverage, Record, Seconds, Status, Test, clipped
 from firm_hdl.verify.runner import Task

@@ -22,11 +22,12 @@ from firm_hdl.frontend import Library
 from firm_hdl.model import Message
 from firm_hdl.plan import Payload, Plan, build_plan
 from firm_hdl.plan.interpret import Decoded, decode, encode
-from firm_hdl.verify.acceptance import Acceptance, library_of, measured
+from firm_hdl.verify.acceptance import Acceptance, measured
 from firm_hdl.verify.cases import Case
 from firm_hdl.verify.damage import stalls_for
 from firm_hdl.verify.effort import LARGE_STRIDE, MAX_MESSAGE_BYTES, MOST_WORK, work_of
 from firm_hdl.verify.figures import figures
+from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.options import Options, Result
 from firm_hdl.verify.oracle import Transfers
 from firm_hdl.verify.recording import RecordedMessage, Selection, Topic, select, topics_of

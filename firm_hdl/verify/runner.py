@@ -14,6 +14,7 @@ from firm_hdl.frontend import Library
 from firm_hdl.model import Message
 from firm_hdl.verify.acceptance import Options, Result, accept
 from firm_hdl.verify.executors import PROCESSES, run_each
+from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.oracle import DISTRO_STORES, distro_oracle
 from firm_hdl.verify.replay import replay
 
@@ -100,7 +101,7 @@ def collect_own(
     found: dict[tuple[str, str], int] = {}
     wrong: dict[str, Diagnostic] = {} if problems is None else problems
     for distro in distros:
-        library = Library(distro, paths)
+        library = library_of(distro, tuple(paths))
         for name in names or Library(distro, paths, origins=()).interfaces():
             try:
                 messages = library.interface(name).messages

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from typing import ClassVar
@@ -87,6 +88,28 @@ def test_one_wrong_definition_does_not_keep_the_others_of_a_folder(capsys, tmp_p
     # Whoever names it wants to know at once.
     assert main(["verify", "--systems", "ts2", "own_msgs/msg/Bad", "--path", str(tmp_path)]) == 1
     assert capsys.readouterr().out == ""
+
+
+def test_the_active_workspace_is_searched(capsys, tmp_path, monkeypatch):
+    files = {"a/share/a_msgs/msg/A.msg": "b_msgs/B b\n", "b/share/b_msgs/msg/B.msg": "uint8 x\n"}
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True)
+        (tmp_path / name).write_text(text)
+    few = ["--jobs", "1", "--cases", "1", "--no-stalls", "--no-broken"]
+    prefixes = os.pathsep.join([str(tmp_path / "a"), str(tmp_path / "b")])
+    monkeypatch.setenv("AMENT_PREFIX_PATH", prefixes)
+    assert main(["verify", "--systems", "ts1,ts2,ts3", *few, "a_msgs/msg/A"]) == 0
+    assert "lyrical     1 of    1 types pass (8-byte bus)\n" in capsys.readouterr().out
+    # As if by the folder, which comes before what the variable names.
+    assert main(["verify", *few, "--all", "--path", str(tmp_path / "a" / "share")]) == 0
+    assert "lyrical     1 of    1 types pass (8-byte bus)\n" in capsys.readouterr().out
+    # The types of the distributions are their own.
+    (tmp_path / "a" / "share" / "std_msgs" / "msg").mkdir(parents=True)
+    (tmp_path / "a" / "share" / "std_msgs" / "msg" / "Bool.msg").write_text("uint64 data\n")
+    assert main(["verify", *few, "std_msgs/msg/Bool"]) == 0
+    monkeypatch.delenv("AMENT_PREFIX_PATH")
+    assert main(["verify", *few, "a_msgs/msg/A"]) == 1
+    assert capsys.readouterr().err.endswith("error: No distribution has a_msgs/msg/A\n")
 
 
 def test_what_is_to_be_known_of_many_types_is_said_once(capsys, tmp_path):

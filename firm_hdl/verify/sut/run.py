@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.acceptance import library_of
 from firm_hdl.verify.cases import make_cases
 from firm_hdl.verify.directed import more_cases
 from firm_hdl.verify.effort import some_cases
+from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.processes import in_processes
 from firm_hdl.verify.runner import Task
 from firm_hdl.verify.sut.clients import REFERENCES, client
