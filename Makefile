@@ -5,7 +5,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 JOBS   ?= 2
 # What `make verify` runs; `VERIFY_ARGS='--bus-bytes 1 sensor_msgs/msg/Imu'` runs one type.
-VERIFY_ARGS ?= --bus-bytes 4 --bus-bytes 8
+VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
@@ -78,7 +78,7 @@ verify-corpus: $(VENV)/.installed oracles ## every type in CORPUS=DIR through TS
 	status=0; for corpus in noetic:ros1 lyrical:ros2; do \
 	  [ -d "$(CORPUS)/$${corpus#*:}" ] || continue; \
 	  $(BIN)/firm-hdl verify --all --distro $${corpus%:*} --path "$(CORPUS)/$${corpus#*:}" \
-	    --systems ts1,ts2,ts3 --share-circuits --jobs $(JOBS) \
+	    --systems ts1,ts2,ts3 --jobs $(JOBS) \
 	    --results $(VERIFY_OUT)/$${corpus#*:}.jsonl --report $(VERIFY_OUT)/$${corpus#*:}.html \
 	    || status=$$?; \
 	done; exit $$status

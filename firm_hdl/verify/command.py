@@ -162,7 +162,9 @@ def _ts3(given: argparse.Namespace) -> System:
         )
         for bus_bytes in _widths(given)
     ]
-    how = How(jobs=given.jobs, executor=given.executor, share_circuits=given.share_circuits)
+    # Of a type that is named, people want to see a run, and of a recording its own messages.
+    shares = given.all and not given.bag if given.share_circuits is None else given.share_circuits
+    how = How(jobs=given.jobs, executor=given.executor, share_circuits=shares)
     return Ts3(_tasks(given), options, how)
 
 
@@ -316,8 +318,8 @@ def _add_cases(group: argparse._ArgumentGroup) -> None:
     )
     group.add_argument(
         "--share-circuits",
-        action="store_true",
-        help="simulate types whose circuits are the same once",
+        action=argparse.BooleanOptionalAction,
+        help="simulate types whose circuits are the same once; default: with --all",
     )
     group.add_argument("--vcd", metavar="DIR", help="write the waveform of each run there")
 

@@ -163,6 +163,21 @@ def test_same_circuits_are_simulated_once(tmp_path, capsys):
     assert not two.cycles and two.cases and two.same_as == one.test.key and two.shape == one.shape
 
 
+@pytest.mark.parametrize(
+    ("arguments", "simulated"),
+    [(["--all"], 1), (["--all", "--no-share-circuits"], 2), (["p/msg/A", "p/msg/B"], 2)],
+)
+def test_all_types_share_circuits_and_those_with_a_name_do_not(tmp_path, arguments, simulated):
+    (tmp_path / "p" / "msg").mkdir(parents=True)
+    for name in "AB":
+        (tmp_path / "p" / "msg" / f"{name}.msg").write_text(f"uint8 {name.lower()}\n")
+    path = tmp_path / "r.jsonl"
+    assert verify("--path", str(tmp_path), "--results", str(path), *arguments) == 0
+    records = read_results(path).records.values()
+    assert sum(record.cycles > 0 for record in records) == simulated
+    assert sum(bool(record.same_as) for record in records) == 2 - simulated
+
+
 def test_circuit_that_fails_fails_all_that_have_it(tmp_path, monkeypatch, capsys):
     path = tmp_path / "r.jsonl"
     good = acceptance.Acceptance.good

@@ -21,7 +21,7 @@ _OTHERS = {
     "reference": [],
     "report": None,
     "results": None,
-    "share_circuits": False,
+    "share_circuits": None,
     "simulator": "python",
     "systems": ["ts3"],
     "vcd": None,
