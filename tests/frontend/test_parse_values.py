@@ -1,0 +1,232 @@
+"""What each dialect's grammar makes of constants and defaults."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.frontend.syntax import ListSyntax
+
+from .reading import constant, field, refused
+
+
+@pytest.mark.parametrize(
+    ("text", "value"), [("0", 0), ("-5", -5), ("+5", 5), ("010", 10), ("1_000", 1000), ("1_9", 19)]
+)
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_integers_are_decimal_even_with_a_leading_zero(dialect, text, value):
+    assert constant(f"int32 X={text}", dialect).value.value == value
+    assert constant(f"int32 X = {text} # 7", dialect).value.text == text
+
+
+@pytest.mark.parametrize(
+    ("text", "value"), [("0x10", 16), ("-0xFf", -255), ("0b101", 5), ("0o17", 15), ("0X_1", 1)]
+)
+def test_other_bases_are_ros2_only(text, value):
+    assert constant(f"int32 X={text}").value.value == value
+    assert field(f"int32 x {text}").default.value == value
+    assert refused(f"int32 X={text}", "ros1") == f"'{text}' is not a decimal integer"
+
+
+@pytest.mark.parametrize("text", ["", "1.0", "x", "- 5", "1 2", "'1'", "1,2", "1__0", "0x"])
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_what_is_no_integer_is_refused(dialect, text):
+    refused(f"int32 X={text}", dialect)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("1", 1.0), ("-.5", -0.5), ("5.", 5.0), ("1e3", 1000.0), ("1.5E-3", 0.0015), ("-inf", "-inf")],
+)
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_numbers(dialect, text, value):
+    assert constant(f"float64 X={text}", dialect).value.value == float(value)
+
+
+@pytest.mark.parametrize("text", ["", ".", "1,5", "1e", "0x10", "x", "1.0f", "1 0"])
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_what_is_no_number_is_refused(dialect, text):
+    refused(f"float64 X={text}", dialect)
+
+
+@pytest.mark.parametrize(
+    ("dialect", "text", "value"),
+    [
+        ("ros1", "True", True),
+        ("ros1", "False", False),
+        ("ros1", "1", True),
+        ("ros1", "0", False),
+        ("ros1", "00", False),
+        ("ros1", "-2", True),
+        ("ros2", "true", True),
+        ("ros2", "TRUE", True),
+        ("ros2", "False", False),
+        ("ros2", "1", True),
+        ("ros2", "0", False),
+    ],
+)
+def test_truth_values(dialect, text, value):
+    assert constant(f"bool X={text}", dialect).value.value is value
+
+
+@pytest.mark.parametrize(
+    ("dialect", "text"),
+    [("ros1", "true"), ("ros1", "01"), ("ros1", "yes"), ("ros2", "2"), ("ros2", "yes")],
+)
+def test_what_is_no_truth_value_is_refused(dialect, text):
+    refused(f"bool X={text}", dialect)
+
+
+@pytest.mark.parametrize(
+    ("line", "value"),
+    [
+        ("string X=abc", "abc"),
+        ("string X =  a b  ", "a b"),
+        ('string X="a # b" # c', '"a # b" # c'),
+        ("string X=#", "#"),
+        ("string X=a=b", "a=b"),
+        ("string X='", "'"),
+        ("string X=", ""),
+        ("string X=   ", ""),
+        ("\tstring  X=a", "a"),
+        ("string X=\ta\t b\t", "a\t b"),
+    ],
+)
+def test_ros1_text_constant_takes_all_that_follows(line, value):
+    assert constant(line, "ros1").value.value == value
+
+
+def test_ros1_comment_before_the_equals_sign_makes_no_constant():
+    assert field("string x # = 5", "ros1").comment == "= 5"
+
+
+@pytest.mark.parametrize(
+    ("written", "value"),
+    [
+        ("abc", "abc"),
+        ("a b  # c", "a b"),
+        ('"a b "', "a b "),
+        ("' a'", " a"),
+        ('"a # b"', '"a'),
+        (r'"a\"b"', 'a"b'),
+        (r"'a\'b'", "a'b"),
+        (r'"a\'b"', r"a\'b"),
+        (r'"a\\b\n"', r"a\\b\n"),
+        ('"a\'b"', "a'b"),
+        ('"abc', '"abc'),
+        ("a\"b'c", "a\"b'c"),
+        ('""', ""),
+        ("a\tb", "a b"),
+        ("[1]", "[1]"),
+        ("größe", "größe"),
+    ],
+)
+def test_ros2_texts(written, value):
+    assert constant(f"string X={written}").value.value == value
+    assert constant(f"wstring X = {written}").value.value == value
+    assert field(f"string x {written}").default.value == value
+
+
+def test_ros2_text_constant_may_be_empty_and_contain_equals():
+    assert constant("string X=").value.value == ""
+    assert constant("string X = a=b").value.value == "a=b"
+    assert constant('string X="=" # c').value.value == "="
+
+
+def test_ros1_text_constants_are_not_indented_with_spaces():
+    # genmsg would call it 'string X', which is no name in any language.
+    for line in ("  string X=a", "\t string X=a", " string\t X = a"):
+        assert refused(line, "ros1") == (
+            "a string constant must start in the first column: genmsg would take 'string X' for "
+            "its name"
+        )
+    assert constant("  int8 X=1", "ros1").name.text == "X"
+
+
+@pytest.mark.parametrize("quote", ["'", '"'])
+def test_ros2_lone_quote_is_the_empty_text(quote):
+    for line in (f"string x {quote}", f"string x {quote}  # c"):
+        assert field(line).default.value == ""
+    assert constant(f"string X={quote}").value.value == ""
+    refused(f"string x {quote}#{quote}=", "ros1")
+
+
+@pytest.mark.parametrize("text", ['"a"b"', "'a'b'", '"a" "b"'])
+def test_ros2_refuses_loose_quotes(text):
+    refused(f"string x {text}", "ros2")
+    refused(f"string X={text}", "ros2")
+
+
+def test_ros2_default_cannot_contain_equals():
+    assert refused('string x "a=b"', "ros2") == "a default cannot contain '='"
+    assert refused("string x a=b", "ros2") == "a default cannot contain '='"
+
+
+@pytest.mark.parametrize(
+    ("line", "values"),
+    [
+        ("int32[] x []", ()),
+        ("int32[] x [1]", (1,)),
+        ("int32[3] x [1,0x10, 010]", (1, 16, 10)),
+        ("int32[] x [ 1 , 2 ]  # c", (1, 2)),
+        ("float32[] x [1, .5,inf]", (1.0, 0.5, float("inf"))),
+        ("bool[] x [true,0,False]", (True, False, False)),
+        ("string[] x []", ()),
+        ("string[] x [a, b c ,d]", ("a", "b c", "d")),
+        ("""string[] x ["a,b", 'c"]']""", ("a,b", 'c"]')),
+        (r"""string[] x ["H\"el'lo", 'Wo\'r"ld']""", ("H\"el'lo", "Wo'r\"ld")),
+        ('string[] x ["a",]', ("a",)),
+        ("""string[] x ["a" 'b',"c""d" e]""", ("a", "b", "c", "d", "e")),
+        ("""string[] x [a "b", 'c' ]""", ('a "b"', "c")),
+        ('string[] x [""]', ("",)),
+        ('string[] x [" a "]', ("a",)),
+    ],
+)
+def test_ros2_defaults_of_arrays(line, values):
+    default = field(line).default
+    assert isinstance(default, ListSyntax)
+    assert tuple(item.value for item in default.items) == values
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "int32[] x 1",
+        "int32 x [1]",
+        "int32[] x [1",
+        "int32[] x 1]",
+        "int32[] x [ ]",
+        "int32[] x [1,]",
+        "int32[] x [,]",
+        "int32[] x [1 2]",
+        "int32[] x [1,a]",
+        "int32[] x [1.0]",
+        "bool[] x [2]",
+        "string[] x [a, ]b",
+        'string[] x ["a]',
+        '''string[] x ["'a'b'"]''',
+        "Foo x 1",
+        "Foo[] x []",
+    ],
+)
+def test_ros2_refuses_defaults(line):
+    refused(line, "ros2")
+
+
+@pytest.mark.parametrize("line", ["int32 x 5", "int32[] x [1]", "string x a", "int32 x y z"])
+def test_ros1_has_no_defaults(line):
+    assert "the end of the line" in refused(line, "ros1")
+
+
+@pytest.mark.parametrize(
+    ("dialect", "line"),
+    [
+        *(("ros1", f"{type_} X=1") for type_ in ("Foo", "int32[]", "string[2]", "p/F", "time")),
+        *(("ros2", f"{type_} X=1") for type_ in ("Foo", "int32[]", "string[2]", "p/F")),
+    ],
+)
+def test_constants_of_other_types_are_refused(dialect, line):
+    assert refused(line, dialect) == "only a builtin type that is no array can have constants"
+
+
+def test_constants_of_bounded_strings_are_refused():
+    refused("string<=5 X=a", "ros2")
