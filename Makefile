@@ -72,15 +72,18 @@ verify-ts1: $(VENV)/.installed oracles ## every definition against ROS's own rea
 # `CORPUS=DIR` has folders `ros1/` and `ros2/` with packages, or one of them. The same command goes on
 # with a run that was stopped; results of an older program have to be removed.
 CORPUS ?= $(FIRM_HDL_CORPUS)
-verify-corpus: $(VENV)/.installed oracles ## every type in CORPUS=DIR through TS1, TS2 and TS3 (hours)
+verify-corpus: $(VENV)/.installed oracles ghdl ## every type in CORPUS=DIR through TS1 to TS3, some in GHDL (hours)
 	@[ -n "$(CORPUS)" ] || { echo "Which definitions? make $@ CORPUS=DIR" >&2; exit 2; }
 	@mkdir -p $(VERIFY_OUT)
-	status=0; for corpus in noetic:ros1 lyrical:ros2; do \
-	  [ -d "$(CORPUS)/$${corpus#*:}" ] || continue; \
-	  $(BIN)/firm-hdl verify --all --distro $${corpus%:*} --path "$(CORPUS)/$${corpus#*:}" \
-	    --systems ts1,ts2,ts3 --jobs $(JOBS) \
-	    --results $(VERIFY_OUT)/$${corpus#*:}.jsonl --report $(VERIFY_OUT)/$${corpus#*:}.html \
-	    || status=$$?; \
+	@status=0; for corpus in noetic:ros1 lyrical:ros2; do \
+	  distro=$${corpus%:*} folder="$(CORPUS)/$${corpus#*:}" out=$(VERIFY_OUT)/$${corpus#*:}; \
+	  [ -d "$$folder" ] || continue; \
+	  $(BIN)/firm-hdl verify --all --distro $$distro --path "$$folder" --jobs $(JOBS) \
+	    --systems ts1,ts2,ts3 --results $$out.jsonl --report $$out.html || status=$$?; \
+	  $(BIN)/firm-hdl cover --distro $$distro --path "$$folder" --out $$out.covering.txt >/dev/null \
+	    && $(BIN)/firm-hdl verify --distro $$distro --path "$$folder" --jobs $(JOBS) \
+	      --simulator ghdl --results $$out.ghdl.jsonl --report $$out.ghdl.html \
+	      $$(grep -v '^#' $$out.covering.txt) || status=$$?; \
 	done; exit $$status
 
 report: $(VENV)/.installed ## one page of all results that are in build/verify

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from tqdm import tqdm
@@ -20,14 +20,19 @@ from firm_hdl.verify.cover import FAMILIES, all_features, choose, cost
 __all__ = ["add_cover_arguments", "read_chosen", "run_cover"]
 
 _HEAD = """\
-# Types that together have every feature that any of {distro} has; bus of {bus_bytes} bytes.
+# Types that together have every feature that any of {where} has; bus of {bus_bytes} bytes.
 # Written by `firm-hdl cover`, which --check FILE compares with today's features.
 """
 
 
 def add_cover_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what ``firm-hdl cover`` takes, beside ``--distro``, ``--path`` and the options."""
-    parser.add_argument("types", nargs="*", metavar="TYPE", help="to choose from; default: all")
+    parser.add_argument(
+        "types",
+        nargs="*",
+        metavar="TYPE",
+        help="to choose from; default: all; with --path, all in those folders",
+    )
     parser.add_argument(
         "--branches",
         action="store_true",
@@ -59,12 +64,17 @@ def run_cover(given: argparse.Namespace) -> int:
     """Run ``firm-hdl cover``; return 1 if types that are checked lack something."""
     library = open_library(given.distro, given.path, given.bag)
     kept = None if given.check is None else read_chosen(given.check)
-    messages = load_all(library, given.types) if given.types else _usable(library)
+    messages = load_all(library, given.types) if given.types else _usable(library, given.path)
     types: dict[str, frozenset[str]] = {}
     costs, shapes = {}, set()
-    bar = tqdm(messages, unit="type", desc="features", disable=None if given.branches else True)
-    for message in bar:
-        plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
+    for message in tqdm(messages, unit="type", desc="features", disable=None):
+        try:
+            plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
+        except BuildError as error:
+            if given.types:
+                raise
+            tqdm.write(f"left out: {error}", file=sys.stderr)
+            continue
         types[message.name] = all_features(library, message, plan, with_branches=given.branches)
         costs[message.name] = cost(plan)
         shapes.add(shape(plan))
@@ -75,7 +85,8 @@ def run_cover(given: argparse.Namespace) -> int:
         print(f"{each.name}: {', '.join(each.adds)}")
     names = [each.name for each in chosen]
     if given.out is not None:
-        head = _HEAD.format(distro=library.distro, bus_bytes=given.bus_bytes)
+        where = "the folders" if given.path else library.distro
+        head = _HEAD.format(where=where, bus_bytes=given.bus_bytes)
         text = head + "".join(f"{name}\n" for name in sorted(names))
         Path(given.out).parent.mkdir(parents=True, exist_ok=True)
         Path(given.out).write_text(text, encoding="utf-8", newline="\n")
@@ -83,10 +94,12 @@ def run_cover(given: argparse.Namespace) -> int:
     return 0
 
 
-def _usable(library: Library) -> list[Message]:
-    """Return all types that have a layout; say what is wrong with the others."""
+def _usable(library: Library, paths: Sequence[str]) -> list[Message]:
+    """Return all types of folders, or of a library, and say what is wrong with the others."""
     found = []
-    for name in library.names():
+    # Of folders, services and actions as well, which the distributions do not have.
+    there = Library(library.distro, paths, origins=()) if paths else library
+    for name in there.interfaces():
         try:
             found += load_all(library, [name])
         except DefinitionError as error:

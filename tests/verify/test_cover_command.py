@@ -75,9 +75,20 @@ def test_a_type_that_cannot_be_used_does_not_keep_the_others_out(tmp_path, capsy
     folder.mkdir(parents=True)
     (folder / "Good.msg").write_text("wstring<=3[4] text\n")
     (folder / "Bad.msg").write_text("int32 a\nint32 a\n")
+    (folder / "Large.msg").write_text("uint8[20000000] a\n")
     assert main(["cover", "--path", str(tmp_path)]) == 0
     out, err = capsys.readouterr()
     assert "own_msgs/msg/Good: " in out and "own_msgs/msg/Bad" not in out
-    assert err.startswith("left out: own_msgs/msg/Bad: ")
+    assert "left out: own_msgs/msg/Bad: " in err and "left out: own_msgs/msg/Large: " in err
     # Who names it has to know.
     assert main(["cover", "--path", str(tmp_path), "own_msgs/msg/Bad"]) == 1
+    assert main(["cover", "--path", str(tmp_path), "own_msgs/msg/Large"]) == 1
+
+
+def test_folders_are_chosen_from_with_services_and_without_the_distribution(tmp_path, capsys):
+    for kind, text in (("msg", "uint8 a\n"), ("srv", "---\nstring b\n")):
+        (tmp_path / "p" / kind).mkdir(parents=True)
+        (tmp_path / "p" / kind / f"T.{kind}").write_text(text)
+    assert main(["cover", "--path", str(tmp_path), "--out", str(tmp_path / "chosen.txt")]) == 0
+    assert all(name.startswith("p/srv/T_") for name in read_chosen(tmp_path / "chosen.txt"))
+    assert " of 4 types have 100 % " in capsys.readouterr().err
