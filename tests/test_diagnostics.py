@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pickle
-import time
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
+from tests.steps import calls_at_most
 
 
 def diagnostic(text, start, end, message="no"):
@@ -42,10 +42,9 @@ def test_long_line_is_cut_around_the_place():
 
 def test_many_errors_in_one_line_are_printed_in_time():
     text = "x " * 50_000
-    start = time.process_time()
-    error = DefinitionError(diagnostic(text, 2 * i, 2 * i + 1) for i in range(1000))
-    assert len(str(error).splitlines()) == 3000
-    assert time.process_time() - start < 5
+    with calls_at_most(1_000_000):
+        error = DefinitionError(diagnostic(text, 2 * i, 2 * i + 1) for i in range(1000))
+        assert len(str(error).splitlines()) == 3000
 
 
 def test_error_survives_pickling():

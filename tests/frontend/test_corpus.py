@@ -10,7 +10,6 @@ from __future__ import annotations
 import csv
 import hashlib
 import re
-import time
 from dataclasses import replace
 
 import pytest
@@ -35,8 +34,7 @@ def files(folder, *kinds):
 
 
 @pytest.mark.parametrize("dialect", DISTROS)
-def test_every_file_resolves_and_in_time(corpus, dialect):
-    start = time.perf_counter()
+def test_every_file_resolves(corpus, dialect):
     library = Library(DISTROS[dialect], [corpus / dialect])
     wrong, messages = {}, 0
     found = files(corpus / dialect)
@@ -48,8 +46,6 @@ def test_every_file_resolves_and_in_time(corpus, dialect):
             wrong[full] = [diagnostic.message for diagnostic in error.diagnostics]
     assert wrong == {}
     assert len(found) > 5600 and messages > 7700
-    # 4 s and 6 s on the machine of 2025 that this was written on.
-    assert time.perf_counter() - start < 60
 
 
 def test_ros1_md5_sums_are_those_of_genmsg(corpus):

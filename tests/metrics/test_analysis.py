@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from contextlib import suppress
 
 import numpy as np
@@ -18,6 +17,7 @@ from firm_hdl.frontend import DISTROS, Library
 from firm_hdl.metrics import Analyses, metrics_of
 from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, Text
 from firm_hdl.wire import Loop, Run, Scalar, Trigger, lay_out, walk
+from tests.steps import calls_at_most
 
 from ..frontend.workspace import library
 
@@ -213,15 +213,14 @@ def test_large_arrays_and_deep_nesting_cost_nothing():
         count = 1 << 23 if level in (0, 700) else 1
         kind = Array(element=top, count=count)
         top = Message(name=f"p/msg/L{level}", dialect="ros2", fields=(Field(name="f", type=kind),))
-    start = time.process_time()
-    figures = metrics_of(top)
-    # 1+3 and 4+1 or 4+3, up to the next multiple of 8, and 8.
-    assert figures.min_bytes == figures.max_bytes == 4 + (24 << 46)
-    assert (figures.depth, figures.leaves) == (1501, 3)
-    assert time.process_time() - start < 20
+    with calls_at_most(2_000_000):
+        figures = metrics_of(top)
+        # 1+3 and 4+1 or 4+3, up to the next multiple of 8, and 8.
+        assert figures.min_bytes == figures.max_bytes == 4 + (24 << 46)
+        assert (figures.depth, figures.leaves) == (1501, 3)
 
 
-def test_the_whole_corpus_takes_seconds(corpus):
+def test_the_whole_corpus_has_figures(corpus):
     for dialect, distro in (("ros1", "noetic"), ("ros2", "lyrical")):
         ours = Library(distro, [corpus / dialect])
         found = []
@@ -230,10 +229,7 @@ def test_the_whole_corpus_takes_seconds(corpus):
             with suppress(DefinitionError):
                 found += ours.interface(name).messages
         analyses = Analyses("ros1" if dialect == "ros1" else "cdr")
-        start = time.process_time()
         rows = [analyses.metrics(message) for message in found]
-        # 2 to 3 s of processor time on the machine of 2025 that this was written on.
-        assert time.process_time() - start < 30
         assert len(rows) > 5000
         if dialect == "ros1":
             assert max(row.leaves for row in rows) == 37138

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-import time
 
 import pytest
 import yaml
 
 from firm_hdl.plan import build_plan, from_yaml, to_yaml
 from firm_hdl.wire import lay_out
+from tests.steps import calls_at_most
 from tests.strategies import BUS_WIDTHS, make
 
 POINT = make("ros2", {"x": "uint8", "name": "string"}, "Point")
@@ -178,11 +178,10 @@ def test_a_mistake_is_told_with_its_line(old, new, message):
         assert str(caught.value) == message
 
 
-def test_a_large_plan_takes_seconds():
+def test_a_large_plan_is_read_in_time():
     inner = make("ros2", {f"f{n}": ["uint8", "float64", "string"][n % 3] for n in range(60)}, "I")
     message = make("ros2", {f"field{n}": inner for n in range(150)})
     plan = build_plan(lay_out(message))
     assert len(plan.leaves) == 12000
-    start = time.monotonic()
-    assert from_yaml(to_yaml(plan)) == plan
-    assert time.monotonic() - start < 20
+    with calls_at_most(10_000_000):
+        assert from_yaml(to_yaml(plan)) == plan
