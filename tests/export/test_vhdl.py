@@ -274,6 +274,17 @@ def test_memories_without_words_read_as_zero(tmp_path: Path) -> None:
     assert simulate(vhdl, [{}], {}, {"out_value": 4}, tmp_path) == [{"out_value": 1}]
 
 
+def test_what_is_written_is_read_at_once_if_the_addresses_are_the_same() -> None:
+    m = Module()
+    m.submodules.memory = memory = Memory(shape=4, depth=4, init=[])
+    write = memory.write_port()
+    read = memory.read_port(transparent_for=[write])
+    ports = [write.addr, write.data, write.en, read.addr, read.data, read.en]
+    text = convert(m, name="bypass", ports=ports).files["bypass.vhd"]
+    same = "if unsigned(read_addr) = unsigned(write_addr) and write_en = '1' then"
+    assert f"{same}  -- being written" in text
+
+
 class Pads(Elaboratable):
     """A pad of each direction, one level down."""
 
