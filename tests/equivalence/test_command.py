@@ -90,6 +90,28 @@ def test_missing_tools_are_said_with_how_to_install_them(
     assert "pip install 'firm-hdl[prove]'" in said
 
 
+@pytest.mark.usefixtures("tools")
+def test_yosys_is_made_ready_before_any_proof(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    runs = []
+
+    def run(*arguments: object) -> str:
+        runs.append(arguments)
+        raise tools.ToolError("Yosys failed: out of memory")
+
+    monkeypatch.setattr(tools, "_run", run)
+    monkeypatch.setattr(tools.importlib.util, "find_spec", lambda name: object())
+    tools.find_tools.cache_clear()
+    try:
+        assert main(["prove", "std_msgs/msg/Bool", "std_msgs/msg/Int8"]) == 1
+    finally:
+        tools.find_tools.cache_clear()
+    assert capsys.readouterr().err == "error: Yosys failed: out of memory\n"
+    ((command_line, _, name, timeout),) = runs
+    assert (command_line[-1], name, timeout) == ("-V", "Yosys", None)
+
+
 def test_types_or_all(capsys: pytest.CaptureFixture[str]) -> None:
     for arguments in (["prove"], ["prove", "--all", "std_msgs/msg/Bool"]):
         with pytest.raises(SystemExit, match="2"):
