@@ -1,7 +1,8 @@
 """Bounds of effort that are the same on every machine and in every run.
 
 A test with a clock fails on a busy machine and passes on a fast one. Calls can be counted: what
-grows with the square of its input, or worse, makes too many of them, and is stopped there.
+grows with the square of its input, or worse, makes too many of them, and is stopped there. What
+takes long inside one call of a library, such as a search in a long list, is not seen.
 """
 
 from __future__ import annotations

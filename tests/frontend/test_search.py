@@ -9,6 +9,7 @@ import pytest
 from firm_hdl.cli import main
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import open_library
+from firm_hdl.frontend.search import workspace_folders
 
 from .workspace import make_files
 
@@ -74,6 +75,17 @@ def test_services_are_found_and_what_is_no_package_is_not(fixture, distro, varia
     assert own == [
         f"p{middle.format(kind)}{name}" for kind, name in (("msg", "A"), ("msg", "B"), ("srv", "S"))
     ]
+
+
+@pytest.mark.parametrize(("fixture", "distro", "variable"), CASES)
+def test_folders_of_packages_are_named_in_their_order(fixture, distro, variable, request):
+    root = request.getfixturevalue(fixture)
+    environment = {variable: os.pathsep.join([str(root / "two"), str(root / "one")])}
+    inside = {"ros1": "", "ros2": "share/p"}[fixture]
+    folders = [str(root / place / inside) for place in ("two", "one")]
+    assert workspace_folders(distro, {"p"}, environment) == folders
+    assert workspace_folders(distro, {"p"}, {}) == []
+    assert workspace_folders(distro, {"no_msgs"}, environment) == []
 
 
 @pytest.mark.parametrize(("fixture", "distro", "variable"), CASES)
