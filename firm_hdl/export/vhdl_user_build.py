@@ -116,25 +116,35 @@ def to_vhdl(
     if stimuli:
         remark = f"Packets of {message.name}, {plan.wire}, written by rosbags; one a line."
         files[STIMULI] = packets_text(list(stimuli), remark)
-    section = {
+    bench = {
+        "entity": entities[0],
+        "entities": entities,
+        "files": list(benches),
+        "common_files": list(PARTS),
+        "script": RUN_SCRIPT,
+        "stimuli": STIMULI if stimuli else None,
+    }
+    return VhdlFolder(files=files, manifest=_section(parts, ports, design, common, bench))
+
+
+def _section(
+    parts: _Parts,
+    ports: Ports,
+    design: Sequence[str],
+    common: Sequence[str],
+    bench: Mapping[str, Any],
+) -> dict[str, Any]:
+    """Return what the manifest says of the folder; files in the order in which they compile."""
+    return {
         "folder": FOLDER,
         "name": parts.base,
         "standard": "2008",
         "ports": ports,
         **parts.section,
-        # In the order in which they compile.
         "files": design,
         "common_files": common,
-        "bench": {
-            "entity": entities[0],
-            "entities": entities,
-            "files": list(benches),
-            "common_files": list(PARTS),
-            "script": RUN_SCRIPT,
-            "stimuli": STIMULI if stimuli else None,
-        },
+        "bench": bench,
     }
-    return VhdlFolder(files=files, manifest=section)
 
 
 def _add_records(
