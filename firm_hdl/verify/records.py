@@ -10,6 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal, get_args
 
+from firm_hdl.verify.verdict import Failed, NotJudged, Verdict, verdict_from_json, verdict_to_json
+
 __all__ = [
     "STAGES",
     "STATUSES",
@@ -19,14 +21,12 @@ __all__ = [
     "Seconds",
     "Status",
     "Test",
-    "Verdict",
     "clipped",
+    "clipped_verdict",
 ]
 
 Status = Literal["pass", "fail", "skipped"]
 STATUSES: tuple[Status, ...] = get_args(Status)
-
-Verdict = Literal["agrees", "known", "differs", "not judged"]
 
 MOST_FAILURES = 20
 MOST_CHARACTERS = 4000
@@ -148,17 +148,36 @@ class OracleVerdict:
     Attributes
     ----------
     oracle : str
-    verdict : "agrees", "known", "differs" or "not judged"
-    details : tuple of str
-        Keys of known differences; differences; or why it was not judged.
+    verdict : Verdict
+        Cases are facts that were compared.
     is_refused : bool
         Whether both refuse the definition.
     """
 
     oracle: str
     verdict: Verdict
-    details: tuple[str, ...] = ()
     is_refused: bool = False
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what `from_json` reads."""
+        found = {"oracle": self.oracle, **verdict_to_json(self.verdict)}
+        if self.is_refused:
+            found["is_refused"] = True
+        return found
+
+    @classmethod
+    def from_json(cls, given: object) -> OracleVerdict:
+        """Return what `as_json` wrote.
+
+        Raises
+        ------
+        ValueError
+            If it is none.
+        """
+        values = dict(_mapping(given, "What an oracle says"))
+        own = {name: values.pop(name) for name in ("oracle", "is_refused") if name in values}
+        made: OracleVerdict = _made(cls, {**own, "verdict": verdict_from_json(values)})
+        return made
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -233,7 +252,10 @@ class Record:
 
     def as_json(self) -> dict[str, Any]:
         """Return what `from_json` reads: without what is empty, and times in microseconds."""
-        return _without_empty(asdict(self))
+        found = _without_empty(asdict(self))
+        if self.verdicts:
+            found["verdicts"] = [each.as_json() for each in self.verdicts]
+        return found
 
     @classmethod
     def from_json(cls, given: object) -> Record:
@@ -249,7 +271,7 @@ class Record:
         if "seconds" in values:
             values["seconds"] = _made(Seconds, values["seconds"])
         if "verdicts" in values:
-            values["verdicts"] = tuple(_made(OracleVerdict, each) for each in values["verdicts"])
+            values["verdicts"] = tuple(map(OracleVerdict.from_json, values["verdicts"]))
         if "coverage" in values:
             values["coverage"] = _made(PlanCoverage, values["coverage"])
         record: Record = _made(cls, values)
@@ -269,13 +291,22 @@ def clipped(failures: Sequence[str]) -> tuple[str, ...]:
     return tuple(found)
 
 
+def clipped_verdict(verdict: Verdict) -> Verdict:
+    """Return a verdict as a record keeps it: without too many failures, and no long texts."""
+    match verdict:
+        case Failed(failures):
+            return Failed(clipped(failures))
+        case NotJudged(reason):
+            return NotJudged(clipped([reason])[0])
+        case _:
+            return verdict
+
+
 def _without_empty(values: dict[str, Any]) -> dict[str, Any]:
     found = {}
     for name, value in values.items():
         if isinstance(value, dict) and name != "coverage":
             value = _without_empty(value)
-        if name == "verdicts":
-            value = [_without_empty(each) for each in value]
         if isinstance(value, float):
             value = round(value, 6)
         if value or name in ("status", "test"):

@@ -48,6 +48,11 @@ class Passed:
     def __post_init__(self) -> None:
         _check_cases(self.cases)
 
+    @property
+    def details(self) -> tuple[str, ...]:
+        """Nothing more is to be said."""
+        return ()
+
 
 @dataclass(frozen=True, slots=True)
 class Failed:
@@ -75,6 +80,11 @@ class Failed:
         texts = tuple(text if text.strip() else SILENT for text in self.failures)
         object.__setattr__(self, "failures", texts)
 
+    @property
+    def details(self) -> tuple[str, ...]:
+        """The failures."""
+        return self.failures
+
 
 @dataclass(frozen=True, slots=True)
 class NotJudged:
@@ -97,6 +107,11 @@ class NotJudged:
     def __post_init__(self) -> None:
         if not self.reason.strip():
             raise ValueError("What was not judged must have a reason")
+
+    @property
+    def details(self) -> tuple[str, ...]:
+        """The reason."""
+        return (self.reason,)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +140,11 @@ class KnownDifference:
         if not self.keys or not all(key.strip() for key in self.keys):
             raise ValueError("A known difference must have the key that explains it")
         _check_cases(self.cases)
+
+    @property
+    def details(self) -> tuple[str, ...]:
+        """The keys."""
+        return self.keys
 
 
 Verdict: TypeAlias = "Passed | Failed | NotJudged | KnownDifference"

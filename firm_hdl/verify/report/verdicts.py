@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from firm_hdl.verify.report.outcomes import Outcome
+from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
 
 __all__ = ["OracleSum", "Reason", "Said", "oracle_sums", "reason_groups", "reason_of", "said_of"]
 
@@ -40,7 +41,7 @@ class Said:
     ----------
     oracle : str
     verdict : str
-        ``known`` or ``not judged``.
+        ``known difference`` or ``not judged``.
     what : str
         Key of a known difference, or a reason.
     count : int
@@ -77,17 +78,17 @@ def oracle_sums(outcomes: Iterable[Outcome]) -> tuple[OracleSum, ...]:
     for outcome in outcomes:
         for each in outcome.record.verdicts if outcome.record is not None else ():
             found = counts[outcome.test.distro, each.oracle]
-            found[each.verdict] += 1
+            found[each.verdict.name] += 1
             found["refused"] += each.is_refused
     return tuple(
         OracleSum(
             distro=distro,
             oracle=oracle,
-            agree=found["agrees"],
+            agree=found[Passed.name],
             refused=found["refused"],
-            known=found["known"],
-            differ=found["differs"],
-            not_judged=found["not judged"],
+            known=found[KnownDifference.name],
+            differ=found[Failed.name],
+            not_judged=found[NotJudged.name],
         )
         for (distro, oracle), found in sorted(counts.items())
     )
@@ -99,8 +100,8 @@ def said_of(outcomes: Iterable[Outcome]) -> tuple[Said, ...]:
     texts: dict[tuple[str, str, str], str] = {}
     for outcome in outcomes:
         for each in outcome.record.verdicts if outcome.record is not None else ():
-            for detail in each.details if each.verdict in ("known", "not judged") else ():
-                key = (each.oracle, each.verdict, _without_names(detail))
+            for detail in () if isinstance(each.verdict, Failed) else each.verdict.details:
+                key = (each.oracle, each.verdict.name, _without_names(detail))
                 texts.setdefault(key, detail)
                 names[key].append(outcome.test.type)
     ordered = sorted(names, key=lambda key: (key[0], key[1], -len(names[key]), key[2]))

@@ -5,19 +5,37 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 from tqdm import tqdm
 
-from firm_hdl.verify.records import OracleVerdict, Record, Seconds, Status, Test, clipped
+from firm_hdl.verify.records import (
+    OracleVerdict,
+    Record,
+    Seconds,
+    Status,
+    Test,
+    clipped,
+    clipped_verdict,
+)
 from firm_hdl.verify.system import Recorder, System
 from firm_hdl.verify.ts1.judge import Judgement, Outcome
 from firm_hdl.verify.ts1.run import Selection, Tally, Ts1Run
+from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
 
 __all__ = ["Ts1", "run_ts1"]
 
 _MOST_DETAILS = 8
+
+_SAID = {
+    Passed.name: "agrees",
+    KnownDifference.name: "known",
+    Failed.name: "differs",
+    NotJudged.name: "not judged",
+}
+"""What is printed of an oracle, in the order of the columns."""
 
 
 class Ts1(System):
@@ -130,15 +148,15 @@ class Ts1(System):
         failures = [
             f"{each.oracle}: {detail}"
             for each in found.said
-            if each.verdict == "differs"
-            for detail in each.details
+            if isinstance(each.verdict, Failed)
+            for detail in each.verdict.details
         ]
         status = _status(found.said)
         known = [
             f"known difference from {each.oracle}: {key}"
             for each in found.said
-            if each.verdict == "known"
-            for key in each.details
+            if isinstance(each.verdict, KnownDifference)
+            for key in each.verdict.keys
         ]
         return Record(
             test=self._test(run, number),
@@ -155,23 +173,18 @@ class Ts1(System):
 
 
 def _clipped(said: OracleVerdict) -> OracleVerdict:
-    return OracleVerdict(
-        oracle=said.oracle,
-        verdict=said.verdict,
-        details=clipped(said.details),
-        is_refused=said.is_refused,
-    )
+    return replace(said, verdict=clipped_verdict(said.verdict))
 
 
 def _status(said: Sequence[OracleVerdict]) -> Status:
-    verdicts = {each.verdict for each in said}
-    if "differs" in verdicts:
+    kinds = {type(each.verdict) for each in said}
+    if Failed in kinds:
         return "fail"
-    return "pass" if verdicts & {"agrees", "known"} else "skipped"
+    return "pass" if kinds & {Passed, KnownDifference} else "skipped"
 
 
 def _reason(language: str, said: Sequence[OracleVerdict]) -> str:
-    found = [f"{each.oracle}: {detail}" for each in said for detail in each.details]
+    found = [f"{each.oracle}: {detail}" for each in said for detail in each.verdict.details]
     return "; ".join(found) or f"no oracle that was asked reads .{language} files"
 
 
@@ -198,22 +211,24 @@ def _difference(selection: Selection, outcome: Outcome, number: int | None) -> s
     lines = [f"DIFFERS {outcome.case.full_name}.{outcome.case.language}, {outcome.oracle}"]
     if number is not None:
         lines += [f"    {line}" for line in outcome.case.changes]
-    lines += [f"    {detail}" for detail in outcome.details[:_MOST_DETAILS]]
-    if len(outcome.details) > _MOST_DETAILS:
-        lines.append(f"    and {len(outcome.details) - _MOST_DETAILS} more")
+    details = outcome.verdict.details
+    lines += [f"    {detail}" for detail in details[:_MOST_DETAILS]]
+    if len(details) > _MOST_DETAILS:
+        lines.append(f"    and {len(details) - _MOST_DETAILS} more")
     return "\n".join([*lines, f"    again: {selection.command(outcome.case, number)}"])
 
 
 def _summary(run: Ts1Run, tally: Tally) -> list[str]:
     lines = []
     for outcome in tally.shown:
-        details = "both refuse" if outcome.is_refused else "; ".join(outcome.details)
-        said = f"{outcome.verdict}: {details}" if details else outcome.verdict
+        details = "both refuse" if outcome.is_refused else "; ".join(outcome.verdict.details)
+        name = _SAID[outcome.verdict.name]
+        said = f"{name}: {details}" if details else name
         words = [outcome.case.full_name, outcome.oracle, said]
         lines.append("  ".join(words))
     lines.append(f"{'oracle':24} {'agree':>7} {'known':>7} {'differ':>7} {'not judged':>11}")
     for name, version in run.versions.items():
-        counts = [tally.verdicts[name, v] for v in ("agrees", "known", "differs", "not judged")]
+        counts = [tally.verdicts[name, verdict] for verdict in _SAID]
         refused = f"  ({tally.refused[name]} refused by both)" if tally.refused[name] else ""
         lines.append(
             f"{f'{name} {version}':24} {counts[0]:7} {counts[1]:7} {counts[2]:7} {counts[3]:11}"
@@ -221,5 +236,5 @@ def _summary(run: Ts1Run, tally: Tally) -> list[str]:
         )
     lines += [f"{name:24} is not here: {why}" for name, why in run.missing.items()]
     for (name, verdict, text), count in sorted(tally.details.items()):
-        lines.append(f"{verdict}, {name}: {text}: {count}")
+        lines.append(f"{_SAID[verdict]}, {name}: {text}: {count}")
     return lines

@@ -62,7 +62,9 @@ def _answer(answer: dict[str, Any]) -> Answer:
         return Accepted(answer["facts"])
     if "refused" in answer:
         return Refused(str(answer["refused"]))
-    return NotJudged(str(answer["failed"]))
+    if "failed" in answer:
+        return NotJudged(str(answer["failed"]))
+    raise ValueError(f"the process that was asked answered {answer!r}")
 
 
 class Genmsg(_Worked):

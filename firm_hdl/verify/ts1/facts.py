@@ -28,7 +28,7 @@ from typing import Any, TypeAlias
 
 from firm_hdl.model import Array, Constant, Field, FieldType, Interface, Message, Sequence, Value
 
-__all__ = ["Difference", "Facts", "differences", "structure"]
+__all__ = ["Difference", "Facts", "count_facts", "differences", "structure"]
 
 Facts: TypeAlias = "dict[str, Any]"
 
@@ -86,6 +86,15 @@ def differences(ours: Any, theirs: Any, path: str = "") -> Iterator[Difference]:
             yield from differences(our, their, f"{path}/{label}")
     elif not _same(ours, theirs):
         yield _differ(path, ours, theirs)
+
+
+def count_facts(facts: Any) -> int:
+    """Return how many single things facts say; of an empty list, that it is empty."""
+    if isinstance(facts, dict):
+        return sum(map(count_facts, facts.values()))
+    if _is_members(facts):
+        return max(1, sum(map(count_facts, facts)))
+    return 1
 
 
 def _differ(path: str, ours: Any, theirs: Any) -> Difference:

@@ -11,14 +11,15 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.identity import md5sum, proto, type_hash
 from firm_hdl.model import Action, Interface, Message, Service
 from firm_hdl.verify.processes import cpu_seconds
-from firm_hdl.verify.records import OracleVerdict, Verdict
+from firm_hdl.verify.records import OracleVerdict
 from firm_hdl.verify.ts1.case import Case
-from firm_hdl.verify.ts1.facts import Difference, Facts, differences, structure
+from firm_hdl.verify.ts1.facts import Difference, Facts, count_facts, differences, structure
 from firm_hdl.verify.ts1.known import known_key
-from firm_hdl.verify.ts1.oracle import Accepted, Answer, NotJudged, Oracle, Refused
+from firm_hdl.verify.ts1.oracle import Accepted, Answer, Oracle, Refused
 from firm_hdl.verify.ts1.universe import Universe
+from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 
-__all__ = ["Judgement", "Outcome", "Verdict", "compare", "judge", "judge_case", "read"]
+__all__ = ["Judgement", "Outcome", "compare", "judge", "judge_case", "read"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,9 +30,8 @@ class Outcome:
     ----------
     oracle : str
     case : Case
-    verdict : "agrees", "known", "differs" or "not judged"
-    details : tuple of str
-        Keys of known differences; differences; or why it was not judged.
+    verdict : Verdict
+        Cases are facts that were compared; 1 if one refuses.
     is_refused : bool
         Whether both refuse it.
     """
@@ -39,7 +39,6 @@ class Outcome:
     oracle: str
     case: Case
     verdict: Verdict
-    details: tuple[str, ...] = ()
     is_refused: bool = False
 
     @classmethod
@@ -49,19 +48,13 @@ class Outcome:
             oracle=said.oracle,
             case=case,
             verdict=said.verdict,
-            details=said.details,
             is_refused=said.is_refused,
         )
 
     @property
     def said(self) -> OracleVerdict:
         """The same without the definition."""
-        return OracleVerdict(
-            oracle=self.oracle,
-            verdict=self.verdict,
-            details=self.details,
-            is_refused=self.is_refused,
-        )
+        return OracleVerdict(oracle=self.oracle, verdict=self.verdict, is_refused=self.is_refused)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,7 +94,7 @@ def judge_case(universe: Universe, oracles: Sequence[Oracle], case: Case) -> Jud
             said += [out.said for out in judge(universe, oracle, [case], lambda _: ours)]
         except Exception as error:  # As with ours: the next definition is to be judged, too.
             why = f"the oracle raised {type(error).__name__}: {error}"
-            said.append(OracleVerdict(oracle=oracle.name, verdict="differs", details=(why,)))
+            said.append(OracleVerdict(oracle=oracle.name, verdict=Failed((why,))))
         elsewhere += max(0.0, oracle.cpu_seconds() - before)
     return Judgement(
         said=tuple(said),
@@ -139,7 +132,14 @@ def judge(
         if case.language in oracle.languages.get(case.dialect, ())
         and (oracle.judges_changes or not case.is_changed)
     ]
-    for case, answer in zip(taken, oracle.judge(taken), strict=True):
+    answers = list(oracle.judge(taken))
+    if len(answers) != len(taken):
+        # Nobody can say which answer is to which question.
+        why = f"the oracle gave {len(answers)} answers to {len(taken)} questions"
+        for case in taken:
+            yield Outcome(oracle=oracle.name, case=case, verdict=Failed((why,)))
+        return
+    for case, answer in zip(taken, answers, strict=True):
         mine = read(universe, case) if ours is None else ours(case)
         yield compare(oracle, case, mine, answer, universe.show)
 
@@ -168,34 +168,47 @@ def compare(
     show : callable
         Prints a definition as ``firm-hdl show`` does.
     """
+    is_refused = isinstance(ours, DefinitionError) and isinstance(answer, Refused)
+    verdict = _verdict(oracle, case, ours, answer, show)
+    return Outcome(oracle=oracle.name, case=case, verdict=verdict, is_refused=is_refused)
+
+
+def _verdict(
+    oracle: Oracle,
+    case: Case,
+    ours: Interface | Exception,
+    answer: Answer,
+    show: Callable[[Case], str],
+) -> Verdict:
     if isinstance(answer, NotJudged):
-        return Outcome(
-            oracle=oracle.name, case=case, verdict="not judged", details=(answer.reason,)
-        )
+        return answer
     if isinstance(ours, Exception) and not isinstance(ours, DefinitionError):
-        crash = f"verdict: firm-hdl raised {type(ours).__name__}: {ours}"
-        return Outcome(oracle=oracle.name, case=case, verdict="differs", details=(crash,))
+        return Failed((f"verdict: firm-hdl raised {type(ours).__name__}: {ours}",))
+    cases = 1
     match ours, answer:
         case DefinitionError(), Refused():
-            return Outcome(oracle=oracle.name, case=case, verdict="agrees", is_refused=True)
-        case DefinitionError(), _:
+            return Passed(cases)
+        case DefinitionError(), Accepted():
             why = ours.diagnostics[0].message
             found = [Difference(path="verdict", ours=f"refuses: {why}", theirs="accepts")]
         case _, Refused(message):
             found = [Difference(path="verdict", ours="accepts", theirs=f"refuses: {message}")]
         case _, Accepted(facts):
             assert not isinstance(ours, Exception)
+            cases = count_facts(facts)
+            if not cases:
+                return NotJudged("the oracle takes the definition, and says nothing of it")
             found = list(
                 differences(_facts(ours, facts, oracle.alike(case), lambda: show(case)), facts)
             )
+        case _:
+            raise TypeError(f"An oracle must accept, refuse or not judge, not {answer!r}")
     keys = [known_key(oracle.name, case, ours, each) for each in found]
     unknown = [str(each) for each, key in zip(found, keys, strict=True) if key is None]
     if unknown:
-        return Outcome(oracle=oracle.name, case=case, verdict="differs", details=tuple(unknown))
+        return Failed(tuple(unknown))
     names = tuple(dict.fromkeys(key for key in keys if key is not None))
-    return Outcome(
-        oracle=oracle.name, case=case, verdict="known" if names else "agrees", details=names
-    )
+    return KnownDifference(names, cases) if names else Passed(cases)
 
 
 def _facts(

@@ -11,6 +11,7 @@ from firm_hdl.model import Dialect
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.universe import Universe
+from firm_hdl.verify.verdict import NotJudged
 
 __all__ = ["Accepted", "Answer", "NotJudged", "Oracle", "Refused"]
 
@@ -27,13 +28,6 @@ class Refused:
     """The oracle refuses the definition, or one that it depends on."""
 
     message: str
-
-
-@dataclass(frozen=True, slots=True)
-class NotJudged:
-    """The oracle has nothing to say, for a reason."""
-
-    reason: str
 
 
 Answer: TypeAlias = "Accepted | Refused | NotJudged"

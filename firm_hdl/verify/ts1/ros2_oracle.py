@@ -43,5 +43,7 @@ class Ros2Proto(Oracle):
         if done.returncode != 0:
             lines = (done.stderr or done.stdout).strip().splitlines() or ["it does not say why"]
             return NotJudged(f"ros2 does not have it: {lines[-1]}")
+        if not done.stdout.strip():
+            return NotJudged("ros2 says nothing of it")
         # One line end is print's.
         return Accepted({"proto": done.stdout.removesuffix("\n")})

@@ -22,6 +22,7 @@ from firm_hdl.verify.ts1.mutate import mutation
 from firm_hdl.verify.ts1.oracle import Oracle
 from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.universe import Universe, write_definitions
+from firm_hdl.verify.verdict import Failed
 
 __all__ = ["Selection", "Tally", "Ts1Run", "selections_of"]
 
@@ -113,10 +114,10 @@ class Tally:
 
     Attributes
     ----------
-    verdicts : counter of (oracle, verdict)
+    verdicts : counter of (oracle, name of the verdict)
     refused : counter of oracle
         How often both refuse; among those that agree.
-    details : counter of (oracle, verdict, text)
+    details : counter of (oracle, name of the verdict, text)
         Keys of known differences, and reasons for what was not judged.
     differing : list of (Outcome, int or None)
         Those that differ, and the number of the mutation.
@@ -132,13 +133,14 @@ class Tally:
 
     def add(self, outcome: Outcome, number: int | None = None) -> None:
         """Count an outcome."""
-        self.verdicts[outcome.oracle, outcome.verdict] += 1
+        verdict = outcome.verdict
+        self.verdicts[outcome.oracle, verdict.name] += 1
         self.refused[outcome.oracle] += outcome.is_refused
-        if outcome.verdict in ("known", "not judged"):
-            for detail in outcome.details:
-                self.details[outcome.oracle, outcome.verdict, detail] += 1
-        if outcome.verdict == "differs":
+        if isinstance(verdict, Failed):
             self.differing.append((outcome, number))
+        else:
+            for detail in verdict.details:
+                self.details[outcome.oracle, verdict.name, detail] += 1
 
     def update(self, other: Tally) -> None:
         """Count what another one has counted."""
@@ -304,7 +306,7 @@ def _end_session(key: _Key) -> None:
 
 
 def _died(why: str) -> Judgement:
-    said = OracleVerdict(oracle="its process", verdict="differs", details=(why,))
+    said = OracleVerdict(oracle="its process", verdict=Failed((why,)))
     return Judgement(said=(said,))
 
 

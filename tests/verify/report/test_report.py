@@ -16,6 +16,7 @@ from firm_hdl.verify.report import html as page_writer
 from firm_hdl.verify.report import summary as summary_of
 from firm_hdl.verify.report.verdicts import reason_groups
 from firm_hdl.verify.results import Results, ResultsWriter
+from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
 from tests.verify.report.samples import a_record, a_run, a_test
 
 FAILED = a_record(
@@ -236,20 +237,24 @@ def test_nothing_rounds_up_to_all():
 
 
 def definition(name, *verdicts, **more):
-    """Return a record of TS1 with an oracle's verdicts, given as (oracle, verdict, details...)."""
-    said = tuple(OracleVerdict(oracle=o, verdict=v, details=tuple(d)) for o, v, *d in verdicts)
+    """Return a record of TS1 with oracles' verdicts, given as (oracle, verdict)."""
+    said = tuple(OracleVerdict(oracle=o, verdict=v) for o, v in verdicts)
     test = a_test(name, system="ts1", simulator="", wire="", bus_bytes=0, options="")
     known = {"coverage": None, "shape": "", "metrics": {}, "seconds": Seconds(testing=0.1)}
     return a_record(test, verdicts=said, **{**known, **more})
 
 
+def known(*keys):
+    return KnownDifference(keys, 1)
+
+
 def test_verdicts_of_oracles_are_counted_and_known_differences_named():
     run = run_of(
-        definition("a/msg/A", ("genmsg", "agrees"), ("rosbags", "known", "a-key")),
-        definition("a/msg/B", ("genmsg", "agrees"), ("rosbags", "known", "a-key", "b-key")),
-        definition("a/msg/C", ("rosbags", "not judged", "a/msg/C is too deep")),
-        definition("a/msg/D", ("rosbags", "not judged", "a/msg/D is too deep")),
-        definition("a/msg/E", ("rosbags", "differs", "x"), status="fail", failures=("rosbags: x",)),
+        definition("a/msg/A", ("genmsg", Passed(3)), ("rosbags", known("a-key"))),
+        definition("a/msg/B", ("genmsg", Passed(3)), ("rosbags", known("a-key", "b-key"))),
+        definition("a/msg/C", ("rosbags", NotJudged("a/msg/C is too deep"))),
+        definition("a/msg/D", ("rosbags", NotJudged("a/msg/D is too deep"))),
+        definition("a/msg/E", ("rosbags", Failed(("x",))), status="fail", failures=("rosbags: x",)),
     )
     summary = summarise({"r": run})
     assert [(s.oracle, s.agree, s.known, s.differ, s.not_judged) for s in summary.oracles] == [
@@ -257,8 +262,8 @@ def test_verdicts_of_oracles_are_counted_and_known_differences_named():
         ("rosbags", 0, 2, 1, 2),
     ]
     assert [(s.verdict, s.what, s.count, s.example) for s in summary.said] == [
-        ("known", "a-key", 2, "a/msg/A"),
-        ("known", "b-key", 1, "a/msg/B"),
+        ("known difference", "a-key", 2, "a/msg/A"),
+        ("known difference", "b-key", 1, "a/msg/B"),
         ("not judged", "a/msg/C is too deep", 2, "a/msg/C"),
     ]
     for form in FORMATS:

@@ -8,6 +8,7 @@ from firm_hdl.verify.ts1 import Selection, Ts1Run
 from firm_hdl.verify.ts1.universe import Universe
 from tests.verify.ts1.conftest import need
 
+JUDGED = ("passed", "failed", "known difference")
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
 
 
@@ -17,12 +18,14 @@ def differing(selection, oracle):
         need(oracle, run.missing.get(oracle))
         tallies = [tally for _, tally in run.tallies()]
     wrong = [
-        (outcome.case.full_name, outcome.details) for t in tallies for outcome, _ in t.differing
+        (outcome.case.full_name, outcome.verdict.failures)
+        for t in tallies
+        for outcome, _ in t.differing
     ]
     return (
         wrong,
         sum(tally.refused[oracle] for tally in tallies),
-        sum(sum(tally.verdicts.values()) for tally in tallies),
+        sum(tally.verdicts[oracle, verdict] for tally in tallies for verdict in JUDGED),
     )
 
 

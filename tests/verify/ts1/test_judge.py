@@ -9,8 +9,10 @@ import pytest
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.model import Primitive, Sequence, Text
 from firm_hdl.verify.ts1 import judge as judging
-from firm_hdl.verify.ts1.judge import compare, judge
-from firm_hdl.verify.ts1.oracle import Accepted, NotJudged, Refused
+from firm_hdl.verify.ts1.judge import compare, judge, judge_case
+from firm_hdl.verify.ts1.oracle import Accepted, Refused
+from firm_hdl.verify.verdict import Failed, NotJudged, Passed
+from tests.verify.judged import assert_passed
 
 GOOD = {
     "p/msg/A.msg": "int8 LOW=-1\nstring<=8 name\nuint16[<=4] codes\nB b\n",
@@ -39,36 +41,70 @@ def refusal():
 
 def test_both_refuse(court):
     outcome = verdict(court, refusal(), Refused("no"))
-    assert (outcome.verdict, outcome.is_refused) == ("agrees", True)
+    assert (outcome.verdict, outcome.is_refused) == (Passed(1), True)
 
 
 def test_only_we_refuse(court):
     outcome = verdict(court, refusal(), Accepted({}))
-    assert outcome.verdict == "differs"
-    assert outcome.details == ("verdict: firm-hdl refuses: it is wrong; oracle accepts",)
+    assert isinstance(outcome.verdict, Failed)
+    assert outcome.verdict.details == ("verdict: firm-hdl refuses: it is wrong; oracle accepts",)
 
 
 def test_only_the_oracle_refuses(court):
     model = court("noetic", ROS1).universe.library.message("p/A")
     outcome = verdict(court, model, Refused("no"))
-    assert outcome.details == ("verdict: firm-hdl accepts; oracle refuses: no",)
+    assert outcome.verdict.details == ("verdict: firm-hdl accepts; oracle refuses: no",)
 
 
 @pytest.mark.parametrize("answer", [Refused("no"), Accepted({})])
 def test_an_exception_that_is_no_refusal_is_a_difference(court, answer):
     outcome = verdict(court, RecursionError("deep"), answer)
-    assert outcome.details == ("verdict: firm-hdl raised RecursionError: deep",)
+    assert outcome.verdict.details == ("verdict: firm-hdl raised RecursionError: deep",)
 
 
 def test_what_is_not_judged_is_neither(court):
     outcome = verdict(court, refusal(), NotJudged("it slept"))
-    assert (outcome.verdict, outcome.details) == ("not judged", ("it slept",))
+    assert outcome.verdict == NotJudged("it slept")
+
+
+def test_an_oracle_that_takes_it_and_knows_nothing_has_not_judged(court):
+    model = court("noetic", ROS1).universe.library.message("p/A")
+    for facts in ({}, {"structure": {}}, {"structure": {model.name: {}}, "md5": {}}):
+        assert isinstance(verdict(court, model, Accepted(facts)).verdict, NotJudged)
+
+
+def test_what_was_compared_is_counted(court):
+    model = court("noetic", ROS1).universe.library.message("p/A")
+    part = {"fields": [{"name": name} for name in ("name", "codes", "b")]}
+    facts = {"structure": {model.name: part}}
+    assert assert_passed(verdict(court, model, Accepted(facts))) == 3
+
+
+@pytest.mark.parametrize("answers", [[], [Refused("no")], [Refused("no")] * 3])
+def test_an_oracle_that_gives_not_an_answer_to_each_question_fails(court, answers):
+    here = court("noetic", ROS1)
+    oracle = Fake()
+    oracle.languages, oracle.judges_changes = {"ros1": {"msg"}}, True
+    oracle.judge = lambda cases: iter(answers)
+    found = list(judge(here.universe, oracle, here.universe.select(["p/A", "p/B"])))
+    why = f"the oracle gave {len(answers)} answers to 2 questions"
+    assert [outcome.verdict for outcome in found] == [Failed((why,))] * 2
+
+
+def test_an_answer_that_is_none_fails(court):
+    here = court("noetic", ROS1)
+    oracle = Fake()
+    oracle.languages, oracle.judges_changes = {"ros1": {"msg"}}, True
+    oracle.cpu_seconds = lambda: 0.0
+    oracle.judge = lambda cases: [None]
+    (said,) = judge_case(here.universe, [oracle], here.universe.select(["p/A"])[0]).said
+    assert isinstance(said.verdict, Failed) and "not None" in said.verdict.failures[0]
 
 
 def test_a_part_that_we_cannot_compute_is_a_difference(court):
     model = court("lyrical", GOOD).universe.library.message("p/A")
     outcome = compare(Fake(), None, model, Accepted({"md5": {model.name: "0"}}))
-    assert "raises ValueError" in outcome.details[0]
+    assert "raises ValueError" in outcome.verdict.details[0]
 
 
 MISTAKES = {
@@ -111,8 +147,9 @@ def test_every_mistake_is_caught(court, oracle, monkeypatch):
     def outcome(ours):
         return compare(here.oracle(oracle), case, ours, answer, here.universe.show)
 
-    assert outcome(model).verdict == "agrees"
-    missed = {name for name, spoil in MISTAKES.items() if outcome(spoil(model)).verdict == "agrees"}
+    assert_passed(outcome(model))
+    verdicts = {name: outcome(spoil(model)).verdict for name, spoil in MISTAKES.items()}
+    missed = {name for name, found in verdicts.items() if not isinstance(found, Failed)}
     if is_ros1:  # It has neither bounds nor defaults to get wrong.
         assert "a field is dropped" not in missed and "a constant has another value" not in missed
         missed -= {name for name in missed if "bound" in name or "default" in name}
@@ -130,8 +167,9 @@ def test_sums_and_hashes_catch_mistakes_by_themselves(court):
         facts = here.answer(oracle, "p/A").facts
         model = here.universe.library.message("p/A")
         only = Accepted({part: facts[part]})
-        assert compare(Fake(), None, model, only).verdict == "agrees"
-        assert compare(Fake(), None, replace(model, fields=()), only).verdict == "differs"
+        assert_passed(compare(Fake(), None, model, only))
+        outcome = compare(Fake(), None, replace(model, fields=()), only)
+        assert isinstance(outcome.verdict, Failed)
 
 
 def _spoil(monkeypatch, mistake):
@@ -163,11 +201,11 @@ WRONG = {
 def test_a_front_end_that_accepts_too_much_is_caught(court, distro, oracle, text, monkeypatch):
     here = court(distro, {"p/msg/A.msg": text, "p/msg/Good.msg": "int8 x\n"})
     outcome = here.outcome(oracle, "p/A")
-    assert (outcome.verdict, outcome.is_refused) == ("agrees", True)
+    assert (outcome.verdict, outcome.is_refused) == (Passed(1), True)
     good = here.universe.library.message("p/Good")
     monkeypatch.setattr(judging, "read", lambda universe, case: good)
     outcome = here.outcome(oracle, "p/A")
-    assert outcome.verdict == "differs" and "firm-hdl accepts" in outcome.details[0]
+    assert isinstance(outcome.verdict, Failed) and "firm-hdl accepts" in outcome.verdict.details[0]
 
 
 @pytest.mark.parametrize(
@@ -177,7 +215,7 @@ def test_a_front_end_that_accepts_too_little_is_caught(court, distro, oracle, mo
     here = court(distro, {"p/msg/A.msg": "int8 x\n"})
     monkeypatch.setattr(judging, "read", lambda universe, case: refusal())
     outcome = here.outcome(oracle, "p/A")
-    assert outcome.verdict == "differs" and "oracle accepts" in outcome.details[0]
+    assert isinstance(outcome.verdict, Failed) and "oracle accepts" in outcome.verdict.details[0]
 
 
 def test_only_languages_that_an_oracle_reads_are_put_before_it(court):

@@ -9,8 +9,11 @@ import stat
 import pytest
 
 from firm_hdl.verify.ts1.debian import Genmsg
+from firm_hdl.verify.ts1.judge import judge_case
 from firm_hdl.verify.ts1.oracle import Accepted, NotJudged, Refused
 from firm_hdl.verify.ts1.worker import Worker
+from firm_hdl.verify.verdict import Failed
+from tests.verify.judged import assert_passed
 from tests.verify.ts1.conftest import need
 
 FILES = {
@@ -38,7 +41,7 @@ def test_genmsg_gives_structure_text_and_sum(court):
 
 @pytest.mark.parametrize("type_", ["p/A", "p/S", "p/Do"])
 def test_genmsg_and_we_agree(court, type_):
-    assert court("noetic", FILES).outcome("genmsg", type_).verdict == "agrees"
+    assert_passed(court("noetic", FILES).outcome("genmsg", type_))
 
 
 def test_messages_that_are_yet_to_be_made_from_an_action_are_refused_by_both(court):
@@ -80,7 +83,7 @@ def test_rosidl_parser_gives_derived_messages_too(court):
 @pytest.mark.parametrize("oracle", ["rosidl_adapter", "rosidl_parser"])
 @pytest.mark.parametrize("type_", ["p/A", "p/S", "p/Do", "q/B"])
 def test_rosidl_and_we_agree(court, oracle, type_):
-    assert court("lyrical", ROS2).outcome(oracle, type_).verdict == "agrees"
+    assert_passed(court("lyrical", ROS2).outcome(oracle, type_))
 
 
 @pytest.mark.parametrize(
@@ -171,6 +174,17 @@ def test_what_a_worker_says_is_an_answer(court):
     assert answer == NotJudged("too slow")
 
 
+def test_a_worker_whose_answer_is_none_fails(court):
+    class Silent(Genmsg):
+        cpu_seconds = lambda self: 0.0  # noqa: E731
+        _worker = type("W", (), {"ask": lambda self, request: {}})()
+
+    here = court("noetic", FILES)
+    (case,) = here.universe.select(["q/B"])
+    (said,) = judge_case(here.universe, [Silent(here.universe)], case).said
+    assert isinstance(said.verdict, Failed) and "answered {}" in said.verdict.failures[0]
+
+
 ROS2_COMMAND = """#!/bin/sh
 case "$1 $2 $3" in
   "interface proto q/msg/B") printf '"x: 0.0\\n"\\n' ;;
@@ -187,16 +201,26 @@ def ros2_command(tmp_path, monkeypatch):
     (folder / "ros2").write_text(ROS2_COMMAND)
     (folder / "ros2").chmod(stat.S_IRWXU)
     monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
+    return folder
 
 
 def test_ros2_interface_proto_is_compared_with_ours(court, ros2_command):
     here = court("lyrical", ROS2)
-    assert here.outcome("ros2", "q/B").verdict == "agrees"
+    assert_passed(here.outcome("ros2", "q/B"))
     outcome = here.outcome("ros2", "p/Header")
-    assert outcome.verdict == "differs" and "oracle '\"y: 0\\n\"'" in outcome.details[0]
+    assert isinstance(outcome.verdict, Failed)
+    assert "oracle '\"y: 0\\n\"'" in outcome.verdict.details[0]
     outcome = here.outcome("ros2", "p/S")
-    assert outcome.verdict == "not judged"
-    assert outcome.details == ("ros2 does not have it: Unknown package 'p'",)
+    assert outcome.verdict == NotJudged("ros2 does not have it: Unknown package 'p'")
+
+
+def test_ros2_that_says_nothing_has_not_judged(court, ros2_command):
+    (ros2_command / "ros2").write_text("#!/bin/sh\nexit 0\n")
+    outcome = court("lyrical", ROS2).outcome("ros2", "q/B")
+    assert outcome.verdict == NotJudged("ros2 says nothing of it")
+    (ros2_command / "ros2").write_text("#!/bin/sh\nexit 1\n")
+    outcome = court("lyrical", ROS2).outcome("ros2", "q/B")
+    assert outcome.verdict == NotJudged("ros2 does not have it: it does not say why")
 
 
 def test_ros2_is_missing_where_it_is_not_installed(court, monkeypatch):
