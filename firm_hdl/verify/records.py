@@ -176,7 +176,8 @@ class OracleVerdict:
         """
         values = dict(_mapping(given, "What an oracle says"))
         own = {name: values.pop(name) for name in ("oracle", "is_refused") if name in values}
-        made: OracleVerdict = _made(cls, {**own, "verdict": verdict_from_json(values)})
+        own["verdict"] = verdict_from_json(values)
+        made: OracleVerdict = _made(cls, own)
         return made
 
 
