@@ -275,6 +275,21 @@ class Message:
         return 1 + max((child.depth for child in self.children), default=0)
 
     @cached_property
+    def leaf_count(self) -> int:
+        """Fields of all levels that are no messages; an array or a sequence counts one element.
+
+        A message without fields counts as one. Types that use each other many times have numbers
+        that nobody could count out.
+        """
+        self._settle("leaf_count")
+
+        def count(kind: FieldType) -> int:
+            element = kind.element if isinstance(kind, Array | Sequence) else kind
+            return element.leaf_count if isinstance(element, Message) else 1
+
+        return sum(count(item.type) for item in self.fields) or 1
+
+    @cached_property
     def is_fixed_size(self) -> bool:
         """Whether every value of the message has the same number of bytes on a given wire."""
         self._settle("is_fixed_size")

@@ -7,9 +7,9 @@ bring few bytes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import product, repeat
+from itertools import product
 
 from firm_hdl.plan import Payload, Plan, decode, encode
 from firm_hdl.plan.geometry import geometry
@@ -21,6 +21,9 @@ LINE_RATES = {"100 Mbit/s": 0.1e9, "1 Gbit/s": 1e9, "10 Gbit/s": 10e9}
 
 MANY_ELEMENTS = {1: 16, 2: 4}
 """Most elements per loop that the search tries, by depth of loops: packets grow exponentially."""
+
+MOST_TRANSFERS = 1 << 12
+"""Of a packet that the search tries. Loops in loops soon have more, with few elements each."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,7 +77,10 @@ def timing(plan: Plan) -> Timing:
     if is_short and any(leaf.kind == "length" for leaf in plan.leaves):
         counts = sorted({0, 1, MANY_ELEMENTS.get(plan.levels, 2)})
         for elements, items in product(counts, sorted({0, 1, bus // 2, bus, bus + 1})):
-            cost = _cost(plan, elements, items)
+            try:
+                cost = _cost(plan, elements, items, MOST_TRANSFERS)
+            except _TooLongError:
+                continue
             if cost.cycles * hardest.bytes > hardest.cycles * cost.bytes:
                 hardest = cost
     return Timing(
@@ -87,8 +93,27 @@ def timing(plan: Plan) -> Timing:
     )
 
 
-def _cost(plan: Plan, elements: int, items: int) -> Cost:
-    """Cost a packet whose sequences of messages and of primitives have lengths as given."""
+class _TooLongError(Exception):
+    """A packet has more transfers than anybody wants to wait for."""
+
+
+def _cost(plan: Plan, elements: int, items: int, most: int | None = None) -> Cost:
+    """Cost a packet whose sequences of messages and of primitives have lengths as given.
+
+    Raises
+    ------
+    _TooLongError
+        If it has more than `most` transfers.
+    """
+    left = most
+
+    def transfers(payload: Payload) -> Iterator[Payload]:
+        nonlocal left
+        while left is None or left > 0:
+            left = None if left is None else left - 1
+            yield payload
+        raise _TooLongError
+
     runs = {leaf.path[:-1] for leaf in plan.leaves if leaf.kind == "items"}
     limits = {
         step.begin.length: step.begin.limit
@@ -103,7 +128,7 @@ def _cost(plan: Plan, elements: int, items: int) -> Cost:
             payload = min(wanted, limits.get(index, wanted))
         elif leaf.kind == "items":
             payload = ((0,) * leaf.lanes, False)
-        streams[index] = repeat(payload)
+        streams[index] = transfers(payload)
     # That `last` is never set is an error that the serializer marks; the bytes are those promised.
     packet, _ = encode(plan, streams)
     return Cost(

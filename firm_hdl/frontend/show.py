@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend.library import Library
 from firm_hdl.frontend.parse import lines_of
 from firm_hdl.model import (
@@ -25,7 +26,10 @@ from firm_hdl.model import (
     Value,
 )
 
-__all__ = ["show"]
+__all__ = ["MOST_CHARACTERS", "show"]
+
+MOST_CHARACTERS = 1 << 26
+"""Of a text that is shown. Types that use each other many times have texts beyond all bounds."""
 
 _SEPARATOR = "---"
 
@@ -47,10 +51,11 @@ def show(library: Library, name: str) -> str:
     Raises
     ------
     DefinitionError
-        As `Library.interface` does.
+        As `Library.interface` does, or if the text would be too long.
     """
     interface = library.interface(name)
     printer = _Ros1() if library.dialect == "ros1" else _Ros2(library)
+    _check_characters(printer, interface)
     lines: list[str] = []
     stack = [printer.root(interface)]
     while stack:
@@ -65,6 +70,42 @@ def show(library: Library, name: str) -> str:
 
 
 _Entries = Iterator[tuple[str, "Message | None"]]
+
+
+def _check_characters(printer: _Ros1 | _Ros2, interface: Interface) -> None:
+    """Refuse a text that would be too long, before more than each type by itself is written."""
+    # Lines of each type, and their characters, when it stands at the margin.
+    lines: dict[str, int] = {}
+    characters: dict[str, int] = {}
+
+    def note(name: str, entries: _Entries) -> None:
+        lines[name] = characters[name] = 0
+        for line, nested in entries:
+            lines[name] += 1
+            characters[name] += len(line) + 1
+            if nested is not None:
+                lines[name] += lines[nested.name]
+                indents = len(printer.indent) * lines[nested.name]
+                characters[name] += characters[nested.name] + indents
+        if characters[name] > MOST_CHARACTERS:
+            message = (
+                f"{name} is shown in {characters[name]} characters, which is more than "
+                f"{MOST_CHARACTERS}"
+            )
+            raise DefinitionError([Diagnostic(message=message)])
+
+    for part in _parts(interface):
+        # Nesting may be deeper than Python's recursion limit.
+        pending = [*part.children]
+        while pending:
+            missing = [child for child in pending[-1].children if child.name not in lines]
+            if missing:
+                pending += missing
+                continue
+            message = pending.pop()
+            if message.name not in lines:
+                note(message.name, printer.nested(message))
+    note(interface.name, printer.root(interface))
 
 
 def _parts(interface: Interface) -> tuple[Message, ...]:

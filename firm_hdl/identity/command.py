@@ -79,7 +79,7 @@ def load_interfaces(
     names : iterable of str
         As for `Library.interface`; also the services that ROS 2 makes of an action.
     found : callable or None
-        Called with each, good ones among wrong ones included.
+        Called with each, good ones among wrong ones included. It may raise DefinitionError, too.
 
     Raises
     ------
@@ -91,14 +91,14 @@ def load_interfaces(
     for name in names:
         try:
             interface = _interface(library, name)
+            # In ROS 1, a message and a service may have the same name.
+            key = type(interface), interface.name
+            if key not in interfaces and found is not None:
+                found(interface)
         except DefinitionError as error:
             problems.update((str(problem), problem) for problem in error.diagnostics)
-            continue
-        # In ROS 1, a message and a service may have the same name.
-        key = type(interface), interface.name
-        if key not in interfaces and found is not None:
-            found(interface)
-        interfaces[key] = interface
+        else:
+            interfaces[key] = interface
     if problems:
         raise DefinitionError(problems.values())
     return list(interfaces.values())

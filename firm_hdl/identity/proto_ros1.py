@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import yaml
 
+from firm_hdl.identity.order import in_order
 from firm_hdl.identity.proto_errors import TooLargeError
 from firm_hdl.model import PRIMITIVES, Array, Field, FieldType, Message, Primitive, Sequence, Text
 
@@ -38,8 +39,32 @@ _PACKED = frozenset({"uint8", "char"})
 
 def ros1_proto(message: Message) -> str:
     """Print an example of a message of ROS 1, without quotes around it."""
+    values: dict[str, int] = {}
+    for part in in_order([message]):
+        values[part.name] = sum(1 + _values(item.type, values) for item in part.fields)
+        if values[part.name] > _MOST_VALUES:
+            raise TooLargeError(
+                f"{part.name} has an example of {values[part.name]} values, which is more than "
+                f"{_MOST_VALUES}"
+            )
     node = _Writer(name=message.name).message(message, 1)
     return yaml.serialize(node, Dumper=yaml.SafeDumper).rstrip("\n")
+
+
+def _values(kind: FieldType, values: dict[str, int]) -> int:
+    """Count the keys and values of a field before they are written."""
+    match kind:
+        case Message():
+            return values[kind.name]
+        case Array(count=count) if _is_packed(kind):
+            # The text of a long one takes PyYAML time, too.
+            return 1 + count // 16
+        case Array(element=element, count=count):
+            return count * (1 + _values(element, values))
+        case Sequence(element=element):
+            return 1 + _values(element, values)
+        case _:
+            return 1
 
 
 @dataclass(slots=True)
@@ -49,12 +74,6 @@ class _Writer:
     name: str
     # `False`: one line for each; `None`: what PyYAML finds best.
     style: bool | None = False
-    values: int = 0
-
-    def count(self, values: int) -> None:
-        self.values += values
-        if self.values > _MOST_VALUES:
-            raise TooLargeError(f"{self.name} has an example of more than {_MOST_VALUES} values")
 
     def message(self, message: Message, level: int) -> yaml.MappingNode:
         if level > _MOST_LEVELS:
@@ -78,15 +97,12 @@ class _Writer:
     def value(self, kind: FieldType, level: int) -> yaml.Node:
         if isinstance(kind, Array | Sequence) and _is_packed(kind):
             data = bytes(kind.count) if isinstance(kind, Array) else b""
-            # The text of a long one takes PyYAML time, too.
-            self.count(1 + len(data) // 16)
             text = base64.encodebytes(data).decode("ascii")
             return yaml.ScalarNode(f"{_TAG}binary", text, style="|")
         match kind:
             case Message():
                 return self.message(kind, level + 1)
             case Array(element=element, count=count):
-                self.count(count)
                 return self.sequence([self.value(element, level) for _ in range(count)])
             case Sequence(element=Message(name="time" | "duration") as element):
                 # rosmsg has an element of the message that bears the name, instead.
@@ -112,7 +128,6 @@ class _Writer:
         return is_plain if self.style is None else self.style
 
     def scalar(self, tag: str, text: str) -> yaml.ScalarNode:
-        self.count(1)
         return yaml.ScalarNode(f"{_TAG}{tag}", text, style="")
 
 

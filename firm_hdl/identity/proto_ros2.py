@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import struct
 import sys
+from dataclasses import dataclass
 from typing import Any
 
 import yaml
@@ -28,23 +29,65 @@ _LINE = re.compile(r"^(?=.)", re.MULTILINE)
 
 def ros2_proto(message: Message) -> str:
     """Print an example of a message of ROS 2, without quotes around it."""
+    parts = in_order([message])
+    sizes: dict[str, _Size] = {}
+    for part in parts:
+        sizes[part.name] = _size(part, sizes)
     texts: dict[str, str] = {}
-    for part in in_order([message]):
+    for part in parts:
         texts[part.name] = _message(part, texts)
     return texts[message.name]
 
 
-def _message(message: Message, texts: dict[str, str]) -> str:
-    lines = []
-    room = _MOST_CHARACTERS
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Size:
+    """Of a text: what is indented gets two characters more in each line."""
+
+    characters: int
+    lines: int
+
+
+def _size(message: Message, sizes: dict[str, _Size]) -> _Size:
+    """Count the text of a type before it is written.
+
+    Raises
+    ------
+    TooLargeError
+        If it would be too long.
+    """
+    characters = lines = 0
     for item in message.fields:
-        lines.append(_field(item, texts))
-        room -= len(lines[-1])
-        if room < 0:
-            raise TooLargeError(
-                f"{message.name} has an example of more than {_MOST_CHARACTERS} characters"
-            )
-    return "".join(lines) or "{}\n"
+        each = _field_size(item, sizes)
+        characters += each.characters
+        lines += each.lines
+    if characters > _MOST_CHARACTERS:
+        raise TooLargeError(
+            f"{message.name} has an example of {characters} characters, which is more than "
+            f"{_MOST_CHARACTERS}"
+        )
+    return _Size(characters=characters, lines=lines) if lines else _Size(characters=3, lines=1)
+
+
+def _field_size(item: Field, sizes: dict[str, _Size]) -> _Size:
+    match item.type:
+        case Message(fields=(_, *_)) as nested:
+            inner, count = sizes[nested.name], 1
+        case Array(element=Message() as nested, count=count):
+            inner = sizes[nested.name]
+        case Array(element=element, count=count) if item.default is None:
+            entry = _dump([_initial(element)])
+            inner = _Size(characters=len(entry) - 2, lines=1)
+        case _:
+            # A sequence is empty, or no longer than its default.
+            text = _field(item, {})
+            return _Size(characters=len(text), lines=text.count("\n"))
+    # Either two blanks, or a dash and a blank.
+    characters = len(_key(item)) + 1 + count * (inner.characters + 2 * inner.lines)
+    return _Size(characters=characters, lines=1 + count * inner.lines)
+
+
+def _message(message: Message, texts: dict[str, str]) -> str:
+    return "".join(_field(item, texts) for item in message.fields) or "{}\n"
 
 
 def _field(item: Field, texts: dict[str, str]) -> str:
@@ -56,10 +99,10 @@ def _field(item: Field, texts: dict[str, str]) -> str:
         case Array(element=Message() as element, count=count):
             # A list stands no deeper than its key, and its dashes are the indentation.
             entry = texts[element.name]
-            return f"{_key(item)}\n" + _times(f"- {_indented(entry)[2:]}", count, item)
+            return f"{_key(item)}\n" + f"- {_indented(entry)[2:]}" * count
         case Array(element=element, count=count) if item.default is None:
             entry = _dump([_initial(element)])
-            return f"{_key(item)}\n" + _times(entry, count, item)
+            return f"{_key(item)}\n" + entry * count
         case _:
             return _dump({item.name: _value(item)})
 
@@ -67,15 +110,6 @@ def _field(item: Field, texts: dict[str, str]) -> str:
 def _key(item: Field) -> str:
     # Some names need quotes.
     return _dump({item.name: 0}).removesuffix(" 0\n")
-
-
-def _times(entry: str, count: int, item: Field) -> str:
-    if len(entry) * count > _MOST_CHARACTERS:
-        raise TooLargeError(
-            f"field '{item.name}' of {count} elements has an example of more than "
-            f"{_MOST_CHARACTERS} characters"
-        )
-    return entry * count
 
 
 def _indented(text: str) -> str:

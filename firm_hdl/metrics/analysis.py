@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.identity import in_order
 from firm_hdl.metrics.features import FEATURES, features_of
 from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text
@@ -20,6 +21,9 @@ from firm_hdl.wire import CDR, ROS1, Wire, WireRules, refusals
 from firm_hdl.wire import residues as rs
 
 __all__ = ["Analyses", "Metrics", "metrics_of"]
+
+# Python itself refuses to print numbers of some thousand digits.
+_MOST_LEAVES = 10**100
 
 _LENGTH_BYTES = 4
 _RESIDUES = range(rs.MODULUS)
@@ -129,7 +133,16 @@ class Analyses:
         self._rules = CDR if self.wire == "cdr" else ROS1
 
     def metrics(self, message: Message) -> Metrics:
-        """Give the figures of a type."""
+        """Give the figures of a type.
+
+        Raises
+        ------
+        DefinitionError
+            If the figures have so many digits that nobody could read them.
+        """
+        if message.leaf_count > _MOST_LEAVES:
+            problem = f"{message.name} has more than 10^100 fields when it is written out"
+            raise DefinitionError([Diagnostic(message=problem)])
         parts = in_order([message])
         for part in parts:
             if part not in self._types:

@@ -2,12 +2,14 @@
 
 from firm_hdl.wire.cdr import CDR
 from firm_hdl.wire.layout import Gap, Layout, Loop, Node, Path, Run, Scalar, Trigger, lay_out, walk
-from firm_hdl.wire.refusals import refusals
+from firm_hdl.wire.refusals import MAX_LEAVES, MAX_LEVELS, refusals
 from firm_hdl.wire.ros1 import ROS1
 from firm_hdl.wire.rules import Wire, WireRules
 
 __all__ = [
     "CDR",
+    "MAX_LEAVES",
+    "MAX_LEVELS",
     "ROS1",
     "Gap",
     "Layout",

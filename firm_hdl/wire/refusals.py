@@ -2,25 +2,57 @@
 
 IDL has a `long double`. rosidl reads it, so that a type with one can be looked at; but systems do
 not agree about its bytes, so no layout has one (:attr:`firm_hdl.model.Primitive.has_wire_format`).
+
+A layout writes out every message in a message. A few small files can describe a type with more
+fields than there are atoms, so what would be too large is counted before it is written out.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from firm_hdl.errors import Diagnostic
 from firm_hdl.model import Array, Message, Primitive, Sequence
 
-__all__ = ["refusals"]
+__all__ = ["MAX_LEAVES", "MAX_LEVELS", "refusals"]
+
+MAX_LEAVES = 32_767
+"""Most fields of a message with all messages in it written out.
+
+A serializer has at least two input bits for each, and Amaranth elaborates at most 65,535.
+"""
+
+MAX_LEVELS = 32
+"""Most levels of messages in a message: layouts, plans and circuits are made level by level."""
 
 
 def refusals(message: Message) -> list[Diagnostic]:
-    """Find the fields that no wire has, in a message and in all messages in it.
+    """Find what keeps a message from any wire: its size, or fields that no wire has.
 
     Returns
     -------
     list of Diagnostic
-        One for each field, at its name, in the order in which the types are first named; empty if
-        the message can be laid out.
+        One for each such field of the message and of all messages in it, at its name, in the order
+        in which the types are first named; without any, one for the size, which no text is to
+        blame for. Empty if the message can be laid out.
     """
+    return _without_bytes(message) or list(_too_large(message))
+
+
+def _too_large(message: Message) -> Iterator[Diagnostic]:
+    if message.depth > MAX_LEVELS:
+        yield Diagnostic(
+            message=f"{message.name} has {message.depth} levels of messages, and at most "
+            f"{MAX_LEVELS} can be laid out"
+        )
+    elif message.leaf_count > MAX_LEAVES:
+        yield Diagnostic(
+            message=f"{message.name} has {message.leaf_count} fields when all messages in it are "
+            f"written out, and at most {MAX_LEAVES} can be laid out"
+        )
+
+
+def _without_bytes(message: Message) -> list[Diagnostic]:
     found: list[Diagnostic] = []
     seen = {message.name}
     # Nesting may be deeper than Python's recursion limit.

@@ -93,6 +93,6 @@ def test_proto_of_what_is_too_long_is_no_traceback(run, tmp_path):
     assert run("proto", "p/Huge") == (
         1,
         "",
-        "error: field 'data' of 4000000000 elements has an example of more than 268435456 "
-        "characters\n",
+        "error: p/msg/Huge has an example of 24000000006 characters, which is more than "
+        "268435456\n",
     )

@@ -1,0 +1,151 @@
+"""Types that are too large to lay out: counted, refused by name, and quickly."""
+
+from __future__ import annotations
+
+import importlib
+
+import pytest
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.export.timing import timing
+from firm_hdl.frontend import Library, show
+from firm_hdl.identity import TooLargeError, proto
+from firm_hdl.metrics import metrics_of
+from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence
+from firm_hdl.plan import build_plan
+from firm_hdl.wire import MAX_LEAVES, MAX_LEVELS, lay_out, refusals
+from tests.frontend.workspace import make_files
+from tests.steps import calls_at_most
+
+INT8 = PRIMITIVES["ros2"]["int8"]
+
+
+def message(name, *kinds, dialect="ros2"):
+    fields = tuple(Field(name=f"f{number}", type=kind) for number, kind in enumerate(kinds))
+    return Message(name=f"p/msg/{name}", dialect=dialect, fields=fields)
+
+
+def tree(levels, width):
+    kind = message("L0", INT8)
+    for level in range(1, levels):
+        kind = message(f"L{level}", *[kind] * width)
+    return kind
+
+
+def chain(levels, wrap=lambda kind: kind):
+    kind = message("L0", INT8)
+    for level in range(1, levels):
+        kind = message(f"L{level}", INT8, wrap(kind))
+    return kind
+
+
+def test_a_tree_that_explodes_is_counted_not_laid_out():
+    with calls_at_most(20_000), pytest.raises(DefinitionError) as caught:
+        lay_out(tree(8, 100))
+    assert str(caught.value) == (
+        "error: p/msg/L7 has 100000000000000 fields when all messages in it are written out, and "
+        "at most 32767 can be laid out"
+    )
+
+
+def test_depth_beyond_the_limit_is_refused_by_name():
+    with pytest.raises(DefinitionError) as caught:
+        lay_out(chain(480))
+    assert str(caught.value) == (
+        "error: p/msg/L479 has 480 levels of messages, and at most 32 can be laid out"
+    )
+
+
+@pytest.mark.parametrize("count", [MAX_LEAVES, MAX_LEAVES + 1])
+def test_the_limit_of_fields_is_exact(count):
+    first, rest = message("A", *[INT8] * 1000), count - 32 * 1000
+    top = message("T", *[first] * 32, *[INT8] * rest)
+    assert top.leaf_count == count
+    assert bool(refusals(top)) == (count > MAX_LEAVES)
+    if not refusals(top):
+        assert len(lay_out(top).nodes) == count
+
+
+@pytest.mark.parametrize(
+    "wrap",
+    [
+        lambda kind: kind,
+        lambda kind: Sequence(element=kind, bound=None),
+        lambda kind: Array(element=kind, count=1),
+    ],
+)
+@pytest.mark.parametrize("levels", [MAX_LEVELS, MAX_LEVELS + 1])
+def test_the_limit_of_levels_is_exact_and_what_is_below_it_works(levels, wrap):
+    top = chain(levels, wrap)
+    assert bool(refusals(top)) == (levels > MAX_LEVELS)
+    if not refusals(top):
+        plan = build_plan(lay_out(top))
+        assert timing(plan).shortest.bytes >= 4
+
+
+@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+def test_fields_are_counted_as_by_the_metrics(distro):
+    library = Library(distro)
+    for name in library.names():
+        found = library.message(name)
+        assert found.leaf_count == metrics_of(found).leaves, name
+
+
+@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+def test_text_that_explodes_is_counted_not_written(tmp_path, distro):
+    files = {
+        f"p/msg/L{level}.msg": "\n".join(f"L{level - 1} f{i}" for i in range(100))
+        for level in range(1, 8)
+    }
+    library = Library(distro, [make_files(tmp_path, {**files, "p/msg/L0.msg": "int8 x\n"})])
+    top = library.message("p/L7")
+    with calls_at_most(100_000), pytest.raises(DefinitionError) as caught:
+        show(library, "p/L7")
+    assert "is shown in" in str(caught.value)
+    with calls_at_most(1_500_000), pytest.raises(TooLargeError, match="an example of"):
+        proto(top)
+
+
+@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+def test_text_is_counted_to_the_character(monkeypatch, distro):
+    library, module = Library(distro), importlib.import_module("firm_hdl.frontend.show")
+    for name in ("nav_msgs/Odometry", "std_msgs/Empty", "sensor_msgs/PointCloud2"):
+        text = show(library, name)
+        with monkeypatch.context() as patch:
+            patch.setattr(module, "MOST_CHARACTERS", len(text))
+            assert show(library, name) == text
+            patch.setattr(module, "MOST_CHARACTERS", len(text) - 1)
+            with pytest.raises(DefinitionError) as caught:
+                show(library, name)
+            assert f"is shown in {len(text)} characters" in str(caught.value)
+
+
+def test_an_example_is_counted_to_the_character(monkeypatch, tmp_path):
+    files = {
+        "p/msg/In.msg": "int8 a\nstring[3] b\nNone c\n",
+        "p/msg/None.msg": "",
+        "p/msg/Out.msg": 'In[2] y\nIn x\nfloat32[] z\nstring s "a"\nint8[2] d [1, 2]\nNone[2] n\n',
+    }
+    made = Library(paths=[make_files(tmp_path, files)]).message("p/Out")
+    text = proto(made, quotes=False)
+    monkeypatch.setattr("firm_hdl.identity.proto_ros2._MOST_CHARACTERS", len(text))
+    assert proto(made, quotes=False) == text
+    monkeypatch.setattr("firm_hdl.identity.proto_ros2._MOST_CHARACTERS", len(text) - 1)
+    with pytest.raises(TooLargeError, match=f"an example of {len(text)} characters"):
+        proto(made)
+
+
+def test_loops_in_loops_end_the_search_for_the_hardest_packet(monkeypatch):
+    monkeypatch.setattr("firm_hdl.export.timing.MOST_TRANSFERS", 100)
+    top = chain(10, lambda kind: Sequence(element=kind, bound=None))
+    plan = build_plan(lay_out(top))
+    with calls_at_most(60_000):
+        assert timing(plan).hardest.bytes < 1000
+
+
+def test_figures_that_nobody_can_read_are_refused():
+    with pytest.raises(DefinitionError) as caught:
+        metrics_of(tree(300, 100))
+    assert str(caught.value) == (
+        "error: p/msg/L299 has more than 10^100 fields when it is written out"
+    )
