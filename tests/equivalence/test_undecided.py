@@ -1,0 +1,246 @@
+"""Solvers that give up: nothing is known then, and that is no proof."""
+
+# amaranth: UnusedElaboratable=no
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from amaranth.back import rtlil as amaranth_rtlil
+from amaranth.hdl import Module, Signal
+
+from firm_hdl.cli import main
+from firm_hdl.equivalence import Proof, ProofError, Tools, command, converters, prove
+from firm_hdl.equivalence import proof as proof_module
+from firm_hdl.equivalence.converters import Attempt, Task
+from firm_hdl.equivalence.miter import Claim, Miter
+from firm_hdl.equivalence.solve import solve
+from firm_hdl.equivalence.tools import ToolError, TooSlowError
+from firm_hdl.export.vhdl import Vhdl, convert
+
+# Two primes of 31 bits: whoever wants to know whether the output is ever 1 has to find them.
+PRODUCT = 1500450271 * 1836311903
+TASK = Task(distro="lyrical", name="std_msgs/msg/Bool", direction="serializer")
+
+
+def rtlil_of(*, is_zero: bool) -> str:
+    a, b, out = Signal(31, name="a"), Signal(31, name="b"), Signal(name="out")
+    m = Module()
+    m.d.comb += out.eq(0 if is_zero else (a * b == PRODUCT) & (a > 1) & (b > 1))
+    text: str = amaranth_rtlil.convert(m, name="top", ports=[a, b, out], emit_src=False)
+    return text
+
+
+def factors() -> tuple[str, Vhdl]:
+    """A design that looks for factors, and the VHDL of one whose output is always 0."""
+    return rtlil_of(is_zero=False), convert(rtlil_of(is_zero=True), name="top")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hasty(Tools):
+    """Solvers have 2 s each, whatever they are given; all else has the time that it takes."""
+
+    def run_ghdl(self, folder: Path, *arguments: str, timeout: float | None = None) -> str:
+        return Tools.run_ghdl(self, folder, *arguments)
+
+    def run_yosys(self, folder: Path, script: str, timeout: float | None = None) -> None:
+        is_solver = "abc " in script or "sat " in script
+        Tools.run_yosys(self, folder, script, 2 if is_solver else None)
+
+
+@pytest.fixture
+def hasty(tools: Tools) -> Tools:
+    return Hasty(ghdl=tools.ghdl, yosys=tools.yosys)
+
+
+@pytest.fixture(scope="module")
+def known() -> dict[str, Proof]:
+    """What was proved before: it takes both solvers their time."""
+    return {}
+
+
+@pytest.fixture
+def undecided(hasty: Tools, known: dict[str, Proof]) -> Proof:
+    if not known:
+        known["factors"] = prove(*factors(), timeout=1, tools=hasty)
+    return known["factors"]
+
+
+def test_what_no_solver_decides_is_neither_equal_nor_unequal(undecided: Proof) -> None:
+    assert undecided.result == "undecided"
+    assert (undecided.differences, undecided.counterexample) == (("output out",), {})
+    lines = str(undecided).splitlines()
+    assert lines[0].startswith("undecided (") and lines[1].strip() == "output out"
+
+
+def test_the_command_says_undecided_and_fails(
+    undecided: Proof, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(command, "find_tools", lambda: None)
+    monkeypatch.setattr(converters, "prove_converter", lambda *args, **options: undecided)
+    assert main(["prove", "std_msgs/msg/Bool", "--jobs", "1"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == ["undecided", "output"] * 2
+
+
+def test_the_command_asks_the_solvers(
+    hasty: Tools, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(proof_module, "find_tools", lambda: hasty)
+    monkeypatch.setattr(converters, "converter_vhdl", lambda *args, **options: factors())
+    assert command.run_proofs([TASK], 1, bar=True) == 1
+    out = capsys.readouterr().out
+    assert out.startswith("undecided ")
+    assert "1 converters of 1 types: 1 undecided\n" in out
+
+
+@pytest.mark.parametrize(
+    ("results", "said", "status"),
+    [
+        (["equal", "undecided"], "1 equal, 1 undecided", 1),
+        (["undecided", "equal"], "1 equal, 1 undecided", 1),
+        (["undecided"] * 2, "2 undecided", 1),
+        (["unequal", "undecided"], "1 undecided, 1 unequal", 1),
+        (["equal"] * 2, "2 equal", 0),
+        ([], "", 0),
+    ],
+)
+def test_summary_and_status_count_each_result_as_what_it_is(
+    results: list[str],
+    said: str,
+    status: int,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    attempts = [
+        Attempt(proof=Proof(result=result, registers=1, claims=1, seconds=1.0))  # type: ignore[arg-type]
+        for result in results
+    ]
+    monkeypatch.setattr(command, "find_tools", lambda: None)
+    monkeypatch.setattr(
+        command, "run_tasks", lambda tasks, jobs: iter([(TASK, a) for a in attempts])
+    )
+    assert command.run_proofs([TASK] * len(attempts), 1, bar=True) == status
+    out = capsys.readouterr().out.splitlines()
+    head = f"{len(results)} converters of {len({*results} and {1})} types: {said}"
+    assert head in out
+    assert [line.split()[0] for line in out[: len(results)]] == results
+
+
+# The same without tools: every way in which the two solvers can end.
+
+CLAIMS = 7
+SUCCESS = "SAT proof finished - no model found: SUCCESS!\n"
+FOUND = "SAT proof finished - model found: FAIL!\n"
+
+
+class Solvers:
+    """ABC leaves some claims, or does not end; then come answers of the SAT solver, one a call.
+
+    `asked` says how many claims that one was asked about, each time.
+    """
+
+    def __init__(self, left: list[int] | Exception, *answers: str | Exception) -> None:
+        self.left, self.answers = left, list(answers)
+        self.asked: list[int] = []
+
+    def run_yosys(self, folder: Path, script: str, timeout: float | None = None) -> None:
+        if "abc " in script:
+            if isinstance(self.left, Exception):
+                raise self.left
+            bits = ["x" if n in self.left else "0" for n in range(CLAIMS)]
+            answer = {"modules": {"miter": {"ports": {"differs": {"bits": bits}}}}}
+            (folder / "answer.json").write_text(json.dumps(answer))
+            return
+        rest = json.loads((folder / "rest.json").read_text())["modules"]["miter"]
+        self.asked.append(len(rest["ports"]["differs"]["bits"]))
+        answer = self.answers.pop(0)
+        if isinstance(answer, Exception):
+            raise answer
+        (folder / "sat.txt").write_text(answer)
+        wave = [{"name": "differs", "wave": "1"}, {"name": "amaranth0", "wave": "1"}]
+        (folder / "model.json").write_text(json.dumps({"signal": wave}))
+
+
+def some_miter() -> Miter:
+    claims = tuple(
+        Claim(what=f"output o{n}", amaranth=(n + 2,), vhdl=("0",)) for n in range(CLAIMS)
+    )
+    return Miter(
+        differences=(),
+        claims=claims,
+        inputs={"input i": tuple(range(2, CLAIMS + 2))},
+        cells=[],
+        unmatched=(),
+        registers=0,
+    )
+
+
+SLOW = TooSlowError("Yosys was stopped after 1 s")
+ALL = list(range(CLAIMS))
+
+
+@pytest.mark.parametrize(
+    ("left", "answers", "equal", "asked"),
+    [
+        ([], [], True, []),
+        ([2], [SUCCESS], True, [1]),
+        ([2], [FOUND], False, [1]),
+        ([2], ["Interrupted SAT solver: TIMEOUT!\n"], None, [1]),
+        ([2], [""], None, [1]),
+        ([2], [SLOW], None, [1]),
+        (ALL, [SUCCESS, SUCCESS], True, [4, 3]),
+        (ALL, [SUCCESS, FOUND], False, [4, 3]),
+        (ALL, [SUCCESS, SLOW], None, [4, 3]),
+        (ALL, [FOUND], False, [4]),
+        (ALL, [SLOW], None, [4]),
+        # Where the first solver does not end, all claims are left.
+        (SLOW, [SUCCESS, SUCCESS], True, [4, 3]),
+        (SLOW, [SUCCESS, FOUND], False, [4, 3]),
+        (SLOW, [SLOW], None, [4]),
+    ],
+)
+def test_only_what_a_solver_proved_is_equal(
+    left: list[int] | Exception,
+    answers: list[str | Exception],
+    equal: bool | None,
+    asked: list[int],
+    tmp_path: Path,
+) -> None:
+    tools = Solvers(left, *answers)
+    verdict = solve(some_miter(), tools, tmp_path, 1)
+    assert (verdict.equal, tools.asked) == (equal, asked)
+    first = 0 if left == ALL or isinstance(left, Exception) else 2
+    names = [f"output o{n}" for n in (range(4, 7) if len(asked) == 2 else [first, *range(1, 4)])]
+    if equal is None:
+        assert list(verdict.open) == names[: asked[-1]]
+    if equal is False:
+        assert verdict.difference is not None
+        (where,) = verdict.difference.where
+        assert where.startswith(f"{names[0]} is 0x1 in the RTLIL and 0x0 in the VHDL")
+
+
+@pytest.mark.parametrize("bits", [[], ["0"] * (CLAIMS - 1), ["0"] * (CLAIMS + 1)])
+def test_an_answer_about_other_claims_is_none(bits: list[str], tmp_path: Path) -> None:
+    class Other(Solvers):
+        def run_yosys(self, folder: Path, script: str, timeout: float | None = None) -> None:
+            answer = {"modules": {"miter": {"ports": {"differs": {"bits": bits}}}}}
+            (folder / "answer.json").write_text(json.dumps(answer))
+
+    with pytest.raises(ProofError, match=rf"returned {len(bits)} claims instead of {CLAIMS}"):
+        solve(some_miter(), Other([]), tmp_path, 1)
+
+
+@pytest.mark.parametrize(
+    ("said", "match"),
+    [
+        ("ERROR: Found 1 problems in 'check -assert'.", "combinational loop"),
+        ("ERROR: out of memory", "out of memory"),
+    ],
+)
+def test_a_tool_that_fails_proves_nothing(said: str, match: str, tmp_path: Path) -> None:
+    with pytest.raises(ProofError, match=match):
+        solve(some_miter(), Solvers(ToolError(said)), tmp_path, 1)
