@@ -1,0 +1,362 @@
+"""Names that occur more than once: which of them is meant.
+
+Where every constant has a name and a value of its own, a look-up in the wrong place finds the right
+one all the same. Here each place has the same names and other values.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import Library
+from firm_hdl.model import Text
+
+from ..workspace import make_files
+from .rosidl import read
+
+
+def library(tmp_path, files):
+    return Library("lyrical", [make_files(tmp_path, files)])
+
+
+def sizes_of(text):
+    """The sizes of all members of all structs of a text, by struct and member."""
+    messages, wrong = read(text)
+    assert [d.message for d in wrong] == []
+    return {
+        f"{name}.{member.name.text}": member.type.size.value
+        for name, syntax in messages.items()
+        for member in syntax.members
+        if member.type.array != "one"
+    }
+
+
+def types(message):
+    return {item.name: str(item.type) for item in message.fields}
+
+
+SERVICE = """module p {{ {outer} module srv {{ {inner}
+  module S_Request_Constants {{ const long N = 3; const long A = 13; }};
+  struct S_Request {{ long n[N]; sequence<long, N> m; string<N> s; {request} }};
+  module S_Response_Constants {{ const long N = 4; const long B = 14; }};
+  struct S_Response {{ long n[N]; sequence<long, N> m; string<N> s; {response} }};
+}}; }};"""
+
+
+def texts_of(text):
+    messages, wrong = read(text)
+    assert wrong == []
+    return {name: s.members[-1].type.bound.value for name, s in messages.items()}
+
+
+def test_a_struct_sees_its_own_constants_and_not_those_of_another():
+    text = SERVICE.format(outer="", inner="", request="", response="")
+    want = {f"S_Request.{m}": 3 for m in "nm"} | {f"S_Response.{m}": 4 for m in "nm"}
+    assert sizes_of(text) == want
+    assert texts_of(text) == {"S_Request": 3, "S_Response": 4}
+
+
+def test_a_module_around_a_struct_comes_before_the_structs_own_constants():
+    # As the standard has it: the struct's own stand in a module beside it.
+    text = SERVICE.format(outer="", inner="const long N = 7;", request="", response="")
+    assert set(sizes_of(text).values()) == {7}
+    assert set(texts_of(text).values()) == {7}
+
+
+def test_own_constants_come_before_those_of_modules_further_out():
+    text = SERVICE.format(outer="const long N = 7;", inner="", request="", response="")
+    assert sizes_of(text) == {
+        "S_Request.n": 3, "S_Request.m": 3, "S_Response.n": 4, "S_Response.m": 4
+    }  # fmt: skip
+
+
+def test_what_only_one_struct_has_is_seen_by_all():
+    text = SERVICE.format(outer="", inner="", request="long b[B];", response="long a[A];")
+    sizes = sizes_of(text)
+    assert (sizes["S_Request.b"], sizes["S_Response.a"]) == (14, 13)
+
+
+def test_what_two_others_have_is_not_guessed():
+    text = """module p { module action {
+      module D_Goal_Constants { const long N = 1; };
+      struct D_Goal { long a[N]; };
+      module D_Result_Constants { const long N = 2; };
+      struct D_Result { long a[N]; };
+      struct D_Feedback { long a[N]; };
+    }; };"""
+    (wrong,) = read(text)[1]
+    assert wrong.message == "constant 'N' is not declared above; there are 2 of that name elsewhere"
+    assert wrong.span.line == 6
+
+
+def test_defaults_see_the_constants_of_their_own_struct():
+    member = "@default(value=N) long d;"
+    messages, wrong = read(SERVICE.format(outer="", inner="", request=member, response=member))
+    assert wrong == []
+    found = {name: syntax.members[-1].default.value for name, syntax in messages.items()}
+    assert found == {"S_Request": 3, "S_Response": 4}
+
+
+def test_structs_keep_their_own_constants():
+    messages, wrong = read(
+        SERVICE.format(outer="const long X = 1;", inner="", request="", response="")
+    )
+    assert wrong == []
+    found = {
+        name: [(m.name.text, m.value.value) for m in syntax.members if hasattr(m, "value")]
+        for name, syntax in messages.items()
+    }
+    assert found == {"S_Request": [("N", 3), ("A", 13)], "S_Response": [("N", 4), ("B", 14)]}
+
+
+def test_a_scope_is_followed_from_the_inside_to_the_outside():
+    text = """module a { const long N = 1; module a { const long N = 2; }; };
+      module p { const long N = 3; module a { const long M = 4; };
+        module msg { const long N = 5; module a { const long N = 6; };
+          struct T { long x[N]; long y[p::N]; long z[a::N]; long w[::a::N]; long v[a::a::N];
+                     long u[::a::a::N]; long t[a::M]; long s[msg::N]; long r[p::msg::a::N]; };
+    }; };"""
+    found = {name[2:]: size for name, size in sizes_of(text).items()}
+    assert found == {
+        "x": 5, "y": 3, "z": 6, "w": 1, "v": 2, "u": 2, "t": 4, "s": 5, "r": 6
+    }  # fmt: skip
+
+
+BASE = "module {q} {{ const long K = {k}; module msg {{ const long N = {n}; {more} }}; }};"
+
+
+def test_constants_of_a_file_come_before_those_of_included_files(tmp_path):
+    # The same full names, with other values: the file's own are declared last.
+    files = {
+        "p/msg/Base.idl": BASE.format(q="p", k=1, n=2, more=""),
+        "p/msg/T.idl": """#include "p/msg/Base.idl"
+            module p { const long K = 11; module msg { const long N = 12;
+            struct T { long k[K]; long n[N]; long m[p::msg::N]; }; }; };""",
+    }
+    found = types(library(tmp_path, files).message("p/msg/T"))
+    assert found == {"k": "int32[11]", "n": "int32[12]", "m": "int32[12]"}
+
+
+def test_each_included_file_has_constants_of_its_own(tmp_path):
+    files = {
+        "q/msg/Base.idl": BASE.format(q="q", k=1, n=2, more="const long M = N + K;"),
+        "r/msg/Base.idl": BASE.format(q="r", k=3, n=4, more="const long M = N + K;"),
+        "p/msg/T.idl": """#include "q/msg/Base.idl"
+            #include "r/msg/Base.idl"
+            module p { module msg { struct T {
+            long a[q::K]; long b[q::msg::N]; long c[q::msg::M];
+            long d[r::K]; long e[r::msg::N]; long f[r::msg::M]; }; }; };""",
+    }
+    found = types(library(tmp_path, files).message("p/msg/T"))
+    assert [*found.values()] == [f"int32[{n}]" for n in (1, 2, 3, 3, 4, 7)]
+
+
+def test_an_included_file_is_looked_for_as_it_is_written_before_its_own_folder(tmp_path):
+    sizes = "module p {{ module msg {{ const long N = {}; }}; }};"
+    files = {
+        "q/msg/Base.idl": '#include "p/sizes.idl"\nmodule q { module msg { }; };'.replace(
+            "module msg { };", "module msg { struct Base { long x; }; };"
+        ),
+        "p/sizes.idl": sizes.format(2),
+        "q/msg/p/sizes.idl": sizes.format(3),
+        "p/msg/T.idl": """#include "q/msg/Base.idl"
+            module p { module msg { struct T { long a[N]; }; }; };""",
+    }
+    assert types(library(tmp_path, files).message("p/msg/T")) == {"a": "int32[2]"}
+
+
+def test_a_file_of_the_same_name_in_two_folders_is_that_beside_the_one_that_includes_it(tmp_path):
+    def base(package, n):
+        return {
+            f"{package}/msg/Base.idl": f'#include "sizes.idl"\nmodule {package} {{ module msg {{ '
+            f"const long M = {package}::msg::N; struct Base {{ long x; }}; }}; }};",
+            f"{package}/msg/sizes.idl": f"module {package} {{ module msg {{ const long N = {n}; "
+            "}; };",
+        }
+
+    files = {
+        **base("q", 2),
+        **base("r", 3),
+        "p/msg/T.idl": """#include "q/msg/Base.idl"
+            #include "r/msg/Base.idl"
+            module p { module msg { struct T { long a[q::msg::M]; long b[r::msg::M]; }; }; };""",
+    }
+    found = types(library(tmp_path, files).message("p/msg/T"))
+    assert found == {"a": "int32[2]", "b": "int32[3]"}
+
+
+def test_files_of_one_library_do_not_remember_those_of_another(tmp_path, monkeypatch):
+    # Paths are as the user wrote them: the same words may mean another file.
+    for folder, n in (("one", 2), ("two", 3)):
+        files = {
+            "ws/p/msg/sizes.idl": f"module p {{ module msg {{ const long N = {n}; }}; }};",
+            "ws/p/msg/T.idl": '#include "p/msg/sizes.idl"\n'
+            "module p { module msg { struct T { long a[N]; }; }; };",
+        }
+        make_files(tmp_path / folder, files)
+        monkeypatch.chdir(tmp_path / folder)
+        assert types(Library("lyrical", ["ws"]).message("p/msg/T")) == {"a": f"int32[{n}]"}
+
+
+# Typedefs.
+
+
+def test_a_file_has_its_own_typedefs_before_those_that_it_includes(tmp_path):
+    files = {
+        "q/msg/Base.idl": "module q { module msg { typedef double Value[2]; typedef long Other;"
+        " struct Base { Value v; Other o; }; }; };",
+        "p/msg/T.idl": """#include "q/msg/Base.idl"
+            module p { module msg { typedef string<5> Value;
+            struct T { Value v; sequence<Value, 2> w; Other o; }; }; };""",
+    }
+    lib = library(tmp_path, files)
+    assert types(lib.message("q/msg/Base")) == {"v": "float64[2]", "o": "int32"}
+    found = lib.message("p/msg/T")
+    assert types(found) == {"v": "string<=5", "w": "string<=5[<=2]", "o": "int32"}
+    assert found.fields[0].type == Text(bound=5)
+
+
+def test_typedefs_of_the_same_last_name_in_two_modules_need_one_meaning():
+    two = "module a {{ typedef long V[2]; }}; module b {{ typedef {} V[{}]; }}; "
+    struct = "module p { module msg { struct T { V v; b::V w; }; }; };"
+    (wrong,) = read(two.format("double", 2) + struct)[1]
+    assert wrong.message == "typedef 'V' is already declared as another type"
+    (wrong,) = read(two.format("long", 3) + struct)[1]
+    assert wrong.message == "typedef 'V' is already declared as another type"
+    assert sizes_of(two.format("long", 2) + struct) == {"T.v": 2, "T.w": 2}
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("string V", "wstring V"),
+        ("string<2> V", "string V"),
+        ("string<2> V", "string<3> V"),
+        ("sequence<long> V", "sequence<long, 2> V"),
+        ("sequence<long, 2> V", "sequence<long, 3> V"),
+        ("long V", "long V[1]"),
+        ("q::msg::A V", "q::msg::B V"),
+        ("q::msg::A V", "r::msg::A V"),
+    ],
+)
+def test_any_difference_between_two_typedefs_of_a_name_is_another_meaning(one, other):
+    text = f"module a {{ typedef {one}; }}; module b {{ typedef {other}; }}; "
+    text += "module p { module msg { struct T { long x; }; }; };"
+    (wrong,) = read(text)[1]
+    assert wrong.message == "typedef 'V' is already declared as another type"
+
+
+def test_a_scope_in_front_of_a_typedef_has_to_be_its_own():
+    text = """module a { typedef long V[2]; };
+      module p { module msg { struct T { a::V x; }; }; };"""
+    assert sizes_of(text) == {"T.x": 2}
+    for scope in ("b", "a::a", "p"):
+        (wrong,) = read(text.replace("a::V x", f"{scope}::V x"))[1]
+        assert wrong.message.startswith(f"'{scope}::V' is not a type"), scope
+    # A name like that of a struct is one.
+    messages, wrong = read(text.replace("a::V x", "p::msg::V x"))
+    type_ = messages["T"].members[0].type
+    assert wrong == [] and (type_.package, type_.kind, type_.name) == ("p", "msg", "V")
+
+
+def test_a_typedef_is_read_where_it_stands():
+    text = """module a { const long N = 2; typedef long V[N]; };
+      module p { const long N = 3; module msg { const long N = 4;
+        typedef long W[N]; struct T { V v; W w; long n[N]; }; }; };"""
+    assert sizes_of(text) == {"T.v": 2, "T.w": 4, "T.n": 4}
+
+
+def test_types_of_two_packages_may_have_one_name(tmp_path):
+    files = {
+        "q/msg/Part.idl": "module q { module msg { struct Part { long q; }; }; };",
+        "r/msg/Part.idl": "module r { module msg { struct Part { long r; }; }; };",
+        "p/msg/Part.idl": "module p { module msg { enum Kind { A }; struct Part { long p; }; }; };",
+        "p/msg/T.idl": """#include "q/msg/Part.idl"
+            #include "r/msg/Part.idl"
+            #include "p/msg/Part.idl"
+            module q { enum Part { X }; };
+            module p { module msg { struct T {
+            r::msg::Part a; p::msg::Part b; q::msg::Part c; }; }; };""",
+    }
+    found = library(tmp_path, files).message("p/msg/T")
+    assert [item.type.fields[0].name for item in found.fields] == ["r", "p", "q"]
+
+
+# Annotations and comments.
+
+
+def test_annotations_belong_to_their_own_member():
+    text = """module p { module msg {
+      @verbatim(language="comment", text="of T") struct T {
+        @verbatim(language="comment", text="of a") @unit(value="m") @default(value=1) long a;
+        long b;
+        @unit(value="s") long c[2];
+        @verbatim(language="comment", text="of d") long d[3];
+        @default(value="(1, 2)") sequence<long, 2> e;
+        sequence<long, 2> f;
+        @unit(value="kg") @default(value=2) long g, h;
+        long i;
+      };
+    }; };"""
+    messages, wrong = read(text)
+    assert wrong == [] and messages["T"].comment == "of T"
+
+    def default(member):
+        value = member.default
+        if value is None:
+            return None
+        return tuple(i.value for i in value.items) if hasattr(value, "items") else value.value
+
+    found = {m.name.text: (m.comment, m.unit, default(m)) for m in messages["T"].members}
+    assert found == {
+        "a": ("of a", "m", 1),
+        "b": ("", None, None),
+        "c": ("", "s", None),
+        "d": ("of d", None, None),
+        "e": ("", None, (1, 2)),
+        "f": ("", None, None),
+        "g": ("", "kg", 2),
+        "h": ("", "kg", 2),
+        "i": ("", None, None),
+    }
+
+
+def test_comments_are_those_in_the_language_of_comments():
+    text = """module p { struct T {
+      @verbatim(language="comment", text="one") @verbatim(language="c++", text="no")
+      @verbatim(language="comment", text="two" "\\n" "three") @verbatim(text="none") long a;
+      @vendor::unit(value="m") @vendor::verbatim(language="comment", text="theirs") long b;
+      @unit::vendor(value="s") long c;
+    }; };"""
+    messages, wrong = read(text)
+    assert wrong == []
+    a, b, c = messages["T"].members
+    assert a.comment == "one\ntwo\nthree"
+    # The first word of a name is what rosidl_parser goes by.
+    assert (b.comment, b.unit, c.unit) == ("", None, "s")
+
+
+def test_a_default_of_one_name_is_not_that_of_an_array_behind_it():
+    text = (
+        'module p { struct T { @default(value="(1, 2)") long a[2]; @default(value=3) long b; }; };'
+    )
+    messages, wrong = read(text)
+    assert wrong == []
+    a, b = messages["T"].members
+    assert [item.value for item in a.default.items] == [1, 2] and b.default.value == 3
+    # A list is no default of a number, nor the other way round.
+    assert read('module p { struct T { @default(value="(1, 2)") long a, b[2]; }; };')[1]
+
+
+def test_an_unknown_constant_in_a_dependency_is_told_by_its_file(tmp_path):
+    files = {
+        "q/msg/U.idl": "module q { module msg { struct U { long a[N]; }; }; };",
+        "p/msg/T.idl": """#include "q/msg/U.idl"
+            module p { module msg { const long N = 3;
+            struct T { q::msg::U u; long n[N]; }; }; };""",
+    }
+    with pytest.raises(DefinitionError) as caught:
+        library(tmp_path, files).message("p/msg/T")
+    (wrong,) = caught.value.diagnostics
+    assert wrong.span.source.name.endswith("q/msg/U.idl")
