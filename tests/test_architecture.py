@@ -14,15 +14,16 @@ MOST_LINES = 450
 # Text to syntax to model to layout to plan to circuit to Verilog and VHDL: what each part may use.
 MAY_IMPORT = {
     "errors": set[str](),
+    "files": set[str](),
     "model": {"errors"},
-    "frontend": {"errors", "model"},
+    "frontend": {"errors", "files", "model"},
     "identity": {"errors", "model", "frontend"},
     "wire": {"errors", "model"},
     "metrics": {"errors", "model", "frontend", "identity", "wire"},
     "plan": {"errors", "model", "wire"},
     "gateware": {"errors", "model", "wire", "plan"},
     "sim": {"errors", "model", "frontend", "wire", "plan", "gateware"},
-    "export": {"firm_hdl", "errors", "model", "frontend", "wire", "plan", "gateware"},
+    "export": {"firm_hdl", "errors", "files", "model", "frontend", "wire", "plan", "gateware"},
 }
 MAY_IMPORT["verify"] = {*MAY_IMPORT["export"], "export", "identity", "metrics", "sim"}
 # Of `verify`, it uses what runs many processes.

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from firm_hdl.errors import DefinitionError, Diagnostic
-from firm_hdl.export.folder import is_current, is_empty, read_manifest, replace
+from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
 from firm_hdl.export.manifest import MANIFEST, inputs_of, make_manifest, module_name, to_json
 from firm_hdl.export.names import identifier
 from firm_hdl.export.packaging import packaging
@@ -214,7 +214,7 @@ def _check_folders(tasks: list[_Task]) -> None:
             )
         found = read_manifest(task.folder)
         if found is not None:
-            other = str(found.get("inputs", {}).get("message"))
+            other = str(found["inputs"].get("message"))
             if other != task.message.name:
                 raise BuildError(f"{task.message.name}: '{task.folder}' holds {other}")
         elif task.folder.exists() and not is_empty(task.folder):
@@ -223,20 +223,23 @@ def _check_folders(tasks: list[_Task]) -> None:
 
 def _do(task: _Task, force: bool) -> Built:
     figures = timing(task.plan)
+    try:
+        return _written(task, figures, force)
+    except OSError as error:
+        where = error.filename or task.folder
+        raise BuildError(f"'{where}' cannot be written: {error.strerror}") from None
+
+
+def _written(task: _Task, figures: Timing, force: bool) -> Built:
+    clear_up(task.folder)
     built = Built(
         name=task.message.name,
         folder=task.folder,
         was_current=not force and is_current(task.folder, task.inputs),
         description=describe(task.message.name, task.plan, figures),
     )
-    if built.was_current:
-        return built
-    files = _files(task, figures)
-    try:
-        replace(task.folder, files)
-    except OSError as error:
-        where = error.filename or task.folder
-        raise BuildError(f"'{where}' cannot be written: {error.strerror}") from None
+    if not built.was_current:
+        replace(task.folder, _files(task, figures))
     return built
 
 
