@@ -94,9 +94,10 @@ def test_test_systems_do_not_judge_it(run, system):
     if system == "bench":
         need("GHDL", GHDL)
     status, out, err = run("verify", "--systems", system, "--jobs", "1", "p/Wide", "p/srv/Ask")
-    assert (status, err) == (0, "")
-    assert f"not judged: p/msg/Wide (lyrical): {SENTENCE}\n" in out
+    assert (status, err) == (1, "")
+    assert f"not judged: p/msg/Wide (lyrical), {system}, 8-byte bus: {SENTENCE}\n" in out
     assert out.count("not judged: p/") == 4  # With the request, the response and the event.
+    assert out.endswith("nothing was judged: this is no pass\n")
     assert "FAIL" not in out
 
 

@@ -56,6 +56,7 @@ from firm_hdl.verify.processes import cpu_seconds
 from firm_hdl.verify.references import WIDE_REFERENCE, confirm, may_stand_in
 from firm_hdl.verify.simulators import simulator
 from firm_hdl.verify.user_oracle import Judge, NotJudgedError, judge_of
+from firm_hdl.verify.verdict import NotJudged
 from firm_hdl.verify.wide_oracle import WideOracle
 from firm_hdl.wire import Wire, lay_out
 
@@ -112,7 +113,7 @@ def measured(
         run(message, judge, options, result)
         result.setup_seconds += prepared
     except NotJudgedError as error:
-        result.not_judged = str(error)
+        result.obstacle = NotJudged(str(error) or type(error).__name__)
     except Exception as error:  # Whatever it is, the other types are to go on.
         result.failures.append(f"{type(error).__name__}: {error}")
     result.seconds = time.perf_counter() - began
@@ -294,6 +295,8 @@ class Acceptance:
             self.packets("golden model, " + case.what, [packet], [case.packet])
             if status != "OK":
                 self.fail(f"golden model, {case.what}: status {status} when encoding")
+        if not self.options.simulated:
+            self.result.judged += len(taken)
         self.cover(taken)
         return taken
 
@@ -363,6 +366,7 @@ class Acceptance:
             self.result.failures += status_differences(f"{where}: {what}", got, right, names)
         if any(seen.marked):
             self.fail(f"{where}: packet_error is {seen.marked}")
+        self.result.judged += len(seen.packets)
 
     def broken(self, cases: Sequence[Case]) -> None:
         """Check the hardware against the golden model on packets that are wrong."""

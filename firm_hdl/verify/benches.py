@@ -33,13 +33,14 @@ from firm_hdl.verify.cases import Case
 from firm_hdl.verify.executors import run_each
 from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.processes import ToolError, cpu_seconds, run_tool
-from firm_hdl.verify.records import Record, Seconds, Test, clipped
+from firm_hdl.verify.records import Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.references import WIDE_REFERENCE, confirm, may_stand_in
 from firm_hdl.verify.runner import Task
 from firm_hdl.verify.simulators import find_ghdl
 from firm_hdl.verify.stimuli import stimulus_cases
-from firm_hdl.verify.system import Recorder, System, wire_of
+from firm_hdl.verify.system import Judged, Recorder, System, judged, wire_of
 from firm_hdl.verify.user_oracle import NotJudgedError, check_wire, judge_of
+from firm_hdl.verify.verdict import Failed, NotJudged, Passed, Verdict
 from firm_hdl.verify.wide_oracle import WideOracle
 from firm_hdl.wire import Wire
 
@@ -81,10 +82,8 @@ class BenchResult:
 
     Attributes
     ----------
-    failure : str
-        What is wrong; empty if nothing is.
-    not_judged : str
-        Why there was nothing to run; empty if there was.
+    verdict : Verdict
+        Cases are packets that came out as the oracle has them.
     packets, transfers : int
         Packets and leaf transfers that were right.
     seconds, cpu_seconds : float
@@ -93,8 +92,7 @@ class BenchResult:
         Until GHDL had analysed everything, and while it ran.
     """
 
-    failure: str = ""
-    not_judged: str = ""
+    verdict: Verdict
     packets: int = 0
     transfers: int = 0
     seconds: float = 0.0
@@ -106,21 +104,21 @@ class BenchResult:
 def run_bench(distro: str, name: str, run: BenchRun) -> BenchResult:
     """Build a type and run its bench. Nothing is raised: what goes wrong is in the result."""
     began, began_cpu = time.perf_counter(), cpu_seconds()
-    failure = not_judged = ""
+    verdict: Verdict
     packets = transfers = 0
     simulation: list[tuple[float, float]] = []
     try:
         with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
             packets, transfers = _run_bench(distro, name, run, Path(folder), simulation)
+        verdict = Passed(packets)
     except NotJudgedError as error:
-        not_judged = str(error)
+        verdict = NotJudged(str(error) or type(error).__name__)
     except (AssertionError, ToolError) as error:
-        failure = str(error)
+        verdict = Failed((str(error),))
     except Exception as error:  # Whatever it is, the other types are to go on.
-        failure = f"{type(error).__name__}: {error}"
+        verdict = Failed((f"{type(error).__name__}: {error}",))
     return BenchResult(
-        failure=failure,
-        not_judged=not_judged,
+        verdict=verdict,
         packets=packets,
         transfers=transfers,
         seconds=time.perf_counter() - began,
@@ -171,7 +169,7 @@ def _run_bench(
         said = run_tool(["sh", str(vhdl / RUN_SCRIPT), *names], vhdl, environment=environment)
         simulation.append((began, time.perf_counter()))
         if not said.startswith("PASS "):
-            raise ToolError(said)
+            raise ToolError(said.strip() or f"the bench {entity} ended without a word")
         _compare("packets that came out", (work / "results.txt").read_text(), right)
         if entity == entities[0]:
             transfers = _check_transfers(plan, cases, (work / "transfers.txt").read_text())
@@ -278,12 +276,12 @@ class Benches(System):
         """Nothing but what all systems have."""
         return {}
 
-    def run(self, recorder: Recorder) -> bool:
+    def run(self, recorder: Recorder) -> list[Judged]:
         """Run all benches, and print a table for each bus."""
-        return not sum([self._run(run, recorder) for run in self._runs])
+        return [each for run in self._runs for each in self._run(run, recorder)]
 
-    def _run(self, run: BenchRun, recorder: Recorder) -> int:
-        """Run the benches with one bus; return how many failed."""
+    def _run(self, run: BenchRun, recorder: Recorder) -> list[Judged]:
+        """Run the benches with one bus."""
         began = time.perf_counter()
         found = ((work, recorder.known(_test(run, *work))) for work in self._work)
         records = {work: record for work, record in found if record is not None}
@@ -297,17 +295,15 @@ class Benches(System):
             for (distro, name), result in results:
                 records[distro, name] = record = _record(run, distro, name, result)
                 recorder.add(record)
-                if result.failure:
+                if isinstance(result.verdict, Failed):
                     tqdm.write(
-                        f"FAIL {name} ({distro})\n    {result.failure[:2000]}\n"
+                        f"FAIL {name} ({distro})\n    {result.verdict.failures[0][:2000]}\n"
                         f"    again: {record.command}"
                     )
-                if result.not_judged:
-                    tqdm.write(f"not judged: {name} ({distro}): {result.not_judged}")
                 bar.update()
         _table(records, run.bus_bytes)
         print(f"{time.perf_counter() - began:.0f} s")
-        return sum(record.status == "fail" for record in records.values())
+        return judged(records.values())
 
 
 def _test(run: BenchRun, distro: str, name: str) -> Test:
@@ -327,9 +323,7 @@ def _record(run: BenchRun, distro: str, name: str, result: BenchResult) -> Recor
     testing = result.seconds - result.setup_seconds - result.simulation_seconds
     return Record(
         test=_test(run, distro, name),
-        status="fail" if result.failure else "skipped" if result.not_judged else "pass",
-        reason=result.not_judged,
-        failures=clipped([result.failure] if result.failure else []),
+        verdict=clipped_verdict(result.verdict),
         seconds=Seconds(
             generation=result.setup_seconds,
             simulation=result.simulation_seconds,
@@ -348,7 +342,7 @@ def _results(
     tasks = [((distro, name), (distro, name, run)) for distro, name in work]
     for key, result in run_each(run_bench, tasks, jobs=jobs):
         if isinstance(result, Exception):
-            result = BenchResult(failure=f"{type(result).__name__}: {result}")
+            result = BenchResult(verdict=Failed((f"{type(result).__name__}: {result}",)))
         yield key, result
 
 
@@ -359,12 +353,12 @@ def _table(records: Mapping[tuple[str, str], Record], bus_bytes: int) -> None:
         mine = [record for key, record in records.items() if key[0] == distro]
         if not mine:
             continue
-        counts = Counter(each.status for each in mine)
+        counts = Counter(each.verdict.name for each in mine)
         row = [
             len(mine),
-            counts["pass"],
-            counts["fail"],
-            counts["skipped"],
+            counts[Passed.name],
+            counts[Failed.name],
+            counts[NotJudged.name],
             sum(each.packets for each in mine),
             round(sum(each.metrics.get("transfers", 0) for each in mine)),
             round(sum(each.seconds.total for each in mine)),

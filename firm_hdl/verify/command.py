@@ -17,6 +17,7 @@ from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.search import workspace_folders
 from firm_hdl.plan import BUS_BYTES
 from firm_hdl.verify.benches import Benches
+from firm_hdl.verify.ending import concluded, is_well
 from firm_hdl.verify.environment import code_digest, environment
 from firm_hdl.verify.executors import PROCESSES, ExecutorError, check_executor
 from firm_hdl.verify.options import LONGEST, Options
@@ -38,7 +39,7 @@ from firm_hdl.verify.sut.arguments import (
 )
 from firm_hdl.verify.sut.client import ClientMissingError
 from firm_hdl.verify.sut.command import run_sut
-from firm_hdl.verify.system import Recorder, System
+from firm_hdl.verify.system import Judged, Recorder, System
 from firm_hdl.verify.ts1 import ORACLES, Ts1, selections_of
 from firm_hdl.verify.ts2 import Ts2, Ts2Options
 from firm_hdl.verify.ts3 import How, Ts3
@@ -69,9 +70,13 @@ def run_verify(given: argparse.Namespace) -> int:
         _search_workspace(given)
         with unwound_when_terminated():
             if given.sut:
-                is_well = run_sut(_tasks(given), sut_options(given), given.jobs)
+                found = run_sut(_tasks(given), sut_options(given), given.jobs)
             else:
-                is_well = _run_systems(given)
+                found = _run_systems(given)
+        # Changed texts are nobody's by name.
+        is_named = not given.all and not given.mutations
+        for line in concluded(found, is_named=is_named):
+            print(line)
         if given.report is not None:
             write_report([given.results], given.report)
             print(f"wrote   {given.report}")
@@ -87,7 +92,7 @@ def run_verify(given: argparse.Namespace) -> int:
         return 1
     for problem in given.problems:
         print(problem, file=sys.stderr)
-    return 0 if is_well and not given.problems else 1
+    return 0 if is_well(found, is_named=is_named) and not given.problems else 1
 
 
 def _search_workspace(given: argparse.Namespace) -> None:
@@ -107,8 +112,8 @@ def _search_workspace(given: argparse.Namespace) -> None:
             raise
 
 
-def _run_systems(given: argparse.Namespace) -> bool:
-    """Run the test systems; say whether nothing failed."""
+def _run_systems(given: argparse.Namespace) -> list[Judged]:
+    """Run the test systems; return what came of all tests."""
     with ExitStack() as stack:
         systems = [SYSTEMS[name](given) for name in given.systems]
         for system in systems:
@@ -117,8 +122,7 @@ def _run_systems(given: argparse.Namespace) -> bool:
         if given.results is not None:
             writer = stack.enter_context(_writer(given, systems))
         # Each of them, whatever comes of the first.
-        results = [system.run(Recorder(writer)) for system in systems]
-    return all(results)
+        return [each for system in systems for each in system.run(Recorder(writer))]
 
 
 def _writer(given: argparse.Namespace, systems: Sequence[System]) -> ResultsWriter:

@@ -21,6 +21,7 @@ from firm_hdl.frontend import DISTROS, Library, open_library
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan, check, from_yaml, to_yaml
 from firm_hdl.plan.compare import Change, compare
+from firm_hdl.verify.verdict import Failed, Passed, Verdict
 from firm_hdl.wire import lay_out
 
 __all__ = ["Checked", "Golden", "add", "check_golden", "read_golden", "summarise"]
@@ -66,9 +67,10 @@ class Checked:
     problems: tuple[str, ...]
 
     @property
-    def is_same(self) -> bool:
-        """Whether nothing is to be looked at."""
-        return not self.changes and not self.problems
+    def verdict(self) -> Verdict:
+        """Passed if nothing is to be looked at."""
+        wrong = (*self.problems, *map(str, self.changes))
+        return Failed(wrong) if wrong else Passed(1)
 
 
 def read_golden(folder: str | os.PathLike[str]) -> list[Golden]:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from firm_hdl.export.build import BuildError, load_all, plan_of
 from firm_hdl.frontend import open_library
 from firm_hdl.verify.golden import Checked, add, check_golden, read_golden, summarise
+from firm_hdl.verify.verdict import Passed
 
 __all__ = ["add_golden_arguments", "run_golden"]
 
@@ -39,7 +40,7 @@ def run_golden(given: argparse.Namespace) -> int:
         raise BuildError(f"'{given.folder}' has no golden plans")
     chosen = [golden for golden in goldens if not wanted or golden.plan.message in wanted]
     results = check_golden(chosen, given.path, given.bag)
-    differing = [result for result in results if not result.is_same]
+    differing = [result for result in results if not isinstance(result.verdict, Passed)]
     for result in differing:
         _print(result)
     kinds = summarise(results)
@@ -54,7 +55,7 @@ def run_golden(given: argparse.Namespace) -> int:
 
 def _print(result: Checked) -> None:
     print(f"{result.golden.path}: {result.golden.plan.message}")
-    for line in (*result.problems, *map(str, result.changes)):
+    for line in result.verdict.details:
         print(f"    {line}")
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from firm_hdl.verify.crosscheck import Comparison
 from firm_hdl.verify.directed import Coverage
+from firm_hdl.verify.verdict import Failed, NotJudged, Passed, Verdict
 
 __all__ = ["LONGEST", "Options", "Result"]
 
@@ -87,7 +88,12 @@ class Result:
     ----------
     distro, name : str
     failures : list of str
-        Empty if all is well.
+        What is wrong, as it is found.
+    judged : int
+        Packets whose bytes and transfers were compared with the oracle's: those that came out of
+        the circuit, or of the golden model if the circuit is not to be simulated.
+    obstacle : NotJudged or None
+        Why there is no oracle for the type, and nothing was run.
     cases, packets : int
         Cases of the type, and packets sent for them in all runs.
     beats, cycles : int
@@ -106,8 +112,6 @@ class Result:
         Digest of the plan without names.
     command : str
         How to run it again.
-    not_judged : str
-        Why there is no oracle for the type, and nothing was run; empty if there is.
     note : str
         What is to be known about the oracle; empty in most cases.
     written_by : tuple of str
@@ -119,6 +123,8 @@ class Result:
     distro: str
     name: str
     failures: list[str] = field(default_factory=list)
+    judged: int = 0
+    obstacle: NotJudged | None = None
     cases: int = 0
     packets: int = 0
     beats: int = 0
@@ -133,7 +139,17 @@ class Result:
     metrics: dict[str, float] = field(default_factory=dict)
     shape: str = ""
     command: str = ""
-    not_judged: str = ""
     note: str = ""
     written_by: tuple[str, ...] = ()
     comparison: Comparison | None = None
+
+    @property
+    def verdict(self) -> Verdict:
+        """What all of this comes to; cases are packets that were judged."""
+        if self.failures:
+            return Failed(tuple(self.failures))
+        if self.obstacle is not None:
+            return self.obstacle
+        if not self.judged:
+            return NotJudged("no packet was compared with the oracle")
+        return Passed(self.judged)

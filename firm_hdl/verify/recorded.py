@@ -12,7 +12,7 @@ from firm_hdl.verify.effort import message_limit
 from firm_hdl.verify.figures import digest
 from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.options import LONGEST, Options, Result
-from firm_hdl.verify.records import PlanCoverage, Record, Seconds, Status, Test, clipped
+from firm_hdl.verify.records import PlanCoverage, Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.runner import Task
 from firm_hdl.verify.system import wire_of
 from firm_hdl.wire import lay_out
@@ -57,14 +57,11 @@ def record_of(task: Task, result: Result, options: Options, same_as: str = "") -
     same_as : str
         Key of the test that simulates the circuit for this one.
     """
-    status: Status = "fail" if result.failures else "skipped" if result.not_judged else "pass"
     testing = result.seconds - result.setup_seconds - result.simulation_seconds
     waveform = replace(options, vcd=WAVEFORM_FOLDER, simulator="python")
     return Record(
         test=test_of(task, options),
-        status=status,
-        reason="" if result.failures else result.not_judged,
-        failures=clipped(result.failures),
+        verdict=clipped_verdict(result.verdict),
         note=result.note,
         seconds=Seconds(
             generation=result.setup_seconds,

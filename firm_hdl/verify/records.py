@@ -8,25 +8,29 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any, Literal, get_args
+from typing import Any
 
-from firm_hdl.verify.verdict import Failed, NotJudged, Verdict, verdict_from_json, verdict_to_json
+from firm_hdl.verify.verdict import (
+    Failed,
+    KnownDifference,
+    NotJudged,
+    Passed,
+    Verdict,
+    verdict_from_json,
+    verdict_to_json,
+)
 
 __all__ = [
     "STAGES",
-    "STATUSES",
     "OracleVerdict",
     "PlanCoverage",
     "Record",
     "Seconds",
-    "Status",
     "Test",
     "clipped",
     "clipped_verdict",
+    "settled",
 ]
-
-Status = Literal["pass", "fail", "skipped"]
-STATUSES: tuple[Status, ...] = get_args(Status)
 
 MOST_FAILURES = 20
 MOST_CHARACTERS = 4000
@@ -76,6 +80,12 @@ class Test:
         circuit = f"{self.wire}/{self.bus_bytes}" if self.bus_bytes else self.wire
         parts = (self.system, self.simulator, self.distro, self.type, circuit, self.options)
         return " ".join(part for part in parts if part)
+
+    @property
+    def title(self) -> str:
+        """What people read it by."""
+        bus = f", {self.bus_bytes}-byte bus" if self.bus_bytes else ""
+        return f"{self.type} ({', '.join(self.distros)}), {self.system}{bus}"
 
     @classmethod
     def from_json(cls, given: object) -> Test:
@@ -175,7 +185,7 @@ class OracleVerdict:
             If it is none.
         """
         values = dict(_mapping(given, "What an oracle says"))
-        own = {name: values.pop(name) for name in ("oracle", "is_refused") if name in values}
+        own: dict[str, Any] = {n: values.pop(n) for n in ("oracle", "is_refused") if n in values}
         own["verdict"] = verdict_from_json(values)
         made: OracleVerdict = _made(cls, own)
         return made
@@ -187,10 +197,8 @@ class Record:
 
     Attributes
     ----------
-    status : "pass", "fail" or "skipped"
-    reason : str
-        Why it was skipped.
-    failures : tuple of str
+    verdict : Verdict
+        See `settled` for a test that rests on another one's circuit.
     note : str
         What is to be known about the oracle.
     seconds : Seconds
@@ -217,9 +225,7 @@ class Record:
     """
 
     test: Test
-    status: Status
-    reason: str = ""
-    failures: tuple[str, ...] = ()
+    verdict: Verdict
     note: str = ""
     seconds: Seconds = field(default_factory=Seconds)
     cpu_seconds: float = 0.0
@@ -237,14 +243,8 @@ class Record:
     waveform_command: str = ""
 
     def __post_init__(self) -> None:
-        if self.status not in STATUSES:
-            raise ValueError(f"Status must be one of {', '.join(STATUSES)}, not {self.status!r}")
-        if (self.status == "fail") != bool(self.failures):
-            raise ValueError(
-                f"A test with status {self.status!r} has {len(self.failures)} failures"
-            )
-        if self.status == "skipped" and not self.reason:
-            raise ValueError("A test that was skipped must have a reason")
+        if not isinstance(self.verdict, Passed | Failed | NotJudged | KnownDifference):
+            raise ValueError(f"What became of a test must be a verdict, not {self.verdict!r}")
 
     @property
     def without_times(self) -> Record:
@@ -254,6 +254,7 @@ class Record:
     def as_json(self) -> dict[str, Any]:
         """Return what `from_json` reads: without what is empty, and times in microseconds."""
         found = _without_empty(asdict(self))
+        found["verdict"] = verdict_to_json(self.verdict)
         if self.verdicts:
             found["verdicts"] = [each.as_json() for each in self.verdicts]
         return found
@@ -269,6 +270,7 @@ class Record:
         """
         values = dict(_mapping(given, "A record"))
         values["test"] = Test.from_json(values.get("test"))
+        values["verdict"] = verdict_from_json(values.get("verdict"))
         if "seconds" in values:
             values["seconds"] = _made(Seconds, values["seconds"])
         if "verdicts" in values:
@@ -303,6 +305,28 @@ def clipped_verdict(verdict: Verdict) -> Verdict:
             return verdict
 
 
+def settled(record: Record, records: Mapping[str, Record]) -> Verdict:
+    """Return what a test is worth: one that rests on the circuit of another, that one's verdict.
+
+    Parameters
+    ----------
+    records : mapping of str to Record
+        By key.
+    """
+    if isinstance(record.verdict, Failed | NotJudged) or not record.same_as:
+        return record.verdict
+    other = records.get(record.same_as)
+    if other is None:
+        return NotJudged(f"has the circuit of '{record.same_as}', of which there is no result")
+    if isinstance(other.verdict, NotJudged):
+        return NotJudged(f"has the circuit of '{record.same_as}', which was not judged")
+    if other.shape != record.shape:
+        return Failed((f"not the circuit of '{record.same_as}', as its record says",))
+    if isinstance(other.verdict, Failed):
+        return Failed((f"has the circuit of '{record.same_as}', which failed",))
+    return record.verdict
+
+
 def _without_empty(values: dict[str, Any]) -> dict[str, Any]:
     found = {}
     for name, value in values.items():
@@ -310,7 +334,7 @@ def _without_empty(values: dict[str, Any]) -> dict[str, Any]:
             value = _without_empty(value)
         if isinstance(value, float):
             value = round(value, 6)
-        if value or name in ("status", "test"):
+        if value or name in ("verdict", "test"):
             found[name] = value
     return found
 

@@ -24,7 +24,7 @@ from firm_hdl.verify.records import Record, Test
 
 __all__ = ["FORMAT", "Results", "ResultsError", "ResultsWriter", "done", "read_results"]
 
-FORMAT = "firm-hdl results 1"
+FORMAT = "firm-hdl results 2"
 
 
 class ResultsError(ValueError):

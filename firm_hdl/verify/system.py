@@ -8,19 +8,45 @@ soon as it is there. Printing is the system's own business.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing
+from dataclasses import dataclass
 from typing import Any, ClassVar, TypeVar
 
 from firm_hdl.frontend import DISTROS
 from firm_hdl.verify.executors import PROCESSES, ExecutorError, run_each
-from firm_hdl.verify.records import Record, Test
+from firm_hdl.verify.records import Record, Test, settled
 from firm_hdl.verify.results import ResultsWriter
+from firm_hdl.verify.verdict import Verdict
 
-__all__ = ["Recorder", "System", "run_shares", "shares_of", "wire_of"]
+__all__ = ["Judged", "Recorder", "System", "judged", "run_shares", "shares_of", "wire_of"]
 
 K = TypeVar("K")
 R = TypeVar("R")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Judged:
+    """What was asked of a test system, and what it says.
+
+    Attributes
+    ----------
+    what : str
+        For people: a type, where it is from, and how it was tested.
+    verdict : Verdict
+    """
+
+    what: str
+    verdict: Verdict
+
+
+def judged(records: Iterable[Record]) -> list[Judged]:
+    """Return what the tests of some records are worth, all of one system."""
+    by_key = {record.test.key: record for record in records}
+    return [
+        Judged(what=record.test.title, verdict=settled(record, by_key))
+        for record in by_key.values()
+    ]
 
 
 class Recorder:
@@ -79,8 +105,8 @@ class System(ABC):
         """What results depend on, as JSON can say it; the same name means the same everywhere."""
 
     @abstractmethod
-    def run(self, recorder: Recorder) -> bool:
-        """Run what has no record, print what came of all, and say whether nothing failed."""
+    def run(self, recorder: Recorder) -> list[Judged]:
+        """Run what has no record, print what came of all, and return it."""
 
 
 def wire_of(distro: str, wire: str | None) -> str:

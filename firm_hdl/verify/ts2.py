@@ -27,9 +27,18 @@ from firm_hdl.verify.figures import digest, figures
 from firm_hdl.verify.golden import Checked, Golden, check_golden, read_golden
 from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.processes import cpu_seconds
-from firm_hdl.verify.records import Record, Seconds, Test, clipped
+from firm_hdl.verify.records import Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.runner import Task
-from firm_hdl.verify.system import Recorder, System, run_shares, shares_of, wire_of
+from firm_hdl.verify.system import (
+    Judged,
+    Recorder,
+    System,
+    judged,
+    run_shares,
+    shares_of,
+    wire_of,
+)
+from firm_hdl.verify.verdict import Failed, NotJudged, Passed, Verdict
 from firm_hdl.wire import Wire, lay_out, refusals
 
 __all__ = ["Invariants", "Ts2", "Ts2Options", "check_plan"]
@@ -46,10 +55,8 @@ class Invariants:
 
     Attributes
     ----------
-    problems : tuple of str
-        Empty if all is well.
-    not_judged : str
-        Why there can be no plan; empty if there can.
+    verdict : Verdict
+        A case is a plan.
     shape : str
         Digest of the plan without names.
     metrics : dict of str to float
@@ -58,8 +65,7 @@ class Invariants:
         From the definition to the plan; for everything that is checked; of the processor.
     """
 
-    problems: tuple[str, ...] = ()
-    not_judged: str = ""
+    verdict: Verdict
     shape: str = ""
     metrics: dict[str, float] = field(default_factory=dict)
     planning_seconds: float = 0.0
@@ -70,12 +76,12 @@ class Invariants:
 def check_plan(message: Message, wire: Wire | None, bus_bytes: int) -> Invariants:
     """Plan a type, and check the plan. Nothing is raised for what is wrong with it."""
     if wrong := refusals(message):
-        return Invariants(not_judged=wrong[0].message)
+        return Invariants(verdict=NotJudged(wrong[0].message))
     began = time.perf_counter()
     try:
         plan = plan_of(message, wire, bus_bytes, DEFAULT_MAX_MESSAGE_BYTES)
     except (BuildError, DefinitionError) as error:
-        return Invariants(problems=(str(error),))
+        return Invariants(verdict=Failed((str(error),)))
     planned = time.perf_counter()
     problems = list(check(plan, lay_out(message, wire)))
     if len(plan.steps) <= YAML_STEPS and from_yaml(to_yaml(plan)) != plan:
@@ -85,7 +91,7 @@ def check_plan(message: Message, wire: Wire | None, bus_bytes: int) -> Invariant
     # There are no cases.
     metrics.pop("case_bytes", None)
     return Invariants(
-        problems=tuple(problems),
+        verdict=Failed(tuple(problems)) if problems else Passed(1),
         shape=digest(plan),
         metrics=metrics,
         planning_seconds=planned - began,
@@ -174,7 +180,7 @@ class Ts2(System):
         """Where golden plans are."""
         return {"golden": self._how.golden}
 
-    def run(self, recorder: Recorder) -> bool:
+    def run(self, recorder: Recorder) -> list[Judged]:
         """Check all plans, and compare golden ones."""
         # Before the first plan is made.
         goldens = self._goldens
@@ -187,10 +193,10 @@ class Ts2(System):
             print(line)
         self._check(records, recorder)
         self._count(records)
-        failed = sum(record.status == "fail" for record in records.values())
+        found = judged(records.values())
         if self._how.golden is not None:
-            failed += self._compare(goldens, recorder)
-        return not failed
+            found += self._compare(goldens, recorder)
+        return found
 
     def _check(self, records: dict[_Item, Record], recorder: Recorder) -> None:
         """Check the plans that have no record yet, and add their records."""
@@ -201,11 +207,10 @@ class Ts2(System):
         bar = tqdm(total=total, initial=known, unit="plan", desc="TS2", disable=None)
         with bar, closing(run):
             for share, result in run:
-                found = (
-                    [Invariants(problems=(f"{type(result).__name__}: {result}",))] * len(share)
-                    if isinstance(result, Exception)
-                    else result
-                )
+                if isinstance(result, Exception):
+                    why = f"{type(result).__name__}: {result}"
+                    result = [Invariants(verdict=Failed((why,)))] * len(share)
+                found = result
                 made = {i: self._record(i, each) for i, each in zip(share, found, strict=True)}
                 recorder.add(*made.values())
                 records |= made
@@ -218,15 +223,16 @@ class Ts2(System):
         total: Counter[tuple[str, int]] = Counter()
         for item in self._items:
             keys = [(distro, item.bus_bytes) for distro in item.task.same]
-            if records[item].status != "skipped":
+            if not isinstance(records[item].verdict, NotJudged):
                 total.update(keys)
-            if records[item].status == "pass":
+            if isinstance(records[item].verdict, Passed):
                 good.update(keys)
         for key in total:
             print(f"{key[0]:8} {good[key]:4} of {total[key]:4} plans are sound ({key[1]}-byte bus)")
-        shapes = {record.shape for record in records.values() if record.status == "pass"}
-        if skipped := sum(record.status == "skipped" for record in records.values()):
-            print(f"{skipped} of {len(records)} plans not judged")
+        verdicts = [record.verdict for record in records.values()]
+        shapes = {each.shape for each in records.values() if isinstance(each.verdict, Passed)}
+        if silent := sum(isinstance(verdict, NotJudged) for verdict in verdicts):
+            print(f"{silent} of {len(records)} plans not judged")
         print(f"{len(shapes)} different circuits")
 
     def _test(self, item: _Item) -> Test:
@@ -244,9 +250,7 @@ class Ts2(System):
     def _record(self, item: _Item, found: Invariants) -> Record:
         return Record(
             test=self._test(item),
-            status="fail" if found.problems else "skipped" if found.not_judged else "pass",
-            reason=found.not_judged,
-            failures=clipped(found.problems),
+            verdict=clipped_verdict(found.verdict),
             seconds=Seconds(generation=found.planning_seconds, testing=found.checking_seconds),
             cpu_seconds=found.cpu_seconds,
             metrics=found.metrics,
@@ -266,8 +270,8 @@ class Ts2(System):
         wanted = {(distro, _plain(task.name)) for task in self._tasks for distro in task.same}
         return [each for each in goldens if (each.distro, _plain(each.plan.message)) in wanted]
 
-    def _compare(self, goldens: Sequence[Golden], recorder: Recorder) -> int:
-        """Compare golden plans; return how many differ."""
+    def _compare(self, goldens: Sequence[Golden], recorder: Recorder) -> list[Judged]:
+        """Compare golden plans."""
         known = {
             golden.path: record
             for golden in goldens
@@ -276,11 +280,13 @@ class Ts2(System):
         for result in check_golden([g for g in goldens if g.path not in known], self._how.paths):
             known[result.golden.path] = record = self._golden_record(result)
             recorder.add(record)
-            if record.status == "fail":
-                _report(str(result.golden.path), record.failures)
-        differing = sum(record.status == "fail" for record in known.values())
+            if isinstance(record.verdict, Failed):
+                _report(str(result.golden.path), record.verdict.failures)
+        found = [Judged(what=str(path), verdict=known[path].verdict) for path in known]
+        differing = sum(isinstance(each.verdict, Failed) for each in found)
         print(f"golden plans: {len(goldens)} compared, {differing} differ")
-        return differing
+        none = NotJudged("none of them is of a type that was asked for")
+        return found or [Judged(what=f"golden plans of {self._how.golden}", verdict=none)]
 
     def _golden_test(self, golden: Golden) -> Test:
         return Test(
@@ -296,8 +302,7 @@ class Ts2(System):
         test = self._golden_test(result.golden)
         return Record(
             test=test,
-            status="pass" if result.is_same else "fail",
-            failures=clipped([*result.problems, *map(str, result.changes)]),
+            verdict=clipped_verdict(result.verdict),
             command=self._how.command(test.distro, test.type, None, golden=self._how.golden or ""),
         )
 
@@ -316,7 +321,7 @@ def _checked(options: Ts2Options, item: _Item) -> Invariants:
     except Exception as error:  # Whatever it is, the other types are to go on.
         is_own = isinstance(error, DefinitionError)
         problem = str(error) if is_own else f"{type(error).__name__}: {error}"
-        return Invariants(problems=(problem,), cpu_seconds=cpu_seconds() - began_cpu)
+        return Invariants(verdict=Failed((problem,)), cpu_seconds=cpu_seconds() - began_cpu)
     return replace(
         found,
         planning_seconds=read + found.planning_seconds,
@@ -331,10 +336,8 @@ def _plain(name: str) -> str:
 
 def _say(item: _Item, record: Record) -> None:
     task = item.task
-    if record.status == "fail":
-        _report(f"{task.name} ({task.distro}), {item.bus_bytes}-byte bus", record.failures)
-    if record.status == "skipped":
-        tqdm.write(f"not judged: {task.name} ({task.distro}): {record.reason}")
+    if isinstance(record.verdict, Failed):
+        _report(f"{task.name} ({task.distro}), {item.bus_bytes}-byte bus", record.verdict.failures)
 
 
 def _report(what: str, lines: Iterable[str]) -> None:

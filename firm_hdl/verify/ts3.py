@@ -15,11 +15,12 @@ from firm_hdl.frontend import DISTROS
 from firm_hdl.verify.executors import PROCESSES
 from firm_hdl.verify.options import Options, Result
 from firm_hdl.verify.recorded import record_of, same_circuits, test_of
-from firm_hdl.verify.records import Record, Test
+from firm_hdl.verify.records import Record, Test, settled
 from firm_hdl.verify.references import find_references
 from firm_hdl.verify.runner import Task, run_tasks
 from firm_hdl.verify.simulators import simulator
-from firm_hdl.verify.system import Recorder, System, wire_of
+from firm_hdl.verify.system import Judged, Recorder, System, judged, wire_of
+from firm_hdl.verify.verdict import Failed, NotJudged, Passed
 
 __all__ = ["How", "Ts3"]
 
@@ -95,7 +96,7 @@ class Ts3(System):
             "references": None if first.references is None else list(first.references),
         }
 
-    def run(self, recorder: Recorder) -> bool:
+    def run(self, recorder: Recorder) -> list[Judged]:
         """Run all tasks with each of the options.
 
         Raises
@@ -103,12 +104,13 @@ class Ts3(System):
         ExecutorError
         """
         began = time.perf_counter()
-        failures = sum([self._run(each, recorder) for each in self._options])
+        found = [each for one in self._options for each in self._run(one, recorder)]
+        failures = sum(isinstance(each.verdict, Failed) for each in found)
         print(f"{time.perf_counter() - began:.0f} s, {failures} failures")
-        return not failures
+        return found
 
-    def _run(self, options: Options, recorder: Recorder) -> int:
-        """Run all tasks with one set of options; return the number of types that failed."""
+    def _run(self, options: Options, recorder: Recorder) -> list[Judged]:
+        """Run all tasks with one set of options."""
         tasks, how = self._tasks, self._how
         records = {task: recorder.known(test_of(task, options)) for task in tasks}
         left = [task for task, record in records.items() if record is None]
@@ -136,18 +138,16 @@ class Ts3(System):
                 bar.update()
         if not options.bags:
             _repeat(notes)
-        _count(records, options)
-        judged = [result for result in results if not result.not_judged]
-        _summarize([result for result in judged if result.simulated_cycles], options)
-        return sum(record is not None and record.status == "fail" for record in records.values())
+        known_all = {task: record for task, record in records.items() if record is not None}
+        _count(known_all, options)
+        _summarize([result for result in results if result.simulated_cycles], options)
+        return judged(known_all.values())
 
 
 def _said(task: Task, result: Result, *, is_new: bool) -> Iterator[str]:
     """Say what is to be known of a type; what is said of many types, of the first one only."""
-    if result.not_judged:
-        yield f"not judged: {task.name} ({task.distro}): {result.not_judged}"
-    if result.failures:
-        yield _describe(task, result)
+    if isinstance(result.verdict, Failed):
+        yield _describe(task, result, result.verdict)
     if result.note and is_new:
         yield f"note: {task.name} ({task.distro}): {result.note}"
 
@@ -159,25 +159,25 @@ def _repeat(notes: Mapping[str, int]) -> None:
             print(f"note: {count - 1} more types: {note}")
 
 
-def _count(records: Mapping[Task, Record | None], options: Options) -> None:
+def _count(records: Mapping[Task, Record], options: Options) -> None:
     """Print how many types of each distribution pass."""
-    known = {task: record for task, record in records.items() if record is not None}
-    failed = {record.test.key for record in known.values() if record.status == "fail"}
+    by_key = {record.test.key: record for record in records.values()}
+    verdicts = {task: settled(record, by_key) for task, record in records.items()}
     passed: Counter[str] = Counter()
     total: Counter[str] = Counter()
-    for task, record in known.items():
-        if record.status != "skipped":
+    for task, verdict in verdicts.items():
+        if not isinstance(verdict, NotJudged):
             total.update(task.same)
-        if record.status == "pass" and record.same_as not in failed:
+        if isinstance(verdict, Passed):
             passed.update(task.same)
     for distro in DISTROS:
         if distro in total:
             print(f"{distro:8} {passed[distro]:4} of {total[distro]:4} types pass", end="")
             print(f" ({options.bus_bytes}-byte bus)")
-    if skipped := sum(record.status == "skipped" for record in known.values()):
-        print(f"{skipped} of {len(known)} types not judged")
-    if shared := sum(bool(record.same_as) for record in known.values()):
-        print(f"{shared} of {len(known)} types have the circuit of another, which was simulated")
+    if silent := sum(isinstance(verdict, NotJudged) for verdict in verdicts.values()):
+        print(f"{silent} of {len(records)} types not judged")
+    if shared := sum(bool(record.same_as) for record in records.values()):
+        print(f"{shared} of {len(records)} types have the circuit of another, which was simulated")
 
 
 def _summarize(results: Sequence[Result], options: Options) -> None:
@@ -207,11 +207,11 @@ def _summarize(results: Sequence[Result], options: Options) -> None:
         )
 
 
-def _describe(task: Task, result: Result) -> str:
+def _describe(task: Task, result: Result, failed: Failed) -> str:
     lines = [f"FAIL {task.name} ({', '.join(task.same)})"]
-    lines += [f"    {_clip(failure)}" for failure in result.failures[:8]]
-    if len(result.failures) > 8:
-        lines.append(f"    and {len(result.failures) - 8} more")
+    lines += [f"    {_clip(failure)}" for failure in failed.failures[:8]]
+    if len(failed.failures) > 8:
+        lines.append(f"    and {len(failed.failures) - 8} more")
     return "\n".join([*lines, f"    again: {result.command}"])
 
 

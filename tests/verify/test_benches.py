@@ -15,7 +15,9 @@ from firm_hdl.verify.results import read_results
 from firm_hdl.verify.runner import collect_tasks
 from firm_hdl.verify.sut import client
 from firm_hdl.verify.system import Recorder
+from firm_hdl.verify.verdict import Failed, NotJudged
 from tests.export.conftest import need
+from tests.verify.judged import assert_passed
 from tests.verify.samples import own_package
 
 HEADER = "std_msgs/msg/Header"
@@ -38,16 +40,15 @@ SAMPLE = [
 @pytest.mark.parametrize(("distro", "name", "bus_bytes"), SAMPLE)
 def test_bench_passes_with_the_bytes_and_transfers_of_rosbags(ghdl, distro, name, bus_bytes):
     result = run_bench(distro, name, BenchRun(bus_bytes=bus_bytes, ghdl=ghdl))
-    assert (result.failure, result.not_judged) == ("", "")
-    assert result.packets >= 3 and result.transfers >= result.packets
+    assert assert_passed(result) == result.packets >= 3
+    assert result.transfers >= result.packets
 
 
 @pytest.mark.parametrize("name", ["own_msgs/msg/Deep", "own_msgs/srv/Ask_Response"])
 def test_types_of_ones_own_pass_as_well(ghdl, tmp_path, name):
     run = BenchRun(paths=(str(own_package(tmp_path)),), ghdl=ghdl)
     result = run_bench("lyrical", name, run)
-    assert (result.failure, result.not_judged) == ("", "")
-    assert result.packets
+    assert assert_passed(result) == result.packets
 
 
 def wide(folder, ghdl):
@@ -60,19 +61,19 @@ def wide(folder, ghdl):
 def test_wide_text_is_not_judged_unless_somebody_has_it(ghdl, tmp_path, monkeypatch):
     monkeypatch.setattr(references, "references_here", lambda wanted=None: ())
     result = wide(tmp_path, ghdl)
-    assert result.failure == ""
-    assert result.not_judged == "rosbags has no wstring, which own_msgs/msg/Wide.text is"
+    assert result.verdict == NotJudged("rosbags has no wstring, which own_msgs/msg/Wide.text is")
 
 
 def test_wide_text_is_confirmed(ghdl, tmp_path, monkeypatch):
     if (missing := client(WIDE_REFERENCE).missing()) is not None:
         need(f"{WIDE_REFERENCE} ({missing})", None)
     result = wide(tmp_path, ghdl)
-    assert (result.failure, result.not_judged) == ("", "")
-    assert result.packets >= 3 and result.transfers > result.packets
+    assert assert_passed(result) == result.packets >= 3
+    assert result.transfers > result.packets
     codec = client(WIDE_REFERENCE).open(Library("lyrical").message("std_msgs/msg/Bool"), "cdr")
     monkeypatch.setattr(type(codec), "encode_all", lambda self, values: [b"\0"] * len(values))
-    assert "fastcdr writes 00, rosbags writes 00010000" in wide(tmp_path, ghdl).failure
+    (failure,) = wide(tmp_path, ghdl).verdict.failures
+    assert "fastcdr writes 00, rosbags writes 00010000" in failure
 
 
 FALSIFY = "trap 'sed -i s/00/01/ results.txt' EXIT"
@@ -109,7 +110,8 @@ def change(monkeypatch, file: str, before: str, after: str) -> None:
 def test_what_is_wrong_is_found(ghdl, monkeypatch, file, before, after, said):
     change(monkeypatch, file, before, after)
     result = run_bench("lyrical", HEADER, BenchRun(ghdl=ghdl))
-    assert said in result.failure
+    (failure,) = result.verdict.failures
+    assert said in failure
     assert not result.packets
 
 
@@ -117,21 +119,24 @@ def test_bench_of_the_record_view_is_run_as_well(ghdl, monkeypatch):
     run = BenchRun(ghdl=ghdl)
     alone = run_bench("lyrical", HEADER, run)
     both = run_bench("lyrical", "geometry_msgs/msg/Vector3", run)
-    assert (alone.failure, both.failure) == ("", "")
+    assert assert_passed(alone) and assert_passed(both) == both.packets
     # Three leaves, in the first bench; each packet is sent in both.
     assert 2 * both.transfers == 3 * both.packets
     change(monkeypatch, "8_serializer_record.vhd", "<= to_slv(msg", "<= not to_slv(msg")
-    assert "FAIL packet 0" in run_bench("lyrical", "geometry_msgs/msg/Vector3", run).failure
+    (failure,) = run_bench("lyrical", "geometry_msgs/msg/Vector3", run).verdict.failures
+    assert "FAIL packet 0" in failure
 
 
 def test_table_and_status_say_what_failed_and_how_to_repeat(ghdl, monkeypatch, capsys):
     tasks = collect_tasks(["lyrical"], ["std_msgs/msg/Bool"])
-    assert Benches(tasks, jobs=1).run(Recorder())
+    (found,) = Benches(tasks, jobs=1).run(Recorder())
+    assert_passed(found)
     rows = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert rows[0][:4] == ["8-byte", "bus", "types", "pass"]
     assert rows[1][:5] == ["lyrical", "1", "1", "0", "0"]
     change(monkeypatch, "_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ")
-    assert not Benches(tasks, wire="ros1", widths=[4], jobs=1).run(Recorder())
+    (found,) = Benches(tasks, wire="ros1", widths=[4], jobs=1).run(Recorder())
+    assert isinstance(found.verdict, Failed)
     said = capsys.readouterr().out
     assert "FAIL std_msgs/msg/Bool (lyrical)\n" in said
     again = "firm-hdl verify --systems bench --distro lyrical --wire ros1 --bus-bytes 4"
@@ -148,10 +153,10 @@ def test_results_are_kept_and_not_found_out_again(ghdl, tmp_path, monkeypatch, c
     assert sorted(record.test.type for record in first.records.values()) == names
     assert all(record.packets and record.seconds.simulation for record in first.records.values())
     lines = file.read_text().splitlines(keepends=True)
-    (last,) = [line for line in lines if "std_msgs/msg/Empty" in line and '"status"' in line]
+    (last,) = [line for line in lines if "std_msgs/msg/Empty" in line and '"record"' in line]
     file.write_text("".join(line for line in lines if line != last))
     change(monkeypatch, "_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ")
     assert main(call) == 1
-    verdicts = {r.test.type: r.status for r in read_results(file).records.values()}
-    assert verdicts == dict(zip(names, ("pass", "fail"), strict=True))
+    verdicts = {r.test.type: r.verdict.name for r in read_results(file).records.values()}
+    assert verdicts == dict(zip(names, ("passed", "failed"), strict=True))
     assert "1 of 2 types" in capsys.readouterr().out

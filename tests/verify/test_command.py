@@ -12,7 +12,8 @@ import pytest
 import firm_hdl.verify.command as command
 from firm_hdl.cli import main
 from firm_hdl.verify.__main__ import main as alias
-from firm_hdl.verify.system import System
+from firm_hdl.verify.system import Judged, System
+from firm_hdl.verify.verdict import Failed, Passed
 from tests.verify.samples import own_package
 
 BOOL = ["--distro", "lyrical", "--jobs", "1", "--cases", "2", "std_msgs/msg/Bool"]
@@ -70,7 +71,7 @@ def test_all_with_a_folder_is_all_in_the_folder(capsys, tmp_path, monkeypatch):
     assert main([*arguments, "--no-stalls", "--no-broken", "--reference", "none"]) == 0
     said = capsys.readouterr()
     wide = "rosbags has no wstring, which own_msgs/msg/Wide.text is"
-    assert f"not judged: own_msgs/msg/Wide (lyrical): {wide}\n" in said.out
+    assert f"not judged: own_msgs/msg/Wide (lyrical), ts3, 8-byte bus: {wide}\n" in said.out
     # Four messages; request, response and event of a service; and one that is not judged.
     assert "lyrical     7 of    7 types pass (8-byte bus)\n" in said.out
     assert "\n1 of 8 types not judged\n" in said.out
@@ -138,7 +139,8 @@ def test_every_system_runs_whatever_comes_of_the_first(monkeypatch):
 
         def run(self, recorder):
             ran.append(self.name)
-            return self.is_well
+            verdict = Passed(1) if self.is_well else Failed(("",))
+            return [Judged(what="it", verdict=verdict)]
 
     made = {name: Fake(name, name != "ts1") for name in ("ts1", "ts3")}
     systems = {name: lambda given, name=name: made[name] for name in made}

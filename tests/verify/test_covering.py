@@ -16,6 +16,7 @@ from firm_hdl.verify import Options, accept
 from firm_hdl.verify.branches import branches
 from firm_hdl.verify.cover import all_features, cost
 from firm_hdl.verify.cover_command import read_chosen
+from tests.verify.judged import assert_passed
 
 FOLDER = Path(__file__).parent / "covering"
 DISTROS = ("lyrical", "noetic")
@@ -29,8 +30,7 @@ STRIDE = 20
 )
 def test_a_covering_type_passes_with_all_cases(distro, name):
     result = accept(distro, name, Options(bus_bytes=8))
-    assert not result.failures and not result.not_judged
-    assert result.cases > 0
+    assert assert_passed(result) >= result.cases > 0
 
 
 def planned(library, name):

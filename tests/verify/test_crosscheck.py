@@ -11,6 +11,7 @@ import firm_hdl.verify.simulators.ghdl as exported
 from firm_hdl.verify import Options, Result, accept
 from firm_hdl.verify.processes import ToolError
 from firm_hdl.verify.simulators import Ghdl, SimulatorMissingError, find_ghdl
+from tests.verify.judged import assert_passed
 from tests.verify.samples import SAMPLE, own_package
 
 HEADER = "std_msgs/msg/Header"
@@ -24,7 +25,7 @@ def accepted(distro: str, name: str, bus_bytes: int = 8, **options) -> Result:
 @pytest.mark.parametrize(("distro", "name", "bus_bytes"), SAMPLE)
 def test_vhdl_does_in_each_cycle_what_the_simulation_does(ghdl, distro, name, bus_bytes):
     result = accepted(distro, name, bus_bytes)
-    assert result.failures == []
+    assert_passed(result)
     found = result.comparison
     assert found is not None
     # Each of the three runs begins with the state before its first clock edge.
@@ -45,7 +46,7 @@ OWN_TYPES = [
 def test_types_of_ones_own_do_as_well(ghdl, tmp_path, name, bus_bytes):
     paths = (str(own_package(tmp_path)),)
     result = accepted("lyrical", name, bus_bytes, paths=paths)
-    assert (result.failures, result.not_judged, result.note) == ([], "", "")
+    assert assert_passed(result) and result.note == ""
     assert result.comparison is not None and result.comparison.packets == result.packets > 0
 
 

@@ -19,6 +19,7 @@ from firm_hdl.verify.simulators import (
 )
 from firm_hdl.verify.simulators.verilog import write_inputs
 from firm_hdl.verify.trace import Trace
+from tests.verify.judged import assert_passed
 
 HEADER = "std_msgs/msg/Header"
 BOOL = "std_msgs/msg/Bool"
@@ -49,7 +50,7 @@ WIDE = ("lyrical", "service_msgs/msg/ServiceEventInfo", 16)
 )
 def test_verilog_does_in_each_cycle_what_the_simulation_does(of_verilog, sample):
     result = accepted(of_verilog, *sample)
-    assert result.failures == []
+    assert_passed(result)
     found = result.comparison
     assert found is not None
     # Each of the three runs begins with the state before its first clock edge.

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+import firm_hdl.verify.acceptance as acceptance
 from firm_hdl.verify import Options, accept, collect_tasks
+from firm_hdl.verify.user_oracle import NotJudgedError
+from tests.verify.judged import assert_passed
 
 TASKS = list(collect_tasks((), ()))
 WIDTHS = (8, 4)
@@ -16,7 +19,7 @@ def test_every_type_passes(index):
     task = TASKS[index]
     options = Options(bus_bytes=WIDTHS[index % len(WIDTHS)], most_cases=3, broken=False)
     result = accept(task.same[-1], task.name, options)
-    assert not result.failures
+    assert_passed(result)
 
 
 @pytest.mark.parametrize("index", range(0, len(TASKS), 9), ids=lambda index: TASKS[index].name)
@@ -24,4 +27,20 @@ def test_a_sample_passes_on_other_buses(index):
     task = TASKS[index]
     width = OTHER_WIDTHS[index // 9 % len(OTHER_WIDTHS)]
     result = accept(task.same[-1], task.name, Options(bus_bytes=width, most_cases=3))
-    assert not result.failures
+    assert_passed(result)
+
+
+@pytest.mark.parametrize("test", [test_every_type_passes, test_a_sample_passes_on_other_buses])
+def test_these_tests_fail_where_nobody_judges(test, monkeypatch):
+    def nobody(message, *arguments, **options):
+        raise NotJudgedError(f"{message.name} is not judged")
+
+    monkeypatch.setattr(acceptance, "judge_of", nobody)
+    with pytest.raises(AssertionError, match="is not judged"):
+        test(9)
+
+
+def test_these_tests_fail_where_there_is_no_case(monkeypatch):
+    monkeypatch.setattr(acceptance.Acceptance, "cases", lambda run, oracle, name: [])
+    with pytest.raises(AssertionError):
+        test_every_type_passes(9)

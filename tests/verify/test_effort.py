@@ -10,7 +10,9 @@ from firm_hdl.frontend import Library
 from firm_hdl.plan import Edge, build_plan
 from firm_hdl.verify import Options, accept
 from firm_hdl.verify.cases import Case
+from firm_hdl.verify.verdict import NotJudged
 from firm_hdl.wire import lay_out
+from tests.verify.judged import assert_passed
 
 HEADER = "std_msgs/msg/Header"
 
@@ -55,7 +57,7 @@ def test_types_are_simulated_in_part(monkeypatch):
         lambda plan, *given: effort.chosen(plan, *given, most=effort.work_of(plan, 8)),
     )
     part = accept("lyrical", HEADER)
-    assert not part.failures and 0 < part.cycles < whole.cycles
+    assert assert_passed(part) and 0 < part.cycles < whole.cycles
     assert part.cases == whole.cases
     # What was not simulated is not covered, although the golden model saw it.
     assert part.coverage.taken < whole.coverage.taken == whole.coverage.possible
@@ -75,7 +77,7 @@ def test_what_is_too_large_for_more_is_not_stalled(monkeypatch):
     whole = accept("lyrical", HEADER)
     monkeypatch.setattr(acceptance, "LARGE_WORK", 1)
     once = accept("lyrical", HEADER)
-    assert not once.failures and once.note == "neither stalled nor damaged"
+    assert assert_passed(once) and once.note == "neither stalled nor damaged"
     assert once.cycles == whole.cycles and once.packets < whole.packets / 2
 
 
@@ -92,13 +94,13 @@ def test_long_messages_are_simulated(large, monkeypatch):
     monkeypatch.setattr(effort, "MOST_CASE_BYTES", 1)
     monkeypatch.setattr(effort, "MAX_MESSAGE_BYTES", 2000)
     result = accept("lyrical", "large_msgs/msg/Image", large)
-    assert not result.failures and not result.not_judged
-    assert result.cases == 1 and result.beats > 3000 // 8
+    assert assert_passed(result) == 2 * result.cases == 2
+    assert result.beats > 3000 // 8
 
 
 def test_what_is_too_large_is_named(large):
     result = accept("lyrical", "large_msgs/msg/Cloud", large)
-    assert not result.failures and not result.packets
-    assert result.not_judged == (
+    assert not result.packets
+    assert result.verdict == NotJudged(
         "too large to simulate: its smallest message has 6000005 bytes, and its circuits 2 streams"
     )

@@ -13,6 +13,7 @@ import pytest
 from firm_hdl.verify import Options, collect_tasks, executors, run_tasks
 from firm_hdl.verify.executors import ExecutorError, check_executor, run_each
 from firm_hdl.verify.recorded import record_of
+from tests.verify.judged import assert_passed
 
 TASKS = [(f"task {number}", (number,)) for number in range(30)]
 SQUARES = {f"task {number}": number * number for number in range(30)}
@@ -130,7 +131,7 @@ class TestDask:
             }
             for where in ("processes", executor)
         )
-        assert here == there and all(record.status == "pass" for record in here.values())
+        assert here == there and all(assert_passed(record) for record in here.values())
 
     def test_lost_worker_loses_nothing(self, cluster):
         made, executor = cluster

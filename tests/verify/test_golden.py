@@ -13,7 +13,9 @@ from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.cover import features
 from firm_hdl.verify.golden import add, check_golden, read_golden, summarise
+from firm_hdl.verify.verdict import Failed, Passed
 from firm_hdl.wire import lay_out
+from tests.verify.judged import assert_passed
 
 FOLDER = Path(__file__).parent / "golden"
 
@@ -24,9 +26,11 @@ def test_todays_plans_are_the_golden_ones():
     wrong = [
         f"{result.golden.path.name}: {line}"
         for result in results
-        for line in (*result.problems, *map(str, result.changes))
+        for line in result.verdict.details
     ]
+
     assert wrong == [], "accept with: firm-hdl golden accept tests/verify/golden"
+    assert {result.verdict for result in results} == {Passed(1)}
 
 
 def test_the_golden_plans_cover_what_both_wires_have():
@@ -52,7 +56,7 @@ def folder(tmp_path):
 
 
 def test_a_plan_that_was_just_added_is_the_same(folder):
-    assert all(result.is_same for result in check_golden(read_golden(folder)))
+    assert [assert_passed(each) for each in check_golden(read_golden(folder))] == [1, 1, 1]
 
 
 def test_a_changed_plan_is_named_with_all_types_that_it_touches(folder):
@@ -60,7 +64,7 @@ def test_a_changed_plan_is_named_with_all_types_that_it_touches(folder):
         text = path.read_text()
         path.write_text(text.replace("terminated: true", "terminated: false"))
     results = check_golden(read_golden(folder))
-    changed = [result for result in results if not result.is_same]
+    changed = [result for result in results if isinstance(result.verdict, Failed)]
     assert [str(change) for change in changed[-1].changes] == [
         "steps[data.length].begin.terminated: False -> True"
     ]

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from firm_hdl.verify import Options, Oracle, Result, accept_message
 from tests.strategies import BUS_WIDTHS, definitions
+from tests.verify.judged import assert_passed
 
 
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
@@ -29,4 +30,4 @@ def test_random_types_pass(wire, definition, bus_bytes, seed):
     result = Result(distro="", name=message.name)
     oracle = Oracle(definition.store(), message.dialect)
     accept_message(message, oracle, definition.rosbags_name, options, result)
-    assert not result.failures
+    assert_passed(result)

@@ -12,6 +12,7 @@ from firm_hdl.verify import Options
 from firm_hdl.verify.recording import Selection, select, topics_of
 from firm_hdl.verify.replay import replay
 from tests.export.conftest import need
+from tests.verify.judged import assert_passed
 from tests.verify.robot import FORMATS, robot, write
 
 STRING = "std_msgs/msg/String"
@@ -116,5 +117,5 @@ def test_file_of_another_library_is_replayed(tmp_path: Path) -> None:
     result = replay(
         "lyrical", "own_msgs/msg/Values", Options(bags=(str(tmp_path / "own.mcap"),), stalled=False)
     )
-    assert result.failures == []
+    assert_passed(result)
     assert result.note.startswith("7 of 7 messages of 1 topic replayed")

@@ -10,7 +10,9 @@ from firm_hdl.frontend import Library
 from firm_hdl.verify import Options, accept, distro_oracle, make_cases
 from firm_hdl.verify.references import WRITERS, confirm, find_references, references_here
 from firm_hdl.verify.sut import CLIENTS, Refusal, client
+from firm_hdl.verify.verdict import NotJudged
 from tests.export.conftest import need
+from tests.verify.judged import assert_passed
 
 SMALL = Options(most_cases=4, stalled=False, broken=False)
 
@@ -54,7 +56,8 @@ def test_a_library_that_disagrees_is_a_failure_with_both_names(monkeypatch, answ
 
 def test_result_says_who_took_part():
     result = accept("lyrical", "std_msgs/msg/Bool", SMALL)
-    assert (result.written_by, result.failures) == (("fastcdr", "cyclonedds"), [])
+    assert_passed(result)
+    assert result.written_by == ("fastcdr", "cyclonedds")
     none = accept("lyrical", "std_msgs/msg/Bool", Options(most_cases=2, references=()))
     assert none.written_by == ()
     assert none.command.endswith(" --reference none std_msgs/msg/Bool")
@@ -63,10 +66,10 @@ def test_result_says_who_took_part():
 def test_wide_text_is_judged_if_somebody_has_it(tmp_path, make_wide):
     options = Options(most_cases=6, paths=(str(make_wide),))
     result = accept("lyrical", "p/msg/Wide", options)
-    assert (result.failures, result.not_judged) == ([], "")
+    assert_passed(result)
     assert result.written_by == ("fastcdr",) and result.cases == 6
     alone = accept("lyrical", "p/msg/Wide", Options(paths=(str(make_wide),), references=()))
-    assert alone.not_judged == "rosbags has no wstring, which p/msg/Wide.a is"
+    assert alone.verdict == NotJudged("rosbags has no wstring, which p/msg/Wide.a is")
 
 
 def test_wide_text_needs_that_word(monkeypatch, make_wide):

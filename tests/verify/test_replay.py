@@ -14,7 +14,9 @@ from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.verify import Options
 from firm_hdl.verify.oracle import Oracle
 from firm_hdl.verify.replay import replay
+from firm_hdl.verify.verdict import NotJudged
 from tests.frontend.recordings import make_old_db3
+from tests.verify.judged import assert_passed
 from tests.verify.robot import FORMATS, robot, write
 from tests.verify.test_acceptance import BadByte, BadLeaf
 
@@ -55,13 +57,14 @@ def test_recordings_pass(capsys, tmp_path, form):
     if not only:
         scans = f"note: sensor_msgs/{infix}LaserScan ({distro}): 6 of 6 messages of 2 topics"
         assert scans in said.out
-        assert f"not judged: std_msgs/{infix}Bool ({distro}): no messages of it" in said.out
+        silent = f"std_msgs/{infix}Bool ({distro}), ts3, 8-byte bus"
+        assert f"not judged: {silent}: no messages of it" in said.out
 
 
 def test_every_packet_is_sent_twice_and_its_decisions_are_counted(tmp_path):
     bag = write(tmp_path / "run", "mcap", robot("mcap"))
     result = replayed(bag, "my_msgs/msg/Wheels")
-    assert not result.failures
+    assert_passed(result)
     assert (result.cases, result.packets) == (6, 12)
     assert result.coverage is not None and len(result.coverage.taken) > 0
     assert result.beats == sum(-(-len(each[3]) // 8) for each in robot("mcap") if "/wheels" in each)
@@ -136,7 +139,7 @@ def test_oracle_that_reads_another_byte_disagrees(monkeypatch, tmp_path):
 )
 def test_other_forms_are_counted_and_named(tmp_path, packet, kind):
     result = replayed(strings(tmp_path, TEXT, packet, TEXT, packet))
-    assert result.failures == []
+    assert_passed(result)
     count, _, text = result.note.partition("; ")
     assert count == "4 of 4 messages of 1 topic replayed"
     assert text.startswith(f"2 {kind}")
@@ -152,7 +155,7 @@ def test_padding_and_bools_may_be_anything(tmp_path):
     padding = packet[:at] + b"\7" + packet[at + 1 :]
     bag = strings(tmp_path, packet, bools, padding, name="my_msgs/msg/Wheels")
     result = replayed(bag, "my_msgs/msg/Wheels")
-    assert result.failures == []
+    assert_passed(result)
     assert "; 2 with padding that is not zero, or a bool that is neither 0 nor 1 " in result.note
 
 
@@ -160,7 +163,7 @@ def test_floats_that_python_does_not_keep_pass(tmp_path):
     packets = [b"\0\1\0\0" + struct.pack("<I", bits) for bits in (0x7F800001, 0x7FC00001, 1)]
     bag = strings(tmp_path, *packets, name="std_msgs/msg/Float32")
     result = replayed(bag, "std_msgs/msg/Float32")
-    assert result.failures == []
+    assert_passed(result)
     # Which Pythons keep them is their business.
     assert "signalling" in result.note or result.note == "3 of 3 messages of 1 topic replayed"
 
@@ -251,7 +254,7 @@ def test_topics_with_another_definition_are_left_out(monkeypatch, tmp_path):
 
     monkeypatch.setattr(replay_module, "topics_of", topics_of)
     result = replayed(bag)
-    assert result.failures == []
+    assert_passed(result)
     assert result.note == (
         "1 of 1 messages of 1 topic replayed; /b left out: its definition is another one "
         "(RIHS01_other)"
@@ -266,8 +269,7 @@ def test_long_messages_are_left_out_and_counted(tmp_path):
         "--max-message-bytes N takes longer ones"
     )
     result = replayed(strings_again(tmp_path, long), longest=100)
-    assert not result.failures
-    assert result.not_judged == (
+    assert result.verdict == NotJudged(
         "all of its 1 messages have more than 100 bytes; --max-message-bytes N takes longer ones"
     )
 
@@ -284,7 +286,7 @@ def test_converters_have_room_for_the_longest_message(monkeypatch, tmp_path):
     bag = strings(tmp_path, packet(512), packet(100))
     # 64 KiB otherwise, which takes long to simulate.
     monkeypatch.setattr(replay_module, "MAX_MESSAGE_BYTES", 64)
-    assert replayed(bag).failures == []
+    assert_passed(replayed(bag))
     monkeypatch.setattr(replay_module, "_room", lambda longest: longest - 1)
     assert any("status LENGTH" in failure for failure in replayed(bag).failures)
 

@@ -16,6 +16,7 @@ import pytest
 
 from firm_hdl.verify.records import Record
 from firm_hdl.verify.results import ResultsError, ResultsWriter, done, read_results
+from firm_hdl.verify.verdict import Failed
 from tests.verify.report.samples import a_record, a_test
 
 HEADER, BOOL = a_test(), a_test("std_msgs/msg/Bool")
@@ -30,7 +31,7 @@ def written(path, *records, options=OPTIONS, planned=(HEADER, BOOL)):
 
 
 def test_records_are_read_as_they_were_written(tmp_path):
-    failed = a_record(BOOL, status="fail", failures=("a\nb", "ü"), same_as="x", note="y")
+    failed = a_record(BOOL, verdict=Failed(("a\nb", "ü")), same_as="x", note="y")
     path = written(tmp_path / "new" / "r.jsonl", a_record(), failed)
     found = read_results(path)
     assert found.options == OPTIONS and found.planned == (HEADER, BOOL) and not found.missing
@@ -58,13 +59,11 @@ def test_keys_tell_all_that_matters_apart():
 @pytest.mark.parametrize(
     ("more", "said"),
     [
-        ({"status": "fail"}, r"^A test with status 'fail' has 0 failures$"),
-        ({"failures": ("x",)}, r"^A test with status 'pass' has 1 failures$"),
-        ({"status": "skipped"}, r"^A test that was skipped must have a reason$"),
-        ({"status": "ok"}, r"^Status must be one of pass, fail, skipped, not 'ok'$"),
+        ({"verdict": None}, r"^What became of a test must be a verdict, not None$"),
+        ({"verdict": "passed"}, r"^What became of a test must be a verdict, not 'passed'$"),
     ],
 )
-def test_records_that_contradict_themselves_are_refused(more, said):
+def test_records_without_a_verdict_are_refused(more, said):
     with pytest.raises(ValueError, match=said):
         a_record(**more)
 
@@ -154,12 +153,12 @@ import sys, time
 from tests.verify.report.samples import a_record, a_test
 from firm_hdl.verify.executors import run_each
 from firm_hdl.verify.results import ResultsWriter
+from firm_hdl.verify.verdict import Failed, Passed
 
 def work(number):
     time.sleep(0.01)
-    failures = ("it is odd",) if number % 7 == 3 else ()
-    status = "fail" if failures else "pass"
-    return a_record(a_test(f"p/msg/T{number}"), status=status, failures=failures, cycles=number)
+    verdict = Failed(("it is odd",)) if number % 7 == 3 else Passed(1)
+    return a_record(a_test(f"p/msg/T{number}"), verdict=verdict, cycles=number)
 
 if __name__ == "__main__":
     tests = {number: a_test(f"p/msg/T{number}") for number in range(100)}

@@ -12,6 +12,7 @@ from firm_hdl.model import Message
 from firm_hdl.verify import Options, accept
 from firm_hdl.verify.oracle import distro_oracle
 from firm_hdl.verify.user_oracle import NotJudgedError, judge_of, oracle_name
+from tests.verify.judged import assert_passed
 
 
 def own(folder: Path, text: str, distro: str = "lyrical", name: str = "Own") -> Message:
@@ -80,4 +81,4 @@ def test_chars_of_idl_are_signed(tmp_path):
     plain = judge_of(load_message("own_msgs/Plain", paths=[tmp_path]))
     assert dict(plain.oracle.fields(plain.name))["one"][1][0] == "char" and plain.note == ""
     result = accept("lyrical", "own_msgs/msg/Chars", Options(paths=(str(tmp_path),)))
-    assert not result.failures and not result.not_judged
+    assert_passed(result)

@@ -6,12 +6,12 @@ import json
 from dataclasses import asdict, replace
 from typing import Any
 
-from firm_hdl.verify.report.outcomes import Outcome
+from firm_hdl.verify.report.outcomes import NotRun, Outcome
 from firm_hdl.verify.report.summary import Summary
 
 __all__ = ["FORMAT", "to_json"]
 
-FORMAT = "firm-hdl report 1"
+FORMAT = "firm-hdl report 2"
 
 
 def to_json(summary: Summary) -> str:
@@ -20,7 +20,7 @@ def to_json(summary: Summary) -> str:
     content: dict[str, Any] = {"format": FORMAT, **asdict(replace(summary, outcomes=()))}
     content["verdict"] = summary.counts.verdict
     del content["outcomes"]
-    for name in ("failed", "not_run", "skipped", "uncovered", "slowest", "most_complex"):
+    for name in ("failed", "not_run", "not_judged", "uncovered", "slowest", "most_complex"):
         content[name] = [outcome.test.key for outcome in getattr(summary, name)]
     text = _written(content, indent=1).removesuffix("\n}")
     # A line each, which is also much faster to write than with indents.
@@ -35,9 +35,9 @@ def _written(content: object, indent: int | None = None) -> str:
 def _outcome(outcome: Outcome) -> dict[str, Any]:
     found: dict[str, Any] = {
         "test": asdict(outcome.test),
-        "verdict": outcome.verdict,
+        "verdict": outcome.verdict.name,
+        "details": () if isinstance(outcome.verdict, NotRun) else outcome.verdict.details,
         "record": None,
-        "failures": outcome.failures,
         "circuit_of": outcome.circuit_of,
         "key": outcome.test.key,
     }

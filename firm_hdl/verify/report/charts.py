@@ -26,7 +26,13 @@ COLOURS = 6
 
 MOST_DOTS = 500
 BAR_WIDTH = 110
-PARTS = (("passed", "pass"), ("failed", "fail"), ("skipped", "skip"), ("not_run", "none"))
+PARTS = (
+    ("passed", "pass"),
+    ("known", "known"),
+    ("failed", "fail"),
+    ("not_judged", "skip"),
+    ("not_run", "none"),
+)
 
 
 def colour(index: int) -> str:

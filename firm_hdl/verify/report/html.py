@@ -7,7 +7,7 @@ from html import escape
 from importlib.resources import files
 
 from firm_hdl.verify.report.charts import colour, counts_bar, cumulative, scatter, stages
-from firm_hdl.verify.report.outcomes import Outcome
+from firm_hdl.verify.report.outcomes import Outcome, failures_of
 from firm_hdl.verify.report.prose import (
     SECTIONS,
     caption_of_fit,
@@ -98,7 +98,7 @@ def _failures(summary: Summary) -> Iterator[str]:
     failed = summary.failed
     for outcome in failed[:MOST_ARTICLES]:
         yield f"<article><h3>{escape(title_of(outcome))}</h3>"
-        texts = [escape(text) for text in outcome.failures]
+        texts = [escape(text) for text in failures_of(outcome)]
         yield f"<pre>{texts[0]}</pre>"
         if texts[1:]:
             yield f"<details><summary>{len(texts) - 1} more</summary>"
@@ -116,7 +116,7 @@ def _failures(summary: Summary) -> Iterator[str]:
 
 
 def _rest(summary: Summary) -> Iterator[str]:
-    for name, outcomes in (("not run", summary.not_run), ("skipped", summary.skipped)):
+    for name, outcomes in (("not run", summary.not_run), ("not judged", summary.not_judged)):
         if outcomes:
             tests = "test was" if len(outcomes) == 1 else "tests were"
             yield f"<h3>{len(outcomes)} {tests} {name}</h3>"

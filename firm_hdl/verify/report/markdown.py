@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from firm_hdl.verify.report.outcomes import Outcome
+from firm_hdl.verify.report.outcomes import Outcome, failures_of
 from firm_hdl.verify.report.prose import (
     SECTIONS,
     facts,
@@ -58,7 +58,7 @@ def to_markdown(summary: Summary) -> str:
 def _failures(summary: Summary) -> Iterator[str]:
     failed = summary.failed
     for outcome in failed[:MOST_FAILURES]:
-        yield from (f"### {_text(title_of(outcome))}", "", *_block(*outcome.failures))
+        yield from (f"### {_text(title_of(outcome))}", "", *_block(*failures_of(outcome)))
         if outcome.record is not None and outcome.record.command:
             yield from ("Repeat it:", "", *_block(outcome.record.command))
         if outcome.record is not None and outcome.record.waveform_command:
@@ -83,7 +83,7 @@ def _rest(summary: Summary) -> Iterator[str]:
 
 def _untested(summary: Summary) -> Iterator[tuple[str, list[Outcome]]]:
     yield "Not run", summary.not_run
-    yield "Skipped", summary.skipped
+    yield "Not judged", summary.not_judged
 
 
 def _oracles(summary: Summary) -> Iterator[str]:

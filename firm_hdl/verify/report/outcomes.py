@@ -6,17 +6,34 @@ and one that rests on the circuit of another type is worth what that type's own 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import ClassVar
 
-from firm_hdl.verify.records import Record, Test
+from firm_hdl.verify.records import Record, Test, settled
 from firm_hdl.verify.results import Results
+from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 
-__all__ = ["VERDICTS", "Counts", "Outcome", "Verdict", "count", "outcomes_of"]
+__all__ = ["VERDICTS", "Counts", "NotRun", "Outcome", "count", "failures_of", "outcomes_of"]
 
-Verdict = Literal["pass", "fail", "skipped", "not run"]
-VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
+
+@dataclass(frozen=True, slots=True)
+class NotRun:
+    """There is no result of a test.
+
+    Attributes
+    ----------
+    reason : str
+    """
+
+    name: ClassVar[str] = "not run"
+
+    reason: str = "there is no result of it"
+
+
+VERDICTS = (Passed.name, KnownDifference.name, Failed.name, NotJudged.name, NotRun.name)
+"""Names of all that may become of a test."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,56 +42,60 @@ class Outcome:
 
     Attributes
     ----------
-    verdict : str
-        One of `VERDICTS`.
+    verdict : Verdict or NotRun
     record : Record or None
-    failures : tuple of str
     circuit_of : str
         Name of the type whose circuit was simulated in place of this one's, which is the same.
     """
 
     test: Test
-    verdict: Verdict
+    verdict: Verdict | NotRun
     record: Record | None
-    failures: tuple[str, ...] = ()
     circuit_of: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Counts:
-    """How many tests became what."""
+    """How many tests became what; those with a known difference alone are none that passed."""
 
     passed: int = 0
+    known: int = 0
     failed: int = 0
-    skipped: int = 0
+    not_judged: int = 0
     not_run: int = 0
 
     @property
     def total(self) -> int:
         """All tests."""
-        return self.passed + self.failed + self.skipped + self.not_run
+        return self.passed + self.known + self.failed + self.not_judged + self.not_run
 
     @property
-    def verdict(self) -> Verdict:
-        """The worst of them."""
+    def verdict(self) -> str:
+        """The worst of them, one of `VERDICTS`; what nobody can judge counts if it is all."""
         if self.failed:
-            return "fail"
+            return Failed.name
         if self.not_run or not self.total:
-            return "not run"
-        return "pass" if self.passed else "skipped"
+            return NotRun.name
+        if self.passed:
+            return Passed.name
+        return KnownDifference.name if self.known else NotJudged.name
 
 
 def count(outcomes: Iterable[Outcome]) -> Counts:
     """Count outcomes."""
-    found = dict.fromkeys(VERDICTS, 0)
-    for outcome in outcomes:
-        found[outcome.verdict] += 1
+    found = Counter(outcome.verdict.name for outcome in outcomes)
     return Counts(
-        passed=found["pass"],
-        failed=found["fail"],
-        skipped=found["skipped"],
-        not_run=found["not run"],
+        passed=found[Passed.name],
+        known=found[KnownDifference.name],
+        failed=found[Failed.name],
+        not_judged=found[NotJudged.name],
+        not_run=found[NotRun.name],
     )
+
+
+def failures_of(outcome: Outcome) -> tuple[str, ...]:
+    """Return what is wrong; nothing if nobody found anything."""
+    return outcome.verdict.failures if isinstance(outcome.verdict, Failed) else ()
 
 
 def outcomes_of(files: Sequence[Results]) -> list[Outcome]:
@@ -88,31 +109,19 @@ def outcomes_of(files: Sequence[Results]) -> list[Outcome]:
         tests.update((test.key, test) for test in file.planned)
         for key, record in file.records.items():
             tests.setdefault(key, record.test)
-            if key not in records or records[key].status != "fail":
+            if key not in records or not isinstance(records[key].verdict, Failed):
                 records[key] = record
     return [_outcome(tests[key], records.get(key), records) for key in sorted(tests)]
 
 
-def _outcome(test: Test, record: Record | None, records: dict[str, Record]) -> Outcome:
+def _outcome(test: Test, record: Record | None, records: Mapping[str, Record]) -> Outcome:
     if record is None:
-        return Outcome(test=test, verdict="not run", record=None)
-    if record.status != "pass" or not record.same_as:
-        return Outcome(test=test, verdict=record.status, record=record, failures=record.failures)
+        return Outcome(test=test, verdict=NotRun(), record=None)
+    verdict: Verdict | NotRun = settled(record, records)
+    if isinstance(record.verdict, Failed | NotJudged) or not record.same_as:
+        return Outcome(test=test, verdict=verdict, record=record)
     other = records.get(record.same_as)
-    verdict: Verdict = "fail"
-    why = ""
-    if other is None or other.status == "skipped":
-        verdict = "not run"
-    elif other.shape != record.shape:
-        why = f"not the circuit of '{record.same_as}', as its record says"
-    elif other.status == "fail":
-        why = f"has the circuit of '{record.same_as}', which failed"
-    else:
-        verdict = "pass"
-    return Outcome(
-        test=test,
-        verdict=verdict,
-        record=record,
-        failures=(why,) if why else (),
-        circuit_of=record.same_as if other is None else other.test.type,
-    )
+    circuit_of = record.same_as if other is None else other.test.type
+    if other is None:
+        verdict = NotRun(f"has the circuit of {circuit_of}, which was not run")
+    return Outcome(test=test, verdict=verdict, record=record, circuit_of=circuit_of)

@@ -6,9 +6,11 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 
 from firm_hdl.verify.report.charts import law_text, line_text
-from firm_hdl.verify.report.outcomes import Outcome
+from firm_hdl.verify.report.outcomes import NotRun, Outcome
 from firm_hdl.verify.report.summary import Group, Summary, Trend
 from firm_hdl.verify.report.svg import number, seconds
+from firm_hdl.verify.report.tables import SIGNS
+from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
 
 __all__ = [
     "SECTIONS",
@@ -34,7 +36,7 @@ SECTIONS = {
         "that docs/errata.md explains under its key.",
     ),
     "rest": (
-        "Not tested, and notes",
+        "Not judged, and notes",
         "A test that there is no result of is not counted as passed. Reasons and notes that differ "
         "in names and numbers only are one.",
     ),
@@ -77,17 +79,20 @@ SECTIONS = {
 """Titles of the sections, and what is to be known to read them."""
 
 
+_ORDER = (Failed.name, NotRun.name, NotJudged.name, KnownDifference.name, Passed.name)
+
+
 def headline(summary: Summary) -> str:
     """Say in a line what came out."""
     counts = summary.counts
     if not counts.total:
         return "? no tests"
     parts = [f"{number(counts.passed)} of {number(counts.total)} tests passed"]
+    parts += [f"{number(counts.known)} with a known difference"] if counts.known else []
     parts += [f"{number(counts.failed)} failed"] if counts.failed else []
     parts += [f"{number(counts.not_run)} not run"] if counts.not_run else []
-    parts += [f"{number(counts.skipped)} skipped"] if counts.skipped else []
-    sign = {"pass": "✓", "fail": "✗", "not run": "?", "skipped": "-"}[counts.verdict]
-    return f"{sign} {', '.join(parts)}"
+    parts += [f"{number(counts.not_judged)} not judged"] if counts.not_judged else []
+    return f"{SIGNS[counts.verdict][0]} {', '.join(parts)}"
 
 
 def facts(summary: Summary) -> Iterator[tuple[str, str]]:
@@ -151,7 +156,7 @@ def shown_tests(summary: Summary, most: int) -> tuple[list[Outcome], str]:
 
     def order(outcome: Outcome) -> tuple[int, float]:
         record = outcome.record
-        place = ("fail", "not run", "skipped", "pass").index(outcome.verdict)
+        place = _ORDER.index(outcome.verdict.name)
         return place, -record.seconds.total if record is not None else 0.0
 
     found.sort(key=order)
@@ -165,7 +170,7 @@ def shown_packages(summary: Summary, most: int) -> tuple[list[Group], str]:
     left = len(found) - most
     if left <= 0:
         return found, ""
-    found.sort(key=lambda group: group.counts.verdict == "pass")
+    found.sort(key=lambda group: group.counts.verdict == Passed.name)
     return found[:most], f"and {number(left)} more; the report as JSON has all"
 
 

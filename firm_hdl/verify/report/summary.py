@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from firm_hdl.verify.records import STAGES, Record
-from firm_hdl.verify.report.outcomes import Counts, Outcome, count, outcomes_of
+from firm_hdl.verify.report.outcomes import Counts, NotRun, Outcome, count, outcomes_of
 from firm_hdl.verify.report.stats import Box, Correlation, box_of, correlate, curve_of, share_within
 from firm_hdl.verify.report.verdicts import OracleSum, Said, oracle_sums, said_of
 from firm_hdl.verify.results import Results
+from firm_hdl.verify.verdict import Failed, NotJudged
 
 __all__ = ["LIMITS", "TOP", "CoverageSum", "Curve", "Group", "Run", "Summary", "Trend", "summarise"]
 
@@ -174,17 +175,17 @@ class Summary:
     @property
     def failed(self) -> list[Outcome]:
         """Tests that failed."""
-        return [each for each in self.outcomes if each.verdict == "fail"]
+        return [each for each in self.outcomes if isinstance(each.verdict, Failed)]
 
     @property
     def not_run(self) -> list[Outcome]:
         """Tests that nothing is known about."""
-        return [each for each in self.outcomes if each.verdict == "not run"]
+        return [each for each in self.outcomes if isinstance(each.verdict, NotRun)]
 
     @property
-    def skipped(self) -> list[Outcome]:
-        """Tests that there is a reason not to run."""
-        return [each for each in self.outcomes if each.verdict == "skipped"]
+    def not_judged(self) -> list[Outcome]:
+        """Tests that nobody could judge, for a reason."""
+        return [each for each in self.outcomes if isinstance(each.verdict, NotJudged)]
 
     @property
     def noted(self) -> list[Outcome]:
@@ -288,7 +289,8 @@ def _groups(labelled: Iterable[tuple[Outcome, tuple[str, ...]]]) -> tuple[Group,
 
 def _ran(outcomes: Iterable[Outcome]) -> list[Record]:
     """Return records of tests that took time."""
-    records = [o.record for o in outcomes if o.record is not None and o.verdict != "skipped"]
+    ran = [o for o in outcomes if not isinstance(o.verdict, NotJudged)]
+    records = [outcome.record for outcome in ran if outcome.record is not None]
     return [record for record in records if record.seconds.total > 0]
 
 

@@ -11,9 +11,10 @@ from dataclasses import dataclass
 
 from firm_hdl.verify.records import STAGES
 from firm_hdl.verify.report.charts import law_text, line_text
-from firm_hdl.verify.report.outcomes import Counts, Outcome
+from firm_hdl.verify.report.outcomes import Counts, NotRun, Outcome, failures_of
 from firm_hdl.verify.report.summary import LIMITS, Curve, Group, Summary, Trend
 from firm_hdl.verify.report.svg import number, seconds
+from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
 
 __all__ = [
     "MOST_ROWS",
@@ -41,7 +42,13 @@ MOST_ROWS = 1000
 
 MOST_TEXT = 300
 
-SIGNS = {"pass": "✓ pass", "fail": "✗ fail", "skipped": "- skipped", "not run": "? not run"}
+SIGNS = {
+    Passed.name: "✓ passed",
+    KnownDifference.name: "~ known difference",
+    Failed.name: "✗ failed",
+    NotJudged.name: "- not judged",
+    NotRun.name: "? not run",
+}
 """How verdicts are written: never by colour alone."""
 
 
@@ -124,12 +131,14 @@ def group_table(groups: Iterable[Group], names: str) -> Table:
             yield (
                 *map(Cell, group.labels),
                 Cell(SIGNS[counts.verdict], verdict=counts.verdict),
-                Cell("", counts.passed / max(1, counts.total), counts=counts),
-                *map(_count, (counts.passed, counts.failed, counts.skipped, counts.not_run)),
+                Cell("", (counts.passed + counts.known) / max(1, counts.total), counts=counts),
+                *map(_count, (counts.passed, counts.known, counts.failed)),
+                *map(_count, (counts.not_judged, counts.not_run)),
                 _time(group.cpu_seconds),
             )
 
-    return _of(f"{names}|Result|Share|Passed#|Failed#|Skipped#|Not run#|CPU time#", rows())
+    columns = "Passed#|Known difference#|Failed#|Not judged#|Not run#|CPU time#"
+    return _of(f"{names}|Result|Share|{columns}", rows())
 
 
 def writer_table(summary: Summary) -> Table:
@@ -164,7 +173,7 @@ def oracle_table(summary: Summary) -> Table:
                 Cell(each.distro),
                 Cell(each.oracle),
                 *map(_count, (each.agree, each.refused, each.known)),
-                Cell(number(each.differ), each.differ, verdict="fail" if each.differ else ""),
+                Cell(number(each.differ), each.differ, verdict=Failed.name if each.differ else ""),
                 _count(each.not_judged),
             )
             for each in summary.oracles
@@ -192,7 +201,7 @@ def failure_table(outcomes: Iterable[Outcome]) -> Table:
 
     def rows() -> Iterator[Iterable[Cell]]:
         for outcome in outcomes:
-            text = outcome.failures[0]
+            text = failures_of(outcome)[0]
             shown = text if len(text) <= MOST_TEXT else f"{text[:MOST_TEXT]}..."
             command = outcome.record.command if outcome.record is not None else ""
             yield Cell(title_of(outcome)), Cell(shown), Cell(command)
@@ -277,7 +286,7 @@ def every_table(outcomes: Iterable[Outcome]) -> Table:
                 Cell(" ".join(test.distros)),
                 Cell(" ".join(part for part in (test.system, test.simulator) if part)),
                 Cell(circuit),
-                Cell(SIGNS[outcome.verdict], verdict=outcome.verdict),
+                Cell(SIGNS[outcome.verdict.name], verdict=outcome.verdict.name),
                 _time(record.seconds.total if record else 0),
                 _time(record.cpu_seconds if record else 0),
                 *(_count(metrics.get(name, 0)) for name in ("leaves", "steps")),

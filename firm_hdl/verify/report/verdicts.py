@@ -1,4 +1,4 @@
-"""What a report says of oracles, and of tests that were skipped: counts, and reasons in groups."""
+"""What a report says of oracles, and of tests without a verdict: counts, and reasons in groups."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from firm_hdl.verify.report.outcomes import Outcome
+from firm_hdl.verify.report.outcomes import NotRun, Outcome
 from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
 
 __all__ = ["OracleSum", "Reason", "Said", "oracle_sums", "reason_groups", "reason_of", "said_of"]
@@ -120,12 +120,12 @@ def said_of(outcomes: Iterable[Outcome]) -> tuple[Said, ...]:
 def reason_groups(
     outcomes: Iterable[Outcome], text_of: Callable[[Outcome], str] | None = None
 ) -> list[Reason]:
-    """Put tests together that were skipped for the same reason, the largest group first.
+    """Put tests together that were not judged for the same reason, the largest group first.
 
     Parameters
     ----------
     text_of : callable or None
-        Gives what is the same for a group; `None`: why a test was skipped or not run.
+        Gives what is the same for a group; `None`: why a test was not judged or not run.
     """
     groups: dict[str, list[Outcome]] = defaultdict(list)
     texts: dict[str, str] = {}
@@ -139,11 +139,8 @@ def reason_groups(
 
 
 def reason_of(outcome: Outcome) -> str:
-    """Say why a test was skipped or not run."""
-    if outcome.circuit_of:
-        return f"has the circuit of {outcome.circuit_of}, which was not run"
-    record = outcome.record
-    return record.reason if record is not None else "there is no result of it"
+    """Say why a test was not judged or not run; empty for one that was judged."""
+    return outcome.verdict.reason if isinstance(outcome.verdict, NotJudged | NotRun) else ""
 
 
 def _without_names(text: str) -> str:

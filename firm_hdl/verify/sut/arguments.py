@@ -78,4 +78,5 @@ def sut_options(given: argparse.Namespace) -> SutOptions:
         seed=given.seed,
         most_cases=given.cases,
         paths=tuple(given.path),
+        names_wires=bool(given.distro or given.wire),
     )

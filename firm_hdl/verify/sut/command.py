@@ -16,11 +16,13 @@ from firm_hdl.verify.runner import Task
 from firm_hdl.verify.sut.client import ClientMissingError, Refusal
 from firm_hdl.verify.sut.clients import CLIENTS, REFERENCES, client, close_clients
 from firm_hdl.verify.sut.finding import Finding
-from firm_hdl.verify.sut.judge import Verdict
+from firm_hdl.verify.sut.judge import Trial
 from firm_hdl.verify.sut.objects import full_text
 from firm_hdl.verify.sut.run import SutOptions, contest_of, judge_types, reference_of
 from firm_hdl.verify.sut.shrink import shrunk
 from firm_hdl.verify.sut.values import shown
+from firm_hdl.verify.system import Judged
+from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.wire import Wire
 
 __all__ = ["find_clients", "run_sut"]
@@ -32,6 +34,14 @@ MOST_NAMED = 5
 """So many types are named with each kind of difference."""
 
 MOST_CHARACTERS = 400
+
+_SAID = {
+    Passed.name: "agree",
+    KnownDifference.name: "known",
+    Failed.name: "differ",
+    NotJudged.name: "not judged",
+}
+"""What is printed of a library, in the order of the columns."""
 
 
 def find_clients(names: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
@@ -48,8 +58,8 @@ def find_clients(names: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
     return versions, missing
 
 
-def run_sut(tasks: Sequence[Task], options: SutOptions, jobs: int | None = None) -> bool:
-    """Judge libraries on types, print what came of it, and say whether nothing new differs.
+def run_sut(tasks: Sequence[Task], options: SutOptions, jobs: int | None = None) -> list[Judged]:
+    """Judge libraries on types, print what came of it, and return it.
 
     Parameters
     ----------
@@ -72,22 +82,26 @@ def run_sut(tasks: Sequence[Task], options: SutOptions, jobs: int | None = None)
     options = replace(options, here=here)
     for line in _judges(_wires(tasks, options), options, versions, missing):
         print(line)
-    verdicts: list[tuple[Task, Verdict]] = []
+    trials: list[tuple[Task, Trial]] = []
     with (
         tqdm(total=len(tasks), unit="type", desc="client libraries", disable=None) as bar,
         closing(judge_types(tasks, options, jobs)) as run,
     ):
         for task, found in run:
-            verdicts += [(task, verdict) for verdict in found]
+            trials += [(task, trial) for trial in found]
             bar.update()
-    for line in _differences(verdicts, options):
+    for line in _differences(trials, options):
         print(line)
-    for line in _summary([verdict for _, verdict in verdicts], options, versions):
+    for line in _summary([trial for _, trial in trials], options, versions):
         print(line)
     close_clients()
-    count = sum(verdict.name == "differ" for _, verdict in verdicts)
+    count = sum(isinstance(trial.verdict, Failed) for _, trial in trials)
     print(f"{len(tasks)} types, {time.perf_counter() - began:.0f} s, {count} differ")
-    return not count
+    return [
+        Judged(what=f"{task.name} ({', '.join(task.same)}), {trial.library}", verdict=trial.verdict)
+        for task, trial in trials
+        if trial.is_asked
+    ]
 
 
 def _wires(tasks: Sequence[Task], options: SutOptions) -> list[Wire]:
@@ -115,17 +129,17 @@ def _judges(
                 yield f"{library} {versions[library]} on {wire}: judged by {said}"
 
 
-def _differences(verdicts: Sequence[tuple[Task, Verdict]], options: SutOptions) -> Iterator[str]:
+def _differences(trials: Sequence[tuple[Task, Trial]], options: SutOptions) -> Iterator[str]:
     """Print what is new, the first few of each library with the smallest case."""
     shown_of: Counter[tuple[str, str]] = Counter()
-    for task, verdict in sorted(verdicts, key=lambda each: (each[1].library, each[1].type)):
-        for finding in verdict.findings:
-            key = verdict.library, finding.what
+    for task, trial in sorted(trials, key=lambda each: (each[1].library, each[1].type)):
+        for finding in trial.findings:
+            key = trial.library, finding.what
             shown_of[key] += 1
-            head = f"DIFFERS {verdict.library}, {finding.what}: {verdict.type} ({task.distro})"
-            again = options.command(task.distro, task.name, verdict.library)
+            head = f"DIFFERS {trial.library}, {finding.what}: {trial.type} ({task.distro})"
+            again = options.command(task.distro, task.name, trial.library)
             if shown_of[key] == 1 and len(shown_of) <= MOST_SHOWN * len(options.libraries):
-                small = shrunk(finding, contest_of(verdict, finding.wire).again)
+                small = shrunk(finding, contest_of(trial, finding.wire).again)
                 yield "\n".join([head, *described(small), f"    again: {again}"])
             elif shown_of[key] <= MOST_NAMED:
                 yield f"{head}\n    again: {again}"
@@ -167,24 +181,24 @@ def _clip(text: str) -> str:
 
 
 def _summary(
-    verdicts: Sequence[Verdict], options: SutOptions, versions: dict[str, str]
+    trials: Sequence[Trial], options: SutOptions, versions: dict[str, str]
 ) -> Iterator[str]:
-    names = ("agree", "known", "differ", "not judged")
-    head = "".join(f"{name:>11}" for name in names)
+    head = "".join(f"{name:>11}" for name in _SAID.values())
     yield f"{'types':24}{head}{'comparisons':>13}"
     for library in options.libraries:
-        own = [verdict for verdict in verdicts if verdict.library == library]
-        counts = Counter(verdict.name for verdict in own)
-        row = "".join(f"{counts[name]:11}" for name in names)
-        total = sum(verdict.comparisons for verdict in own)
+        own = [trial for trial in trials if trial.library == library]
+        counts = Counter(trial.verdict.name for trial in own)
+        row = "".join(f"{counts[name]:11}" for name in _SAID)
+        total = sum(trial.comparisons for trial in own)
         yield f"{f'{library} {versions[library]}':24}{row}{total:13}"
     for library in options.libraries:
         known: Counter[str] = Counter()
         reasons: Counter[str] = Counter()
-        for verdict in verdicts:
-            if verdict.library == library:
-                known.update(verdict.known)
-                reasons.update([verdict.not_judged] if verdict.not_judged else [])
+        for trial in trials:
+            if trial.library == library:
+                known.update(trial.known)
+                if isinstance(trial.verdict, NotJudged):
+                    reasons[trial.verdict.reason] += 1
         for key, count in sorted(known.items()):
             yield f"known, {library}: {key}: {count}"
         for reason, count in reasons.most_common(MOST_NAMED):

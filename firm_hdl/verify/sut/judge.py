@@ -20,13 +20,14 @@ from firm_hdl.verify.sut.odd import (
     plain_packet,
 )
 from firm_hdl.verify.sut.values import Plain
+from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 from firm_hdl.wire import Wire
 
-__all__ = ["Contest", "Verdict"]
+__all__ = ["Contest", "Trial"]
 
 
 @dataclass(slots=True, kw_only=True)
-class Verdict:
+class Trial:
     """What came of a library and a type.
 
     Attributes
@@ -35,31 +36,45 @@ class Verdict:
     type : str
     comparisons : int
         How often both were asked for the same.
+    answers : int
+        How often the reference had an answer to that, and did not refuse.
     known : counter of str
         Keys of differences that are known.
     findings : list of Finding
         Others, the first of each kind.
     unknown : int
         How many others there are.
-    not_judged : str
-        Why there is nothing; empty if there is.
+    obstacle : NotJudged or None
+        Why there is nothing.
+    is_asked : bool
+        Whether the library was asked to judge just this: not if it does not speak the wire of a
+        distribution that nobody named.
     """
 
     library: str
     reference: str
     type: str
     comparisons: int = 0
+    answers: int = 0
     known: Counter[str] = field(default_factory=Counter)
     findings: list[Finding] = field(default_factory=list)
     unknown: int = 0
-    not_judged: str = ""
+    obstacle: NotJudged | None = None
+    is_asked: bool = True
 
     @property
-    def name(self) -> str:
-        """One of ``agree``, ``known``, ``differ`` and ``not judged``."""
-        if self.not_judged:
-            return "not judged"
-        return "differ" if self.unknown else "known" if self.known else "agree"
+    def verdict(self) -> Verdict:
+        """What all of this comes to; cases are comparisons."""
+        if self.unknown:
+            kinds = [f"{each.what} differs from {self.reference}" for each in self.findings]
+            return Failed(tuple(kinds) or (f"{self.unknown} differences",))
+        if self.obstacle is not None:
+            return self.obstacle
+        if not self.answers:
+            return NotJudged(f"{self.reference or 'the reference'} had no answer to anything")
+        if self.known:
+            return KnownDifference(tuple(sorted(self.known)), self.comparisons)
+        return Passed(self.comparisons)
 
     def add(self, finding: Finding, codecs: tuple[Codec, Codec]) -> None:
         """Count a difference."""
@@ -83,16 +98,14 @@ class Contest:
     def __init__(self, library: Client, reference: Client, wire: Wire):
         self.library, self.reference, self.wire = library, reference, wire
 
-    def judge(self, message: Message, values: Sequence[Plain]) -> Verdict:
+    def judge(self, message: Message, values: Sequence[Plain]) -> Trial:
         """Compare what they make of values, and of packets that come from these."""
-        verdict = Verdict(
-            library=self.library.name, reference=self.reference.name, type=message.name
-        )
+        trial = Trial(library=self.library.name, reference=self.reference.name, type=message.name)
         try:
-            self._judge(verdict, message, values, *self._open(message))
+            self._judge(trial, message, values, *self._open(message))
         except UnsupportedError as error:
-            verdict.not_judged = str(error)
-        return verdict
+            trial.obstacle = NotJudged(str(error) or "the type is not supported")
+        return trial
 
     def _open(self, message: Message) -> tuple[Codec, Codec]:
         for client in (self.library, self.reference):
@@ -102,7 +115,7 @@ class Contest:
 
     def _judge(
         self,
-        verdict: Verdict,
+        trial: Trial,
         message: Message,
         values: Sequence[Plain],
         theirs: Codec,
@@ -123,9 +136,10 @@ class Contest:
         ]
         answers = zip(asked, _answers(right, asked), _answers(theirs, asked), strict=True)
         for each, expected, got in answers:
-            verdict.comparisons += 1
+            trial.comparisons += 1
+            trial.answers += not isinstance(expected, Refusal)
             if expected != got:
-                verdict.add(self._finding(message, each, expected, got), (theirs, right))
+                trial.add(self._finding(message, each, expected, got), (theirs, right))
 
     def _reads(self, oddity: str) -> bool:
         both = (self.library, self.reference)

@@ -15,9 +15,10 @@ from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.processes import in_processes
 from firm_hdl.verify.runner import Task
 from firm_hdl.verify.sut.clients import REFERENCES, client
-from firm_hdl.verify.sut.judge import Contest, Verdict
+from firm_hdl.verify.sut.judge import Contest, Trial
 from firm_hdl.verify.sut.values import Plain, from_objects
 from firm_hdl.verify.user_oracle import NotJudgedError, judge_of
+from firm_hdl.verify.verdict import NotJudged
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["SutOptions", "contest_of", "judge_type", "judge_types", "reference_of"]
@@ -42,6 +43,9 @@ class SutOptions:
     most_cases : int or None
     paths : tuple of str
         Folders with ROS packages, searched first.
+    names_wires : bool
+        Whether the user has said on which wires, or of which distributions: then a library that
+        does not speak one of them has not judged what it was asked to.
     """
 
     libraries: tuple[str, ...]
@@ -50,6 +54,7 @@ class SutOptions:
     seed: int = 0
     most_cases: int | None = None
     paths: tuple[str, ...] = ()
+    names_wires: bool = True
 
     def command(self, distro: str, name: str, library: str) -> str:
         """Return the command that judges one library on one type again."""
@@ -67,13 +72,13 @@ def reference_of(library: str, wire: Wire, here: Sequence[str]) -> str | None:
     return next((name for name in REFERENCES[wire] if name in here and name != library), None)
 
 
-def contest_of(verdict: Verdict, wire: Wire) -> Contest:
-    """Return what a verdict came from, to ask again."""
-    return Contest(client(verdict.library), client(verdict.reference), wire)
+def contest_of(trial: Trial, wire: Wire) -> Contest:
+    """Return what a trial came from, to ask again."""
+    return Contest(client(trial.library), client(trial.reference), wire)
 
 
-def judge_type(distro: str, name: str, options: SutOptions) -> list[Verdict]:
-    """Judge all libraries on one type. Nothing is raised: what goes wrong is in the verdicts."""
+def judge_type(distro: str, name: str, options: SutOptions) -> list[Trial]:
+    """Judge all libraries on one type. Nothing is raised: what goes wrong is in the trials."""
     try:
         message = library_of(distro, options.paths).message(name)
         wire = options.wire or message.wire
@@ -81,19 +86,21 @@ def judge_type(distro: str, name: str, options: SutOptions) -> list[Verdict]:
     # Whatever it is, the other types are to go on.
     except (NotJudgedError, DefinitionError, ValueError) as error:
         return [_not_judged(library, name, str(error)) for library in options.libraries]
-    verdicts = []
+    trials = []
     for library in options.libraries:
         reference = reference_of(library, wire, options.here)
         if reference is None:
-            verdicts.append(_not_judged(library, name, f"nobody is here who judges it on {wire}"))
+            trials.append(_not_judged(library, name, f"nobody is here who judges it on {wire}"))
             continue
         contest = Contest(client(library), client(reference), wire)
-        verdicts.append(contest.judge(message, values))
-    return verdicts
+        trials.append(contest.judge(message, values))
+    for trial in trials:
+        trial.is_asked = options.names_wires or wire in client(trial.library).wires
+    return trials
 
 
-def _not_judged(library: str, name: str, why: str) -> Verdict:
-    return Verdict(library=library, reference="", type=name, not_judged=why)
+def _not_judged(library: str, name: str, why: str) -> Trial:
+    return Trial(library=library, reference="", type=name, obstacle=NotJudged(why))
 
 
 def _values(distro: str, name: str, wire: Wire, options: SutOptions) -> list[Plain]:
@@ -117,11 +124,11 @@ def _values(distro: str, name: str, wire: Wire, options: SutOptions) -> list[Pla
 
 def judge_types(
     tasks: Sequence[Task], options: SutOptions, jobs: int | None
-) -> Generator[tuple[Task, list[Verdict]], None, None]:
+) -> Generator[tuple[Task, list[Trial]], None, None]:
     """Judge all libraries on types, and yield what comes of each, as it comes."""
     work = [(task, (task.distro, task.name, options)) for task in tasks]
-    for task, verdicts in in_processes(judge_type, work, jobs):
-        if isinstance(verdicts, Exception):
+    for task, trials in in_processes(judge_type, work, jobs):
+        if isinstance(trials, Exception):
             # In one process: an exception of our own code. Such a run is no result.
-            raise verdicts
-        yield task, verdicts
+            raise trials
+        yield task, trials

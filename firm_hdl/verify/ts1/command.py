@@ -15,15 +15,13 @@ from firm_hdl.verify.records import (
     OracleVerdict,
     Record,
     Seconds,
-    Status,
     Test,
-    clipped,
     clipped_verdict,
 )
-from firm_hdl.verify.system import Recorder, System
+from firm_hdl.verify.system import Judged, Recorder, System
 from firm_hdl.verify.ts1.judge import Judgement, Outcome
 from firm_hdl.verify.ts1.run import Selection, Tally, Ts1Run
-from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 
 __all__ = ["Ts1", "run_ts1"]
 
@@ -92,12 +90,12 @@ class Ts1(System):
         here = {f"{name} {v}".strip() for run in self._runs for name, v in run.versions.items()}
         return {"oracles": sorted(here)}
 
-    def run(self, recorder: Recorder) -> bool:
+    def run(self, recorder: Recorder) -> list[Judged]:
         """Judge everything."""
-        return not sum([self.judge(run, recorder) for run in self._runs])
+        return [each for run in self._runs for each in self.judge(run, recorder)]
 
-    def judge(self, run: Ts1Run, recorder: Recorder) -> int:
-        """Judge the definitions of one run; return how many differ or cannot be judged as asked."""
+    def judge(self, run: Ts1Run, recorder: Recorder) -> list[Judged]:
+        """Judge the definitions of one run; an oracle that was asked for and is not here fails."""
         began = time.perf_counter()
         selection = run.selection
         numbers = run.numbers
@@ -108,6 +106,7 @@ class Ts1(System):
         for line in recorder.said(len(known), run.total, "definitions"):
             print(line)
         tally = run.tally((number, record.verdicts) for number, record in known.items())
+        verdicts = {number: record.verdict for number, record in known.items()}
         left = [number for number in numbers if number not in known]
         label = f"ts1 {selection.distro}"
         with (
@@ -119,6 +118,8 @@ class Ts1(System):
             for share in shares:
                 if not selection.mutations:
                     recorder.add(*(self._record(run, number, each) for number, each in share))
+                for number, each in share:
+                    verdicts[number] = _verdict(run.case(number).language, each.said)
                 part = run.tally((number, each.said) for number, each in share)
                 for outcome, mutated in part.differing:
                     tqdm.write(_difference(selection, outcome, mutated))
@@ -129,7 +130,11 @@ class Ts1(System):
         what = ("mutation" if selection.mutations else "definition") + "s" * (run.total != 1)
         seconds = time.perf_counter() - began
         print(f"{run.total} {what}, {seconds:.0f} s, {len(tally.differing)} differences")
-        return len(tally.differing) + (len(run.missing) if self._oracles else 0)
+        asked = run.missing.items() if self._oracles else ()
+        return [
+            *(Judged(what=self._test(run, n).title, verdict=v) for n, v in verdicts.items()),
+            *(Judged(what=f"oracle {n}", verdict=Failed((f"is not here: {w}",))) for n, w in asked),
+        ]
 
     def _test(self, run: Ts1Run, number: int) -> Test:
         selection = run.selection
@@ -145,13 +150,6 @@ class Ts1(System):
 
     def _record(self, run: Ts1Run, number: int, found: Judgement) -> Record:
         case = run.case(number)
-        failures = [
-            f"{each.oracle}: {detail}"
-            for each in found.said
-            if isinstance(each.verdict, Failed)
-            for detail in each.verdict.details
-        ]
-        status = _status(found.said)
         known = [
             f"known difference from {each.oracle}: {key}"
             for each in found.said
@@ -160,9 +158,7 @@ class Ts1(System):
         ]
         return Record(
             test=self._test(run, number),
-            status=status,
-            reason=_reason(case.language, found.said) if status == "skipped" else "",
-            failures=clipped(failures),
+            verdict=clipped_verdict(_verdict(case.language, found.said)),
             note="; ".join(known),
             seconds=Seconds(generation=found.reading_seconds, testing=found.asking_seconds),
             cpu_seconds=found.cpu_seconds,
@@ -176,16 +172,22 @@ def _clipped(said: OracleVerdict) -> OracleVerdict:
     return replace(said, verdict=clipped_verdict(said.verdict))
 
 
-def _status(said: Sequence[OracleVerdict]) -> Status:
-    kinds = {type(each.verdict) for each in said}
-    if Failed in kinds:
-        return "fail"
-    return "pass" if kinds & {Passed, KnownDifference} else "skipped"
-
-
-def _reason(language: str, said: Sequence[OracleVerdict]) -> str:
-    found = [f"{each.oracle}: {detail}" for each in said for detail in each.verdict.details]
-    return "; ".join(found) or f"no oracle that was asked reads .{language} files"
+def _verdict(language: str, said: Sequence[OracleVerdict]) -> Verdict:
+    """Return what all oracles say together; those that did not judge count if nobody did."""
+    details: dict[type[Verdict], list[str]] = {}
+    for each in said:
+        lines = details.setdefault(type(each.verdict), [])
+        lines += [f"{each.oracle}: {detail}" for detail in each.verdict.details]
+    if failures := details.get(Failed):
+        return Failed(tuple(failures))
+    found = [each.verdict for each in said if isinstance(each.verdict, Passed | KnownDifference)]
+    cases = sum(each.cases for each in found)
+    if keys := tuple(dict.fromkeys(key for each in found for key in each.details)):
+        return KnownDifference(keys, cases)
+    if cases:
+        return Passed(cases)
+    reasons = details.get(NotJudged) or [f"no oracle that was asked reads .{language} files"]
+    return NotJudged("; ".join(reasons))
 
 
 def run_ts1(selection: Selection, oracles: Sequence[str] = (), jobs: int | None = None) -> int:
@@ -204,7 +206,8 @@ def run_ts1(selection: Selection, oracles: Sequence[str] = (), jobs: int | None 
     """
     system = Ts1([selection], oracles, jobs)
     with Ts1Run(selection, oracles, jobs) as run:
-        return system.judge(run, Recorder())
+        found = system.judge(run, Recorder())
+    return sum(isinstance(each.verdict, Failed) for each in found)
 
 
 def _difference(selection: Selection, outcome: Outcome, number: int | None) -> str:

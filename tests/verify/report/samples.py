@@ -7,6 +7,7 @@ import random
 
 from firm_hdl.verify.records import PlanCoverage, Record, Seconds, Test
 from firm_hdl.verify.results import Results
+from firm_hdl.verify.verdict import Passed
 
 __all__ = ["a_record", "a_run", "a_test"]
 
@@ -28,7 +29,7 @@ def a_test(name="std_msgs/msg/Header", **more):
 def a_record(test=None, **more):
     """Return a record that passed, but for what is given."""
     known = {
-        "status": "pass",
+        "verdict": Passed(40),
         "seconds": Seconds(generation=0.1, simulation=0.2, testing=0.01),
         "cpu_seconds": 0.3,
         "cases": 10,

@@ -14,6 +14,7 @@ from firm_hdl.verify.records import OracleVerdict, PlanCoverage, Seconds
 from firm_hdl.verify.report import FORMATS, count, outcomes_of, summarise
 from firm_hdl.verify.report import html as page_writer
 from firm_hdl.verify.report import summary as summary_of
+from firm_hdl.verify.report.outcomes import failures_of
 from firm_hdl.verify.report.verdicts import reason_groups
 from firm_hdl.verify.results import Results, ResultsWriter
 from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
@@ -21,8 +22,7 @@ from tests.verify.report.samples import a_record, a_run, a_test
 
 FAILED = a_record(
     a_test("nav_msgs/msg/Path"),
-    status="fail",
-    failures=("hardware: packet 3 of 14 differs", "and more"),
+    verdict=Failed(("hardware: packet 3 of 14 differs", "and more")),
     command="firm-hdl verify nav_msgs/msg/Path",
     waveform_command="firm-hdl verify --vcd waveforms nav_msgs/msg/Path",
 )
@@ -70,14 +70,15 @@ class Page(HTMLParser):
 def test_failure_is_one_in_every_form(form):
     passed = made(form, run_of(a_record()))
     failed = made(form, run_of(a_record(), FAILED))
-    for text in (FAILED.failures[0], FAILED.command, FAILED.waveform_command):
+    for text in (FAILED.verdict.failures[0], FAILED.command, FAILED.waveform_command):
         assert text in failed and text not in passed
     said = {"html": "1 of 2 tests passed, 1 failed", "md": "1 of 2 tests passed, 1 failed"}
     if form == "json":
-        assert json.loads(passed)["verdict"] == "pass"
+        assert json.loads(passed)["verdict"] == "passed"
         found = json.loads(failed)
-        assert found["verdict"] == "fail" and found["failed"] == [FAILED.test.key]
-        assert found["counts"] == {"passed": 1, "failed": 1, "skipped": 0, "not_run": 0}
+        assert found["verdict"] == "failed" and found["failed"] == [FAILED.test.key]
+        none = {"known": 0, "not_judged": 0, "not_run": 0}
+        assert found["counts"] == {"passed": 1, "failed": 1, **none}
     else:
         assert said[form] in failed and "1 of 1 tests passed" in passed
         assert "✗ fail" in failed and "✗" not in passed
@@ -103,39 +104,48 @@ def test_no_results_are_no_pass():
 
 
 def test_test_that_failed_once_failed():
-    passed = replace(FAILED, status="pass", failures=())
+    passed = replace(FAILED, verdict=Passed(1))
     for files in ([run_of(FAILED), run_of(passed)], [run_of(passed), run_of(FAILED)]):
-        assert [outcome.verdict for outcome in outcomes_of(files)] == ["fail"]
+        assert [outcome.verdict for outcome in outcomes_of(files)] == [FAILED.verdict]
 
 
-def test_skipped_tests_are_no_passes_and_have_their_reason():
-    skipped = a_record(a_test("a/msg/W"), status="skipped", reason="no oracle for wstring")
+def test_what_was_not_judged_is_no_pass_and_has_its_reason():
+    skipped = a_record(a_test("a/msg/W"), verdict=NotJudged("no oracle for wstring"))
     outcomes = outcomes_of([run_of(a_record(), skipped)])
-    assert count(outcomes).skipped == 1 and count(outcomes).passed == 1
+    assert count(outcomes).not_judged == 1 and count(outcomes).passed == 1
     for form in FORMATS:
-        assert "no oracle for wstring" in made(form, run_of(a_record(), skipped))
+        text = made(form, run_of(a_record(), skipped))
+        assert "no oracle for wstring" in text and "skipped" not in text
+        if form != "json":
+            assert "1 of 2 tests passed, 1 not judged" in text
 
 
 @pytest.mark.parametrize(
     ("other", "verdict", "why"),
     [
-        (a_record(shape="aa"), "pass", ""),
-        (a_record(shape="bb"), "fail", "not the circuit of 'KEY', as its record says"),
+        (a_record(shape="aa"), "passed", ""),
+        (a_record(shape="bb"), "failed", "not the circuit of 'KEY', as its record says"),
         (
             replace(FAILED, test=a_test(), shape="aa"),
-            "fail",
+            "failed",
             "has the circuit of 'KEY', which failed",
         ),
-        (None, "not run", ""),
-        (a_record(status="skipped", reason="x", shape="aa"), "not run", ""),
+        (None, "not run", "has the circuit of KEY, which was not run"),
+        (
+            a_record(verdict=NotJudged("x"), shape="aa"),
+            "not judged",
+            "has the circuit of 'KEY', which was not judged",
+        ),
     ],
 )
 def test_shared_circuit_is_worth_what_its_own_test_is(other, verdict, why):
     twin = a_record(a_test("a/msg/Twin"), same_as=a_test().key, shape="aa")
     records = [twin] if other is None else [twin, other]
     (outcome,) = (o for o in outcomes_of([run_of(*records)]) if o.test == twin.test)
-    assert outcome.verdict == verdict
-    assert outcome.failures == ((why.replace("KEY", a_test().key),) if why else ())
+    assert outcome.verdict.name == verdict
+    said = outcome.verdict.reason if verdict.startswith("not") else failures_of(outcome)
+    wanted = why.replace("KEY", a_test().key)
+    assert said == wanted if verdict.startswith("not") else said == ((wanted,) if why else ())
 
 
 def test_distributions_and_packages_are_counted():
@@ -161,7 +171,7 @@ def test_what_users_name_is_text_in_every_form():
     record = replace(
         FAILED,
         test=a_test(f"a/msg/{EVIL}", distro=EVIL, same=(EVIL,), options=EVIL),
-        failures=(EVIL, EVIL),
+        verdict=Failed((EVIL, EVIL)),
         command=EVIL,
         waveform_command=EVIL,
         coverage=PlanCoverage(taken=0, possible=1, missing=(EVIL,)),
@@ -179,7 +189,7 @@ def test_what_users_name_is_text_in_every_form():
     assert page.tags.count("b") == page.attributes.count(("class", "tile"))
     assert "alert(1)" in "".join(page.text)
     assert not [name for name, _ in page.attributes if name.startswith("on")]
-    assert json.loads(made("json", run))["outcomes"][0]["failures"] == [EVIL, EVIL]
+    assert json.loads(made("json", run))["outcomes"][0]["details"] == [EVIL, EVIL]
     text = made("md", run)
     outside = re.sub(r"(?ms)^(`{3,})$.*?^\1$", "", text)
     assert not re.search(r"(?<!\\)<", outside)
@@ -254,7 +264,7 @@ def test_verdicts_of_oracles_are_counted_and_known_differences_named():
         definition("a/msg/B", ("genmsg", Passed(3)), ("rosbags", known("a-key", "b-key"))),
         definition("a/msg/C", ("rosbags", NotJudged("a/msg/C is too deep"))),
         definition("a/msg/D", ("rosbags", NotJudged("a/msg/D is too deep"))),
-        definition("a/msg/E", ("rosbags", Failed(("x",))), status="fail", failures=("rosbags: x",)),
+        definition("a/msg/E", ("rosbags", Failed(("x",))), verdict=Failed(("rosbags: x",))),
     )
     summary = summarise({"r": run})
     assert [(s.oracle, s.agree, s.known, s.differ, s.not_judged) for s in summary.oracles] == [
@@ -272,11 +282,11 @@ def test_verdicts_of_oracles_are_counted_and_known_differences_named():
     assert 'id="oracles"' not in made("html", run_of(a_record()))
 
 
-def test_skipped_tests_and_notes_are_grouped_by_reason():
+def test_tests_that_were_not_judged_and_notes_are_grouped_by_reason():
     text = "rosbags has no wstring, which {}.text is"
     names = [f"a/msg/W{number}" for number in range(60)]
-    skipped = [a_record(a_test(n), status="skipped", reason=text.format(n)) for n in names]
-    other = a_record(a_test("b/msg/B"), status="skipped", reason="it is too large: 8 bytes")
+    skipped = [a_record(a_test(n), verdict=NotJudged(text.format(n))) for n in names]
+    other = a_record(a_test("b/msg/B"), verdict=NotJudged("it is too large: 8 bytes"))
     noted = a_record(a_test("c/msg/C"), note="simulated in part: 7 of 28 packets")
     run = run_of(*skipped, other, noted)
     groups = reason_groups(outcomes_of([run_of(*skipped, other)]))
@@ -323,7 +333,7 @@ def test_long_reports_are_cut_and_say_so(monkeypatch):
     for name, most in (("MOST_ROWS", 20), ("MOST_ARTICLES", 2)):
         monkeypatch.setattr(page_writer, name, most)
     failed = [
-        replace(FAILED, test=a_test(f"z{n}_msgs/msg/F{n}"), failures=(f"it is {n}",))
+        replace(FAILED, test=a_test(f"z{n}_msgs/msg/F{n}"), verdict=Failed((f"it is {n}",)))
         for n in range(4)
     ]
     run = run_of(*a_run(60).records.values(), *failed)

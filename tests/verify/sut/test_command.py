@@ -92,3 +92,17 @@ def test_without_ros_s_own_rosbags_judges(capsys, monkeypatch):
     assert "firm-hdl 0.1.0 on cdr: judged by rosbags " in said
     versions, missing = find_clients(["fastcdr", "rosbags"])
     assert missing == {"fastcdr": "no Fast CDR"} and list(versions) == ["rosbags"]
+
+
+def test_library_is_not_asked_about_wires_that_nobody_named(library_here, capsys):
+    for name in ("cyclonedds", "fastcdr"):
+        library_here(name)
+    call = ["verify", "--sut", "cyclonedds", "--cases", "2", "--jobs", "1"]
+    assert main([*call, "std_msgs/msg/Bool"]) == 0
+    assert main([*call, "--distro", "noetic", "--distro", "lyrical", "std_msgs/msg/Bool"]) == 1
+    said = capsys.readouterr().out
+    assert "not judged: std_msgs/msg/Bool (noetic), cyclonedds: nobody is here" in said or (
+        "not judged: std_msgs/msg/Bool (noetic), cyclonedds: cyclonedds does not speak" in said
+    )
+    assert main([*call, "--distro", "noetic", "std_msgs/msg/Bool"]) == 1
+    assert capsys.readouterr().out.endswith("nothing was judged: this is no pass\n")

@@ -9,6 +9,8 @@ from firm_hdl.verify.sut.judge import Contest
 from firm_hdl.verify.sut.objects import full_text
 from firm_hdl.verify.sut.odd import ODDITIES, odd_packet, odd_packets
 from firm_hdl.verify.sut.shrink import shrunk
+from firm_hdl.verify.verdict import Failed, NotJudged
+from tests.verify.judged import assert_known, assert_passed
 
 TEXT = "uint8 a\nfloat64 b\nuint16 c\nuint16 d\nstring s\nB[] list\nbool t\n"
 NESTED = "int8 x\nint64 y\n"
@@ -91,8 +93,8 @@ def message(make_message):
 
 
 def test_nothing_is_found_where_nothing_is_wrong(contest, message):
-    verdict = contest(Same).judge(message, VALUES)
-    assert verdict.name == "agree" and verdict.comparisons > 30
+    trial = contest(Same).judge(message, VALUES)
+    assert assert_passed(trial) == trial.comparisons > 30
 
 
 @pytest.mark.parametrize(
@@ -105,9 +107,9 @@ def test_nothing_is_found_where_nothing_is_wrong(contest, message):
 )
 def test_faults_are_found_and_made_small(contest, message, fault, what, text):
     made = contest(fault)
-    verdict = made.judge(message, VALUES)
-    assert verdict.name == "differ" and verdict.unknown
-    finding = next(each for each in verdict.findings if each.what == what)
+    trial = made.judge(message, VALUES)
+    assert isinstance(trial.verdict, Failed)
+    finding = next(each for each in trial.findings if each.what == what)
     small = shrunk(finding, made.again)
     assert small.expected != small.got
     lines = len(full_text(small.message).splitlines())
@@ -119,12 +121,18 @@ def test_faults_are_found_and_made_small(contest, message, fault, what, text):
 
 def test_a_type_that_a_library_has_not_is_not_judged(library_here, make_message):
     both = Contest(library_here("cyclonedds"), library_here("rosbags"), "cdr")
-    assert both.judge(make_message("wstring w\n"), []).not_judged == "cyclonedds has no wstring"
+    trial = both.judge(make_message("wstring w\n"), [])
+    assert trial.verdict == NotJudged("cyclonedds has no wstring")
     wide = both.judge(make_message("uint8[<=65536] w\n"), [])
-    assert wide.not_judged == "cyclonedds has no bound of 65536 elements"
-    assert not both.judge(make_message("uint8[<=65535] w\n"), []).not_judged
+    assert wide.verdict == NotJudged("cyclonedds has no bound of 65536 elements")
+    trial = both.judge(make_message("uint8[<=65535] w\n"), [{"w": [1]}])
+    assert_known(trial, "cyclonedds-cut", "rosbags-trailing")
+    # Nobody was asked for anything.
+    none = both.judge(make_message("uint8[<=65535] w\n"), [])
+    assert none.verdict == NotJudged("rosbags had no answer to anything")
     other = Contest(library_here("cyclonedds"), library_here("rosbags"), "ros1")
-    assert other.judge(make_message("int8 w\n"), []).not_judged == "cyclonedds does not speak ros1"
+    trial = other.judge(make_message("int8 w\n"), [])
+    assert trial.verdict == NotJudged("cyclonedds does not speak ros1")
 
 
 def test_odd_packets_are_odd_as_they_say(make_message):
