@@ -70,6 +70,7 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.snapshot
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_examples_run(here, capsys, name):
     assert load(ROOT / "examples" / f"{name}.py").main() == 0
@@ -99,6 +100,7 @@ def test_the_readme_quotes_an_example():
     assert quoted and all(part in example for part in quoted)
 
 
+@pytest.mark.snapshot
 @pytest.mark.parametrize("text", list(blocks("console")))
 def test_commands_print_what_is_quoted(here, capsys, text):
     for arguments, output in commands(text):

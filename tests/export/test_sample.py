@@ -23,6 +23,7 @@ def files(folder: Path) -> dict[str, bytes]:
     }
 
 
+@pytest.mark.snapshot
 def test_sample_is_current(tmp_path, capsys):
     assert main(["build", "geometry_msgs/msg/Twist", "--out", str(tmp_path)]) == 0
     built = files(tmp_path / "lyrical" / SAMPLE.name)

@@ -10,11 +10,12 @@ from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from queue import Queue
+from random import randrange
 from threading import Lock
 
-from tests.mutation.coverage_map import BrokenTreeError, read_map, tree_digest
 from tests.mutation.explained import read_explanations
 from tests.mutation.judge import Judge
+from tests.mutation.map_store import BrokenTreeError, read_map, tree_digest
 from tests.mutation.mutants import Mutant
 from tests.mutation.report import markdown
 from tests.mutation.results import Record, append, read
@@ -34,7 +35,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("error: no tests there", file=sys.stderr)
         return 1
     mutants = all_mutants(root, options.target or list(TARGETS))
-    chosen = sample(root, mutants, options.count, options.seed)
+    if options.rule:
+        mutants = [mutant for mutant in mutants if mutant.change.rule in options.rule]
+    seed = randrange(10**6) if options.seed is None else options.seed
+    # Whoever interrupts it goes on with the same.
+    print(f"--seed {seed}", file=sys.stderr)
+    chosen = sample(root, mutants, options.count, seed)
     out = Path(options.out)
     known = read(out)
     tree = tree_digest(root, test_files(root))
@@ -53,7 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.confirm and not _confirm(root, known.values(), options.nice):
         return 1
     records = [known[mutant.key] for mutant in chosen if mutant.key in known]
-    text = markdown(records, read_explanations(), tree)
+    text = f"{markdown(records, read_explanations(), tree)}\nSeed {seed}.\n"
     print(text)
     if options.report:
         Path(options.report).write_text(text)
@@ -63,12 +69,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=__doc__)
     add = parser.add_argument
-    add("--count", type=int, default=240, help="faults to inject (default %(default)s)")
-    add("--seed", type=int, default=0, help="chooses them (default %(default)s)")
+    add("--count", type=int, default=200, help="faults to inject (default %(default)s)")
+    add("--seed", type=int, help="chooses them; without it, others each time")
     add("--target", action="append", choices=list(TARGETS), help="only this one; repeatable")
+    add("--rule", action="append", help="only what this one makes; repeatable")
     add("--first", action="store_true", help="stop at the first test that notices a fault")
     add("--tests", action="append", metavar="PATH", help="only tests below this; repeatable")
-    add("--each", type=float, metavar="SECONDS", help="of each test, fewer sets of parameters")
+    add(
+        "--each",
+        type=float,
+        metavar="SECONDS",
+        help="measure fewer sets of parameters of each test",
+    )
+    add("--fresh", action="store_true", help="measure again what ran on an older program")
     add("--most", type=float, metavar="SECONDS", help="leave faults open that need longer tests")
     add("--least", type=float, default=30, metavar="SECONDS", help="what any run of tests may take")
     add("--retry", action="store_true", help="run again what was not killed")
@@ -89,9 +102,9 @@ def _is_due(record: Record | None, tree: str, options: argparse.Namespace) -> bo
         return True
     if record.tree != tree and not options.keep:
         return True
-    if record.status == "open" and not (options.each or options.tests or options.most):
+    if record.status == "open" and not (options.tests or options.most):
         return True
-    return bool(options.retry and record.status != "killed")
+    return bool(options.retry and record.status not in ("killed", "unloaded"))
 
 
 def _run(root: Path, todo: list[Mutant], files: list[str], options: argparse.Namespace) -> None:
@@ -113,6 +126,7 @@ def _run(root: Path, todo: list[Mutant], files: list[str], options: argparse.Nam
                 files,
                 each=options.each,
                 complete=not options.tests,
+                fresh=options.fresh,
                 workshops=free,
                 say=lambda text: print(text, file=sys.stderr, flush=True),
             )

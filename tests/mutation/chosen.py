@@ -11,11 +11,26 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
-__all__ = ["CHOSEN", "RUNNING"]
+__all__ = ["CHOSEN", "RUNNING", "take_time"]
 
 CHOSEN = "FIRM_HDL_MUTATION_CHOSEN"
 RUNNING = "FIRM_HDL_MUTATION_RUNNING"
+
+
+def take_time() -> None:
+    """Let no random test fail because the machine is slow: it would count as one that notices."""
+    calm = settings.get_profile("default")
+    settings.register_profile(
+        "mutation", calm, deadline=None, suppress_health_check=list(HealthCheck)
+    )
+    settings.load_profile("mutation")
+
+
+def pytest_configure() -> None:
+    """Begin."""
+    take_time()
 
 
 @pytest.hookimpl(trylast=True)

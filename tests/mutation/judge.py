@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 from tests.mutation.coverage_map import CoverageMap, Test
 from tests.mutation.mutants import Mutant
-from tests.mutation.results import Record
-from tests.mutation.selection import batches, judges
-from tests.mutation.systems import REST, SYSTEMS, system_of
+from tests.mutation.results import LOADING, Record
+from tests.mutation.selection import FOREIGN, batches, judges
+from tests.mutation.systems import REST, SNAPSHOT, SYSTEMS, system_of
 from tests.mutation.workshop import Run, Workshop
 
 __all__ = ["Judge"]
@@ -16,7 +17,7 @@ __all__ = ["Judge"]
 # A fault may make tests slower, but not by so much.
 FACTOR = 5
 # Others may use the machine, too.
-WALL_FACTOR = 10
+WALL_FACTOR = 20
 WALL_SECONDS = 120
 # A run that something ended from outside says nothing; so often it is repeated.
 ATTEMPTS = 2
@@ -30,6 +31,7 @@ class Judge:
     found : CoverageMap
     first : bool
         Stop at the first test that notices. Otherwise all test systems are asked, one by one.
+        Snapshots are asked if nothing else notices.
     least_cpu_seconds : float
         What any run of tests may take at least.
     most_cpu_seconds : float or None
@@ -51,9 +53,13 @@ class Judge:
 
     def judge(self, workshop: Workshop, mutant: Mutant) -> Record:
         """Return what tests say of a mutant."""
+        if not self._loads(workshop, mutant):
+            runs = {LOADING: Run(status="failed", by=mutant.path, cpu_seconds=0)}
+            return Record.of(mutant, runs, tests=0, complete=True, tree=self._found.tree)
         tests = judges(workshop.root, self._found, mutant)
-        asked = affordable(tests, self._most)
-        runs: dict[str, Run] = {}
+        behaviour = [test for test in tests if not test.snapshot]
+        asked = affordable(behaviour, self._most)
+        runs = {}
         for system in [None] if self._first else [*SYSTEMS, REST]:
             mine = [test for test in asked if system in (None, system_of(test.name))]
             run = self._run(workshop, mutant, mine)
@@ -62,8 +68,17 @@ class Judge:
             if run.status != "passed":
                 names = {system or system_of(run.by)}
             runs.update(dict.fromkeys(sorted(names), run))
-        complete = self._found.complete and len(asked) == len(tests)
+        snapshots = affordable([test for test in tests if test.snapshot], self._most)
+        if snapshots and all(run.status == "passed" for run in runs.values()):
+            runs[SNAPSHOT] = self._run(workshop, mutant, snapshots)
+        complete = self._found.complete and len(asked) == len(behaviour)
         return Record.of(mutant, runs, tests=len(tests), complete=complete, tree=self._found.tree)
+
+    def _loads(self, workshop: Workshop, mutant: Mutant) -> bool:
+        if not mutant.path.endswith(".py") or Path(mutant.path).name.startswith(FOREIGN):
+            return True
+        with workshop.with_fault(mutant):
+            return workshop.loads(mutant.path)
 
     def _run(self, workshop: Workshop, mutant: Mutant, tests: Sequence[Test]) -> Run:
         """Run batches until one test notices."""

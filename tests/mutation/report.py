@@ -6,17 +6,17 @@ from collections.abc import Iterable, Sequence
 
 from tests.mutation.explained import Explanation, explain
 from tests.mutation.results import Record
-from tests.mutation.systems import SYSTEMS
+from tests.mutation.systems import REST, SYSTEMS
 from tests.mutation.targets import TARGETS
 
 __all__ = ["markdown"]
 
 COLUMNS = (
-    "target",
     "mutants",
-    "killed",
+    "behaviour",
     *SYSTEMS,
-    "rest",
+    REST,
+    "snapshot alone",
     "explained",
     "survived",
     "open",
@@ -27,29 +27,36 @@ COLUMNS = (
 def markdown(records: Iterable[Record], explanations: Sequence[Explanation], tree: str) -> str:
     """Write a report on the tree of that name.
 
-    The score is what was killed, of all that was judged. What is open, not noticed by those tests
-    that were run, counts as not killed.
+    The score is what tests of behaviour killed, of all that was judged. What is open, not noticed
+    by those tests that were run, counts as not killed, and so does what only a snapshot noticed.
     """
     given = sorted(
         records, key=lambda each: (list(TARGETS).index(each.target), each.path, each.line)
     )
-    rows = [
-        _row(target, [each for each in given if each.target == target], explanations)
-        for target in TARGETS
-    ]
-    rows.append(_row("all", given, explanations))
-    lines = ["# Mutation score", "", _line(COLUMNS), _line(["---"] * len(COLUMNS))]
-    lines += [_line(row) for row in rows]
+    judged = [each for each in given if each.status not in ("unloaded", "error")]
+    rules = sorted({each.rule for each in judged})
+    lines = ["# Mutation score", ""]
+    for title, names in (("target", list(TARGETS)), ("rule", rules)):
+        lines += [_line((title, *COLUMNS)), _line(["---"] * (len(COLUMNS) + 1))]
+        for name in names:
+            mine = [each for each in judged if getattr(each, title) == name]
+            lines += [_line(_row(name, mine, explanations))] if mine else []
+        lines += [_line(_row("all", judged, explanations)), ""]
     lines += [
+        "`behaviour`: killed by a test that compares with what is right, not with what was",
+        "written before; then, by which test system. Without `--first` a mutant may be killed by",
+        "several; with it, only the first one counts.",
         "",
-        "Under each test system: how many mutants it killed. Without `--first` a mutant may",
     ]
-    lines += ["be killed by several; with it, only the first one counts.", ""]
+    unloaded = sum(each.status == "unloaded" for each in given)
+    if unloaded:
+        lines += [f"{unloaded} more are not counted: Python does not load them.", ""]
     other = sum(each.tree != tree for each in given)
     if other:
         lines += [f"{other} of these were found before files changed.", ""]
-    for title, status, wanted in (
+    for heading, status, wanted in (
         ("Survivors without an explanation", "survived", False),
+        ("Noticed by snapshots alone", "snapshot", False),
         ("Not noticed so far; not all tests were run", "open", False),
         ("Runs that were ended from outside, to be repeated", "error", False),
         ("Survivors with an explanation", None, True),
@@ -57,22 +64,23 @@ def markdown(records: Iterable[Record], explanations: Sequence[Explanation], tre
         chosen = [
             (each, explain(each, explanations))
             for each in given
-            if each.status != "killed" and status in (None, each.status)
+            if each.status not in ("killed", "unloaded") and status in (None, each.status)
         ]
-        lines += _section(title, [pair for pair in chosen if (pair[1] is not None) == wanted])
+        lines += _section(heading, [pair for pair in chosen if (pair[1] is not None) == wanted])
     return "\n".join(lines) + "\n"
 
 
 def _row(name: str, records: list[Record], explanations: Sequence[Explanation]) -> list[str]:
     killed = [each for each in records if each.status == "killed"]
-    alive = [each for each in records if each.status != "killed"]
+    snapshot = [each for each in records if each.status == "snapshot"]
+    alive = [each for each in records if each.status in ("survived", "open")]
     explained = [each for each in alive if explain(each, explanations)]
     rest = [each for each in alive if each not in explained]
-    by = [sum(system in each.killers for each in killed) for system in (*SYSTEMS, "rest")]
+    by = [sum(system in each.killers for each in killed) for system in (*SYSTEMS, REST)]
     survived = sum(each.status == "survived" for each in rest)
     score = f"{100 * len(killed) / len(records):.1f} %" if records else "-"
-    counts = [len(records), len(killed), *by, len(explained), survived, len(rest) - survived]
-    return [name, *map(str, counts), score]
+    counts = [len(records), len(killed), *by, len(snapshot), len(explained), survived]
+    return [name, *map(str, counts), str(len(rest) - survived), score]
 
 
 def _line(cells: Iterable[str]) -> str:
@@ -84,7 +92,9 @@ def _section(title: str, chosen: list[tuple[Record, Explanation | None]]) -> lis
         return []
     lines = [f"## {title}", ""]
     for record, explanation in chosen:
-        lines.append(f"* `{record.path}:{record.line}`, {record.rule}, in `{record.scope}`")
+        by = ", ".join(record.runs[name].by for name in record.killers)
+        place = f"* `{record.path}:{record.line}`, {record.rule}, in `{record.scope}`"
+        lines.append(f"{place}, by {by}" if by else place)
         if explanation:
             lines.append(f"  {explanation.kind}: {explanation.why}")
         lines += ["", "  ```diff", *(f"  - {line}" for line in record.old.split("\n"))]

@@ -9,9 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from tests.mutation.mutants import Mutant
+from tests.mutation.systems import SNAPSHOT
 from tests.mutation.workshop import Run
 
-__all__ = ["Record", "append", "read"]
+__all__ = ["LOADING", "Record", "append", "read"]
+
+# In place of a test system: Python itself refused the mutant.
+LOADING = "loading"
 
 
 @dataclass(frozen=True)
@@ -67,16 +71,25 @@ class Record:
 
     @property
     def killers(self) -> list[str]:
-        """The test systems that noticed."""
+        """The test systems that noticed; snapshots are one."""
         return [name for name, run in self.runs.items() if run.status in ("failed", "timeout")]
 
     @property
     def status(self) -> str:
-        """``killed``; ``survived`` all tests; ``open`` if some were not run, or ``error``."""
-        if self.killers:
+        """What it came to.
+
+        ``killed`` by a test of behaviour; by a ``snapshot`` alone; ``survived`` all tests;
+        ``unloaded`` if Python does not load it, so that it is no fault that somebody would leave;
+        ``open`` if some tests were not run, or ``error``.
+        """
+        if LOADING in self.runs:
+            return "unloaded"
+        if set(self.killers) - {SNAPSHOT}:
             return "killed"
         if any(run.status == "error" for run in self.runs.values()):
             return "error"
+        if self.killers:
+            return "snapshot"
         return "survived" if self.complete else "open"
 
 

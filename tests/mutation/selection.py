@@ -16,12 +16,15 @@ from tests.mutation.coverage_map import CoverageMap, Test
 from tests.mutation.mutants import Mutant
 from tests.mutation.systems import mirrored, mirrors
 
-__all__ = ["BATCH_SECONDS", "batches", "changed_lines", "judges"]
+__all__ = ["BATCH_SECONDS", "FOREIGN", "batches", "changed_lines", "judges"]
 
 # Processor time of the tests of each run; the last one is repeated.
-BATCH_SECONDS = (5.0, 15.0, 60.0, 300.0)
+BATCH_SECONDS = (4.0, 15.0, 60.0, 300.0)
 # What the sets of parameters of one test take, before it is another one's turn; then twice as much.
 TURN_SECONDS = 0.25
+# Names of modules that another Python runs, and which module starts them.
+FOREIGN = "worker_"
+STARTS_THEM = "firm_hdl/verify/ts1/worker.py"
 Place = tuple[str, frozenset[int]]
 
 
@@ -30,6 +33,8 @@ def changed_lines(root: Path, mutant: Mutant) -> list[Place]:
     path = root / mutant.path
     if path.suffix == ".lark":
         return list(_loaders(root, path))
+    if path.name.startswith(FOREIGN):
+        return [(STARTS_THEM, frozenset(_bodies(root / STARTS_THEM)))]
     tree = ast.parse(path.read_text(encoding="utf-8"))
     return [(mutant.path, frozenset(_statement(tree, mutant.line)))]
 
@@ -52,6 +57,9 @@ def judges(root: Path, found: CoverageMap, mutant: Mutant) -> list[Test]:
             own |= {test.name} if itself else set()
     # Who loads what all use may be a process that does nothing else.
     shared = len(own) < len(tests)
+    # Of tests that an older program was measured with, some may run the line today.
+    for test in found.named(found.touching(mutant.path, stale=True)):
+        tests.setdefault(test.name, test)
     same_folder = found.touching(str(PurePosixPath(mutant.path).parent) + "/")
     unseen = {test.name: test for test in found.opaque() if test.name not in tests}
 
@@ -61,7 +69,7 @@ def judges(root: Path, found: CoverageMap, mutant: Mutant) -> list[Test]:
         return 4 if test.name in unseen else near.index(True) if any(near) else 3
 
     seconds: dict[str, float] = defaultdict(float)
-    ranks: dict[str, tuple[int, bool, int, bool, float]] = {}
+    ranks: dict[str, tuple[int, bool, bool, int, bool, float]] = {}
     every = [*tests.values(), *unseen.values()]
     for test in sorted(every, key=lambda each: (each.cpu_seconds, each.name)):
         seconds[test.function] += test.cpu_seconds
@@ -70,7 +78,9 @@ def judges(root: Path, found: CoverageMap, mutant: Mutant) -> list[Test]:
         # Of tests that do not run the line, those beside the module know what it is for.
         beside = mirror or test.file.startswith(mirrored(mutant.path) + "/")
         first = group(test)
-        ranks[test.name] = first, first > 0 and not beside, turn, not mirror, test.cpu_seconds
+        far = first > 0 and not beside
+        unsure = not test.measured
+        ranks[test.name] = first, far, unsure, turn, not mirror, test.cpu_seconds
     return sorted(every, key=lambda each: (ranks[each.name], each.name))
 
 
@@ -125,6 +135,20 @@ def _span(node: ast.AST) -> tuple[int, int, int]:
     decorators = getattr(start, "decorator_list", [])
     behind = min([start.lineno, *(each.lineno for each in decorators)])
     return first, max(first, behind - 1), last
+
+
+def _bodies(path: Path) -> set[int]:
+    """Return the lines of what functions do."""
+    functions = [
+        node
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef)
+    ]
+    return {
+        line
+        for node in functions
+        for line in range(node.body[0].lineno, (node.end_lineno or 0) + 1)
+    }
 
 
 def _loaders(root: Path, grammar: Path) -> Iterator[Place]:

@@ -1,7 +1,7 @@
 """Which tests are which test system, and in which order test files are looked at.
 
-Linters are no test system here: what they would say of an injected fault says nothing about the
-tests.
+Linters are no test system here, and neither are tests of the same kind: what they would say of an
+injected fault says nothing about the tests.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from fnmatch import fnmatch
 from pathlib import Path, PurePosixPath
 
-__all__ = ["REST", "SYSTEMS", "mirrored", "mirrors", "system_of", "test_files"]
+__all__ = ["REST", "SNAPSHOT", "SYSTEMS", "mirrored", "mirrors", "system_of", "test_files"]
 
 # Patterns of names of test files; `*` stands for folders, too. The first system that fits counts.
 SYSTEMS = {
@@ -25,8 +25,10 @@ SYSTEMS = {
 }
 # All other tests.
 REST = "rest"
-# The tool's own tests judge the tool.
-NOT_JUDGES = ("tests/mutation/",)
+# Of all systems, tests that compare with files that the program itself has written.
+SNAPSHOT = "snapshot"
+# The tool's own tests judge the tool, and these the form of the source.
+NOT_JUDGES = ("tests/mutation/", "tests/test_architecture.py", "tests/test_ci.py")
 
 
 def system_of(name: str) -> str:

@@ -3,21 +3,36 @@
 from __future__ import annotations
 
 import hashlib
-from collections import defaultdict
+from collections import Counter, defaultdict
+from collections.abc import Collection
+from math import sqrt
 from pathlib import Path
 
-from tests.mutation import grammar_rules, python_rules
+from tests.mutation import grammar_rules, python_rules, semantic_rules
+from tests.mutation.index import Index, index_of_program
 from tests.mutation.mutants import Change, Mutant, identify
 
 __all__ = ["TARGETS", "all_mutants", "files", "is_fault", "sample"]
 
+# All of the program. A file is of the first target that has it.
 TARGETS = {
     "grammar": ["firm_hdl/frontend/**/*.lark"],
-    "resolver": ["firm_hdl/frontend/**/*.py"],
-    "layout": ["firm_hdl/wire/*.py"],
-    "plan": [f"firm_hdl/plan/{name}.py" for name in ("build", "cut", "geometry", "ir", "offsets")],
+    "idl": ["firm_hdl/frontend/idl/*.py"],
+    "frontend": ["firm_hdl/frontend/*.py"],
+    "identity": ["firm_hdl/identity/*.py"],
+    "wire": ["firm_hdl/wire/*.py"],
+    "plan": ["firm_hdl/plan/*.py"],
     "gateware": ["firm_hdl/gateware/*.py"],
+    "sim": ["firm_hdl/sim/*.py"],
     "vhdl": ["firm_hdl/export/vhdl*.py", "firm_hdl/export/rtlil*.py"],
+    "export": ["firm_hdl/export/*.py"],
+    "equivalence": ["firm_hdl/equivalence/*.py"],
+    "metrics": ["firm_hdl/metrics/*.py"],
+    "ts1": ["firm_hdl/verify/ts1/*.py"],
+    "sut": ["firm_hdl/verify/sut/*.py"],
+    "report": ["firm_hdl/verify/report/*.py"],
+    "verify": ["firm_hdl/verify/**/*.py"],
+    "top": ["firm_hdl/**/*.py"],
 }
 # What grammars are asked for.
 IDL_STARTS, MESSAGE_STARTS = ["start"], ["line", "reference"]
@@ -25,24 +40,38 @@ IDL_STARTS, MESSAGE_STARTS = ["start"], ["line", "reference"]
 
 def files(root: Path, target: str) -> list[Path]:
     """Return the files of a target."""
-    found = {path for pattern in TARGETS[target] for path in root.glob(pattern)}
-    return sorted(path for path in found if path.name != "__init__.py")
+    taken: set[Path] = set()
+    for name, patterns in TARGETS.items():
+        found = {path for pattern in patterns for path in root.glob(pattern)} - taken
+        if name == target:
+            return sorted(found)
+        taken |= found
+    raise KeyError(target)
 
 
-def all_mutants(root: Path, targets: list[str] | None = None) -> list[Mutant]:
-    """Return all mutants of the repository at `root`."""
+def all_mutants(
+    root: Path, targets: list[str] | None = None, only: Collection[str] = ()
+) -> list[Mutant]:
+    """Return all mutants of the repository at `root`, or of some of its files."""
+    index = index_of_program(root)
     mutants: list[Mutant] = []
     for target in targets or list(TARGETS):
         for path in files(root, target):
             text = path.read_text(encoding="utf-8")
             where = path.relative_to(root).as_posix()
-            mutants += identify(where, target, text, _changes(path, text))
+            if only and where not in only:
+                continue
+            mutants += identify(where, target, text, _changes(path, text, index))
     return mutants
 
 
-def _changes(path: Path, text: str) -> list[Change]:
-    rules = grammar_rules if path.suffix == ".lark" else python_rules
-    return rules.changes(text)
+def _changes(path: Path, text: str, index: Index) -> list[Change]:
+    if path.suffix == ".lark":
+        return grammar_rules.changes(text)
+    # What two rules make is one mutant, by the rule that means more.
+    found = [*semantic_rules.changes(text, index), *python_rules.changes(text)]
+    first = {(each.start, each.end, each.new): each for each in reversed(found)}
+    return sorted(first.values(), key=lambda each: (each.start, each.end, each.rule, each.new))
 
 
 def is_fault(root: Path, mutant: Mutant) -> bool:
@@ -55,42 +84,55 @@ def is_fault(root: Path, mutant: Mutant) -> bool:
 
 
 def sample(root: Path, mutants: list[Mutant], count: int, seed: int) -> list[Mutant]:
-    """Choose faults: as many of each target, of its files in proportion to what they have.
+    """Choose faults: of each target by its size, of its files in proportion, of all rules alike.
 
-    The order is random across targets, so that the first of them are a sample as well. A mutant's
-    rank depends on its content alone: an edit elsewhere leaves the choice as it was, nearly.
+    The share of a target grows with the root of its size, so that small ones have one. The order
+    is random across targets, so that the first of them are a sample as well. A mutant's rank
+    depends on its content alone: an edit elsewhere leaves the choice as it was, nearly.
     """
     by_target: dict[str, list[Mutant]] = defaultdict(list)
     for mutant in mutants:
         by_target[mutant.target].append(mutant)
     chosen: list[Mutant] = []
-    for index, target in enumerate(by_target):
-        quota = count // len(by_target) + (index < count % len(by_target))
+    for target, quota in _quotas(by_target, count).items():
         chosen += _of_target(root, by_target[target], quota, seed)
-    return sorted(chosen, key=lambda mutant: _rank(mutant, seed + 1))
+    return sorted(chosen, key=lambda mutant: _rank(seed + 1, mutant.key))
+
+
+def _quotas(by_target: dict[str, list[Mutant]], count: int) -> dict[str, int]:
+    quotas = dict.fromkeys(by_target, 0)
+    for _ in range(count if by_target else 0):
+        behind = min(quotas, key=lambda name: (quotas[name] + 0.5) / sqrt(len(by_target[name])))
+        quotas[behind] += 1
+    return quotas
 
 
 def _of_target(root: Path, mutants: list[Mutant], quota: int, seed: int) -> list[Mutant]:
-    by_file: dict[str, list[Mutant]] = defaultdict(list)
-    for mutant in mutants:
-        by_file[mutant.path].append(mutant)
-    sizes = {path: len(each) for path, each in by_file.items()}
-    for each in by_file.values():
-        each.sort(key=lambda mutant: _rank(mutant, seed), reverse=True)
-    # In turn from the file that is furthest behind its share.
+    by_file: dict[str, dict[str, list[Mutant]]] = defaultdict(lambda: defaultdict(list))
+    for mutant in sorted(mutants, key=lambda each: _rank(seed, each.key), reverse=True):
+        by_file[mutant.path][mutant.change.rule].append(mutant)
+    sizes = Counter(mutant.path for mutant in mutants)
+    # In turn from the file that is furthest behind its share, by the rule that is.
     chosen: list[Mutant] = []
-    taken = dict.fromkeys(by_file, 0)
-    while len(chosen) < quota and any(by_file.values()):
+    taken, used = Counter[str](), Counter[str]()
+    while len(chosen) < quota and by_file:
         path = min(
-            (path for path, each in by_file.items() if each),
-            key=lambda path: (taken[path] + 0.5) / sizes[path],
+            by_file,
+            key=lambda path: ((taken[path] + 0.5) / sizes[path], _rank(seed, path)),
         )
-        mutant = by_file[path].pop()
+        rules = by_file[path]
+        rule = min(rules, key=lambda rule: (used[rule], _rank(seed, f"{path} {rule}")))
+        mutant = rules[rule].pop()
         if is_fault(root, mutant):
             chosen.append(mutant)
             taken[path] += 1
+            used[rule] += 1
+        if not rules[rule]:
+            del rules[rule]
+        if not rules:
+            del by_file[path]
     return chosen
 
 
-def _rank(mutant: Mutant, seed: int) -> str:
-    return hashlib.sha256(f"{seed} {mutant.key}".encode()).hexdigest()
+def _rank(seed: int, what: str) -> str:
+    return hashlib.sha256(f"{seed} {what}".encode()).hexdigest()

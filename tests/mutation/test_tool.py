@@ -10,6 +10,7 @@ import pytest
 
 from tests.mutation.__main__ import main
 from tests.mutation.explained import Explanation, explain, read_explanations
+from tests.mutation.map_store import moved
 from tests.mutation.mutants import identify
 from tests.mutation.python_rules import changes
 from tests.mutation.report import markdown
@@ -55,7 +56,16 @@ def hidden(x):
 
 def deadly(x):
     return x & 2
+
+
+def written(x):
+    return x / 2
+
+
+NAMES = dict.fromkeys("ab") | {}
 """
+# Those that the toy has something for.
+RULES = ["operator", "delete assignment", "comparison", "number + 1"]
 HEAD = """
 import os, signal, subprocess, sys
 import pytest
@@ -77,6 +87,10 @@ def test_the_table():
 
 def test_the_limit():
     assert toy.LIMIT == 7
+
+@pytest.mark.snapshot
+def test_what_was_written():
+    assert toy.written(6) == 3 and toy.double(3) == 6
 """
 PROCESSES = f"""{HEAD}
 def run(what):
@@ -104,6 +118,7 @@ def toy(tmp_path):
         "firm_hdl/wire/__init__.py": "",
         "firm_hdl/wire/toy.py": MODULE,
         "tests/__init__.py": "",
+        "pyproject.toml": '[tool.pytest.ini_options]\nmarkers = ["snapshot"]\n',
         "tests/wire/__init__.py": "",
         "tests/wire/test_toy.py": TESTS,
         "tests/test_processes.py": PROCESSES,
@@ -121,7 +136,8 @@ def run(toy, *more):
     """Run the command; return its results by what they are about."""
     out = toy.parent / "out.jsonl"
     places = ["--root", str(toy), "--out", str(out), "--map", str(toy.parent / "map")]
-    assert main([*places, "--first", "--least", "2", *more]) == 0
+    rules = [] if "--rule" in more else [word for rule in RULES for word in ("--rule", rule)]
+    assert main([*places, "--first", "--least", "2", "--seed", "0", *rules, *more]) == 0
     return {(each.scope, each.rule): each for each in read(out).values()}
 
 
@@ -141,7 +157,7 @@ def test_just_the_tests_that_run_a_line_judge_it_and_runs_resume(toy, capsys):
     by = {place: run.by for place, each in found.items() for run in each.runs.values()}
     # Beside those that run the line, the one with a process that nobody sees may notice.
     double = found["double", "operator"]
-    assert (double.status, double.tests) == ("killed", 2)
+    assert (double.status, double.tests) == ("killed", 3)
     assert by["double", "operator"] == "tests/wire/test_toy.py::test_double"
     # It never ends; the test that runs is named.
     assert found["halve", "delete assignment"].killers == ["ts2"]
@@ -158,6 +174,11 @@ def test_just_the_tests_that_run_a_line_judge_it_and_runs_resume(toy, capsys):
     assert by["elsewhere", "operator"] == "tests/test_processes.py::test_elsewhere"
     assert found["elsewhere", "operator"].killers == ["rest"]
     assert by["hidden", "operator"] == "tests/test_processes.py::test_hidden"
+    # A test that compares with what was written notices, but does not count.
+    assert found["written", "operator"].status == "snapshot"
+    assert by["written", "operator"] == "tests/wire/test_toy.py::test_what_was_written"
+    # Python itself refuses it.
+    assert found["", "operator"].status == "unloaded"
     # Whoever killed the process, it says nothing about the fault.
     assert found["deadly", "operator"].status == "error"
 
@@ -174,7 +195,7 @@ def test_just_the_tests_that_run_a_line_judge_it_and_runs_resume(toy, capsys):
 
 
 def test_a_test_that_the_map_lacks_notices_nothing(toy, capsys):
-    more = ["--count", "4", "--target", "layout"]
+    more = ["--count", "4", "--target", "wire"]
     (toy / "firm_hdl/wire/toy.py").write_text("def double(x):\n    return x + x\n")
     (toy / "tests/wire/test_toy.py").write_text(TESTS.partition("@")[0])
     (toy / "tests/test_processes.py").unlink()
@@ -207,13 +228,67 @@ def test_what_not_all_tests_met_stays_open(toy):
     )
     (toy / "tests/wire/test_toy.py").write_text(test)
     (toy / "tests/test_processes.py").write_text("def test_it():\n    pass\n")
-    # The set of parameters that would notice is left out, and then that file.
-    assert run(toy, "--each", "1e-9")["half", "operator"].status == "open"
+    # The set of parameters that notices was not measured; it may run what the other one does.
+    killed = run(toy, "--each", "1e-9")["half", "operator"]
+    assert (killed.status, killed.runs["ts2"].by) == (
+        "killed",
+        "tests/wire/test_toy.py::test_half[8]",
+    )
+    (toy.parent / "out.jsonl").unlink()
+    # The file that would notice is left out.
     alone = ["--tests", "tests/test_processes.py", "--retry"]
     assert run(toy, *alone)["half", "operator"].status == "open"
     more = ["--tests", "tests/wire"]
     assert run(toy, *more)["half", "operator"].status == "open"
     assert run(toy, *more, "--retry")["half", "operator"].status == "killed"
+
+
+def test_a_map_of_an_older_program_is_of_use(toy, capsys):
+    (toy / "tests/test_processes.py").unlink()
+    more = ["--rule", "comparison", "--retry"]
+    assert run(toy, *more)["untested", "comparison"].status == "survived"
+    # Lines move, and there is one more.
+    text = MODULE.replace("    return x < x", "    y = 1\n    return x < y")
+    (toy / "firm_hdl/wire/toy.py").write_text(f"# A comment.\n{text}")
+    capsys.readouterr()
+    found = run(toy, "--rule", "operator", "--keep")
+    said = capsys.readouterr().err
+    assert "1 of 1 files as they were before" in said and "map: tests" not in said
+    assert found["double", "operator"].status == "killed"
+    run(toy, *more, "--fresh")
+    assert "map: tests/wire/test_toy.py" in capsys.readouterr().err
+
+
+def test_lines_are_found_again():
+    before = "a\nb\nc\nd\ne\n"
+    after = "new\na\nb\nB1\nB2\nd\nbehind\ne\n"
+    masks = {"0": 0b000110, "1": 0b001000, "2": 0b110000}
+    lines = {
+        owner: [line for line in range(1, 10) if mask >> line & 1]
+        for owner, mask in moved(masks, before, after).items()
+    }
+    # What replaced a line is run by whoever ran that, what is new by whoever ran the line before.
+    assert lines == {"0": [2, 3], "1": [4, 5], "2": [6, 7, 8]}
+
+
+def test_a_seed_is_drawn_and_named(toy, capsys):
+    named = ["--root", str(toy), "--count", "9", "--list"]
+    listed = []
+    for seed in ([], ["--seed", "1"], ["--seed", "1"]):
+        assert main([*named, *seed]) == 0
+        said = capsys.readouterr()
+        assert said.err.startswith("--seed ")
+        listed.append(said.out.splitlines())
+    assert listed[1] == listed[2] and [len(each) for each in listed] == [9, 9, 9]
+    # Of a seed that was drawn, the same is chosen again by its name.
+    assert main(named) == 0
+    said = capsys.readouterr()
+    assert main([*named, "--seed", said.err.split()[1]]) == 0
+    assert capsys.readouterr().out == said.out
+    assert main([*named, "--rule", "operator"]) == 0
+    assert {line.split(maxsplit=2)[2] for line in capsys.readouterr().out.splitlines()} == {
+        "operator"
+    }
 
 
 def test_a_project_whose_tests_fail_is_not_judged(toy, capsys):
@@ -237,21 +312,34 @@ def test_keys_outlive_moved_lines():
 
 
 def test_samples_are_spread_and_repeatable():
-    mutants = all_mutants(ROOT, ["layout", "plan"])
+    mutants = all_mutants(ROOT, ["wire", "metrics"])
     chosen = sample(ROOT, mutants, 30, 1)
     assert chosen == sample(ROOT, mutants, 30, 1) != sample(ROOT, mutants, 30, 2)
-    assert [sum(each.target == name for each in chosen) for name in ("layout", "plan")] == [15, 15]
-    assert len({each.path for each in chosen}) >= 5
+    # The larger one has more, but not as many more as it is larger.
+    shares = [sum(each.target == name for each in chosen) for name in ("wire", "metrics")]
+    assert sum(shares) == 30 and 10 <= shares[0] < shares[1]
+    assert len({each.path for each in chosen}) >= 7
+    assert len({each.change.rule for each in chosen}) >= 15
 
 
-def test_all_targets_exist():
-    for target in TARGETS:
-        assert files(ROOT, target), target
+def test_the_targets_are_the_whole_program():
+    found = [path for target in TARGETS for path in files(ROOT, target)]
+    assert all(files(ROOT, target) for target in TARGETS)
+    program = {path for kind in ("py", "lark") for path in (ROOT / "firm_hdl").rglob(f"*.{kind}")}
+    assert len(found) == len(set(found)) and set(found) == program
+
+
+def test_every_rule_finds_something_in_the_program():
+    found = {mutant.change.rule for mutant in all_mutants(ROOT)}
+    assert len(found) > 40
+    assert found >= {"swapped branches", "overridden assignment", "dropped clause", "wrong limit"}
+    assert found >= {"swapped operand", "sticky flag", "missing reset", "wrong neighbour"}
+    assert found >= {"dropped check", "dropped assignment", "ignored item", "default used"}
 
 
 def test_an_explanation_is_of_one_change_wherever_it_is(tmp_path):
     out = tmp_path / "out.jsonl"
-    (mutant, *_) = identify("firm_hdl/wire/toy.py", "layout", MODULE, changes(MODULE))
+    (mutant, *_) = identify("firm_hdl/wire/toy.py", "wire", MODULE, changes(MODULE))
     runs = {"rest": Run(status="passed", by="", cpu_seconds=1.0)}
     record = Record.of(mutant, runs, tests=1, complete=True, tree="a")
     append(out, record)
@@ -267,9 +355,9 @@ def test_an_explanation_is_of_one_change_wherever_it_is(tmp_path):
 
 
 def test_explanations_are_of_what_is_there():
-    for each in read_explanations():
-        target = next(name for name in TARGETS if ROOT / each.path in files(ROOT, name))
-        mutants = [m for m in all_mutants(ROOT, [target]) if m.path == each.path]
-        there = {(m.change.scope, m.change.rule, m.place.old, m.place.new) for m in mutants}
-        assert (each.scope, each.rule, each.old, each.new) in there, each
+    explanations = read_explanations()
+    mutants = all_mutants(ROOT, only={each.path for each in explanations})
+    there = {(m.path, m.change.scope, m.change.rule, m.place.old, m.place.new) for m in mutants}
+    for each in explanations:
+        assert (each.path, each.scope, each.rule, each.old, each.new) in there, each
         assert each.why

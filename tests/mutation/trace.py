@@ -26,6 +26,8 @@ from typing import Any
 import coverage
 import pytest
 
+from tests.mutation.chosen import take_time
+
 __all__ = ["CONTEXT", "EACH", "FOLDER", "SETTINGS"]
 
 FOLDER = "FIRM_HDL_MUTATION_TRACE"
@@ -58,6 +60,9 @@ class _Trace:
         self._depth = 0
         self._test = ""
         self.tests: list[dict[str, Any]] = []
+        # Left out because others of the same function have had its time.
+        self.skipped: list[dict[str, Any]] = []
+        self.snapshot = False
         # By test without parameters.
         self.seconds: dict[str, float] = defaultdict(float)
         self._coverage.start()
@@ -65,7 +70,7 @@ class _Trace:
     def enter(self, nodeid: str) -> None:
         """Begin a test."""
         self._test = str(len(self.tests))
-        self.tests.append({"id": nodeid, "started": 0, "lost": False})
+        self.tests.append({"id": nodeid, "started": 0, "lost": False, "snapshot": self.snapshot})
         self.tests[-1]["cpu"] = -_cpu_seconds()
         os.environ[CONTEXT] = self._test
         self._coverage.switch_context(self._test)
@@ -105,7 +110,8 @@ class _Trace:
         """Write all down."""
         self._coverage.stop()
         self._coverage.save()
-        (self._folder / "tests.json").write_text(json.dumps(self.tests))
+        given = {"tests": self.tests, "skipped": self.skipped}
+        (self._folder / "tests.json").write_text(json.dumps(given))
 
 
 _trace: _Trace | None = None
@@ -132,12 +138,19 @@ def pytest_load_initial_conftests() -> None:
     _watch_processes()
 
 
+def pytest_configure() -> None:
+    """Let nothing fail because it takes longer."""
+    take_time()
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
     """Leave out further sets of parameters of a test that has had its time, if so asked."""
     assert _trace
+    _trace.snapshot = item.get_closest_marker("snapshot") is not None
     if _trace.seconds[item.nodeid.partition("[")[0]] <= float(os.environ.get(EACH) or "inf"):
         return None
+    _trace.skipped.append({"id": item.nodeid, "snapshot": _trace.snapshot})
     # The test before has left what this one would use.
     item.session._setupstate.teardown_exact(nextitem)
     return True

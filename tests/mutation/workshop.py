@@ -13,6 +13,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from tests.mutation.chosen import CHOSEN, RUNNING
 from tests.mutation.mutants import Mutant
@@ -26,6 +27,7 @@ OPTIONS = ["-x", "-q", "--no-header", "--tb=line", "-p", "no:cacheprovider", "-p
 # Hypothesis is loaded before pytest could rewrite what it asserts.
 OPTIONS += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]
 SECONDS = 1800
+LOADING_SECONDS = 60
 FAILED = re.compile(r"^(?:FAILED|ERROR) (\S.*?)(?: - .*)?$", re.MULTILINE)
 WRONG_COPY = 98
 # No test was collected: of what is there, nothing judges.
@@ -154,20 +156,14 @@ class Workshop:
         seconds : float, optional
             How long it may take altogether.
         """
-        job = {
-            "args": [*OPTIONS, *arguments],
-            "log": str(self._log),
-            "cpu_seconds": int(cpu_seconds) + 1,
-            "seconds": SECONDS if seconds is None else seconds,
-            "environment": dict(environment or {}),
-        }
-        assert self._server.stdin and self._server.stdout
-        self._server.stdin.write(json.dumps(job) + "\n")
-        self._server.stdin.flush()
-        line = self._server.stdout.readline()
-        if not line:
-            raise RuntimeError("the process that runs tests has ended")
-        answer = json.loads(line)
+        answer = self._ask(
+            {
+                "args": [*OPTIONS, *arguments],
+                "cpu_seconds": int(cpu_seconds) + 1,
+                "seconds": SECONDS if seconds is None else seconds,
+                "environment": dict(environment or {}),
+            }
+        )
         text = self._log.read_text(errors="replace")
         if answer["code"] == WRONG_COPY:
             raise RuntimeError(text[-300:])
@@ -177,6 +173,22 @@ class Workshop:
         if status in ("failed", "error") and not by:
             by = f"exit status {answer['code']}"
         return Run(status=status, by=by, cpu_seconds=answer["cpu"])
+
+    def loads(self, path: str) -> bool:
+        """Tell whether Python loads a module of the copy."""
+        module = path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+        limits = {"cpu_seconds": LOADING_SECONDS, "seconds": 10 * LOADING_SECONDS}
+        return bool(self._ask({"module": module, "environment": {}, **limits})["code"] == 0)
+
+    def _ask(self, job: dict[str, Any]) -> dict[str, Any]:
+        assert self._server.stdin and self._server.stdout
+        self._server.stdin.write(json.dumps({**job, "log": str(self._log)}) + "\n")
+        self._server.stdin.flush()
+        line = self._server.stdout.readline()
+        if not line:
+            raise RuntimeError("the process that runs tests has ended")
+        answer: dict[str, Any] = json.loads(line)
+        return answer
 
     def output(self) -> str:
         """Return what the last run printed."""

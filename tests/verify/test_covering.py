@@ -45,6 +45,7 @@ def missing(distro, kept):
     return set().union(*found.values()) - set().union(*(found[name] for name in kept))
 
 
+@pytest.mark.snapshot
 @pytest.mark.parametrize("distro", DISTROS)
 def test_the_kept_types_have_every_feature(distro):
     assert missing(distro, KEPT[distro]) == set(), "choose again: make cover"

@@ -20,6 +20,7 @@ from tests.verify.judged import assert_passed
 FOLDER = Path(__file__).parent / "golden"
 
 
+@pytest.mark.snapshot
 def test_todays_plans_are_the_golden_ones():
     results = check_golden(read_golden(FOLDER))
     assert len(results) > 25
@@ -33,6 +34,7 @@ def test_todays_plans_are_the_golden_ones():
     assert {result.verdict for result in results} == {Passed(1)}
 
 
+@pytest.mark.snapshot
 def test_the_golden_plans_cover_what_both_wires_have():
     have, want = set(), set()
     for golden in read_golden(FOLDER):

@@ -48,6 +48,7 @@ def test_types_are_planned_for_either_wire():
     assert_passed(check_plan(load_message("sensor_msgs/Imu", distro="noetic"), "cdr", 8))
 
 
+@pytest.mark.snapshot
 def test_the_command_counts_types_and_compares_golden_plans(capsys):
     arguments = ["verify", "--systems", "ts2", "--distro", "lyrical", "--golden", str(GOLDEN)]
     assert main([*arguments, "sensor_msgs/msg/Imu", "sensor_msgs/msg/Joy"]) == 0
@@ -58,6 +59,7 @@ def test_the_command_counts_types_and_compares_golden_plans(capsys):
     )
 
 
+@pytest.mark.snapshot
 def test_a_golden_plan_that_differs_fails_the_run(tmp_path, capsys):
     path = tmp_path / "lyrical" / "imu.yaml"
     path.parent.mkdir()

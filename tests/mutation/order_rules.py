@@ -1,0 +1,188 @@
+"""Faults of priority: what comes first of two branches, and of two assignments to one thing.
+
+Amaranth's `m.If` and `m.Elif` stand one behind the other, and the last assignment to a signal
+counts; both are as easy to turn around as what Python itself has.
+"""
+
+from __future__ import annotations
+
+import ast
+import itertools
+from collections.abc import Iterator
+
+from tests.mutation.index import Index
+from tests.mutation.mutants import Change
+from tests.mutation.source import Source
+
+__all__ = ["RULES", "assigned", "blocks", "hardware_branch"]
+
+ENDS = (ast.Return, ast.Raise, ast.Continue, ast.Break)
+
+
+def swapped_branches(source: Source, _: Index) -> Iterator[Change]:
+    """Ask the second of two conditions first."""
+    for node in source.nodes:
+        if isinstance(node, ast.If) and len(node.orelse) == 1:
+            other = node.orelse[0]
+            if isinstance(other, ast.If) and source.of(other).startswith("elif"):
+                yield from _swap_arms(source, (node.test, node.body), (other.test, other.body))
+        elif isinstance(node, ast.Match):
+            for one, two in zip(node.cases, node.cases[1:], strict=False):
+                if not _disjoint_cases(one, two):
+                    yield _swap(
+                        source,
+                        _span(source, one.pattern, one.body),
+                        _span(source, two.pattern, two.body),
+                    )
+    for block in blocks(source):
+        for one, two in itertools.pairwise(block):
+            if isinstance(one, ast.If) and isinstance(two, ast.If):
+                # Two reasons to leave: the first one counts.
+                plain = not one.orelse and not source.of(one).startswith("elif")
+                if plain and isinstance(one.body[-1], ENDS) and isinstance(two.body[-1], ENDS):
+                    yield from _swap_arms(source, (one.test, one.body), (two.test, two.body))
+            elif hardware_branch(one) in ("If", "Elif") and hardware_branch(two) == "Elif":
+                assert isinstance(one, ast.With) and isinstance(two, ast.With)
+                arms = [(_condition(each), each.body) for each in (one, two)]
+                yield from _swap_arms(source, *arms)
+
+
+def overridden_assignment(source: Source, _: Index) -> Iterator[Change]:
+    """Let an assignment come after the one that is to override it."""
+    for block in blocks(source):
+        for at, first in enumerate(block[:-1]):
+            targets = assigned(first, deep=False)
+            for last in block[at + 1 :]:
+                if targets and targets & assigned(last, deep=True):
+                    yield _behind(source, first, last)
+                    break
+
+
+def assigned(node: ast.stmt, *, deep: bool) -> set[str]:
+    """Return what a statement assigns: signals with their domains, or names of Python.
+
+    Parameters
+    ----------
+    deep : bool
+        In branches, too; and only there.
+    """
+    if deep:
+        if not isinstance(node, ast.If) and not hardware_branch(node):
+            return assigned(node, deep=False) if isinstance(node, ast.AugAssign) else set()
+        inner = [each for each in ast.walk(node) if isinstance(each, ast.stmt)]
+        return set().union(
+            *(assigned(each, deep=False) for each in inner if not isinstance(each, ast.If))
+        )
+    if isinstance(node, ast.Assign) and len(node.targets) == 1:
+        target = node.targets[0]
+        if isinstance(target, (ast.Name, ast.Attribute)):
+            return {ast.unparse(target)}
+    if isinstance(node, ast.AugAssign) and ".d." in f"{ast.unparse(node.target)}.":
+        return {
+            f"{ast.unparse(node.target)} {ast.unparse(each.func.value)}"
+            for each in ast.walk(node.value)
+            if isinstance(each, ast.Call)
+            and isinstance(each.func, ast.Attribute)
+            and each.func.attr == "eq"
+        }
+    return set()
+
+
+def blocks(source: Source) -> Iterator[list[ast.stmt]]:
+    """Yield sequences of statements."""
+    for node in source.nodes:
+        for name in ("body", "orelse", "finalbody"):
+            block = getattr(node, name, None)
+            if isinstance(block, list) and block:
+                yield block
+
+
+def hardware_branch(node: ast.stmt) -> str:
+    """Return `If`, `Elif`, `Else`, `Case`, or `Default` of Amaranth's, or nothing."""
+    if isinstance(node, ast.With) and isinstance(node.items[0].context_expr, ast.Call):
+        function = node.items[0].context_expr.func
+        branches = ("If", "Elif", "Else", "Case", "Default")
+        if isinstance(function, ast.Attribute) and function.attr in branches:
+            return function.attr
+    return ""
+
+
+def _condition(node: ast.With) -> ast.expr:
+    call = node.items[0].context_expr
+    assert isinstance(call, ast.Call)
+    return call.args[0]
+
+
+def _swap_arms(
+    source: Source, one: tuple[ast.expr, list[ast.stmt]], two: tuple[ast.expr, list[ast.stmt]]
+) -> Iterator[Change]:
+    same = ast.dump(ast.Module(one[1], [])) == ast.dump(ast.Module(two[1], []))
+    if not same and not _disjoint(one[0], two[0]):
+        # Conditions may stand in brackets: these stay, and so does what is between.
+        first, second = source.span(one[0]), source.span(two[0])
+        bodies = [_lines(source, body) for body in (one[1], two[1])]
+        new = (
+            source.text[second[0] : second[1]]
+            + source.text[first[1] : bodies[0][0]]
+            + source.text[slice(*bodies[1])]
+            + source.text[bodies[0][1] : second[0]]
+            + source.text[first[0] : first[1]]
+            + source.text[second[1] : bodies[1][0]]
+            + source.text[slice(*bodies[0])]
+        )
+        yield source.change("swapped branches", (first[0], bodies[1][1]), new)
+
+
+def _lines(source: Source, body: list[ast.stmt]) -> tuple[int, int]:
+    return source.span(body[0])[0], source.span(body[-1])[1]
+
+
+def _span(source: Source, first: ast.AST, body: list[ast.stmt]) -> tuple[int, int]:
+    return source.span(first)[0], source.span(body[-1])[1]
+
+
+def _swap(source: Source, one: tuple[int, int], two: tuple[int, int]) -> Change:
+    texts = [source.text[slice(*each)] for each in (one, two)]
+    new = texts[1] + source.text[one[1] : two[0]] + texts[0]
+    return source.change("swapped branches", (one[0], two[1]), new)
+
+
+def _behind(source: Source, first: ast.stmt, last: ast.stmt) -> Change:
+    start, first_end = source.span(first)
+    end = source.span(last)[1]
+    text = source.text[start:first_end]
+    new = f"pass{source.text[first_end:end]}\n{' ' * first.col_offset}{text}"
+    return source.change("overridden assignment", (start, end), new)
+
+
+def _disjoint(one: ast.expr, two: ast.expr) -> bool:
+    """Tell conditions that plainly never hold both."""
+    if isinstance(one, ast.Compare) and isinstance(two, ast.Compare):
+        same = ast.unparse(one.left) == ast.unparse(two.left)
+        exact = isinstance(one.ops[0], (ast.Eq, ast.Is)) and isinstance(
+            two.ops[0], (ast.Eq, ast.Is)
+        )
+        return same and exact
+    calls = [each for each in (one, two) if isinstance(each, ast.Call) and len(each.args) == 2]
+    if len(calls) == 2 and all(ast.unparse(each.func) == "isinstance" for each in calls):
+        return ast.unparse(calls[0].args[0]) == ast.unparse(calls[1].args[0])
+    return ast.unparse(one) in (f"not {ast.unparse(two)}", ast.unparse(two))
+
+
+def _disjoint_cases(one: ast.match_case, two: ast.match_case) -> bool:
+    """Tell cases of different classes or values, and those that Python wants to be the last."""
+    kinds = (ast.MatchClass, ast.MatchValue, ast.MatchSingleton)
+    texts = []
+    for each in (one, two):
+        parts = each.pattern.patterns if isinstance(each.pattern, ast.MatchOr) else [each.pattern]
+        if any(not isinstance(part, kinds) for part in parts):
+            return each.guard is None and isinstance(each.pattern, ast.MatchAs)
+        texts.append({_key(part) for part in parts})
+    return not texts[0] & texts[1]
+
+
+def _key(pattern: ast.pattern) -> str:
+    return ast.unparse(pattern.cls if isinstance(pattern, ast.MatchClass) else pattern)
+
+
+RULES = (swapped_branches, overridden_assignment)
