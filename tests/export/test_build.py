@@ -70,8 +70,8 @@ def test_folder_is_complete(tmp_path):
     assert sorted(tree(tmp_path / "out" / "lyrical")) == [
         f"geometry_msgs_msg_Twist_cdr_8/{name}"
         for name in (
-            "geometry_msgs_msg_Twist_cdr_8_deserializer.v",
-            "geometry_msgs_msg_Twist_cdr_8_serializer.v",
+            "geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.v",
+            "geometry_msgs_msg_Twist_cdr_8_serializer_verilog.v",
             "layout.svg",
             "manifest.json",
             "plan.yaml",

@@ -18,7 +18,7 @@ from firm_hdl.wire import lay_out
 
 # Amaranth's Verilog relies on the language's own extension of operands, names every bit of a
 # structure, has a module per component in one file, and writes one-hot choices as `casez`.
-WAIVED = ["WIDTH", "UNUSEDSIGNAL", "CASEINCOMPLETE", "CASEOVERLAP", "DECLFILENAME"]
+WAIVED = ["WIDTH", "UNUSEDSIGNAL", "CASEOVERLAP", "DECLFILENAME"]
 
 
 def verilog_of(type_: str, direction: str, bus_bytes: int = 8, distro: str = "lyrical") -> str:

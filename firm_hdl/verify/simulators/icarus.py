@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from firm_hdl.export.top import Top
@@ -62,6 +62,12 @@ endmodule
 class Icarus:
     """Icarus Verilog, on the Verilog that ``firm-hdl build`` writes.
 
+    Parameters
+    ----------
+    standard : str
+        The language that the Verilog is read as: what comes behind ``-g``. 2012 is SystemVerilog,
+        and what cocotb takes.
+
     Raises
     ------
     SimulatorMissingError
@@ -69,7 +75,8 @@ class Icarus:
 
     title = "Icarus Verilog"
 
-    def __init__(self) -> None:
+    def __init__(self, standard: str = "2012") -> None:
+        self.standard = standard
         self.path = find_program(self.title, "IVERILOG", ["iverilog"], PACKAGE)
         # The two belong together: look beside the compiler first.
         beside = os.pathsep.join([str(Path(self.path).parent), os.environ.get("PATH", "")])
@@ -81,8 +88,12 @@ class Icarus:
     def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:
         files = write_inputs(trace, tops(), folder)
         (folder / "replay.v").write_text("".join(_bench(trace)), encoding="utf-8")
-        compiler = [self.path, "-g2005", "-s", "replay", "-o", "replay.vvp"]
-        run_tool([*compiler, "replay.v", *files], folder)
+        return self.run([*files, "replay.v"], self.standard, folder)
+
+    def run(self, files: Sequence[str], standard: str, folder: Path) -> list[str]:
+        """Run what has been written to a folder; return the rows of outputs."""
+        compiler = [self.path, f"-g{standard}", "-s", "replay", "-o", "replay.vvp"]
+        run_tool([*compiler, *files], folder)
         run_tool([self.run_path, "-n", "replay.vvp"], folder)
         return (folder / RESULTS).read_text().upper().splitlines()
 

@@ -55,14 +55,14 @@ begin
       place := 0;
     end procedure;
 
-    procedure check (byte : std_logic_vector(7 downto 0)) is
+    procedure check (octet : std_logic_vector(7 downto 0)) is
       variable got : natural;
     begin
-      assert not is_x(byte) and place < packet_bytes(row.all)
+      assert not is_x(octet) and place < packet_bytes(row.all)
         report "FAIL packet " & integer'image(number) & ": byte " & integer'image(place) & " is " &
-          to_string(byte) & ", and " & integer'image(packet_bytes(row.all)) & " are expected"
+          to_string(octet) & ", and " & integer'image(packet_bytes(row.all)) & " are expected"
         severity failure;
-      got := to_integer(unsigned(byte));
+      got := to_integer(unsigned(octet));
       write(seen, hex(got));
       assert got = byte_at(row.all, place)
         report "FAIL packet " & integer'image(number) & ": byte " & integer'image(place) & " is " &

@@ -39,17 +39,17 @@ begin
 
     -- Lanes that are not kept carry rubbish, which nobody may look at.
     procedure offer is
-      variable byte : integer;
+      variable octet : integer;
     begin
       for lane in 0 to bus_bytes - 1 loop
-        byte := 16#a5#;
+        octet := 16#a5#;
         if place + lane < size then
-          byte := byte_at(row.all, place + lane);
-          assert byte >= 0
+          octet := byte_at(row.all, place + lane);
+          assert octet >= 0
             report "FAIL packet " & integer'image(sent) & " of the stimuli is not hexadecimal"
             severity failure;
         end if;
-        tdata(8 * lane + 7 downto 8 * lane) <= std_logic_vector(to_unsigned(byte, 8));
+        tdata(8 * lane + 7 downto 8 * lane) <= std_logic_vector(to_unsigned(octet, 8));
         tkeep(lane) <= '1' when place + lane < size else '0';
       end loop;
       tlast <= '1' when place + bus_bytes >= size else '0';

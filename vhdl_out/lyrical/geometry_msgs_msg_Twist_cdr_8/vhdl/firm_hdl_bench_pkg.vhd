@@ -25,7 +25,7 @@ package firm_hdl_bench_pkg is
   function byte_at (row : string; place : natural) return integer;
 
   -- A byte as two hexadecimal digits.
-  function hex (byte : natural range 0 to 255) return string;
+  function hex (octet : natural range 0 to 255) return string;
 
   procedure count_packets (name : in string; count : out natural);
 
@@ -78,10 +78,10 @@ package body firm_hdl_bench_pkg is
     return 16 * digit(row(at)) + digit(row(at + 1));
   end function;
 
-  function hex (byte : natural range 0 to 255) return string is
+  function hex (octet : natural range 0 to 255) return string is
     constant digits : string(1 to 16) := "0123456789abcdef";
   begin
-    return digits(byte / 16 + 1) & digits(byte mod 16 + 1);
+    return digits(octet / 16 + 1) & digits(octet mod 16 + 1);
   end function;
 
   procedure count_packets (name : in string; count : out natural) is

@@ -105,7 +105,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core is
 
   -- More names of values, for whoever looks at a simulation.
   signal have         : unsigned(11 downto 0);
-  signal small        : unsigned(3 downto 0);
+  signal small_sig    : unsigned(3 downto 0);
   signal left         : std_logic;
   signal most_items   : unsigned(3 downto 0);
   signal allowed      : std_logic;
@@ -117,7 +117,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core is
   signal over         : std_logic;
   signal count        : unsigned(3 downto 0);
   signal align_64     : unsigned(2 downto 0);
-  signal final        : std_logic;
+  signal final_sig    : std_logic;
   signal has_items    : std_logic;
   signal reached_0    : std_logic;
   signal align        : unsigned(2 downto 0);
@@ -470,7 +470,7 @@ begin
   status_payload <= status_payload_q;
 
   have <= resize(have_0, 12);
-  small <= (others => '0');
+  small_sig <= (others => '0');
   left <= '0';
   most_items <= (others => '0');
   allowed <= '0';
@@ -482,7 +482,7 @@ begin
   over <= '0';
   count <= base;
   align_64 <= (others => '0');
-  final <= '1';
+  final_sig <= '1';
   has_items <= '0';
   reached_0 <= all_served;
   align <= (others => '0');

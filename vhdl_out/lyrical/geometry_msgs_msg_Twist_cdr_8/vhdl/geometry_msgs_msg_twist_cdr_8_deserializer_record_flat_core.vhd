@@ -105,7 +105,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core 
   signal message_angular_x_ready : std_logic;
   signal message_angular_y_ready : std_logic;
   signal message_angular_z_ready : std_logic;
-  signal small                   : unsigned(3 downto 0);
+  signal small_sig               : unsigned(3 downto 0);
   signal left                    : std_logic;
   signal most_items              : unsigned(3 downto 0);
   signal allowed                 : std_logic;
@@ -117,7 +117,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core 
   signal over                    : std_logic;
   signal count                   : unsigned(3 downto 0);
   signal align_64                : unsigned(2 downto 0);
-  signal final                   : std_logic;
+  signal final_sig               : std_logic;
   signal has_items               : std_logic;
   signal reached_0               : std_logic;
   signal align                   : unsigned(2 downto 0);
@@ -455,7 +455,7 @@ begin
   message_angular_x_ready <= message_linear_x_ready;
   message_angular_y_ready <= message_linear_x_ready;
   message_angular_z_ready <= message_linear_x_ready;
-  small <= (others => '0');
+  small_sig <= (others => '0');
   left <= '0';
   most_items <= (others => '0');
   allowed <= '0';
@@ -467,7 +467,7 @@ begin
   over <= '0';
   count <= base;
   align_64 <= (others => '0');
-  final <= '1';
+  final_sig <= '1';
   has_items <= '0';
   reached_0 <= all_served;
   align <= (others => '0');

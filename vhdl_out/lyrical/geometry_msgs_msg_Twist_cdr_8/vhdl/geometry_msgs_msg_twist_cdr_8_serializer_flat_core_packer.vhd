@@ -28,13 +28,13 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
 
   -- Registers.
-  signal store     : unsigned(63 downto 0) := (others => '0');
-  signal level     : unsigned(4 downto 0) := (others => '0');
-  signal ending    : std_logic := '0';
-  signal end_beats : unsigned(1 downto 0) := (others => '0');
-  signal inside    : std_logic := '0';
-  signal end_count : unsigned(3 downto 0) := (others => '0');
-  signal marked    : std_logic := '0';
+  signal store      : unsigned(63 downto 0) := (others => '0');
+  signal level      : unsigned(4 downto 0) := (others => '0');
+  signal ending     : std_logic := '0';
+  signal end_beats  : unsigned(1 downto 0) := (others => '0');
+  signal inside_sig : std_logic := '0';
+  signal end_count  : unsigned(3 downto 0) := (others => '0');
+  signal marked     : std_logic := '0';
 
   -- Combinational signals.
   signal is_last      : std_logic;
@@ -69,7 +69,7 @@ begin
   choice_like <= rest + word_payload(67 downto 64) when and_15 = '1' and word_payload(71) = '1' else
                  (others => '0');
 
-  beats <= resize(add_17(5 downto 3), 5) + (not inside and
+  beats <= resize(add_17(5 downto 3), 5) + (not inside_sig and
       to_std_logic(word_payload(67 downto 64) = 0)) when and_15 = '1' and
       word_payload(71) = '1' else
            (others => '0');
@@ -82,17 +82,17 @@ begin
         level <= (others => '0');
         ending <= '0';
         end_beats <= (others => '0');
-        inside <= '0';
+        inside_sig <= '0';
         end_count <= (others => '0');
         marked <= '0';
       else
         store <= kept;
         if and_24 = '1' then
           store <= kept or word_payload(63 downto 0);
-          inside <= not word_payload(71) and (inside or
+          inside_sig <= not word_payload(71) and (inside_sig or
               to_std_logic(word_payload(67 downto 64) /= 0));
           if word_payload(71) = '1' then
-            if inside = '0' and word_payload(67 downto 64) = 0 then
+            if inside_sig = '0' and word_payload(67 downto 64) = 0 then
               end_count <= (others => '0');
             else
               end_count <= resize(choice_like(2 downto 0) - 1, 4) + 1;

@@ -96,7 +96,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core is
 
   -- More names of values, for whoever looks at a simulation.
   signal error_sig    : std_logic;
-  signal small        : unsigned(3 downto 0);
+  signal small_sig    : unsigned(3 downto 0);
   signal left         : std_logic;
   signal most_items   : unsigned(3 downto 0);
   signal allowed      : std_logic;
@@ -107,7 +107,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core is
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal raised       : unsigned(2 downto 0);
   signal leads        : std_logic;
-  signal final        : std_logic;
+  signal final_sig    : std_logic;
   signal has_items    : std_logic;
   signal align        : unsigned(2 downto 0);
   signal run_bytes    : unsigned(3 downto 0);
@@ -628,7 +628,7 @@ begin
   status_payload <= status_payload_q;
 
   error_sig <= packet_error;
-  small <= (others => '0');
+  small_sig <= (others => '0');
   left <= '0';
   most_items <= (others => '0');
   allowed <= '0';
@@ -638,7 +638,7 @@ begin
   all_served <= reached_1;
   raised <= (others => '0');
   leads <= '0';
-  final <= '1';
+  final_sig <= '1';
   has_items <= '0';
   align <= (others => '0');
   run_bytes <= (others => '0');
