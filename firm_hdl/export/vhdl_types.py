@@ -19,6 +19,7 @@ from firm_hdl.export.vhdl_user_constants import (
     declarations,
     named_constants,
     origin,
+    quoted,
 )
 from firm_hdl.export.vhdl_user_tree import Node, Tree, tree_of
 from firm_hdl.export.vhdl_user_types import SHARED_TYPES, TYPES_NAME, types_package
@@ -195,7 +196,7 @@ class _Writer:
                 "",
             ),
             *(["--\n"] if self.message.comment else []),
-            *comment(self.message.comment, ""),
+            *quoted(self.message.comment, ""),
             f"\n{LIBRARIES}\npackage {name} is\n",
             *self.items(),
             *self.records(),
@@ -239,7 +240,7 @@ class _Writer:
             kinds = max(len(child.type) for child in node.children) + 1
             for child in node.children:
                 if child.source is not None and child.source.comment:
-                    yield from comment(child.source.comment, "    ")
+                    yield from quoted(child.source.comment, "    ")
                 line = f"    {child.name:{width}} : {child.type + ';':{kinds}}{self.origin(child)}"
                 yield f"{line.rstrip()}\n"
             yield "  end record;\n"
@@ -280,7 +281,7 @@ def flat_package(
         *comment(header, ""),
         *comment(f"Constants of {message.name}, and its converters with flat ports.", ""),
         *(["--\n"] if message.comment else []),
-        *comment(message.comment, ""),
+        *quoted(message.comment, ""),
         f"\n{IEEE}\npackage {name} is\n",
         *declarations(constants, taken),
     ]

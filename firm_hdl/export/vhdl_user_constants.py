@@ -18,7 +18,7 @@ from firm_hdl.export.vhdl_names import USED
 from firm_hdl.export.vhdl_user_tree import snake
 from firm_hdl.model import Array, Constant, Field, Message, Primitive, Sequence
 
-__all__ = ["Named", "comment", "declarations", "named_constants", "origin"]
+__all__ = ["Named", "comment", "declarations", "named_constants", "origin", "quoted"]
 
 _PLAIN = str.maketrans(
     {
@@ -55,10 +55,29 @@ class Named:
 def comment(text: str, indent: str = "  ") -> Iterator[str]:
     """Yield text as comment lines of at most 100 columns, in ASCII, which every tool reads."""
     for line in text.splitlines():
-        plain = line.translate(_PLAIN).encode("ascii", "backslashreplace").decode()
-        plain = re.sub(r"[^ -~]", " ", plain.expandtabs(4)).rstrip()
-        for part in textwrap.wrap(plain, 97 - len(indent), break_long_words=False) or [""]:
+        for part in _wrapped(line, 97 - len(indent)):
             yield f"{indent}-- {part}".rstrip() + "\n"
+
+
+def quoted(text: str, indent: str = "  ") -> Iterator[str]:
+    """Yield a comment of a definition, each line with the ``#`` that it has there.
+
+    Tools take what some comments begin with as an order to them, such as ``synthesis`` and ``psl``.
+    Which words these are, nobody can know; so no line of a definition begins a comment.
+    """
+    for line in text.splitlines():
+        for part in _wrapped(line, 95 - len(indent)):
+            yield f"{indent}-- # {part}".rstrip() + "\n"
+
+
+def _wrapped(line: str, columns: int) -> list[str]:
+    return textwrap.wrap(ascii_of(line).rstrip(), columns, break_long_words=False) or [""]
+
+
+def ascii_of(text: str) -> str:
+    """Give a line in printable ASCII."""
+    plain = text.translate(_PLAIN).encode("ascii", "backslashreplace").decode()
+    return re.sub(r"[^ -~]", " ", plain.expandtabs(4))
 
 
 def origin(source: Field, name: str) -> str:
@@ -72,7 +91,11 @@ def origin(source: Field, name: str) -> str:
     what = str(source.type)
     if source.name != name:
         what = f"{source.name}: {what}"
-    return f"  -- {what} [{source.unit}]" if source.unit else f"  -- {what}"
+    return f"  -- {what}{_unit(source.unit)}"
+
+
+def _unit(unit: str | None) -> str:
+    return f" [{ascii_of(unit)}]" if unit else ""
 
 
 def named_constants(message: Message, taken: Iterable[str]) -> list[Named]:
@@ -130,8 +153,8 @@ def declarations(named: Iterable[Named], taken: Iterable[str]) -> Iterator[str]:
             owner = entry.owner
             yield f"\n  -- Constants of {owner.name}.\n"
         constant = entry.constant
-        unit = f" [{constant.unit}]" if constant.unit else ""
-        yield from comment(constant.comment)
+        unit = _unit(constant.unit)
+        yield from quoted(constant.comment)
         if isinstance(constant.type, Primitive):
             name = entry.name.ljust(widths[id(owner)])
             yield from _number(name, constant.type, constant.value, unit, used)
@@ -188,7 +211,8 @@ def _string(value: object) -> str:
     """Write the bytes of a string as an expression, in lines that are not too long."""
     data = value if isinstance(value, bytes) else str(value).encode("utf-8", "surrogatepass")
     parts = []
-    for piece in re.findall(rb"[ -~]{1,80}|[^ -~]", data):
+    # No literal has `--`: what follows is for some tools a comment, also within quotation marks.
+    for piece in re.findall(rb"(?:[ -,.-~]|-(?!-)){1,80}|-|[^ -~]", data):
         if len(piece) == 1 and not 32 <= piece[0] < 127:
             parts.append(f"character'val({piece[0]})")
         else:

@@ -14,7 +14,7 @@ from amaranth.hdl import Shape
 from amaranth.lib import data
 
 from firm_hdl.export.names import first_free
-from firm_hdl.export.vhdl_user_constants import comment, origin
+from firm_hdl.export.vhdl_user_constants import origin, quoted
 from firm_hdl.export.vhdl_user_tree import member_names, snake
 from firm_hdl.export.vhdl_user_types import data_type
 from firm_hdl.gateware import record_layout
@@ -218,7 +218,7 @@ def _record(kind: ValueType) -> Iterator[str]:
     for member in kind.members:
         remark = ""
         if member.source is not None:
-            yield from comment(member.source.comment, "    ")
+            yield from quoted(member.source.comment, "    ")
             remark = origin(member.source, member.name)
         line = f"    {member.name:{names}} : {member.type + ';':{types}}{remark}"
         yield f"{line.rstrip()}\n"

@@ -142,8 +142,8 @@ def test_comments_and_units_stand_above_their_fields(tmp_path):
         "# A part.\n\nbool b\n\n# How far it is, in °.\nfloat32 far  # really [m]\n"
     )
     text = layer(load_message("my_msgs/msg/Part", paths=[tmp_path])).packages["t_pkg.vhd"]
-    assert "    -- How far it is, in deg.\n" in text
-    assert "\n-- A part.\n" in text
+    assert "    -- # How far it is, in deg.\n" in text
+    assert "\n-- # A part.\n" in text
     assert "    far : float32_stream_t;  -- float32 [m]\n" in text
 
 

@@ -1,0 +1,100 @@
+"""Comments of a definition are comments wherever they end up, and orders to no tool."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.export.build import build
+
+ORDERS = (
+    "synthesis translate_off",
+    "pragma translate_off",
+    "synopsys translate_off",
+    "rtl_synthesis off",
+    "psl default clock is nothing;",
+    "verilator lint_off WIDTH",
+    "/* verilator lint_off WIDTH */",
+    "vhdl_comp_off",
+    "coverage off",
+    "*/ end package; /*",
+    "`protect begin",
+    "$(shell touch x) [exec touch x] `touch x`",
+    "\x1b[2J\x08\x07\x9b\u202e \\",
+    "grün °C 雪",
+)
+COMMENTS = "".join(f"# {order}\n#{order}\n" for order in ORDERS)
+UNIT = "# [m\n#   end record;]\n"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    """What is built of a definition whose comments mean something to tools."""
+    here = tmp_path_factory.mktemp("orders")
+    messages = here / "my_msgs" / "msg"
+    messages.mkdir(parents=True)
+    (here / "my_msgs" / "package.xml").write_text(
+        "<package format='3'><name>my_msgs</name><version>1.0.0</version></package>"
+    )
+    fields = "".join(f"{COMMENTS}{UNIT}int32 f{k} # {order}\n" for k, order in enumerate(ORDERS))
+    text = f"{COMMENTS}\n\n{COMMENTS}int8 A=1 # psl x\n{UNIT}int8 B=2\n{fields}"
+    text += 'string S="-- synthesis translate_off"\nInner[2] inner\n'
+    (messages / "Orders.msg").write_text(text, encoding="utf-8", newline="")
+    (messages / "Inner.msg").write_text(f"{COMMENTS}float64 x # pragma translate_off\n")
+    (built,) = build(["my_msgs/msg/Orders"], here / "out", paths=[here])
+    return built.folder
+
+
+def said(ghdl: str, files: list[str], folder: Path, work: Path) -> tuple[str, str]:
+    """Give what GHDL says of files, and what it makes of their entity with plain values."""
+    options = ["--std=08", "-fpsl", f"--workdir={work}"]
+    analysed = subprocess.run(
+        [ghdl, "-a", *options, "--warn-error", *files], cwd=folder, capture_output=True, text=True
+    )
+    entity = "my_msgs_msg_orders_cdr_8_deserializer"
+    made = subprocess.run(
+        [ghdl, "--synth", *options, "--out=raw-vhdl", *files, "-e", entity],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+    )
+    return analysed.stdout + analysed.stderr + made.stderr, made.stdout
+
+
+def test_ghdl_sees_all_that_is_declared(ghdl, folder, tmp_path):
+    files = (folder / "vhdl" / "files.txt").read_text().split()
+    complaints, made = said(ghdl, files, folder / "vhdl", tmp_path)
+    assert complaints == ""
+    for number in range(len(ORDERS)):
+        assert f"f{number}" in made
+
+
+def test_comments_as_they_were_act(ghdl, folder, tmp_path):
+    files = (folder / "vhdl" / "files.txt").read_text().split()
+    (tmp_path / "work").mkdir()
+    for name in files:
+        text = (folder / "vhdl" / name).read_text()
+        (tmp_path / name).write_text(re.sub(r"-- # (?=synthesis)", "-- ", text))
+    complaints, _ = said(ghdl, files, tmp_path, tmp_path / "work")
+    assert "translate_off" in complaints
+
+
+WORDS = "synthesis|pragma|synopsys|rtl_synthesis|psl|verilator|vhdl_comp_off|coverage|protect"
+STARTS = re.compile(rf"(?:--|//|/\*|^\s*#)\s*(?:{WORDS})\b", re.MULTILINE)
+QUOTED = re.compile(r"-- # .*")
+
+
+def test_no_comment_of_any_file_begins_with_an_order(folder):
+    tried = 0
+    for path in sorted(path for path in folder.rglob("*") if path.is_file()):
+        text = path.read_bytes().decode()
+        assert not {*text} & {chr(code) for code in range(32)} - {"\n", "\t"}, path
+        assert text.isascii() or path.suffix == ".json", path
+        if path.suffix == ".json":
+            continue  # It has no comments.
+        tried += len(re.findall(WORDS, text))
+        assert not STARTS.search(QUOTED.sub("", text)), path
+    assert tried > 100
