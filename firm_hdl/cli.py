@@ -23,6 +23,7 @@ from firm_hdl.identity.command import hash_lines, md5_lines, proto_text
 from firm_hdl.metrics import FORMATS
 from firm_hdl.metrics.command import metrics_text
 from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, to_yaml
+from firm_hdl.terminal import printable_streams
 from firm_hdl.verify.command import add_verify_arguments, run_verify
 from firm_hdl.verify.cover_command import add_cover_arguments, run_cover
 from firm_hdl.verify.golden_command import add_golden_arguments, run_golden
@@ -34,6 +35,7 @@ __all__ = ["main"]
 _Commands: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 
+@printable_streams()
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
     given = _parser().parse_args(arguments)

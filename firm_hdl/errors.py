@@ -12,6 +12,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
+from firm_hdl.terminal import printable
+
 __all__ = ["DefinitionError", "Diagnostic", "Source", "Span"]
 
 
@@ -66,16 +68,22 @@ class Diagnostic:
     span: Span | None = None
 
     def __str__(self) -> str:
+        said = printable(self.message)
         if self.span is None:
-            return f"error: {self.message}"
+            return f"error: {said}"
         span = self.span
         column = span.column
-        where = f"{span.source.name}:{span.line}:{column}"
+        where = f"{printable(span.source.name)}:{span.line}:{column}"
         text, before = _clip(span.line_text, column - 1)
+        meant = max(1, min(span.end - span.start, len(text) - before))
+        head, words, tail = (
+            printable(part)
+            for part in (text[:before], text[before : before + meant], text[before + meant :])
+        )
         # Tabs stay tabs in front of the caret, so that it stands right at any tab width.
-        indent = "".join("\t" if c == "\t" else " " for c in text[:before])
-        carets = "^" * max(1, min(span.end - span.start, len(text) - before))
-        return f"{where}: error: {self.message}\n{text}\n{indent}{carets}"
+        indent = "".join("\t" if c == "\t" else " " for c in head)
+        carets = "^" * max(1, len(words))
+        return f"{where}: error: {said}\n{head}{words}{tail}\n{indent}{carets}"
 
 
 # A file may be one line, with all of its mistakes.

@@ -13,7 +13,8 @@ MOST_LINES = 450
 
 # Text to syntax to model to layout to plan to circuit to Verilog and VHDL: what each part may use.
 MAY_IMPORT = {
-    "errors": set[str](),
+    "terminal": set[str](),
+    "errors": {"terminal"},
     "files": set[str](),
     "model": {"errors"},
     "frontend": {"errors", "files", "model"},
@@ -25,7 +26,10 @@ MAY_IMPORT = {
     "sim": {"errors", "model", "frontend", "wire", "plan", "gateware"},
     "export": {"firm_hdl", "errors", "files", "model", "frontend", "wire", "plan", "gateware"},
 }
-MAY_IMPORT["verify"] = {*MAY_IMPORT["export"], "export", "identity", "metrics", "sim"}
+MAY_IMPORT["verify"] = {
+    *MAY_IMPORT["export"],
+    *("export", "identity", "metrics", "sim", "terminal"),
+}
 # Of `verify`, it uses what runs many processes.
 MAY_IMPORT["equivalence"] = {*MAY_IMPORT["verify"], "verify"}
 MAY_IMPORT["cli"] = {*MAY_IMPORT["verify"], "verify", "identity", "metrics", "equivalence"}

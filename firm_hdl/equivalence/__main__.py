@@ -14,8 +14,10 @@ from pathlib import Path
 from firm_hdl.equivalence.command import run_proofs
 from firm_hdl.equivalence.covering import covering_tasks, write_definitions
 from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT
+from firm_hdl.terminal import printable_streams
 
 
+@printable_streams()
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the proofs; return 0 if all are found."""
     parser = argparse.ArgumentParser(prog="python -m firm_hdl.equivalence", description=__doc__)

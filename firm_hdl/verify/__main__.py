@@ -7,11 +7,13 @@ import sys
 from collections.abc import Sequence
 
 from firm_hdl.errors import DefinitionError
+from firm_hdl.terminal import printable_streams
 from firm_hdl.verify.command import add_verify_arguments, run_verify
 
 __all__ = ["main"]
 
 
+@printable_streams()
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; exit statuses are those of ``firm-hdl``."""
     parser = argparse.ArgumentParser(prog="python -m firm_hdl.verify", description=__doc__)
