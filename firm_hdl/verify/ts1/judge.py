@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.identity import md5sum, proto, type_hash
-from firm_hdl.model import Action, Interface, Message, Service
+from firm_hdl.model import Interface
 from firm_hdl.verify.processes import cpu_seconds
 from firm_hdl.verify.records import OracleVerdict
+from firm_hdl.verify.ts1.again import Again
 from firm_hdl.verify.ts1.case import Case
-from firm_hdl.verify.ts1.facts import Difference, Facts, count_facts, differences, structure
-from firm_hdl.verify.ts1.known import known_key
-from firm_hdl.verify.ts1.oracle import Accepted, Answer, Oracle, Refused
+from firm_hdl.verify.ts1.oracle import Answer, Oracle
 from firm_hdl.verify.ts1.universe import Universe
-from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
+from firm_hdl.verify.verdict import Failed, NotJudged, Verdict
 
 __all__ = ["Judgement", "Outcome", "compare", "judge", "judge_case", "read"]
 
@@ -141,7 +138,7 @@ def judge(
         return
     for case, answer in zip(taken, answers, strict=True):
         mine = read(universe, case) if ours is None else ours(case)
-        yield compare(oracle, case, mine, answer, universe.show)
+        yield compare(oracle, case, mine, answer, universe)
 
 
 def read(universe: Universe, case: Case) -> Interface | Exception:
@@ -157,7 +154,7 @@ def compare(
     case: Case,
     ours: Interface | Exception,
     answer: Answer,
-    show: Callable[[Case], str] = lambda case: "",
+    universe: Universe | None = None,
 ) -> Outcome:
     """Compare what we make of a definition with an oracle's answer.
 
@@ -165,76 +162,15 @@ def compare(
     ----------
     ours : Message, Service, Action or Exception
         As `read` gives it.
-    show : callable
-        Prints a definition as ``firm-hdl show`` does.
+    universe : Universe or None
+        Where the definition is; `None`: no difference is known.
     """
-    is_refused = isinstance(ours, DefinitionError) and isinstance(answer, Refused)
-    verdict = _verdict(oracle, case, ours, answer, show)
-    return Outcome(oracle=oracle.name, case=case, verdict=verdict, is_refused=is_refused)
-
-
-def _verdict(
-    oracle: Oracle,
-    case: Case,
-    ours: Interface | Exception,
-    answer: Answer,
-    show: Callable[[Case], str],
-) -> Verdict:
+    is_refused = False
+    verdict: Verdict
     if isinstance(answer, NotJudged):
-        return answer
-    if isinstance(ours, Exception) and not isinstance(ours, DefinitionError):
-        return Failed((f"verdict: firm-hdl raised {type(ours).__name__}: {ours}",))
-    cases = 1
-    match ours, answer:
-        case DefinitionError(), Refused():
-            return Passed(cases)
-        case DefinitionError(), Accepted():
-            why = ours.diagnostics[0].message
-            found = [Difference(path="verdict", ours=f"refuses: {why}", theirs="accepts")]
-        case _, Refused(message):
-            found = [Difference(path="verdict", ours="accepts", theirs=f"refuses: {message}")]
-        case _, Accepted(facts):
-            assert not isinstance(ours, Exception)
-            cases = count_facts(facts)
-            if not cases:
-                return NotJudged("the oracle takes the definition, and says nothing of it")
-            found = list(
-                differences(_facts(ours, facts, oracle.alike(case), lambda: show(case)), facts)
-            )
-        case _:
-            raise TypeError(f"An oracle must accept, refuse or not judge, not {answer!r}")
-    keys = [known_key(oracle.name, case, ours, each) for each in found]
-    unknown = [str(each) for each, key in zip(found, keys, strict=True) if key is None]
-    if unknown:
-        return Failed(tuple(unknown))
-    names = tuple(dict.fromkeys(key for key in keys if key is not None))
-    return KnownDifference(names, cases) if names else Passed(cases)
-
-
-def _facts(
-    ours: Interface, theirs: Facts, alike: Mapping[str, str], show: Callable[[], str]
-) -> Facts:
-    """Say of our model what the oracle says of its own."""
-    makers: dict[str, Callable[[], Any]] = {
-        "structure": lambda: structure(ours, alike),
-        "names": lambda: [ours.name],
-        "show": show,
-        "md5": lambda: _md5(ours),
-        "hash": lambda: {ours.name: type_hash(ours)},
-        "proto": lambda: proto(ours),
-    }
-    return {key: _made(makers[key]) for key in theirs}
-
-
-def _made(make: Callable[[], Any]) -> Any:
-    try:
-        return make()
-    except Exception as error:  # It is ours, and a difference like any other.
-        return f"raises {type(error).__name__}: {error}"
-
-
-def _md5(interface: Interface) -> dict[str, str]:
-    if isinstance(interface, Action):
-        return {each.name: md5sum(each) for each in interface.messages}
-    assert isinstance(interface, Message | Service)
-    return {interface.name: md5sum(interface)}
+        verdict = answer
+    elif isinstance(ours, Exception) and not isinstance(ours, DefinitionError):
+        verdict = Failed((f"verdict: firm-hdl raised {type(ours).__name__}: {ours}",))
+    else:
+        verdict, is_refused = Again(universe, oracle, case, ours, answer, read).verdict()
+    return Outcome(oracle=oracle.name, case=case, verdict=verdict, is_refused=is_refused)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, TypeAlias
 
@@ -45,11 +45,14 @@ class Oracle(ABC):
         What it can read, for each dialect: ``msg``, ``srv``, ``action``, ``idl``.
     judges_changes : bool
         Whether its word counts on texts that nobody wrote, and that are mostly wrong.
+    changes_needs : bool
+        Whether `judge_changed` changes the definitions that a definition needs, too.
     """
 
     name: ClassVar[str]
     languages: ClassVar[Mapping[Dialect, frozenset[str]]]
     judges_changes: ClassVar[bool] = True
+    changes_needs: ClassVar[bool] = False
 
     def __init__(self, universe: Universe) -> None:
         self.universe = universe
@@ -61,6 +64,11 @@ class Oracle(ABC):
     @abstractmethod
     def judge(self, cases: Sequence[Case]) -> Iterator[Answer]:
         """Answer for each case, in order. All are of languages that it can read."""
+
+    def judge_changed(self, case: Case, change: Callable[[Case], Case]) -> Answer:
+        """Answer for a case with its text changed."""
+        (answer,) = self.judge([change(case)])
+        return answer
 
     def alike(self, case: Case) -> Mapping[str, str]:
         """Name the primitives that it cannot tell from others in a case, and those others."""

@@ -6,7 +6,8 @@ take otherwise is in `firm_hdl.verify.ts1.known`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
 from importlib import metadata
 from typing import Any, ClassVar
 
@@ -22,7 +23,7 @@ __all__ = ["Rosbags"]
 
 # It gives the builtin types of ROS 1 the names that they have in ROS 2.
 _TIMES = {"builtin_interfaces/msg/Time": "time", "builtin_interfaces/msg/Duration": "duration"}
-_PADDING_MEMBER = "structure_needs_at_least_one_member"
+_OWN_TIME = re.compile(r"(?m)^[ \t]*builtin_interfaces/(?:Time|Duration)\b")
 
 
 class Rosbags(Oracle):
@@ -31,6 +32,7 @@ class Rosbags(Oracle):
     name = "rosbags"
     languages: ClassVar = {"ros1": frozenset({"msg"}), "ros2": frozenset({"msg"})}
     judges_changes = False
+    changes_needs = True
 
     def missing(self) -> str | None:
         return None
@@ -40,32 +42,47 @@ class Rosbags(Oracle):
 
     def judge(self, cases: Sequence[Case]) -> Iterator[Answer]:
         for case in cases:
-            try:
-                yield self._judge(case)
-            except TypesysError as error:
-                yield Refused(" ".join(str(error).split())[-300:])
-            except RecursionError:
-                yield NotJudged("it is nested too deeply for rosbags")
+            yield self.judge_changed(case, lambda case: case)
 
-    def _judge(self, case: Case) -> Answer:
+    def judge_changed(self, case: Case, change: Callable[[Case], Case]) -> Answer:
+        try:
+            return self._judge(case, change)
+        except RecursionError:
+            return NotJudged("it is nested too deeply for rosbags")
+        except _UnreadableError as error:
+            return NotJudged(str(error))
+        # Its parser raises whatever its assertions and its code for hashes do.
+        except Exception as error:
+            why = " ".join(str(error).split())[-300:]
+            is_meant = isinstance(error, TypesysError)
+            return Refused(why if is_meant else f"{type(error).__name__} {why}")
+
+    def _judge(self, case: Case, change: Callable[[Case], Case]) -> Answer:
         full = f"{case.package}/msg/{case.name}"
         found: dict[str, Any] = {}
-        missing = self._read(case, found)
+        missing = self._read(case, found, change)
         if missing is not None:
             return Refused(f"{missing} is not there")
+        if _contains_itself(full, found):
+            return Refused(f"{full} contains itself")
         constants, fields = found[full]
         facts: Facts = {"structure": {case.full_name: _message(constants, fields, case.dialect)}}
         if case.dialect == "ros2":
             store = get_typestore(Stores.EMPTY)
-            store.register(found)
+            # Its code for a class has constants in it, which may be no Python; hashes have none.
+            store.register({name: ([], fields) for name, (_, fields) in found.items()})
             facts["hash"] = {case.full_name: store.hash_rihs01(full)}
         return Accepted(facts)
 
-    def _read(self, root: Case, found: dict[str, Any]) -> str | None:
+    def _read(
+        self, root: Case, found: dict[str, Any], change: Callable[[Case], Case]
+    ) -> str | None:
         """Read a definition and what it needs; return the name of a type that is nowhere."""
         pending = [root]
         while pending:
-            case = pending.pop()
+            case = change(pending.pop())
+            if case.dialect == "ros1" and _OWN_TIME.search(case.text):
+                raise _UnreadableError("rosbags takes builtin_interfaces/Time for time of ROS 1")
             full = f"{case.package}/msg/{case.name}"
             found[full] = get_types_from_msg(case.text, full)[full]
             for need in _needs(found[full][1]):
@@ -75,9 +92,33 @@ class Rosbags(Oracle):
                 if needed is None:
                     return need
                 if needed.language != "msg":
-                    raise TypesysError(f"{need} is not written as .msg")
+                    raise _UnreadableError(f"it needs {need}, which is written in IDL")
                 pending.append(needed)
         return None
+
+
+class _UnreadableError(Exception):
+    """Nothing is wrong with the definition, but rosbags cannot read it."""
+
+
+def _contains_itself(full: str, found: dict[str, Any]) -> bool:
+    """Whether a message needs itself, or one that needs itself."""
+    done: set[str] = set()
+    path: dict[str, None] = {}
+
+    def visit(name: str) -> bool:
+        if name in path:
+            return True
+        if name in done or name not in found:
+            return False
+        path[name] = None
+        if any(visit(need) for need in _needs(found[name][1])):
+            return True
+        del path[name]
+        done.add(name)
+        return False
+
+    return visit(full)
 
 
 def _needs(fields: Any) -> Iterator[str]:
@@ -89,11 +130,7 @@ def _needs(fields: Any) -> Iterator[str]:
 
 def _message(constants: Any, fields: Any, dialect: Dialect) -> Facts:
     return {
-        "fields": [
-            {"name": name, "type": _type(kind, dialect)}
-            for name, kind in fields
-            if name != _PADDING_MEMBER
-        ],
+        "fields": [{"name": name, "type": _type(kind, dialect)} for name, kind in fields],
         "constants": [{"name": name, "type": kind, "value": v} for name, kind, v in constants],
     }
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source
@@ -104,6 +105,14 @@ class Universe:
             text=source.text,
         )
 
+    def changed(self, change: Callable[[Case], Case]) -> Universe:
+        """Give the same definitions with the texts of messages in ``.msg`` changed."""
+        other = copy.copy(self)
+        other._origins = [_AllChanged(each, self.dialect, change) for each in self._origins]
+        other._sources = Sources(other._origins)
+        other.library = Library(self.distro, origins=other._origins)
+        return other
+
     def interface(self, case: Case) -> Interface:
         """Read a definition as users do.
 
@@ -140,6 +149,31 @@ class _Changed:
             return None
         source = Source(name=self._case.file, text=self._case.text)
         return Definition(source=source, language=self._case.language)
+
+
+class _AllChanged:
+    """An origin with all its texts changed."""
+
+    def __init__(self, origin: Origin, dialect: Dialect, change: Callable[[Case], Case]) -> None:
+        self._origin, self._dialect, self._change = origin, dialect, change
+
+    def names(self) -> Iterable[tuple[str, Kind, str]]:
+        return self._origin.names()
+
+    def find(self, package: str, kind: Kind, name: str) -> Definition | None:
+        found = self._origin.find(package, kind, name)
+        if found is None or found.language != "msg":
+            return found
+        case = Case(
+            dialect=self._dialect,
+            package=package,
+            kind=kind,
+            name=name,
+            language=found.language,
+            text=found.source.text,
+        )
+        source = Source(name=found.source.name, text=self._change(case).text)
+        return Definition(source=source, language=found.language)
 
 
 def write_definitions(universe: Universe) -> None:

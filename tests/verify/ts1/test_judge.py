@@ -145,7 +145,7 @@ def test_every_mistake_is_caught(court, oracle, monkeypatch):
     model = here.universe.library.message("p/A")
 
     def outcome(ours):
-        return compare(here.oracle(oracle), case, ours, answer, here.universe.show)
+        return compare(here.oracle(oracle), case, ours, answer, here.universe)
 
     assert_passed(outcome(model))
     verdicts = {name: outcome(spoil(model)).verdict for name, spoil in MISTAKES.items()}

@@ -1,0 +1,212 @@
+"""Compare again without what is known: is anything left?"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeAlias
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.model import Interface, Message
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.comparison import Compared, compared
+from firm_hdl.verify.ts1.known import KNOWN
+from firm_hdl.verify.ts1.oracle import Accepted, Answer, NotJudged, Oracle
+from firm_hdl.verify.ts1.rule import Known
+from firm_hdl.verify.ts1.universe import Universe
+from firm_hdl.verify.verdict import Failed, KnownDifference, Passed, Verdict
+
+__all__ = ["Again"]
+
+_Read: TypeAlias = "Callable[[Universe, Case], Interface | Exception]"
+
+
+class Again:
+    """One definition before one oracle, to be compared as often as it takes.
+
+    Parameters
+    ----------
+    universe : Universe or None
+        Where other texts can be read; `None`: nothing can be read again, and no difference is
+        known.
+    oracle : Oracle
+    case : Case
+    ours : Message, Service, Action or Exception
+        What we make of it.
+    answer : Accepted or Refused
+        What the oracle makes of it.
+    read : callable
+        Reads a definition as we do.
+    """
+
+    def __init__(
+        self,
+        universe: Universe | None,
+        oracle: Oracle,
+        case: Case,
+        ours: Interface | Exception,
+        answer: Answer,
+        read: _Read,
+    ) -> None:
+        self._universe, self._oracle, self._case = universe, oracle, case
+        self._ours, self._answer, self._read = ours, answer, read
+        self._texts: dict[str, Case] = {}
+
+    def verdict(self) -> tuple[Verdict, bool]:
+        """Say what is left of the differences, and whether both refuse."""
+        plain, _ = self._compared(())
+        if not plain.cases:
+            return NotJudged("the oracle takes the definition, and says nothing of it"), False
+        if not plain.differences:
+            # Where it is known to err, we must not err as well.
+            own = [entry for entry in self._entries() if not entry.is_mistake]
+            found, _ = self._compared(own)
+            if not found.differences:
+                return Passed(plain.cases), plain.is_refused
+            plain = found
+        return self._known(plain)
+
+    def _known(self, plain: Compared) -> tuple[Verdict, bool]:
+        found, touched = self._compared(self._entries())
+        if not found.differences and found.cases and touched:
+            needed, found = self._needed(touched, found)
+            keys = tuple(entry.key for entry in needed)
+            return KnownDifference(keys, found.cases), found.is_refused
+        left = found if found.differences else plain
+        why = next(self._not_judged(), None) if left.is_about_verdict else None
+        if why is not None:
+            return NotJudged(why), False
+        beside = f" (beside {', '.join(entry.key for entry in touched)})" if touched else ""
+        return Failed(tuple(f"{each}{beside}" for each in left.differences)), False
+
+    def _entries(self) -> list[Known]:
+        if self._universe is None:
+            return []
+        name, release = self._oracle.name, self._oracle.version()
+        return [entry for entry in KNOWN if entry.is_about(name, release, self._case)]
+
+    def _needed(
+        self, entries: Sequence[Known], found: Compared
+    ) -> tuple[Sequence[Known], Compared]:
+        """Leave out entries without which nothing is left either."""
+        for entry in entries:
+            fewer = [each for each in entries if each is not entry]
+            without, _ = self._compared(fewer)
+            if fewer and not without.differences and without.cases:
+                entries, found = fewer, without
+        return entries, found
+
+    def _compared(self, entries: Sequence[Known]) -> tuple[Compared, list[Known]]:
+        """Compare without what some entries know; list those that have changed anything."""
+        touched: dict[str, Known] = {}
+
+        def change(case: Case, only_mistakes: bool = False) -> Case:
+            self._texts.setdefault(case.spelled_name, case)
+            for entry in entries:
+                if entry.rewrite is not None and (entry.is_mistake or not only_mistakes):
+                    after = entry.changed(case)
+                    if after is not case:
+                        touched[entry.key] = entry
+                    case = after
+            return case
+
+        answer = self._asked(change) if entries else self._answer
+        ours, case = (
+            self._read_again(lambda case: change(case, True))
+            if entries
+            else (
+                self._ours,
+                self._case,
+            )
+        )
+        if isinstance(answer, NotJudged):
+            return Compared(cases=0), []
+        alike = dict(self._oracle.alike(self._case))
+        for entry in entries:
+            if entry.key in touched:
+                alike |= entry.alike
+                if entry.ours is not None and not isinstance(ours, Exception):
+                    ours = entry.ours(ours)
+            if entry.theirs is not None and isinstance(answer, Accepted):
+                mended = entry.theirs(answer.facts, self._case)
+                if repr(mended) != repr(answer.facts):
+                    touched[entry.key] = entry
+                answer = Accepted(mended)
+        found = compared(ours, answer, alike, lambda: self._show(case))
+        if found.is_refused and any(entry.is_mistake for entry in touched.values()):
+            # A mistake was to be out of the way, so that the rest is read.
+            found = Compared(cases=0)
+        return found, [entry for entry in entries if entry.key in touched]
+
+    def _asked(self, change: Callable[[Case], Case]) -> Answer:
+        """Ask the oracle about the text that a change makes; it keeps its word on the same text."""
+        if change(self._case) is self._case and not self._oracle.changes_needs:
+            return self._answer
+        return self._oracle.judge_changed(self._case, change)
+
+    def _read_again(self, change: Callable[[Case], Case]) -> tuple[Interface | Exception, Case]:
+        assert self._universe is not None
+        case = change(self._case)
+        if not isinstance(self._ours, DefinitionError):
+            return self._ours, self._case
+        universe = self._universe
+        if self._oracle.changes_needs:
+            universe = universe.changed(change)
+        elif case is self._case:
+            return self._ours, self._case
+        return self._read(universe, case), case
+
+    def _show(self, case: Case) -> str:
+        return "" if self._universe is None else self._universe.show(case)
+
+    def _not_judged(self) -> Iterator[str]:
+        """Yield why the verdict on a text is none on what else is in it."""
+        if isinstance(self._ours, DefinitionError):
+            for entry in self._entries():
+                if entry.spoils is not None and any(
+                    map(entry.spoils, [self._case, *self._texts.values()])
+                ):
+                    yield f"{entry.key}: {entry.text}"
+        for need in self._needs():
+            keys = self._known_of(need)
+            if keys:
+                yield f"it needs {need.full_name}, a known difference: {', '.join(keys)}"
+
+    def _needs(self) -> Iterator[Case]:
+        """Yield definitions that it needs and that the oracle reads from their files."""
+        if self._universe is None or self._oracle.changes_needs:
+            return
+        if isinstance(self._ours, DefinitionError):
+            names = {each.span.source.name for each in self._ours.diagnostics if each.span}
+            yield from (
+                case
+                for source, case in self._universe.read_all()
+                if source.name in names and case.spelled_name != self._case.spelled_name
+            )
+        elif not isinstance(self._ours, Exception):
+            for name in _needed_names(self._ours):
+                parts = name.split("/")
+                need = self._universe.message_case(parts[0], parts[-1])
+                if need is not None and need.spelled_name != self._case.spelled_name:
+                    yield need
+
+    def _known_of(self, case: Case) -> tuple[str, ...]:
+        universe = self._universe
+        if universe is None or case.language not in self._oracle.languages.get(case.dialect, ()):
+            return ()
+        (answer,) = self._oracle.judge([case])
+        if isinstance(answer, NotJudged):
+            return ()
+        ours = self._read(universe, case)
+        verdict, _ = Again(universe, self._oracle, case, ours, answer, self._read).verdict()
+        return verdict.keys if isinstance(verdict, KnownDifference) else ()
+
+
+def _needed_names(interface: Interface) -> list[str]:
+    pending: list[Message] = list(interface.messages)
+    seen: dict[str, None] = {}
+    while pending:
+        for child in pending.pop().children:
+            if child.name not in seen:
+                seen[child.name] = None
+                pending.append(child)
+    return list(seen)

@@ -1,0 +1,203 @@
+"""Where rosidl_parser says otherwise than we of what is written in IDL, on purpose."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.facts import Facts
+from firm_hdl.verify.ts1.rule import Known
+from firm_hdl.verify.ts1.texts import renamed
+
+__all__ = ["IDL"]
+
+# Texts and comments, which nothing here is about.
+_QUIET = re.compile(r'("(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/)', re.DOTALL)
+
+
+def _in_code(text: str, pattern: str, change: Any) -> str:
+    """Replace a pattern outside of texts and comments."""
+    parts = _QUIET.split(text)
+    return "".join(
+        part if index % 2 else re.sub(pattern, change, part) for index, part in enumerate(parts)
+    )
+
+
+def _code(text: str) -> str:
+    return _QUIET.sub(" ", text)
+
+
+# Names.
+
+_PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
+
+
+def _modules_of(text: str) -> set[str]:
+    return set(re.findall(r"\bmodule\s+(\w+)", _code(text)))
+
+
+def _named_as_file(facts: Facts, case: Case) -> Facts:
+    """Give the message its package and folder, where other modules are around it."""
+    if "names" not in facts:
+        return facts
+    (name,) = facts["names"]
+    *modules, base = name.split("/")
+    is_written = set(modules) <= _modules_of(case.text)
+    return {**facts, "names": [f"{case.package}/{case.kind}/{base}"]} if is_written else facts
+
+
+def _called_as_file(case: Case) -> str:
+    """Call what a file declares as the file is called."""
+    found = re.findall(r"\bstruct\s+(\w+)", _code(case.text))
+    bases = {re.sub(rf"_(?:{'|'.join(_PARTS)})$", "", name) for name in found}
+    if len(bases) != 1 or case.name in found:
+        return case.text
+    (base,) = bases
+    ends = rf"(?=_(?:{'|'.join(_PARTS)})\b|_Constants\b|\b)"
+    return _in_code(case.text, rf"\b{base}{ends}", case.name)
+
+
+# Constants.
+
+_DECLARED = re.compile(r"\bconst\s+[\w :<>,]*?\b(\w+)\s*=\s*([^;]*);")
+
+
+def _bounds_by_value(case: Case) -> str:
+    """Write the value of a constant that bounds a wstring in place of its name."""
+    values = dict(_DECLARED.findall(_code(case.text)))
+
+    def bound(match: re.Match[str]) -> str:
+        value = values.get(match[2].rpartition("::")[2], "").strip()
+        return f"{match[1]}{value}" if value.isdecimal() else match[0]
+
+    return _in_code(case.text, r"(\bwstring\s*<\s*)([A-Za-z_][\w:]*)", bound)
+
+
+def _floats(facts: Facts, case: Case) -> Facts:
+    """Make floating-point numbers of integers that are given for such."""
+
+    def number(kind: str, value: Any) -> Any:
+        if re.split(r"[\[<]", kind, maxsplit=1)[0] not in ("float32", "float64", "long double"):
+            return value
+        if isinstance(value, list):
+            return [number(kind, each) for each in value]
+        return float(value) if type(value) is int else value
+
+    def members(items: list[dict[str, Any]], key: str) -> list[dict[str, Any]]:
+        return [{**each, key: number(each["type"], each[key])} for each in items]
+
+    mended = {
+        name: {
+            **message,
+            "fields": members(message.get("fields", []), "default"),
+            "constants": members(message.get("constants", []), "value"),
+        }
+        for name, message in facts.get("structure", {}).items()
+    }
+    return {**facts, "structure": mended}
+
+
+# What C++ would have twice.
+
+
+def _scopes(text: str) -> Iterator[tuple[int, int]]:
+    """Yield the innermost pairs of braces."""
+    for match in re.finditer(r"\{[^{}]*\}", text):
+        yield match.span()
+
+
+_NAMES = re.compile(
+    r"(?P<constant>\bconst\s+[\w :<>,]*?\b(?P<a>\w+)\s*(?==))"
+    r"|(?P<member>\b(?P<b>\w+)\s*(?:\[[^\]]*\]\s*)?(?=[;,]))"
+)
+
+
+def _declared_once(case: Case) -> str:
+    """Give what is declared again in the same braces another name."""
+    # As long as the text, so that places in it are those in the text.
+    code = _QUIET.sub(lambda match: " " * len(match[0]), case.text)
+    code = re.sub(r"<[^<>;{}]*>", lambda match: " " * len(match[0]), code)
+    changes: list[tuple[int, int, str]] = []
+    for begin, end in _scopes(code):
+        seen: set[str] = set()
+        is_struct = re.search(r"\bstruct\s+\w+\s*$", code[:begin]) is not None
+        for match in _NAMES.finditer(code, begin, end):
+            which = "b" if is_struct else "a"
+            name = match[which]
+            if name is None:
+                continue
+            if name in seen:
+                changes.append((*match.span(which), f"{renamed(name)}{len(changes)}"))
+            seen.add(name)
+    text = case.text
+    for start, end, name in reversed(changes):
+        text = text[:start] + name + text[end:]
+    return text
+
+
+# What we refuse by name.
+
+_UNSUPPORTED = r"@(?:optional|mutable)\b(?:\s*\([^()]*\))?|@extensibility\s*\(\s*MUTABLE\s*\)"
+
+
+def _without_unsupported(case: Case) -> str:
+    return _in_code(case.text, _UNSUPPORTED, "")
+
+
+def _has_lists_of_lists(case: Case) -> bool:
+    """Whether a list of a type that is a list itself, by a typedef, is declared."""
+    code = _code(case.text)
+    lists = set(re.findall(r"\btypedef\s+sequence\s*<[^;]*>\s*(\w+)\s*;", code))
+    arrays = set(re.findall(r"\btypedef\s+[^;]*?\b(\w+)\s*\[[^;\]]*\]\s*;", code))
+    named = "|".join(map(re.escape, sorted(lists | arrays)))
+    pattern = rf"sequence\s*<\s*(?:\w+::)*(?:{named})\b|\b(?:{named})\s+\w+\s*\["
+    return bool(named) and re.search(pattern, code) is not None
+
+
+def _entry(key: str, text: str, **more: Any) -> Known:
+    return Known(key=key, oracles=frozenset({"rosidl_parser"}), text=text, language="idl", **more)
+
+
+IDL: tuple[Known, ...] = (
+    _entry(
+        "idl-names",
+        "A type in IDL is called by its package and its file, whatever its modules say.",
+        theirs=_named_as_file,
+    ),
+    _entry(
+        "idl-file-names",
+        "A file in IDL must declare what it is called; rosidl_parser does not see file names.",
+        rewrite=_called_as_file,
+        is_mistake=True,
+    ),
+    _entry(
+        "idl-bounds-by-name",
+        "rosidl_parser keeps the name of a constant that bounds a wstring; we have its value.",
+        rewrite=_bounds_by_value,
+    ),
+    _entry(
+        "idl-whole-numbers",
+        "rosidl_parser keeps an integer that is given for a floating-point number an integer.",
+        theirs=_floats,
+    ),
+    _entry(
+        "idl-twice",
+        "rosidl_parser takes constants and members that are declared twice, which C++ does not.",
+        rewrite=_declared_once,
+        is_mistake=True,
+    ),
+    _entry(
+        "idl-unsupported",
+        "Annotations that change the bytes on the wire are refused; rosidl_parser ignores them.",
+        rewrite=_without_unsupported,
+        is_mistake=True,
+    ),
+    _entry(
+        "idl-lists-of-lists",
+        "Lists of lists by typedefs are refused; rosidl_parser takes some, and nothing behind it.",
+        spoils=_has_lists_of_lists,
+    ),
+)
+"""What is known of rosidl_parser and IDL."""

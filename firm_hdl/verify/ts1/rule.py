@@ -1,0 +1,181 @@
+"""What one entry of the table of known differences is.
+
+An entry takes one thing that it knows out of the way, and nothing else: out of the text that the
+oracle is given, out of the text that both are given, or out of what either of them says. All the
+rest is then compared. So a known difference hides no other.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeAlias
+
+from firm_hdl.frontend.sources import Language
+from firm_hdl.model import Dialect, Interface
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.facts import Facts
+
+__all__ = [
+    "Known",
+    "Line",
+    "by_lines",
+    "mend_constants",
+    "mend_members",
+]
+
+_Rewrite: TypeAlias = "Callable[[Case], str]"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Known:
+    """One deliberate difference.
+
+    Attributes
+    ----------
+    key : str
+        Its name, here and in docs/errata.md.
+    oracles : set of str
+        Whom it is a difference to.
+    text : str
+        What differs, in one sentence.
+    releases : pattern or None
+        What the oracle's release has to match as a whole; `None`: all do.
+    dialect : "ros1", "ros2" or None
+        Whose definitions it is about; `None`: those of both.
+    language : Language or None
+        What these are written in; `None`: in anything.
+    rewrite : callable or None
+        Gives the text without what is known. The oracle reads it instead.
+    is_mistake : bool
+        Whether what is known is a mistake that we refuse and the oracle takes. Then we read the
+        rewritten text, too.
+    theirs : callable or None
+        Gives what the oracle says without what is known, and with the names and values that are in
+        the text itself where `rewrite` has put others.
+    ours : callable or None
+        Gives our model without what is known, where the oracle has to be given a text that means
+        another thing.
+    alike : mapping of str to str
+        Names of primitives that `rewrite` makes others of, and those.
+    spoils : callable or None
+        Whether a definition has what is known, when nothing can be done about it: where we refuse
+        and the oracle accepts, it is not judged.
+    """
+
+    key: str
+    oracles: frozenset[str]
+    text: str
+    releases: re.Pattern[str] | None = None
+    dialect: Dialect | None = None
+    language: Language | None = None
+    rewrite: _Rewrite | None = None
+    is_mistake: bool = False
+    theirs: Callable[[Facts, Case], Facts] | None = None
+    ours: Callable[[Interface], Interface] | None = None
+    alike: Mapping[str, str] = field(default_factory=dict)
+    spoils: Callable[[Case], bool] | None = None
+
+    def is_about(self, oracle: str, release: str, case: Case) -> bool:
+        """Whether it can explain a difference to some oracle about some definition."""
+        return (
+            # Where there are several releases at once, the newer ones have theirs in their names.
+            oracle.partition("-")[0] in self.oracles
+            and self.dialect in (None, case.dialect)
+            and self.language in (None, case.language)
+            and (self.releases is None or self.releases.fullmatch(release) is not None)
+        )
+
+    def changed(self, case: Case) -> Case:
+        """Give a definition with the text rewritten."""
+        text = case.text if self.rewrite is None else self.rewrite(case)
+        if text == case.text:
+            return case
+        return replace(case, text=text, before=case.text if case.before is None else case.before)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Line:
+    """A line that declares something: ``TYPE NAME``, then ``= VALUE``, a default, or nothing.
+
+    Attributes
+    ----------
+    indent, type, gap, name, equals, rest : str
+        Its parts, which together are the line. `equals` is empty if there is no constant; `rest` is
+        all that follows, a comment included.
+    """
+
+    indent: str
+    type: str
+    gap: str
+    name: str
+    equals: str
+    rest: str
+
+    @property
+    def base(self) -> str:
+        """The type without sizes and bounds."""
+        return re.split(r"[\[<]", self.type, maxsplit=1)[0]
+
+    @property
+    def value(self) -> str:
+        """What follows, without a comment and blanks around it."""
+        return self.rest.partition("#")[0].strip()
+
+    def with_value(self, value: str) -> Line:
+        """Give the line with another value, and the same comment."""
+        _, hash_, comment = self.rest.partition("#")
+        blank = " " if hash_ or not self.equals else ""
+        before = "" if self.equals else " "
+        return replace(self, rest=f"{before}{value}{blank}{hash_}{comment}".rstrip(" "))
+
+    def __str__(self) -> str:
+        return f"{self.indent}{self.type}{self.gap}{self.name}{self.equals}{self.rest}"
+
+
+_LINE = re.compile(
+    r"(?P<indent>[ \t]*)(?P<type>(?:[^\s#=<]|<=?)+)(?P<gap>[ \t]+)(?P<name>[^\s#=]+)"
+    r"(?P<equals>[ \t]*=[ \t]*)?(?P<rest>.*)",
+    re.DOTALL,
+)
+
+
+def by_lines(change: Callable[[Line, Case], Line]) -> _Rewrite:
+    """Make a rewriting of one that knows lines of ``.msg``, ``.srv`` and ``.action`` files."""
+
+    def rewrite(case: Case) -> str:
+        pieces = re.split(r"(\r\n|\r|\n)", case.text)
+        for index in range(0, len(pieces), 2):
+            match = _LINE.fullmatch(pieces[index])
+            if match is not None:
+                parts = {name: part or "" for name, part in match.groupdict().items()}
+                pieces[index] = str(change(Line(**parts), case))
+        return "".join(pieces)
+
+    return rewrite
+
+
+def mend_members(
+    part: str, change: Callable[[dict[str, Any]], dict[str, Any]]
+) -> Callable[[Facts, Case], Facts]:
+    """Make a mending of facts of one that knows a field (``fields``) or a constant."""
+
+    def mend(facts: Facts, case: Case) -> Facts:
+        messages = facts.get("structure", {})
+        mended = {
+            name: {**message, part: [change(each) for each in message[part]]}
+            if part in message
+            else message
+            for name, message in messages.items()
+        }
+        return {**facts, "structure": mended} if messages else facts
+
+    return mend
+
+
+def mend_constants(
+    change: Callable[[dict[str, Any]], dict[str, Any]],
+) -> Callable[[Facts, Case], Facts]:
+    """Make a mending of facts of one that knows a constant."""
+    return mend_members("constants", change)

@@ -1,0 +1,231 @@
+"""Of each known difference an example, and beside it what is planted for its twin.
+
+The twin of a key is a front end that errs beside what is known: it must be reported.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.model import Message
+
+__all__ = ["EXAMPLES", "Example", "drop_last", "refuse"]
+
+_Plant = Callable[[Any], Any]
+
+
+def refuse(read):
+    """Refuse everything."""
+    return DefinitionError([Diagnostic(message="it is planted")])
+
+
+def drop_last(read):
+    """Lose the last field."""
+    return replace(read, fields=read.fields[:-1]) if isinstance(read, Message) else read
+
+
+def _constant(**changes):
+    """Get something of the first constant wrong."""
+
+    def plant(read):
+        if not isinstance(read, Message):
+            return read
+        first = replace(read.constants[0], **changes)
+        return replace(read, constants=(first, *read.constants[1:]))
+
+    return plant
+
+
+def _field(index, **changes):
+    """Get something of a field wrong."""
+
+    def plant(read):
+        if not isinstance(read, Message):
+            return read
+        fields = list(read.fields)
+        fields[index] = replace(fields[index], **changes)
+        return replace(read, fields=tuple(fields))
+
+    return plant
+
+
+def _accept(read):
+    """Take what is to be refused for something else."""
+    return Message(name="p/msg/A", dialect="ros2", fields=()) if refuses(read) else read
+
+
+def refuses(read):
+    return isinstance(read, DefinitionError)
+
+
+def _misname(read):
+    return replace(read, name="p/msg/B") if isinstance(read, Message) else read
+
+
+def _comment(read):
+    return replace(read, comment=read.comment[:-1]) if isinstance(read, Message) else read
+
+
+@dataclass(frozen=True, kw_only=True)
+class Example:
+    """A definition ``p/A`` with a known difference, and a field behind it that has none.
+
+    Attributes
+    ----------
+    key, oracle : str
+    text : str
+        It has to have another field last that nothing is known about.
+    plant : callable
+        What the twin makes of what is read.
+    distro : str
+    idl : bool
+    more : mapping of str to str
+        Other definitions.
+    spared : str
+        A text like it without what is known, if that cannot be judged: its twin refuses this.
+    """
+
+    key: str
+    oracle: str
+    text: str
+    plant: _Plant
+    distro: str = "lyrical"
+    idl: bool = False
+    more: Mapping[str, str] = field(default_factory=dict)
+    spared: str = ""
+
+    @property
+    def files(self):
+        return {f"p/msg/A.{'idl' if self.idl else 'msg'}": self.text, **self.more}
+
+    @property
+    def spared_files(self):
+        return {f"p/msg/A.{'idl' if self.idl else 'msg'}": self.spared, **self.more}
+
+
+def _ros1(key, oracle, text, plant, **more):
+    return Example(
+        key=key, oracle=oracle, text=text + "uint16 last\n", plant=plant, distro="noetic", **more
+    )
+
+
+def _ros2(key, oracle, text, plant, **more):
+    return Example(key=key, oracle=oracle, text=text + "uint16 last\n", plant=plant, **more)
+
+
+def _idl(key, members, plant, before="", name="A", modules=("p", "msg"), **more):
+    text = (
+        f"module {modules[0]} {{ module {modules[1]} {{ {before} "
+        f"struct {name} {{ {members} unsigned short last; }}; }}; }};"
+    )
+    return Example(key=key, oracle="rosidl_parser", text=text, plant=plant, idl=True, **more)
+
+
+_N = "module A_Constants { const long N = 3; };"
+
+EXAMPLES: tuple[Example, ...] = (
+    # rosbags refuses it, or reads it otherwise.
+    _ros2("rosbags-crlf", "rosbags", "int8 X=1\r\nint8 a\r\n", _constant(value=2)),
+    _ros2("rosbags-wstring", "rosbags", "wstring<=4[] a\n", _field(0, name="b")),
+    _ros2(
+        "rosbags-special-types",
+        "rosbags",
+        "Header h\n",
+        _field(0, name="g"),
+        more={"p/msg/Header.msg": "int8 x\n"},
+    ),
+    _ros2("rosbags-special-types", "rosbags", "time t\n", _accept),
+    _ros1("rosbags-constant-names", "rosbags", "uint8 low=1\nint8 a\n", _constant(name="LOW")),
+    _ros1("rosbags-constant-names", "rosbags", "uint8 low = 1\n", _constant(value=2)),
+    _ros1("rosbags-texts", "rosbags", 'string NAME="x"\n', _constant(value="x")),
+    _ros1("rosbags-texts", "rosbags", "string NAME=[1, 2]\n", _constant(value="[1,2]")),
+    _ros2("rosbags-texts", "rosbags", "string NAME=5 # five\n", _constant(value="5 # five")),
+    _ros2("rosbags-texts", "rosbags", "string s 2nd floor\n", _field(0, name="t")),
+    _ros1("rosbags-constant-bool", "rosbags", "bool ON=1\n", _constant(value=False)),
+    _ros1("rosbags-integers", "rosbags", "int8 N=010\n", _constant(value=8)),
+    _ros2("rosbags-integers", "rosbags", "int32 N=1_000\n", _constant(value=1)),
+    _ros1("rosbags-floats", "rosbags", "float32 LOW = 0\n", _constant(value=-0.0)),
+    _ros2("rosbags-floats", "rosbags", "float64 X=-inf # low\n", _constant(value=float("inf"))),
+    _ros2("rosbags-char-hash", "rosbags", "char c\n", _field(0, name="d")),
+    # rosbags takes it.
+    _ros2("rosbags-names", "rosbags", "int32 Bad\n", drop_last),
+    _ros2(
+        "rosbags-type-names",
+        "rosbags",
+        "bad b\n",
+        refuse,
+        more={"p/msg/bad.msg": "int8 x\n", "p/msg/Good.msg": "int8 x\n"},
+        spared="Good b\n",
+    ),
+    _ros1("rosbags-twice", "rosbags", "int8 a\nint8 a\n", drop_last),
+    _ros2("rosbags-twice", "rosbags", "int8 A=1\nint8 A=2\n", drop_last),
+    _ros1("rosbags-values", "rosbags", "uint8 X=256\n", drop_last),
+    _ros2("rosbags-values", "rosbags", "bool ON=yes\nint8[2] a [1]\n", drop_last),
+    _ros1("rosbags-sizes", "rosbags", "int8[0] x\n", drop_last),
+    _ros1("rosbags-ros2-forms", "rosbags", "string<=5 a\nint8 b 1\n", drop_last),
+    _ros1("rosbags-blanks", "rosbags", "int8\ta\n", drop_last),
+    _ros2("rosbags-blanks", "rosbags", " int8 a\n", drop_last),
+    _ros2("rosbags-annotations", "rosbags", "@key\nint8 a\n", drop_last),
+    # genmsg.
+    _ros1("ros1-constant-names", "genmsg", "int8 a-b=1\n", drop_last),
+    _ros1("ros1-bool-literals", "genmsg", "bool ON=[1]\n", _constant(value=False)),
+    _ros1("ros1-empty-arrays", "genmsg", "int8[0] x\n", drop_last),
+    _ros1("ros1-indented-texts", "genmsg", "  string X=1\n", _constant(value="2")),
+    _ros1("ros1-64-bit-limits", "genmsg", "int64 X=9223372036854775808\n", drop_last),
+    _ros1("ascii-only", "genmsg", "int8 größe\n", drop_last),
+    _ros1("sizes-of-32-bits", "genmsg", "int8[4294967296] x\n", drop_last),
+    # rosidl.
+    _ros2("ascii-only", "rosidl_adapter", "int8 X=\uff11\n", _constant(value=2)),
+    _ros2("ascii-only", "rosidl_parser", "int8 X=\uff11\n", _constant(value=2)),
+    _ros2("sizes-of-32-bits", "rosidl_adapter", "int8[4294967296] x\n", drop_last),
+    _idl("sizes-of-32-bits", "sequence<long, 4294967296> x;", drop_last),
+    _ros2(
+        "ros2-escaped-quotes",
+        "rosidl_adapter",
+        'string[] x ["\\"", "a\\"b"]\n',
+        _field(0, default=("", "ab")),
+    ),
+    _ros2(
+        "ros2-escaped-quotes",
+        "rosidl_parser",
+        'string[] x ["\\"", "a\\"b"]\n',
+        _field(0, default=("", "ab")),
+    ),
+    _ros2("ros2-backslashes", "rosidl_parser", "string X=a\\b\n", _constant(value="ab")),
+    _ros2(
+        "ros2-infinite-numbers",
+        "rosidl_parser",
+        "float64 a -inf\n",
+        _field(0, default=float("inf")),
+    ),
+    _ros2("ros2-comment-blanks", "rosidl_adapter", "# Head. \n\nint8 x\n", _comment),
+    # IDL.
+    _idl("idl-names", "long x;", _misname, modules=("q", "idl")),
+    _idl("idl-file-names", "long x;", drop_last, name="B"),
+    _idl("idl-bounds-by-name", "sequence<wstring<N>, 2> x;", _constant(value=4), before=_N),
+    _idl(
+        "idl-whole-numbers",
+        '@default(value=3) double x; @default(value="(1, 2)") double y[2];',
+        _field(1, default=(1.0, 3.0)),
+        before="module A_Constants { const long double N = 3; };",
+    ),
+    _idl("idl-twice", "long x; long x;", drop_last),
+    _idl(
+        "idl-twice",
+        "long x;",
+        drop_last,
+        before="module A_Constants { const long N = 3; const long N = 4; };",
+    ),
+    _idl("idl-unsupported", "@optional long x;", drop_last),
+    Example(
+        key="idl-lists-of-lists",
+        oracle="rosidl_parser",
+        idl=True,
+        text="module p { module msg { typedef sequence<long> L; struct A { L x[3]; }; }; };",
+        plant=refuse,
+        spared="module p { module msg { typedef sequence<long> L; struct A { L x; }; }; };",
+    ),
+)
