@@ -207,6 +207,7 @@ ROS1 = {
     "p/Bytes": "uint8[] a\nchar[] b\nuint8[3] c\nchar[70] d\nbyte[] e\nint8[2] f\n",
     "p/Lists": "float64[] a\nstring[] b\nbool[] c\nstring[2] d\nfloat32[4] e\n",
     "p/Long": "int8 a\nfloat32[5] b\nPlain c\n",
+    "p/Short": "int8 a\nfloat32[4] b\nPlain c\n",
     "p/LongLast": "Plain a\nPlain b\nLong c\n",
     "p/Messages": "Plain[] a\nPlain[2] b\nFive[] c\nPlain[] d\n",
     "p/None": "",

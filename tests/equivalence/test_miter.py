@@ -1,0 +1,245 @@
+"""Two small circuits, made by hand: each thing in which they may differ is one to be seen."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from firm_hdl.equivalence.circuit import Cell, Circuit, Flop, ProofError
+from firm_hdl.equivalence.miter import Claim, make_miter
+
+NAND = {"A_SIGNED": 0, "B_SIGNED": 0, "A_WIDTH": 1, "B_WIDTH": 1, "Y_WIDTH": 1}
+
+
+def circuit(first: int, **changes: object) -> Circuit:
+    """An output that is a register of two bits, which takes input AND enable.
+
+    Parameters
+    ----------
+    first : int
+        The number of its first net.
+    """
+    clk, i, en, q0, q1, d = range(first, first + 6)
+    flop = Flop(data=d, clock=clk, rising=True, init="0")
+    known = {
+        "inputs": {"clk": (clk,), "i": (i,), "en": (en,)},
+        "outputs": {"o": (q0, q1)},
+        "signals": {("inner", "r"): (q0, q1)},
+        "cells": [
+            Cell(kind="$and", parameters=NAND, inputs={"A": (i,), "B": (en,)}, outputs={"Y": (d,)})
+        ],
+        "flops": {q0: flop, q1: replace(flop, data=q0, init="1")},
+    }
+    return Circuit(**{**known, **changes})  # type: ignore[arg-type]
+
+
+AMARANTH = circuit(2)
+SAME = {"ports": {}, "signals": {("inner", "r"): ("inner_1", "r")}}
+
+
+def vhdl(**changes: object) -> Circuit:
+    made = circuit(2, **changes)
+    return replace(made, signals={("inner_1", "r"): made.signals["inner", "r"]})
+
+
+def miter(other: Circuit, ours: Circuit = AMARANTH, **options: object):
+    return make_miter(ours, other, **{**SAME, **options})  # type: ignore[arg-type]
+
+
+def flops(**changes: object) -> dict[int, Flop]:
+    """The registers, both changed."""
+    return {net: replace(flop, **changes) for net, flop in AMARANTH.flops.items()}
+
+
+def open_claims(made) -> list[str]:
+    return [claim.what for claim in made.claims]
+
+
+def test_the_same_circuit_leaves_its_next_states_to_be_proved() -> None:
+    made = miter(vhdl())
+    assert (made.differences, made.unmatched, made.registers) == ((), (), 2)
+    # Outputs are registers that both share; the next states are made by a gate of each side.
+    assert open_claims(made) == ["next state of inner.r"]
+    (claim,) = made.claims
+    assert claim.amaranth != claim.vhdl and len(claim.amaranth) == len(claim.vhdl) == 2
+    assert {name: len(bits) for name, bits in made.inputs.items()} == {
+        "input clk": 1, "input i": 1, "input en": 1, "register inner.r": 2
+    }  # fmt: skip
+    # Both gates read the same nets.
+    one, other = made.cells
+    assert dict(one.inputs) == dict(other.inputs) and one.outputs != other.outputs
+
+
+RESET = {"reset": 3, "reset_level": True, "reset_value": "0"}
+
+
+@pytest.mark.parametrize(
+    ("ours", "theirs", "difference"),
+    [
+        ({}, {"init": "1"}, "inner.r starts with another value"),
+        ({}, {"init": "x"}, "inner.r starts with another value"),
+        ({}, {"rising": False}, "inner.r changes at the other edge of its clock"),
+        ({"rising": False}, {}, "inner.r changes at the other edge of its clock"),
+        (RESET, {}, "inner.r has an asynchronous reset on one side only"),
+        ({}, RESET, "inner.r has an asynchronous reset on one side only"),
+        (RESET, {**RESET, "reset_value": "1"}, "the asynchronous reset of inner.r is another"),
+        (RESET, {**RESET, "reset_level": False}, "the asynchronous reset of inner.r is another"),
+    ],
+)
+def test_registers_that_are_others_differ_without_a_question(
+    ours: dict, theirs: dict, difference: str
+) -> None:
+    made = miter(vhdl(flops=flops(**theirs)), replace(AMARANTH, flops=flops(**ours)))
+    assert difference in made.differences
+    assert {*made.differences} == {difference}
+
+
+def test_one_bit_of_a_register_that_starts_otherwise_differs() -> None:
+    for net in AMARANTH.flops:
+        for init in "01":
+            changed = {**AMARANTH.flops, net: replace(AMARANTH.flops[net], init=init)}
+            made = miter(vhdl(flops=changed))
+            is_same = init == AMARANTH.flops[net].init
+            assert made.differences == (() if is_same else ("inner.r starts with another value",))
+
+
+def test_a_register_that_may_start_anyhow_may_start_so() -> None:
+    assert (
+        miter(vhdl(flops=flops(init="1")), replace(AMARANTH, flops=flops(init="x"))).differences
+        == ()
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "claim"),
+    [
+        ({"clock": 3}, "clock of inner.r"),
+        ({"data": 4}, "next state of inner.r"),
+        ({**RESET, "reset": 4}, "reset of inner.r"),
+    ],
+)
+def test_what_registers_are_connected_to_is_to_be_proved(changes: dict, claim: str) -> None:
+    ours = flops(**RESET) if "reset" in changes else AMARANTH.flops
+    same = miter(vhdl(flops=dict(ours)), replace(AMARANTH, flops=ours))
+    made = miter(vhdl(flops={n: replace(f, **changes) for n, f in ours.items()}),
+                 replace(AMARANTH, flops=ours))  # fmt: skip
+    assert made.differences == ()
+    assert claim in open_claims(made)
+    assert open_claims(same) == ["next state of inner.r"]
+
+
+def test_outputs_are_to_be_proved() -> None:
+    q0, q1 = AMARANTH.outputs["o"]
+    made = miter(vhdl(outputs={"o": (q1, q0)}))
+    assert "output o" in open_claims(made) and made.differences == ()
+    for constant in "01":
+        assert "output o" in open_claims(miter(vhdl(outputs={"o": (q0, constant)})))
+
+
+@pytest.mark.parametrize("side", ["amaranth", "vhdl"])
+@pytest.mark.parametrize("what", ["inputs", "outputs"])
+def test_ports_that_one_side_has_alone_differ(side: str, what: str) -> None:
+    more = {**getattr(AMARANTH, what), "more": (99,) if what == "inputs" else (5,)}
+    ours, theirs = AMARANTH, vhdl()
+    if side == "amaranth":
+        ours = replace(ours, **{what: more})
+    else:
+        theirs = replace(theirs, **{what: more})
+    assert miter(theirs, ours).differences == (f"only one side has the {what[:-1]} more",)
+
+
+@pytest.mark.parametrize("what", ["inputs", "outputs"])
+def test_ports_of_another_width_differ(what: str) -> None:
+    name = {"inputs": "i", "outputs": "o"}[what]
+    ports = dict(getattr(AMARANTH, what))
+    ports[name] = (*ports[name], 99 if what == "inputs" else 5)
+    made = miter(vhdl(**{what: ports}))
+    assert f"the {what[:-1]} {name} has two widths" in made.differences
+
+
+def test_ports_are_matched_by_the_names_that_the_back_end_gave() -> None:
+    renamed = vhdl(inputs={"clk": (2,), "i_field": (3,), "en": (4,)})
+    made = miter(renamed, ports={"i": "I_field"})
+    assert made.differences == () and open_claims(made) == ["next state of inner.r"]
+    assert len(miter(renamed).differences) == 2
+    # Names that are swapped are as bad as any other difference.
+    swapped = miter(vhdl(), ports={"i": "en", "en": "i"})
+    assert swapped.differences == () and open_claims(swapped) == ["next state of inner.r"]
+    one, other = swapped.cells
+    assert dict(one.inputs) != dict(other.inputs)
+
+
+def test_a_register_may_be_the_constant_that_it_keeps() -> None:
+    q0, q1 = AMARANTH.outputs["o"]
+    bits = (q0, "1")
+    other = circuit(2, outputs={"o": bits}, flops={q0: AMARANTH.flops[q0]})
+    other = replace(other, signals={("inner_1", "r"): bits})
+    made = miter(other)
+    # That it keeps it is to be proved: its next state has to be that constant.
+    assert made.differences == ()
+    claims: dict[str, Claim] = {claim.what: claim for claim in made.claims}
+    assert claims["next state of inner.r"].vhdl[1] == "1"
+    wrong = replace(other, signals={("inner_1", "r"): (q0, "0")})
+    assert miter(wrong).differences == ("inner.r starts with another value",)
+    with_reset = replace(AMARANTH, flops={**AMARANTH.flops, q1: replace(
+        AMARANTH.flops[q1], reset=3, reset_value="0")})  # fmt: skip
+    assert miter(other, with_reset).differences == ("the asynchronous reset of inner.r is another",)
+
+
+def test_a_wire_in_place_of_a_register_differs() -> None:
+    q0, q1 = AMARANTH.outputs["o"]
+    wires = Cell(kind="$pos", parameters={}, inputs={"A": (3,)}, outputs={"Y": (q1,)})
+    other = circuit(2, cells=[*AMARANTH.cells, wires], flops={q0: AMARANTH.flops[q0]})
+    made = miter(replace(other, signals={("inner_1", "r"): (q0, q1)}))
+    assert made.differences == ("inner.r is no register in the VHDL",)
+
+
+@pytest.mark.parametrize(
+    "signals",
+    [{}, {("inner", "r"): ("inner_1", "s")}, {("inner", "r"): ("inner", "r")}],
+)
+def test_registers_without_a_partner_may_hold_anything(signals: dict) -> None:
+    made = miter(vhdl(), signals=signals)
+    assert made.differences == () and made.registers == 0
+    assert made.unmatched == (
+        "register inner.r of the Amaranth alone", "register inner_1.r of the VHDL alone"
+    )  # fmt: skip
+    # So the outputs, which are these registers, are not equal.
+    assert open_claims(made) == ["output o"]
+    (claim,) = made.claims
+    free = {bit for name, bits in made.inputs.items() if "alone" in name for bit in bits}
+    assert {*claim.amaranth, *claim.vhdl} == free and len(free) == 4
+
+
+def test_what_nothing_drives_may_be_anything() -> None:
+    loose = Cell(kind="$and", parameters=NAND, inputs={"A": (77,), "B": (4,)}, outputs={"Y": (7,)})
+    made = miter(vhdl(cells=[loose]))
+    assert len(made.inputs["anything"]) == 1 and made.differences == ()
+    assert open_claims(made) == ["next state of inner.r"]
+
+
+def test_two_drivers_are_refused() -> None:
+    with pytest.raises(ProofError, match="has two drivers"):
+        circuit(2, cells=[*AMARANTH.cells, *AMARANTH.cells])
+    with pytest.raises(ProofError, match="has two drivers"):
+        circuit(2, inputs={**AMARANTH.inputs, "x": (7,)})
+
+
+def test_the_netlist_asks_about_every_claim() -> None:
+    made = miter(vhdl(outputs={"o": tuple(reversed(AMARANTH.outputs["o"]))}))
+    assert len(made.claims) == 2
+    module = made.netlist(values=True)["modules"]["miter"]
+    differs = module["ports"]["differs"]["bits"]
+    assert len(differs) == 2
+    for number, claim in enumerate(made.claims):
+        cell = module["cells"][f"claim{number}"]
+        assert cell["type"] == "$ne"
+        assert cell["connections"]["A"] == list(claim.amaranth)
+        assert cell["connections"]["B"] == list(claim.vhdl)
+        assert cell["connections"]["Y"] == [differs[number]]
+        assert module["ports"][f"amaranth{number}"]["bits"] == list(claim.amaranth)
+        assert module["ports"][f"vhdl{number}"]["bits"] == list(claim.vhdl)
+    assert len({*differs}) == 2 and not {*differs} & {b for c in made.cells for b in c.outputs["Y"]}
+    inputs = [p["bits"] for n, p in module["ports"].items() if n.startswith("in")]
+    assert inputs == [list(bits) for bits in made.inputs.values()]

@@ -1,0 +1,262 @@
+"""Sums, hashes and examples of types that share a last name, and of what is easy to mix up."""
+
+from __future__ import annotations
+
+import hashlib
+
+import pytest
+import yaml
+
+from firm_hdl.cli import main
+from firm_hdl.frontend import Library
+from firm_hdl.identity import (
+    TooLargeError,
+    in_order,
+    md5sum,
+    proto,
+    proto_ros1,
+    proto_ros2,
+    type_description,
+)
+from firm_hdl.identity.command import load_interfaces
+
+from ..frontend.workspace import library, make_files
+
+PARTS = {
+    "p/T": "Part a\nq/Part[] b\nr/Zed c\nq/Whole d",
+    "p/Part": "int8 p",
+    "q/Part": "int16 q\nint16 more",
+    "q/Whole": "Part q\np/Part p",
+    "q/Zed": "int8 unused",
+    "r/Zed": "string r",
+    "r/Aaa": "int8 unused",
+}
+
+
+def digest(text):
+    return hashlib.md5(text.encode()).hexdigest()
+
+
+def test_order_has_all_types_of_one_name(tmp_path):
+    names = [m.name for m in in_order([library(tmp_path, PARTS).message("p/T")])]
+    assert names == [
+        "p/msg/Part", "q/msg/Part", "r/msg/Zed", "q/msg/Whole", "p/msg/T"
+    ]  # fmt: skip
+
+
+def test_sum_is_made_of_the_sums_of_the_very_types(tmp_path):
+    p, q, r = digest("int8 p"), digest("int16 q\nint16 more"), digest("string r")
+    whole = digest(f"{q} q\n{p} p")
+    assert md5sum(library(tmp_path, PARTS, "ros1").message("p/T")) == digest(
+        f"{p} a\n{q} b\n{r} c\n{whole} d"
+    )
+
+
+def test_sum_of_a_service_is_made_of_the_sums_of_the_very_types(tmp_path):
+    files = {f"{n.replace('/', '/msg/')}.msg": text for n, text in PARTS.items()}
+    make_files(tmp_path, files | {"p/srv/S.srv": "Part a\n---\nq/Part a\nPart b"})
+    p, q = digest("int8 p"), digest("int16 q\nint16 more")
+    service = Library("noetic", [tmp_path]).interface("p/srv/S")
+    assert md5sum(service) == digest(f"{p} a{q} a\n{p} b")
+
+
+@pytest.mark.parametrize(
+    ("text", "summed"),
+    [
+        ("float32 A=1.50\nint8 a", "float32 A=1.50\nint8 a"),
+        ("int8 B=+1\nint8 A=-0\nuint8 C=007", "int8 B=+1\nint8 A=-0\nuint8 C=007"),
+        ("bool A=1\nbool B=True", "bool A=1\nbool B=True"),
+        ("string A=  x # y\nint8 a # z", "string A=x # y\nint8 a"),
+        ("int8 a\nint8 A=1\nint8 b\nint8 B=2", "int8 A=1\nint8 B=2\nint8 a\nint8 b"),
+        ("int8 B=1\nint8 A=2\nint8 B=3", "int8 B=1\nint8 A=2\nint8 B=3"),
+        ("time a\nduration[] b\nTime c", f"time a\nduration[] b\n{digest('int8 x')} c"),
+        ("Header a\nHeader[2] b", f"{digest('int8 std')} a\n{digest('int8 own')} b"),
+    ],
+)
+def test_sum_is_over_the_words_of_the_definition(tmp_path, text, summed):
+    texts = {
+        "p/T": text,
+        "p/Time": "int8 x",
+        "p/Header": "int8 own",
+        "std_msgs/Header": "int8 std",
+    }
+    assert md5sum(library(tmp_path, texts, "ros1").message("p/T")) == digest(summed)
+
+
+def test_descriptions_are_sorted_by_full_names(tmp_path):
+    described = type_description(library(tmp_path, PARTS).message("p/T"))
+    parts = {
+        part["type_name"]: [f["name"] for f in part["fields"]]
+        for part in described["referenced_type_descriptions"]
+    }
+    assert [*parts.items()] == [
+        ("p/msg/Part", ["p"]),
+        ("q/msg/Part", ["q", "more"]),
+        ("q/msg/Whole", ["q", "p"]),
+        ("r/msg/Zed", ["r"]),
+    ]
+    fields = described["type_description"]["fields"]
+    assert [f["type"]["nested_type_name"] for f in fields] == [
+        "p/msg/Part", "q/msg/Part", "r/msg/Zed", "q/msg/Whole"
+    ]  # fmt: skip
+
+
+def read_back(message):
+    return yaml.safe_load(proto(message, quotes=False))
+
+
+def test_examples_are_of_the_very_types(tmp_path):
+    p, q = {"p": 0}, {"q": 0, "more": 0}
+    assert read_back(library(tmp_path / "2", PARTS).message("p/T")) == {
+        "a": p, "b": [], "c": {"r": ""}, "d": {"q": q, "p": p}
+    }  # fmt: skip
+    assert read_back(library(tmp_path / "1", PARTS, "ros1").message("p/T")) == {
+        "a": p, "b": [q], "c": {"r": ""}, "d": {"q": q, "p": p}
+    }  # fmt: skip
+
+
+NESTED = {
+    "p/T": "Row[2] rows\nEmpty none\nEmpty[2] nones\nSaid said\nSaid[2] all\nint8 last",
+    "p/Row": "Cell[3] cells\nint8[2] n\nstring[2] s\nEmpty[2] e",
+    "p/Cell": "int8 a\nPoint[2] points",
+    "p/Point": "float64 x\nfloat64[2] y",
+    "p/Empty": "",
+    "p/Said": "int8 WHY=1",
+}
+
+
+def test_examples_of_nested_arrays_have_the_values_of_new_messages(tmp_path):
+    point = {"x": 0.0, "y": [0.0, 0.0]}
+    row = {
+        "cells": [{"a": 0, "points": [point] * 2}] * 3,
+        "n": [0, 0],
+        "s": ["", ""],
+        "e": [{}, {}],
+    }
+    want = {
+        "rows": [row] * 2, "none": {}, "nones": [{}] * 2, "said": {}, "all": [{}] * 2, "last": 0
+    }  # fmt: skip
+    for dialect in ("ros1", "ros2"):
+        message = library(tmp_path / dialect, NESTED, dialect).message("p/T")
+        assert read_back(message) == want
+    # A message without fields is one, whatever constants it has.
+    text = proto(library(tmp_path / "ros2", NESTED).message("p/T"), quotes=False)
+    assert "\nnone: {}\n" in text and "\nsaid: {}\n" in text
+
+
+def test_examples_of_a_service_and_an_action_are_of_their_first_parts(tmp_path):
+    make_files(tmp_path, {"p/srv/S.srv": "int8 a\n---\nint8 b"})
+    make_files(tmp_path, {"p/action/D.action": "int8 a\n---\nint8 b\n---\nint8 c"})
+    for distro in ("noetic", "lyrical"):
+        ours = Library(distro, [tmp_path])
+        assert read_back(ours.interface("p/S")) == read_back(ours.interface("p/D")) == {"a": 0}
+
+
+def test_limits_of_examples_are_allowed_and_one_more_is_not(tmp_path, monkeypatch):
+    texts = {
+        "p/Four": "int8 a\nint8 b",  # Two names and two values.
+        "p/Deep": "A a",
+        "p/A": "B b",
+        "p/B": "int8 x",
+    }
+    ours = library(tmp_path / "1", texts, "ros1")
+    monkeypatch.setattr(proto_ros1, "_MOST_VALUES", 4)
+    proto(ours.message("p/Four"))
+    monkeypatch.setattr(proto_ros1, "_MOST_VALUES", 3)
+    with pytest.raises(TooLargeError, match=r"^p/Four has an example of .*more than 3"):
+        proto(ours.message("p/Four"))
+    monkeypatch.setattr(proto_ros1, "_MOST_VALUES", 100)
+    monkeypatch.setattr(proto_ros1, "_MOST_LEVELS", 3)
+    proto(ours.message("p/Deep"))
+    monkeypatch.setattr(proto_ros1, "_MOST_LEVELS", 2)
+    with pytest.raises(TooLargeError, match=r"^p/Deep has an example of .*more than 2"):
+        proto(ours.message("p/Deep"))
+
+
+@pytest.mark.parametrize("text", ["int8[3] a", "Two[2] a", "int8 a\nint8 b\nint8 c\nint8 d"])
+def test_limit_of_characters_is_that_of_the_text(tmp_path, monkeypatch, text):
+    message = library(tmp_path, {"p/T": text, "p/Two": "int8 x"}).message("p/T")
+    size = len(proto(message, quotes=False)) + 1
+    monkeypatch.setattr(proto_ros2, "_MOST_CHARACTERS", size)
+    proto(message)
+    # Of an array, its elements are counted before they are written.
+    monkeypatch.setattr(proto_ros2, "_MOST_CHARACTERS", len("- 0\n") * 2)
+    with pytest.raises(TooLargeError):
+        proto(message)
+
+
+# The commands.
+
+
+def test_a_message_and_a_service_of_one_name_are_two(tmp_path, capsys):
+    make_files(tmp_path, {"p/msg/A.msg": "int8 a", "p/srv/A.srv": "int8 b\n---\n"})
+    ours = Library("noetic", [tmp_path])
+    found = load_interfaces(ours, ["p/A", "p/srv/A", "p/msg/A", "p/srv/A"])
+    assert [type(each).__name__ for each in found] == ["Message", "Service"]
+    assert main(["md5", "p/A", "p/srv/A", "--path", str(tmp_path)]) == 0
+    assert capsys.readouterr().out == f"{digest('int8 a')}  p/A\n{digest('int8 b')}  p/A\n"
+
+
+def test_the_same_mistake_in_two_files_is_said_twice(tmp_path, capsys):
+    make_files(tmp_path, {"p/msg/A.msg": "int33 a", "q/msg/A.msg": "int33 a"})
+    assert main(["hash", "p/A", "q/A", "p/msg/A", "--path", str(tmp_path)]) == 1
+    out, err = capsys.readouterr()
+    assert out == "" and err.count("'int33' is not a type") == 2
+    assert f"{tmp_path}/p/msg/A.msg:1:1" in err and f"{tmp_path}/q/msg/A.msg:1:1" in err
+
+
+@pytest.mark.parametrize("command", ["md5", "hash", "proto", "metrics"])
+@pytest.mark.parametrize("order", [1, -1])
+def test_one_wrong_type_among_good_ones_fails(tmp_path, capsys, command, order):
+    make_files(tmp_path, {"p/msg/A.msg": "int8 a", "p/msg/Bad.msg": "int33 a"})
+    names = ["p/A", "p/Bad"][::order] if command != "proto" else ["p/Bad"]
+    distro = "noetic" if command == "md5" else "lyrical"
+    assert main([command, *names, "--distro", distro, "--path", str(tmp_path)]) == 1
+    assert "'int33' is not " in capsys.readouterr().err
+
+
+def test_both_services_of_an_action_have_their_own_hash(tmp_path, capsys):
+    make_files(tmp_path, {"p/action/D.action": "int8 a\n---\nint8 b\n---\nint8 c"})
+    names = ["p/action/D", "p/action/D_SendGoal", "p/action/D_GetResult"]
+    names += [f"p/action/D_{part}" for part in ("Goal", "Result", "Feedback", "SendGoal_Event")]
+    assert main(["hash", *names, "--path", str(tmp_path)]) == 0
+    lines = [line.split("  ") for line in capsys.readouterr().out.splitlines()]
+    assert [name for _, name in lines] == names
+    assert len({value for value, _ in lines}) == len(names)
+
+
+def test_descriptions_of_services_and_actions_name_their_parts(tmp_path):
+    make_files(tmp_path, {"p/srv/S.srv": "int8 a\n---\nint8 b"})
+    make_files(tmp_path, {"p/action/D.action": "int8 a\n---\nint8 b\n---\nint8 c"})
+    ours = Library("lyrical", [tmp_path])
+
+    def fields(name, base):
+        described = type_description(ours.interface(name))
+        top = described["type_description"]
+        parts = [part["type_name"] for part in described["referenced_type_descriptions"]]
+        assert parts == sorted(parts)
+        named = {f["name"]: f["type"]["nested_type_name"] for f in top["fields"]}
+        assert set(named.values()) <= {*parts}
+        return {key: value.removeprefix(base) for key, value in named.items()}, parts
+
+    named, parts = fields("p/srv/S", "p/srv/S")
+    assert [*named.items()] == [
+        ("request_message", "_Request"),
+        ("response_message", "_Response"),
+        ("event_message", "_Event"),
+    ]
+    assert "service_msgs/msg/ServiceEventInfo" in parts
+    named, parts = fields("p/action/D", "p/action/D")
+    assert [*named.items()] == [
+        ("goal", "_Goal"),
+        ("result", "_Result"),
+        ("feedback", "_Feedback"),
+        ("send_goal_service", "_SendGoal"),
+        ("get_result_service", "_GetResult"),
+        ("feedback_message", "_FeedbackMessage"),
+    ]
+    own = {part.removeprefix("p/action/D_") for part in parts if part.startswith("p/")}
+    assert own == {
+        *("Goal", "Result", "Feedback", "FeedbackMessage", "SendGoal", "GetResult"),
+        *(f"{s}_{p}" for s in ("SendGoal", "GetResult") for p in ("Request", "Response", "Event")),
+    }
