@@ -78,6 +78,9 @@ class Harness:
     ) -> Seen:
         """Send packets (with a deserializer) or transfers (without), and take what comes.
 
+        What a deserializer has to ignore is noise: bytes of lanes that are not valid, and `count`
+        in beats that are not the last.
+
         Parameters
         ----------
         messages : int or None
@@ -167,7 +170,7 @@ class Harness:
         self, packets: Sequence[bytes], transfers: Mapping[int, Sequence[Payload]]
     ) -> dict[str, Iterable[int]]:
         if self.deserializer is not None:
-            return {"packets_in": all_beats(packets, self.plan.bus_bytes)}
+            return {"packets_in": all_beats(packets, self.plan.bus_bytes, counts=True)}
         return {
             leaf_name(self.plan, leaf): map(encoder_of(self.plan.leaves[leaf]), payloads)
             for leaf, payloads in transfers.items()

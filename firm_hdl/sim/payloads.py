@@ -4,10 +4,13 @@ Simulation is several times faster with integers than with structures, so everyt
 :mod:`firm_hdl.sim` moves payloads as the bits of a stream, and converts at its edges. The payload
 of a leaf is an integer (two's complement undone where the leaf is signed; a float's bits), that of
 `items` a tuple of its lanes, and whether the transfer is the last.
+
+What the contract says is ignored, is noise in simulation, so that a circuit that looks at it shows.
 """
 
 from __future__ import annotations
 
+import random
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
@@ -67,14 +70,28 @@ def beats_of(packet_bytes: int, bus_bytes: int) -> int:
     return max(1, -(-packet_bytes // bus_bytes))
 
 
-def packet_beats(packet: bytes, bus_bytes: int) -> Iterator[int]:
-    """Yield the beats of a packet, as bits of a packet stream's payload."""
+def packet_beats(
+    packet: bytes, bus_bytes: int, noise: random.Random | None = None, *, counts: bool = False
+) -> Iterator[int]:
+    """Yield the beats of a packet, as bits of a packet stream's payload.
+
+    Parameters
+    ----------
+    noise : random.Random or None
+        Gives the bytes of lanes that are not valid; `None`: they are 0.
+    counts : bool
+        Whether `count` is noise as well, in beats that are not the last. A deserializer ignores it,
+        but no other component has to.
+    """
     count_at = 8 * bus_bytes
     last_at = count_at + bus_bytes.bit_length()
     for at in range(0, max(1, len(packet)), bus_bytes):
         data = packet[at : at + bus_bytes]
-        last = at + bus_bytes >= len(packet)
-        yield int.from_bytes(data, "little") | len(data) << count_at | last << last_at
+        count, last = len(data), at + bus_bytes >= len(packet)
+        if noise is not None:
+            data += noise.randbytes(bus_bytes - count)
+            count = noise.randint(0, bus_bytes) if counts and not last else count
+        yield int.from_bytes(data, "little") | count << count_at | last << last_at
 
 
 @dataclass(slots=True)
@@ -113,7 +130,11 @@ class PacketCollector:
         return b"".join(self._parts)
 
 
-def all_beats(packets: Iterable[bytes], bus_bytes: int) -> Iterator[int]:
-    """Yield the beats of packets one after the other."""
+def all_beats(packets: Iterable[bytes], bus_bytes: int, *, counts: bool = False) -> Iterator[int]:
+    """Yield the beats of packets one after the other, with noise that is the same in each call.
+
+    `counts` is that of :func:`packet_beats`.
+    """
+    noise = random.Random(f"{bus_bytes}/lanes that are not valid")
     for packet in packets:
-        yield from packet_beats(packet, bus_bytes)
+        yield from packet_beats(packet, bus_bytes, noise, counts=counts)

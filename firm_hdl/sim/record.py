@@ -154,9 +154,14 @@ class Recorder:
         beat = bits & ((1 << self.error_at) - 1)
         self.rules.check(cycle, beat)
         self.seen.last_cycle = cycle
+        is_marked = bool(bits >> self.error_at)
         if self.out.take(beat):
-            self.seen.marked.append(bool(bits >> self.error_at))
+            self.seen.marked.append(is_marked)
             self._limit("packets_out", cycle)
+        elif is_marked:
+            raise AssertionError(
+                f"packet_error is high in cycle {cycle}, with a beat that is not the last"
+            )
 
     def finished(self) -> bool:
         """Whether every stream has had all that is expected of it."""

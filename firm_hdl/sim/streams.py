@@ -115,7 +115,10 @@ async def send_packets(
     stalls: Stalls = Stalls.none,
     name: str = "packets_in",
 ) -> None:
-    """Send packets on a packet stream, back to back. Parameters are those of :func:`send`."""
+    """Send packets on a packet stream, back to back. Parameters are those of :func:`send`.
+
+    Lanes that are not valid carry noise, at which nobody may look.
+    """
     beats: Iterator[int] = all_beats(packets, len(port.payload.data))
     await send(ctx, port, beats, stalls=stalls, name=name)
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import random
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
 from amaranth.hdl import Elaboratable, Module, Signal
 from amaranth.sim import Simulator
 
-from firm_hdl import Deserializer, Serializer, load_message
+from firm_hdl import Deserializer, Serializer, Status, load_message
 from firm_hdl.export.top import MAX_INPUT_BITS, Top, _ones, leaf_names, ports_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, encode
@@ -37,18 +39,30 @@ class Loopback(Elaboratable):
         return m
 
 
+def noisy_beats(
+    packet: bytes, bus_bytes: int, noise: random.Random
+) -> Iterator[tuple[int, int, bool]]:
+    """Yield data, keep and last of beats, with noise in all that does not count."""
+    for at in range(0, max(1, len(packet)), bus_bytes):
+        part = packet[at : at + bus_bytes]
+        last = at + bus_bytes >= len(packet)
+        data = int.from_bytes(part + noise.randbytes(bus_bytes - len(part)), "little")
+        keep = noise.getrandbits(bus_bytes)
+        if last:
+            # The first zero ends it; behind that, ones are no bytes.
+            ones = (1 << len(part)) - 1
+            keep = ones | keep & ~(2 * ones + 1)
+        yield data, keep, last
+
+
 def axi_loopback(type_: str, packets: list[bytes], *, distro: str, bus_bytes: int) -> list[Any]:
     """Send packets over AXI; return those that come out, checking tkeep on the way."""
     message = load_message(type_, distro=distro)
     rx = Top(Deserializer(message, bus_bytes=bus_bytes))
     tx = Top(Serializer(message, bus_bytes=bus_bytes))
     bench = Loopback(rx, tx)
-    beats = []
-    for packet in packets:
-        for at in range(0, max(1, len(packet)), bus_bytes):
-            part = packet[at : at + bus_bytes]
-            data = int.from_bytes(part, "little")
-            beats.append((data, (1 << len(part)) - 1, at + bus_bytes >= len(packet)))
+    noise = random.Random(bus_bytes)
+    beats = [beat for packet in packets for beat in noisy_beats(packet, bus_bytes, noise)]
     received: list[Any] = []
 
     async def run(ctx: Any) -> None:
@@ -108,6 +122,57 @@ def test_packets_come_back(bus_bytes):
 def test_empty_packets_have_no_tkeep():
     packets = [b"", b"", b""]
     assert axi_loopback("std_msgs/Empty", packets, distro="noetic", bus_bytes=4) == packets
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 4, 16])
+def test_tuser_marks_the_last_beat_of_a_packet_that_is_to_be_dropped(bus_bytes):
+    top = Top(Serializer(load_message("std_msgs/msg/String"), bus_bytes=bus_bytes))
+    seen: list[tuple[int, int]] = []
+    statuses: list[int] = []
+
+    async def run(ctx: Any) -> None:
+        ctx.set(top.m_axis_tready, 1)
+        ctx.set(top.m_axis_status_tready, 1)
+        # The end of the second message's text does not come.
+        for last in (1, 0, 1):
+            for port, payload in (("length", {"data": 1}), ("items", {"data": 0x61, "last": last})):
+                for name, value in payload.items():
+                    ctx.set(getattr(top, f"data_{port}_{name}"), value)
+                await put(ctx, getattr(top, f"data_{port}_valid"), f"data_{port}_ready")
+        for _ in range(40):
+            await edge(ctx)
+
+    async def put(ctx: Any, valid: Any, ready: str) -> None:
+        ctx.set(valid, 1)
+        while not ctx.get(getattr(top, ready)):
+            await edge(ctx)
+        await edge(ctx)
+        ctx.set(valid, 0)
+
+    async def edge(ctx: Any) -> None:
+        await ctx.delay(1e-9)
+        if ctx.get(top.m_axis_tvalid):
+            seen.append((ctx.get(top.m_axis_tlast), ctx.get(top.m_axis_tuser)))
+        if ctx.get(top.m_axis_status_tvalid):
+            statuses.append(ctx.get(top.m_axis_status_tdata))
+        ctx.set(top.aclk, 1)
+        await ctx.delay(5e-7)
+        ctx.set(top.aclk, 0)
+        await ctx.delay(5e-7)
+
+    simulator = Simulator(top)
+
+    async def start(ctx: Any) -> None:
+        ctx.set(top.aresetn, 1)
+        await run(ctx)
+
+    simulator.add_testbench(start)
+    simulator.run()
+    # Encapsulation, length, letter and NUL: 10 bytes.
+    beats = -(-10 // bus_bytes)
+    assert [last for last, _ in seen] == [*[0] * (beats - 1), 1] * 3
+    assert [user for _, user in seen] == [*[0] * beats, *[0] * (beats - 1), 1, *[0] * beats]
+    assert statuses == [Status.OK.value, Status.ITEMS.value, Status.OK.value]
 
 
 def test_tkeep_counts_up_to_the_first_zero():
