@@ -28,6 +28,9 @@ package firm_hdl_bench_pkg is
   -- Draw whether something happens that does so in some percent of all cases.
   procedure draw (variable random : inout random_t; percent : in natural; happens : out boolean);
 
+  -- Draw a byte.
+  procedure draw (variable random : inout random_t; octet : out natural);
+
   -- A line with a packet; a file may have been written on Windows.
   function packet_bytes (row : in string) return natural;
   function is_comment (row : string) return boolean;
@@ -55,6 +58,13 @@ package body firm_hdl_bench_pkg is
   begin
     uniform(random.first, random.second, value);
     happens := value * 100.0 < real(percent);
+  end procedure;
+
+  procedure draw (variable random : inout random_t; octet : out natural) is
+    variable value : real;
+  begin
+    uniform(random.first, random.second, value);
+    octet := natural(floor(value * 256.0));
   end procedure;
 
   function packet_bytes (row : in string) return natural is
@@ -151,16 +161,18 @@ begin
     file source : text;
     variable row : line;
     variable random : random_t := random_from(seed, 1);
+    variable noise : random_t := random_from(seed, 5);
     variable stall : boolean;
     variable size, place, sent : natural := 0;
 
-    -- Lanes that are not kept carry rubbish, which nobody may look at.
+    -- Lanes that are not kept carry noise, which nobody may look at.
     procedure offer is
       variable octet : integer;
     begin
       for lane in 0 to bus_bytes - 1 loop
-        octet := 16#a5#;
-        if place + lane < size then
+        if place + lane >= size then
+          draw(noise, octet);
+        else
           octet := byte_at(row.all, place + lane);
           assert octet >= 0
             report "FAIL packet " & integer'image(sent) & " of the stimuli is not hexadecimal"
@@ -247,6 +259,22 @@ begin
     variable stall, comment : boolean;
     variable count, place, all_bytes, number : natural := 0;
 
+    -- Bytes are kept from lane 0 on, in all lanes but of the last beat, which alone may be marked.
+    procedure check_beat is
+    begin
+      for lane in 0 to bus_bytes - 1 loop
+        assert tkeep(lane) = '1' or (tkeep(lane) = '0' and tlast = '1' and
+            (place = 0 or lane > 0) and (lane = bus_bytes - 1 or tkeep(lane + 1) = '0'))
+          report "FAIL packet " & integer'image(number) & ": tkeep is " & to_string(tkeep) &
+            " with tlast " & to_string(tlast) & ", behind " & integer'image(place) & " bytes"
+          severity failure;
+      end loop;
+      assert (tlast = '0' and tuser = '0') or tlast = '1'
+        report "FAIL packet " & integer'image(number) & ": tuser is " & to_string(tuser) &
+          " with tlast " & to_string(tlast)
+        severity failure;
+    end procedure;
+
     procedure begin_packet is
     begin
       comment := true;
@@ -308,6 +336,7 @@ begin
       if place = 0 then
         begin_packet;
       end if;
+      check_beat;
       for lane in 0 to bus_bytes - 1 loop
         if tkeep(lane) = '1' then
           check(tdata(8 * lane + 7 downto 8 * lane));

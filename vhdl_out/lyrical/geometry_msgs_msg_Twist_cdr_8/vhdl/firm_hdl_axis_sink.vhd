@@ -42,6 +42,22 @@ begin
     variable stall, comment : boolean;
     variable count, place, all_bytes, number : natural := 0;
 
+    -- Bytes are kept from lane 0 on, in all lanes but of the last beat, which alone may be marked.
+    procedure check_beat is
+    begin
+      for lane in 0 to bus_bytes - 1 loop
+        assert tkeep(lane) = '1' or (tkeep(lane) = '0' and tlast = '1' and
+            (place = 0 or lane > 0) and (lane = bus_bytes - 1 or tkeep(lane + 1) = '0'))
+          report "FAIL packet " & integer'image(number) & ": tkeep is " & to_string(tkeep) &
+            " with tlast " & to_string(tlast) & ", behind " & integer'image(place) & " bytes"
+          severity failure;
+      end loop;
+      assert (tlast = '0' and tuser = '0') or tlast = '1'
+        report "FAIL packet " & integer'image(number) & ": tuser is " & to_string(tuser) &
+          " with tlast " & to_string(tlast)
+        severity failure;
+    end procedure;
+
     procedure begin_packet is
     begin
       comment := true;
@@ -103,6 +119,7 @@ begin
       if place = 0 then
         begin_packet;
       end if;
+      check_beat;
       for lane in 0 to bus_bytes - 1 loop
         if tkeep(lane) = '1' then
           check(tdata(8 * lane + 7 downto 8 * lane));

@@ -34,16 +34,18 @@ begin
     file source : text;
     variable row : line;
     variable random : random_t := random_from(seed, 1);
+    variable noise : random_t := random_from(seed, 5);
     variable stall : boolean;
     variable size, place, sent : natural := 0;
 
-    -- Lanes that are not kept carry rubbish, which nobody may look at.
+    -- Lanes that are not kept carry noise, which nobody may look at.
     procedure offer is
       variable octet : integer;
     begin
       for lane in 0 to bus_bytes - 1 loop
-        octet := 16#a5#;
-        if place + lane < size then
+        if place + lane >= size then
+          draw(noise, octet);
+        else
           octet := byte_at(row.all, place + lane);
           assert octet >= 0
             report "FAIL packet " & integer'image(sent) & " of the stimuli is not hexadecimal"

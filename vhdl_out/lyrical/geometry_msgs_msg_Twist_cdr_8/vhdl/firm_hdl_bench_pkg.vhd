@@ -17,6 +17,9 @@ package firm_hdl_bench_pkg is
   -- Draw whether something happens that does so in some percent of all cases.
   procedure draw (variable random : inout random_t; percent : in natural; happens : out boolean);
 
+  -- Draw a byte.
+  procedure draw (variable random : inout random_t; octet : out natural);
+
   -- A line with a packet; a file may have been written on Windows.
   function packet_bytes (row : in string) return natural;
   function is_comment (row : string) return boolean;
@@ -44,6 +47,13 @@ package body firm_hdl_bench_pkg is
   begin
     uniform(random.first, random.second, value);
     happens := value * 100.0 < real(percent);
+  end procedure;
+
+  procedure draw (variable random : inout random_t; octet : out natural) is
+    variable value : real;
+  begin
+    uniform(random.first, random.second, value);
+    octet := natural(floor(value * 256.0));
   end procedure;
 
   function packet_bytes (row : in string) return natural is
