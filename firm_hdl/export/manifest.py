@@ -16,7 +16,7 @@ from typing import Any
 import firm_hdl
 from firm_hdl.export.timing import LINE_RATES, Cost, Timing, clock_mhz
 from firm_hdl.export.top import DIRECTIONS, Direction, leaf_names, ports_of
-from firm_hdl.gateware.signatures import Status
+from firm_hdl.gateware.signatures import LATENCY_CYCLES, Status
 from firm_hdl.model import Array, Constant, Field, Message, Sequence
 from firm_hdl.plan import Leaf, Plan, to_yaml
 
@@ -134,7 +134,7 @@ def _timing(figures: Timing) -> dict[str, Any]:
         "steps": figures.steps,
         "window_bytes": figures.window_bytes,
         "window_beats": figures.window_beats,
-        "latency_cycles": 2,
+        "latency_cycles": LATENCY_CYCLES,
         "shortest_packet": _cost(figures.shortest),
         "hardest_packet_tried": _cost(figures.hardest),
         "long_arrays_clock_mhz": _clocks(Cost(bytes=figures.bus_bytes, beats=1, steps=1)),

@@ -21,6 +21,7 @@ from firm_hdl.plan import Leaf, Plan, build_plan
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = [
+    "LATENCY_CYCLES",
     "MessageSignature",
     "PacketSignature",
     "Status",
@@ -31,6 +32,11 @@ __all__ = [
     "plan_signature",
     "signature_of",
 ]
+
+LATENCY_CYCLES = 2
+"""From what comes in to what goes out: from the beat that completes a leaf to the leaf, and from
+the leaf that fills a beat, or ends a packet, to the beat. ``tests/gateware/test_latency.py``
+measures it."""
 
 
 class Status(enum.Enum, shape=3):  # type: ignore[call-arg]

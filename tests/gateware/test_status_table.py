@@ -1,0 +1,314 @@
+# amaranth: UnusedElaboratable=no
+"""Which error is reported, and what transfers: tables made by hand from docs/interface.md.
+
+No plan and no interpreter says what is right here. Every wrong packet, or message, stands between
+good ones, so that nothing may stick; what is ignored is noise.
+"""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from firm_hdl import Deserializer, Serializer
+from firm_hdl.sim import Harness, Stalls, from_transfers
+from firm_hdl.sim.demand import demand_table, split_transfers
+from firm_hdl.sim.loopback import join_transfers
+from tests.strategies import BUS_WIDTHS, make
+
+some_buses = pytest.mark.parametrize("bus_bytes", [1, 4, 16])
+every_window = pytest.mark.parametrize(
+    ("bus_bytes", "window_words"), [*((width, 1) for width in BUS_WIDTHS), (2, 2), (8, 2)]
+)
+# Nothing is slow; the consumer of statuses is; everything is.
+STALLS = (None, {"status": Stalls.bits("0" * 12 + "1")}, Stalls(0.3, 1, 2, seed=5))
+
+
+def packet(text):
+    return bytes.fromhex(text)
+
+
+# Deserializer, CDR. The parts of a good packet, and what is wrong in their place.
+
+MESSAGE = make(
+    "ros2", {"a": "uint8", "s": "string<=3", "t": "string", "q": "uint16[<=2]", "z": "uint8"}
+)
+HEAD, A = "00010000 ", "01a5a5a5 "
+S, T = "03000000 616200 a5 ", "02000000 6300 a5a5 "
+Q, Z = "02000000 0a000b00 ", "07"
+WRONG, FOREIGN = "00020000 ", "01010000 "
+S_LONG, S_OPEN = "05000000 616263 64 ", "03000000 616278 a5 "
+T_OPEN, Q_LONG = "02000000 6378 a5a5 ", "03000000 0a000b00 "
+MORE = "a5" * 4
+GOOD = HEAD + A + S + T + Q + Z
+
+ZERO = {"a": 0, "s": "", "t": "", "q": [], "z": 0}
+TO_A = {**ZERO, "a": 1}
+TO_S = {**TO_A, "s": "ab"}
+TO_T = {**TO_S, "t": "c"}
+WHOLE = {**TO_T, "q": [10, 11], "z": 7}
+
+READ = [
+    # One error, or none.
+    (GOOD, "OK", WHOLE),
+    (GOOD + "a5a5a5", "OK", WHOLE),
+    (GOOD + MORE, "TRAILING", WHOLE),
+    (GOOD + 40 * MORE, "TRAILING", WHOLE),
+    (WRONG + A + S + T + Q + Z, "ENCAPSULATION", ZERO),
+    (FOREIGN + A + S + T + Q + Z, "ENCAPSULATION", ZERO),
+    (HEAD + A + S_LONG + T + Q + Z, "LENGTH", TO_A),
+    (HEAD + A + S + T + Q_LONG + Z, "LENGTH", TO_T),
+    (HEAD + A + S_OPEN + T + Q + Z, "STRING", TO_S),
+    (HEAD + A + S + T_OPEN + Q + Z, "STRING", TO_T),
+    (HEAD + A + S + T + Q, "TRUNCATED", {**WHOLE, "z": 0}),
+    (HEAD + A + S + T + Q[:-3], "TRUNCATED", {**WHOLE, "q": [10, 0], "z": 0}),
+    # At a bound.
+    (HEAD + A + "04000000 61626300" + T + Q + Z, "OK", {**WHOLE, "s": "abc"}),
+    (HEAD + A + "00000000 " + T + Q + Z, "OK", {**WHOLE, "s": ""}),
+    (HEAD + A + S + T + "00000000 " + Z, "OK", {**WHOLE, "q": []}),
+    (HEAD + A + S + T + "01000000 0a00 " + Z, "OK", {**WHOLE, "q": [10]}),
+    # What a length's highest bytes say.
+    (HEAD + A + "03000001 616200 a5" + T + Q + Z, "LENGTH", TO_A),
+    (HEAD + A + S + T + "02000080 0a000b00" + Z, "LENGTH", TO_T),
+    # The header is judged byte by byte.
+    ("", "TRUNCATED", ZERO),
+    ("00", "TRUNCATED", ZERO),
+    ("0001", "TRUNCATED", ZERO),
+    ("000100", "TRUNCATED", ZERO),
+    ("00010000", "TRUNCATED", ZERO),
+    ("0001ffff" + A + S + T + Q + Z, "OK", WHOLE),
+    ("01", "ENCAPSULATION", ZERO),
+    ("0002", "ENCAPSULATION", ZERO),
+    # Two errors: first the encapsulation,
+    (WRONG + A, "ENCAPSULATION", ZERO),
+    (WRONG + A + S_LONG + T + Q + Z, "ENCAPSULATION", ZERO),
+    (WRONG + A + S_OPEN + T + Q + Z, "ENCAPSULATION", ZERO),
+    (WRONG + A + S + T + Q + Z + MORE, "ENCAPSULATION", ZERO),
+    # then a length,
+    (HEAD + A + S_LONG + T_OPEN + Q + Z, "LENGTH", TO_A),
+    (HEAD + A + S_LONG + T + Q_LONG + Z, "LENGTH", TO_A),
+    (HEAD + A + "05000000", "LENGTH", TO_A),
+    (HEAD + A + S + T + "03000000", "LENGTH", TO_T),
+    (HEAD + A + S_LONG + T + Q + Z + MORE, "LENGTH", TO_A),
+    # a string,
+    (HEAD + A + S_OPEN + T + Q_LONG + Z, "STRING", TO_S),
+    (HEAD + A + S_OPEN + T_OPEN + Q + Z, "STRING", TO_S),
+    (HEAD + A + "03000000 616278", "STRING", TO_S),
+    (HEAD + A + S + "02000000 6378", "STRING", TO_T),
+    (HEAD + A + S_OPEN + T + Q + Z + MORE, "STRING", TO_S),
+    # and the end of the packet.
+    (HEAD + A + "050000", "TRUNCATED", TO_A),
+    (HEAD + A + "03000000 6162", "TRUNCATED", TO_S),
+    (HEAD + A + "03000000 61", "TRUNCATED", {**TO_A, "s": "a\0"}),
+    (HEAD + A + S + T + "030000", "TRUNCATED", TO_T),
+]
+
+# A string at the end of the message meets what stands behind it.
+LAST = make("ros2", {"t": "string<=2"})
+READ_LAST = [
+    (HEAD + "02000000 6300", "OK", {"t": "c"}),
+    (HEAD + "02000000 6300 a5a5a5", "OK", {"t": "c"}),
+    (HEAD + "02000000 6300 a5a5a5a5", "TRAILING", {"t": "c"}),
+    (HEAD + "02000000 6378", "STRING", {"t": "c"}),
+    (HEAD + "02000000 6378 a5a5a5a5", "STRING", {"t": "c"}),
+    (HEAD + "00000000 a5a5a5", "OK", {"t": ""}),
+    (HEAD + "00000000 a5a5a5a5", "TRAILING", {"t": ""}),
+    (HEAD + "01000000 00", "OK", {"t": ""}),
+    (HEAD + "01000000 78", "STRING", {"t": ""}),
+    (HEAD + "01000000", "TRUNCATED", {"t": ""}),
+    (HEAD + "04000000 63646500", "LENGTH", {"t": ""}),
+    (HEAD + "04000000 63646578 a5a5a5a5", "LENGTH", {"t": ""}),
+]
+
+# No alignment, no header, no NUL; the only bounds are those of the largest packet, of 20 bytes: 10
+# are in the shortest, so that 10 characters or 5 numbers have room.
+PLAIN = make("ros1", {"a": "uint8", "s": "string", "q": "uint16[]", "z": "uint8"})
+PLAIN_MOST = 20
+NOTHING = {"a": 0, "s": "", "q": [], "z": 0}
+READ_PLAIN = [
+    ("01 02000000 6162 01000000 0a00 07", "OK", {"a": 1, "s": "ab", "q": [10], "z": 7}),
+    (
+        "01 0a000000 61626162616261626162 00000000 07",
+        "OK",
+        {**NOTHING, "a": 1, "s": "ab" * 5, "z": 7},
+    ),
+    ("01 0b000000 6162616261626162616261 00000000 07", "LENGTH", {**NOTHING, "a": 1}),
+    (
+        "01 00000000 05000000 01000200030004000500 07",
+        "OK",
+        {"a": 1, "s": "", "q": [1, 2, 3, 4, 5], "z": 7},
+    ),
+    ("01 00000000 06000000 010002000300040005000600 07", "LENGTH", {**NOTHING, "a": 1}),
+    ("01 0b000000", "LENGTH", {**NOTHING, "a": 1}),
+    ("01 0b000000 a5a5a5a5 06000000 a5a5a5a5a5a5a5a5a5a5a5a5", "LENGTH", {**NOTHING, "a": 1}),
+    ("01 02000000 61", "TRUNCATED", {**NOTHING, "a": 1, "s": "a\0"}),
+    ("01 02000000 6162 06000000", "LENGTH", {**NOTHING, "a": 1, "s": "ab"}),
+    ("01 02000000 6162 060000", "TRUNCATED", {**NOTHING, "a": 1, "s": "ab"}),
+    ("01 00000000 00000000 07a5", "TRAILING", {**NOTHING, "a": 1, "z": 7}),
+    ("01 00000000 00000000", "TRUNCATED", {**NOTHING, "a": 1}),
+    ("", "TRUNCATED", NOTHING),
+]
+
+
+def check_reading(message, table, bus_bytes, **options):
+    """Send each packet of a table, and a good one behind each, as fast and as slow as can be."""
+    good = table[0]
+    rows = [row for each in table for row in (each, good)]
+    rx = Deserializer(message, bus_bytes=bus_bytes, **options)
+    harness = Harness(rx, None, message=message)
+    for stalls in STALLS:
+        seen = harness.run(packets=[packet(text) for text, _, _ in rows], stalls=stalls)
+        messages, _ = split_transfers(demand_table(rx.plan, message), seen.transfers)
+        assert len(messages) == len(rows)
+        for (text, status, value), got, said in zip(rows, messages, seen.statuses, strict=True):
+            assert (said.name, from_transfers(rx.plan, message, got)) == (status, value), text
+
+
+@every_window
+def test_first_error_of_a_packet_in_wire_order_is_reported(bus_bytes, window_words):
+    check_reading(MESSAGE, READ, bus_bytes, window_words=window_words)
+
+
+@some_buses
+def test_string_at_the_end_of_a_message_is_judged_before_what_follows(bus_bytes):
+    check_reading(LAST, READ_LAST, bus_bytes)
+
+
+@some_buses
+def test_limits_are_exact_without_alignment(bus_bytes):
+    check_reading(PLAIN, READ_PLAIN, bus_bytes, max_message_bytes=PLAIN_MOST)
+
+
+ARRAYS = make("ros1", {"x": "uint8", "a": "uint16[4]", "b": "bool[3]"})
+WORDS = [0x1111, 0x2222, 0x3333, 0x4444]
+
+
+@every_window
+def test_items_that_are_not_whole_are_zero_whatever_is_in_their_lanes(bus_bytes, window_words):
+    whole = packet("01 1111 2222 3333 4444 01 01 01")
+    table = [(whole.hex(), "OK", {"x": 1, "a": WORDS, "b": [True] * 3})]
+    for size in range(len(whole)):
+        words, flags = min(4, max(0, size - 1) // 2), max(0, size - 9)
+        value = {
+            "x": int(size > 0),
+            "a": WORDS[:words] + [0] * (4 - words),
+            "b": [True] * flags + [False] * (3 - flags),
+        }
+        table.append((whole[:size].hex(), "TRUNCATED", value))
+    check_reading(ARRAYS, table, bus_bytes, window_words=window_words)
+
+
+# Serializer. A leaf is given by its items and by where `last` is wrong.
+
+SENT = make("ros1", {"a": "uint8[<=2]", "b": "uint8[3]", "c": "uint8[<=1]", "z": "uint8"})
+NO, EARLY, LATE = "right", "early", "late"
+# What a has and how it ends, b's end, what c has and how it ends; status and packet.
+WRITE = [
+    (b"ab", NO, NO, b"c", NO, "OK", "02000000 6162 010203 01000000 63 07"),
+    (b"", NO, NO, b"", NO, "OK", "00000000 010203 00000000 07"),
+    # One error.
+    (b"abc", NO, NO, b"c", NO, "LENGTH", "03000000 616263 010203 01000000 63 07"),
+    (b"ab", LATE, NO, b"c", NO, "ITEMS", "02000000 6162 010203 01000000 63 07"),
+    (b"ab", NO, LATE, b"c", NO, "ITEMS", "02000000 6162 010203 01000000 63 07"),
+    (b"ab", NO, NO, b"cd", NO, "LENGTH", "02000000 6162 010203 02000000 6364 07"),
+    (b"ab", NO, NO, b"c", LATE, "ITEMS", "02000000 6162 010203 01000000 63 07"),
+    # Two errors, of the same and of different leaves: the first in wire order is reported.
+    (b"abc", LATE, NO, b"c", NO, "LENGTH", "03000000 616263 010203 01000000 63 07"),
+    (b"abc", NO, LATE, b"c", NO, "LENGTH", "03000000 616263 010203 01000000 63 07"),
+    (b"abc", NO, NO, b"cd", NO, "LENGTH", "03000000 616263 010203 02000000 6364 07"),
+    (b"abc", NO, NO, b"", NO, "LENGTH", "03000000 616263 010203 00000000 07"),
+    (b"abc", NO, NO, b"c", LATE, "LENGTH", "03000000 616263 010203 01000000 63 07"),
+    (b"ab", LATE, LATE, b"c", NO, "ITEMS", "02000000 6162 010203 01000000 63 07"),
+    (b"ab", LATE, NO, b"cd", NO, "ITEMS", "02000000 6162 010203 02000000 6364 07"),
+    (b"ab", NO, LATE, b"cd", NO, "ITEMS", "02000000 6162 010203 02000000 6364 07"),
+    (b"ab", NO, LATE, b"c", LATE, "ITEMS", "02000000 6162 010203 01000000 63 07"),
+    (b"ab", NO, NO, b"cd", LATE, "LENGTH", "02000000 6162 010203 02000000 6364 07"),
+    (b"abc", LATE, LATE, b"cd", LATE, "LENGTH", "03000000 616263 010203 02000000 6364 07"),
+    # `last` too early, where there is more than one transfer.
+    (
+        b"abc" * 9,
+        EARLY,
+        NO,
+        b"c",
+        NO,
+        "LENGTH",
+        "1b000000" + "616263" * 9 + "010203 01000000 63 07",
+    ),
+    (
+        b"ab",
+        NO,
+        NO,
+        b"cdef" * 20,
+        EARLY,
+        "LENGTH",
+        "02000000 6162 010203 50000000" + "63646566" * 20 + "07",
+    ),
+]
+
+
+def lanes_of(items, lanes, last, noise):
+    """Return the transfers of items; lanes that are not used carry noise."""
+    found = []
+    for at in range(0, len(items), lanes):
+        part = [*items[at : at + lanes]]
+        is_end = at + lanes >= len(items)
+        part += [noise.randrange(256) for _ in range(lanes - len(part))]
+        found.append((tuple(part), is_end if last == NO else not is_end))
+        if last == LATE and not is_end:
+            found[-1] = (found[-1][0], False)
+    return found
+
+
+@every_window
+def test_first_error_of_a_message_is_reported_and_marks_its_packet(bus_bytes, window_words):
+    tx = Serializer(SENT, bus_bytes=bus_bytes, window_words=window_words)
+    leaves = {str(leaf): number for number, leaf in enumerate(tx.plan.leaves)}
+    noise = random.Random(bus_bytes)
+    rows = [row for each in WRITE for row in (each, WRITE[0])]
+    messages = [
+        {
+            leaves["a.length"]: [len(a)],
+            leaves["a.items"]: lanes_of(a, bus_bytes, a_last, noise),
+            leaves["b.items"]: lanes_of(b"\1\2\3", bus_bytes, b_last, noise),
+            leaves["c.length"]: [len(c)],
+            leaves["c.items"]: lanes_of(c, bus_bytes, c_last, noise),
+            leaves["z"]: [7],
+        }
+        for a, a_last, b_last, c, c_last, _, _ in rows
+    ]
+    harness = Harness(None, tx, message=SENT)
+    for stalls in STALLS:
+        seen = harness.run(transfers=join_transfers(messages), messages=len(rows), stalls=stalls)
+        assert seen.packets == [packet(text) for *_, text in rows]
+        assert [status.name for status in seen.statuses] == [row[5] for row in rows]
+        assert seen.marked == [row[5] != "OK" for row in rows]
+        assert not seen.left
+
+
+# What `max_message_bytes` leaves room for; 9 bytes are those of the shortest message.
+@pytest.mark.parametrize(("count", "status"), [(7, "OK"), (8, "LENGTH"), (9, "LENGTH")])
+@some_buses
+def test_limit_of_a_serializer_is_exact(bus_bytes, count, status):
+    message = make("ros1", {"s": "string", "t": "string", "z": "uint8"})
+    tx = Serializer(message, bus_bytes=bus_bytes, max_message_bytes=16)
+    noise = random.Random(count)
+    text = bytes(range(count))
+    messages = [
+        {
+            0: [len(each)],
+            1: lanes_of(each, bus_bytes, NO, noise),
+            2: [1],
+            3: lanes_of(b"t", bus_bytes, NO, noise),
+            4: [7],
+        }
+        for each in (text, b"ab")
+    ]
+    seen = Harness(None, tx, message=message).run(transfers=join_transfers(messages), messages=2)
+    rest = b"\1\0\0\0t\7"
+    assert seen.packets == [
+        bytes((count, 0, 0, 0)) + text + rest,
+        b"\2\0\0\0ab" + rest,
+    ]
+    assert [each.name for each in seen.statuses] == [status, "OK"]
+    assert seen.marked == [status != "OK", False]
