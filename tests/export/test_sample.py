@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from firm_hdl.cli import main
 
 ROOT = Path(__file__).parents[2]
 SAMPLE = ROOT / "vhdl_out" / "lyrical" / "geometry_msgs_msg_Twist_cdr_8"
+AGAIN = "firm-hdl build --force geometry_msgs/msg/Twist"
 
 
 def files(folder: Path) -> dict[str, bytes]:
@@ -23,14 +25,40 @@ def files(folder: Path) -> dict[str, bytes]:
     }
 
 
+def generator(manifest: bytes) -> dict[str, str]:
+    """Return what a folder was made with."""
+    found: dict[str, str] = json.loads(manifest)["inputs"]["generator"]
+    return found
+
+
+def need_same(here: dict[str, str], kept: dict[str, str]) -> None:
+    """Skip the test if the sample was made by another version of something; in CI, fail it."""
+    if here != kept:
+        message = f"made with {kept}, and here is {here}; run: {AGAIN}"
+        if os.environ.get("CI"):
+            pytest.fail(message)
+        pytest.skip(message)
+
+
+def test_sample_of_another_version_is_skipped_at_home_and_fails_in_ci(monkeypatch):
+    kept = generator((SAMPLE / "manifest.json").read_bytes())
+    need_same(kept, dict(kept))
+    for name in kept:
+        newer = {**kept, name: "9.9"}
+        monkeypatch.delenv("CI", raising=False)
+        with pytest.raises(pytest.skip.Exception, match="and here is "):
+            need_same(newer, kept)
+        monkeypatch.setenv("CI", "true")
+        with pytest.raises(pytest.fail.Exception, match="and here is "):
+            need_same(newer, kept)
+
+
 @pytest.mark.snapshot
 def test_sample_is_current(tmp_path, capsys):
     assert main(["build", "geometry_msgs/msg/Twist", "--out", str(tmp_path)]) == 0
     built = files(tmp_path / "lyrical" / SAMPLE.name)
     kept = files(SAMPLE)
-    versions = [json.loads(each["manifest.json"])["inputs"]["generator"] for each in (built, kept)]
-    if versions[0] != versions[1]:
-        pytest.skip(f"made with {versions[1]}, and here is {versions[0]}")
+    need_same(*(generator(each["manifest.json"]) for each in (built, kept)))
     assert sorted(built) == sorted(kept)
     stale = [name for name in built if built[name] != kept[name]]
-    assert not stale, "run: firm-hdl build --force geometry_msgs/msg/Twist"
+    assert not stale, f"run: {AGAIN}"
