@@ -186,7 +186,7 @@ class Bench:
         observe = self.job.observe
         if observe is not None:
             observe([ctx.get(probe) for probe in self.probes])
-        fired = held = 0
+        fired = held = self.cycles = 0
         # The clock and the first word change together. Words reach the design through assignments
         # only, so registers still see what was there before the edge, as they do of each other.
         edge = Cat(self.clock, self.words[0])
@@ -204,13 +204,13 @@ class Bench:
                 await ctx.delay(self._delay)
             if observe is not None:
                 observe([ctx.get(probe) for probe in self.probes])
+            self.cycles += 1
             fired, held = watch.next()
             if watch.over:
                 break
             ctx.set(self.clock, 0)
             if self._delay:
                 await ctx.delay(self._delay)
-        self.cycles = watch.cycle
 
 
 def in_chunks(items: Sequence[T]) -> Iterator[Sequence[T]]:

@@ -7,35 +7,85 @@ names it says numbers alone.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from firm_hdl.plan import Payload, Plan
+from firm_hdl.sim.record import Seen
 from firm_hdl.verify.oracle import Transfers
 
-__all__ = ["packet_differences", "status_differences", "transfer_differences"]
+__all__ = [
+    "Expected",
+    "packet_differences",
+    "run_differences",
+    "status_differences",
+    "transfer_differences",
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Expected:
+    """What a run of both converters has to show.
+
+    Attributes
+    ----------
+    packets : sequence of bytes
+        Which come out. Those whose status of the serializer is not ``OK`` are marked.
+    transfers : sequence of mapping
+        Payloads by path of the leaf, a mapping for each message.
+    statuses, sent_statuses : sequence of str
+        Of the deserializer and of the serializer.
+    """
+
+    packets: Sequence[bytes]
+    transfers: Sequence[Transfers]
+    statuses: Sequence[str]
+    sent_statuses: Sequence[str]
+
+
+def run_differences(
+    where: str, plan: Plan, seen: Seen, wanted: Expected, names: Sequence[str] = ()
+) -> Iterator[str]:
+    """Say what is the first that differs of packets, of each leaf, of statuses and of marks."""
+    yield from packet_differences(where, seen.packets, wanted.packets, names)
+    yield from transfer_differences(where, plan, seen.transfers, wanted.transfers, names)
+    for what, statuses, right in (
+        ("status", seen.statuses, wanted.statuses),
+        ("sent_status", seen.sent_statuses, wanted.sent_statuses),
+    ):
+        got = [status.name for status in statuses]
+        yield from status_differences(f"{where}: {what}", got, right, names)
+    marked = [status != "OK" for status in wanted.sent_statuses]
+    if seen.marked != marked:
+        yield f"{where}: packet_error is {seen.marked} instead of {marked}"
 
 
 def status_differences(
     what: str, got: Sequence[str], wanted: Sequence[str], names: Sequence[str] = ()
 ) -> Iterator[str]:
     """Say which status is the first that differs, if one does."""
-    for number, (one, other) in enumerate(zip(got, wanted, strict=True)):
+    for number, (one, other) in enumerate(zip(got, wanted, strict=False)):
         if one != other:
             yield f"{what} of packet {number} is {one} instead of {other}{_name(names, number)}"
             return
+    if len(got) != len(wanted):
+        yield f"{what}: {len(got)} instead of {len(wanted)}"
 
 
 def packet_differences(
     where: str, got: Sequence[bytes], wanted: Sequence[bytes], names: Sequence[str] = ()
 ) -> Iterator[str]:
     """Say which packet is the first that differs, if one does, and where."""
-    for number, (one, other) in enumerate(zip(got, wanted, strict=True)):
+    for number, (one, other) in enumerate(zip(got, wanted, strict=False)):
         if one != other:
-            at = next((n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), -1)
+            pairs = enumerate(zip(one, other, strict=False))
+            at = next((n for n, (a, b) in pairs if a != b), min(len(one), len(other)))
             yield (
                 f"{where}: packet {number} of {len(wanted)} differs at byte {at}: "
                 f"{one.hex()} instead of {other.hex()}{_name(names, number)}"
             )
             return
+    if len(got) != len(wanted):
+        yield f"{where}: {len(got)} packets instead of {len(wanted)}"
 
 
 def transfer_differences(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from dataclasses import replace
 
 import pytest
@@ -9,9 +10,15 @@ from amaranth.hdl import Module, Signal
 from amaranth.lib import wiring
 
 import firm_hdl.verify.acceptance as acceptance
+from firm_hdl.frontend import load_message
 from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.gateware.signatures import Status
+from firm_hdl.plan import build_plan, decode
 from firm_hdl.verify import Options, accept, collect_tasks, run_tasks
 from firm_hdl.verify.__main__ import main
+from firm_hdl.verify.cases import Case
+from firm_hdl.verify.damage import DAMAGES, broken_packets
+from firm_hdl.wire import lay_out
 from tests.verify.judged import assert_passed
 
 HEADER = "std_msgs/msg/Header"
@@ -87,6 +94,13 @@ class Marks(Mirror):
     """Marks every packet."""
 
     def fault(self, m):
+        m.d.comb += self.packet_error.eq(self.packets.payload.last)
+
+
+class MarksAll(Mirror):
+    """Marks every beat."""
+
+    def fault(self, m):
         m.d.comb += self.packet_error.eq(1)
 
 
@@ -106,8 +120,9 @@ class Sticks(Mirror):
     [
         ("Serializer", BadByte, "hardware: packet "),
         ("Deserializer", BadLeaf, "hardware: leaf stamp.nanosec, transfer 0 of "),
-        ("Deserializer", BadStatus, "status is OK, golden model says "),
+        ("Deserializer", BadStatus, " is OK instead of "),
         ("Serializer", Marks, "hardware: packet_error is [True"),
+        ("Serializer", MarksAll, "hardware: AssertionError: packet_error is high in cycle "),
         ("Deserializer", Sticks, "hardware, Stalls("),
         ("Deserializer", Sticks, "hardware: DeadlineError: No transfer in "),
     ],
@@ -118,6 +133,64 @@ def test_faults_in_hardware_are_found(monkeypatch, which, fault, said):
     monkeypatch.setattr(acceptance, which, made)
     result = accept("humble", HEADER)
     assert any(said in failure for failure in result.failures), result.failures
+
+
+RUNS = ("hardware: ", "hardware, Stalls(", "hardware, broken packets, Stalls(")
+
+
+@pytest.mark.parametrize("number", range(len(RUNS)))
+def test_all_that_a_run_shows_is_judged(monkeypatch, number):
+    """In one of the runs, everything that is seen differs a little: the least that there is."""
+    runs = []
+
+    class Doctored(acceptance.Harness):
+        def run(self, **options):
+            seen = super().run(**options)
+            runs.append(options)
+            if len(runs) == number + 1:
+                seen.packets[-1] += b"\0"
+                seen.transfers[0][-1] ^= 1
+                seen.statuses.append(Status.OK)
+                seen.sent_statuses[-1] = Status.ITEMS
+                seen.marked[-1] = True
+            return seen
+
+    monkeypatch.setattr(acceptance, "Harness", Doctored)
+    result = accept("humble", "std_msgs/msg/UInt8", Options(most_cases=2))
+    assert len(runs) == len(RUNS)
+    where = RUNS[number]
+    assert all(failure.startswith(where) for failure in result.failures)
+    for what in ("packet ", "leaf data", "status: ", "sent_status of packet ", "packet_error is "):
+        assert sum(f": {what}" in failure for failure in result.failures) == 1, what
+    assert len(result.failures) == 5
+
+
+def test_broken_packets_are_of_every_kind():
+    plan = build_plan(lay_out(load_message("std_msgs/msg/Header")))
+    packet = bytes.fromhex("00010000 01000000 02000000 05000000 61626364 00")
+    cases = [Case(what="", value=None, packet=packet, transfers={})] * len(DAMAGES)
+    found = {}
+    for seed in range(40):
+        for each in broken_packets(plan, cases, random.Random(seed)):
+            found[each] = decode(plan, each).status
+    assert set(found.values()) == {
+        "OK",
+        "TRUNCATED",
+        "TRAILING",
+        "LENGTH",
+        "ENCAPSULATION",
+        "STRING",
+    }
+    sizes = {len(each) - len(packet) for each in found}
+    # One byte, and a whole beat or more, both ways; and changes that leave the size as it was.
+    assert {-1, 0, 3, 4} <= sizes and min(sizes) < -8 and max(sizes) > 11
+    changed = [each for each in found if len(each) == len(packet)]
+    assert {sum(a != b for a, b in zip(each, packet, strict=True)) for each in changed} > {
+        0,
+        1,
+        2,
+        6,
+    }
 
 
 def test_fault_in_the_golden_model_is_found(monkeypatch):
@@ -137,8 +210,7 @@ def test_unknown_types_fail_and_say_how_to_repeat():
     result = accept("humble", "no_msgs/msg/Such", Options(bus_bytes=4, seed=3, stalled=False))
     assert len(result.failures) == 1
     assert result.command == (
-        "firm-hdl verify --distro humble --bus-bytes 4 --seed 3 --no-stalls "
-        "no_msgs/msg/Such"
+        "firm-hdl verify --distro humble --bus-bytes 4 --seed 3 --no-stalls no_msgs/msg/Such"
     )
 
 

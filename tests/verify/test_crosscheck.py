@@ -28,8 +28,8 @@ def test_vhdl_does_in_each_cycle_what_the_simulation_does(ghdl, distro, name, bu
     assert_passed(result)
     found = result.comparison
     assert found is not None
-    # Each of the three runs begins with the state before its first clock edge.
-    assert found.cycles == result.simulated_cycles + 3
+    # Each of the four runs begins with the state before its first clock edge.
+    assert found.cycles == result.simulated_cycles + 4
     assert (found.packets, found.statuses) == (result.packets, 2 * result.packets)
     assert found.transfers >= result.packets
 
@@ -121,7 +121,7 @@ def test_vhdl_that_ghdl_refuses_is_a_failure(ghdl, monkeypatch):
 def test_cycles_that_are_missing_are_found(monkeypatch):
     monkeypatch.setattr(acceptance, "simulator", lambda name: Short())
     result = accepted("lyrical", "std_msgs/msg/Bool")
-    cycles = result.simulated_cycles + 3
+    cycles = result.simulated_cycles + 4
     assert result.failures[0] == f"short: {cycles - 9} cycles instead of {cycles}"
     assert "packets differ" in result.failures[1]
 

@@ -53,8 +53,8 @@ def test_verilog_does_in_each_cycle_what_the_simulation_does(of_verilog, sample)
     assert_passed(result)
     found = result.comparison
     assert found is not None
-    # Each of the three runs begins with the state before its first clock edge.
-    assert found.cycles == result.simulated_cycles + 3
+    # Each of the four runs begins with the state before its first clock edge.
+    assert found.cycles == result.simulated_cycles + 4
     assert (found.packets, found.statuses) == (result.packets, 2 * result.packets)
     assert found.transfers >= result.packets
 
