@@ -83,9 +83,9 @@ def test_leaves_and_ports_are_those_of_the_plan(tmp_path, bus_bytes):
         )
     for direction in DIRECTIONS:
         converter = made["converters"][direction]
-        assert (
-            converter["module"] == f"f_{direction}" and converter["verilog"] == f"f_{direction}.v"
-        )
+        # The module of one direction is in a file of its own.
+        assert converter["module"].startswith(f"f_{direction}")
+        assert converter["verilog"] == f"{converter['module']}.v"
         ports = converter["ports"]
         assert [p["name"] for p in ports] == [p.name for p in ports_of(plan, direction)]
         # As an AXI stream, or as what the leaf's name begins with.
