@@ -62,8 +62,6 @@ def run_verify(given: argparse.Namespace) -> int:
         given.refuse("name types, or all of them with --all")
     if given.report is not None and given.results is None:
         given.refuse("--report needs --results")
-    if given.results is not None and given.mutations:
-        given.refuse("--results keeps nothing of --mutations")
     given.problems = {}
     given.tasks = None
     try:

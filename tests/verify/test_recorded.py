@@ -118,10 +118,6 @@ def test_report_is_written_with_the_results(tmp_path, capsys):
     ("arguments", "said"),
     [
         (["--report", "r.html"], "--report needs --results"),
-        (
-            ["--results", "r", "--systems", "ts1", "--mutations", "3"],
-            "--results keeps nothing of --mutations",
-        ),
         (["--executor", "x"], "executor must be 'processes' or 'dask://HOST:PORT', not 'x'"),
     ],
 )

@@ -39,9 +39,11 @@ def test_names_are_those_of_rosbags(tmp_path):
 
 
 def test_wide_strings_are_not_judged(tmp_path):
-    message = own(tmp_path, "Inner[2] inner\n") if own(
-        tmp_path, "wstring<=3[] text\n", name="Inner"
-    ) else None
+    message = (
+        own(tmp_path, "Inner[2] inner\n")
+        if own(tmp_path, "wstring<=3[] text\n", name="Inner")
+        else None
+    )
     assert message is not None
     with pytest.raises(
         NotJudgedError, match=r"^rosbags has no wstring, which own_msgs/msg/Inner\.text is$"

@@ -50,10 +50,12 @@ class Again:
         self._universe, self._oracle, self._case = universe, oracle, case
         self._ours, self._answer, self._read = ours, answer, read
         self._texts: dict[str, Case] = {}
+        show = self._show
+        self._plain = compared(ours, answer, oracle.alike(case), lambda: show(case))
 
     def verdict(self) -> tuple[Verdict, bool]:
         """Say what is left of the differences, and whether both refuse."""
-        plain, _ = self._compared(())
+        plain = self._plain
         if not plain.cases:
             return NotJudged("the oracle takes the definition, and says nothing of it"), False
         if not plain.differences:
@@ -97,6 +99,8 @@ class Again:
 
     def _compared(self, entries: Sequence[Known]) -> tuple[Compared, list[Known]]:
         """Compare without what some entries know; list those that have changed anything."""
+        if not entries:
+            return self._plain, []
         touched: dict[str, Known] = {}
 
         def change(case: Case, only_mistakes: bool = False) -> Case:
@@ -109,15 +113,8 @@ class Again:
                     case = after
             return case
 
-        answer = self._asked(change) if entries else self._answer
-        ours, case = (
-            self._read_again(lambda case: change(case, True))
-            if entries
-            else (
-                self._ours,
-                self._case,
-            )
-        )
+        answer = self._asked(change)
+        ours, case = self._read_again(lambda case: change(case, True))
         if isinstance(answer, NotJudged):
             return Compared(cases=0), []
         alike = dict(self._oracle.alike(self._case))
@@ -131,6 +128,8 @@ class Again:
                 if repr(mended) != repr(answer.facts):
                     touched[entry.key] = entry
                 answer = Accepted(mended)
+        if not touched:
+            return self._plain, []
         found = compared(ours, answer, alike, lambda: self._show(case))
         if found.is_refused and any(entry.is_mistake for entry in touched.values()):
             # A mistake was to be out of the way, so that the rest is read.

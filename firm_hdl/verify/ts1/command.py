@@ -37,12 +37,11 @@ _SAID = {
 
 
 class Ts1(System):
-    """Definitions before oracles; a test is one definition before all of them.
+    """Definitions before oracles; a test is one definition, or one mutation, before all of them.
 
     Parameters
     ----------
     selections : sequence of Selection
-        Nothing is recorded of mutations.
     oracles : sequence of str
         Names of those to ask, all of which have to be here; none: all that are here.
     jobs : int or None
@@ -76,19 +75,17 @@ class Ts1(System):
 
     @cached_property
     def tests(self) -> Sequence[Test]:
-        """All definitions of all distributions; no mutations."""
-        return [
-            self._test(run, number)
-            for run in self._runs
-            if not run.selection.mutations
-            for number in run.numbers
-        ]
+        """All definitions of all distributions, or their mutations."""
+        return [self._test(run, number) for run in self._runs for number in run.numbers]
 
     @property
     def options(self) -> Mapping[str, Any]:
-        """The oracles that are asked, with their versions."""
+        """The oracles that are asked, with their versions, and what mutations are made from."""
         here = {f"{name} {v}".strip() for run in self._runs for name, v in run.versions.items()}
-        return {"oracles": sorted(here)}
+        mutated = {
+            run.selection.distro: run.digest for run in self._runs if run.selection.mutations
+        }
+        return {"oracles": sorted(here), **({"mutated": mutated} if mutated else {})}
 
     def run(self, recorder: Recorder) -> list[Judged]:
         """Judge everything."""
@@ -99,25 +96,21 @@ class Ts1(System):
         began = time.perf_counter()
         selection = run.selection
         numbers = run.numbers
-        known: dict[int, Record] = {}
-        if not selection.mutations:
-            found = ((number, recorder.known(self._test(run, number))) for number in numbers)
-            known = {number: record for number, record in found if record is not None}
-        for line in recorder.said(len(known), run.total, "definitions"):
+        what = "mutation" if selection.mutations else "definition"
+        found = ((number, recorder.known(self._test(run, number))) for number in numbers)
+        known = {number: record for number, record in found if record is not None}
+        for line in recorder.said(len(known), run.total, f"{what}s"):
             print(line)
         tally = run.tally((number, record.verdicts) for number, record in known.items())
         verdicts = {number: record.verdict for number, record in known.items()}
         left = [number for number in numbers if number not in known]
         label = f"ts1 {selection.distro}"
         with (
-            tqdm(
-                total=run.total, initial=len(known), unit="definition", desc=label, disable=None
-            ) as bar,
+            tqdm(total=run.total, initial=len(known), unit=what, desc=label, disable=None) as bar,
             closing(run.judgements(left)) as shares,
         ):
             for share in shares:
-                if not selection.mutations:
-                    recorder.add(*(self._record(run, number, each) for number, each in share))
+                recorder.add(*(self._record(run, number, each) for number, each in share))
                 for number, each in share:
                     verdicts[number] = _verdict(run.case(number).language, each.said)
                 part = run.tally((number, each.said) for number, each in share)
@@ -127,7 +120,7 @@ class Ts1(System):
                 bar.update(len(share))
         for line in _summary(run, tally):
             print(line)
-        what = ("mutation" if selection.mutations else "definition") + "s" * (run.total != 1)
+        what += "s" * (run.total != 1)
         seconds = time.perf_counter() - began
         print(f"{run.total} {what}, {seconds:.0f} s, {len(tally.differing)} differences")
         asked = run.missing.items() if self._oracles else ()
@@ -140,6 +133,9 @@ class Ts1(System):
         selection = run.selection
         own = [f"path={path}" for path in selection.paths]
         own += [f"oracle={name}" for name in self._oracles]
+        if selection.mutations:
+            own += [f"of={name}" for name in selection.types]
+            own.append(f"mutation={number}")
         return Test(
             system=self.name,
             distro=selection.distro,
@@ -150,6 +146,7 @@ class Ts1(System):
 
     def _record(self, run: Ts1Run, number: int, found: Judgement) -> Record:
         case = run.case(number)
+        again = number if run.selection.mutations else None
         known = [
             f"known difference from {each.oracle}: {key}"
             for each in found.said
@@ -164,7 +161,7 @@ class Ts1(System):
             cpu_seconds=found.cpu_seconds,
             metrics=found.metrics,
             verdicts=tuple(_clipped(each) for each in found.said),
-            command=run.selection.command(case, oracles=self._oracles),
+            command=run.selection.command(case, again, oracles=self._oracles),
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import shlex
 import tempfile
@@ -9,6 +10,7 @@ from collections import Counter
 from collections.abc import Generator, Iterable, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
@@ -210,6 +212,15 @@ class Ts1Run:
     def total(self) -> int:
         """Number of definitions that are to be judged."""
         return self.selection.mutations or len(self.cases)
+
+    @cached_property
+    def digest(self) -> str:
+        """What tells the definitions that mutations are made from, which decide about these."""
+        digest = hashlib.sha256()
+        for case in self.cases:
+            digest.update(f"{case.spelled_name} {case.language} {len(case.text)}\n".encode())
+            digest.update(case.text.encode("utf-8", "surrogatepass"))
+        return digest.hexdigest()[:16]
 
     def case(self, number: int) -> Case:
         """Return the definition of a number, or the mutation."""

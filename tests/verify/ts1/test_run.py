@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
+from pathlib import Path
 
 import pytest
 
 from firm_hdl.cli import main
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DISTROS
+from firm_hdl.verify.results import read_results
 from firm_hdl.verify.ts1 import ORACLES, Selection, Ts1Run, run_ts1, selections_of
 from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.oracle import Refused
+from firm_hdl.verify.ts1.universe import Universe
 from tests.frontend.workspace import make_files
 from tests.verify.ts1.conftest import need
 
@@ -174,3 +178,37 @@ def test_oracles_read_the_text_that_we_take(tmp_path):
     tally, run = judged(Selection(distro="noetic", paths=paths), ["genmsg"])
     assert [case.full_name for case in run.cases] == ["p/A", "p/B", "std_msgs/Header"]
     assert tally.verdicts == {("genmsg", "passed"): 3}
+
+
+def test_mutations_have_results_that_a_run_goes_on_with_and_a_report_shows(
+    source, tmp_path, capsys, monkeypatch
+):
+    results = tmp_path / "r.jsonl"
+    words = ["verify", "--systems", "ts1", "--distro", "noetic", "--path", source, "--jobs", "1"]
+    words += ["--oracle", "genmsg", "--mutations", "12", "--seed", "5", "--results", str(results)]
+    need("genmsg", ORACLES["genmsg"](Universe("noetic", (), str(tmp_path))).missing())
+    assert main([*words, "p/A", "q/B"]) == 0
+    found = read_results(results)
+    keys = [test.key for test in found.planned]
+    assert len(set(keys)) == 12 and not found.missing
+    assert [key.rpartition("mutation=")[2] for key in keys] == [str(n) for n in range(5, 17)]
+    assert all("--mutations 1 --seed" in record.command for record in found.records.values())
+    # What is there is not judged again.
+    whole = results.read_text().splitlines(keepends=True)
+    cut = [line for line in whole if '"record"' in line][-4:]
+    results.write_text("".join(line for line in whole if line not in cut))
+    asked = []
+    judge = ORACLES["genmsg"].judge
+    monkeypatch.setattr(
+        ORACLES["genmsg"], "judge", lambda self, cases: asked.extend(cases) or judge(self, cases)
+    )
+    report = tmp_path / "r.json"
+    assert main([*words, "--report", str(report), "p/A", "q/B"]) == 0
+    assert "8 of 12 mutations have a result in" in capsys.readouterr().out
+    assert {case.is_changed for case in asked} == {True}
+    assert not read_results(results).missing
+    assert json.loads(report.read_text())["counts"]["passed"] == 12
+    # Other definitions make other mutations.
+    (Path(source) / "q" / "msg" / "B.msg").write_text("int8 y\n")
+    assert main([*words, "p/A", "q/B"]) == 1
+    assert "is of another run: mutated was" in capsys.readouterr().err
