@@ -21,6 +21,7 @@ from rosbags.rosbag2 import Reader as Reader2
 from rosbags.rosbag2 import ReaderError as ReaderError2
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source
+from firm_hdl.files import check_file
 from firm_hdl.frontend.embedded import DISTROS
 from firm_hdl.frontend.names import Kind
 from firm_hdl.frontend.sources import Definition, Language
@@ -30,6 +31,10 @@ __all__ = ["Reader", "RecordingOrigin", "use_recording"]
 
 Reader: TypeAlias = "Reader1 | Reader2"
 """rosbags' reader of a recording."""
+
+# rosbags reads all of it.
+_MOST_METADATA = 1 << 20
+_MAGIC, _MAGIC_BYTES = b"#ROSBAG V", 64
 
 _Name = tuple[str, Kind, str]
 _T = TypeVar("_T")
@@ -91,9 +96,15 @@ class RecordingOrigin:
     def _connections(self) -> list[Connection]:
         def look(recording: Reader) -> list[Connection]:
             distro = getattr(recording, "ros_distro", None)
-            if distro in DISTROS and DISTROS[distro].dialect == self.dialect:
+            known = DISTROS.get(distro) if isinstance(distro, str) else None
+            if known is not None and known.dialect == self.dialect:
                 self.distro = distro
-            return list(recording.connections)
+            connections = list(recording.connections)
+            for each in connections:
+                # In a database, any column can hold anything.
+                if not isinstance(each.msgtype, str) or not isinstance(each.msgdef.data, str):
+                    raise TypeError
+            return connections
 
         return use_recording(self.path, look)
 
@@ -142,21 +153,51 @@ def use_recording(path: str, use: Callable[[Reader], _T]) -> _T:
         raise _refusal(f"'{path}' does not exist")
     if os.path.isdir(path) and not os.path.exists(os.path.join(path, "metadata.yaml")):
         raise _refusal(f"'{path}' is a folder without the metadata.yaml of a recording")
+    try:
+        _check_files(path)
+    except OSError as error:
+        raise _refusal(f"'{error.filename}' cannot be read: {error.strerror}") from None
     reader = Reader1 if _dialect(path) == "ros1" else Reader2
     try:
+        if reader is Reader1 and not _is_bag(path):
+            raise ReaderError1("File magic is invalid.")
         with reader(Path(path)) as recording:
             return use(recording)
     except OSError as error:
         reason = error.strerror or str(error)
     except (ReaderError1, ReaderError2) as error:
-        reason = str(error)
+        # Of what it did not look for, rosbags passes on Python's own words.
+        odd = isinstance(error.__context__, TypeError | AttributeError | KeyError | ValueError)
+        reason = "it is damaged" if odd else str(error)
     except KeyError as error:
         # Such as the language of the definitions.
         reason = f"rosbags does not know {error}"
-    except Exception as error:
+    except MemoryError:
+        reason = "it asks for more memory than there is"
+    except Exception:
         # A damaged file makes a reader fail in ways that nobody has listed.
-        reason = f"{type(error).__name__}: {error}"
+        reason = "it is damaged"
     raise _refusal(f"'{path}' cannot be read as a recording: {reason}")
+
+
+def _check_files(path: str) -> None:
+    """Check that nothing has to be waited for, before rosbags opens it."""
+    if not os.path.isdir(path):
+        check_file(path)
+        return
+    with os.scandir(path) as entries:
+        for entry in entries:
+            if entry.name == "metadata.yaml":
+                check_file(entry.path, _MOST_METADATA)
+            elif not entry.is_dir():
+                check_file(entry.path)
+
+
+def _is_bag(path: str) -> bool:
+    """Whether a file starts like one of ROS 1; rosbags reads a line, which may never end."""
+    with open(path, "rb") as file:
+        start = file.read(_MAGIC_BYTES)
+    return start.startswith(_MAGIC) and b"\n" in start
 
 
 def _dialect(path: str) -> Dialect:

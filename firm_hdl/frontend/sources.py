@@ -16,6 +16,7 @@ from typing import Literal, Protocol, TypeAlias
 from xml.etree import ElementTree
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
+from firm_hdl.files import read_file
 from firm_hdl.frontend.embedded import embedded_names, embedded_source
 from firm_hdl.frontend.names import KINDS, Kind, TypeName
 
@@ -23,6 +24,9 @@ __all__ = ["Definition", "EmbeddedOrigin", "FolderOrigin", "Language", "Origin",
 
 Language: TypeAlias = Literal["msg", "srv", "action", "idl"]
 """What a text is written in."""
+
+# The longest definition in any of a thousand packages has a tenth of that.
+_MOST_BYTES = 1 << 22
 
 # How colcon and catkin are told to leave a folder alone.
 _IGNORE_MARKERS = frozenset({"AMENT_IGNORE", "CATKIN_IGNORE", "COLCON_IGNORE"})
@@ -98,8 +102,10 @@ class FolderOrigin:
             raise DefinitionError([Diagnostic(message=f"'{root}' is not a folder")])
         self._files: dict[tuple[str, Kind, str], str] = {}
         self._packages: dict[str, str] = {}
-        for package, folder in _packages(root):
-            self._packages.setdefault(package, folder)
+        self._refused: dict[str, str] = {}
+        for package, folder, wrong in _packages(root):
+            if self._packages.setdefault(package, folder) == folder and wrong:
+                self._refused[package] = wrong
             for kind in KINDS:
                 for file in _definition_files(folder, kind):
                     key = package, kind, os.path.splitext(file)[0]
@@ -114,6 +120,8 @@ class FolderOrigin:
         file = self._files.get((package, kind, name))
         if file is None:
             return None
+        if package in self._refused:
+            raise DefinitionError([Diagnostic(message=self._refused[package])])
         language: Language = "idl" if file.endswith(".idl") else kind
         return Definition(source=_read(file), language=language)
 
@@ -222,8 +230,11 @@ class Sources:
         return None
 
 
-def _packages(root: str) -> Iterator[tuple[str, str]]:
-    """Yield name and folder of every package at or below a folder, in order of their paths."""
+def _packages(root: str) -> Iterator[tuple[str, str, str]]:
+    """Yield name and folder of every package at or below a folder, in order of their paths.
+
+    The third is why the package cannot be used; empty for nearly all.
+    """
     seen: set[tuple[int, int]] = set()
     pending = [root]
     while pending:
@@ -240,7 +251,8 @@ def _packages(root: str) -> Iterator[tuple[str, str]]:
         seen.add((status.st_dev, status.st_ino))
         kinds = {kind for kind in KINDS if kind in names and _definition_files(folder, kind)}
         if kinds:
-            yield _package_name(folder), folder
+            name, wrong = _package_name(folder, "package.xml" in names)
+            yield name, folder, wrong
         if "package.xml" in names:
             continue  # As for colcon and catkin, a package contains no other.
         pending += [
@@ -263,17 +275,25 @@ def _definition_files(package: str, kind: Kind) -> list[str]:
     return sorted(found, key=lambda name: (name.endswith(".idl"), name))
 
 
-def _package_name(folder: str) -> str:
-    try:
-        name = ElementTree.parse(os.path.join(folder, "package.xml")).findtext("name")
-    except (OSError, ElementTree.ParseError):
-        name = None
-    return (name or "").strip() or Path(folder).resolve().name
+def _package_name(folder: str, is_named: bool) -> tuple[str, str]:
+    """Read a package's name; also why it cannot be told, if that is so."""
+    name, wrong = None, ""
+    if is_named:
+        path = os.path.join(folder, "package.xml")
+        try:
+            name = ElementTree.fromstring(read_file(path, _MOST_BYTES)).findtext("name")
+        except ElementTree.ParseError:
+            pass  # The folder is called like the package, as nearly always.
+        except OSError as error:
+            wrong = f"'{path}' cannot be read: {error.strerror}"
+        except (LookupError, ValueError):
+            wrong = f"'{path}' is in an encoding that is not known"
+    return (name or "").strip() or Path(folder).resolve().name, wrong
 
 
 def _read(path: str) -> Source:
     try:
-        data = Path(path).read_bytes()
+        data = read_file(path, _MOST_BYTES)
     except OSError as error:
         message = f"'{path}' cannot be read: {error.strerror}"
         raise DefinitionError([Diagnostic(message=message)]) from None

@@ -149,7 +149,9 @@ def test_file_that_cannot_be_read_is_reported(tmp_path):
     (tmp_path / "pkg/msg/A.msg").mkdir(parents=True)
     with pytest.raises(DefinitionError) as error:
         sources(tmp_path).find("pkg", "msg", "A")
-    assert str(error.value) == (f"error: '{tmp_path}/pkg/msg/A.msg' cannot be read: Is a directory")
+    assert str(error.value) == (
+        f"error: '{tmp_path}/pkg/msg/A.msg' cannot be read: it is a folder, not a regular file"
+    )
 
 
 @pytest.mark.skipif(

@@ -1,0 +1,112 @@
+"""Attacks on the command: each ends, in words of ours, and nothing of the user's is lost."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import stat
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.cli import main
+from tests.attacks.definitions import definition_attacks
+from tests.attacks.recordings import recording_attacks
+from tests.attacks.table import Attack
+
+ATTACKS = [*definition_attacks(), *recording_attacks()]
+
+# What Python says of a mistake in a program.
+PYTHON = re.compile(
+    r"Traceback|\bErrno\b|object has no attribute|object is not|NoneType|codec can't|"
+    r"\b[A-Z]\w*(?:Error|Exception)\b|invalid literal|index out of range|unpack|"
+    r"unsupported operand|argument must be|recursion depth|Exceeds the limit"
+)
+# A hang is no failure that a test should wait for.
+MOST_SECONDS = 120
+
+
+class HangError(BaseException):
+    """A command takes longer than anything here should."""
+
+
+def contents(root: Path) -> dict[str, bytes]:
+    """Read all files of a folder that hold something."""
+    found = {}
+    for path in sorted(root.rglob("*")):
+        status = path.lstat()
+        if stat.S_ISREG(status.st_mode) and status.st_size < 1 << 24:
+            found[path.relative_to(root).as_posix()] = path.read_bytes()
+        elif not stat.S_ISDIR(status.st_mode):
+            found[path.relative_to(root).as_posix()] = str(stat.S_IFMT(status.st_mode)).encode()
+    return found
+
+
+def ended(arguments: tuple[str, ...]) -> int:
+    """Run a command in this process; give its exit status."""
+
+    def stop(*_: object) -> None:
+        raise HangError
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.alarm(MOST_SECONDS)
+    try:
+        return main(arguments)
+    except SystemExit as end:
+        assert isinstance(end.code, int)
+        return end.code
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def judge(attack: Attack, status: int, said: str, before: dict[str, bytes], root: Path) -> None:
+    """Say what is wrong with how a command ended."""
+    assert status in {None: (0, 1, 2), True: (1, 2), False: (0,)}[attack.fails], said
+    assert not PYTHON.search(said), said[:2000]
+    assert attack.says in said
+    assert bool(said.strip()) or status == 0, "a failure without a word"
+    after = contents(root)
+    for name, text in before.items():
+        assert name in attack.changes or after.get(name) == text, f"{name} is lost"
+
+
+@pytest.mark.parametrize("attack", ATTACKS, ids=lambda attack: attack.name)
+def test_attack(attack, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    for name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
+        monkeypatch.delenv(name, raising=False)
+    attack.make(tmp_path)
+    before = contents(tmp_path)
+    status = ended(attack.argv)
+    judge(attack, status, capfd.readouterr().err, before, tmp_path)
+
+
+def test_names_are_distinct_and_there_are_many():
+    names = [attack.name for attack in ATTACKS]
+    assert len(names) == len(set(names))
+    assert len(names) >= 200
+
+
+@pytest.mark.parametrize(
+    ("status", "said", "lost"),
+    [
+        (3, "error: x", ()),
+        (1, "", ()),
+        (1, "Traceback (most recent call last):", ()),
+        (1, "error: 'NoneType' object is not subscriptable", ()),
+        (1, "error: [Errno 2] x", ()),
+        (0, "", ("a",)),
+    ],
+)
+def test_the_judge_sees_what_is_wrong(tmp_path, status, said, lost):
+    attack = Attack(name="x", argv=())
+    (tmp_path / "a").write_text("1")
+    before = contents(tmp_path)
+    judge(attack, 0, "", before, tmp_path)
+    judge(attack, 1, "error: x", before, tmp_path)
+    for name in lost:
+        os.remove(tmp_path / name)
+    with pytest.raises(AssertionError):
+        judge(attack, status, said, before, tmp_path)
