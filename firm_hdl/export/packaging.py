@@ -173,11 +173,10 @@ def vivado_script(manifest: Manifest) -> str:
 
 set firm_hdl_folder [file dirname [file normalize [info script]]]
 
-# The same in the folder of every type: the first script that is sourced reads them for all.
+# The same in the folder of every type: a project has each of them once.
 foreach firm_hdl_file {{
 {common}}} {{
-  if {{![info exists firm_hdl_read($firm_hdl_file)]}} {{
-    set firm_hdl_read($firm_hdl_file) 1
+  if {{[llength [get_files -quiet "*/$firm_hdl_file"]] == 0}} {{
     read_vhdl -vhdl2008 [file join $firm_hdl_folder $firm_hdl_file]
   }}
 }}
@@ -207,6 +206,8 @@ GHDL   ?=
 
 BENCHES := {" ".join(bench["entities"])}
 FILES   := $(shell cat files.txt bench_files.txt)
+FOUND    = $(firstword $(foreach name,ghdl ghdl-mcode ghdl-llvm ghdl-gcc,\\
+  $(shell command -v $(name))))
 STRICT  := --warn-error --warn-unused --warn-body
 
 .PHONY: all lint clean $(BENCHES)
@@ -217,11 +218,11 @@ all: $(BENCHES)
 .NOTPARALLEL:
 
 $(BENCHES):
-	@BENCH=$@ GHDL=$(GHDL) sh ./{bench["script"]} -gseed=$(SEED) -gstalls=$(STALLS)
+	@BENCH=$@ GHDL='$(GHDL)' sh ./{bench["script"]} -gseed=$(SEED) -gstalls=$(STALLS)
 
 lint:
 	@rm -rf work/lint && mkdir -p work/lint
-	$(or $(GHDL),ghdl) -a --std=08 --workdir=work/lint $(STRICT) $(FILES)
+	'$(or $(GHDL),$(FOUND),ghdl)' -a --std=08 --workdir=work/lint $(STRICT) $(FILES)
 
 clean:
 	rm -rf work

@@ -306,7 +306,7 @@ def run_script(files: Iterable[str], top: str) -> str:
     top : str
         The entity of the bench that runs unless the user names another one.
     """
-    listed = " \\\n".join(f'  "$here/{name}"' for name in files)
+    listed = " \\\n".join(f'  "$from/{name}"' for name in files)
     return f"""\
 #!/bin/sh
 # Run the test bench in GHDL. Arguments go to the simulation, such as -gseed=7 or --wave=tb.ghw.
@@ -332,8 +332,15 @@ fi
 mkdir -p "$work"
 cd "$work"
 printf '*\\n' > .gitignore
+# GHDL gets no name that is not ours: it takes no folder whose name has a quotation mark.
+from=..
+if [ -n "${{WORK:-}}" ]; then
+  from=source
+  rm -f "$from"
+  ln -s "$here" "$from"
+fi
 "$ghdl" -a --std=08 \\
 {listed}
 exec "$ghdl" --elab-run --std=08 "${{BENCH:-{top}}}" --ieee-asserts=disable-at-0 \\
-  -gstimuli="$here/{STIMULI}" -gexpected="$here/{STIMULI}" "$@"
+  -gstimuli="$from/{STIMULI}" -gexpected="$from/{STIMULI}" "$@"
 """

@@ -10,6 +10,7 @@ from firm_hdl.cli import main
 from firm_hdl.equivalence import Proof, Tools, command, converters, tools
 from firm_hdl.equivalence.converters import Attempt, Task
 from firm_hdl.equivalence.covering import covering_tasks, write_definitions
+from firm_hdl.verify.simulators import find_ghdl
 from tests.frontend.recordings import make_recording
 
 TASK = Task(distro="lyrical", name="a/msg/B", direction="serializer")
@@ -86,8 +87,28 @@ def test_missing_tools_are_said_with_how_to_install_them(
     finally:
         tools.find_tools.cache_clear()
     said = capsys.readouterr().err
-    assert "GHDL is not installed" in said and "apt-get install ghdl-mcode" in said
+    assert "GHDL is not installed" in said and "apt install ghdl-mcode" in said
     assert "pip install 'firm-hdl[prove]'" in said
+
+
+def test_ghdl_is_the_one_that_verification_takes(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    for name in ("ghdl", "ghdl-mcode", "mine"):
+        (tmp_path / name).write_text("#!/bin/sh\n")
+        (tmp_path / name).chmod(0o755)
+    monkeypatch.setattr(tools, "_yosys", lambda: ("yosys",))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    for variable in (None, str(tmp_path / "mine")):
+        if variable is None:
+            monkeypatch.delenv("GHDL", raising=False)
+        else:
+            monkeypatch.setenv("GHDL", variable)
+        tools.find_tools.cache_clear()
+        try:
+            assert tools.find_tools().ghdl == (find_ghdl(),) == (variable or f"{tmp_path}/ghdl",)
+        finally:
+            tools.find_tools.cache_clear()
 
 
 @pytest.mark.usefixtures("tools")

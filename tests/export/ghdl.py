@@ -7,7 +7,6 @@ outputs. GHDL reads the steps from a file and writes what it saw to another; Pyt
 from __future__ import annotations
 
 import random
-import shutil
 import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -17,10 +16,14 @@ from amaranth.hdl import Cat, Value
 from amaranth.sim import Simulator
 
 from firm_hdl.export.vhdl import Vhdl
+from firm_hdl.verify.simulators import SimulatorMissingError, find_ghdl
 
 __all__ = ["GHDL", "analyse", "difference", "expected", "run", "simulate", "synthesize", "vectors"]
 
-GHDL = next((path for name in ("ghdl-mcode", "ghdl") if (path := shutil.which(name))), None)
+try:
+    GHDL: str | None = find_ghdl()
+except SimulatorMissingError:
+    GHDL = None
 
 Steps = list[dict[str, int]]
 

@@ -82,9 +82,14 @@ def test_what_types_share_is_one_text(folders):
         assert len({(folder / name).read_text() for folder in folders}) == 1
 
 
+# What the scripts use of Vivado; a project knows the files that it has.
 STUBS = """\
-proc read_vhdl {args} { puts "read_vhdl $args" }
-foreach script $argv { source $script }
+set project {}
+proc read_vhdl {args} { puts "read_vhdl $args"; lappend ::project [lindex $args end] }
+proc get_files {option pattern} { return [lsearch -all -inline -glob $::project $pattern] }
+foreach script $argv {
+  if {$script eq "new_project"} { set project {} } else { source $script }
+}
 """
 
 
@@ -92,7 +97,8 @@ def test_vivado_reads_everything_once_and_in_order(folders, tmp_path):
     tclsh = need("tclsh", shutil.which("tclsh"))
     (tmp_path / "stubs.tcl").write_text(STUBS)
     scripts = [str(folder / "vivado.tcl") for folder in folders]
-    status, said = run([tclsh, "stubs.tcl", *scripts], tmp_path)
+    # A second project of the session has everything once more.
+    status, said = run([tclsh, "stubs.tcl", *scripts, "new_project", *scripts], tmp_path)
     assert status == 0, said
     want = []
     for folder in folders:
@@ -103,8 +109,30 @@ def test_vivado_reads_everything_once_and_in_order(folders, tmp_path):
             for name in manifest["files"]
             if name not in skip
         ]
-    assert said.splitlines() == want
+    assert said.splitlines() == want * 2
     assert not [line for line in want if "_tb" in line or "axis_s" in line]
+
+
+NASTY = "a \"b\" $c `d` 'e' \\f #g ;h %i [j] (k) & {l} *"
+
+
+def test_scripts_run_in_a_folder_of_any_name(ghdl, folders, tmp_path):
+    make = need("make", shutil.which("make"))
+    (tmp_path / NASTY).mkdir()
+    folder = copied(folders[0], tmp_path / NASTY)
+    status, said = run([make, f"GHDL={ghdl}"], folder)
+    assert status == 0, said
+    assert said.count("PASS geometry_msgs/msg/Vector3") == 2
+    status, said = run([make, "lint"], folder)
+    assert (status, said.count("warning")) == (0, 0), said
+    # From elsewhere, with a folder of the user's own for what GHDL writes.
+    script = [str(folder / "run_ghdl.sh"), "-gstalls=0"]
+    work = str(tmp_path / NASTY / "work")
+    status, said = run(["env", f"WORK={work}", f"GHDL={ghdl}", *script], tmp_path)
+    assert status == 0, said
+    assert said.count("PASS geometry_msgs/msg/Vector3") == 1
+    # Once more, as the link is there already.
+    assert run(["env", f"WORK={work}", f"GHDL={ghdl}", *script], tmp_path)[0] == 0
 
 
 def test_make_runs_all_benches(ghdl, folders, tmp_path):

@@ -7,13 +7,12 @@
 
 set firm_hdl_folder [file dirname [file normalize [info script]]]
 
-# The same in the folder of every type: the first script that is sourced reads them for all.
+# The same in the folder of every type: a project has each of them once.
 foreach firm_hdl_file {
   firm_hdl_types_pkg.vhd
   firm_hdl_pkg.vhd
 } {
-  if {![info exists firm_hdl_read($firm_hdl_file)]} {
-    set firm_hdl_read($firm_hdl_file) 1
+  if {[llength [get_files -quiet "*/$firm_hdl_file"]] == 0} {
     read_vhdl -vhdl2008 [file join $firm_hdl_folder $firm_hdl_file]
   }
 }
