@@ -112,9 +112,10 @@ def read_map(
             workshop = workshops.get()
             try:
                 part = _trace(workshop, name, each)
+                sources = _sources(workshop.root, part)
+                _store(workshop.root, folder, place, _Kept(part, made_of, around, sources))
             finally:
                 workshops.put(workshop)
-            _store(root, folder, place, _Kept(part, made_of, around, _sources(root, part)))
             seconds = sum(test.cpu_seconds for test in part.tests if test.measured)
             say(f"map: {name}, {len(part.tests)} tests, {seconds:.1f} s")
         return part
