@@ -23,3 +23,45 @@ def test_sizes_are_those_that_32_bits_can_count(tmp_path, line, size, is_legal):
     else:
         with pytest.raises(DefinitionError, match=r"must be at (least|most)"):
             load(tmp_path, line.format(size))
+
+
+@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+@pytest.mark.parametrize(
+    ("text", "where"),
+    {
+        # What stands around the two hides neither; a third one is compared with the first.
+        "int8 K = 1\nint8 a\nint8 a": (3, 2),
+        "int8 a\nint8 K = 1\nint8 a": (3, 1),
+        "int8 a\nint8 a\nint8 K = 1": (2, 1),
+        "int8 b\nint8 a\nint8 c\nint8 a\nint8 d": (4, 2),
+        "int8 a\nint8 b\nint8 a\nint8 a": (3, 1),
+    }.items(),
+)
+def test_a_field_is_declared_once_whatever_stands_around_it(tmp_path, distro, text, where):
+    root = make_files(tmp_path, {"p/msg/T.msg": text})
+    with pytest.raises(DefinitionError) as error:
+        Library(distro, [root]).message("p/msg/T" if distro == "lyrical" else "p/T")
+    second, first = where
+    said = [line for line in str(error.value).splitlines() if "error:" in line]
+    assert f"T.msg:{second}:6: error: field 'a' is already declared in line {first}" in said[0]
+    assert len(said) == text.count("int8 a") - 1
+    assert all(line.endswith(f"in line {first}") for line in said)
+
+
+@pytest.mark.parametrize(
+    ("text", "column"),
+    {
+        "int8[] x [1x, 2]": 11,
+        "int8[] x [ 1x , 2]": 12,
+        "int8[] x [3, 1x, 2]": 14,
+        "int8[] x [3,1x]": 13,
+        "int8[] x [1x]": 11,
+        "int8 x 1x": 8,
+    }.items(),
+)
+def test_of_a_list_just_the_wrong_item_is_named(tmp_path, text, column):
+    with pytest.raises(DefinitionError) as error:
+        load(tmp_path, text)
+    said = str(error.value).splitlines()
+    assert said[0].endswith(f"T.msg:1:{column}: error: '1x' is not an integer")
+    assert said[2] == " " * (column - 1) + "^^"
