@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from firm_hdl.errors import DefinitionError, Diagnostic
-from firm_hdl.model import Message
+from firm_hdl.model import Message, Service
 
 __all__ = ["EXAMPLES", "Example", "drop_last", "refuse"]
 
@@ -24,6 +24,8 @@ def refuse(read):
 
 def drop_last(read):
     """Lose the last field."""
+    if isinstance(read, Service):
+        return replace(read, response=drop_last(read.response))
     return replace(read, fields=read.fields[:-1]) if isinstance(read, Message) else read
 
 
@@ -65,6 +67,19 @@ def _misname(read):
     return replace(read, name="p/msg/B") if isinstance(read, Message) else read
 
 
+def _length(read):
+    return _field(0, type=replace(read.fields[0].type, count=6))(read)
+
+
+def _response(change):
+    """Get something of the response of a service wrong."""
+
+    def plant(read):
+        return replace(read, response=change(read.response)) if isinstance(read, Service) else read
+
+    return plant
+
+
 def _comment(read):
     return replace(read, comment=read.comment[:-1]) if isinstance(read, Message) else read
 
@@ -82,6 +97,8 @@ class Example:
         What the twin makes of what is read.
     distro : str
     idl : bool
+    kind : str
+        Of the definition.
     more : mapping of str to str
         Other definitions.
     spared : str
@@ -94,16 +111,21 @@ class Example:
     plant: _Plant
     distro: str = "lyrical"
     idl: bool = False
+    kind: str = "msg"
     more: Mapping[str, str] = field(default_factory=dict)
     spared: str = ""
 
     @property
     def files(self):
-        return {f"p/msg/A.{'idl' if self.idl else 'msg'}": self.text, **self.more}
+        return {self.file: self.text, **self.more}
 
     @property
     def spared_files(self):
-        return {f"p/msg/A.{'idl' if self.idl else 'msg'}": self.spared, **self.more}
+        return {self.file: self.spared, **self.more}
+
+    @property
+    def file(self):
+        return f"p/{self.kind}/A.{'idl' if self.idl else self.kind}"
 
 
 def _ros1(key, oracle, text, plant, **more):
@@ -218,6 +240,30 @@ EXAMPLES: tuple[Example, ...] = (
         "long x;",
         drop_last,
         before="module A_Constants { const long N = 3; const long N = 4; };",
+    ),
+    _idl("idl-typedefs", "B x; p::msg::A y;", drop_last, before="typedef long A; typedef A B;"),
+    _idl("idl-expressions", "long x[2*N+0x1];", _length, before=_N),
+    _idl(
+        "idl-expressions",
+        "long x;",
+        _constant(value=ord("b")),
+        before="module A_Constants { const char C = 'a'; };",
+    ),
+    _idl(
+        "idl-booleans",
+        "long x;",
+        _constant(value=False),
+        before="module A_Constants { const boolean B = 1; };",
+    ),
+    Example(
+        key="idl-service-constants",
+        oracle="rosidl_parser",
+        kind="srv",
+        idl=True,
+        text="module p { module srv { module A_Request_Constants { const long K = 1; }; "
+        "struct A_Request { long a; }; module A_Response_Constants { const long K = 1; }; "
+        "struct A_Response { string b; unsigned short last; }; }; };",
+        plant=_response(lambda part: replace(part, constants=())),
     ),
     _idl("idl-unsupported", "@optional long x;", drop_last),
     Example(

@@ -31,7 +31,7 @@ def outcome(here, example, monkeypatch, plant=None):
         if plant is not None:
             read = judging.read
             planted.setattr(judging, "read", lambda *given: plant(read(*given)))
-        return here.outcome(example.oracle, "p/A")
+        return here.outcome(example.oracle, f"p/{example.kind}/A")
 
 
 @pytest.mark.parametrize("name", BY_NAME)
