@@ -28,10 +28,16 @@ BEFORE = {
 }
 
 
+# All or none, and of neighbours every other one, so that steps are half done.
+TAKEN = (0b111111, 0b100001, 0, 0b110101, 0b101010)
+
+
 class Bench:
     """A converter in a clock domain with a reset, driven in each cycle by a function."""
 
-    def __init__(self, converter):
+    def __init__(self, converter, good):
+        # What comes behind the reset.
+        self.good = good
         top = Module()
         top.domains.sync = self.domain = ClockDomain("sync")
         top.submodules.converter = self.converter = converter
@@ -64,7 +70,8 @@ async def offer(ctx, port, payloads, fired):
 def after_reset_of_reader(bench, packet, at, ready):
     """Return transfers and statuses after a reset in a cycle of a packet.
 
-    `ready`: whether what the packet gives is taken before the reset; else, all registers are full.
+    `ready`: which leaves, and the status, are taken before the reset, as bits; registers of the
+    others are full.
     """
     rx = bench.converter
     plan = rx.plan
@@ -74,15 +81,15 @@ def after_reset_of_reader(bench, packet, at, ready):
 
     async def script(ctx):
         beats, fired = list(all_beats([packet] * 2, plan.bus_bytes)), False
-        for cycle in range(at + 26 + len(GOOD) // plan.bus_bytes):
+        for cycle in range(at + 26 + 2 * len(bench.good) // plan.bus_bytes):
             if cycle == at:
                 beats, fired = [], False
             if cycle == at + 1:
-                beats = list(all_beats([GOOD], plan.bus_bytes))
+                beats = list(all_beats([bench.good] * 2, plan.bus_bytes))
             ctx.set(bench.domain.rst, cycle == at)
             await offer(ctx, rx.packets, beats, fired)
-            for port in outputs:
-                ctx.set(port.ready, ready or cycle > at)
+            for number, port in enumerate(outputs):
+                ctx.set(port.ready, ready >> number & 1 or cycle > at)
             _, _, taken, valid, *payloads = await ctx.tick().sample(rx.packets.ready, valids, *bits)
             fired = taken and beats
             if cycle <= at:
@@ -109,18 +116,29 @@ def transfers_of_good(lanes):
     return {0: [1], 1: [4], 2: letters(b"abcd", lanes), 3: [2], 4: [10, 11]}
 
 
+def twice(transfers):
+    return {leaf: payloads * 2 for leaf, payloads in transfers.items()}
+
+
+RIGHT = ([GOOD] * 2, [False] * 2, [Status.OK] * 2, b"")
+
+
 @pytest.mark.parametrize("bus_bytes", [1, 4, 16])
 def test_deserializer_forgets_the_packet_under_way(bus_bytes):
-    bench = Bench(Deserializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=400))
+    bench = Bench(Deserializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=400), GOOD)
+    right = twice(transfers_of_good(bus_bytes))
     for what, packet in BEFORE.items():
         cycles = range(1, 2 * -(-len(packet) // bus_bytes) + 10)
         for number, at in enumerate(cycles[:: 1 + len(cycles) // 8]):
-            found = after_reset_of_reader(bench, packet, at, ready=bool(number % 2))
-            assert found == (transfers_of_good(bus_bytes), [Status.OK]), (what, at)
+            found = after_reset_of_reader(bench, packet, at, TAKEN[number % len(TAKEN)])
+            assert found == (right, [Status.OK] * 2), (what, at)
 
 
-def after_reset_of_writer(bench, transfers, at, ready):
-    """Return packets, which of them are marked, and statuses after a reset."""
+def after_reset_of_writer(bench, transfers, after, at, until, offers):
+    """Return packets, which of them are marked, and statuses after a reset.
+
+    `until`: up to which cycle all that comes is taken. `offers`: how many leaves are offered.
+    """
     tx = bench.converter
     out, marked, statuses = PacketCollector(tx.plan.bus_bytes), [], []
     encoders = [encoder_of(leaf) for leaf in tx.plan.leaves]
@@ -134,16 +152,17 @@ def after_reset_of_writer(bench, transfers, at, ready):
 
     async def script(ctx):
         offered, fired = bits([transfers] * 2), 0
-        for cycle in range(at + 26 + len(GOOD) // tx.plan.bus_bytes):
+        offered |= {leaf: [] for leaf in list(offered)[offers:]}
+        for cycle in range(at + 26 + 2 * len(bench.good) // tx.plan.bus_bytes):
             if cycle == at:
                 offered, fired = bits([]), 0
             if cycle == at + 1:
-                offered = bits([transfers_of_good(tx.plan.bus_bytes)])
+                offered = bits([after] * 2)
             ctx.set(bench.domain.rst, cycle == at)
             for leaf, port in bench.leaves.items():
                 await offer(ctx, port, offered[leaf], fired >> leaf & 1)
             for port in (tx.packets, tx.status):
-                ctx.set(port.ready, ready or cycle > at)
+                ctx.set(port.ready, cycle < until or cycle > at)
             _, _, fired, valid, beat, error, ended, status = await ctx.tick().sample(
                 readies,
                 tx.packets.valid,
@@ -163,7 +182,7 @@ def after_reset_of_writer(bench, transfers, at, ready):
 
 @pytest.mark.parametrize("bus_bytes", [1, 4, 16])
 def test_serializer_forgets_the_message_under_way(bus_bytes):
-    bench = Bench(Serializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=400))
+    bench = Bench(Serializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=400), GOOD)
     good = transfers_of_good(bus_bytes)
     for what, change in {
         "good": {},
@@ -171,6 +190,35 @@ def test_serializer_forgets_the_message_under_way(bus_bytes):
         "items": {2: [(lanes, not last) for lanes, last in good[2]]},
         "loop": {3: [9], 4: list(range(9))},
     }.items():
-        for at in range(1, 24, 2):
-            found = after_reset_of_writer(bench, good | change, at, ready=at % 4 == 1)
-            assert found == ([GOOD], [False], [Status.OK], b""), (what, at)
+        # Blocked a while before the reset, at each place of a message; leaves that are missing.
+        for at, until, offers in [
+            *((at, at - 5, 5) for at in range(5, 14 + 30 // bus_bytes)),
+            *((9, 9, offers) for offers in range(1, 6)),
+        ]:
+            found = after_reset_of_writer(bench, good | change, good, at, until, offers)
+            assert found == RIGHT, (what, at, offers)
+
+
+# Counters that a packet begins with.
+POINT = make("ros1", {"x": "uint16"}, "P")
+LOOP = make("ros1", {"p": (POINT, "[3]"), "z": "uint8"})
+RUN = make("ros1", {"b": "uint8[21]"})
+
+
+@pytest.mark.parametrize(
+    ("message", "good", "transfers"),
+    [
+        (LOOP, bytes.fromhex("01000200030004"), lambda lanes: {0: [1, 2, 3], 1: [4]}),
+        (RUN, bytes(range(21)), lambda lanes: {0: letters(bytes(range(21)), lanes)}),
+    ],
+)
+@pytest.mark.parametrize("bus_bytes", [1, 4])
+def test_counters_start_again(message, good, transfers, bus_bytes):
+    right = transfers(bus_bytes)
+    reader = Bench(Deserializer(message, bus_bytes=bus_bytes), good)
+    writer = Bench(Serializer(message, bus_bytes=bus_bytes), good)
+    for at in range(1, 14):
+        found = after_reset_of_reader(reader, good, at, -1)
+        assert found == (twice(right), [Status.OK] * 2), at
+        packets, *rest = after_reset_of_writer(writer, right, right, at, at, 2)
+        assert (packets, rest) == ([good] * 2, [[False] * 2, [Status.OK] * 2, b""]), at

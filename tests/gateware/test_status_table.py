@@ -180,23 +180,38 @@ def test_limits_are_exact_without_alignment(bus_bytes):
     check_reading(PLAIN, READ_PLAIN, bus_bytes, max_message_bytes=PLAIN_MOST)
 
 
-ARRAYS = make("ros1", {"x": "uint8", "a": "uint16[4]", "b": "bool[3]"})
+# A bool is 1 for any byte but 0.
+ARRAYS = {"x": "bool", "a": "uint16[4]", "b": "bool[3]"}
 WORDS = [0x1111, 0x2222, 0x3333, 0x4444]
+# Where x, a and b are.
+PLACES = {
+    "ros1": ("02 1111222233334444 018002", (0, 1, 9)),
+    "ros2": (HEAD + "80 a5 1111222233334444 ff0110", (4, 6, 14)),
+}
 
 
+@pytest.mark.parametrize("dialect", PLACES)
 @every_window
-def test_items_that_are_not_whole_are_zero_whatever_is_in_their_lanes(bus_bytes, window_words):
-    whole = packet("01 1111 2222 3333 4444 01 01 01")
-    table = [(whole.hex(), "OK", {"x": 1, "a": WORDS, "b": [True] * 3})]
-    for size in range(len(whole)):
-        words, flags = min(4, max(0, size - 1) // 2), max(0, size - 9)
+def test_items_that_are_not_whole_are_zero_whatever_is_in_their_lanes(
+    bus_bytes, window_words, dialect
+):
+    text, (x, a, b) = PLACES[dialect]
+    whole = packet(text)
+    table = []
+    for size in reversed(range(len(whole) + 1)):
+        words, flags = min(4, max(0, size - a) // 2), max(0, size - b)
         value = {
-            "x": int(size > 0),
+            "x": size > x,
             "a": WORDS[:words] + [0] * (4 - words),
             "b": [True] * flags + [False] * (3 - flags),
         }
-        table.append((whole[:size].hex(), "TRUNCATED", value))
-    check_reading(ARRAYS, table, bus_bytes, window_words=window_words)
+        status = "OK" if size == len(whole) else "TRUNCATED"
+        table.append((whole[:size].hex(), status, value))
+    if dialect == "ros2":
+        # Behind an error, they are zero though they are whole.
+        nothing = {"x": False, "a": [0] * 4, "b": [False] * 3}
+        table.append((WRONG + text.removeprefix(HEAD), "ENCAPSULATION", nothing))
+    check_reading(make(dialect, ARRAYS), table, bus_bytes, window_words=window_words)
 
 
 # Serializer. A leaf is given by its items and by where `last` is wrong.
@@ -284,6 +299,35 @@ def test_first_error_of_a_message_is_reported_and_marks_its_packet(bus_bytes, wi
         assert [status.name for status in seen.statuses] == [row[5] for row in rows]
         assert seen.marked == [row[5] != "OK" for row in rows]
         assert not seen.left
+
+
+# With the last word of a message, or as its only one.
+@pytest.mark.parametrize("wire", ["ros1", "cdr"])
+@some_buses
+def test_error_in_the_last_word_of_a_message_marks_it(bus_bytes, wire):
+    tx = Serializer(make("ros2", {"s": "string<=2"}), wire=wire, bus_bytes=bus_bytes)
+    noise = random.Random(bus_bytes)
+    rows = [
+        (b"ab", NO, "OK"),
+        (b"abc", NO, "LENGTH"),
+        (b"ab", NO, "OK"),
+        (b"ab", LATE, "ITEMS"),
+        (b"", NO, "OK"),
+        (b"abc", LATE, "LENGTH"),
+        (b"ab", NO, "OK"),
+    ]
+    seen = Harness(None, tx).run(
+        transfers=join_transfers(
+            {0: [len(text)], 1: lanes_of(text, bus_bytes, last, noise)} for text, last, _ in rows
+        ),
+        messages=len(rows),
+    )
+    head, nul = (b"\0\1\0\0", b"\0") if wire == "cdr" else (b"", b"")
+    assert seen.packets == [
+        head + bytes((len(text) + len(nul), 0, 0, 0)) + text + nul for text, _, _ in rows
+    ]
+    assert [each.name for each in seen.statuses] == [status for _, _, status in rows]
+    assert seen.marked == [status != "OK" for _, _, status in rows]
 
 
 # What `max_message_bytes` leaves room for; 9 bytes are those of the shortest message.
