@@ -143,7 +143,10 @@ def watch(streams: Mapping[str, stream.Interface]) -> Callable[[SimulatorContext
         while True:
             _, reset, valid, ready, *bits = await ctx.tick().sample(valids, readies, *payloads)
             if reset:
+                # What was offered is gone, and so is a packet that had begun.
                 rules = StreamRules(names)
+                for rule in packets.values():
+                    rule._inside = False
             else:
                 rules.check(cycle, valid, ready, bits.__getitem__)
                 for number, rule in packets.items():

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import pytest
-from amaranth.hdl import Module
+from amaranth.hdl import Module, Signal
 from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
 
 from firm_hdl.frontend import load_message
 from firm_hdl.gateware import Deserializer, Serializer
@@ -264,3 +265,48 @@ def test_dropped_valid_is_found_in_a_bench():
     )
     with pytest.raises(StreamRuleError, match=r"^Stream 'o' breaks rule 1 in cycle \d+"):
         bench.run(job)
+
+
+class Echo(wiring.Component):
+    """Gives each payload again, three cycles after it was taken."""
+
+    def __init__(self):
+        super().__init__({"i": In(stream.Signature(8)), "o": Out(stream.Signature(8))})
+
+    def elaborate(self, platform):
+        m = Module()
+        left, wait = Signal(2), Signal(range(4))
+        m.d.comb += [
+            self.i.ready.eq(left == 0),
+            self.o.valid.eq((left != 0) & (wait == 0)),
+            self.o.payload.eq(7),
+        ]
+        with m.If(self.i.valid & self.i.ready):
+            m.d.sync += left.eq(2)
+        with m.Elif(wait):
+            m.d.sync += wait.eq(wait - 1)
+        with m.Elif(self.o.valid & self.o.ready):
+            m.d.sync += [left.eq(left - 1), wait.eq(3)]
+        return m
+
+
+@pytest.mark.parametrize("stalls", [None, {"o": Stalls.bits("0" * 12 + "1")}])
+def test_what_comes_after_the_end_is_seen(stalls):
+    dut = Echo()
+    got = []
+    job = Job(
+        sources={"i": [7]},
+        takes={"o": lambda cycle, bits: got.append(bits)},
+        finished=lambda: len(got) >= 1,
+        outstanding=lambda: "some",
+        stalls=stalls,
+    )
+    Bench(dut, sources={"i": dut.i}, sinks={"o": dut.o}).run(job)
+    assert got == [7, 7]
+
+
+def test_cycles_of_a_run_that_fails_are_counted():
+    harness = Harness(Deserializer(IMAGE), None)
+    with pytest.raises(DeadlineError):
+        harness.run(packets=[PACKET] * 9, limit=20)
+    assert harness.bench.cycles == 21

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from amaranth.hdl import ClockDomain, Module
+from amaranth.sim import Simulator
 
 from firm_hdl.gateware.signatures import packet_layout
 from firm_hdl.sim import Stalls, StreamRuleError, StreamRules, receive, send, watch
@@ -52,6 +54,39 @@ def test_payload_that_changes_is_rule_2():
 @pytest.mark.parametrize("fault", ["drop", "change"])
 def test_faults_that_no_stall_provokes_are_not_seen(fault):
     assert relay(fault, Stalls.none) == list(range(1, 9))
+
+
+def test_reset_takes_back_what_was_offered_and_begins_a_new_packet():
+    dut = Relay(packet_layout(4))
+    top = Module()
+    top.domains.sync = domain = ClockDomain("sync")
+    top.submodules.dut = dut
+    seen = []
+
+    async def source(ctx):
+        # The first beat is taken, and the second one waits when the reset comes.
+        ctx.set(dut.o.ready, 1)
+        await send(ctx, dut.i, [beat(4, 0)])
+        await ctx.tick()
+        ctx.set(dut.o.ready, 0)
+        await send(ctx, dut.i, [beat(4, 0)])
+        await ctx.tick().repeat(2)
+        seen.append(ctx.get(dut.o.valid))
+        ctx.set(domain.rst, 1)
+        await ctx.tick()
+        ctx.set(domain.rst, 0)
+        seen.append(ctx.get(dut.o.valid))
+        await ctx.tick().repeat(2)
+        ctx.set(dut.o.ready, 1)
+        await send(ctx, dut.i, [beat(0, 1)])
+        await ctx.tick().repeat(2)
+
+    simulator = Simulator(top)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(source)
+    simulator.add_testbench(watch({"o": dut.o}), background=True)
+    simulator.run()
+    assert seen == [1, 0]
 
 
 def test_rules_follow_each_stream_on_its_own():

@@ -1,16 +1,24 @@
+# amaranth: UnusedElaboratable=no
 """Exported VHDL in GHDL is the Python simulation, cycle by cycle; a changed line is found."""
 
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 
 import firm_hdl.verify.acceptance as acceptance
 import firm_hdl.verify.simulators.ghdl as exported
+from firm_hdl import Serializer, load_message
+from firm_hdl.export.top import Top
+from firm_hdl.sim import Harness, Stalls
 from firm_hdl.verify import Options, Result, accept
+from firm_hdl.verify.crosscheck import first_difference
 from firm_hdl.verify.processes import ToolError
-from firm_hdl.verify.simulators import Ghdl, SimulatorMissingError, find_ghdl
+from firm_hdl.verify.semantics import traffic
+from firm_hdl.verify.simulators import Ghdl, SimulatorMissingError, TextSimulator, find_ghdl
+from firm_hdl.verify.trace import Trace
 from tests.verify.judged import assert_passed
 from tests.verify.samples import SAMPLE, own_package
 
@@ -32,6 +40,46 @@ def test_vhdl_does_in_each_cycle_what_the_simulation_does(ghdl, distro, name, bu
     assert found.cycles == result.simulated_cycles + 4
     assert (found.packets, found.statuses) == (result.packets, 2 * result.packets)
     assert found.transfers >= result.packets
+
+
+def replay_marked(other: TextSimulator, folder: Path) -> None:
+    """Replay a serializer that marks packets, which no loopback does."""
+    message = load_message("std_msgs/msg/String")
+
+    def make() -> Serializer:
+        return Serializer(message, bus_bytes=2, max_message_bytes=99)
+
+    tx = make()
+    trace = Trace((tx,), message.name)
+    harness = Harness(None, tx, message=message, probes=trace.probes)
+    items = {
+        "right": [((97, 98), False), ((99, 0), True)],
+        "early": [((97, 98), True), ((99, 0), True)],
+        "never": [((97, 98), False), ((99, 0), False)],
+    }
+    order = ["right", "early", "right", "never", "right"]
+    trace.start("marked")
+    seen = harness.run(
+        transfers={0: [3] * len(order), 1: [each for name in order for each in items[name]]},
+        messages=len(order),
+        stalls={"packets_out": Stalls.bits("011"), "status": Stalls.bits("001")},
+        observe=trace.observe,
+    )
+    assert seen.marked == [name != "right" for name in order]
+    rows = [row.rstrip() for row in other.replay(trace, lambda: [Top(make())], folder)]
+    assert first_difference(trace, rows) is None
+    (run,) = traffic(trace, rows)
+    assert (run.packets, run.marked) == (seen.packets, seen.marked)
+    assert run.sent_statuses == [f"{status.value:08b}" for status in seen.statuses]
+
+
+def test_marked_packets_are_marked_in_vhdl(ghdl, tmp_path):
+    replay_marked(Ghdl(), tmp_path)
+
+
+@pytest.mark.parametrize("of_verilog", ["iverilog"], indirect=True)
+def test_marked_packets_are_marked_in_verilog(of_verilog, tmp_path):
+    replay_marked(of_verilog, tmp_path)
 
 
 OWN_TYPES = [

@@ -99,6 +99,66 @@ def test_other_traffic_is_told(recorded, change, said):
     assert found is not None and found.startswith(said)
 
 
+def doctored(trace, direction, name, change):
+    """Return the rows with each value of a port changed."""
+    (pin,) = [
+        pin
+        for pin in trace.outputs
+        if (trace.devices[pin.device].direction, pin.port.name) == (direction, name)
+    ]
+    return [
+        " ".join(
+            f"{number} {change(bits) if number == pin.number else bits}"
+            for number, bits in read_row(row)
+        )
+        for row in trace.expected
+    ]
+
+
+FLIP = str.maketrans("01", "10")
+
+
+@pytest.mark.parametrize(
+    ("direction", "name", "change", "said"),
+    [
+        # A lane more, a hole, a bit, what is undefined; no end, and no pause.
+        ("serializer", "m_axis_tkeep", lambda bits: "11", "packets differ: number 0 of 3"),
+        ("serializer", "m_axis_tkeep", lambda bits: "10", "packets differ: number 0 of 3"),
+        ("serializer", "m_axis_tdata", lambda bits: bits[:-1] + "1", "packets differ: number 0"),
+        ("serializer", "m_axis_tdata", lambda bits: bits[:-1] + "X", "packets differ: number 0"),
+        ("serializer", "m_axis_tlast", lambda bits: "0", "packets differ: number 0 of 3 is []"),
+        ("serializer", "m_axis_tvalid", lambda bits: "1", "packets differ: number 0 of 3"),
+        ("serializer", "m_axis_tuser", lambda bits: "1", "tuser differ: number 0 of 3"),
+        ("serializer", "m_axis_status_tdata", lambda bits: bits[:-1] + "1", "statuses of the ser"),
+        ("serializer", "m_axis_status_tvalid", lambda bits: "1", "statuses of the serializer"),
+        ("serializer", "m_axis_status_tvalid", lambda bits: "U", "statuses of the serializer"),
+        ("deserializer", "m_axis_status_tdata", lambda bits: bits[:-1] + "U", "statuses of the de"),
+        ("deserializer", "m_axis_status_tvalid", lambda bits: "1", "statuses of the deserializer"),
+        ("deserializer", "data_data", lambda bits: bits.translate(FLIP), "transfers of data diff"),
+        ("deserializer", "data_data", lambda bits: "X", "transfers of data differ: some are un"),
+        ("deserializer", "data_valid", lambda bits: "0", "transfers of data differ: number 0 of"),
+    ],
+)
+def test_traffic_is_what_the_ports_showed(recorded, direction, name, change, said):
+    trace, seen = recorded
+    rows = doctored(trace, direction, name, change)
+    for run, right in zip(traffic(trace, rows), seen, strict=True):
+        found = run.difference(right)
+        assert found is not None and found.startswith(said)
+    assert first_difference(trace, rows) is not None
+
+
+@pytest.mark.parametrize("fewer", [1, 9, 40])
+def test_rows_that_are_missing_or_too_many_are_told(recorded, fewer):
+    trace, _ = recorded
+    rows = trace.expected
+    count = len(rows)
+    assert first_difference(trace, rows[:-fewer]) == f"{count - fewer} cycles instead of {count}"
+    assert first_difference(trace, [*rows, *[""] * fewer]) == (
+        f"{count + fewer} cycles instead of {count}"
+    )
+
+
 def test_first_difference_names_run_cycle_port_and_both_values(recorded):
     trace, _ = recorded
     assert first_difference(trace, trace.expected) is None
