@@ -1,0 +1,208 @@
+"""Every option of the command arrives where it is used, and every failure in the exit status."""
+
+from __future__ import annotations
+
+import json
+import os
+
+import pytest
+
+from firm_hdl import cli
+from firm_hdl.cli import main
+from firm_hdl.equivalence import command as prove_command
+from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.export.build import BuildError
+from firm_hdl.export.top import DIRECTIONS
+from firm_hdl.frontend import Library
+from firm_hdl.plan import build_plan, from_yaml
+from firm_hdl.wire import lay_out
+from tests.frontend.recordings import make_recording
+from tests.frontend.workspace import make_files
+
+FILES = {
+    "p/msg/A.msg": "uint8 a\nuint32 b\nstring c",
+    "p/srv/S.srv": "uint8 a\n---\nuint8 b",
+    "p/action/D.action": "uint8 a\n---\nuint8 b\n---\nuint8 c",
+}
+OPTIONS = {"wire": "ros1", "bus_bytes": 4, "max_message_bytes": 777}
+WORDS = ["--wire", "ros1", "--bus-bytes", "4", "--max-message-bytes", "777"]
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(make_files(tmp_path, FILES))
+    return tmp_path
+
+
+def planned(name, **options):
+    message = Library("lyrical", ["."]).message(name)
+    wire = options.pop("wire", None)
+    return build_plan(lay_out(message, wire), **options)
+
+
+@pytest.mark.parametrize("left_out", [None, "wire", "bus_bytes", "max_message_bytes"])
+def test_plans_are_made_with_all_options(here, capsys, left_out):
+    options = {name: value for name, value in OPTIONS.items() if name != left_out}
+    words = [
+        word
+        for name, value in options.items()
+        for word in (f"--{name.replace('_', '-')}", str(value))
+    ]
+    known = {"bus_bytes": 8, **options}
+    assert main(["plan", "p/A", "--path", ".", *words]) == 0
+    plan = from_yaml(capsys.readouterr().out)
+    assert plan == planned("p/A", **known)
+    assert (plan.wire, plan.bus_bytes) == (known.get("wire", "cdr"), known["bus_bytes"])
+    assert main(["info", "p/A", "--path", ".", *words]) == 0
+    head = capsys.readouterr().out.splitlines()[0]
+    assert f"on {plan.wire}, {8 * plan.bus_bytes}-bit bus: {len(plan.steps)} step" in head
+
+
+def test_build_is_given_all_options(here, monkeypatch):
+    given = {}
+    monkeypatch.setattr(cli, "build", lambda types, out, **options: given.update(
+        options, types=types, out=out) or [])  # fmt: skip
+    words = [*WORDS, "--out", "there", "--ports", "flat", "--force", "--distro", "iron"]
+    assert main(["build", "p/A", "p/srv/S", "--path", ".", *words]) == 0
+    assert given["types"] == ["p/A", "p/srv/S"] and given["out"] == "there"
+    assert {name: given[name] for name in OPTIONS} == OPTIONS
+    assert (given["ports"], given["force"]) == ("flat", True)
+    assert given["library"].distro == "iron" and "p/msg/A" in given["library"].names()
+    assert main(["build", "p/A", "--path", "."]) == 0
+    assert (given["ports"], given["force"], given["out"]) == ("records", False, "vhdl_out")
+    assert (given["wire"], given["bus_bytes"]) == (None, 8)
+
+
+def proved(monkeypatch, arguments, status=0):
+    """The tasks that `prove` would do."""
+    seen = {}
+
+    def run_proofs(tasks, jobs, *, bar):
+        seen.update(tasks=list(tasks), jobs=jobs, bar=bar)
+        return status
+
+    monkeypatch.setattr(prove_command, "run_proofs", run_proofs)
+    assert main(["prove", *arguments]) == status
+    return seen
+
+
+@pytest.mark.parametrize("status", [0, 1])
+def test_prove_is_given_all_options_and_gives_its_status(here, monkeypatch, status):
+    words = [*WORDS, "--timeout", "7", "--jobs", "3", "--distro", "iron"]
+    seen = proved(monkeypatch, ["p/A", "p/srv/S", "--path", ".", *words], status)
+    assert seen["jobs"] == 3 and seen["bar"] is False
+    names = ["p/msg/A", "p/srv/S_Request", "p/srv/S_Response", "p/srv/S_Event"]
+    assert [(t.name, t.direction) for t in seen["tasks"]] == [
+        (name, direction) for name in names for direction in DIRECTIONS
+    ]
+    for task in seen["tasks"]:
+        assert (task.wire, task.bus_bytes, task.max_message_bytes) == tuple(OPTIONS.values())
+        assert (task.timeout, task.distro, task.paths) == (7.0, "iron", (".",))
+
+
+@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+def test_prove_all_is_of_all_messages(here, monkeypatch, distro):
+    seen = proved(monkeypatch, ["--all", "--path", ".", "--distro", distro])
+    assert seen["bar"] is True
+    names = Library(distro, ["."]).names()
+    assert [(t.name, t.direction) for t in seen["tasks"]] == [
+        (name, direction) for name in names for direction in DIRECTIONS
+    ]
+    assert names[0] < names[-1] and len(names) > 150
+
+
+def test_list_has_services_and_actions_and_paths_in_their_order(here, capsys):
+    make_files(here, {"one/q/msg/Q.msg": "int8 one", "two/q/msg/Q.msg": "int8 two"})
+    assert main(["list", "--path", "."]) == 0
+    assert capsys.readouterr().out.split() == Library("lyrical", ["."]).interfaces()
+    for paths, word in ((("one", "two"), "one"), (("two", "one"), "two")):
+        words = [word for path in paths for word in ("--path", path)]
+        assert main(["show", "q/Q", *words]) == 0
+        assert capsys.readouterr().out == f"int8 {word}\n"
+
+
+@pytest.mark.parametrize(
+    ("number", "is_good"),
+    [("0", False), ("1", False), ("4294967295", True), ("4294967296", False), ("0x400", True)],
+)
+def test_sizes_of_messages_have_32_bits(here, capsys, number, is_good):
+    # One byte is a number, but too few for the type.
+    words = ["plan", "p/A", "--path", ".", "--max-message-bytes", number]
+    if is_good:
+        assert main(words) == 0
+        assert from_yaml(capsys.readouterr().out).max_message_bytes == int(number, 0)
+    elif number == "1":
+        assert main(words) == 1
+    else:
+        with pytest.raises(SystemExit, match="2"):
+            main(words)
+
+
+def test_plans_of_several_messages_are_kept_apart(here, capsys):
+    assert main(["plan", "p/srv/S", "--path", "."]) == 0
+    texts = capsys.readouterr().out.split("---\n")
+    assert [from_yaml(text).message for text in texts] == [
+        "p/srv/S_Request", "p/srv/S_Response", "p/srv/S_Event"
+    ]  # fmt: skip
+
+
+def test_sums_are_of_noetic_unless_a_recording_says_otherwise(here, capsys):
+    bag, mcap = make_recording(here, "bag"), make_recording(here, "mcap")
+    assert main(["md5", "p/A", "--path", "."]) == 0
+    assert main(["md5", "my_msgs/Wheel", "--bag", str(bag)]) == 0
+    capsys.readouterr()
+    assert main(["md5", "my_msgs/Wheel", "--bag", str(mcap)]) == 1
+    assert "md5 sums are of ROS 1" in capsys.readouterr().err
+    assert main(["md5", "p/A", "--path", ".", "--distro", "iron"]) == 1
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "said"),
+    [
+        (DefinitionError([Diagnostic(message="wrong")]), 1, "error: wrong\n"),
+        (BuildError("no"), 1, "error: no\n"),
+        (OSError(28, "No space left on device", "x"), 1, "error: 'x': No space left on device\n"),
+        (OSError(28, "No space left on device"), 1, "error: No space left on device\n"),
+        (PermissionError(13, "Permission denied", "y"), 1, "error: 'y': Permission denied\n"),
+        (OSError("odd"), 1, "error: odd\n"),
+        (KeyboardInterrupt(), 130, "interrupted\n"),
+    ],
+)
+def test_whatever_ends_a_command_is_in_its_status(here, capsys, monkeypatch, error, status, said):
+    def fail(*args, **options):
+        raise error
+
+    monkeypatch.setattr(cli, "build", fail)
+    assert main(["build", "p/A", "--path", "."]) == status
+    assert capsys.readouterr() == ("", said)
+
+
+@pytest.mark.parametrize("command", ["verify", "golden", "cover", "report", "prove"])
+@pytest.mark.parametrize(("returned", "status"), [(None, 0), (0, 0), (1, 1), (3, 3)])
+def test_the_status_of_a_command_is_that_of_what_it_runs(monkeypatch, command, returned, status):
+    monkeypatch.setattr(cli, f"run_{command}", lambda given: returned)
+    words = {"golden": ["check", "x"], "report": ["x"]}.get(command, ["std_msgs/msg/Bool"])
+    assert main([command, *words]) == status
+
+
+def test_proto_has_quotes_unless_told_otherwise(here, capsys):
+    assert main(["proto", "p/srv/S", "--path", "."]) == 0
+    assert capsys.readouterr().out == '"a: 0\n"\n'
+    assert main(["proto", "p/srv/S", "--path", ".", "--no-quotes"]) == 0
+    assert capsys.readouterr().out == "a: 0\n\n"
+
+
+def test_figures_are_of_the_wire_and_in_the_form_that_were_asked_for(here, capsys):
+    assert main(["metrics", "p/A", "--path", ".", "--wire", "ros1", "--format", "json"]) == 0
+    (row,) = json.loads(capsys.readouterr().out)
+    assert (row["wire"], row["min_bytes"]) == ("ros1", 9)
+
+
+def test_the_environment_is_searched_behind_paths(here, capsys, monkeypatch):
+    make_files(here / "ws", {"share/q/msg/Q.msg": "int8 workspace"})
+    make_files(here / "dir", {"q/msg/Q.msg": "int8 path"})
+    monkeypatch.setenv("AMENT_PREFIX_PATH", os.fspath(here / "ws"))
+    assert main(["show", "q/Q"]) == 0
+    assert capsys.readouterr().out == "int8 workspace\n"
+    assert main(["show", "q/Q", "--path", "dir"]) == 0
+    assert capsys.readouterr().out == "int8 path\n"
