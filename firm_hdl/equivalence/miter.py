@@ -169,6 +169,8 @@ class _Maker:
             Claim(what=what, amaranth=self._named(left), vhdl=self._named(right))
             for what, left, right in self._claims
         )
+        if not claims and not self._differences:
+            raise ProofError("neither side has an output or a register: there is nothing to prove")
         cells = [self._renamed(cell) for cell in [*self._amaranth.cells, *self._vhdl.cells]]
         self._inputs["anything"] = self._undriven(cells, claims)
         return Miter(

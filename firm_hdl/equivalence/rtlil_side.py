@@ -10,7 +10,7 @@ from typing import Any
 
 from firm_hdl.equivalence.circuit import Bit, Bits, Cell, Circuit, Flop, ProofError
 from firm_hdl.equivalence.gates import divided
-from firm_hdl.equivalence.tools import Tools
+from firm_hdl.equivalence.tools import Tools, answer_of
 
 __all__ = ["read_rtlil"]
 
@@ -35,7 +35,7 @@ def read_rtlil(text: str, tools: Tools, folder: Path, timeout: float | None = No
     """
     (folder / "amaranth.il").write_text(text, encoding="utf-8")
     tools.run_yosys(folder, _SCRIPT.format(name="amaranth"), timeout)
-    found = json.loads((folder / "amaranth.json").read_text(encoding="utf-8"))
+    found = json.loads(answer_of("Yosys", folder / "amaranth.json"))
     tops = [m for m in found["modules"].values() if int(m["attributes"].get("top", "0"), 2)]
     if len(tops) != 1:
         raise ProofError(f"the RTLIL has {len(tops)} outermost modules")

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from firm_hdl.equivalence.circuit import ProofError
 from firm_hdl.equivalence.miter import Miter
-from firm_hdl.equivalence.tools import ToolError, Tools, TooSlowError
+from firm_hdl.equivalence.tools import ToolError, Tools, TooSlowError, answer_of
 
 __all__ = ["Difference", "Verdict", "solve"]
 
@@ -104,7 +104,7 @@ def _write(path: Path, miter: Miter, *, values: bool) -> None:
 
 def _left(path: Path, claims: int) -> list[int]:
     """Read which bits of the answer are not the constant 0."""
-    answer = json.loads(path.read_text(encoding="utf-8"))
+    answer = json.loads(answer_of("Yosys", path))
     bits = answer["modules"]["miter"]["ports"]["differs"]["bits"]
     if len(bits) != claims:
         raise ProofError(f"Yosys returned {len(bits)} claims instead of {claims}")
@@ -128,7 +128,7 @@ def _search(miter: Miter, left: list[int], tools: Tools, folder: Path, timeout: 
         tools.run_yosys(folder, script, timeout * 2 + 60)
     except TooSlowError:
         return Verdict(equal=None, open=names)
-    said = (folder / "sat.txt").read_text(encoding="utf-8")
+    said = answer_of("Yosys", folder / "sat.txt")
     if "SAT proof finished - no model found: SUCCESS!" in said:
         return Verdict(equal=True)
     if "SAT proof finished - model found: FAIL!" not in said:
@@ -141,7 +141,7 @@ def _model(miter: Miter, path: Path) -> Difference:
     # WaveJSON has the value of one bit in its wave, and that of more beside it.
     found = {
         signal["name"]: int(re.sub("[^01]", "0", signal.get("data", signal["wave"])[0]), 2)
-        for signal in json.loads(path.read_text(encoding="utf-8"))["signal"]
+        for signal in json.loads(answer_of("Yosys", path))["signal"]
     }
     inputs = {name: found.get(f"in{n}", 0) for n, name in enumerate(miter.inputs)}
     wrong = [n for n in range(len(miter.claims)) if found.get("differs", 0) >> n & 1]

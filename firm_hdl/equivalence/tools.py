@@ -16,7 +16,7 @@ from pathlib import Path
 from firm_hdl.equivalence.circuit import ProofError
 from firm_hdl.verify.simulators import SimulatorMissingError, find_ghdl
 
-__all__ = ["MissingToolError", "TooSlowError", "ToolError", "Tools", "find_tools"]
+__all__ = ["MissingToolError", "TooSlowError", "ToolError", "Tools", "answer_of", "find_tools"]
 
 OLDEST_YOSYS = (0, 40)
 """What Amaranth 0.5 itself asks of a Yosys."""
@@ -58,6 +58,23 @@ class Tools:
         folder; and it may print nothing any more after its first `abc`, so it is asked for files.
         """
         _run([*self.yosys, "-q", "-p", script], folder, "Yosys", timeout)
+
+
+def answer_of(tool: str, file: Path) -> str:
+    """Return the text of a file that a tool was to write, and remove it: the next one is to be new.
+
+    Raises
+    ------
+    ToolError
+        If it is not there: a tool may end well and have done nothing.
+    """
+    try:
+        text = file.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        said = f"{tool} ended without an error, and has not written {file.name}"
+        raise ToolError(said) from None
+    file.unlink()
+    return text
 
 
 @cache

@@ -340,9 +340,14 @@ class Acceptance:
         """Compare everything that was sent with another simulator, if there is one."""
         if self.cross is not None:
             began = time.perf_counter()
-            self.result.comparison = self.cross.compare()
+            self.result.comparison = found = self.cross.compare()
             self.result.simulation_seconds += time.perf_counter() - began
-            self.result.failures += self.result.comparison.failures
+            title = self.cross.simulator.title
+            # The simulator was asked for, so its silence is one of the failures.
+            silent = isinstance(found.verdict, NotJudged)
+            self.result.failures += [
+                f"{title}: {detail}" if silent else detail for detail in found.verdict.details
+            ]
 
     def good(
         self,

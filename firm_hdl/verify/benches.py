@@ -32,7 +32,7 @@ from firm_hdl.sim.payloads import encoder_of
 from firm_hdl.verify.cases import Case
 from firm_hdl.verify.executors import run_each
 from firm_hdl.verify.libraries import library_of
-from firm_hdl.verify.processes import ToolError, cpu_seconds, run_tool
+from firm_hdl.verify.processes import ToolError, cpu_seconds, made_by, run_tool
 from firm_hdl.verify.records import Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.references import WIDE_REFERENCE, confirm, may_stand_in
 from firm_hdl.verify.runner import Task
@@ -169,10 +169,12 @@ def _run_bench(
         said = run_tool(["sh", str(vhdl / RUN_SCRIPT), *names], vhdl, environment=environment)
         simulation.append((began, time.perf_counter()))
         if not said.startswith("PASS "):
-            raise ToolError(said.strip() or f"the bench {entity} ended without a word")
-        _compare("packets that came out", (work / "results.txt").read_text(), right)
+            raise ToolError(said.strip() or f"{entity} ended without a word: it has not passed")
+        _compare("packets that came out", made_by(entity, work / "results.txt").read_text(), right)
         if entity == entities[0]:
-            transfers = _check_transfers(plan, cases, (work / "transfers.txt").read_text())
+            transfers = _check_transfers(
+                plan, cases, made_by(entity, work / "transfers.txt").read_text()
+            )
     return len(cases) * len(entities), transfers
 
 

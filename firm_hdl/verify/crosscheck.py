@@ -24,6 +24,7 @@ from firm_hdl.verify.semantics import Traffic, traffic
 from firm_hdl.verify.simulators import TextSimulator
 from firm_hdl.verify.trace import Trace, read_row
 from firm_hdl.verify.user_oracle import NotJudgedError
+from firm_hdl.verify.verdict import Failed, NotJudged, Passed, Verdict
 
 __all__ = ["Comparison", "Crosscheck", "first_difference"]
 
@@ -35,7 +36,7 @@ class Comparison:
     Attributes
     ----------
     failures : tuple of str
-        Empty if all is the same.
+        What differs.
     cycles, packets, transfers, statuses : int
         Counted in what the other simulator showed: cycles compared, packets that came out,
         transfers of leaves, and statuses of both converters.
@@ -49,6 +50,13 @@ class Comparison:
     transfers: int = 0
     statuses: int = 0
     seconds: float = 0.0
+
+    @property
+    def verdict(self) -> Verdict:
+        """What all of this comes to; cases are cycles that were compared."""
+        if self.failures:
+            return Failed(self.failures)
+        return Passed(self.cycles) if self.cycles else NotJudged("no cycle was compared")
 
 
 @dataclass(slots=True)

@@ -28,6 +28,7 @@ __all__ = [
     "cpu_seconds",
     "hang_up",
     "in_processes",
+    "made_by",
     "run_tool",
     "unwound_when_terminated",
     "worker_pool",
@@ -46,7 +47,28 @@ def cpu_seconds() -> float:
 
 
 class ToolError(Exception):
-    """A program failed, or did not end; the text is what it said."""
+    """A program failed, did not end, or did not do its work; the text is what it said, if anything.
+
+    Parameters
+    ----------
+    said : str
+    """
+
+    def __init__(self, said: str):
+        super().__init__(said.strip() or "it failed without a word")
+
+
+def made_by(tool: str, file: Path) -> Path:
+    """Return a file that a program was to make.
+
+    Raises
+    ------
+    ToolError
+        If it is not there: a program may end well and have done nothing.
+    """
+    if not file.is_file():
+        raise ToolError(f"{tool} ended without an error, and has not written {file.name}")
+    return file
 
 
 def run_tool(

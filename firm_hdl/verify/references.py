@@ -12,7 +12,13 @@ from dataclasses import dataclass
 
 from firm_hdl.model import Message
 from firm_hdl.verify.cases import Case
-from firm_hdl.verify.sut.client import ClientMissingError, Refusal, UnsupportedError
+from firm_hdl.verify.sut.client import (
+    ClientDiedError,
+    ClientMissingError,
+    Refusal,
+    UnsupportedError,
+    each_answered,
+)
 from firm_hdl.verify.sut.clients import client, close_clients
 from firm_hdl.verify.sut.known import known_writing
 from firm_hdl.verify.sut.values import Plain, from_objects, messages_of
@@ -115,6 +121,9 @@ def confirm(
     for name in names:
         try:
             failures += _differences(message, wire, some, values, name)
+        except ClientDiedError as error:
+            failures.append(f"{name} broke down: {error}")
+            continue
         except UnsupportedError:
             # It has no such type.
             continue
@@ -137,7 +146,8 @@ def _differences(
 ) -> list[str]:
     codec = client(name).open(message, wire)
     found = []
-    for case, value, answer in zip(cases, values, codec.encode_all(values), strict=True):
+    answers = each_answered(name, values, codec.encode_all(values))
+    for case, value, answer in zip(cases, values, answers, strict=True):
         if answer == case.packet:
             continue
         if known_writing(message, wire, value, name, "rosbags", codec):

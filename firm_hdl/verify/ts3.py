@@ -196,7 +196,7 @@ def _summarize(results: Sequence[Result], options: Options) -> None:
     print("wire bytes:", ", ".join(f"{name} {count} types" for name, count in writers.items()))
     compared = [result.comparison for result in results if result.comparison is not None]
     if compared:
-        same = sum(not each.failures for each in compared)
+        same = sum(isinstance(each.verdict, Passed) for each in compared)
         print(
             f"{options.simulator}: {same} of {len(compared)} types the same in every cycle; "
             f"{sum(each.cycles for each in compared)} cycles, "

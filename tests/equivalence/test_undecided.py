@@ -105,7 +105,7 @@ def test_the_command_asks_the_solvers(
         (["undecided"] * 2, "2 undecided", 1),
         (["unequal", "undecided"], "1 undecided, 1 unequal", 1),
         (["equal"] * 2, "2 equal", 0),
-        ([], "", 0),
+        ([], "", 1),
     ],
 )
 def test_summary_and_status_count_each_result_as_what_it_is(

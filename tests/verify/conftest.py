@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.verify.simulators import SimulatorMissingError, TextSimulator, find_ghdl, simulator
+from firm_hdl.verify.sut import client
 from tests.export.conftest import need
 
 
@@ -27,3 +28,16 @@ def of_verilog(request: pytest.FixtureRequest) -> TextSimulator:
         need(request.param, None)
     assert found is not None
     return found
+
+
+@pytest.fixture
+def library_here():
+    """Give a client library. Where it is not installed, skip the test; in CI, fail it."""
+
+    def get(name):
+        found = client(name)
+        if found.missing() is not None:
+            need(f"{name} ({found.missing()})", None)
+        return found
+
+    return get

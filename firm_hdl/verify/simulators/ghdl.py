@@ -7,7 +7,7 @@ from pathlib import Path
 
 from firm_hdl.export.top import Top
 from firm_hdl.export.vhdl import convert
-from firm_hdl.verify.processes import run_tool
+from firm_hdl.verify.processes import made_by, run_tool
 from firm_hdl.verify.replay_bench import replay_bench
 from firm_hdl.verify.simulators.interface import find_program
 from firm_hdl.verify.trace import Trace
@@ -45,7 +45,7 @@ class Ghdl:
         (folder / "stimuli.txt").write_text("".join(f"{row}\n" for row in trace.stimuli))
         run_tool([self.path, "-a", "--std=08", *files], folder)
         run_tool([self.path, "--elab-run", "--std=08", "replay", *RUN], folder)
-        return (folder / "results.txt").read_text().splitlines()
+        return made_by(self.title, folder / "results.txt").read_text().splitlines()
 
 
 def find_ghdl() -> str:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from firm_hdl.export.top import Top
-from firm_hdl.verify.processes import run_tool
+from firm_hdl.verify.processes import made_by, run_tool
 from firm_hdl.verify.simulators.interface import SimulatorMissingError, find_program
 from firm_hdl.verify.simulators.verilog import (
     RESULTS,
@@ -94,8 +94,9 @@ class Icarus:
         """Run what has been written to a folder; return the rows of outputs."""
         compiler = [self.path, f"-g{standard}", "-s", "replay", "-o", "replay.vvp"]
         run_tool([*compiler, *files], folder)
+        made_by(self.title, folder / "replay.vvp")
         run_tool([self.run_path, "-n", "replay.vvp"], folder)
-        return (folder / RESULTS).read_text().upper().splitlines()
+        return made_by("vvp", folder / RESULTS).read_text().upper().splitlines()
 
 
 def _bench(trace: Trace) -> Iterator[str]:

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from firm_hdl.export.top import Top
-from firm_hdl.verify.processes import ToolError, run_tool
+from firm_hdl.verify.processes import ToolError, made_by, run_tool
 from firm_hdl.verify.simulators.interface import SimulatorMissingError, find_program
 from firm_hdl.verify.simulators.verilog import (
     RESULTS,
@@ -35,6 +35,7 @@ COMPILERS = ("g++", "c++", "clang++")
 # What is compiled runs for less than a second: anything that is optimized takes longer to compile.
 COMPILE = ("-O0", "-w", "-std=gnu++17")
 MODELS = "model"
+PARTS = "Vreplay_classes.mk"
 HERE = Path(__file__).parent
 VERILATE = (
     # Warnings are the business of `waivers.vlt`; what is no Verilog fails all the same.
@@ -89,6 +90,7 @@ class Verilator:
         (folder / "replay.v").write_text("".join(_wrapper(trace)), encoding="utf-8")
         run_tool([self.path, *VERILATE, "replay.v", *files], folder)
         models = folder / MODELS
+        made_by(self.title, models / PARTS)
         # As one file, since most of what the compiler reads are Verilator's headers.
         sources = sorted(path.name for path in models.glob("*.cpp"))
         text = "".join(f'#include "{name}"\n' for name in sources)
@@ -96,8 +98,8 @@ class Verilator:
         runtime = _runtime(self.path, self.compiler, _runtime_parts(models))
         command = [*self.compiler, *COMPILE, *runtime.includes, f"{MODELS}/main.cc"]
         run_tool([*command, *runtime.objects, "-pthread", "-o", "replay"], folder)
-        run_tool([str(folder / "replay")], folder)
-        return (folder / RESULTS).read_text().splitlines()
+        run_tool([str(made_by(self.compiler[0], folder / "replay"))], folder)
+        return made_by("the simulation", folder / RESULTS).read_text().splitlines()
 
 
 def _find_compiler() -> tuple[str, ...]:
@@ -149,6 +151,8 @@ class _Runtime:
 
     def __init__(self, verilator: str, compiler: Sequence[str], parts: Sequence[str]):
         root = run_tool([verilator, "--getenv", "VERILATOR_ROOT"], HERE).strip()
+        if not root:
+            raise ToolError("Verilator did not say where its runtime is")
         library = Path(root, "include")
         self.includes = [f"-I{library}", f"-I{HERE}"]
         # Removed with this object, at the end of the process.
@@ -168,7 +172,7 @@ def _runtime(verilator: str, compiler: tuple[str, ...], parts: tuple[str, ...]) 
 
 def _runtime_parts(models: Path) -> tuple[str, ...]:
     """Return the sources that Verilator's makefile names for its runtime; versions differ."""
-    text = (models / "Vreplay_classes.mk").read_text(encoding="utf-8")
+    text = (models / PARTS).read_text(encoding="utf-8")
     found = re.search(r"^VM_GLOBAL_FAST \+= ((?:\\\n|[^\n])*)", text, re.MULTILINE)
     parts = found[1].replace("\\", " ").split() if found else []
     if not parts:

@@ -13,7 +13,16 @@ from firm_hdl.model import Message
 from firm_hdl.verify.sut.values import Plain
 from firm_hdl.wire import Wire
 
-__all__ = ["BatchCodec", "Client", "ClientMissingError", "Codec", "Refusal", "UnsupportedError"]
+__all__ = [
+    "BatchCodec",
+    "Client",
+    "ClientDiedError",
+    "ClientMissingError",
+    "Codec",
+    "Refusal",
+    "UnsupportedError",
+    "each_answered",
+]
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -36,6 +45,13 @@ class ClientMissingError(Exception):
 
 class UnsupportedError(Exception):
     """A library cannot have a type at all; the text says why."""
+
+
+class ClientDiedError(UnsupportedError):
+    """A library broke down when it was asked: its process died, or gave answers to other questions.
+
+    Whoever judges by it, or judges it, has to say so.
+    """
 
 
 class Codec(ABC):
@@ -90,6 +106,20 @@ class BatchCodec(Codec):
         if isinstance(answer, Refusal):
             raise answer
         return answer
+
+
+def each_answered(library: str, questions: Sequence[object], answers: Sequence[R]) -> Sequence[R]:
+    """Return the answers, if there is one to each question.
+
+    Raises
+    ------
+    ClientDiedError
+    """
+    if len(answers) != len(questions):
+        raise ClientDiedError(
+            f"{library} gave {len(answers)} answers to {len(questions)} questions"
+        )
+    return answers
 
 
 def _answer(ask: Callable[[T], R], question: T) -> R | Refusal:

@@ -143,6 +143,10 @@ def _differences(trials: Sequence[tuple[Task, Trial]], options: SutOptions) -> I
                 yield "\n".join([head, *described(small), f"    again: {again}"])
             elif shown_of[key] <= MOST_NAMED:
                 yield f"{head}\n    again: {again}"
+    for task, trial in trials:
+        if isinstance(trial.obstacle, Failed):
+            why = trial.obstacle.failures[0]
+            yield f"FAIL {trial.library}: {trial.type} ({task.distro}): {why}"
     for (library, what), count in shown_of.items():
         if count > MOST_NAMED:
             yield f"DIFFERS {library}, {what}: and {count - MOST_NAMED} more types"

@@ -20,8 +20,15 @@ from typing import ClassVar
 
 from firm_hdl.model import Array, FieldType, Message, Primitive, Text
 from firm_hdl.model import Sequence as SequenceType
-from firm_hdl.verify.processes import ToolError, hang_up, run_tool
-from firm_hdl.verify.sut.client import BatchCodec, Client, Codec, Refusal, UnsupportedError
+from firm_hdl.verify.processes import ToolError, hang_up, made_by, run_tool
+from firm_hdl.verify.sut.client import (
+    BatchCodec,
+    Client,
+    ClientDiedError,
+    Codec,
+    Refusal,
+    UnsupportedError,
+)
 from firm_hdl.verify.sut.values import Plain, messages_of, packed, unpacked
 from firm_hdl.wire import Wire
 
@@ -131,21 +138,25 @@ class _Program:
             start_new_session=True,
         )
         self._types = ""
-        self.version = str(_text(self._read()))
+        try:
+            self.version = str(_text(self._read()))
+        except (struct.error, ValueError):
+            self.close()
+            raise ToolError("the program that calls Fast CDR does not say what it is") from None
 
     def ask(self, types: str, what: bytes, items: Sequence[bytes]) -> list[bytes | Refusal]:
         """Ask for all items at once."""
-        if self._process is None:
-            self._start()
         try:
+            if self._process is None:
+                self._start()
             if types != self._types:
                 list(self._exchange(b"T" + types.encode("ascii")))
                 self._types = types
             sized = b"".join(struct.pack("<I", len(item)) + item for item in items)
             answers = list(self._exchange(what + struct.pack("<I", len(items)) + sized))
-        except (OSError, struct.error):
+        except (OSError, ToolError, struct.error):
             self.close()
-            raise UnsupportedError("the program that calls Fast CDR died") from None
+            raise ClientDiedError("the program that calls Fast CDR died") from None
         return answers
 
     def _exchange(self, request: bytes) -> Iterator[bytes | Refusal]:
@@ -206,7 +217,7 @@ def _compiled() -> Path:
         made = Path(scratch) / "program"
         run_tool([*command, "-o", str(made), str(_SOURCE), "-lfastcdr"], Path(scratch))
         # Whoever comes second puts the same in its place.
-        os.replace(made, program)
+        os.replace(made_by(compiler, made), program)
     return program
 
 

@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from firm_hdl.model import Array, FieldType, Message
 from firm_hdl.model import Sequence as SequenceType
-from firm_hdl.verify.sut.client import BatchCodec, Client, Codec, Refusal, UnsupportedError
+from firm_hdl.verify.sut.client import (
+    BatchCodec,
+    Client,
+    ClientDiedError,
+    Codec,
+    Refusal,
+    UnsupportedError,
+)
 from firm_hdl.verify.sut.objects import full_text
 from firm_hdl.verify.sut.values import Plain, from_json, messages_of, to_json
 from firm_hdl.wire import Wire
@@ -87,11 +94,16 @@ class _GenpyCodec(BatchCodec):
         self._opened[id(self._worker)] = self
 
     def _facts(self, request: dict[str, Any]) -> Any:
+        from firm_hdl.verify.ts1.worker import DIED
+
         answer = self._worker.ask(request)
-        if "facts" not in answer:
-            self._opened.pop(id(self._worker), None)
-            raise UnsupportedError(f"genpy: {answer.get('refused') or answer.get('failed')}")
-        return answer["facts"]
+        if "facts" in answer:
+            return answer["facts"]
+        self._opened.pop(id(self._worker), None)
+        said = answer.get("refused") or answer.get("failed")
+        if not said or said == DIED:
+            raise ClientDiedError(f"genpy: {said or 'it answered nothing'}")
+        raise UnsupportedError(f"genpy: {said}")
 
     def _ask(self, what: str, items: Sequence[Any]) -> list[Any]:
         if self._opened.get(id(self._worker)) is not self:

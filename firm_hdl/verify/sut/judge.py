@@ -8,7 +8,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from firm_hdl.model import Message
-from firm_hdl.verify.sut.client import Client, Codec, Refusal, UnsupportedError
+from firm_hdl.verify.sut.client import (
+    Client,
+    ClientDiedError,
+    Codec,
+    Refusal,
+    UnsupportedError,
+    each_answered,
+)
 from firm_hdl.verify.sut.finding import Finding
 from firm_hdl.verify.sut.known import known_keys
 from firm_hdl.verify.sut.odd import (
@@ -44,8 +51,8 @@ class Trial:
         Others, the first of each kind.
     unknown : int
         How many others there are.
-    obstacle : NotJudged or None
-        Why there is nothing.
+    obstacle : NotJudged, Failed or None
+        Why there is nothing: a library has no such type, or broke down.
     is_asked : bool
         Whether the library was asked to judge just this: not if it does not speak the wire of a
         distribution that nobody named.
@@ -59,7 +66,7 @@ class Trial:
     known: Counter[str] = field(default_factory=Counter)
     findings: list[Finding] = field(default_factory=list)
     unknown: int = 0
-    obstacle: NotJudged | None = None
+    obstacle: NotJudged | Failed | None = None
     is_asked: bool = True
 
     @property
@@ -103,6 +110,8 @@ class Contest:
         trial = Trial(library=self.library.name, reference=self.reference.name, type=message.name)
         try:
             self._judge(trial, message, values, *self._open(message))
+        except ClientDiedError as error:
+            trial.obstacle = Failed((str(error),))
         except UnsupportedError as error:
             trial.obstacle = NotJudged(str(error) or "the type is not supported")
         return trial
@@ -121,7 +130,8 @@ class Contest:
         theirs: Codec,
         right: Codec,
     ) -> None:
-        packets = right.encode_all(values)
+        name = self.reference.name
+        packets = each_answered(name, values, right.encode_all(values))
         asked = [_Asked("encode", value, None) for value in values]
         pairs = [(v, p) for v, p in zip(values, packets, strict=True) if isinstance(p, bytes)]
         asked += [_Asked("decode", value, packet) for value, packet in pairs]
@@ -134,7 +144,8 @@ class Contest:
             for oddity, value, packet in odd_packets(message, self.wire, usable)
             if self._reads(oddity.name)
         ]
-        answers = zip(asked, _answers(right, asked), _answers(theirs, asked), strict=True)
+        expectations = _answers(name, right, asked)
+        answers = zip(asked, expectations, _answers(self.library.name, theirs, asked), strict=True)
         for each, expected, got in answers:
             trial.comparisons += 1
             trial.answers += not isinstance(expected, Refusal)
@@ -173,7 +184,8 @@ class Contest:
             asked = self._asked(message, what, value, right)
             if asked is None:
                 return None
-            (expected,), (got,) = (_answers(codec, [asked]) for codec in (right, theirs))
+            (expected,) = _answers(self.reference.name, right, [asked])
+            (got,) = _answers(self.library.name, theirs, [asked])
         except UnsupportedError:
             return None
         finding = self._finding(message, asked, expected, got)
@@ -209,10 +221,10 @@ class _Asked:
     packet: bytes | None
 
 
-def _answers(codec: Codec, asked: Sequence[_Asked]) -> list[Any]:
+def _answers(name: str, codec: Codec, asked: Sequence[_Asked]) -> list[Any]:
     """Ask a library, all values and all packets at once."""
     values = [each.value for each in asked if each.packet is None]
     packets = [each.packet for each in asked if each.packet is not None]
-    written = iter(codec.encode_all(values) if values else ())
-    read = iter(codec.decode_all(packets) if packets else ())
+    written = iter(each_answered(name, values, codec.encode_all(values)) if values else ())
+    read = iter(each_answered(name, packets, codec.decode_all(packets)) if packets else ())
     return [next(written) if each.packet is None else next(read) for each in asked]

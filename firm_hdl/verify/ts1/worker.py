@@ -12,10 +12,12 @@ from typing import Any
 
 from firm_hdl.verify.processes import hang_up
 
-__all__ = ["ROS_PYTHON", "Worker"]
+__all__ = ["DIED", "ROS_PYTHON", "Worker"]
 
 ROS_PYTHON = os.environ.get("FIRM_HDL_ROS_PYTHON", "/usr/bin/python3")
 """The Python that ROS's modules are installed for; Debian's is the system's."""
+
+DIED = "the process that was asked died"
 
 _SCRIPT = Path(__file__).with_name("worker_script.py")
 
@@ -54,7 +56,7 @@ class Worker:
         answer = self._exchange(json.dumps(request))
         if answer is None:
             self.close()
-            return {"failed": "the process that was asked died"}
+            return {"failed": DIED}
         return answer
 
     @property

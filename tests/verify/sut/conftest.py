@@ -1,4 +1,4 @@
-"""What tests of client libraries share: types from a text, and libraries where they are here."""
+"""What tests of client libraries share: types from a text."""
 
 from __future__ import annotations
 
@@ -7,21 +7,6 @@ from itertools import count
 import pytest
 
 from firm_hdl.frontend import Library
-from firm_hdl.verify.sut import client
-from tests.export.conftest import need
-
-
-@pytest.fixture
-def library_here():
-    """Give a client library. Where it is not installed, skip the test; in CI, fail it."""
-
-    def get(name):
-        found = client(name)
-        if found.missing() is not None:
-            need(f"{name} ({found.missing()})", None)
-        return found
-
-    return get
 
 
 @pytest.fixture

@@ -1,0 +1,196 @@
+"""Tools that are called, end, and have said and done nothing: nothing is a pass because of them."""
+
+from __future__ import annotations
+
+import os
+import stat
+
+import pytest
+
+import firm_hdl.verify.ts1.worker as worker
+from firm_hdl.cli import main
+from firm_hdl.equivalence import MissingToolError, ProofError, Tools, find_tools, prove
+from firm_hdl.equivalence.converters import converter_vhdl
+from firm_hdl.frontend import Library
+from firm_hdl.verify import Options, accept, distro_oracle, make_cases
+from firm_hdl.verify.crosscheck import Comparison
+from firm_hdl.verify.processes import ToolError
+from firm_hdl.verify.references import confirm
+from firm_hdl.verify.simulators import SimulatorMissingError, Verilator
+from firm_hdl.verify.sut import CLIENTS
+from firm_hdl.verify.sut.client import ClientDiedError, each_answered
+from firm_hdl.verify.sut.judge import Contest
+from firm_hdl.verify.verdict import Failed, NotJudged, Passed
+from tests.export.conftest import need
+
+BOOL = "std_msgs/msg/Bool"
+SILENT = {0: "#!/bin/sh\nexit 0\n", 1: "#!/bin/sh\nexit 1\n"}
+ANY = pytest.mark.parametrize("status", SILENT)
+
+
+@pytest.fixture
+def fake(tmp_path, monkeypatch):
+    """Put programs on the PATH, in front of the real ones; return the path of the last."""
+    folder = tmp_path / "bin"
+    folder.mkdir()
+    monkeypatch.setenv("PATH", f"{folder}{os.pathsep}{os.environ['PATH']}")
+    for name in ("GHDL", "IVERILOG", "VERILATOR", "CXX"):
+        monkeypatch.delenv(name, raising=False)
+
+    def put(text, *names):
+        for name in names:
+            (folder / name).write_text(text)
+            (folder / name).chmod(stat.S_IRWXU)
+        return str(folder / names[-1])
+
+    return put
+
+
+@ANY
+def test_bench_does_not_pass_with_a_ghdl_that_says_nothing(fake, capsys, status):
+    fake(SILENT[status], "ghdl")
+    call = ["verify", "--systems", "bench", "--distro", "lyrical", "--jobs", "1", BOOL]
+    assert main(call) == 1
+    said = capsys.readouterr().out
+    why = "ended without a word: it has not passed" if status == 0 else "exit status 1"
+    assert f"FAIL {BOOL} (lyrical)\n" in said and why in said
+    (row,) = [line.split() for line in said.splitlines() if line.startswith("lyrical")]
+    assert row[:6] == ["lyrical", "1", "0", "1", "0", "0"]
+
+
+@ANY
+@pytest.mark.parametrize(
+    ("simulator", "names"),
+    [("ghdl", ["ghdl"]), ("iverilog", ["vvp", "iverilog"]), ("verilator", ["verilator"])],
+)
+def test_cross_check_does_not_pass_with_a_simulator_that_says_nothing(
+    fake, status, simulator, names
+):
+    fake(SILENT[status], *names)
+    few = {"most_cases": 1, "stalled": False, "broken": False, "references": ()}
+    result = accept("lyrical", BOOL, Options(simulator=simulator, **few))
+    (failure,) = result.verdict.failures
+    assert ("has not written " if status == 0 else "exit status 1") in failure
+    assert isinstance(accept("lyrical", BOOL, Options(**few)).verdict, Passed)
+
+
+def test_cross_check_does_not_pass_with_a_compiler_that_says_nothing(fake):
+    try:
+        Verilator()
+    except SimulatorMissingError as error:
+        need(f"verilator ({error})", None)
+    compiler = fake(SILENT[0], "g++")
+    result = accept("lyrical", BOOL, Options(simulator="verilator", most_cases=1))
+    (failure,) = result.verdict.failures
+    assert failure == f"Verilator: {compiler} ended without an error, and has not written replay"
+
+
+def test_comparison_of_no_cycle_is_no_pass():
+    assert Comparison(failures=()).verdict == NotJudged("no cycle was compared")
+    assert Comparison(failures=(), cycles=3).verdict == Passed(3)
+    assert isinstance(Comparison(failures=("",), cycles=3).verdict, Failed)
+
+
+def test_error_of_a_tool_has_a_text():
+    assert str(ToolError(" \n")) == "it failed without a word"
+
+
+@ANY
+@pytest.mark.parametrize("name", ["ghdl", "yosys"])
+def test_nothing_is_proved_with_tools_that_say_nothing(fake, status, name):
+    try:
+        yosys = find_tools().yosys
+    except MissingToolError as error:
+        need(str(error), None)
+    tool = (fake(SILENT[status], name),)
+    if name == "ghdl":
+        tools = Tools(ghdl=tool, yosys=yosys)
+        match = "GHDL's netlist is empty" if status == 0 else "GHDL failed: 1"
+    else:
+        # It is asked before anybody looks at what GHDL said.
+        tools = Tools(ghdl=(fake(SILENT[0], "ghdl"),), yosys=tool)
+        match = "Yosys ended without an error" if status == 0 else "Yosys failed: 1"
+    rtlil, vhdl = converter_vhdl(Library("lyrical").message(BOOL), "serializer")
+    with pytest.raises(ProofError, match=match):
+        prove(rtlil, vhdl, tools=tools)
+
+
+HEADERS = '#!/bin/sh\ncase "$1" in -E) echo "#define FASTCDR_VERSION_MAJOR 1"; exit 0;; esac\n'
+MAKES_A_PROGRAM = """
+while [ "$1" != -o ]; do shift; done
+printf '#!/bin/sh\\nexit 0\\n' >"$2"
+chmod +x "$2"
+"""
+
+
+@pytest.mark.parametrize(
+    ("compiler", "why"),
+    [
+        (SILENT[0], "Fast CDR's headers are not installed"),
+        (SILENT[1], "Fast CDR's headers are not installed"),
+        (HEADERS, "g++ ended without an error, and has not written program"),
+        (HEADERS + "exit 1\n", "exit status 1"),
+        (HEADERS + MAKES_A_PROGRAM, "does not say what it is"),
+    ],
+)
+def test_fast_cdr_is_not_here_where_its_compiler_does_nothing(
+    fake, tmp_path, monkeypatch, compiler, why
+):
+    fake(compiler, "g++")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    assert why in CLIENTS["fastcdr"]().missing()
+
+
+@ANY
+def test_genpy_is_not_here_where_its_python_says_nothing(fake, monkeypatch, status):
+    monkeypatch.setattr(worker, "ROS_PYTHON", fake(SILENT[status], "python-of-ros"))
+    assert "its Python does not start" in CLIENTS["genpy"]().missing()
+
+
+def given_cases(distro, name):
+    wire = "ros1" if distro == "noetic" else "cdr"
+    message = Library(distro).message(name)
+    return message, wire, list(make_cases(distro_oracle(distro), name, wire=wire, most=3))
+
+
+@pytest.mark.parametrize("answer", [{}, {"failed": worker.DIED}, {"facts": []}])
+def test_reference_that_answers_nothing_confirms_nothing(monkeypatch, library_here, answer):
+    genpy = library_here("genpy")
+    message, wire, cases = given_cases("noetic", BOOL)
+    assert confirm(message, wire, cases, ["genpy"]).by == ("genpy",)
+    monkeypatch.setattr(type(genpy._worker), "ask", lambda self, request: answer)
+    found = confirm(message, wire, cases, ["genpy"])
+    assert found.by == () and len(found.failures) == 1
+    assert found.failures[0].startswith("genpy broke down: genpy")
+
+
+class Few:
+    """A library that forgets the last answer."""
+
+    name, wires, byte_orders = "few", frozenset({"cdr"}), ("little",)
+
+    def __init__(self, right):
+        self.right = right
+
+    def open(self, message, wire):
+        codec = self.right.open(message, wire)
+        encode_all = codec.encode_all
+        codec.encode_all = lambda values: encode_all(values)[:-1]
+        return codec
+
+
+@pytest.mark.parametrize("is_reference", [False, True])
+def test_library_that_does_not_answer_everything_fails(library_here, is_reference):
+    rosbags = library_here("rosbags")
+    both = (rosbags, Few(rosbags)) if is_reference else (Few(rosbags), rosbags)
+    message = Library("lyrical").message(BOOL)
+    trial = Contest(*both, "cdr").judge(message, [{"data": True}, {"data": False}])
+    (failure,) = trial.verdict.failures
+    assert failure.startswith("few gave ") and " questions" in failure
+
+
+def test_each_question_has_its_answer():
+    assert each_answered("a", [1, 2], "xy") == "xy"
+    for answers in ("", "x", "xyz"):
+        with pytest.raises(ClientDiedError, match=rf"^a gave {len(answers)} answers to 2 quest"):
+            each_answered("a", [1, 2], answers)
