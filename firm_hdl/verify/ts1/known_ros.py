@@ -145,6 +145,8 @@ def _unquoted_default(field: dict[str, Any]) -> dict[str, Any]:
 
 
 def _unquoted(element: Any) -> Any:
+    if not isinstance(element, str):
+        return element
     text = shown(element)
     is_quoted = text != element and text[:1] == text[-1:] and text[:1] in ("'", '"')
     return text[1:-1] if is_quoted else text
