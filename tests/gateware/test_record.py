@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 from amaranth.back import rtlil
-from amaranth.hdl import Module, signed, unsigned
+from amaranth.hdl import ClockDomain, Module, signed, unsigned
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 from amaranth.sim import Simulator
@@ -217,3 +217,85 @@ def test_lanes_that_no_record_has_may_be_wider_than_a_cell():
     message = make("ros1", {"rows": (make("ros1", {"row": "uint8[65]"}, "Row"), "[100]")})
     for adapter in (RecordReader, RecordWriter):
         assert rtlil.convert(adapter(message, bus_bytes=64))
+
+
+# Arrays of more than one transfer, which are collected and split by counters.
+MANY = make("ros1", {"a": "uint8[5]", "z": "uint8"})
+
+
+def run_with_reset(dut, before, after):
+    """Run testbenches in front of and behind a reset of one cycle."""
+    top = Module()
+    top.domains.sync = domain = ClockDomain("sync")
+    top.submodules.dut = dut
+
+    async def testbench(ctx):
+        await before(ctx)
+        ctx.set(domain.rst, 1)
+        await ctx.tick()
+        ctx.set(domain.rst, 0)
+        await after(ctx)
+
+    simulator = Simulator(top)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(testbench)
+    simulator.run()
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_reader_forgets_what_it_has_collected(count):
+    dut = RecordReader(MANY, bus_bytes=2)
+    a, z = dut.message.a.items, dut.message.z
+
+    async def give(ctx, values):
+        for value in values:
+            ctx.set(a.payload, {"data": value, "last": 0})
+            ctx.set(a.valid, 1)
+            assert ctx.get(a.ready)
+            await ctx.tick()
+        ctx.set(a.valid, 0)
+
+    async def before(ctx):
+        await give(ctx, [(91, 92)] * count)
+
+    async def after(ctx):
+        await give(ctx, [(1, 2), (3, 4), (5, 0)])
+        assert not ctx.get(dut.record.valid)
+        ctx.set(z.payload, 6)
+        ctx.set(z.valid, 1)
+        assert ctx.get(dut.record.valid)
+        payload = ctx.get(dut.record.payload)
+        assert (list(payload["a"]), payload["z"]) == ([1, 2, 3, 4, 5], 6)
+
+    run_with_reset(dut, before, after)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_writer_begins_again(count):
+    dut = RecordWriter(MANY, bus_bytes=2)
+    a = dut.message.a.items
+
+    async def take(ctx, number):
+        got = []
+        for _ in range(number):
+            assert ctx.get(a.valid)
+            payload = ctx.get(a.payload)
+            got.append((tuple(payload.data), payload.last))
+            ctx.set(a.ready, 1)
+            await ctx.tick()
+        ctx.set(a.ready, 0)
+        return got
+
+    async def before(ctx):
+        ctx.set(dut.record.payload, {"a": [9] * 5, "z": 9})
+        ctx.set(dut.record.valid, 1)
+        await take(ctx, count)
+        ctx.set(dut.record.valid, 0)
+
+    async def after(ctx):
+        ctx.set(dut.record.payload, {"a": [1, 2, 3, 4, 5], "z": 6})
+        ctx.set(dut.record.valid, 1)
+        assert await take(ctx, 3) == [((1, 2), 0), ((3, 4), 0), ((5, 0), 1)]
+        assert not ctx.get(a.valid)
+
+    run_with_reset(dut, before, after)

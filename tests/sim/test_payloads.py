@@ -35,6 +35,11 @@ from firm_hdl.sim.payloads import (
             ((1, 0, 0, 1), False),
             {"data": [1, 0, 0, 1], "last": 0},
         ),
+        (
+            Leaf(path=("a",), kind="items", type="uint8", signed=False, lanes=64),
+            (tuple(range(1, 65)), True),
+            {"data": [*range(1, 65)], "last": 1},
+        ),
     ],
 )
 def test_bits_are_those_of_the_stream(leaf, payload, value):

@@ -92,7 +92,7 @@ def test_transfers(leaf, payloads, said):
 def test_leaves_that_are_missing_or_unknown():
     assert len(told(transfers={})) == 3
     more = [{**WANTED.transfers[0], ("y",): [1]}, *WANTED.transfers[1:]]
-    found = list(run_differences("here", PLAN, SEEN, replace(WANTED, transfers=more)))
+    found = list(run_differences("here", PLAN, SEEN, replace(WANTED, transfers=more), NAMES))
     assert found == ["here: no leaves y"]
 
 
