@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import pytest
-from amaranth.hdl import Module, Signal
+from amaranth.hdl import Cat, Module, Signal
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -20,6 +20,7 @@ from firm_hdl.sim import (
     decode,
     encode,
     leaf_name,
+    leaf_streams,
     loopback,
     to_transfers,
 )
@@ -310,3 +311,34 @@ def test_cycles_of_a_run_that_fails_are_counted():
     with pytest.raises(DeadlineError):
         harness.run(packets=[PACKET] * 9, limit=20)
     assert harness.bench.cycles == 21
+
+
+def test_one_transfer_too_many_is_left_over():
+    transfers = to_transfers(plan_of(IMAGE), IMAGE, VALUE)
+    result = encode(IMAGE, [{leaf: list(each) for leaf, each in transfers.items()}])
+    assert result.left == {}
+    last = max(transfers)
+    transfers[last].append(transfers[last][-1])
+    assert encode(IMAGE, [transfers]).left == {last: 1}
+
+
+def test_gates_stay_open_behind_what_is_offered():
+    # What the serializer sees are streams, too: valid does not fall before the transfer.
+    rx, tx = Deserializer(IMAGE), Serializer(IMAGE)
+    ports = leaf_streams(tx.message, tx.tree).values()
+    probes = [Cat(port.valid for port in ports), Cat(port.ready for port in ports)]
+    harness = Harness(rx, tx, gated=True, probes=probes)
+    waited = fell = 0
+    waiting = 0
+
+    def observe(values):
+        nonlocal waited, fell, waiting
+        valid, ready = values
+        waited += waiting != 0
+        fell += (waiting & ~valid) != 0
+        waiting = valid & ~ready
+
+    stalls = {"message": Stalls(0.5, 1, 2, seed=3), "packets_out": Stalls.bits("0001")}
+    seen = harness.run(packets=[PACKET] * 4, stalls=stalls, observe=observe)
+    assert seen.packets == [PACKET] * 4
+    assert waited > 20 and not fell

@@ -131,6 +131,7 @@ def test_one_message_is_taken_and_no_more():
         arrays = {leaf for leaf, each in leaves_of(o) if each.kind == "items"}
         with pytest.raises(DeadlineError) as caught:
             await o.receive(ctx, deadline=5)
+        assert str(caught.value).startswith("No transfer of a message in 6 cycles; outstanding: ")
         for leaf in arrays - {min(arrays)}:
             assert f"message.{o.plan.leaves[leaf]} (" in str(caught.value)
         _, _, *valid = await ctx.tick().sample(*(port.valid for port in o.streams.values()))

@@ -206,6 +206,24 @@ def test_fault_in_the_golden_model_is_found(monkeypatch):
     assert not any(f.startswith("hardware") for f in result.failures)
 
 
+@pytest.mark.parametrize(
+    ("which", "change", "said"),
+    [
+        ("decode", lambda found: replace(found, status="TRUNCATED"), "status TRUNCATED"),
+        ("encode", lambda found: (found[0], "ITEMS"), "status ITEMS when encoding"),
+        ("encode", lambda found: (found[0], "LENGTH"), "status LENGTH when encoding"),
+        ("encode", lambda found: (found[0] + b"\0", found[1]), "packet 0 of 1 differs at byte 5: "),
+    ],
+)
+def test_each_answer_of_the_golden_model_is_judged(monkeypatch, which, change, said):
+    original = getattr(acceptance, which)
+    monkeypatch.setattr(acceptance, which, lambda *given: change(original(*given)))
+    result = accept("humble", "std_msgs/msg/UInt8", Options(simulated=False))
+    assert result.failures
+    for failure in result.failures:
+        assert failure.startswith("golden model, case ") and f": {said}" in failure
+
+
 def test_unknown_types_fail_and_say_how_to_repeat():
     result = accept("humble", "no_msgs/msg/Such", Options(bus_bytes=4, seed=3, stalled=False))
     assert len(result.failures) == 1

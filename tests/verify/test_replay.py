@@ -124,6 +124,21 @@ def test_oracle_that_reads_another_byte_disagrees(monkeypatch, tmp_path):
     assert any(each.startswith("hardware: packet 0 of 1 differs") for each in result.failures)
 
 
+def test_what_rosbags_cannot_read_is_judged_by_what_it_can(monkeypatch, tmp_path):
+    latin = TEXT[:9] + b"\xff" + TEXT[10:]
+    bag = strings(tmp_path, latin)
+    assert replayed(bag).failures == []
+    original = Oracle.read
+
+    def read(self, packet, name, wire):
+        return original(self, packet.replace(b"c\0", b"C\0"), name, wire)
+
+    # Beside the text that is not UTF-8, rosbags reads another letter.
+    monkeypatch.setattr(Oracle, "read", read)
+    (failure,) = replayed(bag).failures
+    assert "its 12 bytes do not fit the definition: status OK; rosbags says: " in failure
+
+
 @pytest.mark.parametrize(
     ("packet", "kind"),
     [
