@@ -109,7 +109,7 @@ def a_cell(kind: str, width: int, signed: bool, **ports: Spec) -> Cell:
 @pytest.mark.parametrize("signed", [False, True])
 def test_operators_of_two(kind, signed):
     found = 0
-    widths = (1,) if kind in ("$eq", "$ne", "$lt", "$le", "$gt", "$ge") else (1, 3, 5)
+    widths = (1,) if kind in ("$eq", "$ne", "$lt", "$le", "$gt", "$ge") else (1, 4)
     for wa, wb, width in product(WIDTHS, WIDTHS, widths):
         for a, b in product(forms(A, wa), [*forms(B, wb), (Slice("a", 0, wb),)]):
 
@@ -126,7 +126,7 @@ def test_operators_of_two(kind, signed):
 @pytest.mark.parametrize("signed", [False, True])
 def test_operators_of_one(kind, signed):
     found = 0
-    for wa, width in product(WIDTHS, (1, 3, 5)):
+    for wa, width in product(WIDTHS, (1, 4)):
         for a in forms(A, wa):
 
             def want(wires, a=a, wa=wa):
@@ -143,7 +143,7 @@ def test_operators_of_one(kind, signed):
     [("$shl", False), ("$shl", True), ("$shr", False), ("$sshr", True), ("$shift", False)],
 )
 def test_shifts(kind, signed):
-    for wa, width, by in product(WIDTHS, (1, 3, 5), (0, 1, 2, 3, 4, 7, 100_000)):
+    for wa, width, by in product(WIDTHS, (1, 4), (0, 1, 3, 4, 7, 100_000)):
         distance: Spec = (Bits(f"{by:020b}"),)
         for a in forms(A, wa):
 
