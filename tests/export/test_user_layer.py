@@ -217,6 +217,15 @@ def test_values_of_a_record_stand_where_the_layout_has_them(tmp_path):
         )
         assert re.search(rf"bits{re.escape(part)} := [a-z_]*\(?value\.{member}\)?;", text), name
     assert made.manifest["record_view"]["bits"] == layout.size == 1 + 24 + 96 + 192 + 8 + 96
+    # Two types of one name are two records, each with a size of its own.
+    (body,) = re.findall(r"  type t_value_t is record\n(.*?)  end record;", text, re.DOTALL)
+    types = {line.split()[0]: line.split()[2].rstrip(";") for line in body.splitlines()}
+    assert types["a"] != types["b"] and types["c"].startswith(types["b"].removesuffix("_t"))
+    for member, bits in (("a", 24), ("b", 96)):
+        assert (
+            f"constant {types[member].removesuffix('_t').upper()}_BITS : positive := {bits};"
+            in text
+        )
 
 
 CONVERSIONS = """\
