@@ -216,3 +216,20 @@ def test_bench_without_packets_fails(ghdl, tmp_path):
     (tmp_path / "stimuli.txt").write_text("# nothing\n")
     status, found = run(tmp_path, GHDL=ghdl)
     assert status != 0 and "FAIL there are no packets" in found
+
+
+def test_bench_says_what_is_left_over(ghdl, tmp_path):
+    made(tmp_path, "builtin_interfaces/msg/Time", "lyrical", 8)
+    (tmp_path / "stimuli.txt").write_text(packets_text([b"\0\1\0\0" + bytes(8)] * 3))
+    (file,) = tmp_path.glob("*_8_deserializer_flat.vhd")
+    # One more of the second leaf is always there; the serializer takes it with the first alone.
+    text = file.read_text()
+    for pattern, to in {
+        r"(message_nanosec_valid +=> )nanosec_valid": r"\1open",
+        r"  message_nanosec_valid <= .*;": "  nanosec_valid <= '1';",
+    }.items():
+        text, count = re.subn(pattern, to, text, count=1)
+        assert count == 1
+    file.write_text(text)
+    status, found = run(tmp_path, GHDL=ghdl)
+    assert status != 0 and "FAIL something is left over" in found and "PASS" not in found, found

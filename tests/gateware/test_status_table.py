@@ -356,3 +356,13 @@ def test_limit_of_a_serializer_is_exact(bus_bytes, count, status):
     ]
     assert [each.name for each in seen.statuses] == [status, "OK"]
     assert seen.marked == [status != "OK", False]
+
+
+@pytest.mark.parametrize("bus_bytes", [2, 8, 64])
+def test_packets_shorter_than_a_beat_stay_apart_while_none_is_taken(bus_bytes):
+    message = make("ros1", {"x": "uint8"})
+    tx = Serializer(message, bus_bytes=bus_bytes)
+    stalls = {"packets_out": Stalls.bits("0" * 9 + "1"), "status": Stalls.bits("001")}
+    seen = Harness(None, tx).run(transfers={0: list(range(20))}, messages=20, stalls=stalls)
+    assert seen.packets == [bytes((number,)) for number in range(20)]
+    assert not any(seen.marked) and {each.name for each in seen.statuses} == {"OK"}

@@ -90,7 +90,16 @@ def test_traffic_is_what_the_simulation_showed(recorded):
         ({"marked": [False, True, False]}, "tuser differ: number 1 of 3 is [False] instead of "),
         ({"statuses": [Status.OK] * 2}, "statuses of the deserializer differ: number 2 of 2"),
         ({"sent_statuses": [Status.ITEMS] * 3}, "statuses of the serializer differ: number 0"),
+        ({"sent_statuses": [Status.OK] * 2}, "statuses of the serializer differ: number 2 of 2"),
+        ({"marked": [False] * 2}, "tuser differ: number 2 of 2 is [False] instead of []"),
         ({"transfers": {0: [1, 1, 1]}}, "transfers of data differ: number 1 of 3 is [0] instead "),
+        # More there than here, and fewer.
+        (
+            {"transfers": {0: [1, 0]}},
+            "transfers of data differ: number 2 of 2 is [1] instead of []",
+        ),
+        ({"transfers": {}}, "transfers of data differ: number 0 of 0 is [1] instead of []"),
+        ({"transfers": {0: [1, 0, 1, 1]}}, "transfers of data differ: number 3 of 4 is [] instead"),
     ],
 )
 def test_other_traffic_is_told(recorded, change, said):
@@ -124,6 +133,7 @@ FLIP = str.maketrans("01", "10")
         # A lane more, a hole, a bit, what is undefined; no end, and no pause.
         ("serializer", "m_axis_tkeep", lambda bits: "11", "packets differ: number 0 of 3"),
         ("serializer", "m_axis_tkeep", lambda bits: "10", "packets differ: number 0 of 3"),
+        ("serializer", "m_axis_tkeep", lambda bits: bits.replace("01", "10"), "packets differ: n"),
         ("serializer", "m_axis_tdata", lambda bits: bits[:-1] + "1", "packets differ: number 0"),
         ("serializer", "m_axis_tdata", lambda bits: bits[:-1] + "X", "packets differ: number 0"),
         ("serializer", "m_axis_tlast", lambda bits: "0", "packets differ: number 0 of 3 is []"),
