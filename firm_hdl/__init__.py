@@ -6,19 +6,23 @@
     rx = Deserializer(imu, bus_bytes=8)
 """
 
-from firm_hdl.errors import DefinitionError
-from firm_hdl.frontend import Library, load_message
-from firm_hdl.gateware import (
-    Deserializer,
-    MessageSignature,
-    PacketSignature,
-    RecordReader,
-    RecordWriter,
-    Serializer,
-    Status,
-    StatusSignature,
-    record_layout,
-)
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from firm_hdl.errors import DefinitionError
+    from firm_hdl.frontend import Library, load_message
+    from firm_hdl.gateware import (
+        Deserializer,
+        MessageSignature,
+        PacketSignature,
+        RecordReader,
+        RecordWriter,
+        Serializer,
+        Status,
+        StatusSignature,
+        record_layout,
+    )
 
 __version__ = "0.1.0"
 
@@ -37,3 +41,32 @@ __all__ = [
     "load_message",
     "record_layout",
 ]
+
+# Amaranth takes seconds to import, and much of firm-hdl does without it.
+_HOME = {
+    "DefinitionError": "errors",
+    "Deserializer": "gateware",
+    "Library": "frontend",
+    "MessageSignature": "gateware",
+    "PacketSignature": "gateware",
+    "RecordReader": "gateware",
+    "RecordWriter": "gateware",
+    "Serializer": "gateware",
+    "Status": "gateware",
+    "StatusSignature": "gateware",
+    "load_message": "frontend",
+    "record_layout": "gateware",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is asked for, once."""
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    found = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

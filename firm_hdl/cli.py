@@ -2,300 +2,123 @@
 
 Exit status: 0 if all went well; 1 if a definition or what was asked for cannot be used, which
 standard error explains; 2 if the command was called wrongly; 130 if it was interrupted.
+
+Nothing but Python's own modules is imported before the command is known, and nothing at all outside
+of `main`, which turns whatever ends it into words.
 """
 
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import sys
-from collections.abc import Callable, Sequence
-from typing import TypeAlias
-
-import firm_hdl
-from firm_hdl.equivalence.command import add_prove_arguments, run_prove
-from firm_hdl.errors import DefinitionError
-from firm_hdl.export.build import BuildError, Built, build, load_all, plan_of
-from firm_hdl.export.timing import describe, timing
-from firm_hdl.export.vhdl_user_build import PORTS
-from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS, Library, open_library, show
-from firm_hdl.identity.command import hash_lines, md5_lines, proto_text
-from firm_hdl.metrics import FORMATS
-from firm_hdl.metrics.command import metrics_text
-from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, to_yaml
-from firm_hdl.terminal import printable_streams
-from firm_hdl.verify.command import add_verify_arguments, run_verify
-from firm_hdl.verify.cover_command import add_cover_arguments, run_cover
-from firm_hdl.verify.golden_command import add_golden_arguments, run_golden
-from firm_hdl.verify.report.command import add_report_arguments, run_report
-from firm_hdl.verify.stimuli import stimuli
+from collections.abc import Sequence
+from contextlib import suppress
 
 __all__ = ["main"]
 
-_Commands: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
 
-
-@printable_streams()
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
-    given = _parser().parse_args(arguments)
-    if hasattr(sys.stdout, "reconfigure"):
-        # A comment in a definition may have characters that the terminal has not.
-        sys.stdout.reconfigure(errors="backslashreplace")
-    run: Callable[[argparse.Namespace], int | None] = given.run
     try:
-        status = run(given)
-        sys.stdout.flush()
-    except DefinitionError as error:
-        print(error, file=sys.stderr)
-        return 1
-    except BuildError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
-    except BrokenPipeError:
-        # Nobody reads on, and Python would complain about that once more at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
-    except OSError as error:
-        where = f"'{error.filename}': " if error.filename is not None else ""
-        print(f"error: {where}{error.strerror or error}", file=sys.stderr)
-        return 1
+        return _run(arguments)
     except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
+        _say("interrupted")
         return 130
-    return status or 0
 
 
-def _build(given: argparse.Namespace) -> None:
-    def report(built: Built) -> None:
-        state = "current" if built.was_current else "wrote"
-        print(f"{state:8}{built.folder}{os.sep}", flush=True)
+def _run(arguments: Sequence[str] | None) -> int:
+    from firm_hdl.terminal import printable_streams
 
-    done = build(
-        given.types,
-        given.out,
-        library=_library(given),
-        wire=given.wire,
-        bus_bytes=given.bus_bytes,
-        max_message_bytes=given.max_message_bytes,
-        ports=given.ports,
-        force=given.force,
-        stimuli=stimuli,
-        report=report,
-    )
-    for built in done:
-        print(built.description)
+    # A process may be started without them.
+    sys.stdout = sys.stdout or io.StringIO()
+    sys.stderr = sys.stderr or io.StringIO()
+    with printable_streams():
+        try:
+            status = _dispatch(sys.argv[1:] if arguments is None else list(arguments))
+            sys.stdout.flush()
+        except OSError as error:
+            return _failed(error)
+    return status
 
 
-def _list(given: argparse.Namespace) -> None:
-    for name in _library(given).interfaces():
-        print(name)
+def _dispatch(arguments: list[str]) -> int:
+    parser = _parser(arguments)
+    if any("\0" in argument for argument in arguments):
+        parser.error("an argument has a NUL, which no name and no path has")
+    given = parser.parse_args(arguments)
+    from firm_hdl.errors import DefinitionError, UserError
+
+    reconfigure = getattr(sys.stdout, "reconfigure", None)
+    if reconfigure is not None:
+        # A comment in a definition may have characters that the terminal has not.
+        reconfigure(errors="backslashreplace")
+    try:
+        return given.run(given) or 0
+    except DefinitionError as error:
+        _say(str(error))
+    except UserError as error:
+        _say(f"error: {error}")
+    except MemoryError:
+        _say("error: there is not enough memory for this")
+    except RecursionError:
+        _say("error: something here nests deeper than can be followed")
+    return 1
 
 
-def _show(given: argparse.Namespace) -> None:
-    print(show(_library(given), given.type), end="")
+def _failed(error: OSError) -> int:
+    """Say what the system would not do; nobody may be there to hear it."""
+    if isinstance(error, BrokenPipeError):
+        _abandon()
+        return 1
+    where = f"'{os.fsdecode(error.filename)}': " if error.filename is not None else ""
+    _say(f"error: {where}{error.strerror or error}")
+    # What is left of the output would not fit at the end, either.
+    with suppress(OSError, ValueError):
+        sys.stdout.flush()
+        return 1
+    _abandon()
+    return 1
 
 
-def _plan(given: argparse.Namespace) -> None:
-    for index, message in enumerate(load_all(_library(given), [given.type])):
-        plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
-        print("---\n" * bool(index) + to_yaml(plan), end="")
+def _abandon() -> None:
+    """Send what is left of the output nowhere: Python would try once more at its end."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _info(given: argparse.Namespace) -> None:
-    for message in load_all(_library(given), given.types):
-        plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
-        print(describe(message.name, plan, timing(plan)))
+def _say(text: str) -> None:
+    with suppress(OSError, ValueError):
+        print(text, file=sys.stderr, flush=True)
 
 
-def _md5(given: argparse.Namespace) -> None:
-    if given.distro is None and not given.bag:
-        given.distro = "noetic"
-    print("\n".join(md5_lines(_library(given), given.types)))
+class _Version(argparse.Action):
+    """Print the version, which is not looked up for anything else."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        import firm_hdl
+
+        print(f"firm-hdl {firm_hdl.__version__}")
+        parser.exit()
 
 
-def _hash(given: argparse.Namespace) -> None:
-    print("\n".join(hash_lines(_library(given), given.types)))
+def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
+    """Make a parser that knows all commands, and the arguments of the one that is called."""
+    from firm_hdl.commands import COMMANDS
 
-
-def _proto(given: argparse.Namespace) -> None:
-    print(proto_text(_library(given), given.type, quotes=not given.no_quotes), end="")
-
-
-def _metrics(given: argparse.Namespace) -> None:
-    if given.all == bool(given.types):
-        given.usage_error("name either types or --all")
-    names = None if given.all else given.types
-    text, wrong = metrics_text(_library(given), names, given.format, given.wire)
-    print(text, end="")
-    if wrong is not None:
-        raise wrong
-
-
-def _library(given: argparse.Namespace) -> Library:
-    return open_library(given.distro, given.path, given.bag)
-
-
-def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="firm-hdl",
         description="Generate hardware that reads and writes ROS messages.",
     )
-    parser.add_argument("--version", action="version", version=f"firm-hdl {firm_hdl.__version__}")
+    parser.add_argument(
+        "--version", action=_Version, nargs=0, help="show program's version number and exit"
+    )
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-
-    text = "write the converters of message types"
-    command = _command(commands, "build", _build, text, bags=True)
-    command.add_argument("types", nargs="+", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
-    _add_options(command)
-    command.add_argument("--out", default="vhdl_out", help="folder to write to (%(default)s)")
-    command.add_argument(
-        "--ports",
-        choices=PORTS,
-        default="records",
-        help="whether the VHDL has records, or plain vectors only; default: %(default)s",
-    )
-    command.add_argument("--force", action="store_true", help="write even what is current")
-
-    _command(commands, "list", _list, "list all messages, services and actions", bags=True)
-
-    text = "print a type as ROS's own tools do"
-    command = _command(commands, "show", _show, text, bags=True)
-    command.add_argument("type", metavar="TYPE")
-
-    text = "print what converters do in each cycle, as YAML"
-    command = _command(commands, "plan", _plan, text, bags=True)
-    command.add_argument("type", metavar="TYPE")
-    _add_options(command)
-
-    text = "say how many cycles and which clock types need"
-    command = _command(commands, "info", _info, text, bags=True)
-    command.add_argument("types", nargs="+", metavar="TYPE")
-    _add_options(command)
-
-    _add_test_commands(commands)
-    _add_identity_commands(commands)
+    called = next((each for each in arguments if not each.startswith("-")), None)
+    for name, command in COMMANDS.items():
+        text = command.help
+        sub = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
+        if name == called:
+            command.add(sub)
     return parser
-
-
-def _add_test_commands(commands: _Commands) -> None:
-    text = "test converters against real ROS parts"
-    command = commands.add_parser("verify", help=text, description=f"T{text[1:]}.")
-    command.set_defaults(run=run_verify)
-    add_verify_arguments(command)
-
-    text = "write a report of results of verify, as HTML, Markdown or JSON"
-    command = commands.add_parser("report", help=text, description=f"W{text[1:]}.")
-    command.set_defaults(run=run_report)
-    add_report_arguments(command)
-
-    text = "prove that the VHDL is the circuit that Amaranth elaborated"
-    command = _command(commands, "prove", run_prove, text, bags=True)
-    add_prove_arguments(command)
-    _add_options(command)
-
-    text = "compare plans with golden ones, by meaning"
-    command = _command(commands, "golden", run_golden, text, bags=True)
-    add_golden_arguments(command)
-    _add_options(command)
-
-    text = "choose few types that have all features"
-    command = _command(commands, "cover", run_cover, text, bags=True)
-    add_cover_arguments(command)
-    _add_options(command)
-
-
-def _add_identity_commands(commands: _Commands) -> None:
-    text = "print the md5 sums of ROS 1 types"
-    command = _command(commands, "md5", _md5, text, bags=True)
-    command.add_argument("types", nargs="+", metavar="TYPE")
-
-    text = "print the type hashes (RIHS01) of ROS 2 types"
-    command = _command(commands, "hash", _hash, text, bags=True)
-    command.add_argument("types", nargs="+", metavar="TYPE")
-
-    text = "print an example of a type as ROS's own tools do"
-    command = _command(commands, "proto", _proto, text, bags=True)
-    command.add_argument("type", metavar="TYPE")
-    command.add_argument("--no-quotes", action="store_true", help="print no quotes around it")
-
-    text = "print figures of message types: depth, leaves, sizes, alignment, features"
-    command = _command(commands, "metrics", _metrics, text, bags=True)
-    command.add_argument("types", nargs="*", metavar="TYPE")
-    command.add_argument("--all", action="store_true", help="all types that there are")
-    command.add_argument(
-        "--format", choices=list(FORMATS), default="table", help="default: %(default)s"
-    )
-    _add_wire(command)
-    command.set_defaults(usage_error=command.error)
-
-
-def _command(
-    commands: _Commands,
-    name: str,
-    run: Callable[[argparse.Namespace], int | None],
-    text: str,
-    *,
-    bags: bool = False,
-) -> argparse.ArgumentParser:
-    """Add a command. With `bags`, its `distro` may be `None`: then `_library` finds it out."""
-    command = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-    command.set_defaults(run=run)
-    command.add_argument(
-        "--distro",
-        choices=list(DISTROS),
-        default=None if bags else DEFAULT_DISTRO,
-        help=f"default: {DEFAULT_DISTRO}" + (", or that of the recording" if bags else ""),
-    )
-    origins = command.add_mutually_exclusive_group()
-    origins.add_argument(
-        "--path",
-        action="append",
-        default=[],
-        metavar="DIR",
-        help="folder with ROS packages, searched before the distribution's types; repeatable",
-    )
-    if bags:
-        origins.add_argument(
-            "--bag",
-            action="append",
-            default=[],
-            metavar="FILE",
-            help="recording (.bag, .mcap, .db3) whose types are used, and no others; repeatable",
-        )
-    return command
-
-
-def _add_wire(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--wire", choices=["ros1", "cdr"], help="wire format; default: the distribution's own"
-    )
-
-
-def _add_options(command: argparse.ArgumentParser) -> None:
-    _add_wire(command)
-    command.add_argument(
-        "--bus-bytes",
-        type=int,
-        choices=BUS_BYTES,
-        default=8,
-        metavar="N",
-        help=f"bytes per beat: {', '.join(map(str, BUS_BYTES))}; default: %(default)s",
-    )
-    command.add_argument(
-        "--max-message-bytes",
-        type=_message_bytes,
-        default=DEFAULT_MAX_MESSAGE_BYTES,
-        metavar="N",
-        help="longest message to accept; default: %(default)s",
-    )
-
-
-def _message_bytes(text: str) -> int:
-    try:
-        number = int(text, 0)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
-    if not 1 <= number < 1 << 32:
-        raise argparse.ArgumentTypeError(f"must be from 1 to {(1 << 32) - 1}, not {number}")
-    return number

@@ -14,7 +14,7 @@ from functools import lru_cache
 
 from firm_hdl.terminal import printable
 
-__all__ = ["DefinitionError", "Diagnostic", "Source", "Span"]
+__all__ = ["DefinitionError", "Diagnostic", "Source", "Span", "UserError"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,3 +126,7 @@ class DefinitionError(Exception):
     def __str__(self) -> str:
         # Not made before somebody reads it: there may be a thousand, in a thousand types.
         return "\n".join(str(d) for d in self.diagnostics)
+
+
+class UserError(Exception):
+    """What was asked for cannot be done; the text says why, for whoever asked."""

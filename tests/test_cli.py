@@ -13,7 +13,6 @@ from typing import Any
 import pytest
 
 import firm_hdl
-from firm_hdl import cli
 from firm_hdl.cli import main
 from firm_hdl.plan import build_plan, from_yaml
 from firm_hdl.wire import lay_out
@@ -260,7 +259,7 @@ def test_interrupt_is_no_traceback(here, capsys, monkeypatch):
     def interrupted(*args: object, **options: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cli, "build", interrupted)
+    monkeypatch.setattr(importlib.import_module("firm_hdl.export.build"), "build", interrupted)
     assert main(["build", "std_msgs/msg/Bool"]) == 130
     assert capsys.readouterr() == ("", "interrupted\n")
 

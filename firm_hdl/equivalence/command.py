@@ -45,7 +45,7 @@ def run_prove(given: argparse.Namespace) -> int:
     """
     if given.all == bool(given.types):
         given.usage_error("name either types or --all")
-    library = open_library(given.distro, given.path, given.bag)
+    library = open_library(given.distro, given.path, given.bag, depends=given.depends)
     names = given.types
     if given.all:
         names = library.names()
@@ -60,7 +60,7 @@ def run_prove(given: argparse.Namespace) -> int:
         for task in both(
             name,
             distro=library.distro,
-            paths=tuple(given.path),
+            paths=(*given.path, *given.depends),
             bags=tuple(given.bag),
             wire=given.wire,
             bus_bytes=given.bus_bytes,

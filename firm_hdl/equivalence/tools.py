@@ -14,6 +14,7 @@ from functools import cache
 from pathlib import Path
 
 from firm_hdl.equivalence.circuit import ProofError
+from firm_hdl.export.verilog import OUT_OF_MEMORY, is_out_of_memory
 from firm_hdl.verify.simulators import SimulatorMissingError, find_ghdl
 
 __all__ = ["MissingToolError", "TooSlowError", "ToolError", "Tools", "answer_of", "find_tools"]
@@ -144,6 +145,8 @@ def _run(command: Sequence[str], folder: Path, name: str, timeout: float | None)
     except OSError as error:
         raise ProofError(f"{name} cannot be run: {error.strerror or error}") from None
     if done.returncode:
+        if is_out_of_memory(done.stderr + done.stdout) and name == "Yosys":
+            raise ToolError(OUT_OF_MEMORY)
         said = (done.stderr.strip() or done.stdout.strip()).splitlines()
         raise ToolError(f"{name} failed: {_gist(said) or done.returncode}")
     return done.stdout

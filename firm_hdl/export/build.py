@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.errors import DefinitionError, Diagnostic, UserError
 from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
 from firm_hdl.export.manifest import MANIFEST, inputs_of, make_manifest, module_name, to_json
 from firm_hdl.export.names import identifier
@@ -32,7 +32,7 @@ from firm_hdl.wire import Wire, lay_out, refusals
 __all__ = ["BuildError", "Built", "build", "check_size", "load_all", "plan_of"]
 
 
-class BuildError(Exception):
+class BuildError(UserError):
     """Something that cannot be built, or cannot be written; the text says why."""
 
 

@@ -76,8 +76,7 @@ def replace(folder: Path, files: Mapping[str, str]) -> None:
     OSError
         If that is not possible. The folder is as it was.
     """
-    # Where a link stands for the folder, it goes on to do so.
-    folder = Path(os.path.realpath(folder))
+    folder = _behind_link(folder)
     folder.parent.mkdir(parents=True, exist_ok=True)
     with locked(folder.parent) as alone:
         made: list[Path] = []
@@ -98,11 +97,16 @@ def replace(folder: Path, files: Mapping[str, str]) -> None:
 
 def clear_up(folder: Path) -> None:
     """Clear away what a killed build left of a folder; put the old one back if none is there."""
-    folder = Path(os.path.realpath(folder))
+    folder = _behind_link(folder)
     if folder.parent.is_dir() and _leftovers(folder):
         with locked(folder.parent) as alone:
             if alone:
                 _clear_up(folder, _leftovers(folder))
+
+
+def _behind_link(folder: Path) -> Path:
+    """Where a link stands for a folder, it goes on to do so."""
+    return Path(os.path.realpath(folder)) if folder.is_symlink() else folder
 
 
 def _prefix(folder: Path) -> str:

@@ -149,8 +149,10 @@ def describe(name: str, plan: Plan, figures: Timing) -> str:
     varies = any(leaf.kind == "length" for leaf in plan.leaves)
     rows = [("every packet", short)]
     if varies:
-        rows = [("long arrays", Cost(bytes=plan.bus_bytes, beats=1, steps=1))]
-        rows.append(("shortest packets" if hard is short else _cost_text(hard), hard))
+        long = Cost(bytes=plan.bus_bytes, beats=1, steps=1)
+        rows = [("long strings or arrays", long)] if _has_long(plan) else []
+        which = "the shortest" if hard is short else _cost_text(hard)
+        rows.append((f"the hardest packet tried ({which})", hard))
     lines = [
         f"{name} on {plan.wire}, {8 * plan.bus_bytes}-bit bus: {_count(figures.steps, 'step')}; "
         f"{'shortest ' if varies else ''}packet {_cost_text(short)}"
@@ -161,6 +163,12 @@ def describe(name: str, plan: Plan, figures: Timing) -> str:
         )
         lines.append(f"    clock for {what}: {clocks}")
     return "\n".join(lines)
+
+
+def _has_long(plan: Plan) -> bool:
+    """Whether a packet can be long: runs of any number of items, which pass a bus word a cycle."""
+    lengths = {leaf.path[:-1] for leaf in plan.leaves if leaf.kind == "length"}
+    return any(leaf.kind == "items" and leaf.path[:-1] in lengths for leaf in plan.leaves)
 
 
 def _cost_text(cost: Cost) -> str:

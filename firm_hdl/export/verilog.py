@@ -19,6 +19,7 @@ from contextlib import contextmanager
 from amaranth._toolchain.yosys import find_yosys
 from amaranth.back import rtlil
 
+from firm_hdl.errors import UserError
 from firm_hdl.export.keywords import KEYWORDS
 from firm_hdl.export.names import first_free
 from firm_hdl.export.top import Top
@@ -48,9 +49,25 @@ write_verilog -norename
 """
 _ATTRIBUTES = "generator", "top", "src", "amaranth.hierarchy", "amaranth.decoding"
 
+_NO_MEMORY = re.compile(
+    r"mmap failed|Cannot allocate memory|bad_alloc|out of memory|memory allocation|MemoryError",
+    re.IGNORECASE,
+)
+
 _CHOICE = re.compile(r"\\\$procmux\$(\w+)")
 _IDENTIFIER = re.compile(r"\\(\S+)")
 _EMPTY_WIRE = re.compile(r"^ *(wire|reg)( signed)? \[-1:0\] \S+ *;\n", re.MULTILINE)
+
+
+OUT_OF_MEMORY = (
+    "Yosys ran out of memory; it sets 4.1 GB of address space aside (see 'ulimit -v'), and a "
+    "circuit may take all of that"
+)
+
+
+def is_out_of_memory(said: str) -> bool:
+    """Whether that is what Yosys, or what runs it, says when memory is short."""
+    return bool(_NO_MEMORY.search(said))
 
 
 def to_verilog(top: Top, *, module: str, header: str) -> str:
@@ -63,6 +80,11 @@ def to_verilog(top: Top, *, module: str, header: str) -> str:
         Name of the module; modules within it are called ``module.something``.
     header : str
         Lines for the comment at the head of the file, each with its line end.
+
+    Raises
+    ------
+    UserError
+        If there is not enough memory.
     """
     design = _without_keywords(rtlil.convert(top, name=module, emit_src=False))
     script = _SCRIPT.format(
@@ -70,8 +92,14 @@ def to_verilog(top: Top, *, module: str, header: str) -> str:
     )
     with _builtin_yosys():
         yosys = find_yosys(lambda version: version >= (0, 40))
-        # It warns of processes, whatever they are.
-        text = yosys.run(["-q", "-"], script, ignore_warnings=True)
+        try:
+            # It warns of processes, whatever they are.
+            text = yosys.run(["-q", "-"], script, ignore_warnings=True)
+        except Exception as error:
+            # What runs it has errors of its own, by a dozen names.
+            if is_out_of_memory(str(error)):
+                raise UserError(f"{module}: {OUT_OF_MEMORY}") from None
+            raise
     # The first line names the Yosys; the manifest does, too.
     _, _, body = text.partition("\n")
     # A wire of no bits is used nowhere, and Verilog would read it as one of two.

@@ -9,7 +9,7 @@ from __future__ import annotations
 from firm_hdl.frontend.embedded import DEFAULT_DISTRO, DISTROS, Distro
 from firm_hdl.frontend.library import Library, load_message
 from firm_hdl.frontend.recordings import RecordingOrigin
-from firm_hdl.frontend.search import open_library
+from firm_hdl.frontend.search import all_names, open_library
 from firm_hdl.frontend.show import show
 
 __all__ = [
@@ -18,6 +18,7 @@ __all__ = [
     "Distro",
     "Library",
     "RecordingOrigin",
+    "all_names",
     "load_message",
     "open_library",
     "show",

@@ -19,7 +19,7 @@ from firm_hdl.frontend.recordings import RecordingOrigin
 from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin, Origin
 from firm_hdl.model import Dialect
 
-__all__ = ["ENVIRONMENT", "environment_origins", "open_library", "workspace_folders"]
+__all__ = ["ENVIRONMENT", "all_names", "environment_origins", "open_library", "workspace_folders"]
 
 ENVIRONMENT: dict[Dialect, str] = {"ros1": "ROS_PACKAGE_PATH", "ros2": "AMENT_PREFIX_PATH"}
 """The variable that says where packages are."""
@@ -30,6 +30,7 @@ def open_library(
     paths: Iterable[str | os.PathLike[str]] = (),
     bags: Iterable[str | os.PathLike[str]] = (),
     *,
+    depends: Iterable[str | os.PathLike[str]] = (),
     environment: Mapping[str, str] | None = None,
 ) -> Library:
     """Open all definitions that a command is to see.
@@ -42,7 +43,9 @@ def open_library(
         Folders with ROS packages. They come first, then those of the environment, then the
         distribution's own types.
     bags : iterable of str or path
-        Recordings. If there are any, definitions come from nowhere else.
+        Recordings. If there are any, definitions come from nowhere else but `depends`.
+    depends : iterable of str or path
+        Folders with packages that others need, searched behind `paths` or the recordings.
     environment : mapping or None
         Variables to read (by default those of the process).
 
@@ -53,16 +56,31 @@ def open_library(
     DefinitionError
         If a folder or a recording cannot be used. It has no span.
     """
-    folders, files = list(paths), list(bags)
+    folders, files, needed = list(paths), list(bags), map(FolderOrigin, depends)
     if files:
         if folders:
             raise ValueError("Recordings are read without any other definitions")
-        return _of_recordings(distro, [RecordingOrigin(file) for file in files])
+        return _of_recordings(distro, [RecordingOrigin(file) for file in files], list(needed))
     distro = distro or DEFAULT_DISTRO
     found = environment_origins(
         DISTROS[distro].dialect, os.environ if environment is None else environment
     )
-    return Library(distro, folders, origins=[*found, EmbeddedOrigin(distro)])
+    return Library(distro, folders, origins=[*needed, *found, EmbeddedOrigin(distro)])
+
+
+def all_names(
+    distro: str | None,
+    paths: Iterable[str | os.PathLike[str]] = (),
+    bags: Iterable[str | os.PathLike[str]] = (),
+) -> list[str]:
+    """List what is meant by all types: those of the folders or recordings, or else all there are.
+
+    Parameters and errors are those of `open_library`.
+    """
+    folders = list(paths)
+    if folders:
+        return Library(distro or DEFAULT_DISTRO, folders, origins=()).interfaces()
+    return open_library(distro, (), bags).interfaces()
 
 
 def environment_origins(dialect: Dialect, environment: Mapping[str, str]) -> Iterator[Origin]:
@@ -102,7 +120,9 @@ def _folders(dialect: Dialect, environment: Mapping[str, str]) -> Iterator[str]:
                     yield str(package)
 
 
-def _of_recordings(distro: str | None, recordings: list[RecordingOrigin]) -> Library:
+def _of_recordings(
+    distro: str | None, recordings: list[RecordingOrigin], needed: list[FolderOrigin]
+) -> Library:
     first = recordings[0]
     for other in recordings:
         if other.dialect != first.dialect:
@@ -118,7 +138,7 @@ def _of_recordings(distro: str | None, recordings: list[RecordingOrigin]) -> Lib
             f"'{first.path}' is a recording of {_ros(first.dialect)}, and {distro} is "
             f"{_ros(DISTROS[distro].dialect)}"
         )
-    return Library(distro, origins=recordings)
+    return Library(distro, origins=[*recordings, *needed])
 
 
 def _newest(dialect: Dialect) -> str:

@@ -17,7 +17,7 @@ from amaranth.lib.wiring import Out
 
 from firm_hdl.gateware.members import MemberTree, member_tree
 from firm_hdl.model import Message
-from firm_hdl.plan import Leaf, Plan, build_plan
+from firm_hdl.plan import Leaf, Plan, build_plan, check_bus_bytes
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = [
@@ -85,7 +85,13 @@ def packet_layout(bus_bytes: int) -> data.StructLayout:
         an empty packet.
     last : unsigned(1)
         Set in the last beat of a packet.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If no converter has a bus of that width.
     """
+    check_bus_bytes(bus_bytes)
     return data.StructLayout(
         {"data": data.ArrayLayout(8, bus_bytes), "count": range(bus_bytes + 1), "last": 1}
     )

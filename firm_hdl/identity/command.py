@@ -12,57 +12,90 @@ from firm_hdl.identity.proto import TooLargeError, proto
 from firm_hdl.identity.rihs import type_hash
 from firm_hdl.model import Action, Dialect, Interface, Message, Service
 
-__all__ = ["hash_lines", "load_interfaces", "md5_lines", "proto_text"]
+__all__ = ["hash_lines", "load_interfaces", "md5_lines", "proto_texts"]
 
 
-def md5_lines(library: Library, names: Iterable[str]) -> list[str]:
+def md5_lines(library: Library, names: Iterable[str]) -> tuple[list[str], DefinitionError | None]:
     """List md5 sums, each with the name of its type; an action's are those of its messages.
+
+    Returns
+    -------
+    tuple of list and DefinitionError or None
+        The lines of good types, and what is wrong with the others.
 
     Raises
     ------
     DefinitionError
-        With what is wrong with any of the types, or if the distribution is of ROS 2.
+        If the distribution is of ROS 2.
     """
     _require(library, "ros1", "md5 sums are of ROS 1; for ROS 2 there is 'firm-hdl hash'")
     summed: list[Message | Service] = []
-    for interface in load_interfaces(library, names):
-        summed += interface.messages if isinstance(interface, Action) else (interface,)
-    return [f"{md5sum(item)}  {item.name}" for item in summed]
+
+    def found(interface: Interface) -> None:
+        summed.extend(interface.messages if isinstance(interface, Action) else (interface,))
+
+    wrong = _each(library, names, found)
+    return [f"{md5sum(item)}  {item.name}" for item in summed], wrong
 
 
-def hash_lines(library: Library, names: Iterable[str]) -> list[str]:
+def hash_lines(library: Library, names: Iterable[str]) -> tuple[list[str], DefinitionError | None]:
     """List type hashes, each with the name of its type.
+
+    Returns
+    -------
+    tuple of list and DefinitionError or None
+        The lines of good types, and what is wrong with the others, or why they have no hashes.
 
     Raises
     ------
     DefinitionError
-        With what is wrong with any of the types, or if there are no hashes for them.
+        If the distribution is of ROS 1.
     """
     _require(library, "ros2", "type hashes are of ROS 2; for ROS 1 there is 'firm-hdl md5'")
-    lines, problems = [], []
-    for interface in load_interfaces(library, names):
+    lines: list[str] = []
+
+    def found(interface: Interface) -> None:
         try:
             lines.append(f"{type_hash(interface)}  {interface.name}")
         except ValueError as error:
-            problems.append(Diagnostic(message=f"{library.distro}: {error}"))
-    if problems:
-        raise DefinitionError(problems)
-    return lines
+            problem = Diagnostic(message=f"{library.distro}: {error}")
+            raise DefinitionError([problem]) from None
+
+    wrong = _each(library, names, found)
+    return lines, wrong
 
 
-def proto_text(library: Library, name: str, *, quotes: bool = True) -> str:
-    """Give the text of `proto` for a type, and the line end behind it.
+def proto_texts(
+    library: Library, names: Iterable[str], *, quotes: bool = True
+) -> tuple[dict[str, str], DefinitionError | None]:
+    """Give the texts of `proto` for types, each with the line end behind it.
 
-    Raises
-    ------
-    DefinitionError
-        With what is wrong with the type, or if the text would be too long.
+    Returns
+    -------
+    tuple of dict and DefinitionError or None
+        The texts of good types, by name, and what is wrong with the others, or why an example of
+        theirs would be too long.
     """
-    (interface,) = load_interfaces(library, [name])
+    texts: dict[str, str] = {}
+
+    def found(interface: Interface) -> None:
+        try:
+            texts[interface.name] = proto(interface, quotes=quotes) + "\n"
+        except TooLargeError as error:
+            raise DefinitionError([Diagnostic(message=str(error))]) from None
+
+    wrong = _each(library, names, found)
+    return texts, wrong
+
+
+def _each(
+    library: Library, names: Iterable[str], found: Callable[[Interface], None]
+) -> DefinitionError | None:
     try:
-        return proto(interface, quotes=quotes) + "\n"
-    except TooLargeError as error:
-        raise DefinitionError([Diagnostic(message=str(error))]) from None
+        load_interfaces(library, names, found=found)
+    except DefinitionError as error:
+        return error
+    return None
 
 
 def load_interfaces(

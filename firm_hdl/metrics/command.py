@@ -18,7 +18,12 @@ __all__ = ["metrics_text"]
 
 
 def metrics_text(
-    library: Library, names: Iterable[str] | None, form: str, wire: Wire | None = None
+    library: Library,
+    names: Iterable[str] | None,
+    form: str,
+    wire: Wire | None = None,
+    *,
+    bar: bool = False,
 ) -> tuple[str, DefinitionError | None]:
     """Write down the figures of types; those of a service or an action are of its messages.
 
@@ -26,11 +31,13 @@ def metrics_text(
     ----------
     library : Library
     names : iterable of str or None
-        `None`: all that the library has, with a progress bar where a person can see it.
+        `None`: all that the library has.
     form : str
         A key of `FORMATS`.
     wire : "ros1", "cdr" or None
         `None`: that of the library's dialect.
+    bar : bool
+        Whether to show a progress bar, where a person can see it.
 
     Returns
     -------
@@ -48,9 +55,9 @@ def metrics_text(
     wrong = None
     chosen = library.interfaces() if names is None else list(names)
     # `None` shows no bar where standard error is no terminal.
-    bar = tqdm(chosen, unit="type", leave=False, disable=None if names is None else True)
+    shown = tqdm(chosen, unit="type", leave=False, disable=None if bar else True)
     try:
-        load_interfaces(library, bar, found=found)
+        load_interfaces(library, shown, found=found)
     except DefinitionError as error:
         wrong = error
     return report(rows.values(), form), wrong

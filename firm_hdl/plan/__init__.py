@@ -1,6 +1,6 @@
 """The plan of a converter: what it does in each cycle, decided before there is any circuit."""
 
-from firm_hdl.plan.build import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, build_plan
+from firm_hdl.plan.build import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, build_plan, check_bus_bytes
 from firm_hdl.plan.check import check
 from firm_hdl.plan.interpret import (
     Decoded,
@@ -53,6 +53,7 @@ __all__ = [
     "Visit",
     "build_plan",
     "check",
+    "check_bus_bytes",
     "decode",
     "encode",
     "from_yaml",

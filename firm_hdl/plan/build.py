@@ -32,10 +32,28 @@ from firm_hdl.wire import Loop as LoopNode
 from firm_hdl.wire import Run as RunNode
 from firm_hdl.wire.layout import LENGTH, OCTET, Gap
 
-__all__ = ["BUS_BYTES", "DEFAULT_MAX_MESSAGE_BYTES", "build_plan"]
+__all__ = ["BUS_BYTES", "DEFAULT_MAX_MESSAGE_BYTES", "build_plan", "check_bus_bytes"]
 
 BUS_BYTES = (1, 2, 4, 8, 16, 32, 64)
 DEFAULT_MAX_MESSAGE_BYTES = 1 << 24
+
+
+def check_bus_bytes(bus_bytes: int) -> None:
+    """Check the width of a bus of packets.
+
+    Raises
+    ------
+    TypeError
+        If it is no integer.
+    ValueError
+        If it is none of `BUS_BYTES`.
+    """
+    if not isinstance(bus_bytes, int) or isinstance(bus_bytes, bool):
+        raise TypeError(f"Bus width must be an integer, not {bus_bytes!r}")
+    if bus_bytes not in BUS_BYTES:
+        raise ValueError(
+            f"Bus width must be one of {', '.join(map(str, BUS_BYTES))} bytes, not {bus_bytes!r}"
+        )
 
 
 def build_plan(
@@ -62,13 +80,17 @@ def build_plan(
 
     Raises
     ------
+    TypeError
+        If a parameter is no integer.
     ValueError
         If a parameter is out of range, or no message of the type fits `max_message_bytes`.
     """
-    if bus_bytes not in BUS_BYTES:
-        raise ValueError(
-            f"Bus width must be one of {', '.join(map(str, BUS_BYTES))} bytes, not {bus_bytes!r}"
-        )
+    check_bus_bytes(bus_bytes)
+    # To Python, a truth value is an integer, too.
+    if not isinstance(max_message_bytes, int) or isinstance(max_message_bytes, bool):
+        raise TypeError(f"Maximum message size must be an integer, not {max_message_bytes!r}")
+    if not isinstance(window_words, int) or isinstance(window_words, bool):
+        raise TypeError(f"Window must have an integer number of words, not {window_words!r}")
     if not layout.min_bytes <= max_message_bytes < 1 << 32:
         raise ValueError(
             f"Maximum message size must be from {layout.min_bytes} bytes, the least that a "

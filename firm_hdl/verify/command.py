@@ -62,6 +62,9 @@ def run_verify(given: argparse.Namespace) -> int:
         given.refuse("name types, or all of them with --all")
     if given.report is not None and given.results is None:
         given.refuse("--report needs --results")
+    if given.depends and not given.path:
+        given.refuse("--depends needs --path")
+    given.path = [*given.path, *given.depends]
     given.problems = {}
     given.tasks = None
     try:
@@ -107,7 +110,10 @@ def _search_workspace(given: argparse.Namespace) -> None:
         distros = given.distro or [DEFAULT_DISTRO]
         given.path = [f for distro in distros for f in workspace_folders(distro, packages)]
         if not given.path:
-            raise
+            # Some of the types may be there.
+            given.tasks = collect_tasks(
+                given.distro or (), given.types, problems=given.problems
+            )
 
 
 def _run_systems(given: argparse.Namespace) -> list[Judged]:
@@ -222,10 +228,11 @@ def _collected(given: argparse.Namespace) -> list[Task]:
     if given.bag:
         return collect_recorded(given)
     if given.path:
-        # Of all types in a workspace, one that is wrong does not keep the others from being tested.
-        problems: dict[str, Diagnostic] | None = given.problems if given.all else None
+        # A type that is wrong does not keep the others from being tested.
+        problems: dict[str, Diagnostic] = given.problems
         distros = given.distro or [DEFAULT_DISTRO]
-        return collect_own(distros, given.types, given.path, problems=problems)
+        own = [path for path in given.path if path not in given.depends]
+        return collect_own(distros, given.types, given.path, own=own, problems=problems)
     return collect_tasks(given.distro or (), given.types)
 
 
@@ -250,6 +257,13 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         metavar="DIR",
         help="folder with ROS packages, searched before the distribution's types; repeatable",
+    )
+    parser.add_argument(
+        "--depends",
+        action="append",
+        default=[],
+        metavar="DIR",
+        help="folder with ROS packages that those of --path need; no part of --all; repeatable",
     )
     parser.add_argument(
         "--systems",

@@ -12,6 +12,7 @@ from tqdm import tqdm
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, load_all, plan_of
+from firm_hdl.files import read_file
 from firm_hdl.frontend import Library, open_library
 from firm_hdl.model import Message
 from firm_hdl.plan.shape import shape
@@ -53,7 +54,10 @@ def read_chosen(path: str | Path) -> list[str]:
     BuildError
         If it names none.
     """
-    lines = Path(path).read_text(encoding="utf-8").splitlines()
+    try:
+        lines = read_file(path, 1 << 24).decode("utf-8").splitlines()
+    except UnicodeDecodeError:
+        raise BuildError(f"'{path}' is not UTF-8 text") from None
     names = [line.strip() for line in lines if line.strip() and not line.startswith("#")]
     if not names:
         raise BuildError(f"'{path}' names no types")
@@ -62,7 +66,7 @@ def read_chosen(path: str | Path) -> list[str]:
 
 def run_cover(given: argparse.Namespace) -> int:
     """Run ``firm-hdl cover``; return 1 if types that are checked lack something."""
-    library = open_library(given.distro, given.path, given.bag)
+    library = open_library(given.distro, given.path, given.bag, depends=given.depends)
     kept = None if given.check is None else read_chosen(given.check)
     messages = load_all(library, given.types) if given.types else _usable(library, given.path)
     types: dict[str, frozenset[str]] = {}

@@ -17,6 +17,7 @@ from pathlib import Path
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.export.names import identifier
+from firm_hdl.files import read_file
 from firm_hdl.frontend import DISTROS, Library, open_library
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan, check, from_yaml, to_yaml
@@ -25,6 +26,10 @@ from firm_hdl.verify.verdict import Failed, Passed, Verdict
 from firm_hdl.wire import lay_out
 
 __all__ = ["Checked", "Golden", "add", "check_golden", "read_golden", "summarise"]
+
+
+_MOST_BYTES = 1 << 26
+"""No golden plan is larger."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,11 +91,17 @@ def read_golden(folder: str | os.PathLike[str]) -> list[Golden]:
         distro = path.parent.name
         if distro not in DISTROS:
             raise ValueError(f"'{path}' is not below a distribution's name: {', '.join(DISTROS)}")
-        text = path.read_text(encoding="utf-8")
+        data = read_file(path, _MOST_BYTES)
+        try:
+            text = data.decode("utf-8")
+        except UnicodeDecodeError:
+            raise ValueError(f"'{path}' is not UTF-8 text") from None
         try:
             plan = from_yaml(text)
         except ValueError as error:
             raise ValueError(f"'{path}': {error}") from None
+        except (TypeError, KeyError, AttributeError, IndexError, AssertionError, RecursionError):
+            raise ValueError(f"'{path}' is no plan") from None
         found.append(Golden(path=path, distro=distro, plan=plan, text=text))
     return found
 

@@ -39,7 +39,7 @@ def run_golden(given: argparse.Namespace) -> int:
     if not goldens:
         raise BuildError(f"'{given.folder}' has no golden plans")
     chosen = [golden for golden in goldens if not wanted or golden.plan.message in wanted]
-    results = check_golden(chosen, given.path, given.bag)
+    results = check_golden(chosen, [*given.path, *given.depends], given.bag)
     differing = [result for result in results if not isinstance(result.verdict, Passed)]
     for result in differing:
         _print(result)
@@ -74,7 +74,7 @@ def _accept(differing: Sequence[Checked]) -> int:
 def _add(given: argparse.Namespace) -> int:
     if not given.types:
         raise BuildError("name the types to add")
-    library = open_library(given.distro, given.path, given.bag)
+    library = open_library(given.distro, given.path, given.bag, depends=given.depends)
     for message in load_all(library, given.types):
         plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
         print(f"added {add(given.folder, library.distro, message, plan)}")

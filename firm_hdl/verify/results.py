@@ -20,11 +20,16 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from firm_hdl.files import read_file
 from firm_hdl.verify.records import Record, Test
 
 __all__ = ["FORMAT", "Results", "ResultsError", "ResultsWriter", "done", "read_results"]
 
 FORMAT = "firm-hdl results 2"
+
+
+# A thousand types on seven widths have a hundredth of that.
+_MOST_BYTES = 1 << 28
 
 
 class ResultsError(ValueError):
@@ -79,7 +84,7 @@ def read_results(path: str | os.PathLike[str]) -> Results:
 
 def _read(path: Path) -> tuple[Results, int]:
     """Return what is in a file, and how many bytes of it are whole lines."""
-    data = path.read_bytes()
+    data = read_file(path, _MOST_BYTES)
     whole = data.rfind(b"\n") + 1
     lines = data[:whole].splitlines()
     if not lines:
@@ -97,8 +102,8 @@ def _read(path: Path) -> tuple[Results, int]:
             else:
                 record = Record.from_json(given["record"])
                 records[record.test.key] = record
-        except (ValueError, KeyError, TypeError) as error:
-            raise ResultsError(f"'{path}', line {number}: {error}") from None
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            raise ResultsError(f"'{path}', line {number}: it is damaged") from None
     found = Results(options=options, planned=planned, records=records, sessions=tuple(sessions))
     return found, whole
 
@@ -109,7 +114,7 @@ def _header(path: Path, line: bytes) -> tuple[Mapping[str, Any], tuple[Test, ...
         if given["format"] != FORMAT:
             raise ValueError
         return given["options"], tuple(Test.from_json(test) for test in given["planned"])
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise ResultsError(f"'{path}' has no results of firm-hdl verify") from None
 
 

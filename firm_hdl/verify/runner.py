@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend import Library
+from firm_hdl.identity import in_order
 from firm_hdl.model import Message
 from firm_hdl.verify.acceptance import Options, Result, accept
 from firm_hdl.verify.executors import PROCESSES, run_each
@@ -42,7 +43,12 @@ class Task:
     same: tuple[str, ...]
 
 
-def collect_tasks(distros: Iterable[str] = (), names: Sequence[str] = ()) -> list[Task]:
+def collect_tasks(
+    distros: Iterable[str] = (),
+    names: Sequence[str] = (),
+    *,
+    problems: dict[str, Diagnostic] | None = None,
+) -> list[Task]:
     """List what to run, the largest types first.
 
     Parameters
@@ -51,6 +57,8 @@ def collect_tasks(distros: Iterable[str] = (), names: Sequence[str] = ()) -> lis
         None: all of them.
     names : sequence of str
         Types as ``package/Type`` or ``package/msg/Type``; none: all types.
+    problems : dict or None
+        Takes the names that no distribution has, by what is to be said of them, if it has others.
 
     Raises
     ------
@@ -68,7 +76,11 @@ def collect_tasks(distros: Iterable[str] = (), names: Sequence[str] = ()) -> lis
                 found[name, structure].append(distro)
                 weights[name, structure] = len(structure)
     if missing := wanted - {name for name, _ in found}:
-        raise UnknownTypeError(f"No distribution has {', '.join(sorted(missing))}")
+        which = ", ".join(sorted(missing))
+        if problems is None or not found:
+            raise UnknownTypeError(f"No distribution has {which}")
+        unknown = Diagnostic(message=f"no distribution has {which}")
+        problems[str(unknown)] = unknown
     # The largest first, so that no processor is left with one at the end.
     keys = sorted(found, key=lambda key: (-weights[key], key))
     return [Task(distro=found[k][-1], name=k[0], same=tuple(found[k])) for k in keys]
@@ -79,6 +91,7 @@ def collect_own(
     names: Sequence[str],
     paths: Sequence[str],
     *,
+    own: Sequence[str] | None = None,
     problems: dict[str, Diagnostic] | None = None,
 ) -> list[Task]:
     """List what to run of the types in folders, the largest types first.
@@ -90,26 +103,29 @@ def collect_own(
     names : sequence of str
         Types, services or actions; none: all that are in the folders.
     paths : sequence of str
+    own : sequence of str or None
+        Those of `paths` whose types are meant by all; `None`: all of them.
     problems : dict or None
         Takes what is wrong with definitions, by its text; they are left out then.
 
     Raises
     ------
     DefinitionError
-        Without `problems`: with those of all of them.
+        With those of all of them, without `problems`, or if none of the named types can be used.
     """
     found: dict[tuple[str, str], int] = {}
     wrong: dict[str, Diagnostic] = {} if problems is None else problems
     for distro in distros:
         library = library_of(distro, tuple(paths))
-        for name in names or Library(distro, paths, origins=()).interfaces():
+        alone = Library(distro, paths if own is None else own, origins=())
+        for name in names or alone.interfaces():
             try:
                 messages = library.interface(name).messages
             except DefinitionError as error:
                 wrong.update((str(problem), problem) for problem in error.diagnostics)
                 continue
             found.update(((distro, message.name), _weight(message)) for message in messages)
-    if wrong and problems is None:
+    if wrong and (problems is None or (names and not found)):
         raise DefinitionError(wrong.values())
     keys = sorted(found, key=lambda key: (-found[key], key))
     return [Task(distro=distro, name=name, same=(distro,)) for distro, name in keys]
@@ -117,15 +133,7 @@ def collect_own(
 
 def _weight(message: Message) -> int:
     """Estimate how long a type takes: by its fields, nested ones included."""
-    seen: dict[str, int] = {}
-
-    def weigh(kind: Message) -> int:
-        if kind.name not in seen:
-            seen[kind.name] = 0
-            seen[kind.name] = len(kind.fields) + sum(map(weigh, kind.children))
-        return seen[kind.name]
-
-    return weigh(message)
+    return sum(len(part.fields) for part in in_order([message]))
 
 
 def run_tasks(

@@ -132,7 +132,11 @@ def lay_out(message: Message, wire: Wire | None = None) -> Layout:
         If a field of it, or of a message in it, is of a type that no wire has (`refusals`).
     ValueError
         If there is no such wire.
+    TypeError
+        If it is no message.
     """
+    if not isinstance(message, Message):
+        raise TypeError(f"Message must be a Message, as load_message gives it, not {message!r}")
     if wire is not None and wire not in RULES:
         raise ValueError(f"Wire must be one of {', '.join(map(repr, RULES))}, not {wire!r}")
     if wrong := refusals(message):

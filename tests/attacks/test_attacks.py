@@ -12,10 +12,11 @@ import pytest
 
 from firm_hdl.cli import main
 from tests.attacks.definitions import definition_attacks
+from tests.attacks.others import other_attacks
 from tests.attacks.recordings import recording_attacks
 from tests.attacks.table import Attack
 
-ATTACKS = [*definition_attacks(), *recording_attacks()]
+ATTACKS = [*definition_attacks(), *recording_attacks(), *other_attacks()]
 
 # What Python says of a mistake in a program.
 PYTHON = re.compile(
@@ -66,6 +67,8 @@ def judge(attack: Attack, status: int, said: str, before: dict[str, bytes], root
     assert status in {None: (0, 1, 2), True: (1, 2), False: (0,)}[attack.fails], said
     assert not PYTHON.search(said), said[:2000]
     assert attack.says in said
+    assert "\x1b" not in said
+    assert "\0" not in said
     assert bool(said.strip()) or status == 0, "a failure without a word"
     after = contents(root)
     for name, text in before.items():
@@ -97,6 +100,7 @@ def test_names_are_distinct_and_there_are_many():
         (1, "Traceback (most recent call last):", ()),
         (1, "error: 'NoneType' object is not subscriptable", ()),
         (1, "error: [Errno 2] x", ()),
+        (1, "error: \x1b[2J", ()),
         (0, "", ("a",)),
     ],
 )
