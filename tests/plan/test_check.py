@@ -270,6 +270,15 @@ def test_a_count_that_is_not_its_limit_is_named():
         assert any(problem.endswith(f"a count has the limit {wrong}") for problem in problems)
 
 
+@pytest.mark.parametrize(("sequence", "most"), [("uint8[<=9]", 9), ("uint16[<=5]", 10)])
+def test_a_run_that_is_a_little_longer_than_a_cycle_needs_a_body(sequence, most):
+    plan = build_plan(lay_out(make("ros1", {"a": sequence})), bus_bytes=8, window_words=2)
+    step = plan.steps[0]
+    assert step.begin.head == 8
+    problems = check(with_step(plan, 0, begin=replace(step.begin, body=None)))
+    assert f"step 0: a run of {most} bytes needs a body" in problems
+
+
 def test_padding_that_no_alignment_needs_is_named():
     plan = build_plan(lay_out(make("ros2", {"a": "uint8"})), bus_bytes=16)
     step = plan.steps[0]

@@ -1,3 +1,4 @@
+# amaranth: UnusedElaboratable=no
 """Traces: rows as their form is defined, and what is read from them again."""
 
 from __future__ import annotations
@@ -71,6 +72,27 @@ def test_rows_have_what_changed_and_resets_stand_between_runs(recorded):
     assert len(trace.stimuli) == len(trace.expected) + 2
     assert trace.run_of(at - 1) == ("plain", at - 1)
     assert trace.run_of(at + 3) == ("stalled", 3)
+
+
+def test_every_bit_that_changes_is_told_and_no_other():
+    message = load_message("std_msgs/msg/Bool")
+    options = {"bus_bytes": 1, "max_message_bytes": 99}
+    trace = Trace((Deserializer(message, **options), Serializer(message, **options)), message.name)
+    trace.start("bits")
+    nothing = [0] * len(trace.probes)
+    trace.observe(nothing)
+    told = set()
+    for index, probe in enumerate(trace.probes):
+        for bit in range(len(probe)):
+            trace.observe([*nothing[:index], 1 << bit, *nothing[index + 1 :]])
+            rows = (trace.stimuli[-1].partition(" ")[2], trace.expected[-1])
+            changes = [(side, *each) for side, row in enumerate(rows) for each in read_row(row)]
+            ((side, number, bits),) = changes
+            assert bits.count("1") == 1
+            told.add((side, number, bits))
+            trace.observe(nothing)
+    # Each bit of each port once.
+    assert len(told) == sum(pin.port.width for pin in [*trace.inputs, *trace.outputs])
 
 
 def test_traffic_is_what_the_simulation_showed(recorded):
