@@ -157,6 +157,23 @@ def test_max_message_bytes_bounds_every_length(bus_bytes):
     assert decode(plan, over).status == "LENGTH"
 
 
+@pytest.mark.parametrize(
+    ("fields", "limits"),
+    [
+        # A bound over and under what there is room for: 28 bytes besides header and lengths.
+        ({"s": "string<=50", "q": "float64[]"}, {"s.length": 27, "q.length": 3}),
+        ({"s": "string<=26", "q": "float64[<=2]"}, {"s.length": 26, "q.length": 2}),
+        ({"s": "string<=27", "q": "float64[<=4]"}, {"s.length": 27, "q.length": 3}),
+        ({"s": "string<=28", "q": "float64[<=3]"}, {"s.length": 27, "q.length": 3}),
+    ],
+)
+def test_of_a_bound_and_the_room_the_smaller_counts(fields, limits):
+    plan = build_plan(lay_out(make("ros2", fields)), bus_bytes=8, max_message_bytes=40)
+    assert {
+        str(plan.leaves[s.begin.length]): s.begin.limit for s in plan.steps if s.begin
+    } == limits
+
+
 @every_bus
 def test_a_trigger_transfers_as_one_even_after_an_error(bus_bytes):
     message = make("ros1", {"a": "uint16", "e": make("ros1", {}, "E")})

@@ -51,6 +51,17 @@ def test_every_kind_of_field_transfers_as_the_interface_says(oracle):
     }
 
 
+@pytest.mark.parametrize(("dialect", "right"), [("ros1", -2), ("ros2", 254)])
+def test_byte_has_a_sign_in_ros1_alone(dialect, right):
+    store = get_typestore(Stores.EMPTY)
+    store.register(get_types_from_msg("byte b\nbyte[] more\nuint8 u\n", "test_msgs/msg/Bytes"))
+    more = np.array([254], dtype=np.uint8)
+    value = store.types["test_msgs/msg/Bytes"](b=-2, more=more, u=254)
+    found = Oracle(store, dialect).transfers(value, "test_msgs/msg/Bytes", "ros1", 1)
+    assert (found[("b",)], found[("u",)]) == ([right], [254])
+    assert found[("more", "items")] == [((right,), True)]
+
+
 def test_items_wider_than_the_bus_have_one_lane(oracle):
     inner = oracle.store.types["test_msgs/msg/Inner"]
     value = inner(name="", numbers=np.array([7, 8], dtype=np.uint16))
