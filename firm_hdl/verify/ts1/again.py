@@ -60,15 +60,16 @@ class Again:
             return NotJudged("the oracle takes the definition, and says nothing of it"), False
         if not plain.differences:
             # Where it is known to err, we must not err as well.
-            own = [entry for entry in self._entries() if not entry.is_mistake]
-            found, _ = self._compared(own)
+            found, _ = self._compared(self._entries(with_mistakes=False))
             if not found.differences:
                 return Passed(plain.cases), plain.is_refused
             plain = found
         return self._known(plain)
 
     def _known(self, plain: Compared) -> tuple[Verdict, bool]:
-        found, touched = self._compared(self._entries())
+        # What we take is no mistake to us.
+        is_refused = isinstance(self._ours, DefinitionError)
+        found, touched = self._compared(self._entries(with_mistakes=is_refused))
         if not found.differences and found.cases and touched:
             needed, found = self._needed(touched, found)
             keys = tuple(entry.key for entry in needed)
@@ -80,11 +81,15 @@ class Again:
         beside = f" (beside {', '.join(entry.key for entry in touched)})" if touched else ""
         return Failed(tuple(f"{each}{beside}" for each in left.differences)), False
 
-    def _entries(self) -> list[Known]:
+    def _entries(self, *, with_mistakes: bool = True) -> list[Known]:
         if self._universe is None:
             return []
         name, release = self._oracle.name, self._oracle.version()
-        return [entry for entry in KNOWN if entry.is_about(name, release, self._case)]
+        return [
+            entry
+            for entry in KNOWN
+            if entry.is_about(name, release, self._case) and (with_mistakes or not entry.is_mistake)
+        ]
 
     def _needed(
         self, entries: Sequence[Known], found: Compared
@@ -175,12 +180,10 @@ class Again:
         if self._universe is None or self._oracle.changes_needs:
             return
         if isinstance(self._ours, DefinitionError):
-            names = {each.span.source.name for each in self._ours.diagnostics if each.span}
-            yield from (
-                case
-                for source, case in self._universe.read_all()
-                if source.name in names and case.spelled_name != self._case.spelled_name
-            )
+            spans = [each.span for each in self._ours.diagnostics if each.span]
+            names = {each.source.name for each in spans if each.source.text != self._case.text}
+            for name in sorted(names & self._universe.by_source.keys() if names else ()):
+                yield self._universe.by_source[name]
         elif not isinstance(self._ours, Exception):
             for name in _needed_names(self._ours):
                 parts = name.split("/")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cached_property
 from pathlib import Path
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source
@@ -86,6 +87,11 @@ class Universe:
         """Yield every definition with its source, whose name may be that of a file."""
         for package, kind, name in sorted(self._sources.names):
             yield self._case(package, kind, name)
+
+    @cached_property
+    def by_source(self) -> dict[str, Case]:
+        """Every definition by the name of its source."""
+        return {source.name: case for source, case in self.read_all()}
 
     def _case(self, package: str, kind: Kind, name: str) -> tuple[Source, Case]:
         try:
