@@ -156,8 +156,12 @@ def test_inputs_tell_what_was_asked_for(tmp_path):
         assert inputs(**{key: value}) != base
     for options in ({"bus_bytes": 4}, {"bus_bytes": 8, "max_message_bytes": 999}):
         other = build_plan(lay_out(message), **options)
-        assert inputs_of(message, other, distro="lyrical", definition_sha256="0" * 64) != base
-    assert base["dialect"] == "ros2" and base["options"]["bus_bytes"] == 8
+        found = inputs_of(message, other, distro="lyrical", definition_sha256="0" * 64)
+        assert {k: found["options"][k] for k in options} == options and found != base
+    assert base["dialect"] == "ros2"
+    assert base["options"] == {
+        "wire": "cdr", "bus_bytes": 8, "max_message_bytes": 1 << 24, "ports": "records"
+    }  # fmt: skip
 
 
 # Timing.
