@@ -180,6 +180,7 @@ def test_comments_are_comments_whatever_they_say():
             words = "".join(lines).replace("--", " ").split()
             if text in ("plain", "word " * 60):
                 assert words == text.split()
+    assert list(comment("ü \N{DEGREE SIGN}C", "")) == ["-- \\xfc degC\n"]
     assert list(comment("a\n\nb", "")) == ["-- a\n", "--\n", "-- b\n"]
 
 
@@ -221,6 +222,8 @@ def test_values_of_a_record_stand_where_the_layout_has_them(tmp_path):
     (body,) = re.findall(r"  type t_value_t is record\n(.*?)  end record;", text, re.DOTALL)
     types = {line.split()[0]: line.split()[2].rstrip(";") for line in body.splitlines()}
     assert types["a"] != types["b"] and types["c"].startswith(types["b"].removesuffix("_t"))
+    # Arrays have as many elements as the field.
+    assert types["c"].endswith("_t(0") and "float32_items_t(0 to 2);" in body
     for member, bits in (("a", 24), ("b", 96)):
         assert (
             f"constant {types[member].removesuffix('_t').upper()}_BITS : positive := {bits};"

@@ -343,9 +343,13 @@ def test_the_most_frequent_word_of_an_oracle_comes_first():
     records = [definition(f"m/msg/T{n}", NotJudged(reason)) for n, reason in enumerate(reasons)] + [
         definition("m/msg/Z", NotJudged("nobody is here"), oracle="a")
     ]
+    # A type of two distributions is two definitions.
+    for distro in ("iron", "jazzy"):
+        test = a_test("m/msg/Z", system="ts1", distro=distro, same=(distro,))
+        records.append(a_record(test, verdicts=records[-1].verdicts))
     said = summarise({"r": run_of(*records)}).said
     assert [(s.oracle, s.what, s.count, s.example) for s in said] == [
-        ("a", "nobody is here", 1, "m/msg/Z"),
+        ("a", "nobody is here", 3, "m/msg/Z"),
         ("genmsg", "it has 3 levels", 3, "m/msg/T0"),
         ("genmsg", "m/msg/X is odd", 2, "m/msg/T1"),
         ("genmsg", "nobody is here", 1, "m/msg/T4"),
