@@ -90,7 +90,7 @@ def _facts(
         "names": lambda: [ours.name],
         "show": show,
         "md5": lambda: _md5(ours),
-        "hash": lambda: {ours.name: type_hash(ours)},
+        "hash": lambda: _hashes(ours),
         "proto": lambda: proto(ours),
     }
     return {key: _made(makers[key]) for key in theirs}
@@ -101,6 +101,12 @@ def _made(make: Callable[[], Any]) -> Any:
         return make()
     except Exception as error:  # It is ours, and a difference like any other.
         return f"raises {type(error).__name__}: {error}"
+
+
+def _hashes(interface: Interface) -> dict[str, str]:
+    """Return the type hashes of an interface and of all that it is made of and has a name."""
+    services = interface.services if isinstance(interface, Action) else ()
+    return {each.name: type_hash(each) for each in (interface, *interface.messages, *services)}
 
 
 def _md5(interface: Interface) -> dict[str, str]:

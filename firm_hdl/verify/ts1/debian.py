@@ -1,4 +1,8 @@
-"""ROS's own readers, which run in a process of their own: see `worker_script`."""
+"""ROS's own readers, which run in processes of their own: see `worker_script`.
+
+Debian has genmsg and the rosidl of humble. Newer releases of rosidl are PyPI's, and each has
+oracles of its own, whose names end in its version.
+"""
 
 from __future__ import annotations
 
@@ -6,28 +10,37 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, cached_property
 from typing import Any, ClassVar
 
+from firm_hdl.frontend import DISTROS
+from firm_hdl.verify.ros2_wheels import RELEASES, Release
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.oracle import Accepted, Answer, NotJudged, Oracle, Refused
 from firm_hdl.verify.ts1.worker import Worker
 
-__all__ = ["Genmsg", "RosidlAdapter", "RosidlParser"]
+__all__ = ["NEWER", "Genmsg", "RosidlAdapter", "RosidlParser"]
 
 
 class _Worked(Oracle):
     """An oracle that a worker answers for."""
 
     family: ClassVar[str]
+    judge_name: ClassVar[str]
+    """What the worker calls it."""
+    release: ClassVar[Release | None] = None
+    """Whose environment it is in; `None`: the system's."""
 
     @cached_property
     def _worker(self) -> Worker:
-        return _shared_worker(self.family, self.universe.folder)
+        return _shared_worker(self.family, self.universe.folder, self.release)
 
     def missing(self) -> str | None:
-        return self._worker.missing
+        why = self._worker.missing
+        if self.release is None or why is None:
+            return why
+        return f"{why} {self.release.how}"
 
     def version(self) -> str:
-        return self._worker.versions.get(self.name, "")
+        return self._worker.versions.get(self.judge_name, "")
 
     def judge(self, cases: Sequence[Case]) -> Iterator[Answer]:
         for case in cases:
@@ -35,12 +48,13 @@ class _Worked(Oracle):
 
     def _request(self, case: Case) -> dict[str, Any]:
         return {
-            "oracle": self.name,
+            "oracle": self.judge_name,
             "package": case.package,
             "kind": case.kind,
             "name": case.name,
             "file": case.file,
             "text": case.text if case.is_changed else None,
+            "has_events": DISTROS[self.universe.distro].has_events,
         }
 
     def cpu_seconds(self) -> float:
@@ -52,9 +66,11 @@ class _Worked(Oracle):
 
 
 @cache
-def _shared_worker(family: str, folder: str) -> Worker:
-    # Two oracles of one family ask about the same texts, which it then reads once.
-    return Worker(family, folder)
+def _shared_worker(family: str, folder: str, release: Release | None) -> Worker:
+    # Oracles of one family ask about the same texts, which it then reads once.
+    if release is None:
+        return Worker(family, folder)
+    return Worker(family, folder, python=str(release.python))
 
 
 def _answer(answer: dict[str, Any]) -> Answer:
@@ -73,7 +89,7 @@ class Genmsg(_Worked):
     An action is expanded by the rule of actionlib before genmsg reads its messages.
     """
 
-    name = "genmsg"
+    name = judge_name = "genmsg"
     family = "genmsg"
     languages: ClassVar = {"ros1": frozenset({"msg", "srv", "action"})}
 
@@ -84,15 +100,19 @@ class RosidlAdapter(_Worked):
     A definition that it cannot write out as IDL is refused, as in a build.
     """
 
-    name = "rosidl_adapter"
+    name = judge_name = "rosidl_adapter"
     family = "rosidl"
     languages: ClassVar = {"ros2": frozenset({"msg", "srv", "action"})}
 
 
 class RosidlParser(_Worked):
-    """rosidl_parser: what IDL declares. Other definitions go through rosidl_adapter before."""
+    """rosidl_parser: what IDL declares. Other definitions go through rosidl_adapter before.
 
-    name = "rosidl_parser"
+    From iron on with event messages of services, and the type hashes of all of it, which
+    rosidl_generator_type_description computes.
+    """
+
+    name = judge_name = "rosidl_parser"
     family = "rosidl"
     languages: ClassVar = {"ros2": frozenset({"msg", "srv", "action", "idl"})}
 
@@ -105,6 +125,18 @@ class RosidlParser(_Worked):
     def alike(self, case: Case) -> Mapping[str, str]:
         # There is no char in the IDL that rosidl_adapter writes.
         return {} if case.language == "idl" else {"char": "uint8"}
+
+
+def _newer() -> Iterator[type[Oracle]]:
+    for release in RELEASES:
+        for base in (RosidlAdapter, RosidlParser):
+            name = f"{base.name}-{release.rosidl}"
+            members = {"__doc__": base.__doc__, "name": name, "release": release}
+            yield type(f"{base.__name__}_{release.name}", (base,), members)
+
+
+NEWER: tuple[type[Oracle], ...] = tuple(_newer())
+"""Oracles of the releases that PyPI has, oldest first."""
 
 
 def _name_as_file(facts: Facts, case: Case) -> None:

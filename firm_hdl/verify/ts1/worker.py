@@ -84,8 +84,7 @@ class Worker:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
                 text=True,
-                # As ROS's tools are run by most: in an environment that speaks UTF-8.
-                env={**os.environ, "LC_ALL": "C.UTF-8", "PYTHONUTF8": "1"},
+                env=_environment(self._command[0]),
             )
         except OSError as error:
             self.missing = f"{self._command[0]} cannot be run: {error.strerror}"
@@ -110,3 +109,12 @@ class Worker:
             return dict(json.loads(answer))
         except ValueError:
             return None
+
+
+def _environment(python: str) -> dict[str, str]:
+    # As ROS's tools are run by most: in an environment that speaks UTF-8.
+    found = {**os.environ, "LC_ALL": "C.UTF-8", "PYTHONUTF8": "1"}
+    if python != ROS_PYTHON:
+        # A release of ROS that is sourced must not stand in for the one that was asked for.
+        found.pop("PYTHONPATH", None)
+    return found

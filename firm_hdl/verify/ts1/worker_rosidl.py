@@ -1,11 +1,13 @@
-"""The far end of `worker_script` for ROS 2.
+"""The far end of `worker_script` for ROS 2, for any release of rosidl.
 
-rosidl_adapter makes IDL of ``.msg``, ``.srv`` and ``.action``; rosidl_parser reads IDL.
+rosidl_adapter makes IDL of ``.msg``, ``.srv`` and ``.action``; rosidl_parser reads IDL; and what
+has rosidl_generator_type_description (iron and later) computes type hashes of what was read.
 """
 
 import ast
 import functools
 import os
+import re
 
 __all__ = ["readers"]
 
@@ -17,6 +19,12 @@ def readers(folder):
     import rosidl_parser.parser
 
     reader = _Rosidl(rosidl_adapter, rosidl_parser, folder)
+    try:
+        import rosidl_generator_type_description
+    except ImportError:
+        pass  # Humble has no type hashes.
+    else:
+        reader.hashes = _Hashes(reader, rosidl_generator_type_description)
     judges = {"rosidl_adapter": reader.adapter, "rosidl_parser": reader.parser}
     return judges, tuple(judges)
 
@@ -29,8 +37,9 @@ class _Rosidl:
     def __init__(self, rosidl_adapter, rosidl_parser, folder):
         self.reader = rosidl_adapter.parser
         self.evaluate = rosidl_adapter.resource.evaluate_template
-        self.parse_idl = rosidl_parser.parser.parse_idl_string
+        self.parse_idl = functools.lru_cache(maxsize=64)(rosidl_parser.parser.parse_idl_string)
         self.folder = folder
+        self.hashes = None
         self.known = {}  # Message types by name: None, or why one cannot be used.
         self.convert = functools.lru_cache(maxsize=512)(self._convert)
 
@@ -40,20 +49,30 @@ class _Rosidl:
         return {"structure": {name: _adapter_message(spec) for name, spec in specs.items()}}
 
     def parser(self, request):
+        content = self.content(request)
+        facts = {"structure": _parsed(content, has_events=request["has_events"])}
+        # What has a name for a bound has no hash: there is no number.
+        is_numbered = not _has_named_bounds(facts["structure"])
+        if self.hashes is not None and request["has_events"] and is_numbered:
+            facts["hash"] = self.hashes.of(content, request)
+        return facts
+
+    def content(self, request):
+        """Read a definition and look for what it needs; return what rosidl_parser made of it."""
         if request["file"].endswith(".idl"):
-            facts = _parsed(self.parse_idl(self._text(request)))
-            self._check_needs(request, _idl_needs(facts))
+            content = self.parse_idl(self.text(request))
+            self._check_needs(request, _idl_needs(_parsed(content)))
         else:
             specs, idl = self._read(request)
-            facts = _parsed(self.parse_idl(idl))
+            content = self.parse_idl(idl)
             self._check_needs(request, _needs(*specs.values()))
-        return {"structure": facts}
+        return content
 
     def _read(self, request):
-        key = request["package"], request["kind"], request["name"], self._text(request)
+        key = request["package"], request["kind"], request["name"], self.text(request)
         return self.convert(*key)
 
-    def _text(self, request):
+    def text(self, request):
         if request["text"] is not None:
             # Text mode makes one line end of all.
             return request["text"].replace("\r\n", "\n").replace("\r", "\n")
@@ -105,7 +124,7 @@ class _Rosidl:
         for end in (".msg", ".idl"):
             request = {"package": package, "kind": "msg", "file": base + end, "text": None}
             try:
-                text = self._text(request)
+                text = self.text(request)
             except OSError:
                 continue
             except ValueError as error:
@@ -169,20 +188,37 @@ def _adapter_type(kind):
 IDL_NAMES = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"}
 
 
-def _parsed(content):
-    """Describe what rosidl_parser made of a file: a message, a service or an action."""
+def _element(content):
+    """Return what a file declares: a message, a service or an action."""
     (element,) = [each for each in content.elements if not hasattr(each, "locator")]
+    return element
+
+
+def _parsed(content, has_events=False):
+    """Describe what rosidl_parser made of a file."""
+    element = _element(content)
     messages = []
     if hasattr(element, "structure"):
         messages = [element]
     elif hasattr(element, "request_message"):
-        messages = [element.request_message, element.response_message]
+        messages = _messages_of_service(element, has_events)
     else:
         messages = [element.goal, element.result, element.feedback]
         for service in (element.send_goal_service, element.get_result_service):
-            messages += [service.request_message, service.response_message]
+            messages += _messages_of_service(service, has_events)
         messages.append(element.feedback_message)
     return {_type(each.structure.namespaced_type): _parsed_message(each) for each in messages}
+
+
+def _has_named_bounds(messages):
+    types = [field["type"] for message in messages.values() for field in message["fields"]]
+    return any(re.search(r"<=(?!\d)", each) for each in types)
+
+
+def _messages_of_service(service, has_events):
+    # rosidl has event messages from iron on.
+    events = [service.event_message] if has_events and hasattr(service, "event_message") else []
+    return [service.request_message, service.response_message, *events]
 
 
 def _parsed_message(message):
@@ -226,3 +262,82 @@ def _default(member):
     # Lists are texts of Python's, which generators evaluate.
     is_list = type(member.type).__name__ in ("Array", "BoundedSequence", "UnboundedSequence")
     return list(ast.literal_eval(value)) if is_list and isinstance(value, str) else value
+
+
+class _Hashes:
+    """Type hashes of what rosidl_parser reads, computed by rosidl's own functions.
+
+    ``generate_type_hash`` itself takes a package at a time, and finds what other packages have in
+    files that their builds left; these are its steps.
+    """
+
+    def __init__(self, reader, describing):
+        self.reader, self.describing = reader, describing
+        self.needed = {}  # Individual descriptions of what is in files, by name.
+
+    def of(self, content, request):
+        """Return the hash of a message, a service or an action, and those of its messages.
+
+        Or say what was raised: what cannot be hashed cannot be built.
+        """
+        try:
+            return self._of(_element(content), request)
+        except (KeyError, ValueError) as error:
+            return f"raises {type(error).__name__}: {error}"
+
+    def _of(self, element, request):
+        own = self._individual(element, request)
+        if request["text"] is None:
+            self.needed.update(own)
+        described = {**self.needed, **own}
+        pending = list(own)
+        seen = set(own)
+        while pending:
+            for need in _referred(described[pending.pop()]) - seen:
+                seen.add(need)
+                if need not in described:
+                    described[need] = self.needed[need] = self._described(need)
+                pending.append(need)
+        return {name: self._hash(name, described) for name in own}
+
+    def _individual(self, element, request):
+        """Describe all types that a file declares, each by itself."""
+        add = self.describing
+        found = {}
+        if hasattr(element, "structure"):
+            # A message is called as its file is, whatever the modules of an IDL say.
+            names = type(element.structure.namespaced_type)(
+                [request["package"], request["kind"]], request["name"]
+            )
+            own = add.GenericInterface(names, element.structure.members)
+            found["/".join(names.namespaced_name())] = own
+        elif hasattr(element, "request_message"):
+            add.add_srv(element, found)
+        else:
+            add.add_action(element, found)
+        return {
+            name: add.serialize_individual_type_description(each.namespaced_type, each.members)
+            for name, each in found.items()
+        }
+
+    def _described(self, name):
+        package, kind, base = name.split("/")
+        for end in (".msg", ".idl"):
+            request = {"package": package, "kind": kind, "name": base, "file": base + end}
+            try:
+                element = _element(self.reader.content({**request, "text": None}))
+            except OSError:
+                continue
+            return self._individual(element, request)[name]
+        raise ValueError(f"{name} is not there")
+
+    def _hash(self, name, described):
+        # It looks for what is needed alone, and fails if something is not there.
+        return self.describing.calculate_type_hash(
+            self.describing.extract_full_type_description(name, described)
+        )
+
+
+def _referred(description):
+    names = {field["type"]["nested_type_name"] for field in description["fields"]}
+    return names - {""}

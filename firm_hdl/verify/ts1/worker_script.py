@@ -6,11 +6,13 @@ oracles (``genmsg`` or ``rosidl``), a folder of definitions, ``PACKAGE/msg|srv|a
 the folder of the module ``worker_FAMILY``. It says in its first line what it has. Then each line in
 is a request and gets a line out:
 
-    {"oracle": "genmsg", "package": "p", "kind": "msg", "name": "A", "file": "A.msg", "text": null}
+    {"oracle": "genmsg", "package": "p", "kind": "msg", "name": "A", "file": "A.msg", "text": null,
+     "has_events": false}
     {"facts": {...}} or {"refused": "why"} or {"failed": "why"}
 
-Facts are described in `firm_hdl.verify.ts1.facts`. A text that is given stands for the file's. It
-ends when its input does.
+Facts are described in `firm_hdl.verify.ts1.facts`. A text that is given stands for the file's;
+``has_events`` says whether services have event messages and types have hashes. It ends when its
+input does.
 """
 
 import importlib

@@ -138,12 +138,21 @@ def _ros2(key, oracle, text, plant, **more):
     return Example(key=key, oracle=oracle, text=text + "uint16 last\n", plant=plant, **more)
 
 
-def _idl(key, members, plant, before="", name="A", modules=("p", "msg"), **more):
+def _idl(
+    key,
+    members,
+    plant,
+    before="",
+    name="A",
+    modules=("p", "msg"),
+    oracle="rosidl_parser",
+    **more,
+):
     text = (
         f"module {modules[0]} {{ module {modules[1]} {{ {before} "
         f"struct {name} {{ {members} unsigned short last; }}; }}; }};"
     )
-    return Example(key=key, oracle="rosidl_parser", text=text, plant=plant, idl=True, **more)
+    return Example(key=key, oracle=oracle, text=text, plant=plant, idl=True, **more)
 
 
 _N = "module A_Constants { const long N = 3; };"
@@ -233,6 +242,12 @@ EXAMPLES: tuple[Example, ...] = (
         '@default(value=3) double x; @default(value="(1, 2)") double y[2];',
         _field(1, default=(1.0, 3.0)),
         before="module A_Constants { const long double N = 3; };",
+    ),
+    _idl(
+        "idl-long-double-hash",
+        "long double x;",
+        _field(0, name="y"),
+        oracle="rosidl_parser-4.9",
     ),
     _idl("idl-twice", "long x; long x;", drop_last),
     _idl(

@@ -31,7 +31,13 @@ def differing(selection, oracle):
 
 @pytest.mark.parametrize(
     ("dialect", "oracle", "step"),
-    [("ros1", "genmsg", 10), ("ros2", "rosidl_adapter", 20), ("ros2", "rosidl_parser", 100)],
+    [
+        ("ros1", "genmsg", 10),
+        ("ros2", "rosidl_adapter", 20),
+        ("ros2", "rosidl_parser", 100),
+        # With hashes, which need all that a type is made of.
+        ("ros2", "rosidl_parser-4.9", 100),
+    ],
 )
 def test_a_sample_is_read_as_oracles_read_it(corpus, dialect, oracle, step):
     path, distro = str(corpus / dialect), DISTROS[dialect]

@@ -66,7 +66,8 @@ def test_what_is_in_the_way_of_judging_excuses_nothing_else(court, name, monkeyp
 def test_every_entry_has_an_example_with_a_twin_and_stands_in_the_errata():
     pairs = sorted((entry.key, oracle) for entry in KNOWN for oracle in entry.oracles)
     assert len(pairs) == len(set(pairs))
-    assert sorted({(each.key, each.oracle) for each in EXAMPLES}) == pairs
+    found = {(each.key, each.oracle.partition("-")[0]) for each in EXAMPLES}
+    assert sorted(found) == pairs
     spoiled = {entry.key for entry in KNOWN if entry.spoils is not None}
     assert {each.key for each in SPARED.values()} == spoiled
     _, _, page = ERRATA.read_text(encoding="utf-8").partition("\n## Definitions\n")

@@ -130,7 +130,7 @@ def worker(court, distro, family):
 
 def request(**changes):
     asked = {"oracle": "genmsg", "package": "q", "kind": "msg", "name": "B", "file": "B.msg"}
-    return {**asked, "text": None, **changes}
+    return {**asked, "text": None, "has_events": False, **changes}
 
 
 def test_a_worker_that_dies_is_replaced(court):
