@@ -31,6 +31,7 @@ __all__ = [
     "Service",
     "Text",
     "Value",
+    "idl_primitives",
 ]
 
 Dialect: TypeAlias = Literal["ros1", "ros2"]
@@ -50,8 +51,8 @@ class Primitive:
         As ROS writes it: ``bool``, ``byte``, ``char``, ``int8`` ... ``uint64``, ``float32``,
         ``float64``; from IDL also ``wchar`` and ``long double``.
     bytes : int
-        Size on every wire, in bytes: 1, 2, 4 or 8. For `long double` 16, which is that of the
-        standard; it is on no wire, see `has_wire_format`.
+        Size on every wire, in bytes: 1, 2, 4 or 8; of `wchar`, that of a distribution. For `long
+        double` 16, which is that of the standard; it is on no wire, see `has_wire_format`.
     signed : bool
         Whether an integer is two's complement. `byte` is signed in ROS 1 only, `char` in IDL only.
     kind : "bool", "int" or "float"
@@ -98,21 +99,34 @@ PRIMITIVES: dict[Dialect, dict[str, Primitive]] = {
 }
 """Every primitive by name, for each dialect."""
 
-IDL_PRIMITIVES: dict[str, Primitive] = PRIMITIVES["ros2"] | {
-    # A C `signed char`, unlike the `char` of .msg files; Fast CDR gives a wchar_t four bytes.
-    "char": Primitive(name="char", bytes=1, signed=True, kind="int"),
-    "wchar": Primitive(name="wchar", bytes=4, signed=False, kind="int"),
-    "long double": Primitive(name="long double", bytes=16, signed=True, kind="float"),
-}
-"""Every primitive that a definition in OMG IDL can name."""
+
+def idl_primitives(wchar_bytes: int) -> dict[str, Primitive]:
+    """List every primitive that a definition in OMG IDL can name.
+
+    Parameters
+    ----------
+    wchar_bytes : 2 or 4
+        Size of a `wchar` on the wire, which changed from one distribution to the next.
+    """
+    return PRIMITIVES["ros2"] | {
+        # A C `signed char`, unlike the `char` of .msg files.
+        "char": Primitive(name="char", bytes=1, signed=True, kind="int"),
+        "wchar": Primitive(name="wchar", bytes=wchar_bytes, signed=False, kind="int"),
+        "long double": Primitive(name="long double", bytes=16, signed=True, kind="float"),
+    }
+
+
+IDL_PRIMITIVES: dict[str, Primitive] = idl_primitives(2)
+"""Those of the newest distribution. In C++ and Python a `wchar` has 16 bits in every one."""
 
 PRIMITIVE_OF: dict[tuple[str, bool], Primitive] = {
     (item.name, item.signed and item.kind == "int"): item
     for table in (*PRIMITIVES.values(), IDL_PRIMITIVES)
     for item in table.values()
-    if item.has_wire_format
+    # On a wire, a wchar is an unsigned integer.
+    if item.has_wire_format and item.name != "wchar"
 }
-"""Every primitive that a wire can have, by its name and whether it is a signed integer."""
+"""Every primitive that a leaf can have, by its name and whether it is a signed integer."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -30,21 +30,25 @@ class Distro:
         What rosbags calls its types.
     has_events : bool
         Whether services have a message for introspection, ``_Event``: since iron.
+    wchar_bytes : int
+        Size of a ``wchar`` of IDL as the default middleware writes it: 4 with Fast CDR 1, which
+        iron is the last to have, and 2 with Fast CDR 2.
     """
 
     name: str
     dialect: Dialect
     store: Stores
     has_events: bool = False
+    wchar_bytes: int = 2
 
 
 DISTROS: dict[str, Distro] = {
     distro.name: distro
     for distro in (
         Distro(name="noetic", dialect="ros1", store=Stores.ROS1_NOETIC),
-        Distro(name="foxy", dialect="ros2", store=Stores.ROS2_FOXY),
-        Distro(name="humble", dialect="ros2", store=Stores.ROS2_HUMBLE),
-        Distro(name="iron", dialect="ros2", store=Stores.ROS2_IRON, has_events=True),
+        Distro(name="foxy", dialect="ros2", store=Stores.ROS2_FOXY, wchar_bytes=4),
+        Distro(name="humble", dialect="ros2", store=Stores.ROS2_HUMBLE, wchar_bytes=4),
+        Distro(name="iron", dialect="ros2", store=Stores.ROS2_IRON, has_events=True, wchar_bytes=4),
         Distro(name="jazzy", dialect="ros2", store=Stores.ROS2_JAZZY, has_events=True),
         Distro(name="kilted", dialect="ros2", store=Stores.ROS2_KILTED, has_events=True),
         Distro(name="lyrical", dialect="ros2", store=Stores.ROS2_LYRICAL, has_events=True),

@@ -54,8 +54,13 @@ class Library:
         self._distro = distro
         others = [EmbeddedOrigin(distro)] if origins is None else origins
         self._sources = Sources([*_folders(paths), *others])
-        has_events = DISTROS[distro].has_events
-        self._resolver = Resolver(self._sources, self.dialect, has_events=has_events)
+        facts = DISTROS[distro]
+        self._resolver = Resolver(
+            self._sources,
+            self.dialect,
+            has_events=facts.has_events,
+            wchar_bytes=facts.wchar_bytes,
+        )
         self._interfaces: dict[TypeName, Service | Action] = {}
 
     @property

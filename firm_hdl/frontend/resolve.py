@@ -27,7 +27,6 @@ from firm_hdl.frontend.syntax import (
     ValueSyntax,
 )
 from firm_hdl.model import (
-    IDL_PRIMITIVES,
     PRIMITIVES,
     Array,
     Constant,
@@ -39,6 +38,7 @@ from firm_hdl.model import (
     Sequence,
     Text,
     Value,
+    idl_primitives,
 )
 
 __all__ = ["Resolver"]
@@ -80,12 +80,17 @@ class Resolver:
     ----------
     has_events : bool
         Whether services have a message for introspection.
+    wchar_bytes : int
+        Size of a ``wchar`` of IDL.
     """
 
-    def __init__(self, sources: Sources, dialect: Dialect, *, has_events: bool) -> None:
+    def __init__(
+        self, sources: Sources, dialect: Dialect, *, has_events: bool, wchar_bytes: int
+    ) -> None:
         self._sources = sources
         self._dialect = dialect
         self._has_events = has_events
+        self._idl_primitives = idl_primitives(wchar_bytes)
         self._entries: dict[TypeName, _Entry | None] = {}
         self._units: dict[TypeName, Unit | None] = {}
 
@@ -235,7 +240,8 @@ class Resolver:
         if syntax.language == "idl" and [m.name.text for m in fields] == [_PADDING_MEMBER]:
             fields = []
         constants = [m for m in syntax.members if isinstance(m, ConstantSyntax)]
-        primitives = IDL_PRIMITIVES if syntax.language == "idl" else PRIMITIVES[self._dialect]
+        is_idl = syntax.language == "idl"
+        primitives = self._idl_primitives if is_idl else PRIMITIVES[self._dialect]
         entry.message = Message(
             name=str(entry.name),
             dialect=self._dialect,

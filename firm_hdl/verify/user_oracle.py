@@ -98,7 +98,7 @@ def _spelled(kind: model.FieldType) -> str:
     inner = kind.element if isinstance(kind, Array | Sequence) else kind
     if isinstance(inner, Text) and inner.wide:
         return stand_in_type(kind, inner)
-    if isinstance(inner, Primitive) and inner in (IDL_PRIMITIVES["char"], IDL_PRIMITIVES["wchar"]):
+    if isinstance(inner, Primitive) and (inner == IDL_PRIMITIVES["char"] or inner.name == "wchar"):
         integer = f"{'' if inner.signed else 'u'}int{8 * inner.bytes}"
         return str(kind).replace(inner.name, integer, 1)
     return str(kind)

@@ -160,6 +160,13 @@ def walk(nodes: tuple[Node, ...]) -> Iterator[Node]:
             yield from walk(node.body)
 
 
+def _number(primitive: Primitive) -> Primitive:
+    """Return what stands on the wire: of a `wchar`, an integer of its size."""
+    if primitive.name != "wchar":
+        return primitive
+    return PRIMITIVES["ros2"][f"uint{8 * primitive.bytes}"]
+
+
 @dataclass(slots=True)
 class _Builder:
     rules: WireRules
@@ -230,7 +237,7 @@ class _Builder:
     def field(self, kind: FieldType, path: Path, at: int) -> tuple[Node, ...]:
         match kind:
             case Primitive():
-                return (Scalar(path=path, gap=self.gap(kind, at), type=kind),)
+                return (Scalar(path=path, gap=self.gap(kind, at), type=_number(kind)),)
             case Message():
                 return self.message(kind, path, at)[0]
             case Text():
@@ -259,7 +266,7 @@ class _Builder:
             path=path,
             gap=None if counted else self.gap(LENGTH, at),
             item_gap=self.gap(item, start),
-            item=item,
+            item=_number(item),
             count=kind.count if isinstance(kind, Array) else None,
             bound=kind.bound if isinstance(kind, Sequence) else None,
             terminated=False,

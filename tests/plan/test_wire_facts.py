@@ -1,7 +1,8 @@
 """Facts about the wire formats that trip implementations, byte by byte, at every bus width.
 
-The hexadecimal of CDR is what ROS 2's own type support writes (humble, Fast CDR) or follows from
-OMG DDS-XTypes 1.3, clause 7.4; spaces stand between fields, `|` in front of padding.
+The hexadecimal of CDR is what ROS 2's own type support writes or follows from OMG DDS-XTypes 1.3,
+clause 7.4; spaces stand between fields, `|` in front of padding. Fast CDR 1.0.26, 2.2.5 and 2.3.3
+(humble, jazzy, kilted) write all of `FACTS` so: ``tests/verify/sut/test_fast_cdr.py``.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import struct
 import numpy as np
 import pytest
 
-from firm_hdl.model import IDL_PRIMITIVES, Array, Field, Message, Sequence
+from firm_hdl.model import IDL_PRIMITIVES, Array, Field, Message, Sequence, idl_primitives
 from firm_hdl.plan import build_plan, decode, encode, from_yaml, to_yaml
 from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.wire import lay_out
@@ -239,9 +240,40 @@ def test_strings_of_every_residue_end_where_they_should(bus_bytes, count):
     assert b"".join(bytes(lanes) for lanes, _ in words) == text + bytes(-count % bus_bytes)
 
 
-def test_idl_char_is_signed_and_wchar_has_four_bytes():
-    # OMG IDL has types that .msg has not: C's signed char; a wchar_t, which Fast CDR writes as u32.
-    char, wchar = IDL_PRIMITIVES["char"], IDL_PRIMITIVES["wchar"]
+def _wide(size: int) -> Message:
+    wchar = idl_primitives(size)["wchar"]
+    fields = {"w": wchar, "o": IDL_PRIMITIVES["byte"], "ws": Sequence(element=wchar, bound=3)}
+    return Message(
+        name="p/msg/T",
+        dialect="ros2",
+        fields=tuple(Field(name=name, type=kind) for name, kind in fields.items()),
+    )
+
+
+WIDE_VALUE = {"w": 0xCDDC, "o": 1, "ws": [0x61, 0xE9]}
+# Fast CDR 1.0.26 (humble) writes 4 bytes, 2.2.5 (jazzy) and 2.3.3 (kilted) write 2. ROS compiles
+# wide characters alone and in sequences with a bound, and no others.
+WIDE = {
+    4: (_wide(4), WIDE_VALUE, data("00010000 dccd0000 01|000000 02000000 61000000 e9000000")),
+    2: (_wide(2), WIDE_VALUE, data("00010000 dccd 01|00 02000000 6100 e900")),
+}
+"""A message, a value and its packet, by the size of a wide character."""
+
+
+@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@pytest.mark.parametrize("size", WIDE)
+def test_a_wide_character_has_the_bytes_of_its_distribution(size, bus_bytes):
+    message, value, packet = WIDE[size]
+    plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
+    assert encode(plan, to_transfers(plan, message, value)) == (packet, "OK")
+    decoded = decode(plan, packet)
+    assert decoded.status == "OK"
+    assert from_transfers(plan, message, decoded.streams) == value
+
+
+def test_idl_char_is_signed_and_wchar_has_the_size_of_its_distribution():
+    # OMG IDL has types that .msg has not: C's signed char; wchar.
+    char, wchar = IDL_PRIMITIVES["char"], idl_primitives(4)["wchar"]
     message = Message(
         name="p/msg/T",
         dialect="ros2",
@@ -252,13 +284,13 @@ def test_idl_char_is_signed_and_wchar_has_four_bytes():
             Field(name="ws", type=Array(element=wchar, count=2)),
         ),
     )
-    value = {"c": -2, "w": 0x1F600, "cs": [-1, 1], "ws": [0x61, 0xE9]}
+    value = {"c": -2, "w": 0xF600, "cs": [-1, 1], "ws": [0x61, 0xE9]}
     for bus_bytes in BUS_WIDTHS:
         plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
         packet, status = encode(plan, to_transfers(plan, message, value))
-        want = "00010000 fe|000000 00f60100 02000000 ff 01|0000 61000000 e9000000"
+        want = "00010000 fe|000000 00f60000 02000000 ff 01|0000 61000000 e9000000"
         assert (packet, status) == (data(want), "OK")
         assert from_transfers(plan, message, decode(plan, packet).streams) == value
         text = to_yaml(plan)
-        assert "c: signed char\n" in text and "w: wchar\n" in text
+        assert "c: signed char\n" in text and "w: uint32\n" in text
         assert from_yaml(text) == plan

@@ -78,7 +78,7 @@ def test_chars_of_idl_are_signed(tmp_path):
     (tmp_path / "own_msgs" / "msg" / "Plain.msg").write_text("char one\n")
     judge = judge_of(load_message("own_msgs/Chars", paths=[tmp_path]))
     fields = dict(judge.oracle.fields(judge.name))
-    assert fields["one"][1][0] == "int8" and fields["wide"][1][0] == "uint32"
+    assert fields["one"][1][0] == "int8" and fields["wide"][1][0] == "uint16"
     assert fields["three"][1][0][1][0] == fields["many"][1][0][1][0] == "int8"
     plain = judge_of(load_message("own_msgs/Plain", paths=[tmp_path]))
     assert dict(plain.oracle.fields(plain.name))["one"][1][0] == "char" and plain.note == ""

@@ -17,13 +17,13 @@ from tests.steps import calls_at_most
 from .rosidl import describe, read
 
 
-def library(tmp_path, files):
-    return Library("lyrical", [make_files(tmp_path, files)])
+def library(tmp_path, files, distro="lyrical"):
+    return Library(distro, [make_files(tmp_path, files)])
 
 
-def message(tmp_path, members, before=""):
+def message(tmp_path, members, before="", distro="lyrical"):
     text = f"module p {{ module msg {{ {before} struct T {{ {members} }}; }}; }};"
-    return library(tmp_path, {"p/msg/T.idl": text}).message("p/msg/T")
+    return library(tmp_path, {"p/msg/T.idl": text}, distro).message("p/msg/T")
 
 
 def types(found):
@@ -42,10 +42,18 @@ def test_primitives_have_the_names_that_ros_gives_them(tmp_path):
     ).split()
 
 
-def test_char_is_signed_and_wchar_has_four_bytes(tmp_path):
-    a, b = message(tmp_path, "char a; wchar b;").fields
+def test_char_is_signed(tmp_path):
+    (a,) = message(tmp_path, "char a;").fields
     assert a.type == IDL_PRIMITIVES["char"] and a.type.signed
-    assert b.type == IDL_PRIMITIVES["wchar"] and b.type.bytes == 4
+
+
+@pytest.mark.parametrize(
+    ("distro", "size"),
+    [("foxy", 4), ("humble", 4), ("iron", 4), ("jazzy", 2), ("kilted", 2), ("lyrical", 2)],
+)
+def test_wchar_has_the_size_of_the_distribution(tmp_path, distro, size):
+    (a,) = message(tmp_path, "wchar a;", distro=distro).fields
+    assert str(a.type) == "wchar" and a.type.bytes == size
 
 
 def test_types_with_sizes(tmp_path):
