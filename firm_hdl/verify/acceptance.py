@@ -55,7 +55,7 @@ from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.options import Options, Result
 from firm_hdl.verify.oracle import Oracle, Transfers
 from firm_hdl.verify.processes import cpu_seconds
-from firm_hdl.verify.references import WIDE_REFERENCE, confirm, may_stand_in
+from firm_hdl.verify.references import WIDE_REFERENCES, confirm, may_stand_in
 from firm_hdl.verify.simulators import simulator
 from firm_hdl.verify.user_oracle import Judge, NotJudgedError, judge_of
 from firm_hdl.verify.verdict import NotJudged
@@ -243,8 +243,8 @@ class Acceptance:
         found = confirm(self.message, self.plan.wire, cases, self.options.references)
         self.result.written_by = found.by
         self.result.failures += found.failures
-        if is_needed and WIDE_REFERENCE not in found.by:
-            self.fail(f"{WIDE_REFERENCE} could not write wide text, which rosbags has not")
+        if is_needed and not set(WIDE_REFERENCES) & set(found.by):
+            self.fail(f"{WIDE_REFERENCES[0]} could not write wide text, which rosbags has not")
 
     def is_large(self, cases: Sequence[Case]) -> bool:
         """Whether a type takes long to simulate; it is stalled and broken less often."""

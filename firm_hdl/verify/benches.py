@@ -34,7 +34,7 @@ from firm_hdl.verify.executors import run_each
 from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.processes import ToolError, cpu_seconds, made_by, run_tool
 from firm_hdl.verify.records import Record, Seconds, Test, clipped_verdict
-from firm_hdl.verify.references import WIDE_REFERENCE, confirm, may_stand_in
+from firm_hdl.verify.references import WIDE_REFERENCES, confirm, may_stand_in
 from firm_hdl.verify.runner import Task
 from firm_hdl.verify.simulators import find_ghdl
 from firm_hdl.verify.stimuli import stimulus_cases
@@ -141,15 +141,15 @@ def _run_bench(
     except BuildError as error:
         raise NotJudgedError(str(error)) from None
     judge = judge_of(
-        message, None if run.paths else distro, stand_in=may_stand_in(message, [WIDE_REFERENCE])
+        message, None if run.paths else distro, stand_in=may_stand_in(message, WIDE_REFERENCES)
     )
     cases = list(stimulus_cases(judge, plan))
     if not cases:
         raise NotJudgedError("it has no packet that is short enough")
     if isinstance(judge.oracle, WideOracle):
-        found = confirm(message, plan.wire, cases, [WIDE_REFERENCE])
+        found = confirm(message, plan.wire, cases, WIDE_REFERENCES)
         assert not found.failures, found.failures[0]
-        assert found.by, f"{WIDE_REFERENCE} could not write wide text, which rosbags has not"
+        assert found.by, f"{WIDE_REFERENCES[0]} could not write wide text, which rosbags has not"
     built = build(
         [name],
         folder,

@@ -20,6 +20,7 @@ from firm_hdl.verify.sut.client import (
     each_answered,
 )
 from firm_hdl.verify.sut.clients import client, close_clients
+from firm_hdl.verify.sut.fastcdr import NEWER
 from firm_hdl.verify.sut.known import known_writing
 from firm_hdl.verify.sut.values import Plain, from_objects, messages_of
 from firm_hdl.verify.wide_oracle import stand_ins
@@ -27,7 +28,7 @@ from firm_hdl.wire import Wire
 
 __all__ = [
     "NO_REFERENCE",
-    "WIDE_REFERENCE",
+    "WIDE_REFERENCES",
     "WRITERS",
     "Confirmation",
     "confirm",
@@ -39,14 +40,15 @@ __all__ = [
 WRITERS: dict[str, tuple[Wire, ...]] = {
     "genpy": ("ros1",),
     "fastcdr": ("cdr",),
+    **{kind.name: ("cdr",) for kind in NEWER},
     "cyclonedds": ("cdr",),
 }
 """Libraries that may confirm what rosbags writes, and on which wires."""
 
 NO_REFERENCE = "none"
 
-WIDE_REFERENCE = "fastcdr"
-"""Who has wide text, which rosbags has not."""
+WIDE_REFERENCES = ("fastcdr", *(kind.name for kind in NEWER))
+"""Who has wide text, which rosbags has not: one of them is enough."""
 
 MOST_BYTES = 1 << 18
 """Of all packets of a type that are written again; the first one always is."""
@@ -76,9 +78,8 @@ def references_here(wanted: Sequence[str] | None = None) -> tuple[str, ...]:
 
 def may_stand_in(message: Message, wanted: Sequence[str] | None = None) -> bool:
     """Whether a type has wide text, and somebody is here who knows how it is written."""
-    return bool(stand_ins(messages_of(message))) and bool(
-        (wanted is None or WIDE_REFERENCE in wanted) and references_here([WIDE_REFERENCE])
-    )
+    names = [name for name in WIDE_REFERENCES if wanted is None or name in wanted]
+    return bool(stand_ins(messages_of(message))) and bool(references_here(names))
 
 
 def find_references(wanted: Sequence[str] | None, wires: Sequence[str]) -> list[str]:

@@ -10,7 +10,6 @@ from firm_hdl.cli import main
 from firm_hdl.export.vhdl_bench import RUN_SCRIPT
 from firm_hdl.frontend import Library
 from firm_hdl.verify.benches import Benches, BenchRun, run_bench
-from firm_hdl.verify.references import WIDE_REFERENCE
 from firm_hdl.verify.results import read_results
 from firm_hdl.verify.runner import collect_tasks
 from firm_hdl.verify.sut import client
@@ -65,12 +64,12 @@ def test_wide_text_is_not_judged_unless_somebody_has_it(ghdl, tmp_path, monkeypa
 
 
 def test_wide_text_is_confirmed(ghdl, tmp_path, monkeypatch):
-    if (missing := client(WIDE_REFERENCE).missing()) is not None:
-        need(f"{WIDE_REFERENCE} ({missing})", None)
+    if (missing := client("fastcdr").missing()) is not None:
+        need(f"fastcdr ({missing})", None)
     result = wide(tmp_path, ghdl)
     assert assert_passed(result) == result.packets >= 3
     assert result.transfers > result.packets
-    codec = client(WIDE_REFERENCE).open(Library("lyrical").message("std_msgs/msg/Bool"), "cdr")
+    codec = client("fastcdr").open(Library("lyrical").message("std_msgs/msg/Bool"), "cdr")
     monkeypatch.setattr(type(codec), "encode_all", lambda self, values: [b"\0"] * len(values))
     (failure,) = wide(tmp_path, ghdl).verdict.failures
     assert "fastcdr writes 00, rosbags writes 00010000" in failure

@@ -7,21 +7,33 @@ import os
 from functools import cache
 
 from firm_hdl.verify.sut.client import Client
-from firm_hdl.verify.sut.fastcdr import FastCdr
+from firm_hdl.verify.sut.fastcdr import NEWER, FastCdr
 from firm_hdl.verify.sut.genpy import Genpy
 from firm_hdl.verify.sut.libraries import CycloneDds, McapRos1, McapRos2, Rosbags
 from firm_hdl.verify.sut.own import FirmHdl
 
 __all__ = ["CLIENTS", "REFERENCES", "client", "close_clients"]
 
-CLIENTS: dict[str, type[Client]] = {
-    kind.name: kind for kind in (FirmHdl, Rosbags, Genpy, FastCdr, CycloneDds, McapRos1, McapRos2)
-}
+_ALL: tuple[type[Client], ...] = (
+    FirmHdl,
+    Rosbags,
+    Genpy,
+    FastCdr,
+    *NEWER,
+    CycloneDds,
+    McapRos1,
+    McapRos2,
+)
+
+CLIENTS: dict[str, type[Client]] = {kind.name: kind for kind in _ALL}
 """Every client library by name, in the order of reports."""
 
-REFERENCES = {"ros1": ("genpy", "rosbags"), "cdr": ("fastcdr", "rosbags")}
-"""Who judges a library on a wire: ROS's own serializer, and who comes next if it is not here, or
-is the one that is judged."""
+REFERENCES = {
+    "ros1": ("genpy", "rosbags"),
+    "cdr": ("fastcdr", *(kind.name for kind in reversed(NEWER)), "rosbags"),
+}
+"""Who judges a library on a wire: ROS's own serializer, and who comes next if it is not here, is
+the one that is judged, or does not have the type."""
 
 
 def client(name: str) -> Client:

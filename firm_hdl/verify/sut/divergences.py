@@ -70,6 +70,7 @@ def _replaced(kind: FieldType, value: Plain) -> Plain:
 
 _GENPY = ("genpy", "mcap-ros1")
 _PYTHON = ("rosbags", "cyclonedds", "mcap-ros2", *_GENPY)
+_FAST_CDR = ("fastcdr", "fastcdr-2.2", "fastcdr-2.3")
 _CUTS = ("cut-1", "cut-half", "cut-all", "long-text", "long-items")
 
 
@@ -123,14 +124,37 @@ KNOWN: tuple[Known, ...] = (
     ),
     _entry(
         "fastcdr-cut-at-nul",
-        "fastcdr",
+        ("fastcdr", "fastcdr-2.2"),
         "cdr",
         "A string and a wstring are written up to the first NUL.",
         tame=_cut,
     ),
     _entry(
-        "fastcdr-bools",
+        "fastcdr-no-nul-inside",
+        "fastcdr-2.3",
+        "cdr",
+        "A string with a NUL inside cannot be written.",
+        whats=("encode nul-inside",),
+        answer="refuses",
+    ),
+    _entry(
+        "fastcdr-wide-characters",
         "fastcdr",
+        "cdr",
+        "Of the four bytes of a wchar, two are read.",
+        same=_number("wchar", 0xFFFF),
+    ),
+    _entry(
+        "fastcdr-options",
+        "fastcdr-2.3",
+        "cdr",
+        "A packet has as many bytes less as the last two bits of its options say.",
+        whats=("options",),
+        answer="refuses",
+    ),
+    _entry(
+        "fastcdr-bools",
+        _FAST_CDR,
         "cdr",
         "In a sequence without a bound, a bool that is neither 0 nor 1 is refused.",
         whats=("bool-2",),
@@ -138,7 +162,7 @@ KNOWN: tuple[Known, ...] = (
     ),
     _entry(
         "fastcdr-bool-arrays",
-        "fastcdr",
+        _FAST_CDR,
         "cdr",
         "In an array, a bool that is neither 0 nor 1 is not read.",
         whats=("bool-2",),

@@ -1,8 +1,9 @@
 """eProsima Fast CDR, which writes and reads the messages of ROS 2's default middleware.
 
 ``fastcdr_worker.cpp`` calls the library for each field of a type that is described to it, so that
-nothing is compiled for a type. The program is compiled when it is first needed, and kept in the
-user's cache folder.
+nothing is compiled for a type. The program is compiled when it is first needed, for each release
+of Fast CDR, and kept in the user's cache folder. Debian has the Fast CDR of ROS 2 humble; those of
+newer releases are PyPI's, and their names end in their versions.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from typing import ClassVar
 from firm_hdl.model import Array, FieldType, Message, Primitive, Text
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.processes import ToolError, hang_up, made_by, run_tool
+from firm_hdl.verify.ros2_wheels import RELEASES, Release
 from firm_hdl.verify.sut.client import (
     BatchCodec,
     Client,
@@ -32,7 +34,7 @@ from firm_hdl.verify.sut.client import (
 from firm_hdl.verify.sut.values import Plain, messages_of, packed, unpacked
 from firm_hdl.wire import Wire
 
-__all__ = ["FastCdr"]
+__all__ = ["NEWER", "FastCdr"]
 
 _SOURCE = Path(__file__).with_name("fastcdr_worker.cpp")
 _HOW = "(Debian, Ubuntu: apt install g++ libfastcdr-dev)"
@@ -40,15 +42,25 @@ _CODES = {"bool": "?", "float32": "f", "float64": "d", "wchar": "W"}
 
 
 class FastCdr(Client):
-    """Fast CDR as ROS 2's type support calls it."""
+    """Fast CDR as ROS 2's type support calls it.
 
-    name = "fastcdr"
+    Attributes
+    ----------
+    release : Release or None
+        Whose environment it is in; `None`: the system's.
+    wchar_bytes : int
+        What it writes for a wide character.
+    """
+
+    name: ClassVar[str] = "fastcdr"
     wires: ClassVar = frozenset({"cdr"})
     byte_orders = ("little", "big")
+    release: ClassVar[Release | None] = None
+    wchar_bytes: ClassVar[int] = 4
 
     @cached_property
     def _program(self) -> _Program:
-        return _Program(_compiled())
+        return _Program(_compiled(self.release))
 
     @cached_property
     def _why_not(self) -> str | None:
@@ -65,7 +77,12 @@ class FastCdr(Client):
         return self._program.version
 
     def open(self, message: Message, wire: Wire) -> Codec:
-        return _FastCdrCodec(self._program, message)
+        types = _described(message)
+        for size in _wchar_sizes(message) - {self.wchar_bytes}:
+            raise UnsupportedError(
+                f"{self.name} has wide characters of {self.wchar_bytes} bytes, not {size}"
+            )
+        return _FastCdrCodec(self._program, message, types)
 
     def close(self) -> None:
         if "_program" in self.__dict__:
@@ -74,10 +91,10 @@ class FastCdr(Client):
 
 
 class _FastCdrCodec(BatchCodec):
-    def __init__(self, program: _Program, message: Message):
+    def __init__(self, program: _Program, message: Message, types: str):
         self._program = program
         self._message = message
-        self._types = _described(message)
+        self._types = types
 
     def encode_all(self, values: Sequence[Plain]) -> list[bytes | Refusal]:
         items = [packed(self._message, value) for value in values]
@@ -88,6 +105,27 @@ class _FastCdrCodec(BatchCodec):
         return [
             each if isinstance(each, Refusal) else unpacked(self._message, each) for each in answers
         ]
+
+
+def _newer() -> Iterator[type[FastCdr]]:
+    for release in RELEASES:
+        members = {
+            "__doc__": FastCdr.__doc__,
+            "name": f"fastcdr-{release.fastcdr}",
+            "release": release,
+            "wchar_bytes": 2,
+        }
+        yield type(f"FastCdr_{release.name}", (FastCdr,), members)
+
+
+NEWER = tuple(_newer())
+"""Releases that PyPI has, oldest first."""
+
+
+def _wchar_sizes(message: Message) -> set[int]:
+    kinds = [item.type for each in messages_of(message) for item in each.fields]
+    inner = [kind.element if isinstance(kind, Array | SequenceType) else kind for kind in kinds]
+    return {kind.bytes for kind in inner if isinstance(kind, Primitive) and kind.name == "wchar"}
 
 
 def _described(message: Message) -> str:
@@ -192,8 +230,13 @@ def _text(answer: bytes) -> str:
     return item.decode() if isinstance(item, bytes) else ""
 
 
-def _compiled() -> Path:
+def _compiled(release: Release | None) -> Path:
     """Return the program, compiled if it was not yet.
+
+    Parameters
+    ----------
+    release : Release or None
+        Whose Fast CDR; `None`: that of the system.
 
     Raises
     ------
@@ -201,30 +244,40 @@ def _compiled() -> Path:
         If that fails; the text says how to get what it needs.
     """
     compiler = shutil.which(os.environ.get("CXX") or "g++")
+    how = _HOW if release is None else release.how
     if compiler is None:
         raise ToolError(f"there is no C++ compiler {_HOW}")
-    found = _found_headers(compiler)
+    where: list[str] = []
+    link = ["-lfastcdr"]
+    if release is not None:
+        home = os.path.abspath(release.folder)
+        where = [f"-I{home}/include"]
+        link = [f"-L{home}/lib", *link, f"-Wl,-rpath,{home}/lib"]
+        if not os.path.exists(f"{home}/include/fastcdr/Cdr.h"):
+            # The system may have other ones.
+            raise ToolError(f"Fast CDR {release.fastcdr} is not installed {how}")
+    found = _found_headers([compiler, *where])
     if b"FASTCDR" not in found:
-        raise ToolError(f"Fast CDR's headers are not installed {_HOW}")
-    command = [compiler, "-std=c++14", "-O1"]
+        raise ToolError(f"Fast CDR's headers are not installed {how}")
+    command = [compiler, "-std=c++14", "-O1", *where]
     key = hashlib.sha256(_SOURCE.read_bytes())
-    key.update("\0".join(command).encode() + b"\0" + found)
+    key.update("\0".join([*command, *link]).encode() + b"\0" + found)
     folder = _cache_folder()
     program = folder / f"fastcdr-{key.hexdigest()[:16]}"
     if program.exists():
         return program
     with tempfile.TemporaryDirectory(dir=folder) as scratch:
         made = Path(scratch) / "program"
-        run_tool([*command, "-o", str(made), str(_SOURCE), "-lfastcdr"], Path(scratch))
+        run_tool([*command, "-o", str(made), str(_SOURCE), *link], Path(scratch))
         # Whoever comes second puts the same in its place.
         os.replace(made_by(compiler, made), program)
     return program
 
 
-def _found_headers(compiler: str) -> bytes:
+def _found_headers(compiler: Sequence[str]) -> bytes:
     """Return what identifies the compiler and the library that it finds; empty without them."""
     done = subprocess.run(
-        [compiler, "-E", "-dM", "-include", "fastcdr/Cdr.h", "-x", "c++", os.devnull],
+        [*compiler, "-E", "-dM", "-include", "fastcdr/Cdr.h", "-x", "c++", os.devnull],
         capture_output=True,
         check=False,
     )

@@ -13,9 +13,13 @@
 // these behind `a` and its count and `:` (array), or `s` and its bound and `:` (sequence; 0: none).
 // Packed values are those of values.py.
 //
-// Which call of Fast CDR a field needs is rosidl_typesupport_fastrtps_cpp's rule (ROS 2 humble): a
-// whole vector or array at once, where that does it; bounds are checked for sequences only; a bool
-// alone is read as an octet; a message without fields is one octet; wide text goes through wchar_t.
+// Which call of Fast CDR a field needs is rosidl_typesupport_fastrtps_cpp's rule: a whole vector or
+// array at once, where that does it; bounds are checked for sequences only; a bool alone is read as
+// an octet; a message without fields is one octet. Two rules are those of the release:
+//   Fast CDR 1 (ROS 2 humble, iron)  wide text goes through wstring, a wchar_t has 4 bytes
+//   Fast CDR 2 (jazzy and later)     wide text goes unit by unit as uint32_t, a wchar_t has 2 bytes
+// So a packed wide character has as many bytes as the release writes. Where ROS compiles nothing, as
+// for a sequence of wide characters without a bound, they go one by one.
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
 #include <fastcdr/exceptions/Exception.h>
@@ -35,6 +39,14 @@
 #define FASTCDR_VERSION_STR ""
 #endif
 
+#if FASTCDR_VERSION_MAJOR >= 2
+#define SERIALIZE_ARRAY serialize_array
+#define DESERIALIZE_ARRAY deserialize_array
+#else
+#define SERIALIZE_ARRAY serializeArray
+#define DESERIALIZE_ARRAY deserializeArray
+#endif
+
 using eprosima::fastcdr::Cdr;
 using eprosima::fastcdr::FastBuffer;
 
@@ -50,6 +62,14 @@ struct Field {
 using Message = std::vector<Field>;
 
 std::vector<Message> types;
+
+#if FASTCDR_VERSION_MAJOR >= 2
+using WideChar = uint16_t;
+using WideText = std::u16string;
+#else
+using WideChar = uint32_t;
+using WideText = std::wstring;
+#endif
 
 // What is packed, in and out.
 struct Reader {
@@ -71,9 +91,9 @@ struct Reader {
     const uint32_t size = number<uint32_t>();
     return std::string(take(size), size);
   }
-  std::wstring wide() {
-    std::wstring found(number<uint32_t>(), L'\0');
-    for (auto & unit : found) {unit = static_cast<wchar_t>(static_cast<char16_t>(number<uint32_t>()));}
+  WideText wide() {
+    WideText found(number<uint32_t>(), 0);
+    for (auto & unit : found) {unit = static_cast<char16_t>(number<uint32_t>());}
     return found;
   }
 };
@@ -87,7 +107,7 @@ struct Writer {
     number(static_cast<uint32_t>(value.size()));
     data += value;
   }
-  void wide(const std::wstring & value) {
+  void wide(const WideText & value) {
     number(static_cast<uint32_t>(value.size()));
     for (auto unit : value) {number(static_cast<uint32_t>(static_cast<char16_t>(unit)));}
   }
@@ -101,9 +121,17 @@ void put<bool>(Cdr & cdr, Reader & in) {cdr << (in.number<uint8_t>() ? true : fa
 template<>
 void put<std::string>(Cdr & cdr, Reader & in) {cdr << in.text();}
 template<>
-void put<std::wstring>(Cdr & cdr, Reader & in) {cdr << in.wide();}
+void put<WideText>(Cdr & cdr, Reader & in) {
+  const WideText value = in.wide();
+#if FASTCDR_VERSION_MAJOR >= 2
+  cdr << static_cast<uint32_t>(value.size());
+  for (auto unit : value) {cdr << static_cast<uint32_t>(unit);}
+#else
+  cdr << value;
+#endif
+}
 template<>
-void put<wchar_t>(Cdr & cdr, Reader & in) {cdr << static_cast<wchar_t>(in.number<uint32_t>());}
+void put<wchar_t>(Cdr & cdr, Reader & in) {cdr << static_cast<wchar_t>(in.number<WideChar>());}
 
 template<typename T>
 void get(Cdr & cdr, Writer & out) {
@@ -124,16 +152,28 @@ void get<std::string>(Cdr & cdr, Writer & out) {
   out.text(value);
 }
 template<>
-void get<std::wstring>(Cdr & cdr, Writer & out) {
-  std::wstring value;
+void get<WideText>(Cdr & cdr, Writer & out) {
+  WideText value;
+#if FASTCDR_VERSION_MAJOR >= 2
+  uint32_t size;
+  cdr >> size;
+  value.resize(size);
+  for (auto & unit : value) {
+    uint32_t read;
+    cdr >> read;
+    if (read > 0xFFFF) {throw std::range_error("a unit of wide text has more than 16 bits");}
+    unit = static_cast<char16_t>(read);
+  }
+#else
   cdr >> value;
+#endif
   out.wide(value);
 }
 template<>
 void get<wchar_t>(Cdr & cdr, Writer & out) {
   wchar_t value;
   cdr >> value;
-  out.number(static_cast<uint32_t>(static_cast<char16_t>(value)));
+  out.number(static_cast<WideChar>(static_cast<char16_t>(value)));
 }
 
 // From packed values to what a generated C++ message has, and back.
@@ -155,11 +195,11 @@ struct Many {
   static void put_array(Cdr & cdr, Reader & in, uint32_t count) {
     std::unique_ptr<T[]> values(new T[count]);
     for (uint32_t n = 0; n < count; ++n) {values[n] = load<T>(in);}
-    cdr.serializeArray(values.get(), count);
+    cdr.SERIALIZE_ARRAY(values.get(), count);
   }
   static void get_array(Cdr & cdr, Writer & out, uint32_t count) {
     std::unique_ptr<T[]> values(new T[count]());
-    cdr.deserializeArray(values.get(), count);
+    cdr.DESERIALIZE_ARRAY(values.get(), count);
     for (uint32_t n = 0; n < count; ++n) {save(out, values[n]);}
   }
   static void put_sequence(Cdr & cdr, Reader & in) {
@@ -274,7 +314,7 @@ void get_messages(Cdr & cdr, Writer & out, const Field & field) {
   case 'f': call<float>(cdr, io, field); break; \
   case 'd': call<double>(cdr, io, field); break; \
   case 't': call<std::string>(cdr, io, field); break; \
-  case 'w': call<std::wstring, true>(cdr, io, field); break; \
+  case 'w': call<WideText, true>(cdr, io, field); break; \
   case 'W': call<wchar_t, true>(cdr, io, field); break;
 
 void put_message(Cdr & cdr, Reader & io, const Message & message) {
@@ -324,12 +364,30 @@ void read_types(const std::string & text) {
   }
 }
 
+#if FASTCDR_VERSION_MAJOR >= 2
+// As rmw_fastrtps does it.
+struct RosCdr : Cdr {
+  explicit RosCdr(FastBuffer & buffer)
+  : Cdr(buffer, Cdr::DEFAULT_ENDIAN, eprosima::fastcdr::CdrVersion::XCDRv1)
+  {
+    set_encoding_flag(eprosima::fastcdr::EncodingAlgorithmFlag::PLAIN_CDR);
+  }
+  size_t size() const {return get_serialized_data_length();}
+};
+#else
+struct RosCdr : Cdr {
+  explicit RosCdr(FastBuffer & buffer)
+  : Cdr(buffer, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR) {}
+  size_t size() const {return getSerializedDataLength();}
+};
+#endif
+
 size_t encode_into(FastBuffer & buffer, Reader in) {
-  Cdr cdr(buffer, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR);
+  RosCdr cdr(buffer);
   cdr.serialize_encapsulation();
   put_message(cdr, in, types.back());
   if (in.at != in.end) {throw std::logic_error("packed value is too long");}
-  return cdr.getSerializedDataLength();
+  return cdr.size();
 }
 
 std::string encode(Reader in) {
@@ -346,7 +404,7 @@ std::string decode(Reader in) {
   // Fast CDR takes a buffer that it might write to.
   std::string packet(in.at, in.end);
   FastBuffer buffer(&packet[0], packet.size());
-  Cdr cdr(buffer, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR);
+  RosCdr cdr(buffer);
   cdr.read_encapsulation();
   Writer out;
   get_message(cdr, out, types.back());
@@ -359,8 +417,11 @@ void item(Writer & answer, Work work) {
   std::string said;
   try {
     said = work();
+  } catch (const eprosima::fastcdr::exception::Exception & error) {
+    // In some releases no std::exception.
+    refused = 1;
+    said = error.what();
   } catch (const std::exception & error) {
-    // Those of Fast CDR are of this kind, too.
     refused = 1;
     said = error.what();
   }

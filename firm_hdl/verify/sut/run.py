@@ -7,6 +7,7 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
 from firm_hdl.errors import DefinitionError
+from firm_hdl.model import Message
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.cases import make_cases
 from firm_hdl.verify.directed import more_cases
@@ -68,8 +69,15 @@ class SutOptions:
 
 
 def reference_of(library: str, wire: Wire, here: Sequence[str]) -> str | None:
-    """Return who judges a library on a wire; `None` if nobody is here."""
-    return next((name for name in REFERENCES[wire] if name in here and name != library), None)
+    """Return who judges a library on a wire, if it has the type; `None` if nobody is here."""
+    return next(iter(_references(library, wire, here)), None)
+
+
+def _references(library: str, wire: Wire, here: Sequence[str]) -> list[str]:
+    own, *others = REFERENCES[wire]
+    # ROS's own is not judged by another release of itself, if anybody else is here.
+    names = reversed(others) if library == own else (own, *others)
+    return [name for name in names if name in here and name != library]
 
 
 def contest_of(trial: Trial, wire: Wire) -> Contest:
@@ -86,17 +94,23 @@ def judge_type(distro: str, name: str, options: SutOptions) -> list[Trial]:
     # Whatever it is, the other types are to go on.
     except (NotJudgedError, DefinitionError, ValueError) as error:
         return [_not_judged(library, name, str(error)) for library in options.libraries]
-    trials = []
-    for library in options.libraries:
-        reference = reference_of(library, wire, options.here)
-        if reference is None:
-            trials.append(_not_judged(library, name, f"nobody is here who judges it on {wire}"))
-            continue
-        contest = Contest(client(library), client(reference), wire)
-        trials.append(contest.judge(message, values))
+    trials = [_judged(library, message, wire, values, options) for library in options.libraries]
     for trial in trials:
         trial.is_asked = options.names_wires or wire in client(trial.library).wires
     return trials
+
+
+def _judged(
+    library: str, message: Message, wire: Wire, values: Sequence[Plain], options: SutOptions
+) -> Trial:
+    """Judge a library by the first reference that has the type."""
+    first: Trial | None = None
+    for reference in _references(library, wire, options.here):
+        trial = Contest(client(library), client(reference), wire).judge(message, values)
+        if not isinstance(trial.obstacle, NotJudged):
+            return trial
+        first = first or trial
+    return first or _not_judged(library, message.name, f"nobody is here who judges it on {wire}")
 
 
 def _not_judged(library: str, name: str, why: str) -> Trial:

@@ -19,7 +19,8 @@ def make_message(tmp_path):
         folder = root / "p" / "msg"
         folder.mkdir(parents=True)
         for name, each in {"A": text, **others}.items():
-            (folder / f"{name}.msg").write_text(each)
+            end = "idl" if each.startswith("module") else "msg"
+            (folder / f"{name}.{end}").write_text(each)
         return Library(distro, [root]).message("p/A" if distro == "noetic" else "p/msg/A")
 
     return make

@@ -19,6 +19,8 @@ class Example(NamedTuple):
     @property
     def distro(self) -> str:
         """Whose rules the text follows."""
+        if self.text.startswith("module"):
+            return "humble"
         return "noetic" if "genpy" in (self.library, self.reference) else "lyrical"
 
 
@@ -33,6 +35,17 @@ EXAMPLES = {
     ),
     "mcap-ros2-char-signed": Example("mcap-ros2", "fastcdr", "char a\n", {"a": 200}, "decode"),
     "fastcdr-cut-at-nul": Example("fastcdr", "rosbags", "string a\n", {"a": b"a\0b"}),
+    "fastcdr-no-nul-inside": Example(
+        "firm-hdl", "fastcdr-2.3", "string a\n", {"a": b"a"}, "encode nul-inside"
+    ),
+    "fastcdr-wide-characters": Example(
+        "firm-hdl",
+        "fastcdr",
+        "module p { module msg { struct A { wchar a; }; }; };",
+        {"a": 0x1F600},
+        "decode",
+    ),
+    "fastcdr-options": Example("firm-hdl", "fastcdr-2.3", "uint32 a\n", {"a": 1}, "options"),
     "fastcdr-bools": Example("firm-hdl", "fastcdr", "bool[] a\n", {"a": [True]}, "bool-2"),
     "fastcdr-bool-arrays": Example("firm-hdl", "fastcdr", "bool[1] a\n", {"a": [True]}, "bool-2"),
     "genpy-time-normalized": Example(
