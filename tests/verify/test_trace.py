@@ -9,7 +9,7 @@ import pytest
 
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.gateware.signatures import Status
-from firm_hdl.sim import Stalls
+from firm_hdl.sim import DeadlineError, Stalls
 from firm_hdl.sim.harness import Harness
 from firm_hdl.verify.crosscheck import first_difference
 from firm_hdl.verify.semantics import traffic
@@ -72,6 +72,23 @@ def test_rows_have_what_changed_and_resets_stand_between_runs(recorded):
     assert len(trace.stimuli) == len(trace.expected) + 2
     assert trace.run_of(at - 1) == ("plain", at - 1)
     assert trace.run_of(at + 3) == ("stalled", 3)
+
+
+@pytest.mark.parametrize("limit", range(6, 12))
+def test_packet_that_a_reset_has_cut_is_no_part_of_the_next(limit):
+    message = load_message("std_msgs/msg/Bool")
+    options = {"bus_bytes": 2, "max_message_bytes": 99}
+    rx, tx = Deserializer(message, **options), Serializer(message, **options)
+    trace = Trace((rx, tx), message.name)
+    harness = Harness(rx, tx, message=message, probes=trace.probes)
+    trace.start("stopped")
+    with pytest.raises(DeadlineError):
+        harness.run(packets=PACKETS, limit=limit, observe=trace.observe)
+    trace.start("whole")
+    seen = harness.run(packets=PACKETS, observe=trace.observe)
+    stopped, whole = traffic(trace, trace.expected)
+    assert len(stopped.packets) < len(PACKETS)
+    assert whole.difference(seen) is None and whole.packets == PACKETS
 
 
 def test_every_bit_that_changes_is_told_and_no_other():
