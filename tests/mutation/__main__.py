@@ -114,10 +114,12 @@ def _run(root: Path, todo: list[Mutant], files: list[str], options: argparse.Nam
     lock = Lock()
     with tempfile.TemporaryDirectory(prefix="firm-hdl-mutation-") as folder:
         free: Queue[Workshop] = Queue()
+        shops: list[Workshop] = []
         for number in range(options.jobs):
             shop = Path(folder) / str(number)
             copy_tree(root, shop)
-            free.put(Workshop(shop, options.nice))
+            shops.append(Workshop(shop, options.nice))
+            free.put(shops[-1])
         pool = ThreadPoolExecutor(options.jobs)
         try:
             found = read_map(
@@ -150,9 +152,10 @@ def _run(root: Path, todo: list[Mutant], files: list[str], options: argparse.Nam
             for done in [pool.submit(one, mutant) for mutant in todo]:
                 done.result()
         finally:
+            # What still runs, because of an error or of Ctrl-C, ends now.
+            for each in shops:
+                each.__exit__()
             pool.shutdown(cancel_futures=True)
-            while not free.empty():
-                free.get().__exit__()
 
 
 def _confirm(root: Path, records: Iterable[Record], nice: int) -> bool:

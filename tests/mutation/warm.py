@@ -36,8 +36,20 @@ def main() -> None:
             importlib.import_module(package)
     loaded = [name for name in sys.modules if name.partition(".")[0] == "firm_hdl"]
     assert not loaded, loaded
+    signal.signal(signal.SIGTERM, _end)
     for line in sys.stdin:
         print(json.dumps(_serve(json.loads(line))), flush=True)
+
+
+_running: list[int] = []
+
+
+def _end(*_: object) -> None:
+    """End, and what runs."""
+    for child in _running:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(child, signal.SIGKILL)
+    os._exit(128 + signal.SIGTERM)
 
 
 def _serve(job: dict[str, Any]) -> dict[str, Any]:
@@ -49,6 +61,7 @@ def _serve(job: dict[str, Any]) -> dict[str, Any]:
     child = os.fork()
     if child == 0:
         _run(job)
+    _running.append(child)
     late = time.monotonic() + job["seconds"]
     timed_out = False
     while True:
@@ -62,6 +75,7 @@ def _serve(job: dict[str, Any]) -> dict[str, Any]:
     # Simulators that a test left behind.
     with contextlib.suppress(ProcessLookupError):
         os.killpg(child, signal.SIGKILL)
+    _running.clear()
     code = os.waitstatus_to_exitcode(status)
     timed_out |= code == -signal.SIGXCPU
     return {"code": code, "timeout": timed_out, "cpu": usage.ru_utime + usage.ru_stime}
@@ -71,6 +85,7 @@ def _run(job: dict[str, Any]) -> None:
     """Be the job; never return."""
     code = 99
     try:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
         os.setsid()
         log = os.open(job["log"], os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         null = os.open(os.devnull, os.O_RDONLY)
