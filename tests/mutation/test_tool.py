@@ -302,6 +302,18 @@ def test_a_project_whose_tests_fail_is_not_judged(toy, capsys):
     assert "error: no tests there" in capsys.readouterr().err
 
 
+def test_what_does_not_bear_to_be_counted_meets_every_fault(toy):
+    (toy / "firm_hdl/wire/toy.py").write_text("def half(x):\n    return x // 2\n")
+    (toy / "tests/test_processes.py").unlink()
+    (toy / "tests/wire/test_toy.py").write_text(
+        "import sys\nfrom firm_hdl.wire.toy import half\n\n"
+        "def test_half():\n    assert not sys.gettrace()\n    assert half(6) == 3\n\n"
+        "def test_nothing():\n    pass\n"
+    )
+    found = run(toy)["half", "operator"]
+    assert (found.status, found.tests) == ("killed", 1)
+
+
 def test_keys_outlive_moved_lines():
     before = identify("a.py", "plan", MODULE, changes(MODULE))
     moved = "import this\n\n" + MODULE.replace("def halve", "def other(): ...\n\n\ndef halve")
