@@ -34,7 +34,7 @@ begin
     file source : text;
     variable row : line;
     variable random : random_t := random_from(seed, 1);
-    variable noise : random_t := random_from(seed, 5);
+    variable unkept : random_t := random_from(seed, 5);
     variable stall : boolean;
     variable size, place, sent : natural := 0;
 
@@ -44,7 +44,7 @@ begin
     begin
       for lane in 0 to bus_bytes - 1 loop
         if place + lane >= size then
-          draw(noise, octet);
+          draw(unkept, octet);
         else
           octet := byte_at(row.all, place + lane);
           assert octet >= 0
