@@ -2,7 +2,8 @@
 
 rosbags keeps parsed definitions only. They are written out as text again and read by our own
 parser, so that an embedded type goes the same way as a user's. What rosbags does not keep is lost:
-comments, default values, and the difference between ``builtin_interfaces/Time`` and ``time``.
+comments, and the difference between ``builtin_interfaces/Time`` and ``time``. Default values, which
+are few, are kept here.
 """
 
 from __future__ import annotations
@@ -59,6 +60,20 @@ DISTROS: dict[str, Distro] = {
 DEFAULT_DISTRO = "lyrical"
 """The newest one with long-term support."""
 
+# Fields with a default value, and the first distribution that has it. They are those of
+# geometry_msgs and sensor_msgs in ros2/common_interfaces, and of rcl_interfaces and
+# type_description_interfaces in ros2/rcl_interfaces. ROS 1 has none.
+_DEFAULTS: dict[tuple[str, str, str], tuple[str, str]] = {
+    ("geometry_msgs", "Quaternion", "x"): ("0", "foxy"),
+    ("geometry_msgs", "Quaternion", "y"): ("0", "foxy"),
+    ("geometry_msgs", "Quaternion", "z"): ("0", "foxy"),
+    ("geometry_msgs", "Quaternion", "w"): ("1", "foxy"),
+    ("rcl_interfaces", "ParameterDescriptor", "read_only"): ("false", "foxy"),
+    ("rcl_interfaces", "ParameterDescriptor", "dynamic_typing"): ("false", "humble"),
+    ("sensor_msgs", "NavSatStatus", "status"): ("-2", "jazzy"),
+    ("type_description_interfaces", "FieldType", "type_id"): ("0", "iron"),
+}
+
 # rosbags gives ROS 1's two builtin types the names that they have in ROS 2.
 _ROS1_BUILTINS = {
     "builtin_interfaces/msg/Time": "time",
@@ -93,16 +108,24 @@ def embedded_source(distro: str, package: str, name: str) -> Source | None:
         return None
     constants, fields = definition
     dialect = DISTROS[distro].dialect
-    lines = [f"{type_} {name}={_value(value)}" for name, type_, value in constants]
+    lines = [f"{type_} {constant}={_value(value)}" for constant, type_, value in constants]
     lines += [
-        f"{_field_type(description, package, dialect)} {name}"
-        for name, description in fields
-        if name != _PADDING_MEMBER
+        f"{_field_type(description, package, dialect)} {field}"
+        f"{_default(distro, package, name, field)}"
+        for field, description in fields
+        if field != _PADDING_MEMBER
     ]
     return Source(
         name=f"<rosbags {distro}>/{package}/msg/{name}.msg",
         text="".join(f"{line}\n" for line in lines),
     )
+
+
+def _default(distro: str, package: str, name: str, field: str) -> str:
+    value, since = _DEFAULTS.get((package, name, field), ("", "noetic"))
+    distros = list(DISTROS)
+    has_it = DISTROS[distro].dialect == "ros2" and distros.index(distro) >= distros.index(since)
+    return f" {value}" if value and has_it else ""
 
 
 def _value(value: str | int | float | bool) -> str:

@@ -10,12 +10,29 @@ from firm_hdl.frontend.sources import Sources
 
 __all__ = ["did_you_mean", "similar_types", "unknown_type"]
 
+# Packages with messages, services or actions in what ROS calls desktop or perception, and not in
+# rosbags, for at least one distribution; see docs/limitations.md.
+_NOT_EMBEDDED = frozenset(
+    "action_tutorials_interfaces actionlib_msgs actionlib_tutorials bond composition_interfaces "
+    "control_msgs controller_manager_msgs dynamic_reconfigure example_interfaces gazebo_msgs "
+    "laser_assembler logging_demo map_msgs move_base_msgs nodelet pcl_msgs pendulum_msgs "
+    "polled_camera rosbag2_interfaces roscpp_tutorials rospy_tutorials service_msgs smach_msgs "
+    "std_srvs tf tf2_msgs theora_image_transport topic_tools turtle_actionlib turtlesim "
+    "type_description_interfaces unique_identifier_msgs".split()
+)
+
 
 def unknown_type(sources: Sources, package: str, name: str) -> str:
     """Word the message for a type that is not defined."""
     if package in sources.types:
         return f"type '{clip(name)}' is not defined in package '{clip(package)}'"
-    return f"package '{clip(package)}' is not found"
+    message = f"package '{clip(package)}' is not found"
+    if package in _NOT_EMBEDDED:
+        message += (
+            "; it is one of ROS that does not come with firm-hdl: name a folder that has it with "
+            "--path, or source the setup file of an installation that does"
+        )
+    return message
 
 
 def similar_types(

@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 from rosbags.typesys import get_typestore
 
+from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS, Library
+from firm_hdl.identity import proto
 
 from .structure import field_descriptions
 
@@ -60,3 +62,56 @@ def test_empty_messages_have_no_fields():
     for distro in DISTROS:
         assert Library(distro).message("std_msgs/Empty").fields == ()
         assert Library(distro).source("std_msgs/Empty").text == ""
+
+
+DEFAULTS = {
+    "geometry_msgs/msg/Quaternion": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0},
+    "rcl_interfaces/msg/ParameterDescriptor": {"read_only": False, "dynamic_typing": False},
+    "sensor_msgs/msg/NavSatStatus": {"status": -2},
+    "type_description_interfaces/msg/FieldType": {"type_id": 0},
+}
+LATER = {
+    "foxy": {("ParameterDescriptor", "dynamic_typing"), ("NavSatStatus", "status")},
+    "humble": {("NavSatStatus", "status")},
+    "iron": {("NavSatStatus", "status")},
+}
+
+
+def defaults_of(message):
+    return {f.name: f.default for f in message.fields if f.default is not None}
+
+
+@pytest.mark.parametrize("distro", DISTROS)
+def test_defaults_are_those_of_ros(distro):
+    library = Library(distro)
+    for name in library.names():
+        want = {} if distro == "noetic" else DEFAULTS.get(name, {})
+        base = name.rpartition("/")[2]
+        want = {k: v for k, v in want.items() if (base, k) not in LATER.get(distro, ())}
+        assert defaults_of(library.message(name)) == want, name
+
+
+def test_defaults_are_those_of_the_corpus(corpus):
+    embedded = Library("lyrical")
+    real = Library("lyrical", [corpus / "ros2"], origins=())
+    compared = 0
+    for name in {*embedded.names()} & {*real.names()}:
+        compared += 1
+        assert defaults_of(embedded.message(name)) == defaults_of(real.message(name)), name
+    assert compared > 150
+
+
+def test_an_example_has_the_defaults():
+    assert "w: 1.0" in proto(Library("lyrical").message("geometry_msgs/msg/PoseStamped"))
+    assert "w: 0.0" in proto(Library("noetic").message("geometry_msgs/PoseStamped"))
+
+
+@pytest.mark.parametrize(("distro", "package"), [("noetic", "tf2_msgs"), ("lyrical", "std_srvs")])
+def test_a_package_of_ros_that_is_not_here_is_told_from_one_that_nobody_has(distro, package):
+    with pytest.raises(DefinitionError) as caught:
+        Library(distro).interface(f"{package}/Such")
+    assert f"package '{package}' is not found; it is one of ROS that does not come" in str(
+        caught.value
+    )
+    with pytest.raises(DefinitionError, match=r"package 'nobodys' is not found$"):
+        Library(distro).interface("nobodys/Such")

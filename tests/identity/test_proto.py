@@ -42,8 +42,14 @@ def default(description, store):
 
 
 def new(name, store):
-    fields = store.fielddefs[name][1]
-    return {n: default(d, store) for n, d in fields if not n.startswith("structure_needs")}
+    constants, fields = store.fielddefs[name]
+    values = {n: default(d, store) for n, d in fields if not n.startswith("structure_needs")}
+    # rosbags has no defaults. These two are not 0; the second came with its constant.
+    if name == "geometry_msgs/msg/Quaternion":
+        values["w"] = 1.0
+    if any(constant[0] == "STATUS_UNKNOWN" for constant in constants):
+        values["status"] = -2
+    return values
 
 
 @pytest.mark.parametrize("distro", ["humble", "lyrical"])

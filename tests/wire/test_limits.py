@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import importlib
+from pathlib import Path
 
 import pytest
 
+import firm_hdl
+from firm_hdl import load_message
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.timing import timing
 from firm_hdl.frontend import Library, show
@@ -149,3 +152,19 @@ def test_figures_that_nobody_can_read_are_refused():
     assert str(caught.value) == (
         "error: p/msg/L299 has more than 10^100 fields when it is written out"
     )
+
+
+def test_the_limit_of_a_length_is_what_the_documentation_says():
+    plan = build_plan(lay_out(load_message("sensor_msgs/msg/PointCloud2")))
+    (limit,) = (
+        step.begin.limit
+        for step in plan.steps
+        if step.begin is not None
+        and step.begin.length is not None
+        and str(plan.leaves[step.begin.length]) == "fields.length"
+    )
+    # 4 bytes of encapsulation, 24 up to the fields, 16 each with padding, and 17 behind them.
+    fits = (plan.max_message_bytes - 4 - 24 - 17) // 16
+    assert fits < limit
+    text = (Path(firm_hdl.__file__).parent.parent / "docs" / "interface.md").read_text()
+    assert f"up to {limit:,} `fields` pass, and packets of that size can hold {fits:,}." in text
