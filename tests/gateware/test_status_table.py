@@ -21,8 +21,17 @@ some_buses = pytest.mark.parametrize("bus_bytes", [1, 4, 16])
 every_window = pytest.mark.parametrize(
     ("bus_bytes", "window_words"), [*((width, 1) for width in BUS_WIDTHS), (2, 2), (8, 2)]
 )
-# Nothing is slow; the consumer of statuses is; everything is.
-STALLS = (None, {"status": Stalls.bits("0" * 12 + "1")}, Stalls(0.3, 1, 2, seed=5))
+# Nothing is slow; everything is, and who takes statuses above all.
+SLOW = Stalls(0.3, 1, 2, seed=5)
+STALLS = (
+    None,
+    {
+        "packets_in": SLOW,
+        "packets_out": SLOW,
+        "message": SLOW,
+        "status": Stalls.bits("0" * 9 + "1"),
+    },
+)
 
 
 def packet(text):
