@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 
 import pytest
 
-from firm_hdl import cli
 from firm_hdl.cli import main
 from firm_hdl.equivalence import command as prove_command
 from firm_hdl.errors import DefinitionError, Diagnostic
@@ -19,6 +19,15 @@ from firm_hdl.wire import lay_out
 from tests.frontend.recordings import make_recording
 from tests.frontend.workspace import make_files
 
+# A package has a function of that name.
+BUILD = importlib.import_module("firm_hdl.export.build")
+RUN = {
+    "verify": "firm_hdl.verify.command",
+    "golden": "firm_hdl.verify.golden_command",
+    "cover": "firm_hdl.verify.cover_command",
+    "report": "firm_hdl.verify.report.command",
+    "prove": "firm_hdl.equivalence.command",
+}
 FILES = {
     "p/msg/A.msg": "uint8 a\nuint32 b\nstring c",
     "p/srv/S.srv": "uint8 a\n---\nuint8 b",
@@ -60,7 +69,7 @@ def test_plans_are_made_with_all_options(here, capsys, left_out):
 
 def test_build_is_given_all_options(here, monkeypatch):
     given = {}
-    monkeypatch.setattr(cli, "build", lambda types, out, **options: given.update(
+    monkeypatch.setattr(BUILD, "build", lambda types, out, **options: given.update(
         options, types=types, out=out) or [])  # fmt: skip
     words = [*WORDS, "--out", "there", "--ports", "flat", "--force", "--distro", "iron"]
     assert main(["build", "p/A", "p/srv/S", "--path", ".", *words]) == 0
@@ -172,7 +181,7 @@ def test_whatever_ends_a_command_is_in_its_status(here, capsys, monkeypatch, err
     def fail(*args, **options):
         raise error
 
-    monkeypatch.setattr(cli, "build", fail)
+    monkeypatch.setattr(BUILD, "build", fail)
     assert main(["build", "p/A", "--path", "."]) == status
     assert capsys.readouterr() == ("", said)
 
@@ -180,7 +189,8 @@ def test_whatever_ends_a_command_is_in_its_status(here, capsys, monkeypatch, err
 @pytest.mark.parametrize("command", ["verify", "golden", "cover", "report", "prove"])
 @pytest.mark.parametrize(("returned", "status"), [(None, 0), (0, 0), (1, 1), (3, 3)])
 def test_the_status_of_a_command_is_that_of_what_it_runs(monkeypatch, command, returned, status):
-    monkeypatch.setattr(cli, f"run_{command}", lambda given: returned)
+    module = importlib.import_module(RUN[command])
+    monkeypatch.setattr(module, f"run_{command}", lambda given: returned)
     words = {"golden": ["check", "x"], "report": ["x"]}.get(command, ["std_msgs/msg/Bool"])
     assert main([command, *words]) == status
 

@@ -62,6 +62,7 @@ def test_no_word_that_pygments_keeps_is_left_out():
 
 @pytest.mark.parametrize("form", [str, str.upper, str.title])
 def test_no_name_is_a_keyword_in_any_case(form):
+    assert {*VHDL, *VERILOG} <= {*KEYWORDS}
     for word in KEYWORDS:
         name = identifier(form(word))
         assert name.lower() == f"{word}_field" and name.startswith(form(word))

@@ -120,6 +120,7 @@ NUMBERS = {
     "string TEXT='a\"b'": '{} = "a""b"',
     "string ONE='\"'": '{} = """" and {}\'length = 1',
     "string WIDE='é'": "{} = character'val(195) & character'val(169)",
+    "string LONE='\x7f'": "{} = (1 => DEL)",
     "string TAB='a\\tb'": "{}'length >= 3",
 }
 BITS = {"F64": (-0.5, "d"), "F64_INT": (3.0, "d"), "F64_BIG": (1e300, "d"), "F32": (0.25, "f")}

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import argparse
 import shlex
 from collections import Counter
 from dataclasses import replace
 
 import pytest
 
-from firm_hdl.cli import _parser
 from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, Text
+from firm_hdl.verify.command import add_verify_arguments
 from firm_hdl.verify.sut import Client, Codec, Refusal, client
 from firm_hdl.verify.sut.divergences import KNOWN
 from firm_hdl.verify.sut.finding import Finding, Known, changed
@@ -285,6 +286,14 @@ def test_an_odd_packet_is_odd_at_its_first_place_and_nowhere_else(make_message, 
     assert packet == bytes.fromhex(ODD[name]), packet.hex()
 
 
+def test_alignment_counts_from_behind_the_header(make_message):
+    message = make_message("uint8 a\nuint64 b\nuint8 c\nuint16 d")
+    value = {"a": 1, "b": 2, "c": 3, "d": 4}
+    want = "00010000 01 00000000000000 0200000000000000 03 00 0400"
+    assert plain_packet(message, "cdr", value) == bytes.fromhex(want)
+    assert plain_packet(message, "ros1", value) == bytes.fromhex("01 0200000000000000 03 0400")
+
+
 def test_half_a_packet_is_its_first_half(make_message):
     message = make_message("uint8[6] a")
     value = {"a": [1, 2, 3, 4, 5, 6]}
@@ -437,7 +446,9 @@ def test_the_command_that_repeats_says_all_that_was_asked_for(options):
     made = SutOptions(libraries=("rosbags",), **options)
     words = shlex.split(made.command("humble", "p/msg/A", "rosbags"))
     assert words[:2] == ["firm-hdl", "verify"]
-    again = _parser().parse_args(words[1:])
+    parser = argparse.ArgumentParser()
+    add_verify_arguments(parser)
+    again = parser.parse_args(words[2:])
     assert (again.types, again.distro, again.sut) == (["p/msg/A"], ["humble"], ["rosbags"])
     assert tuple(again.path or ()) == made.paths
     assert (again.wire, again.cases) == (made.wire, made.most_cases)
