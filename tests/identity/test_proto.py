@@ -47,7 +47,7 @@ def new(name, store):
     # rosbags has no defaults. These two are not 0; the second came with its constant.
     if name == "geometry_msgs/msg/Quaternion":
         values["w"] = 1.0
-    if any(constant[0] == "STATUS_UNKNOWN" for constant in constants):
+    if ("STATUS_UNKNOWN", "int8", -2) in constants:
         values["status"] = -2
     return values
 
