@@ -112,6 +112,16 @@ def test_names_that_yaml_takes_for_values_stay_names(bus_bytes):
         assert list(yaml.safe_load(text)["steps"]["step 0"].values())[:4] == names[:4]
 
 
+def test_every_step_names_the_loops_that_it_is_in():
+    line = make("ros2", {"points": (POINT, "[]")}, "Line")
+    text = text_of(make("ros2", {"lines": (line, "[]"), "more": (POINT, "[<=3]")}), bus_bytes=8)
+    lines, points = "in loop 0 (lines.length)", "in loop 1 (lines.item.points.length)"
+    both, more = f"{lines}, {points}", "in loop 0 (more.length)"
+    assert re.findall(r"^  step \d+:(?:  # (.*))?$", text, re.MULTILINE) == [
+        "packet bytes 0..7", lines, both, both, both, "", more, more, more,
+    ]  # fmt: skip
+
+
 def test_leaves_without_bytes_print_where_they_become_valid():
     empty = make("ros1", {}, "E")
     message = make("ros1", {"a": "uint8", "e": empty, "f": empty, "b": "byte"})
@@ -150,6 +160,10 @@ MISTAKES = [
     ("    next: step 1\n", "", "Line 21: the step has no 'next'"),
     ("with run = 4\n  step 2", "with run 4\n  step 2",
      "Line 28: 'run 4' is not a counter and a number"),
+    ("with run = 4\n  step 2", "with run = 4 of 5\n  step 2",
+     "Line 28: 'run = 4 of 5' is not a counter and a number"),
+    ("with run = 4\n  step 2", "with a run = 4\n  step 2",
+     "Line 28: 'a run = 4' is not a counter and a number"),
     ("  step 2:", "  step 9:", "Line 30: expected step 2, not 'step 9'"),
     ("limit: 5, ", "", "Line 27: begin has no 'limit'"),
     ("limit: 5, ", "limit: 5, most: 5, ", "Line 27: begin has no 'most'"),

@@ -4,7 +4,18 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.verify.report.stats import box_of, correlate, curve_of, share_within
+from firm_hdl.verify.report.charts import law_text, line_text
+from firm_hdl.verify.report.prose import shown_trends
+from firm_hdl.verify.report.stats import (
+    Correlation,
+    Fit,
+    box_of,
+    correlate,
+    curve_of,
+    share_within,
+)
+from firm_hdl.verify.report.summary import Trend
+from firm_hdl.verify.report.svg import number
 
 
 def test_box_has_quartiles():
@@ -22,6 +33,39 @@ def test_curve_ends_with_all_values(count):
     assert points == sorted(points) and len(set(points)) == len(points)
     for value, share in points:
         assert share == pytest.approx(share_within(values, value))
+
+
+def test_a_curve_is_of_values_in_any_order():
+    values = [3.0, 1.0, 2.0, 2.0]
+    assert curve_of(values) == curve_of(sorted(values))
+    assert curve_of(values)[-1] == (3.0, 1.0)
+
+
+LAW = Fit(a=2.0, b=1.5, r2=1.0)
+
+
+def trend(metric, spearman, time="total", power=LAW):
+    found = Correlation(count=9, pearson=0.0, spearman=spearman, linear=None, power=power)
+    return Trend(suite="ts3", metric=metric, time=time, correlation=found, points=())
+
+
+def test_the_trends_that_explain_most_are_drawn():
+    trends = [
+        trend("weak", 0.1),
+        trend("falling", -0.8),
+        trend("rising", 0.9),
+        trend("of a stage", 1.0, time="testing"),
+        trend("without a law", 1.0, power=None),
+        trend("middle", 0.5),
+    ]
+    assert [each.metric for each in shown_trends(trends, 3)] == ["rising", "falling", "middle"]
+    assert len(shown_trends(trends, 9)) == 4
+
+
+def test_what_was_not_fitted_has_no_formula():
+    assert (line_text(None), law_text(None)) == ("-", "-")
+    assert line_text(Fit(a=-1.5, b=2.0, r2=1.0)) == f"-{number(1.5)} + {number(2.0)}·x"
+    assert line_text(Fit(a=1.5, b=-2.0, r2=1.0)) == f"{number(1.5)} - {number(2.0)}·x"
 
 
 def test_no_values_have_no_curve():
