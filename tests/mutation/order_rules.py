@@ -172,17 +172,27 @@ def _disjoint(one: ast.expr, two: ast.expr) -> bool:
 def _disjoint_cases(one: ast.match_case, two: ast.match_case) -> bool:
     """Tell cases of different classes or values, and those that Python wants to be the last."""
     kinds = (ast.MatchClass, ast.MatchValue, ast.MatchSingleton)
-    texts = []
+    parts = []
     for each in (one, two):
-        parts = each.pattern.patterns if isinstance(each.pattern, ast.MatchOr) else [each.pattern]
-        if any(not isinstance(part, kinds) for part in parts):
+        any_of = each.pattern.patterns if isinstance(each.pattern, ast.MatchOr) else [each.pattern]
+        if any(not isinstance(part, kinds) for part in any_of):
             return each.guard is None and isinstance(each.pattern, ast.MatchAs)
-        texts.append({_key(part) for part in parts})
-    return not texts[0] & texts[1]
+        parts.append(any_of)
+    return all(_never_both(a, b) for a in parts[0] for b in parts[1])
 
 
-def _key(pattern: ast.pattern) -> str:
-    return ast.unparse(pattern.cls if isinstance(pattern, ast.MatchClass) else pattern)
+def _never_both(one: ast.pattern, two: ast.pattern) -> bool:
+    if not isinstance(one, ast.MatchClass) or not isinstance(two, ast.MatchClass):
+        return ast.unparse(one) != ast.unparse(two)
+    if ast.unparse(one.cls) != ast.unparse(two.cls):
+        return True
+    given = dict(zip(one.kwd_attrs, one.kwd_patterns, strict=True))
+    return any(
+        isinstance(pattern, ast.MatchValue)
+        and isinstance(given.get(name), ast.MatchValue)
+        and ast.unparse(pattern) != ast.unparse(given[name])
+        for name, pattern in zip(two.kwd_attrs, two.kwd_patterns, strict=True)
+    )
 
 
 RULES = (swapped_branches, overridden_assignment)

@@ -25,6 +25,7 @@ MATCH = (
     "match a:\n    case A(b=1):\n        x()\n    case A() if c:\n        y()\n"
     "    case _:\n        z()"
 )
+KINDS = "match a:\n    case A(k=1):\n        x()\n    case A(k=2):\n        y()"
 REGISTER = "a = Signal(8)\nb = Signal()\nm.d.sync += a.eq(1)\nm.d.comb += b.eq(a)"
 
 
@@ -45,6 +46,8 @@ REGISTER = "a = Signal(8)\nb = Signal()\nm.d.sync += a.eq(1)\nm.d.comb += b.eq(a
             "match a:\n    case A():\n        x()\n    case B():\n        y()",
             [],
         ),
+        ("swapped branches", KINDS, []),
+        ("swapped branches", KINDS.replace("k=2", "b=2"), 1),
         (
             "overridden assignment",
             OVERRIDE,
