@@ -255,3 +255,32 @@ def test_damaged_recording_ends_in_definitions_or_in_an_error(recording, tmp_pat
         except DefinitionError:
             outcomes.add("error")
     assert "error" in outcomes
+
+
+def test_first_text_of_a_type_in_a_recording_counts(tmp_path):
+    def with_part(field):
+        return f"B b\n{SEPARATOR}\nMSG: p/B\nint8 {field}\n"
+
+    path = record(
+        tmp_path / "r", "p/msg/A", with_part("one"), ("p/msg/C", with_part("two")),
+        ("p/msg/B", "int8 three\n"),
+    )  # fmt: skip
+    ours = open_library(bags=[path])
+    assert [field.name for field in ours.message("p/B").fields] == ["one"]
+    assert ours.message("p/C").fields[0].type is ours.message("p/B")
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_definition_in_that_of_another_topic_will_do(tmp_path, order):
+    topics = [("p/msg/B", ""), ("p/msg/A", f"B b\n{SEPARATOR}\nMSG: p/B\nint8 x\n")][::order]
+    ours = open_library(bags=[record(tmp_path / "r", *topics[0], topics[1])])
+    assert ours.names() == ["p/msg/A", "p/msg/B"]
+    assert [field.name for field in ours.message("p/B").fields] == ["x"]
+
+
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_each_of_several_recordings_is_to_be_of_one_ros(tmp_path, place):
+    paths = [record(tmp_path / str(n), "p/msg/A", "int8 a\n") for n in range(3)]
+    paths[place] = make_recording(tmp_path, "bag")
+    with pytest.raises(DefinitionError, match="read them one at a time"):
+        open_library(bags=paths)
