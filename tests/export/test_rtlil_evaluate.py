@@ -122,6 +122,21 @@ def test_operators_of_two(kind, signed):
     assert found >= 9 * 2
 
 
+@pytest.mark.parametrize("kind", ["$add", "$mul", "$and", "$or", "$xor", "$eq", "$ne"])
+@pytest.mark.parametrize("signed", [False, True])
+def test_what_a_constant_decides_it_decides_on_either_side(kind, signed):
+    decided = 0
+    for number, width in product(range(8), (1, 3)):
+        wire, bits = (A,), (Bits(f"{number:03b}"),)
+        sides = [
+            evaluate(a_cell(kind, width, signed, A=a, B=b)) for a, b in ((wire, bits), (bits, wire))
+        ]
+        assert [each is None for each in sides] in ([True, True], [False, False]), number
+        decided += sides[0] is not None
+    # 0 and all ones decide the most of them, and powers of two decide products.
+    assert decided > 0 or kind in ("$eq", "$ne")
+
+
 @pytest.mark.parametrize("kind", UNARY)
 @pytest.mark.parametrize("signed", [False, True])
 def test_operators_of_one(kind, signed):

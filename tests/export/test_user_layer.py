@@ -290,3 +290,16 @@ def test_items_have_as_many_lanes_as_the_bus(tmp_path, bus_bytes):
         "float64_items_stream_t": max(1, bus_bytes // 8),
         "uint8_items_stream_t": bus_bytes,
     }
+
+
+def test_a_comment_stands_as_far_in_as_what_it_is_about(tmp_path):
+    made, _ = vhdl_of(library(tmp_path, TWO).message("p/T"))
+    seen = 0
+    for text in made.files.values():
+        lines = text.splitlines()
+        for line, below in zip(lines, lines[1:], strict=False):
+            if re.match(r" *--", line) and below.strip(" );"):
+                indents = [len(each) - len(each.lstrip()) for each in (line, below)]
+                assert indents[0] == indents[1], (line, below)
+                seen += 1
+    assert seen > 20
