@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -169,6 +170,22 @@ def test_a_condition_with_two_arms_is_written_in_place() -> None:
     text = convert(m, name="arms", ports=[a, b, o]).files["arms.vhd"]
     assert "when unsigned(a) /= unsigned(b) else" in text
     assert "signal" not in text
+
+
+def test_of_a_choice_that_comes_twice_the_first_one_counts() -> None:
+    m = Module()
+    a, o = Signal(2, name="a"), Signal(4, name="o")
+    with m.Switch(a):
+        for value, choices in enumerate([(0, 1), (1, 2), (2, 3)]):
+            with m.Case(*choices):
+                m.d.comb += o.eq(5 + value)
+    text = convert(m, name="twice", ports=[a, o]).files["twice.vhd"]
+    # In VHDL, a choice that comes twice is an error.
+    assert re.findall(r'when (.*) =>\n *o <= "(.*)";', text) == [
+        ('"00" | "01"', "0101"),
+        ('"10"', "0110"),
+        ('"11"', "0111"),
+    ]
 
 
 def test_what_a_port_alone_reads_is_written_in_place() -> None:
