@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 import struct
 import subprocess
+from itertools import pairwise
 
 import pytest
 
@@ -297,7 +298,7 @@ def test_a_comment_stands_as_far_in_as_what_it_is_about(tmp_path):
     seen = 0
     for text in made.files.values():
         lines = text.splitlines()
-        for line, below in zip(lines, lines[1:], strict=False):
+        for line, below in pairwise(lines):
             if re.match(r" *--", line) and below.strip(" );"):
                 indents = [len(each) - len(each.lstrip()) for each in (line, below)]
                 assert indents[0] == indents[1], (line, below)
