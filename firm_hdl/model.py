@@ -8,6 +8,7 @@ of that: each attribute is an equation over the node and its children).
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, TypeAlias
@@ -33,6 +34,8 @@ __all__ = [
     "Value",
     "idl_primitives",
 ]
+
+_LENGTH = re.compile(r"\[(0\d{1,18})\]\s*\Z")
 
 Dialect: TypeAlias = Literal["ros1", "ros2"]
 """Whose rules a definition follows: ROS 1 (genmsg) or ROS 2 (rosidl)."""
@@ -197,6 +200,17 @@ class Field:
     comment: str = field(default="", compare=False)
     unit: str | None = field(default=None, compare=False)
     span: Span | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def type_text(self) -> str:
+        """The type as genmsg has it, which keeps zeros in front of an array's length."""
+        text = str(self.type)
+        if not isinstance(self.type, Array) or self.span is None:
+            return text
+        written = _LENGTH.search(self.span.line_text[: self.span.column - 1])
+        if written is None or int(written[1]) != self.type.count:
+            return text
+        return f"{text[: text.rindex('[')]}[{written[1]}]"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -43,6 +43,11 @@ _KINDS: dict[str, Kind] = {"msg": "msg", "srv": "srv", "action": "action"}
 
 # What stands between the definitions of a topic: a line of ``=``, and what comes next.
 _NEXT = re.compile(r"^={3,}[ \t]*\r?\n(MSG|SRV|IDL):[ \t]*(\S+)[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
+# Of MCAP's registry of schemas.
+_OTHER_LANGUAGES = "omgidl", "protobuf", "flatbuffer", "jsonschema"
+_INDENTED = re.compile(r"^[ \t]+(?=[^\s#])", re.MULTILINE)
+_FULL_NAME = re.compile(r"^([A-Za-z]\w*)/msg/(?=[A-Z])", re.MULTILINE)
+_STRUCT = re.compile(r"\bstruct\s+\w+\s*\{")
 _SERVICE_PARTS = re.compile(r"^---", re.MULTILINE)
 
 
@@ -74,6 +79,8 @@ class RecordingOrigin:
         self.distro: str | None = None
         self._definitions: dict[_Name, Definition] = {}
         self._missing: set[_Name] = set()
+        # In OMG IDL as DDS tools write it: all types in one text, without headings.
+        self._foreign: set[_Name] = set()
         for connection in self._connections():
             self._add(connection)
         self._missing -= self._definitions.keys()
@@ -91,7 +98,12 @@ class RecordingOrigin:
                 f"'{self.path}' has a topic of type '{package}/{kind}/{name}', but not its "
                 "definition"
             )
+        if (package, kind, name) in self._foreign:
+            raise _refusal(self._in_omgidl(f"{package}/{kind}/{name}"))
         return self._definitions.get((package, kind, name))
+
+    def _in_omgidl(self, name: str) -> str:
+        return f"'{self.path}' defines '{name}' in 'omgidl', and only ros2msg and ros2idl are read"
 
     def _connections(self) -> list[Connection]:
         def look(recording: Reader) -> list[Connection]:
@@ -119,6 +131,9 @@ class RecordingOrigin:
             self._missing.add(name)
             return
         is_idl = connection.msgdef.format == MessageDefinitionFormat.IDL
+        if is_idl and not text.startswith("===") and len(_STRUCT.findall(text)) > 1:
+            self._foreign.add(name)
+            return
         for part, language, body in _split(name, text, is_idl):
             package, kind, base = part
             place = f"<{self.path}>/{package}/{kind}/{base}.{language}"
@@ -126,6 +141,8 @@ class RecordingOrigin:
             self._definitions.setdefault(part, Definition(source=source, language=language))
 
     def _why_empty(self) -> str:
+        if self._foreign:
+            return self._in_omgidl("/".join(min(self._foreign)))
         if not self._missing:
             return f"'{self.path}' has no topics, and so no definitions"
         return (
@@ -172,6 +189,8 @@ def use_recording(path: str, use: Callable[[Reader], _T]) -> _T:
     except KeyError as error:
         # Such as the language of the definitions.
         reason = f"rosbags does not know {error}"
+        if error.args[:1] in [(language,) for language in _OTHER_LANGUAGES]:
+            reason = f"its definitions are in {error}, and only ros2msg and ros2idl are read"
     except MemoryError:
         reason = "it asks for more memory than there is"
     except Exception:
@@ -233,7 +252,12 @@ def _split(name: _Name, text: str, is_idl: bool) -> Iterator[tuple[_Name, Langua
             body = body[:-1]
         if body and not body.endswith("\n"):
             body += "\n"
-        yield part, _language(part, body, is_idl), body
+        yield part, _language(part, body, is_idl), body if is_idl else _usual(body)
+
+
+def _usual(text: str) -> str:
+    """Write a definition as its file has it; writers indent it, or spell types' names in full."""
+    return _FULL_NAME.sub(r"\1/", _INDENTED.sub("", text))
 
 
 def _language(name: _Name, text: str, is_idl: bool) -> Language:

@@ -137,7 +137,7 @@ class _Ros1:
         for constant in message.constants:
             yield f"{constant.type} {constant.name}={constant.text}", None
         for item in message.fields:
-            yield f"{item.type} {item.name}", _message_in(item)
+            yield f"{item.type_text} {item.name}", _message_in(item)
 
 
 class _Ros2:

@@ -48,6 +48,6 @@ def _text(message: Message, sums: dict[str, str]) -> str:
         kind = field.type.element if isinstance(field.type, Array | Sequence) else field.type
         # The builtin times have no package, and stand for themselves.
         is_nested = isinstance(kind, Message) and kind.package != ""
-        lines.append(f"{sums[str(kind)] if is_nested else field.type} {field.name}")
+        lines.append(f"{sums[str(kind)] if is_nested else field.type_text} {field.name}")
     # So does genmsg, which matters if the last line is a text that ends in blanks.
     return "\n".join(lines).strip()

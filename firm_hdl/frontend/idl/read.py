@@ -326,6 +326,12 @@ def _check_structs(file: FileSyntax, structs: list[tuple[Path, Struct]]) -> Iter
         )
         yield Diagnostic(message=message, span=struct.name.span)
     what, suffixes = _PARTS[min(len(structs), len(_PARTS))]
+    names = [struct.name.text for _, struct in structs]
+    if len(structs) == 2 and not any(name.endswith(suffixes) for name in names):
+        # No service was meant.
+        message = f"'{names[1]}' is a second struct beside '{names[0]}'; one message per file"
+        yield Diagnostic(message=message, span=structs[1][1].name.span)
+        return
     first_path, first = structs[0]
     base = first.name.text.removesuffix(suffixes[0])
     for (path, struct), suffix in zip(structs, suffixes, strict=False):

@@ -128,7 +128,7 @@ class Expander:
         shape: _Shape | None = None
         while shape is None:
             core = layers[-1].core
-            name = self._alias_name(core)
+            name = self._alias_name(core, layers[-1].path)
             if name is None:
                 shape = self._element(core, layers[-1])
             elif name in names:
@@ -152,14 +152,16 @@ class Expander:
                 self._shapes[name] = shape
         return shape
 
-    def _alias_name(self, core: TypeNode) -> str | None:
+    def _alias_name(self, core: TypeNode, path: Path) -> str | None:
         if not isinstance(core, ScopedName):
             return None
         alias = self._names.aliases.get(core.parts[-1])
-        # rosidl_parser takes a name with a scope for that of a struct.
-        if alias is None or (len(core.parts) > 1 and core.parts != _full_name(alias)):
+        if alias is None:
             return None
-        return core.parts[-1]
+        # With a scope, it is looked for like a constant, from the module of the place outwards.
+        around = range(0 if core.is_absolute else len(path), -1, -1)
+        full = [(*path[:depth], *core.parts) for depth in around]
+        return core.parts[-1] if len(core.parts) == 1 or _full_name(alias) in full else None
 
     def _element(self, core: TypeNode, layer: _Layer) -> _Shape:
         match core:

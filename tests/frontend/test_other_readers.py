@@ -1,0 +1,91 @@
+"""What ROS's own tools and other readers of recordings take, and one more way to say it."""
+
+from __future__ import annotations
+
+import hashlib
+import sqlite3
+
+import pytest
+from rosbags.rosbag2 import StoragePlugin, Writer
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import Library, open_library, show
+from firm_hdl.identity import md5sum
+
+from .recordings import make_recording
+from .workspace import make_files
+
+
+@pytest.mark.parametrize("length", ["010", "0010", "00"])
+def test_zeros_in_front_of_a_length_are_kept_as_genmsg_keeps_them(tmp_path, length):
+    text = f"uint8[{length}] a\nint8[3] b\n"
+    ours = Library("noetic", [make_files(tmp_path, {"p/msg/A.msg": text})])
+    if int(length) == 0:
+        with pytest.raises(DefinitionError):
+            ours.message("p/A")
+        return
+    assert ours.message("p/A").fields[0].type.count == 10
+    assert show(ours, "p/A") == text
+    assert md5sum(ours.message("p/A")) == hashlib.md5(text.strip().encode()).hexdigest()
+
+
+def recorded(path, text):
+    with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        writer.add_connection("/t", "p/msg/A", msgdef=text, rihs01="RIHS01_" + "0" * 64)
+    return path
+
+
+def test_full_names_and_indented_lines_are_read_in_recordings(tmp_path):
+    line = "=" * 80
+    text = f"  q/msg/Pt p\n\tq/msg/Pt[] more\n  # a comment\n{line}\nMSG: q/msg/Pt\n  int8 x\n"
+    ours = open_library(bags=[recorded(tmp_path / "r", text)])
+    assert [str(f.type) for f in ours.message("p/A").fields] == ["q/msg/Pt", "q/msg/Pt[]"]
+    assert ours.message("q/Pt").fields[0].name == "x"
+
+
+STRUCTS = "module p { module msg { struct B { long b; }; struct A { B b; }; }; };\n"
+
+
+def test_schemas_of_other_tools_are_named(tmp_path):
+    # rosbags takes them for ros2idl, and it does not know them in a database.
+    folder = make_recording(tmp_path, "db3")
+    (file,) = folder.glob("*.db3")
+    database = sqlite3.connect(file)
+    database.execute("UPDATE message_definitions SET encoding = 'omgidl'")
+    database.commit()
+    database.close()
+    with pytest.raises(DefinitionError, match="in 'omgidl', and only ros2msg and ros2idl are read"):
+        open_library(bags=[file])
+    path = recorded(tmp_path / "r", f"{'=' * 80}\nIDL: p/msg/A\n{STRUCTS}")
+    for each in path.glob("*.mcap"):
+        # As it would be without a heading, which is what the format is told by.
+        head = f"{'=' * 80}\nIDL: p/msg/A\n".encode()
+        each.write_bytes(each.read_bytes().replace(head, b" " * len(head)))
+    with pytest.raises(DefinitionError, match="defines 'p/msg/A' in 'omgidl', and only ros2msg"):
+        open_library(bags=[path])
+
+
+def idl(body, name="A"):
+    return f"module p {{ module msg {{ {body} struct {name} {{ T a; }}; }}; }};"
+
+
+@pytest.mark.parametrize("scope", ["T", "msg::T", "p::msg::T", "::p::msg::T"])
+def test_typedefs_are_found_by_any_scope_that_a_constant_has(tmp_path, scope):
+    text = idl("typedef long T;").replace("{ T a; }", f"{{ {scope} a; }}")
+    ours = Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})])
+    assert str(ours.message("p/A").fields[0].type) == "int32"
+
+
+def test_typedefs_of_a_module_beside_are_found_by_its_name(tmp_path):
+    text = idl("module A_T { typedef long T; };").replace("{ T a; }", "{ A_T::T a; }")
+    ours = Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})])
+    assert str(ours.message("p/A").fields[0].type) == "int32"
+    text = text.replace("{ A_T::T a; }", "{ B_T::T a; }")
+    with pytest.raises(DefinitionError):
+        Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})]).message("p/A")
+
+
+def test_two_structs_in_a_file_are_one_too_many(tmp_path):
+    text = idl("typedef long T; struct B { long b; };")
+    with pytest.raises(DefinitionError, match="one message per file"):
+        Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})]).message("p/A")
