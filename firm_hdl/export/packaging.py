@@ -16,6 +16,7 @@ __all__ = [
     "design_list",
     "makefile",
     "packaging",
+    "shared_core",
     "vivado_script",
     "vunit_bench",
     "vunit_script",
@@ -36,6 +37,7 @@ def packaging(manifest: Manifest) -> dict[str, str]:
         "bench_files.txt": bench_list(manifest),
         f"{COMMON}.core": common_core(manifest, COMMON),
         f"{BENCH}.core": common_core(manifest, BENCH),
+        **{f"{each['name']}.core": shared_core(manifest, each) for each in _shared(manifest)},
         f"{name}.core": core(manifest),
         "vivado.tcl": vivado_script(manifest),
         "Makefile": makefile(manifest),
@@ -73,8 +75,15 @@ def _version(manifest: Manifest) -> str:
     return str(manifest["inputs"]["generator"]["firm-hdl"])
 
 
+def _shared(manifest: Manifest) -> list[Manifest]:
+    """List the packages that are the same in the folders of all messages that need them."""
+    return list(manifest["vhdl"]["shared_packages"])
+
+
 def _own(files: Iterable[str], section: Manifest) -> list[str]:
-    return [file for file in files if file not in section["common_files"]]
+    """Leave out what other folders have, too."""
+    others = {*section["common_files"], *(p["file"] for p in section.get("shared_packages", ()))}
+    return [file for file in files if file not in others]
 
 
 def common_core(manifest: Manifest, name: str) -> str:
@@ -105,6 +114,28 @@ def _bench(manifest: Manifest) -> str:
     return f"firm-hdl:vhdl:bench:{_version(manifest)}"
 
 
+def shared_core(manifest: Manifest, package: Manifest) -> str:
+    """Describe to FuseSoC a package that is the same in the folders of several messages."""
+    what = f"Records of {package['message']}" if package["message"] else "Streams of one bus width"
+    depends = [_common(manifest), *(_shared_vlnv(manifest, name) for name in package["needs"])]
+    return "".join(
+        [
+            f"CAPI=2:\nname: {_shared_vlnv(manifest, package['name'])}\n",
+            f"description: {what}, which all converters of firm-hdl share\n",
+            "\nfilesets:\n",
+            *_fileset("all", [package["file"]], *depends),
+            "\ntargets:\n  default:\n    filesets: [all]\n",
+        ]
+    )
+
+
+def _shared_vlnv(manifest: Manifest, name: str) -> str:
+    """Name the core of a shared package: types may differ from distribution to distribution."""
+    [package] = [each for each in _shared(manifest) if each["name"] == name]
+    library = manifest["inputs"]["distro"] if package["message"] else "vhdl"
+    return f"firm-hdl:{library}:{name}:{_version(manifest)}"
+
+
 def core(manifest: Manifest) -> str:
     """Describe a type's converters to FuseSoC: target `sim` runs the test bench in GHDL."""
     section = manifest["vhdl"]
@@ -114,7 +145,12 @@ def core(manifest: Manifest) -> str:
         f"name: firm-hdl:{manifest['inputs']['distro']}:{section['name']}:{_version(manifest)}\n",
         f"description: Converters of {_remark(manifest)}\n",
         "\nfilesets:\n",
-        *_fileset("rtl", _own(section["files"], section), _common(manifest)),
+        *_fileset(
+            "rtl",
+            _own(section["files"], section),
+            _common(manifest),
+            *(_shared_vlnv(manifest, each["name"]) for each in _shared(manifest)),
+        ),
         *_fileset("bench", _own(bench["files"], bench), _bench(manifest)),
     ]
     if stimuli is not None:
@@ -145,10 +181,11 @@ def core(manifest: Manifest) -> str:
     return "".join(text)
 
 
-def _fileset(name: str, files: Iterable[str], depends: str = "") -> Iterator[str]:
+def _fileset(name: str, files: Iterable[str], *depends: str) -> Iterator[str]:
     yield f"  {name}:\n    file_type: vhdlSource-2008\n"
     if depends:
-        yield f'    depend: ["{depends}"]\n'
+        yield "    depend:\n"
+        yield from (f'      - "{each}"\n' for each in depends)
     yield "    files:\n"
     yield from (f"      - {file}\n" for file in files)
 
@@ -161,7 +198,8 @@ def _parameter(name: str, default: int, description: str) -> Iterator[str]:
 def vivado_script(manifest: Manifest) -> str:
     """Write the Tcl that reads a design into Vivado, without its benches."""
     section = manifest["vhdl"]
-    common = "".join(f"  {file}\n" for file in section["common_files"])
+    others = [*section["common_files"], *(each["file"] for each in _shared(manifest))]
+    common = "".join(f"  {file}\n" for file in others)
     own = "".join(f"  {file}\n" for file in _own(section["files"], section))
     return f"""\
 # Read the converters of {_remark(manifest)} into Vivado:
@@ -173,7 +211,7 @@ def vivado_script(manifest: Manifest) -> str:
 
 set firm_hdl_folder [file dirname [file normalize [info script]]]
 
-# The same in the folder of every type: a project has each of them once.
+# The same in the folder of every type that needs them: a project has each of them once.
 foreach firm_hdl_file {{
 {common}}} {{
   if {{[llength [get_files -quiet "*/$firm_hdl_file"]] == 0}} {{

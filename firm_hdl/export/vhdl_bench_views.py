@@ -73,7 +73,14 @@ _USES = """\
 use work.firm_hdl_bench_pkg.all;
 use work.{types}.all;
 use work.{package}.all;
+use work.{components}.all;
 """
+
+
+def _uses(layer: UserLayer) -> str:
+    components = f"{layer.name}_components_pkg"
+    return _USES.format(types=TYPES_NAME, package=layer.package, components=components)
+
 
 _NO_NAMES: Mapping[Direction, Mapping[str, str]] = {way: {} for way in DIRECTIONS}
 
@@ -99,7 +106,7 @@ def stream_view(plan: Plan, layer: UserLayer) -> View:
         image = f"to_string({whole})" if one_bit else f"to_hstring({whole})"
         channels.append(Channel(label=str(leaf), rx=sides[0], tx=sides[1], image=image))
     return View(
-        uses=_USES.format(types=TYPES_NAME, package=layer.package),
+        uses=_uses(layer),
         declarations=(
             f"  signal rx_msg, tx_msg : {root.type};\n"
             f"  signal rx_rdy, tx_rdy : {root.ready_type};\n"
@@ -129,9 +136,9 @@ def record_view(layer: UserLayer) -> View:
         for side in ("rx", "tx")
     ]
     return View(
-        uses=_USES.format(types=TYPES_NAME, package=layer.package),
+        uses=_uses(layer),
         declarations=(
-            f"  signal rx_msg, tx_msg     : {layer.values.root.name};\n"
+            f"  signal rx_msg, tx_msg     : {layer.values.name};\n"
             "  signal rx_valid, tx_valid : std_logic;\n"
             "  signal rx_ready, tx_ready : std_logic;\n"
         ),

@@ -1,29 +1,30 @@
 """The user's layer in VHDL: a message as nested records, and converters that speak them.
 
-For each message type: a package with the records of its fields, its constants and components, and
-an entity per direction around the core, whose flat ports stay usable on their own. A message of
-fixed size also gets entities that give, and take, all of it at once. What the records are is
-decided in :mod:`firm_hdl.export.vhdl_user_tree` and :mod:`firm_hdl.export.vhdl_user_values`.
+For each message type: a package with the records of its fields and its constants, which all
+converters share; a package with components; and an entity per direction around the core, whose flat
+ports stay usable on their own. A message of fixed size also gets entities that give, and take, all
+of it at once. What the records are is decided in :mod:`firm_hdl.export.vhdl_user_tree` and
+:mod:`firm_hdl.export.vhdl_user_values`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
+from firm_hdl.export.vhdl_user_bus import bus_name, bus_package
 from firm_hdl.export.vhdl_user_constants import (
     Named,
     comment,
     declarations,
     named_constants,
-    origin,
     quoted,
 )
-from firm_hdl.export.vhdl_user_tree import Node, Tree, tree_of
-from firm_hdl.export.vhdl_user_types import SHARED_TYPES, TYPES_NAME, types_package
-from firm_hdl.export.vhdl_user_values import Values, values_of
+from firm_hdl.export.vhdl_user_package import constants_of, message_package
+from firm_hdl.export.vhdl_user_tree import Tree, tree_of
+from firm_hdl.export.vhdl_user_types import TYPES_NAME, types_package
+from firm_hdl.export.vhdl_user_values import ValueType, values_of
 from firm_hdl.export.vhdl_user_wrapper import (
     IEEE,
     LIBRARIES,
@@ -35,11 +36,29 @@ from firm_hdl.export.vhdl_user_wrapper import (
     stream_lines,
     stream_wrapper,
 )
-from firm_hdl.gateware.signatures import Status
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
-__all__ = ["UserLayer", "flat_package", "user_layer"]
+__all__ = ["Shared", "UserLayer", "flat_package", "user_layer"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shared:
+    """A package that other message types' folders have, too, with the same text.
+
+    Attributes
+    ----------
+    name : str
+    needs : tuple of str
+        Others that it uses; the packages of all bus widths are not among them.
+    message : str
+        The message type that it is of; empty for that of the bus width.
+    """
+
+    name: str
+    needs: tuple[str, ...] = ()
+    message: str = ""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UserLayer:
@@ -48,17 +67,21 @@ class UserLayer:
     Attributes
     ----------
     name : str
-        What all its names start with.
+        What the names of its entities start with.
     package : str
+        With the message's own records.
     entities : mapping of direction to str
         With a record of streams.
     record_entities : mapping of direction to str
         With a record of values; empty if the message has none.
     tree : Tree
-    values : Values or None
-    constants : list of Named
+    values : ValueType or None
+    constants : dict of str to list of Named
+        By package.
+    shared : tuple of Shared
+        Packages that other messages' folders have, too, in compile order.
     packages : mapping of str to str
-        Texts by file name, in compile order.
+        Texts by file name, in compile order, among them those of all messages.
     wrappers : mapping of str to str
         Likewise; they need the packages and the cores.
     """
@@ -68,8 +91,9 @@ class UserLayer:
     entities: Mapping[Direction, str]
     record_entities: Mapping[Direction, str]
     tree: Tree
-    values: Values | None
-    constants: list[Named]
+    values: ValueType | None
+    constants: Mapping[str, list[Named]]
+    shared: tuple[Shared, ...]
     packages: Mapping[str, str]
     wrappers: Mapping[str, str]
 
@@ -88,55 +112,50 @@ def user_layer(
     Parameters
     ----------
     name : str
-        A legal identifier; the package is ``name_pkg``, the entities ``name_deserializer`` and
-        ``name_serializer``.
+        A legal identifier; the entities are ``name_deserializer`` and ``name_serializer``, and the
+        package of their components ``name_components_pkg``.
     cores : mapping of direction to Core
         The entities with flat ports.
     record_cores : mapping of direction to Core, or None
         Those of the record view, if there is one.
     header : str
-        Lines for a comment at the head of every file.
+        Lines for a comment at the head of every file that is the message's alone.
     """
-    package = f"{name}_pkg"
     entities = {direction: f"{name}_{direction}" for direction in DIRECTIONS}
     whole = {way: f"{entity}_record" for way, entity in entities.items() if record_cores}
-    tree = tree_of(message, plan, _reserved(package, (*entities.values(), *whole.values())))
-    values = values_of(message, plan, tree.taken, tree.members) if record_cores else None
-    writer = _Writer(message, plan, tree, values, header)
-    constants = named_constants(message, writer.taken)
+    tree = tree_of(message, plan)
+    values = values_of(tree, plan)
+    bus = bus_name(plan.bus_bytes)
+    writer = _Writer(message, plan, tree, values.get(message.name), header)
+    components = f"{name}_components_pkg"
     return UserLayer(
         name=name,
-        package=package,
+        package=tree.packages[-1].name,
         entities=entities,
         record_entities=whole,
         tree=tree,
-        values=values,
-        constants=constants,
+        values=writer.values if whole else None,
+        constants={package.name: constants_of(package, plan) for package in tree.packages},
+        shared=(
+            Shared(name=bus),
+            *(
+                Shared(name=each.name, needs=(bus, *each.needs), message=each.message.name)
+                for each in tree.packages
+            ),
+        ),
         packages={
             f"{TYPES_NAME}.vhd": types_package(),
-            f"{package}.vhd": writer.package(package, entities, whole, constants),
+            f"{bus}.vhd": bus_package(plan.bus_bytes),
+            **{
+                f"{each.name}.vhd": message_package(each, plan, values.get(each.message.name))
+                for each in tree.packages
+            },
+            f"{components}.vhd": writer.components(components, entities, whole),
         },
         wrappers={
-            **writer.wrappers(package, entities, cores),
-            **writer.record_wrappers(package, whole, record_cores or {}),
+            **writer.wrappers(entities, cores),
+            **writer.record_wrappers(whole, record_cores or {}),
         },
-    )
-
-
-def _reserved(package: str, entities: tuple[str, ...]) -> frozenset[str]:
-    """Name all that the shared package declares, and ours, in lower case."""
-    statuses: Any = Status
-    return frozenset(
-        [
-            package.lower(),
-            TYPES_NAME,
-            "to_slv",
-            "status_name",
-            *(f"status_{status.name.lower()}" for status in statuses),
-            *SHARED_TYPES,
-            *(f"to_{name.removesuffix('_t')}" for name in SHARED_TYPES),
-            *(entity.lower() for entity in entities),
-        ]
     )
 
 
@@ -145,20 +164,20 @@ class _Writer:
     message: Message
     plan: Plan
     tree: Tree
-    values: Values | None
+    values: ValueType | None
     header: str
 
     @property
-    def taken(self) -> frozenset[str]:
-        """Identifiers of the package, but for constants."""
-        return self.tree.taken | (self.values.taken if self.values is not None else frozenset())
+    def package_name(self) -> str:
+        return self.tree.packages[-1].name
 
     def remark(self) -> str:
         return "".join(comment(self.header, ""))
 
     def wrappers(
-        self, package: str, entities: Mapping[Direction, str], cores: Mapping[Direction, Core]
+        self, entities: Mapping[Direction, str], cores: Mapping[Direction, Core]
     ) -> dict[str, str]:
+        package = self.package_name
         return {
             f"{entity}.vhd": self.remark()
             + stream_wrapper(
@@ -168,10 +187,11 @@ class _Writer:
         }
 
     def record_wrappers(
-        self, package: str, entities: Mapping[Direction, str], cores: Mapping[Direction, Core]
+        self, entities: Mapping[Direction, str], cores: Mapping[Direction, Core]
     ) -> dict[str, str]:
         if self.values is None:
             return {}
+        package = self.package_name
         return {
             f"{entity}.vhd": self.remark()
             + record_wrapper(
@@ -180,30 +200,14 @@ class _Writer:
             for way, entity in entities.items()
         }
 
-    def package(
-        self,
-        name: str,
-        entities: Mapping[Direction, str],
-        whole: Mapping[Direction, str],
-        constants: list[Named],
+    def components(
+        self, name: str, entities: Mapping[Direction, str], whole: Mapping[Direction, str]
     ) -> str:
-        root = self.tree.root
         text = [
             self.remark(),
-            *comment(
-                f"{self.message.name} as records: {root.type} has data and valid of "
-                f"every field, {root.ready_type} has ready, the other way.",
-                "",
-            ),
-            *(["--\n"] if self.message.comment else []),
-            *quoted(self.message.comment, ""),
-            f"\n{LIBRARIES}\npackage {name} is\n",
-            *self.items(),
-            *self.records(),
+            *comment(f"Components of the converters of {self.message.name}.", ""),
+            f"\n{LIBRARIES}use work.{self.package_name}.all;\n\npackage {name} is\n",
         ]
-        if self.values is not None:
-            text += self.values.declarations()
-        text += declarations(constants, self.taken)
         for way, entity in entities.items():
             text += component(entity, stream_lines(self.message, self.plan, self.tree, way))
         if self.values is not None:
@@ -211,51 +215,7 @@ class _Writer:
                 lines = record_lines(self.message, self.plan, self.values, way)
                 text += component(entity, lines)
         text.append(f"\nend package {name};\n")
-        if self.values is not None:
-            text += [
-                f"\npackage body {name} is\n",
-                *self.values.bodies(),
-                f"\nend package body {name};\n",
-            ]
         return "".join(text)
-
-    def items(self) -> Iterator[str]:
-        for name, (primitive, lanes) in self.tree.items.items():
-            yield (
-                f"\n  type {name} is record\n"
-                f"    data  : {primitive}_items_t(0 to {lanes - 1});  -- past the end: zeros\n"
-                "    last  : std_logic;  -- the transfer ends its array\n"
-                "    valid : std_logic;\n"
-                "  end record;\n"
-            )
-
-    def records(self) -> Iterator[str]:
-        done: set[str] = set()
-        for node in self.tree.root.walk():
-            if node.leaf is not None or node.type in done:
-                continue
-            done.add(node.type)
-            width = max(len(child.name) for child in node.children)
-            yield f"\n  type {node.type} is record\n"
-            kinds = max(len(child.type) for child in node.children) + 1
-            for child in node.children:
-                if child.source is not None and child.source.comment:
-                    yield from quoted(child.source.comment, "    ")
-                line = f"    {child.name:{width}} : {child.type + ';':{kinds}}{self.origin(child)}"
-                yield f"{line.rstrip()}\n"
-            yield "  end record;\n"
-            yield f"\n  type {node.ready_type} is record\n"
-            for child in node.children:
-                yield f"    {child.name:{width}} : {child.ready_type};\n"
-            yield "  end record;\n"
-
-    def origin(self, node: Node) -> str:
-        """Say of a member what ROS calls it."""
-        if node.source is not None:
-            return origin(node.source, node.name)
-        if node.leaf is not None and self.plan.leaves[node.leaf].kind == "length":
-            return "  -- how many follow"
-        return ""
 
 
 def flat_package(

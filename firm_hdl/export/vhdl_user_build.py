@@ -171,8 +171,8 @@ def _add_records(
     record: dict[str, Any] = {"built": False, "reason": reason}
     if layer.values is not None:
         parts.add_bench(record_view(layer), plan, "_record")
-        root = layer.values.root
-        record = {"built": True, "message_type": root.name, "bits": root.bits}
+        whole_type = layer.values
+        record = {"built": True, "message_type": whole_type.name, "bits": whole_type.bits}
     parts.section = {
         "package": layer.package,
         "entities": {
@@ -191,7 +191,20 @@ def _add_records(
             for node in layer.tree.root.leaves()
             if node.leaf is not None
         },
-        "constants": _constants(layer.constants),
+        "constants": [
+            entry
+            for package, named in layer.constants.items()
+            for entry in _constants(named, package)
+        ],
+        "shared_packages": [
+            {
+                "name": each.name,
+                "file": f"{each.name}.vhd",
+                "message": each.message or None,
+                "needs": list(each.needs),
+            }
+            for each in layer.shared
+        ],
     }
 
 
@@ -209,12 +222,18 @@ def _add_flat(
         "package": package,
         "entities": {way: {"flat": cores[way].entity} for way in DIRECTIONS},
         "record_view": {"built": False, "reason": "The ports are flat"},
-        "constants": _constants(constants),
+        "constants": _constants(constants, package),
+        "shared_packages": [],
     }
 
 
-def _constants(named: Iterable[Named]) -> list[dict[str, str]]:
+def _constants(named: Iterable[Named], package: str) -> list[dict[str, str]]:
     return [
-        {"type": entry.owner.name, "constant": entry.constant.name, "name": entry.name}
+        {
+            "type": entry.owner.name,
+            "constant": entry.constant.name,
+            "package": package,
+            "name": entry.name,
+        }
         for entry in named
     ]

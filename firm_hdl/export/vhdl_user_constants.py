@@ -98,15 +98,19 @@ def _unit(unit: str | None) -> str:
     return f" [{ascii_of(unit)}]" if unit else ""
 
 
-def named_constants(message: Message, taken: Iterable[str]) -> list[Named]:
-    """Name the constants of a message and of all types in it; `taken` is in lower case.
+def named_constants(
+    message: Message, taken: Iterable[str], *, nested: bool = True
+) -> list[Named]:
+    """Name the constants of a message; with `nested`, those of all types in it.
+
+    `taken` is in lower case.
 
     The message's own keep their names, as far as these do not hide what VHDL code needs (`ERROR` is
     a severity, too); the others start with the name of their type.
     """
     found: dict[str, tuple[Message, Constant]] = {}
     hiding = {*USED, *taken}
-    for owner in _types(message):
+    for owner in _types(message) if nested else [message]:
         prefix = "" if owner is message else f"{snake(owner.base_name).upper()}_"
         for constant in owner.constants:
             name = f"{prefix}{constant.name}"

@@ -12,7 +12,16 @@ from typing import Any
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.plan import Leaf
 
-__all__ = ["SHARED_TYPES", "TYPES_NAME", "data_type", "primitive_name", "types_package"]
+__all__ = [
+    "PRIMITIVE_BITS",
+    "PRIMITIVE_BYTES",
+    "SHARED_TYPES",
+    "SHARED_WORDS",
+    "TYPES_NAME",
+    "data_type",
+    "primitive_name",
+    "types_package",
+]
 
 TYPES_NAME = "firm_hdl_types_pkg"
 """What the package is called."""
@@ -27,7 +36,7 @@ _DATA = {
     "float32": ("std_logic_vector(31 downto 0)", "IEEE 754 bits"),
     "float64": ("std_logic_vector(63 downto 0)", "IEEE 754 bits"),
 }
-_BITS = {"bool": 1, "float32": 32, "float64": 64, **dict(_INTEGERS)}
+PRIMITIVE_BITS = {"bool": 1, "float32": 32, "float64": 64, **dict(_INTEGERS)}
 
 SHARED_TYPES = frozenset(
     [
@@ -36,6 +45,22 @@ SHARED_TYPES = frozenset(
     ]
 )
 """Types that records have members of, besides those of the message's own package."""
+
+_STATUSES: Any = Status
+
+SHARED_WORDS = frozenset(
+    [
+        *SHARED_TYPES,
+        *(f"{kind}_stream_idle" for kind in _DATA),
+        *(f"to_{kind}_items" for kind in _DATA),
+        *(f"status_{status.name.lower()}" for status in _STATUSES),
+        *("status_name", "to_slv", TYPES_NAME),
+    ]
+)
+"""All that the package declares, and its name, in lower case."""
+
+PRIMITIVE_BYTES = {name: max(1, bits // 8) for name, bits in PRIMITIVE_BITS.items()}
+"""Primitives, and how many bytes they have on a wire."""
 
 _HEAD = f"""\
 -- Streams of ROS's primitive types, for all message types and bus widths.
@@ -100,6 +125,15 @@ def _declarations() -> Iterator[str]:
             "    valid : std_logic;\n"
             "  end record;\n"
         )
+    yield "\n  -- Nothing is offered.\n"
+    width = max(map(len, _DATA))
+    for name in _DATA:
+        zero = "'0'" if name == "bool" else "(others => '0')"
+        constant = f"{name.upper()}_STREAM_IDLE".ljust(width + 12)
+        yield (
+            f"  constant {constant} : {name + '_stream_t':{width + 9}} :="
+            f" (data => {zero}, valid => '0');\n"
+        )
     yield "\n  -- Items that are transferred together, the first one at index 0.\n"
     for name, (data, _) in _DATA.items():
         yield f"  type {name}_items_t is array (natural range <>) of {data};\n"
@@ -127,7 +161,7 @@ def _bodies() -> Iterator[str]:
 
 
 def _conversions(name: str) -> Iterator[str]:
-    bits = _BITS[name]
+    bits = PRIMITIVE_BITS[name]
     kind = _DATA[name][0].partition("(")[0]
     if bits == 1:
         size, part, into, outof = "items'length", "(k)", "all_items(k)", "{}"

@@ -1,27 +1,24 @@
 """Messages of fixed size as records of plain values in VHDL, and their way to a vector and back.
 
-A record type for each message type in a message, with the same members as the records of streams;
+A record type for each message type of fixed size, with the same members as the record of streams;
 `to_slv` and `to_..._value` convert between a record and the vector that the circuit has, whose
 layout is that of :func:`firm_hdl.gateware.record_layout`: the first member lowest.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
-from amaranth.hdl import Shape
-from amaranth.lib import data
-
-from firm_hdl.export.names import first_free
 from firm_hdl.export.vhdl_user_constants import origin, quoted
-from firm_hdl.export.vhdl_user_tree import member_names, snake
-from firm_hdl.export.vhdl_user_types import data_type
-from firm_hdl.gateware import record_layout
-from firm_hdl.model import Array, Field, FieldType, Message, Primitive
+from firm_hdl.export.vhdl_user_records import record_elements
+from firm_hdl.export.vhdl_user_tree import Node, Package, Tree
+from firm_hdl.export.vhdl_user_types import PRIMITIVE_BITS, data_type, primitive_name
+from firm_hdl.gateware.record import MAX_RECORD_BITS
+from firm_hdl.model import Array, Field, Message
 from firm_hdl.plan import Plan
 
-__all__ = ["Member", "ValueType", "Values", "values_of"]
+__all__ = ["Member", "ValueType", "values_of"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,13 +54,15 @@ class ValueType:
     ----------
     base : str
         The record is ``base_t``, the function ``to_base``, the size ``BASE_BITS``; of an array of
-        them, `bases_t` and `to_bases` of plural.
-    plural : str
-        Empty if the message has no array of it.
+        them, `bases_t` and `to_bases`.
+    package : str
+        That declares it.
+    bits : int
+    members : tuple of Member
     """
 
     base: str
-    plural: str
+    package: str
     bits: int
     members: tuple[Member, ...]
 
@@ -72,159 +71,101 @@ class ValueType:
         """The record's type."""
         return f"{self.base}_t"
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Values:
-    """The records of a message.
-
-    Attributes
-    ----------
-    types : tuple of ValueType
-        Each after those that it has members of; the message's own is the last one.
-    taken : frozenset of str
-        All identifiers that they need, in lower case.
-    """
-
-    types: tuple[ValueType, ...]
-    taken: frozenset[str]
-
-    @property
-    def root(self) -> ValueType:
-        """The message's own."""
-        return self.types[-1]
-
     def declarations(self) -> Iterator[str]:
         """Yield what a package declares."""
         yield "\n  -- The message as values, without handshakes; the entities ..._record have it.\n"
-        for kind in self.types:
-            yield from _record(kind)
+        yield from _record(self)
         yield "\n  -- Between records and vectors, the first member lowest.\n"
-        for index, kind in enumerate(self.types):
-            yield "\n" * bool(index)
-            yield f"  constant {kind.base.upper()}_BITS : positive := {kind.bits};\n"
-            yield from (f"{head};\n" for head in (_to_slv(kind), _from_slv(kind)))
-            if kind.plural:
-                yield from (f"{head};\n" for head in (_all_to_slv(kind), _all_from_slv(kind)))
+        yield f"  constant {self.base.upper()}_BITS : positive := {self.bits};\n"
+        for head in (_to_slv(self), _from_slv(self), _all_to_slv(self), _all_from_slv(self)):
+            yield f"{head};\n"
 
     def bodies(self) -> Iterator[str]:
         """Yield what the package's body has."""
-        for kind in self.types:
-            yield from _conversions(kind)
-            if kind.plural:
-                yield from _conversions_of_arrays(kind)
+        yield from _conversions(self)
+        yield from _conversions_of_arrays(self)
 
 
-def values_of(
-    message: Message, plan: Plan, taken: Iterable[str], members: Iterable[str]
-) -> Values:
-    """Decide on the records of a message of fixed size.
+def values_of(tree: Tree, plan: Plan) -> dict[str, ValueType]:
+    """Decide on the records of a message and the types in it, by the name of the type.
 
-    Parameters
-    ----------
-    taken : iterable of str
-        Identifiers that nothing may have, in lower case.
-    members : iterable of str
-        Identifiers of members of records, in lower case, which would hide types.
+    Those that have no fixed size are left out, and those that are too wide to be had as a whole.
     """
-    maker = _Maker({*taken}, {*members})
-    maker.count_arrays(message)
-    maker.add(message, record_layout(message, wire=plan.wire))
-    return Values(types=tuple(maker.types.values()), taken=frozenset(maker.own))
+    made: dict[str, ValueType] = {}
+    for package in tree.packages:
+        if package.message.is_fixed_size and (kind := _value_type(package, plan, made)):
+            made[package.message.name] = kind
+    return made
 
 
-def _derived(base: str) -> tuple[str, ...]:
-    return f"{base}_t", f"to_{base}", f"{base}_bits", f"{base}s_t", f"to_{base}s"
+def _value_type(
+    package: Package, plan: Plan, made: Mapping[str, ValueType]
+) -> ValueType | None:
+    members: list[Member] = []
+    first = 0
+    for node in package.node.children:
+        member = _member(node, plan, made, package.name, first)
+        if member is None or (first := first + member.bits) > MAX_RECORD_BITS:
+            return None
+        members.append(member)
+    return ValueType(
+        base=f"{package.base}_value", package=package.name, bits=first, members=tuple(members)
+    )
 
 
-@dataclass(slots=True)
-class _Maker:
-    taken: set[str]
-    members: set[str]
-    own: set[str] = field(default_factory=set)
-    types: dict[str, ValueType] = field(default_factory=dict)
-    in_arrays: set[str] = field(default_factory=set)
-
-    def count_arrays(self, message: Message) -> None:
-        """Note which types there are arrays of."""
-        for item in message.fields:
-            if isinstance(item.type, Array) and isinstance(item.type.element, Message):
-                self.in_arrays.add(item.type.element.name)
-        for child in message.children:
-            self.count_arrays(child)
-
-    def add(self, message: Message, layout: data.StructLayout) -> ValueType:
-        if message.name in self.types:
-            return self.types[message.name]
-        shapes: Mapping[str, object] = layout.members
-        fields = {item.name: item for item in message.fields}
-        members = tuple(
-            self.member(name, fields.get(raw), layout[raw])
-            for raw, name in member_names(shapes).items()
+def _member(
+    node: Node, plan: Plan, made: Mapping[str, ValueType], package: str, first: int
+) -> Member | None:
+    """Describe a member; `None` if it is too wide."""
+    kind = node.source.type if node.source is not None else None
+    element = kind.element if isinstance(kind, Array) else kind
+    count = kind.count if isinstance(kind, Array) else None
+    if isinstance(element, Message):
+        value = made.get(element.name)
+        if value is None:
+            return None
+        words = value.base if count is None else f"{value.base}s"
+        where = f"work.{value.package}"
+        name, into, outof = f"{where}.{words}_t", f"{where}.to_slv", f"{where}.to_{words}"
+        bits = value.bits
+    else:
+        leaf = next(each.leaf for each in node.leaves())
+        assert leaf is not None
+        primitive = primitive_name(plan.leaves[leaf])
+        name, bits = data_type(primitive), PRIMITIVE_BITS[primitive]
+        into, outof = ("", "") if name.startswith("std_logic") else (
+            "std_logic_vector", name.partition("(")[0]
         )
-        wanted = f"{snake(message.base_name) or 'message'}_value"
-        base = first_free(wanted, self.taken | self.members | self.own, _derived)
-        self.own.update(_derived(base))
-        plural = f"{base}s" if message.name in self.in_arrays else ""
-        made = ValueType(base=base, plural=plural, bits=layout.size, members=members)
-        self.types[message.name] = made
-        return made
-
-    def member(self, name: str, source: Field | None, place: data.Field) -> Member:
-        kind, into, outof = self.type_of(source.type if source else None, place.shape)
-        return Member(
-            name=name,
-            type=kind,
-            first=place.offset,
-            bits=Shape.cast(place.shape).width,
-            to_slv=into,
-            from_slv=outof,
-            source=source,
-        )
-
-    def type_of(self, kind: FieldType | None, shape: object) -> tuple[str, str, str]:
-        """Give a type in VHDL, the function to a vector, and that from one."""
-        if isinstance(shape, data.StructLayout):
-            assert isinstance(kind, Message)
-            made = self.add(kind, shape)
-            return made.name, "to_slv", f"to_{made.base}"
-        if isinstance(shape, data.ArrayLayout):
-            assert isinstance(kind, Array)
-            last = shape.length - 1
-            if isinstance(kind.element, Message):
-                made = self.add(kind.element, shape.elem_shape)
-                return f"{made.plural}_t(0 to {last})", "to_slv", f"to_{made.plural}"
-            primitive = _primitive(kind.element, Shape.cast(shape.elem_shape))
-            return f"{primitive}_items_t(0 to {last})", "to_slv", f"to_{primitive}_items"
-        primitive = _primitive(kind, Shape.cast(shape))
-        text = data_type(primitive)
-        if text.startswith("std_logic"):
-            return text, "", ""
-        return text, "std_logic_vector", text.partition("(")[0]
-
-
-def _primitive(kind: object, shape: Shape) -> str:
-    """Name a primitive as the shared package does; a message without fields has no `kind`."""
-    if isinstance(kind, Primitive) and kind.kind == "float":
-        return kind.name
-    if shape.width == 1:
-        return "bool"
-    return f"{'' if shape.signed else 'u'}int{shape.width}"
+        if count is not None:
+            name, into, outof = f"{primitive}_items_t", "to_slv", f"to_{primitive}_items"
+    if count is not None:
+        name = f"{name}(0 to {count - 1})"
+    return Member(
+        name=node.name,
+        type=name,
+        first=first,
+        bits=bits * (1 if count is None else count),
+        to_slv=into,
+        from_slv=outof,
+        source=node.source,
+    )
 
 
 def _record(kind: ValueType) -> Iterator[str]:
-    names = max(len(member.name) for member in kind.members)
-    types = max(len(member.type) for member in kind.members) + 1
     yield f"\n  type {kind.name} is record\n"
-    for member in kind.members:
-        remark = ""
-        if member.source is not None:
-            yield from quoted(member.source.comment, "    ")
-            remark = origin(member.source, member.name)
-        line = f"    {member.name:{names}} : {member.type + ';':{types}}{remark}"
-        yield f"{line.rstrip()}\n"
+    yield from record_elements(
+        [
+            (
+                member.name,
+                member.type,
+                origin(member.source, member.name) if member.source is not None else "",
+                quoted(member.source.comment, "    ") if member.source is not None else (),
+            )
+            for member in kind.members
+        ]
+    )
     yield "  end record;\n"
-    if kind.plural:
-        yield f"\n  type {kind.plural}_t is array (natural range <>) of {kind.name};\n"
+    yield f"\n  type {kind.base}s_t is array (natural range <>) of {kind.name};\n"
 
 
 def _to_slv(kind: ValueType) -> str:
@@ -236,11 +177,11 @@ def _from_slv(kind: ValueType) -> str:
 
 
 def _all_to_slv(kind: ValueType) -> str:
-    return _function("to_slv", f"values : {kind.plural}_t", "std_logic_vector")
+    return _function("to_slv", f"values : {kind.base}s_t", "std_logic_vector")
 
 
 def _all_from_slv(kind: ValueType) -> str:
-    return _function(f"to_{kind.plural}", "bits : std_logic_vector", f"{kind.plural}_t")
+    return _function(f"to_{kind.base}s", "bits : std_logic_vector", f"{kind.base}s_t")
 
 
 def _function(name: str, parameter: str, result: str) -> str:
@@ -278,7 +219,7 @@ def _conversions_of_arrays(kind: ValueType) -> Iterator[str]:
     part = f"({size} * (k + 1) - 1 downto {size} * k)"
     yield (
         f"\n{_all_to_slv(kind)} is\n"
-        f"    alias all_values : {kind.plural}_t(0 to values'length - 1) is values;\n"
+        f"    alias all_values : {kind.base}s_t(0 to values'length - 1) is values;\n"
         f"    variable bits : std_logic_vector({size} * values'length - 1 downto 0);\n"
         "  begin\n"
         "    for k in all_values'range loop\n"
@@ -288,7 +229,7 @@ def _conversions_of_arrays(kind: ValueType) -> Iterator[str]:
         "  end function;\n"
         f"\n{_all_from_slv(kind)} is\n"
         "    alias all_bits : std_logic_vector(bits'length - 1 downto 0) is bits;\n"
-        f"    variable values : {kind.plural}_t(0 to bits'length / {size} - 1);\n"
+        f"    variable values : {kind.base}s_t(0 to bits'length / {size} - 1);\n"
         "  begin\n"
         "    for k in values'range loop\n"
         f"      values(k) := to_{kind.base}(all_bits{part});\n"

@@ -10,7 +10,7 @@ from firm_hdl.export.top import Direction, Port, leaf_names, ports_of
 from firm_hdl.export.vhdl_user_constants import comment
 from firm_hdl.export.vhdl_user_tree import Tree
 from firm_hdl.export.vhdl_user_types import TYPES_NAME, primitive_name
-from firm_hdl.export.vhdl_user_values import Values
+from firm_hdl.export.vhdl_user_values import ValueType
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
@@ -69,13 +69,15 @@ def stream_lines(message: Message, plan: Plan, tree: Tree, direction: Direction)
     )
 
 
-def record_lines(message: Message, plan: Plan, values: Values, direction: Direction) -> list[Line]:
+def record_lines(
+    message: Message, plan: Plan, values: ValueType, direction: Direction
+) -> list[Line]:
     """List the ports of a converter with a record of values."""
     forwards, backwards = ("out", "in ") if direction == "deserializer" else ("in ", "out")
     return _around(
         [port for port in ports_of(plan, direction) if port.leaf is None],
         [
-            ("msg", f"{forwards} {values.root.name}", f"The fields of {message.name}."),
+            ("msg", f"{forwards} {values.name}", f"The fields of {message.name}."),
             ("msg_valid", f"{forwards} std_logic", "message: offered, all of it."),
             ("msg_ready", f"{backwards} std_logic", "message: taken."),
         ],
@@ -235,17 +237,22 @@ def _packet_actual(port: Port) -> str:
 
 
 def record_wrapper(
-    message: Message, plan: Plan, values: Values, direction: Direction, entity: str, package: str,
+    message: Message,
+    plan: Plan,
+    values: ValueType,
+    direction: Direction,
+    entity: str,
+    package: str,
     core: Core,
 ) -> str:
     """Write a converter with a record of values, all valid at once."""
-    bits = values.root.bits
+    bits = values.bits
     parts = {
         port.name: _packet_actual(port) for port in record_ports(plan, direction, bits)
     }
     parts["msg_data"] = "msg_data" if bits > 1 else "msg_data(0)"
     convert = (
-        f"  msg <= to_{values.root.base}(msg_data);\n"
+        f"  msg <= to_{values.base}(msg_data);\n"
         if direction == "deserializer"
         else "  msg_data <= to_slv(msg);\n"
     )

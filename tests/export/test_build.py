@@ -82,10 +82,13 @@ def test_folder_is_complete(tmp_path):
             "vhdl/firm_hdl_axis_source.vhd",
             "vhdl/firm_hdl_bench.core",
             "vhdl/firm_hdl_bench_pkg.vhd",
+            "vhdl/firm_hdl_bus_8_pkg.core",
+            "vhdl/firm_hdl_bus_8_pkg.vhd",
             "vhdl/firm_hdl_common.core",
             "vhdl/firm_hdl_pkg.vhd",
             "vhdl/firm_hdl_types_pkg.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8.core",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_components_pkg.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core.vhd",
@@ -95,6 +98,7 @@ def test_folder_is_complete(tmp_path):
             "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_window.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_record.vhd",
+            "vhdl/geometry_msgs_msg_twist_cdr_8_pkg.core",
             "vhdl/geometry_msgs_msg_twist_cdr_8_pkg.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_record_tb.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_serializer.vhd",
@@ -107,6 +111,8 @@ def test_folder_is_complete(tmp_path):
             "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_packer.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record.vhd",
             "vhdl/geometry_msgs_msg_twist_cdr_8_tb.vhd",
+            "vhdl/geometry_msgs_msg_vector3_cdr_8_pkg.core",
+            "vhdl/geometry_msgs_msg_vector3_cdr_8_pkg.vhd",
             "vhdl/run_ghdl.sh",
             "vhdl/vivado.tcl",
             "waivers.vlt",
@@ -366,7 +372,7 @@ def test_output_is_the_same_everywhere(tmp_path):
         command = [sys.executable, "-c", script, "out"]
         subprocess.run(command, cwd=home, env=environment, check=True)
         trees.append(tree(home / "out"))
-    assert len(trees[0]) == 58
+    assert len(trees[0]) == 70
     assert trees[0] == trees[1]
     for text in trees[0].values():
         assert str(ROOT).encode() not in text

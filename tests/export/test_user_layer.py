@@ -12,6 +12,7 @@ import pytest
 
 from firm_hdl.export.names import flat_names, scope_names
 from firm_hdl.export.top import leaf_names, ports_of
+from firm_hdl.export.vhdl_user_bus import bus_package
 from firm_hdl.export.vhdl_user_constants import comment, declarations, named_constants
 from firm_hdl.export.vhdl_user_tree import tree_of
 from firm_hdl.export.vhdl_user_types import types_package
@@ -53,18 +54,22 @@ def test_constants_of_two_types_of_one_name_are_all_there(tmp_path):
 
 def test_types_of_one_name_have_records_of_their_own(tmp_path):
     message = library(tmp_path, TWO).message("p/T")
-    root = tree_of(message, plan_of(message), frozenset()).root
+    root = tree_of(message, plan_of(message)).root
     a, b, c, x = root.children
-    assert a.type != b.type and b.type == c.children[0].type
+    assert (a.package, b.package) == ("p_msg_part_cdr_8_pkg", "q_msg_part_cdr_8_pkg")
+    assert a.type == b.type == c.children[0].type and b.package == c.package
     assert {x.type} == {"int8_stream_t"}
     assert [child.type for child in a.children] == ["int8_stream_t", "int16_stream_t"]
     assert [child.type for child in b.children] == ["int32_stream_t", "int64_stream_t"]
-    text = layer(message).packages["t_pkg.vhd"]
+    made = layer(message)
     for node in (a, b):
+        text = made.packages[f"{node.package}.vhd"]
         (body,) = re.findall(rf"  type {node.type} is record\n(.*?)  end record;", text, re.DOTALL)
         assert [line.split()[2].rstrip(";") for line in body.splitlines()] == [
             child.type for child in node.children
         ]
+    own = made.packages[f"{made.package}.vhd"]
+    assert f"a : work.{a.package}.part_t;" in own and f"b : work.{b.package}.part_t;" in own
 
 
 SAME = {
@@ -215,10 +220,9 @@ def test_values_of_a_record_stand_where_the_layout_has_them(tmp_path):
         first, last = place.offset, place.offset + bits - 1
         part = f"({first})" if bits == 1 else f"({last} downto {first})"
         member = scope_names([name])[name]
-        assert re.search(rf"value\.{member} := [a-z_0-9]*\(?all_bits{re.escape(part)}\)?;", text), (
-            name
-        )
-        assert re.search(rf"bits{re.escape(part)} := [a-z_]*\(?value\.{member}\)?;", text), name
+        read = rf"value\.{member} := [a-z_0-9.]*\(?all_bits{re.escape(part)}\)?;"
+        assert re.search(read, text), name
+        assert re.search(rf"bits{re.escape(part)} := [a-z_0-9.]*\(?value\.{member}\)?;", text), name
     assert made.manifest["record_view"]["bits"] == layout.size == 1 + 24 + 96 + 192 + 8 + 96
     # Two types of one name are two records, each with a size of its own.
     (body,) = re.findall(r"  type t_value_t is record\n(.*?)  end record;", text, re.DOTALL)
@@ -227,10 +231,9 @@ def test_values_of_a_record_stand_where_the_layout_has_them(tmp_path):
     # Arrays have as many elements as the field.
     assert types["c"].endswith("_t(0") and "float32_items_t(0 to 2);" in body
     for member, bits in (("a", 24), ("b", 96)):
-        assert (
-            f"constant {types[member].removesuffix('_t').upper()}_BITS : positive := {bits};"
-            in text
-        )
+        _, package, kind = types[member].split(".")
+        constant = f"{kind.removesuffix('_t').upper()}_BITS"
+        assert f"constant {constant} : positive := {bits};" in made.files[f"{package}.vhd"]
 
 
 CONVERSIONS = """\
@@ -284,13 +287,18 @@ def test_items_and_vectors_are_the_same_in_any_range(ghdl, tmp_path):
 @pytest.mark.parametrize("bus_bytes", [1, 2, 8, 16])
 def test_items_have_as_many_lanes_as_the_bus(tmp_path, bus_bytes):
     message = library(tmp_path, {"p/T": "uint16[] a\nfloat64[5] b\nstring c"}).message("p/T")
-    tree = tree_of(message, build_plan(lay_out(message), bus_bytes=bus_bytes), frozenset())
-    lanes = {name: count for name, (_, count) in tree.items.items()}
-    assert lanes == {
-        "uint16_items_stream_t": max(1, bus_bytes // 2),
-        "float64_items_stream_t": max(1, bus_bytes // 8),
-        "uint8_items_stream_t": bus_bytes,
-    }
+    plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
+    text = bus_package(bus_bytes)
+    for leaf in plan.leaves:
+        if leaf.kind == "items":
+            primitive = {"a": "uint16", "b": "float64", "c": "uint8"}[leaf.path[0]]
+            kind = f"{primitive}_items_t(0 to {leaf.lanes - 1});"
+            assert f"  type {primitive}_items_stream_t is record\n    data  : {kind}" in text
+    assert [leaf.lanes for leaf in plan.leaves if leaf.kind == "items"] == [
+        max(1, bus_bytes // 2),
+        max(1, bus_bytes // 8),
+        bus_bytes,
+    ]
 
 
 def test_a_comment_stands_as_far_in_as_what_it_is_about(tmp_path):

@@ -53,8 +53,8 @@ uint64[] last
 float64[] aclk
 Empty nothing
 uint8 unsigned
-uint8 string_t
-string after_string_t
+uint8 string_stream_t
+string after_string_stream_t
 bool inherit
 uint8 uint8_stream_t
 uint8 after_uint8_stream_t
@@ -127,10 +127,17 @@ def layer(message: Message, bus_bytes: int = 8) -> UserLayer:
     return user_layer(message, plan, name="t", cores=cores)
 
 
+def own_package(made: UserLayer) -> str:
+    return made.packages[f"{made.package}.vhd"]
+
+
 def test_package_reads_like_the_definition():
-    text = layer(load_message("sensor_msgs/msg/Range", distro="lyrical")).packages["t_pkg.vhd"]
+    made = layer(load_message("sensor_msgs/msg/Range", distro="lyrical"))
+    text = own_package(made)
     assert "  type range_t is record\n" in text
-    assert "  type header_ready_t is record\n    stamp    : time_ready_t;\n" in text
+    time = "work.builtin_interfaces_msg_time_cdr_8_pkg.time_ready_t"
+    header = made.packages["std_msgs_msg_header_cdr_8_pkg.vhd"]
+    assert f"  type header_ready_t is record\n    stamp    : {time};\n" in header
     assert "    range_field    : float32_stream_t;  -- range: float32" in text
     assert '  constant INFRARED   : unsigned(7 downto 0) := x"01";  -- uint8 1\n' in text
 
@@ -141,14 +148,14 @@ def test_comments_and_units_stand_above_their_fields(tmp_path):
     (folder / "Part.msg").write_text(
         "# A part.\n\nbool b\n\n# How far it is, in °.\nfloat32 far  # really [m]\n"
     )
-    text = layer(load_message("my_msgs/msg/Part", paths=[tmp_path])).packages["t_pkg.vhd"]
+    text = own_package(layer(load_message("my_msgs/msg/Part", paths=[tmp_path])))
     assert "    -- # How far it is, in deg.\n" in text
     assert "\n-- # A part.\n" in text
     assert "    far : float32_stream_t;  -- float32 [m]\n" in text
 
 
 def test_constants_have_their_values(tmp_path):
-    text = re.sub(" +:", " :", layer(nasty(tmp_path)).packages["t_pkg.vhd"])
+    text = re.sub(" +:", " :", own_package(layer(nasty(tmp_path))))
     for line in (
         # `severity error` must go on to work.
         'constant ERROR_CONSTANT : unsigned(7 downto 0) := x"01";  -- uint8 1',
@@ -165,7 +172,7 @@ def test_constants_have_their_values(tmp_path):
 
 def test_types_are_shared_and_no_two_names_meet(tmp_path):
     made = layer(nasty(tmp_path))
-    text = made.packages["t_pkg.vhd"]
+    text = "".join(made.packages.values())
     assert text.count("  type inner_t is record\n") == 1
     nodes = list(made.tree.root.walk())
     for node in nodes:
@@ -173,8 +180,9 @@ def test_types_are_shared_and_no_two_names_meet(tmp_path):
         assert len(set(names)) == len(names)
     paths = [node.access.lower() for node in made.tree.root.leaves()]
     assert len(set(paths)) == len(paths)
-    types = [line.split()[1].lower() for line in text.splitlines() if line.startswith("  type ")]
-    assert len(set(types)) == len(types)
+    for text in made.packages.values():
+        types = [row.split()[1].lower() for row in text.splitlines() if row.startswith("  type ")]
+        assert len(set(types)) == len(types)
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 8])
@@ -192,6 +200,7 @@ use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
 use work.firm_hdl_types_pkg.all;
 use work.geometry_msgs_msg_twist_cdr_8_pkg.all;
+use work.geometry_msgs_msg_twist_cdr_8_components_pkg.all;
 
 entity user is end entity;
 

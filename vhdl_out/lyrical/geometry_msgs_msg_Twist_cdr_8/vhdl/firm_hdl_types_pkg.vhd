@@ -76,6 +76,19 @@ package firm_hdl_types_pkg is
     valid : std_logic;
   end record;
 
+  -- Nothing is offered.
+  constant BOOL_STREAM_IDLE    : bool_stream_t    := (data => '0', valid => '0');
+  constant INT8_STREAM_IDLE    : int8_stream_t    := (data => (others => '0'), valid => '0');
+  constant UINT8_STREAM_IDLE   : uint8_stream_t   := (data => (others => '0'), valid => '0');
+  constant INT16_STREAM_IDLE   : int16_stream_t   := (data => (others => '0'), valid => '0');
+  constant UINT16_STREAM_IDLE  : uint16_stream_t  := (data => (others => '0'), valid => '0');
+  constant INT32_STREAM_IDLE   : int32_stream_t   := (data => (others => '0'), valid => '0');
+  constant UINT32_STREAM_IDLE  : uint32_stream_t  := (data => (others => '0'), valid => '0');
+  constant INT64_STREAM_IDLE   : int64_stream_t   := (data => (others => '0'), valid => '0');
+  constant UINT64_STREAM_IDLE  : uint64_stream_t  := (data => (others => '0'), valid => '0');
+  constant FLOAT32_STREAM_IDLE : float32_stream_t := (data => (others => '0'), valid => '0');
+  constant FLOAT64_STREAM_IDLE : float64_stream_t := (data => (others => '0'), valid => '0');
+
   -- Items that are transferred together, the first one at index 0.
   type bool_items_t is array (natural range <>) of std_logic;
   type int8_items_t is array (natural range <>) of signed(7 downto 0);

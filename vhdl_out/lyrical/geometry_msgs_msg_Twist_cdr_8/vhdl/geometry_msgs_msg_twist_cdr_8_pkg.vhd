@@ -1,162 +1,98 @@
--- geometry_msgs_msg_Twist_cdr_8: converters of geometry_msgs/msg/Twist, made by firm-hdl 0.1.0.
--- lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
--- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
--- What each port means: manifest.json.
--- geometry_msgs/msg/Twist as records: twist_t has data and valid of every field, twist_ready_t has
--- ready, the other way.
+-- Records of geometry_msgs/msg/Twist: twist_t has data and valid of every field, twist_ready_t has
+-- ready, the other way. With TWIST_ALL_READY everything is taken, with TWIST_IDLE nothing is
+-- offered.
+-- The same for all converters, made by firm-hdl, with wire cdr and a bus of 8 bytes: compile it
+-- once.
 
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
 
 use work.firm_hdl_types_pkg.all;
+use work.firm_hdl_bus_8_pkg.all;
+use work.geometry_msgs_msg_vector3_cdr_8_pkg;
 
 package geometry_msgs_msg_twist_cdr_8_pkg is
 
-  type vector3_t is record
-    x : float64_stream_t;  -- float64
-    y : float64_stream_t;  -- float64
-    z : float64_stream_t;  -- float64
-  end record;
-
-  type vector3_ready_t is record
-    x : std_logic;
-    y : std_logic;
-    z : std_logic;
-  end record;
-
   type twist_t is record
-    linear  : vector3_t;  -- geometry_msgs/msg/Vector3
-    angular : vector3_t;  -- geometry_msgs/msg/Vector3
+    linear  : work.geometry_msgs_msg_vector3_cdr_8_pkg.vector3_t;  -- geometry_msgs/msg/Vector3
+    angular : work.geometry_msgs_msg_vector3_cdr_8_pkg.vector3_t;  -- geometry_msgs/msg/Vector3
   end record;
 
   type twist_ready_t is record
-    linear  : vector3_ready_t;
-    angular : vector3_ready_t;
+    linear  : work.geometry_msgs_msg_vector3_cdr_8_pkg.vector3_ready_t;
+    angular : work.geometry_msgs_msg_vector3_cdr_8_pkg.vector3_ready_t;
   end record;
+
+  constant TWIST_IDLE : twist_t := (
+    linear  => work.geometry_msgs_msg_vector3_cdr_8_pkg.VECTOR3_IDLE,
+    angular => work.geometry_msgs_msg_vector3_cdr_8_pkg.VECTOR3_IDLE);
+
+  constant TWIST_ALL_READY : twist_ready_t := (
+    linear  => work.geometry_msgs_msg_vector3_cdr_8_pkg.VECTOR3_ALL_READY,
+    angular => work.geometry_msgs_msg_vector3_cdr_8_pkg.VECTOR3_ALL_READY);
+
+  -- Several of them: one after the other.
+
+  type twist_sequence_t is record
+    length : uint32_stream_t;  -- how many follow
+    item   : twist_t;
+  end record;
+
+  type twist_sequence_ready_t is record
+    length : std_logic;
+    item   : twist_ready_t;
+  end record;
+
+  constant TWIST_SEQUENCE_IDLE : twist_sequence_t := (
+    length => UINT32_STREAM_IDLE,
+    item   => TWIST_IDLE);
+
+  constant TWIST_SEQUENCE_ALL_READY : twist_sequence_ready_t := (
+    length => '1',
+    item   => TWIST_ALL_READY);
+
+  type twist_array_t is record
+    item : twist_t;
+  end record;
+
+  type twist_array_ready_t is record
+    item : twist_ready_t;
+  end record;
+
+  constant TWIST_ARRAY_IDLE : twist_array_t := (
+    item => TWIST_IDLE);
+
+  constant TWIST_ARRAY_ALL_READY : twist_array_ready_t := (
+    item => TWIST_ALL_READY);
 
   -- The message as values, without handshakes; the entities ..._record have it.
 
-  type vector3_value_t is record
-    x : std_logic_vector(63 downto 0);  -- float64
-    y : std_logic_vector(63 downto 0);  -- float64
-    z : std_logic_vector(63 downto 0);  -- float64
+  type twist_value_t is record
+    -- geometry_msgs/msg/Vector3
+    linear  : work.geometry_msgs_msg_vector3_cdr_8_pkg.vector3_value_t;
+    -- geometry_msgs/msg/Vector3
+    angular : work.geometry_msgs_msg_vector3_cdr_8_pkg.vector3_value_t;
   end record;
 
-  type twist_value_t is record
-    linear  : vector3_value_t;  -- geometry_msgs/msg/Vector3
-    angular : vector3_value_t;  -- geometry_msgs/msg/Vector3
-  end record;
+  type twist_values_t is array (natural range <>) of twist_value_t;
 
   -- Between records and vectors, the first member lowest.
-  constant VECTOR3_VALUE_BITS : positive := 192;
-  function to_slv (value : vector3_value_t) return std_logic_vector;
-  function to_vector3_value (bits : std_logic_vector) return vector3_value_t;
-
   constant TWIST_VALUE_BITS : positive := 384;
   function to_slv (value : twist_value_t) return std_logic_vector;
   function to_twist_value (bits : std_logic_vector) return twist_value_t;
-
-  component geometry_msgs_msg_twist_cdr_8_deserializer is
-    port (
-      aclk                 : in  std_logic;
-      aresetn              : in  std_logic;
-      s_axis_tdata         : in  std_logic_vector(63 downto 0);
-      s_axis_tkeep         : in  std_logic_vector(7 downto 0);
-      s_axis_tlast         : in  std_logic;
-      s_axis_tvalid        : in  std_logic;
-      s_axis_tready        : out std_logic;
-      msg                  : out twist_t;
-      rdy                  : in  twist_ready_t;
-      m_axis_status_tdata  : out std_logic_vector(7 downto 0);
-      m_axis_status_tvalid : out std_logic;
-      m_axis_status_tready : in  std_logic
-    );
-  end component;
-
-  component geometry_msgs_msg_twist_cdr_8_serializer is
-    port (
-      aclk                 : in  std_logic;
-      aresetn              : in  std_logic;
-      m_axis_tdata         : out std_logic_vector(63 downto 0);
-      m_axis_tkeep         : out std_logic_vector(7 downto 0);
-      m_axis_tlast         : out std_logic;
-      m_axis_tuser         : out std_logic;
-      m_axis_tvalid        : out std_logic;
-      m_axis_tready        : in  std_logic;
-      msg                  : in  twist_t;
-      rdy                  : out twist_ready_t;
-      m_axis_status_tdata  : out std_logic_vector(7 downto 0);
-      m_axis_status_tvalid : out std_logic;
-      m_axis_status_tready : in  std_logic
-    );
-  end component;
-
-  component geometry_msgs_msg_twist_cdr_8_deserializer_record is
-    port (
-      aclk                 : in  std_logic;
-      aresetn              : in  std_logic;
-      s_axis_tdata         : in  std_logic_vector(63 downto 0);
-      s_axis_tkeep         : in  std_logic_vector(7 downto 0);
-      s_axis_tlast         : in  std_logic;
-      s_axis_tvalid        : in  std_logic;
-      s_axis_tready        : out std_logic;
-      msg                  : out twist_value_t;
-      msg_valid            : out std_logic;
-      msg_ready            : in  std_logic;
-      m_axis_status_tdata  : out std_logic_vector(7 downto 0);
-      m_axis_status_tvalid : out std_logic;
-      m_axis_status_tready : in  std_logic
-    );
-  end component;
-
-  component geometry_msgs_msg_twist_cdr_8_serializer_record is
-    port (
-      aclk                 : in  std_logic;
-      aresetn              : in  std_logic;
-      m_axis_tdata         : out std_logic_vector(63 downto 0);
-      m_axis_tkeep         : out std_logic_vector(7 downto 0);
-      m_axis_tlast         : out std_logic;
-      m_axis_tuser         : out std_logic;
-      m_axis_tvalid        : out std_logic;
-      m_axis_tready        : in  std_logic;
-      msg                  : in  twist_value_t;
-      msg_valid            : in  std_logic;
-      msg_ready            : out std_logic;
-      m_axis_status_tdata  : out std_logic_vector(7 downto 0);
-      m_axis_status_tvalid : out std_logic;
-      m_axis_status_tready : in  std_logic
-    );
-  end component;
+  function to_slv (values : twist_values_t) return std_logic_vector;
+  function to_twist_values (bits : std_logic_vector) return twist_values_t;
 
 end package geometry_msgs_msg_twist_cdr_8_pkg;
 
 package body geometry_msgs_msg_twist_cdr_8_pkg is
 
-  function to_slv (value : vector3_value_t) return std_logic_vector is
-    variable bits : std_logic_vector(VECTOR3_VALUE_BITS - 1 downto 0);
-  begin
-    bits(63 downto 0) := value.x;
-    bits(127 downto 64) := value.y;
-    bits(191 downto 128) := value.z;
-    return bits;
-  end function;
-
-  function to_vector3_value (bits : std_logic_vector) return vector3_value_t is
-    alias all_bits : std_logic_vector(VECTOR3_VALUE_BITS - 1 downto 0) is bits;
-    variable value : vector3_value_t;
-  begin
-    value.x := all_bits(63 downto 0);
-    value.y := all_bits(127 downto 64);
-    value.z := all_bits(191 downto 128);
-    return value;
-  end function;
-
   function to_slv (value : twist_value_t) return std_logic_vector is
     variable bits : std_logic_vector(TWIST_VALUE_BITS - 1 downto 0);
   begin
-    bits(191 downto 0) := to_slv(value.linear);
-    bits(383 downto 192) := to_slv(value.angular);
+    bits(191 downto 0) := work.geometry_msgs_msg_vector3_cdr_8_pkg.to_slv(value.linear);
+    bits(383 downto 192) := work.geometry_msgs_msg_vector3_cdr_8_pkg.to_slv(value.angular);
     return bits;
   end function;
 
@@ -164,9 +100,32 @@ package body geometry_msgs_msg_twist_cdr_8_pkg is
     alias all_bits : std_logic_vector(TWIST_VALUE_BITS - 1 downto 0) is bits;
     variable value : twist_value_t;
   begin
-    value.linear := to_vector3_value(all_bits(191 downto 0));
-    value.angular := to_vector3_value(all_bits(383 downto 192));
+    value.linear := work.geometry_msgs_msg_vector3_cdr_8_pkg.to_vector3_value(all_bits(191 downto
+        0));
+    value.angular := work.geometry_msgs_msg_vector3_cdr_8_pkg.to_vector3_value(all_bits(383 downto
+        192));
     return value;
+  end function;
+
+  function to_slv (values : twist_values_t) return std_logic_vector is
+    alias all_values : twist_values_t(0 to values'length - 1) is values;
+    variable bits : std_logic_vector(TWIST_VALUE_BITS * values'length - 1 downto 0);
+  begin
+    for k in all_values'range loop
+      bits(TWIST_VALUE_BITS * (k + 1) - 1 downto TWIST_VALUE_BITS * k) := to_slv(all_values(k));
+    end loop;
+    return bits;
+  end function;
+
+  function to_twist_values (bits : std_logic_vector) return twist_values_t is
+    alias all_bits : std_logic_vector(bits'length - 1 downto 0) is bits;
+    variable values : twist_values_t(0 to bits'length / TWIST_VALUE_BITS - 1);
+  begin
+    for k in values'range loop
+      values(k) := to_twist_value(all_bits(TWIST_VALUE_BITS * (k + 1) - 1 downto TWIST_VALUE_BITS *
+          k));
+    end loop;
+    return values;
   end function;
 
 end package body geometry_msgs_msg_twist_cdr_8_pkg;

@@ -14,6 +14,7 @@ use std.textio.all;
 use work.firm_hdl_bench_pkg.all;
 use work.firm_hdl_types_pkg.all;
 use work.geometry_msgs_msg_twist_cdr_8_pkg.all;
+use work.geometry_msgs_msg_twist_cdr_8_components_pkg.all;
 
 entity geometry_msgs_msg_twist_cdr_8_tb is
   generic (

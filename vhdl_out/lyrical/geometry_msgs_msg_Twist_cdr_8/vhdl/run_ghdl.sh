@@ -32,7 +32,10 @@ fi
 "$ghdl" -a --std=08 \
   "$from/firm_hdl_types_pkg.vhd" \
   "$from/firm_hdl_pkg.vhd" \
+  "$from/firm_hdl_bus_8_pkg.vhd" \
+  "$from/geometry_msgs_msg_vector3_cdr_8_pkg.vhd" \
   "$from/geometry_msgs_msg_twist_cdr_8_pkg.vhd" \
+  "$from/geometry_msgs_msg_twist_cdr_8_components_pkg.vhd" \
   "$from/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_window.vhd" \
   "$from/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core.vhd" \
   "$from/geometry_msgs_msg_twist_cdr_8_deserializer_flat.vhd" \

@@ -7,10 +7,13 @@
 
 set firm_hdl_folder [file dirname [file normalize [info script]]]
 
-# The same in the folder of every type: a project has each of them once.
+# The same in the folder of every type that needs them: a project has each of them once.
 foreach firm_hdl_file {
   firm_hdl_types_pkg.vhd
   firm_hdl_pkg.vhd
+  firm_hdl_bus_8_pkg.vhd
+  geometry_msgs_msg_vector3_cdr_8_pkg.vhd
+  geometry_msgs_msg_twist_cdr_8_pkg.vhd
 } {
   if {[llength [get_files -quiet "*/$firm_hdl_file"]] == 0} {
     read_vhdl -vhdl2008 [file join $firm_hdl_folder $firm_hdl_file]
@@ -18,7 +21,7 @@ foreach firm_hdl_file {
 }
 
 foreach firm_hdl_file {
-  geometry_msgs_msg_twist_cdr_8_pkg.vhd
+  geometry_msgs_msg_twist_cdr_8_components_pkg.vhd
   geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_window.vhd
   geometry_msgs_msg_twist_cdr_8_deserializer_flat_core.vhd
   geometry_msgs_msg_twist_cdr_8_deserializer_flat.vhd

@@ -8,7 +8,10 @@ HERE = Path(__file__).resolve().parent
 FILES = [
     "firm_hdl_types_pkg.vhd",
     "firm_hdl_pkg.vhd",
+    "firm_hdl_bus_8_pkg.vhd",
+    "geometry_msgs_msg_vector3_cdr_8_pkg.vhd",
     "geometry_msgs_msg_twist_cdr_8_pkg.vhd",
+    "geometry_msgs_msg_twist_cdr_8_components_pkg.vhd",
     "geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_window.vhd",
     "geometry_msgs_msg_twist_cdr_8_deserializer_flat_core.vhd",
     "geometry_msgs_msg_twist_cdr_8_deserializer_flat.vhd",
