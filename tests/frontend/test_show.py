@@ -177,3 +177,18 @@ def test_shown_idl_is_a_definition_that_means_the_same(tmp_path):
     library = Library("lyrical", [make_files(tmp_path / "1", {"p/msg/T.idl": idl})])
     root = make_files(tmp_path / "2", {"p/msg/T.msg": show(library, "p/msg/T")})
     assert Library("lyrical", [root]).message("p/T") == library.message("p/T")
+
+
+def test_values_of_an_idl_read_back_as_those_of_a_msg(tmp_path):
+    idl = """module p { module msg {
+      module T_Constants { const string Q = "say \\"a\\" 'b'"; const boolean B = TRUE; };
+      struct T { @default(value="it's \\"it\\"") string s;
+                 @default(value="('a\\"', \\"b'\\")") string t[2];
+                 @default(value=TRUE) boolean b; @default(value=-1.5) double d; long x; };
+    }; };"""
+    make_files(tmp_path / "idl", {"p/msg/T.idl": idl})
+    ours = Library("lyrical", [tmp_path / "idl"])
+    text = show(ours, "p/T")
+    again = library(tmp_path / "msg", {"p/T": text}).message("p/T")
+    assert again == ours.message("p/T")
+    assert again.constants[0].value == "say \"a\" 'b'"
