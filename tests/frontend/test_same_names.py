@@ -250,3 +250,12 @@ def test_the_same_mistake_in_two_packages_is_two(tmp_path):
         library(tmp_path, files).message("p/T")
     places = [d.span.source.name.removeprefix(f"{tmp_path}/") for d in caught.value.diagnostics]
     assert places == ["p/msg/Bad.msg", "q/msg/Bad.msg"]
+
+
+def test_messages_of_an_action_are_in_the_order_of_its_parts(tmp_path):
+    make_files(tmp_path, {"p/action/D.action": "---\n---"})
+    action = Library("humble", [tmp_path]).interface("p/D")
+    assert [m.name.removeprefix("p/action/D_") for m in action.messages] == [
+        "Goal", "Result", "Feedback", "SendGoal_Request", "SendGoal_Response",
+        "GetResult_Request", "GetResult_Response", "FeedbackMessage",
+    ]  # fmt: skip
