@@ -102,8 +102,11 @@ def _read(path: Path) -> tuple[Results, int]:
             else:
                 record = Record.from_json(given["record"])
                 records[record.test.key] = record
-        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-            raise ResultsError(f"'{path}', line {number}: it is damaged") from None
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+            # What `Record` and `Test` say of what they need; Python's own words start small.
+            is_ours = isinstance(error, ValueError | TypeError) and " must be " in str(error)
+            reason = str(error) if is_ours and str(error)[0].isupper() else "it is damaged"
+            raise ResultsError(f"'{path}', line {number}: {reason}") from None
     found = Results(options=options, planned=planned, records=records, sessions=tuple(sessions))
     return found, whole
 
