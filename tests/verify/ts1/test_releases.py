@@ -11,7 +11,7 @@ from firm_hdl.verify.ts1 import comparison
 from firm_hdl.verify.ts1.judge import judge
 from firm_hdl.verify.ts1.oracle import Accepted
 from firm_hdl.verify.ts1.oracles import ORACLES
-from firm_hdl.verify.verdict import Failed
+from firm_hdl.verify.verdict import Failed, NotJudged
 from tests.verify.judged import assert_known
 
 PARSERS = [f"rosidl_parser-{release.rosidl}" for release in RELEASES]
@@ -130,6 +130,13 @@ def test_a_message_of_idl_is_hashed_by_the_name_of_its_file(court, oracle):
     here = court("lyrical", FILES)
     assert_known(here.outcome(oracle, "p/Odd"), "idl-names")
     assert list(here.answer(oracle, "p/Odd").facts["hash"]) == ["p/msg/Odd"]
+
+
+def test_the_newest_rosidl_refuses_arrays_of_sequences_as_we_do(court):
+    text = "module p { module msg { typedef sequence<long> L; struct A { L x[3]; }; }; };"
+    here = court("lyrical", {"p/msg/A.idl": text})
+    assert here.outcome(PARSERS[-1], "p/A").is_refused
+    assert isinstance(here.outcome(PARSERS[0], "p/A").verdict, NotJudged)
 
 
 @pytest.mark.parametrize("name", [*ADAPTERS, *PARSERS])
