@@ -128,7 +128,7 @@ ROS2_WHEELS := $(patsubst firm_hdl/verify/ros2_wheels/%.txt,$(VENV)/ros2/%/.inst
   $(wildcard firm_hdl/verify/ros2_wheels/*.txt))
 oracles-ros2: $(ROS2_WHEELS)
 
-$(VENV)/ros2/%/.installed: firm_hdl/verify/ros2_wheels/%.txt $(VENV)/.created
+$(VENV)/ros2/%/.installed: firm_hdl/verify/ros2_wheels/%.txt | $(VENV)/.created
 	@echo "Installing rosidl and Fast CDR of ROS 2 $* ..."
 	@{ $(BIN)/python -m venv --clear $(@D) \
 	  && $(@D)/bin/python -m pip install --quiet --disable-pip-version-check --requirement $< \
