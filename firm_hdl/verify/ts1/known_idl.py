@@ -41,11 +41,36 @@ def _modules_of(text: str) -> set[str]:
 def _named_as_file(facts: Facts, case: Case) -> Facts:
     """Give the message its package and folder, where other modules are around it."""
     if "names" not in facts:
-        return facts
+        return _parts_named_as_file(facts, case)
     (name,) = facts["names"]
     *modules, base = name.split("/")
     is_written = set(modules) <= _modules_of(case.text)
     return {**facts, "names": [f"{case.package}/{case.kind}/{base}"]} if is_written else facts
+
+
+def _parts_named_as_file(facts: Facts, case: Case) -> Facts:
+    """Give the messages of a service or an action its package and folder."""
+    messages = facts.get("structure", {})
+    scopes = {name.rpartition("/")[0] for name in messages}
+    own = f"{case.package}/{case.kind}"
+    if len(scopes) != 1 or scopes == {own} or len(messages) == 1:
+        return facts
+    (scope,) = scopes
+    if not set(scope.split("/")) <= _modules_of(case.text):
+        return facts
+
+    def named(name: str) -> str:
+        base = re.split(r"[\[<]", name, maxsplit=1)[0]
+        return name.replace(scope, own, 1) if base in messages else name
+
+    mended = {
+        named(name): {
+            **message,
+            "fields": [{**each, "type": named(each["type"])} for each in message.get("fields", [])],
+        }
+        for name, message in messages.items()
+    }
+    return {**facts, "structure": mended}
 
 
 def _called_as_file(case: Case) -> str:
@@ -144,6 +169,38 @@ def _declared_once(case: Case) -> str:
     return text
 
 
+# What rosidl_parser does not look at.
+
+
+def _positive_lengths(case: Case) -> str:
+    return _in_code(case.text, r"(\[\s*)-\s*\d+(?=\s*\])", r"\g<1>1")
+
+
+_SCOPED = r"(?<![\w:])(?:\w+\s*::\s*)+\w+(?=\s+\w+\s*(?:[;,]|\[))"
+
+
+def _types_of_ros(case: Case) -> str:
+    """Write a builtin type in place of one whose scopes are none of ROS."""
+
+    def kind(match: re.Match[str]) -> str:
+        scopes = [each.strip() for each in match[0].split("::")]
+        return match[0] if scopes[1:-1] in (["msg"], ["srv"], ["action"]) else "long"
+
+    return _in_code(case.text, _SCOPED, kind)
+
+
+_TYPES = "octet|boolean|float|double|w?char|w?string|unsigned|short|long|u?int(?:8|16|32|64)"
+_GLUED = (
+    rf"((?:[{{;]|\btypedef\b)\s*)({_TYPES})(?=\w+\s*(?:\[[^\]]*\]\s*)?;)"
+    r"|(\b)(unsigned)(?=(?:short|long)\b)"
+)
+
+
+def _words_apart(case: Case) -> str:
+    """Write a blank behind a type that a name, or a part of its own name, follows at once."""
+    return _in_code(case.text, _GLUED, lambda m: f"{m[1] or m[3] or ''}{m[2] or m[4]} ")
+
+
 # What we refuse by name.
 
 _UNSUPPORTED = r"@(?:optional|mutable)\b(?:\s*\([^()]*\))?|@extensibility\s*\(\s*MUTABLE\s*\)"
@@ -198,6 +255,24 @@ IDL: tuple[Known, ...] = (
         "idl-twice",
         "rosidl_parser takes constants and members that are declared twice, which C++ does not.",
         rewrite=_declared_once,
+        is_mistake=True,
+    ),
+    _entry(
+        "idl-lengths",
+        "rosidl_parser takes arrays of negative lengths.",
+        rewrite=_positive_lengths,
+        is_mistake=True,
+    ),
+    _entry(
+        "idl-words",
+        "rosidl_parser takes words that run together.",
+        rewrite=_words_apart,
+        is_mistake=True,
+    ),
+    _entry(
+        "idl-type-scopes",
+        "rosidl_parser takes types that are not written package::msg::Name.",
+        rewrite=_types_of_ros,
         is_mistake=True,
     ),
     _entry(

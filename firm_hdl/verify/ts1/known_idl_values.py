@@ -14,7 +14,7 @@ from typing import Any
 
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.facts import Facts
-from firm_hdl.verify.ts1.rule import Known, mend_constants
+from firm_hdl.verify.ts1.rule import Known, mend_constants, mend_members
 from firm_hdl.verify.ts1.texts import original, renamed
 
 __all__ = ["IDL_VALUES", "blanked"]
@@ -48,13 +48,15 @@ _MOST = 1 << 64
 _ESCAPE = re.compile(r"L?'(?:\\x([0-9A-Fa-f]{1,2})|\\u([0-9A-Fa-f]{1,4})|\\(n)|([^\\']))'")
 
 
+_PYTHON_ONLY = re.compile(r"\b0[bo]|\b\d\w*_", re.IGNORECASE)
 _TWO_SIGNS = re.compile(r"(?:^|[(*/%&|^<>+~-])\s*[-+~]\s*[-+~]")
 
 
 def _value(expression: str, names: Mapping[str, int], modules: set[str]) -> int | None:
     """Work out an integer; `None` if it is none, or none to IDL."""
     scopes = re.findall(r"(\w+)\s*::", expression)
-    if _TWO_SIGNS.search(expression) or not modules.issuperset(scopes):
+    is_odd = _TWO_SIGNS.search(expression) or _PYTHON_ONLY.search(expression)
+    if is_odd or not modules.issuperset(scopes):
         return None
     text = re.sub(r"(?:::)?\b(?:\w+::)+(?=\w)", "", expression.strip())
     text = re.sub(r"(?<![\w.])0(?=[0-7]+\b)", "0o", text)
@@ -117,6 +119,8 @@ def _literals(case: Case) -> str:
         expression = match[which]
         if not expression or re.fullmatch(r"-?\s*(?:0|[1-9]\d*)", expression):
             continue
+        if which != "a" and "'" in expression:  # A character is no length.
+            continue
         value = _value(expression, names, modules)
         if value is not None:
             start = match.start(which)
@@ -177,6 +181,20 @@ def _own_constants(case: Case) -> str:
     return text
 
 
+def _long_names(case: Case) -> str:
+    """Rename members of type long whose names begin like the second word of a type."""
+    code = blanked(case.text)
+    text = case.text
+    for match in reversed([*re.finditer(r"\blong\s+((?:long|double)\w+)(?=\s*[;,\[])", code)]):
+        text = text[: match.start(1)] + renamed(match[1]) + text[match.end(1) :]
+    return text
+
+
+def _members_back(facts: Facts, case: Case) -> Facts:
+    back = mend_members("fields", lambda each: {**each, "name": original(each["name"])})
+    return back(facts, case)
+
+
 def _names_back(facts: Facts, case: Case) -> Facts:
     return mend_constants(lambda each: {**each, "name": original(each["name"])})(facts, case)
 
@@ -200,6 +218,12 @@ IDL_VALUES: tuple[Known, ...] = (
         "idl-booleans",
         "rosidl_parser keeps a boolean constant that is written as a number a number.",
         theirs=mend_constants(_truth_values),
+    ),
+    _entry(
+        "idl-long-names",
+        "rosidl_parser reads 'long longitude' as a long long called itude.",
+        rewrite=_long_names,
+        theirs=_members_back,
     ),
     _entry(
         "idl-service-constants",

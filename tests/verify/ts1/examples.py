@@ -235,6 +235,19 @@ EXAMPLES: tuple[Example, ...] = (
     _ros2("ros2-comment-blanks", "rosidl_adapter", "# Head. \n\nint8 x\n", _comment),
     # IDL.
     _idl("idl-names", "long x;", _misname, modules=("q", "idl")),
+    Example(
+        key="idl-names",
+        oracle="rosidl_parser",
+        kind="srv",
+        idl=True,
+        text="module q { module srv { struct A_Request { long a; }; "
+        "struct A_Response { string b; unsigned short last; }; }; };",
+        plant=_response(lambda part: replace(part, name="p/srv/A_Reply")),
+    ),
+    _idl("idl-lengths", "long x[-1];", drop_last),
+    _idl("idl-long-names", "long longitude; unsigned long doubled[2];", _field(0, name="itude")),
+    _idl("idl-words", "shortvalue; unsignedlong x;", drop_last),
+    _idl("idl-type-scopes", "msg::X x; a::b::c::X y[2];", drop_last),
     _idl("idl-file-names", "long x;", drop_last, name="B"),
     _idl("idl-bounds-by-name", "sequence<wstring<N>, 2> x;", _constant(value=4), before=_N),
     _idl(

@@ -155,7 +155,7 @@ ORDINARY = {
     "string s true story\n": "rosbags-texts",
     "float64 a inf\n": None,
     "float64[] a [inf, nan]\n": None,
-    "string<=5[] a [\"b\", c]\n": None,
+    'string<=5[] a ["b", c]\n': None,
     "int8[] a []\n": None,
     "string<=5[<=3] s\n": None,
 }
