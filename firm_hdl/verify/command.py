@@ -18,7 +18,7 @@ from firm_hdl.frontend.search import workspace_folders
 from firm_hdl.plan import BUS_BYTES
 from firm_hdl.verify.benches import Benches
 from firm_hdl.verify.ending import concluded, is_well
-from firm_hdl.verify.environment import code_digest, environment
+from firm_hdl.verify.environment import code_digest, environment, inputs_digest
 from firm_hdl.verify.executors import PROCESSES, ExecutorError, check_executor
 from firm_hdl.verify.options import LONGEST, Options
 from firm_hdl.verify.processes import unwound_when_terminated
@@ -137,6 +137,7 @@ def _writer(given: argparse.Namespace, systems: Sequence[System]) -> ResultsWrit
         "wire": given.wire,
         "paths": list(given.path),
         "code": code_digest(),
+        "inputs": inputs_digest([*given.path, *given.bag, *filter(None, [given.golden])]),
     }
     for system in systems:
         options |= system.options

@@ -5,13 +5,15 @@ from __future__ import annotations
 import hashlib
 import os
 import platform
+from collections.abc import Iterable, Iterator
 from datetime import datetime, timezone
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import firm_hdl
+from firm_hdl.files import read_file
 
-__all__ = ["code_digest", "environment"]
+__all__ = ["code_digest", "environment", "inputs_digest"]
 
 PACKAGES = (
     "amaranth",
@@ -23,6 +25,12 @@ PACKAGES = (
     "lark",
     "distributed",
 )
+
+_INPUTS = (".msg", ".srv", ".action", ".idl", ".xml", ".yaml")
+"""Endings of the files that definitions, packages and golden plans are read from."""
+
+_MOST_BYTES = 1 << 22
+"""A definition has no more (`firm_hdl.frontend.sources`); of a larger file the size tells."""
 
 
 def environment(**more: str) -> dict[str, str]:
@@ -57,3 +65,45 @@ def code_digest() -> str:
             digest.update(f"{path.relative_to(root).as_posix()}\0".encode())
             digest.update(path.read_bytes() + b"\0")
     return digest.hexdigest()[:12]
+
+
+def inputs_digest(paths: Iterable[str]) -> str:
+    """Return a digest of what is read from folders and files: other inputs have other results.
+
+    Of folders, it is the names and texts of definitions, ``package.xml`` and golden plans. Of any
+    other file, such as a recording, it is the size and the time of the last change.
+    """
+    digest = hashlib.sha256()
+    for path in paths:
+        for name in _files(path):
+            digest.update(f"{os.path.relpath(name, path)}\0".encode(errors="surrogateescape"))
+            digest.update(_content(name) + b"\0")
+    return digest.hexdigest()[:12]
+
+
+def _files(path: str) -> Iterator[str]:
+    """Yield a file itself, or the files of a folder that count, in order; links are followed."""
+    if not os.path.isdir(path):
+        yield path
+    seen: set[str] = set()
+    for folder, folders, names in os.walk(path, followlinks=True):
+        real = os.path.realpath(folder)
+        if real in seen:
+            folders.clear()
+            continue
+        seen.add(real)
+        folders.sort()
+        is_bag = "metadata.yaml" in names
+        yield from (
+            os.path.join(folder, name) for name in sorted(names) if is_bag or name.endswith(_INPUTS)
+        )
+
+
+def _content(path: str) -> bytes:
+    try:
+        if path.endswith(_INPUTS):
+            return read_file(path, _MOST_BYTES)
+        status = os.stat(path)
+    except OSError as error:
+        return str(error.strerror).encode()
+    return f"{status.st_size} {status.st_mtime_ns}".encode()

@@ -209,6 +209,19 @@ def test_other_oracles_are_another_run(tmp_path, monkeypatch, capsys):
     assert 'and is ["rosbags 9.9"]' in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("system", ["ts1", "ts2"])
+@pytest.mark.parametrize("changed", ["src/p/msg/A.msg", "src/q/msg/B.msg"])
+def test_other_definitions_are_another_run(tmp_path, capsys, system, changed):
+    texts = {"src/p/msg/A.msg": "q/B b\n", "src/q/msg/B.msg": "int8 x\n"}
+    source, path = str(make_files(tmp_path, texts) / "src"), tmp_path / "r.jsonl"
+    arguments = ["--systems", system, "--path", source, "--results", path, "p/msg/A"]
+    assert verify(*arguments) == 0
+    assert verify(*arguments) == 0
+    (tmp_path / changed).write_text("int16 y\n")
+    assert verify(*arguments) == 1
+    assert "is of another run: inputs was" in capsys.readouterr().err
+
+
 def run_until_killed(command, calls):
     """Run the command, and end this process right behind so many calls of `add`."""
     add, left = ResultsWriter.add, iter(range(calls))
