@@ -64,7 +64,7 @@ verify: $(VENV)/.installed oracles ## every type of every distribution through T
 # `TS1_CORPUS=DIR` has folders `ros1/` and `ros2/` with packages, and `invalid/` with others.
 TS1_CORPUS ?= $(FIRM_HDL_CORPUS)
 TS1 := $(BIN)/python -m firm_hdl.verify --systems ts1
-verify-ts1: $(VENV)/.installed oracles ## every definition against ROS's own readers (15 minutes)
+verify-ts1: $(VENV)/.installed oracles ## every definition against ROS's own readers (20 minutes)
 	$(TS1)
 	$(if $(TS1_CORPUS),$(TS1) --distro noetic --path $(TS1_CORPUS)/invalid/ros1 --path $(TS1_CORPUS)/ros1)
 	$(if $(TS1_CORPUS),$(TS1) --distro lyrical --path $(TS1_CORPUS)/invalid/ros2 --path $(TS1_CORPUS)/ros2)

@@ -14,7 +14,7 @@ from typing import Any
 
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.facts import Facts
-from firm_hdl.verify.ts1.rule import Known, mend_constants, mend_members
+from firm_hdl.verify.ts1.rule import Known, mend_constants
 from firm_hdl.verify.ts1.texts import original, renamed
 
 __all__ = ["IDL_VALUES", "blanked"]
@@ -182,17 +182,15 @@ def _own_constants(case: Case) -> str:
 
 
 def _long_names(case: Case) -> str:
-    """Rename members of type long whose names begin like the second word of a type."""
+    """Call a long int32, where the name behind it begins like the second word of a type."""
     code = blanked(case.text)
     text = case.text
-    for match in reversed([*re.finditer(r"\blong\s+((?:long|double)\w+)(?=\s*[;,\[])", code)]):
-        text = text[: match.start(1)] + renamed(match[1]) + text[match.end(1) :]
+    pattern = r"\b(unsigned\s+)?long(?=\s+(?:long|double)\w+\s*[;,\[])"
+    for match in reversed([*re.finditer(pattern, code)]):
+        if re.search(r"\blong\s+$", code[: match.start()]) is None:
+            word = "uint32" if match[1] else "int32"
+            text = text[: match.start()] + word + text[match.end() :]
     return text
-
-
-def _members_back(facts: Facts, case: Case) -> Facts:
-    back = mend_members("fields", lambda each: {**each, "name": original(each["name"])})
-    return back(facts, case)
 
 
 def _names_back(facts: Facts, case: Case) -> Facts:
@@ -223,7 +221,6 @@ IDL_VALUES: tuple[Known, ...] = (
         "idl-long-names",
         "rosidl_parser reads 'long longitude' as a long long called itude.",
         rewrite=_long_names,
-        theirs=_members_back,
     ),
     _entry(
         "idl-service-constants",

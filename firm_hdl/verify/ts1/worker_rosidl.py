@@ -301,24 +301,32 @@ class _Hashes:
         return {name: self._hash(name, described) for name in own}
 
     def _individual(self, element, request):
-        """Describe all types that a file declares, each by itself."""
+        """Describe all types that a file declares, each by itself.
+
+        They are called as the file is, whatever the modules of an IDL say.
+        """
         add = self.describing
         found = {}
         if hasattr(element, "structure"):
-            # A message is called as its file is, whatever the modules of an IDL say.
-            names = type(element.structure.namespaced_type)(
-                [request["package"], request["kind"]], request["name"]
-            )
-            own = add.GenericInterface(names, element.structure.members)
-            found["/".join(names.namespaced_name())] = own
-        elif hasattr(element, "request_message"):
-            add.add_srv(element, found)
+            top = element.structure.namespaced_type
+            add.add_msg(element, found)
         else:
-            add.add_action(element, found)
-        return {
-            name: add.serialize_individual_type_description(each.namespaced_type, each.members)
-            for name, each in found.items()
-        }
+            top = element.namespaced_type
+            adder = add.add_srv if hasattr(element, "request_message") else add.add_action
+            adder(element, found)
+        said = "/".join(top.namespaced_name())
+        own = f"{request['package']}/{request['kind']}/{request['name']}"
+
+        def named(name):
+            return own + name[len(said) :] if name in found else name
+
+        described = {}
+        for name, each in found.items():
+            entry = add.serialize_individual_type_description(each.namespaced_type, each.members)
+            for field in entry["fields"]:
+                field["type"]["nested_type_name"] = named(field["type"]["nested_type_name"])
+            described[named(name)] = {**entry, "type_name": named(name)}
+        return described
 
     def _described(self, name):
         package, kind, base = name.split("/")
