@@ -112,8 +112,9 @@ class Worker:
 
 
 def _environment(python: str) -> dict[str, str]:
-    # As ROS's tools are run by most: in an environment that speaks UTF-8.
-    found = {**os.environ, "LC_ALL": "C.UTF-8", "PYTHONUTF8": "1"}
+    # As ROS's tools are run by most: in an environment that speaks UTF-8. What rosidl_parser 3.3.1
+    # makes of a text that lark can read in two ways depends on the order of sets, so on the seed.
+    found = {**os.environ, "LC_ALL": "C.UTF-8", "PYTHONUTF8": "1", "PYTHONHASHSEED": "0"}
     if python != ROS_PYTHON:
         # A release of ROS that is sourced must not stand in for the one that was asked for.
         found.pop("PYTHONPATH", None)
