@@ -241,10 +241,13 @@ class Acceptance:
     def confirm(self, cases: Sequence[Case], *, is_needed: bool) -> None:
         """Have other libraries write the cases; `is_needed`: rosbags' word is not enough."""
         found = confirm(self.message, self.plan.wire, cases, self.options.references)
-        self.result.written_by = found.by
+        self.result.written_by, self.result.known = found.by, found.known
         self.result.failures += found.failures
         if is_needed and not set(WIDE_REFERENCES) & set(found.by):
             self.fail(f"{WIDE_REFERENCES[0]} could not write wide text, which rosbags has not")
+        if self.options.references and found.unable:
+            # They were asked for by name.
+            self.result.obstacle = NotJudged("; ".join(found.unable.values()))
 
     def is_large(self, cases: Sequence[Case]) -> bool:
         """Whether a type takes long to simulate; it is stalled and broken less often."""

@@ -148,8 +148,10 @@ def _run_bench(
         raise NotJudgedError("it has no packet that is short enough")
     if isinstance(judge.oracle, WideOracle):
         found = confirm(message, plan.wire, cases, WIDE_REFERENCES)
-        assert not found.failures, found.failures[0]
-        assert found.by, f"{WIDE_REFERENCES[0]} could not write wide text, which rosbags has not"
+        if found.failures:
+            raise AssertionError(found.failures[0])
+        if not found.by:
+            raise AssertionError(f"{WIDE_REFERENCES[0]} could not write the type's wide text")
     built = build(
         [name],
         folder,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from firm_hdl.verify.crosscheck import Comparison
 from firm_hdl.verify.directed import Coverage
-from firm_hdl.verify.verdict import Failed, NotJudged, Passed, Verdict
+from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 
 __all__ = ["LONGEST", "Options", "Result"]
 
@@ -115,7 +115,9 @@ class Result:
     note : str
         What is to be known about the oracle; empty in most cases.
     written_by : tuple of str
-        Who wrote the same bytes as rosbags.
+        Who was asked to write the same bytes as rosbags.
+    known : tuple of str
+        Keys of what explains that one of those writes other bytes than rosbags.
     comparison : Comparison or None
         With another simulator, if there was one.
     """
@@ -141,6 +143,7 @@ class Result:
     command: str = ""
     note: str = ""
     written_by: tuple[str, ...] = ()
+    known: tuple[str, ...] = ()
     comparison: Comparison | None = None
 
     @property
@@ -152,4 +155,6 @@ class Result:
             return self.obstacle
         if not self.judged:
             return NotJudged("no packet was compared with the oracle")
+        if self.known:
+            return KnownDifference(self.known, self.judged)
         return Passed(self.judged)

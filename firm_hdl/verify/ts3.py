@@ -20,7 +20,7 @@ from firm_hdl.verify.references import find_references
 from firm_hdl.verify.runner import Task, run_tasks
 from firm_hdl.verify.simulators import simulator
 from firm_hdl.verify.system import Judged, Recorder, System, judged, wire_of
-from firm_hdl.verify.verdict import Failed, NotJudged, Passed
+from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
 
 __all__ = ["How", "Ts3"]
 
@@ -168,12 +168,16 @@ def _count(records: Mapping[Task, Record], options: Options) -> None:
     for task, verdict in verdicts.items():
         if not isinstance(verdict, NotJudged):
             total.update(task.same)
-        if isinstance(verdict, Passed):
+        if isinstance(verdict, Passed | KnownDifference):
             passed.update(task.same)
     for distro in DISTROS:
         if distro in total:
             print(f"{distro:8} {passed[distro]:4} of {total[distro]:4} types pass", end="")
             print(f" ({options.bus_bytes}-byte bus)")
+    known = [verdict for verdict in verdicts.values() if isinstance(verdict, KnownDifference)]
+    if known:
+        keys = ", ".join(sorted({key for verdict in known for key in verdict.keys}))
+        print(f"{len(known)} of them with a known difference between libraries: {keys}")
     if silent := sum(isinstance(verdict, NotJudged) for verdict in verdicts.values()):
         print(f"{silent} of {len(records)} types not judged")
     if shared := sum(bool(record.same_as) for record in records.values()):
@@ -192,8 +196,11 @@ def _summarize(results: Sequence[Result], options: Options) -> None:
     )
     slowest = sorted(results, key=lambda result: -result.seconds)[:5]
     print("slowest:", ", ".join(f"{each.name} {each.seconds:.1f} s" for each in slowest))
-    writers = Counter(name for result in results for name in ("rosbags", *result.written_by))
-    print("wire bytes:", ", ".join(f"{name} {count} types" for name, count in writers.items()))
+    writers = Counter(
+        name for result in results if result.cases for name in ("rosbags", *result.written_by)
+    )
+    said = ", ".join(f"{name} {count} types" for name, count in writers.items())
+    print("wire bytes:", said or "nobody wrote any")
     compared = [result.comparison for result in results if result.comparison is not None]
     if compared:
         same = sum(isinstance(each.verdict, Passed) for each in compared)

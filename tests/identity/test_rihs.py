@@ -177,6 +177,8 @@ KINDS = [
     (Sequence(element=IDL_PRIMITIVES["long double"], bound=4), (108, 4, 0)),
     (Text(), (17, 0, 0)),
     (Text(wide=True), (18, 0, 0)),
+    (Text(bound=1), (21, 0, 1)),
+    (Text(bound=1, wide=True), (22, 0, 1)),
     (Text(bound=12), (21, 0, 12)),
     (Text(bound=12, wide=True), (22, 0, 12)),
     (Array(element=Text(bound=12), count=22), (69, 22, 12)),

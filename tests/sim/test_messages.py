@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from amaranth.hdl import Module
+from amaranth.hdl import Cat, Module
 from amaranth.lib import wiring
 from rosbags.typesys import Stores, get_typestore
 
@@ -22,6 +22,7 @@ from firm_hdl.sim import (
 from tests.sim.components import run_testbenches
 from tests.sim.test_loopback import IMAGE, JOINTS, PACKET, TRAJECTORY, VALUE
 
+COLOUR = load_message("std_msgs/msg/ColorRGBA", distro="humble")
 IMU = load_message("sensor_msgs/msg/Imu", distro="humble")
 STALLS = [None, Stalls(0.4, 1, 4, seed=2), {"message.header": Stalls.bits("0001")}]
 
@@ -144,3 +145,30 @@ def test_one_message_is_taken_and_no_more():
 
 def leaves_of(port):
     return list(enumerate(port.plan.leaves))
+
+
+@pytest.mark.parametrize("side", ["source", "sink"])
+def test_stalls_of_a_leaf_are_those_that_were_asked_for(side):
+    """Each leaf of a colour has one transfer, in the first cycle that its pattern lets through."""
+    dut = Wires(COLOUR)
+    i, o = MessagePort(dut.i, COLOUR), MessagePort(dut.o, COLOUR)
+    patterns = {"message.r": "1", "message.g": "01", "message.b": "00001", "message.a": "001"}
+    stalls = {leaf: Stalls.bits(pattern) for leaf, pattern in patterns.items()}
+    taken = {}
+
+    async def source(ctx):
+        value = dict.fromkeys("rgba", 1.0)
+        await i.send(ctx, value, stalls=stalls if side == "source" else None)
+
+    async def sink(ctx):
+        await o.receive(ctx, stalls=stalls if side == "sink" else None)
+
+    async def observe(ctx):
+        ports = list(o.streams.values())
+        both = Cat(port.valid & port.ready for port in ports)
+        for cycle in range(8):
+            _, _, now = await ctx.tick().sample(both)
+            taken.update({leaf: cycle for leaf in range(4) if now >> leaf & 1})
+
+    run_testbenches(dut, source, sink, observe)
+    assert taken == {0: 0, 1: 1, 2: 4, 3: 2}

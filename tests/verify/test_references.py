@@ -10,9 +10,10 @@ from firm_hdl.frontend import Library
 from firm_hdl.verify import Options, accept, distro_oracle, make_cases
 from firm_hdl.verify.references import WRITERS, confirm, find_references, references_here
 from firm_hdl.verify.sut import CLIENTS, Refusal, client
+from firm_hdl.verify.sut.client import UnsupportedError
 from firm_hdl.verify.verdict import NotJudged
 from tests.export.conftest import need
-from tests.verify.judged import assert_passed
+from tests.verify.judged import assert_known, assert_passed
 
 FAST_CDR = ("fastcdr", "fastcdr-2.2", "fastcdr-2.3")
 CDR = (*FAST_CDR, "cyclonedds")
@@ -63,6 +64,55 @@ def test_result_says_who_took_part():
     none = accept("lyrical", "std_msgs/msg/Bool", Options(most_cases=2, references=()))
     assert none.written_by == ()
     assert none.command.endswith(" --reference none std_msgs/msg/Bool")
+
+
+def test_known_divergence_of_a_reference_is_told_by_its_key():
+    """`Joy` has NaN among its cases that Cyclone's Python turns into others."""
+    options = Options(simulated=False, references=("cyclonedds",))
+    result = accept("lyrical", "sensor_msgs/msg/Joy", options)
+    assert_known(result, "python-signalling-nan")
+    assert result.verdict.cases > 6 and result.written_by == ("cyclonedds",)
+
+
+def test_known_divergence_hides_no_other(monkeypatch):
+    codec = client("cyclonedds").open(Library("lyrical").message("sensor_msgs/msg/Joy"), "cdr")
+    right = type(codec).encode_all
+
+    def without_the_last_byte(self, values):
+        return [answer[:-1] for answer in right(self, values)]
+
+    monkeypatch.setattr(type(codec), "encode_all", without_the_last_byte)
+    options = Options(simulated=False, references=("cyclonedds",))
+    result = accept("lyrical", "sensor_msgs/msg/Joy", options)
+    assert len(result.failures) > 6
+    assert all("cyclonedds writes" in text for text in result.failures)
+
+
+def test_named_reference_that_cannot_confirm_is_no_pass(capsys):
+    arguments = ["verify", "--distro", "lyrical", "--jobs", "1", "--cases", "2"]
+    assert main([*arguments, "--reference", "genpy", "std_msgs/msg/Bool"]) == 1
+    shown = capsys.readouterr().out
+    assert "not judged: std_msgs/msg/Bool (lyrical), ts3, 8-byte bus: " in shown
+    assert "genpy has no wire 'cdr'" in shown and "genpy 1 types" not in shown
+
+
+def test_named_reference_without_the_type_is_no_pass(monkeypatch):
+    def unable(message, wire):
+        raise UnsupportedError("fastcdr has no such type")
+
+    monkeypatch.setattr(client("fastcdr"), "open", unable)
+    options = Options(most_cases=1, references=("fastcdr", "cyclonedds"))
+    result = accept("lyrical", "std_msgs/msg/Bool", options)
+    assert result.verdict == NotJudged("fastcdr has no such type")
+    assert result.written_by == ("cyclonedds",)
+    assert_passed(accept("lyrical", "std_msgs/msg/Bool", Options(most_cases=1)))
+
+
+def test_nobody_wrote_what_was_not_judged(capsys, make_wide):
+    arguments = ["verify", "--distro", "lyrical", "--jobs", "1", "--path", str(make_wide)]
+    assert main([*arguments, "--reference", "none", "p/msg/Wide"]) == 1
+    shown = capsys.readouterr().out
+    assert "not judged" in shown and "rosbags 1 types" not in shown
 
 
 def test_wide_text_is_judged_if_somebody_has_it(tmp_path, make_wide):

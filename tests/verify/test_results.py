@@ -41,6 +41,13 @@ def test_records_are_read_as_they_were_written(tmp_path):
     assert done(tmp_path / "none", [HEADER.key]) == set()
 
 
+def test_last_of_two_records_of_a_test_counts(tmp_path):
+    path = written(tmp_path / "r.jsonl", a_record(), a_record(verdict=Failed(("later",))))
+    assert read_results(path).records[HEADER.key].verdict == Failed(("later",))
+    again = written(tmp_path / "again.jsonl", a_record(verdict=Failed(("first",))), a_record())
+    assert read_results(again).records == {HEADER.key: a_record()}
+
+
 def test_keys_tell_all_that_matters_apart():
     others = [
         a_test("std_msgs/msg/Bool"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -88,3 +89,20 @@ def test_repeat_of_an_unknown_count_is_the_union_of_all_images(residues, body):
 
 def test_repeat_goes_around_a_cycle_in_its_direction():
     assert rs.repeat(rs.single(0), lambda at: rs.advance(at, 1), 11) == (rs.ALL, rs.single(3))
+
+
+@pytest.mark.parametrize(
+    ("count", "entry", "after"),
+    [
+        (1, {1}, 0),
+        (2, {1, 0}, 4),
+        (3, {1, 0, 4}, 0),
+        (4, {1, 0, 4}, 4),
+        (5, {1, 0, 4}, 0),
+        (1000, {1, 0, 4}, 4),
+    ],
+)
+def test_repeat_goes_around_a_cycle_that_its_first_turn_is_no_part_of(count, entry, after):
+    """`uint8 x` and then `uint32[count]`: only the first element is padded, from 1 to 4."""
+    body = {1 << 1: 1 << 0, 1 << 0: 1 << 4, 1 << 4: 1 << 0}
+    assert rs.repeat(rs.single(1), body.__getitem__, count) == (mask(entry), rs.single(after))

@@ -110,6 +110,8 @@ def test_characters(text, want):
         ("byte", "255", 255),
         ("char", "'a'", 97),
         ("char", r"'\xff'", -1),
+        ("char", r"'\x80'", -128),
+        ("char", r"'\x7f'", 127),
         ("char", "-128", -128),
         ("wchar", r"L'\u2122'", 0x2122),
         ("int8", "-128", -128),
