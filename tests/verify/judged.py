@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from firm_hdl.verify.verdict import KnownDifference, Passed
 
-__all__ = ["assert_known", "assert_passed"]
+__all__ = ["NAN_KEY", "assert_known", "assert_passed"]
 
 
-def assert_passed(result):
-    """Assert that a verdict, or that of a result, is a pass; return how many cases were judged."""
+NAN_KEY = "python-signalling-nan"
+"""Of what Python floats make of some NaN, in libraries that confirm packets."""
+
+
+def assert_passed(result, known=()):
+    """Assert that a verdict, or that of a result, is a pass; return how many cases were judged.
+
+    `known` are keys of differences between libraries, all of which there must be, and no others.
+    """
     verdict = getattr(result, "verdict", result)
-    assert isinstance(verdict, Passed), verdict
+    assert isinstance(verdict, KnownDifference if known else Passed), verdict
+    assert getattr(verdict, "keys", ()) == known
     return verdict.cases
 
 

@@ -19,7 +19,7 @@ from firm_hdl.verify.__main__ import main
 from firm_hdl.verify.cases import Case
 from firm_hdl.verify.damage import DAMAGES, broken_packets
 from firm_hdl.wire import lay_out
-from tests.verify.judged import assert_passed
+from tests.verify.judged import NAN_KEY, assert_passed
 
 HEADER = "std_msgs/msg/Header"
 
@@ -39,7 +39,8 @@ HEADER = "std_msgs/msg/Header"
 )
 def test_types_pass(distro, name, bus_bytes):
     result = accept(distro, name, Options(bus_bytes=bus_bytes))
-    assert assert_passed(result) >= 2 * result.cases > 0
+    known = (NAN_KEY,) if name == "sensor_msgs/Joy" else ()
+    assert assert_passed(result, known) >= 2 * result.cases > 0
     assert result.packets > 2 * result.cases and result.cycles >= result.beats
 
 
