@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from firm_hdl.verify.verdict import KnownDifference, Passed
 
-__all__ = ["NAN_KEY", "assert_known", "assert_passed"]
+__all__ = ["NAN_KEY", "TIME_KEY", "assert_known", "assert_passed"]
 
 
 NAN_KEY = "python-signalling-nan"
 """Of what Python floats make of some NaN, in libraries that confirm packets."""
+TIME_KEY = "rosbags-time-signs"
+"""Of seconds of ROS 1 that rosbags takes for signed, and genpy does not."""
 
 
 def assert_passed(result, known=()):
