@@ -25,6 +25,8 @@ NAME_RULES = {
 }
 """What a name of each kind is made of."""
 
+_ROS1_CONSTANT_RULE = "letters, digits and underscores, no digit first"
+
 # In the order in which they are listed to the user.
 _PHRASES = {
     "INT_TYPE": "a type",
@@ -143,10 +145,12 @@ def _wrong_name(line: str, start: int, expected: frozenset[str], dialect: Dialec
     if not word or not kinds:
         return None
     has_value = line[start + len(word) :].lstrip().startswith("=")
-    if has_value and kinds == {"FIELD_NAME"}:
+    if has_value and len(kinds) == 1 and "CONSTANT_NAME" not in kinds:
         return len(word), "only a builtin type that is no array can have constants"
     if dialect == "ros1":
         what, rule = "name", NAME_RULES["NAME"]
+        if has_value:
+            rule = _ROS1_CONSTANT_RULE
     elif has_value:
         what, rule = "constant name", NAME_RULES["CONSTANT_NAME"]
     else:

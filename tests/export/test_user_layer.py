@@ -162,6 +162,27 @@ def test_constants_have_their_values_in_ghdl(ghdl, tmp_path):
     assert f"ALL {len(tests)}" in done.stdout + done.stderr
 
 
+def test_constants_that_start_with_an_underscore_have_legal_names(ghdl, tmp_path):
+    values = {"_": 1, "_A": 2, "A": 3, "_1": 4, "_signal": 5, "_NOTE": 6, "__a__b": 7, "A_b": 8}
+    text = "".join(f"int8 {name}={value}\n" for name, value in values.items())
+    texts = {"p/T": "int8 _A=9\nstring _s=x\nPart a\nint8 x\n", "p/Part": f"{text}int8 x\n"}
+    message = library(tmp_path / "src", texts, "ros1").message("p/T")
+    (part,) = message.children
+    assert {each.name: each.value for each in part.constants} == values
+    made, _ = vhdl_of(message)
+    listed = {(e["type"], e["constant"]): e["name"] for e in made.manifest["constants"]}
+    names = [name for (owner, _), name in listed.items() if owner == "p/Part"]
+    assert len({name.lower() for name in names}) == len(values)
+    assert listed["p/Part", "A"] == "A" and listed["p/T", "_A"] == "A"
+    assert all(re.fullmatch(r"[A-Za-z](_?[A-Za-z0-9])*", name) for name in listed.values())
+    write(tmp_path / "vhdl", made.files)
+    done = subprocess.run(
+        [ghdl, "-a", "--std=08", "--warn-error", *made.manifest["files"]],
+        cwd=tmp_path / "vhdl", capture_output=True, text=True, check=False, timeout=60,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout + done.stderr) == (0, "")
+
+
 ODD = [
     "plain",
     "-- already; end package; \"quotes\" 'ticks'",

@@ -82,9 +82,20 @@ def test_ros2_refuses_constant_names(name):
     )
 
 
-@pytest.mark.parametrize("name", ["a", "Ab", "A__B", "A_"])
+@pytest.mark.parametrize("name", ["a", "Ab", "A__B", "A_", "_a", "_A", "__", "_1"])
 def test_ros1_constant_names(name):
-    assert constant(f"int32 {name}=1", "ros1").name.text == name
+    for line in (f"int32 {name}=1", f"  int32 {name} = 1 # c", f"string {name}=x"):
+        assert constant(line, "ros1").name.text == name
+
+
+def test_ros1_names_with_an_underscore_first_are_those_of_constants_alone():
+    rule = "letters, digits and underscores"
+    refusal = f"'_a' is not a legal name: {rule}, a letter first"
+    for line in ("int32 _a", "time _a", "foo/Bar _a", "int32[] _a", "string _a # ="):
+        assert refused(line, "ros1") == refusal
+    assert refused("int32 1a=1", "ros1") == f"'1a' is not a legal name: {rule}, no digit first"
+    for line in ("time _a=1", "int32[] _a=1", "foo/Bar _a = 1"):
+        assert refused(line, "ros1").startswith("only a builtin type that is no array")
 
 
 @pytest.mark.parametrize("separator", [" ", "   ", " \t", "\t ", "\t \t"])

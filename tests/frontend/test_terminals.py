@@ -44,7 +44,7 @@ def member(line, dialect):
     ("dialect", "line", "rule"),
     [
         ("ros1", "int8 {}", NAME),
-        ("ros1", "int8 {}=1", NAME),
+        ("ros1", "int8 {}=1", r"[A-Za-z_][A-Za-z0-9_]*"),
         ("ros1", "{}/Foo x", NAME),
         ("ros2", "int8 {}", ROS2_NAME),
         ("ros2", "int8 {}=1", ROS2_CONSTANT),

@@ -20,7 +20,7 @@ __all__ = ["ROS"]
 # What genmsg does not look at.
 
 _CONSTANT = re.compile(r"(\s*)(\w+)( +)(.*?)( *=.*)", re.DOTALL)
-_NAME = re.compile(r"[A-Za-z]\w*", re.ASCII)
+_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
 def _legal_constant_names(case: Case) -> str:

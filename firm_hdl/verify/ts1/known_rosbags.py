@@ -84,7 +84,7 @@ def _typed(item: Any, kind: Any) -> Any:
 # Names of constants: in ROS 1 they are any names.
 
 _UPPER = re.compile(r"[A-Z](?:_?[A-Z0-9]+)*")
-_NAME = re.compile(r"[A-Za-z]\w*", re.ASCII)
+_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
 def _upper_lines(line: Line, case: Case) -> Line:

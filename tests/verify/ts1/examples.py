@@ -171,6 +171,7 @@ EXAMPLES: tuple[Example, ...] = (
     _ros2("rosbags-special-types", "rosbags", "time t\n", _accept),
     _ros1("rosbags-constant-names", "rosbags", "uint8 low=1\nint8 a\n", _constant(name="LOW")),
     _ros1("rosbags-constant-names", "rosbags", "uint8 low = 1\n", _constant(value=2)),
+    _ros1("rosbags-constant-names", "rosbags", "uint8 _A=1\nint8 a\n", _constant(name="A")),
     _ros1("rosbags-texts", "rosbags", 'string NAME="x"\n', _constant(value="x")),
     _ros1("rosbags-texts", "rosbags", "string NAME=[1, 2]\n", _constant(value="[1,2]")),
     _ros2("rosbags-texts", "rosbags", "string NAME=5 # five\n", _constant(value="5 # five")),
