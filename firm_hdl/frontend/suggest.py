@@ -18,7 +18,7 @@ _NOT_EMBEDDED = frozenset(
     "laser_assembler logging_demo map_msgs move_base_msgs nodelet pcl_msgs pendulum_msgs "
     "polled_camera rosbag2_interfaces roscpp_tutorials rospy_tutorials service_msgs smach_msgs "
     "std_srvs tf tf2_msgs theora_image_transport topic_tools turtle_actionlib turtlesim "
-    "type_description_interfaces unique_identifier_msgs".split()
+    "turtlesim_msgs type_description_interfaces unique_identifier_msgs".split()
 )
 
 

@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+import os
+import re
+from pathlib import Path
+
 import pytest
 from rosbags.typesys import get_typestore
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS, Library
 from firm_hdl.identity import proto
+from firm_hdl.verify.ros2_wheels import RELEASES
 
 from .structure import field_descriptions
+
+
+def need(what: str, is_here: bool, how: str) -> None:
+    """Skip the test if something is not here; in CI, fail it."""
+    if not is_here:
+        (pytest.fail if os.environ.get("CI") else pytest.skip)(f"{what} are not here {how}")
 
 
 def test_distributions():
@@ -101,9 +112,59 @@ def test_defaults_are_those_of_the_corpus(corpus):
     assert compared > 150
 
 
+@pytest.mark.parametrize("release", RELEASES, ids=lambda release: release.name)
+def test_definitions_are_those_that_the_release_published(release):
+    share = release.folder / "share"
+    need(f"{release.name}'s definitions", (share / "sensor_msgs").is_dir(), release.how)
+    embedded = Library(release.name)
+    real = Library(release.name, [share])
+    compared = 0
+    for name in map(str, real.interfaces()):
+        package, kind, base = name.split("/")
+        if kind != "msg" or not (share / package / kind / f"{base}.msg").is_file():
+            continue
+        compared += 1
+        ours, theirs = embedded.message(name), real.message(name)
+        assert defaults_of(ours) == defaults_of(theirs), name
+        assert field_descriptions(ours) == field_descriptions(theirs), name
+        constants = [[(c.name, c.value) for c in each.constants] for each in (ours, theirs)]
+        assert constants[0] == constants[1], name
+    assert compared >= 78
+    # All that has a default is in what was compared.
+    assert {name.split("/")[0] for name in DEFAULTS} <= {path.name for path in share.iterdir()}
+
+
 def test_an_example_has_the_defaults():
     assert "w: 1.0" in proto(Library("lyrical").message("geometry_msgs/msg/PoseStamped"))
     assert "w: 0.0" in proto(Library("noetic").message("geometry_msgs/PoseStamped"))
+
+
+def missing_packages() -> dict[str, set[str]]:
+    """Give the table of the documentation: packages that each distribution has and we do not."""
+    text = (Path(__file__).parents[2] / "docs" / "limitations.md").read_text()
+    table = text.partition("### Packages that do not come with firm-hdl")[2].partition("\n## ")[0]
+    rows = dict(re.findall(r"^\| ([a-z, ]+) \| (.*) \|$", table, re.MULTILINE))
+    listed = {distro: {*re.findall(r"`(\w+)`", rows[distro])} for distro in ("noetic", "foxy")}
+    assert rows["humble, iron, jazzy"] == "those of foxy"
+    for distro in ("humble", "iron", "jazzy"):
+        listed[distro] = listed["foxy"]
+    gone = re.search(r"without `(\w+)`, and `(\w+)` instead of `(\w+)`", rows["kilted"])
+    assert gone is not None
+    listed["kilted"] = (listed["foxy"] | {gone[2]}) - {gone[1], gone[3]}
+    listed["lyrical"] = listed["kilted"] | {*re.findall(r"and `(\w+)`$", rows["lyrical"])}
+    return listed
+
+
+def test_packages_that_the_documentation_lists_are_not_here_and_are_told():
+    listed = missing_packages()
+    assert [*listed] == [*DISTROS]
+    assert "actionlib_msgs" in listed["lyrical"] and "turtlesim_msgs" in listed["kilted"]
+    for distro, packages in listed.items():
+        library = Library(distro)
+        assert not packages & {name.split("/")[0] for name in library.names()}, distro
+        for package in packages:
+            with pytest.raises(DefinitionError, match="it is one of ROS that does not come"):
+                library.interface(f"{package}/Such")
 
 
 @pytest.mark.parametrize(("distro", "package"), [("noetic", "tf2_msgs"), ("lyrical", "std_srvs")])
