@@ -44,3 +44,11 @@ def test_bits_that_have_no_value_may_be_anything():
     bits = constant("$const_log", 34, 0b101, 0b100, 0b10, 0b10)
     assert bits[:3] == ("1", "0", 2) and bits[3:] == ("0",) * 30 + (3,)
     assert constant("$const_UL32", 3, 0b101, 0b100) == ("1", "0", 2)
+
+
+@pytest.mark.parametrize(("word", "sign"), [(0xFFFFFFFE, "1"), (0x7FFFFFFE, "0")])
+def test_signed_constants_are_extended_by_their_sign(word, sign):
+    """GHDL prints the low word as an unsigned number."""
+    assert constant("$const_SB32", 34, word) == ("0", *"1" * 30, *sign * 3)
+    assert constant("$const_UB32", 34, word) == ("0", *"1" * 30, *sign[:1] * 1, "0", "0")
+    assert constant("$const_SB32", 4, word) == ("0", "1", "1", "1")

@@ -179,6 +179,7 @@ def test_ros2_default_cannot_contain_equals():
         ("""string[] x [a "b", 'c' ]""", ('a "b"', "c")),
         ('string[] x [""]', ("",)),
         ('string[] x [" a "]', ("a",)),
+        ("""string[] x ["'a", "'"]""", ("'a", "")),
     ],
 )
 def test_ros2_defaults_of_arrays(line, values):

@@ -50,6 +50,14 @@ PLANS = [
 ]
 
 
+@pytest.mark.parametrize("bus_bytes", BUS_BYTES)
+@pytest.mark.parametrize("middle", ["uint8", "uint16", "uint32", "uint8[9]"])
+def test_what_a_run_leaves_of_the_window_is_behind_the_last_step(middle, bus_bytes):
+    """The fields take several steps, of which the last one starts the run."""
+    layout = lay_out(make("ros2", {"a": "uint8", "b": "float64", "c": middle, "s": "string"}))
+    assert check(build_plan(layout, bus_bytes=bus_bytes, window_words=2), layout) == []
+
+
 def test_good_plans_pass():
     for layout, plan in PLANS:
         assert check(plan) == []
@@ -221,7 +229,15 @@ def test_leaves_out_of_order_are_named():
     (step,) = plan.steps
     slices = tuple(replace(item, leaf=1 - item.leaf) for item in step.slices)
     problems = check(with_step(plan, 0, slices=slices))
-    assert problems[0] == "leaf b is out of order"
+    assert problems[:1] == ["leaf b is out of order"]
+
+
+def test_all_leaves_out_of_order_are_named():
+    plan = build_plan(lay_out(make("ros1", {"a": "uint8", "b": "uint8", "c": "uint8"})))
+    (step,) = plan.steps
+    slices = tuple(replace(item, leaf=2 - item.leaf) for item in step.slices)
+    problems = check(with_step(plan, 0, slices=slices))
+    assert problems[:3] == [f"leaf {leaf} is out of order" for leaf in "cba"]
 
 
 def test_a_plan_of_another_layout_is_named(plan):

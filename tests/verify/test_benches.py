@@ -149,7 +149,11 @@ def test_results_are_kept_and_not_found_out_again(ghdl, tmp_path, monkeypatch, c
     call += ["--results", str(file)]
     assert main(call) == 0
     first = read_results(file)
-    assert sorted(record.test.type for record in first.records.values()) == names
+    tests = [record.test for record in first.records.values()]
+    assert sorted(test.type for test in tests) == names
+    assert {(t.distro, t.same, t.wire, t.bus_bytes) for t in tests} == {
+        ("lyrical", ("lyrical",), "cdr", 8)
+    }
     assert all(record.packets and record.seconds.simulation for record in first.records.values())
     lines = file.read_text().splitlines(keepends=True)
     (last,) = [line for line in lines if "std_msgs/msg/Empty" in line and '"record"' in line]

@@ -138,6 +138,17 @@ def test_constants_of_a_file_come_before_those_of_included_files(tmp_path):
     assert found == {"k": "int32[11]", "n": "int32[12]", "m": "int32[12]"}
 
 
+def test_a_constant_that_hides_an_included_one_is_still_the_only_one_of_its_name(tmp_path):
+    constants = """module p {{ module msg {{
+        module A_Constants {{ const long N = {n}; }}; {more} }}; }};"""
+    struct = "struct T { long n[N]; };"
+    files = {
+        "p/msg/Base.idl": constants.format(n=2, more=""),
+        "p/msg/T.idl": '#include "p/msg/Base.idl"\n' + constants.format(n=12, more=struct),
+    }
+    assert types(library(tmp_path, files).message("p/msg/T")) == {"n": "int32[12]"}
+
+
 def test_each_included_file_has_constants_of_its_own(tmp_path):
     files = {
         "q/msg/Base.idl": BASE.format(q="q", k=1, n=2, more="const long M = N + K;"),

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from firm_hdl.verify.report.charts import law_text, line_text
+from firm_hdl.verify.report.charts import law_text, line_text, scatter
 from firm_hdl.verify.report.prose import shown_trends
 from firm_hdl.verify.report.stats import (
     Correlation,
@@ -47,6 +49,14 @@ LAW = Fit(a=2.0, b=1.5, r2=1.0)
 def trend(metric, spearman, time="total", power=LAW):
     found = Correlation(count=9, pearson=0.0, spearman=spearman, linear=None, power=power)
     return Trend(suite="ts3", metric=metric, time=time, correlation=found, points=())
+
+
+def test_points_without_a_logarithm_are_not_drawn():
+    """Types without leaves, and times of zero, have no place on logarithmic axes."""
+    points = ((0.0, 2.0), (2.0, 0.0), (0.0, 0.0), (2.0, 3.0), (50.0, 90.0))
+    drawn = scatter(replace(trend("leaves", 0.5), points=points))
+    assert drawn.count('class="point c1"') == 2
+    assert "leaves 2: 3 s" in drawn and "leaves 50: 90 s" in drawn
 
 
 def test_the_trends_that_explain_most_are_drawn():

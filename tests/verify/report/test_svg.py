@@ -30,6 +30,14 @@ def test_larger_values_are_further_on(one, other):
     assert (scale(one) - scale(other)) * (one - other) <= 0
 
 
+@pytest.mark.parametrize("values", [[], [0], [-1, 0]])
+def test_what_has_no_logarithm_is_left_out(values):
+    scale = Scale.of([*values, 0.2, 30], 0, 100, is_log=True)
+    assert (scale.low, scale.high) == (0.2, 50)
+    assert scale(0) == scale(0.2) == 0
+    assert Scale.of(values, 0, 100, is_log=True).low == 1
+
+
 def test_logarithms_are_even():
     scale = Scale.of([0.01, 100], 0, 400, is_log=True)
     assert [scale(value) for value in (0.01, 0.1, 1, 10, 100)] == [0, 100, 200, 300, 400]

@@ -271,6 +271,7 @@ EXAMPLES: tuple[Example, ...] = (
         before="module A_Constants { const long N = 3; const long N = 4; };",
     ),
     _idl("idl-typedefs", "B x; p::msg::A y;", drop_last, before="typedef long A; typedef A B;"),
+    _idl("idl-typedefs", "B x;", drop_last, before="typedef long A[3]; typedef A B;"),
     _idl("idl-expressions", "long x[2*N+0x1];", _length, before=_N),
     _idl(
         "idl-expressions",
