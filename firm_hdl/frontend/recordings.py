@@ -23,6 +23,7 @@ from rosbags.rosbag2 import ReaderError as ReaderError2
 from firm_hdl.errors import DefinitionError, Diagnostic, Source
 from firm_hdl.files import check_file
 from firm_hdl.frontend.embedded import DISTROS
+from firm_hdl.frontend.expansion import Budget, bounded
 from firm_hdl.frontend.names import Kind
 from firm_hdl.frontend.sources import Definition, Language
 from firm_hdl.model import Dialect
@@ -172,8 +173,13 @@ def use_recording(path: str, use: Callable[[Reader], _T]) -> _T:
         raise _refusal(f"'{path}' is a folder without the metadata.yaml of a recording")
     try:
         _check_files(path)
+        with bounded(path) as budget:
+            return _use(path, use, budget)
     except OSError as error:
         raise _refusal(f"'{error.filename}' cannot be read: {error.strerror}") from None
+
+
+def _use(path: str, use: Callable[[Reader], _T], budget: Budget) -> _T:
     reader = Reader1 if _dialect(path) == "ros1" else Reader2
     try:
         if reader is Reader1 and not _is_bag(path):
@@ -196,6 +202,7 @@ def use_recording(path: str, use: Callable[[Reader], _T]) -> _T:
     except Exception:
         # A damaged file makes a reader fail in ways that nobody has listed.
         reason = "it is damaged"
+    reason = budget.excess or reason
     raise _refusal(f"'{path}' cannot be read as a recording: {reason}")
 
 

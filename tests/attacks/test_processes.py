@@ -12,6 +12,7 @@ import pytest
 
 import firm_hdl
 from tests.attacks.test_attacks import PYTHON
+from tests.frontend.bombs import BOMBS
 from tests.frontend.workspace import make_files
 
 ROOT = Path(firm_hdl.__file__).parent.parent
@@ -99,6 +100,14 @@ def test_what_explodes_is_refused_in_little_memory(tmp_path):
         done = run(command, "p/T0", "--path", str(tmp_path), memory=1 << 30)
         assert done.returncode == 1
         assert done.stderr.startswith("error: p/msg/T"), done.stderr
+
+
+@pytest.mark.parametrize("form", ["mcap of zstd", "mcap of many chunks", "compressed database"])
+def test_recordings_that_expand_are_refused_in_little_memory_and_on_little_disk(tmp_path, form):
+    bomb = BOMBS[form](tmp_path, 1 << 30)
+    done = run("list", "--bag", str(bomb), memory=1 << 30, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.endswith("bytes come out of it when it is decompressed\n"), done.stderr
 
 
 def test_nothing_but_the_standard_library_is_imported_for_help():
