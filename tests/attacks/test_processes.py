@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import resource
 import subprocess
@@ -9,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from rosbags.rosbag2 import StoragePlugin, Writer
 
 import firm_hdl
 from tests.attacks.test_attacks import PYTHON
@@ -93,13 +95,87 @@ def test_yosys_without_memory_says_how_much_it_needs(tmp_path):
     assert not list(tmp_path.rglob("*.v"))
 
 
-def test_what_explodes_is_refused_in_little_memory(tmp_path):
-    files = {f"p/msg/T{n}.msg": "".join(f"T{n + 1} f{i}\n" for i in range(100)) for n in range(7)}
-    make_files(tmp_path, {**files, "p/msg/T7.msg": "float64 x\n"})
-    for command in ("show", "plan"):
-        done = run(command, "p/T0", "--path", str(tmp_path), memory=1 << 30)
-        assert done.returncode == 1
-        assert done.stderr.startswith("error: p/msg/T"), done.stderr
+# Runs command lines one by one; says how each ended, and how much memory all of them took.
+MEASURED = """
+import contextlib, io, json, resource, sys
+from firm_hdl.cli import main
+for line in json.loads(sys.argv[1]):
+    out, error = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error):
+        status = main(line)
+    kib = max(resource.getrusage(who).ru_maxrss
+              for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    print(json.dumps([line[0], status, out.getvalue() + error.getvalue(), kib]))
+"""
+LAID_OUT = (
+    "p/msg/T0 has 100000000000000 fields when all messages in it are written out, and at most "
+)
+EXPLODES = {
+    "show": "p/msg/T3 is shown in 2398979690 characters, which is more than 67108864",
+    "proto": "p/msg/T3 has an example of 2598969490 characters, which is more than 268435456",
+    "metrics": " 100000000000000 ",
+    "list": "p/msg/T0\n",
+    "hash": "RIHS01_",
+    "info": LAID_OUT,
+    "plan": LAID_OUT,
+    "build": LAID_OUT,
+    "verify": LAID_OUT,
+}
+
+
+def exploding():
+    """Make eight types, each with 100 fields of the next."""
+    texts = {f"T{n}": "".join(f"T{n + 1} f{i}\n" for i in range(100)) for n in range(7)}
+    return {**texts, "T7": "float64 x\n"}
+
+
+def explode(place, source, name, commands, before=""):
+    lines = [
+        [command, *([] if command == "list" else [name]), source, str(place)]
+        + (
+            ["--systems", "ts2", "--jobs", "1"]
+            if command == "verify" and source == "--path"
+            else []
+        )
+        for command in commands
+    ]
+    done = subprocess.run(
+        [sys.executable, "-c", before + MEASURED, json.dumps(lines)],
+        env=ENVIRONMENT,
+        cwd=place.parent,
+        capture_output=True,
+        text=True,
+        timeout=MOST_SECONDS,
+        check=True,
+    )
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+@pytest.mark.parametrize("source", ["--path", "--bag"])
+def test_what_explodes_is_refused_with_count_and_limit_in_little_memory(tmp_path, source):
+    texts = exploding()
+    if source == "--path":
+        place = make_files(tmp_path / "in", {f"p/msg/{n}.msg": t for n, t in texts.items()})
+    else:
+        place = tmp_path / "in"
+        bar = "=" * 80
+        sections = [f"{bar}\nMSG: p/{name}\n{text}" for name, text in texts.items()]
+        with Writer(place, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+            text, hashed = texts["T0"] + "".join(sections[1:]), "RIHS01_" + "0" * 64
+            writer.add_connection("/t", "p/msg/T0", msgdef=text, rihs01=hashed)
+    found = explode(place, source, "p/T0", EXPLODES)
+    assert [command for command, *_ in found] == list(EXPLODES)
+    for command, status, text, kib in found:
+        assert EXPLODES[command] in text, (command, text)
+        assert status == (command not in ("metrics", "list", "hash")), command
+        assert kib < 200 * 1024, command
+
+
+def test_memory_that_is_taken_shows_in_what_is_measured(tmp_path):
+    place = make_files(tmp_path / "in", {"p/msg/A.msg": "int8 x\n"})
+    ((*_, little),) = explode(place, "--path", "p/A", ["plan"])
+    ((*_, much),) = explode(place, "--path", "p/A", ["plan"], "hog = b'x' * (200 << 20)\n")
+    assert little < 200 * 1024 < much
 
 
 @pytest.mark.parametrize("form", ["mcap of zstd", "mcap of many chunks", "compressed database"])
