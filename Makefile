@@ -9,7 +9,7 @@ VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
-  verify-corpus report prove oracles oracles-ros2 fuzz mutate bench tools ghdl verilog clean
+  verify-corpus report prove oracles oracles-ros2 fuzz mutate bench examples tools ghdl verilog clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -104,6 +104,14 @@ mutate: $(VENV)/.installed-dev tools ## faults in the program, and which tests n
 bench: $(VENV)/.installed ## cycles per beat of long and short messages, on several bus widths
 	$(BIN)/python examples/bench.py
 
+HDL_EXAMPLES := vhdl_motor vhdl_two_types sv_motor cocotb_motor
+examples: $(VENV)/.installed-dev ghdl verilog ## designs that act on good packets only, with their benches
+	for name in $(HDL_EXAMPLES); do \
+	  PATH="$(CURDIR)/$(BIN):$$PATH" $(MAKE) --no-print-directory -C examples/$$name || exit; \
+	done
+	$(BIN)/python examples/range_filter.py
+	$(BIN)/python examples/half_speed.py
+
 tools: ghdl verilog oracles ## system packages that tests and the demo use
 
 # Tools that no Python package has. Root gets them from Debian or Ubuntu here; whoever cannot goes on
@@ -147,7 +155,7 @@ need = { $(2); } || { \
   fi; }
 
 clean: ## remove .venv and what tools have cached
-	rm -rf $(VENV) build dist ./*.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache
+	rm -rf $(VENV) build dist examples/*/work ./*.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache
 	find firm_hdl tests examples -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # A stamp is newer than pyproject.toml when what that asks for is installed.

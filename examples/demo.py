@@ -119,9 +119,7 @@ EXAMPLES = (
     Example(
         type="sensor_msgs/msg/PointCloud2", distro="lyrical", store=Stores.ROS2_LYRICAL, make=cloud
     ),
-    Example(
-        type="nav_msgs/Odometry", distro="noetic", store=Stores.ROS1_NOETIC, make=odometry
-    ),
+    Example(type="nav_msgs/Odometry", distro="noetic", store=Stores.ROS1_NOETIC, make=odometry),
 )
 
 

@@ -1,0 +1,45 @@
+"""Write the beats of the bench, and the speeds that the motor is to have, one after the other.
+
+rosbags serializes the messages. Some are damaged on the way; their speed, 9 m/s, is none.
+"""
+
+from __future__ import annotations
+
+import struct
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from rosbags.typesys import Stores, get_typestore
+
+STORE = get_typestore(Stores.ROS2_LYRICAL)
+TWIST, VECTOR = (STORE.types[f"geometry_msgs/msg/{name}"] for name in ("Twist", "Vector3"))
+BUS_BYTES = 4
+
+
+def packet(speed: float) -> bytes:
+    """Serialize a Twist."""
+    message = TWIST(linear=VECTOR(x=speed, y=0.5, z=-1.0), angular=VECTOR(x=2.0, y=0.0, z=3.0))
+    return bytes(STORE.serialize_cdr(message, "geometry_msgs/msg/Twist"))
+
+
+def beats(data: bytes) -> Iterator[str]:
+    """Yield `tdata` in hexadecimal, and `tkeep` and `tlast` in binary; the first byte is lowest."""
+    for place in range(0, len(data), BUS_BYTES):
+        part = data[place : place + BUS_BYTES]
+        is_last = place + BUS_BYTES >= len(data)
+        yield f"{int.from_bytes(part, 'little'):08x} {(1 << len(part)) - 1:04b} {is_last:b}\n"
+
+
+def main(folder: Path) -> None:
+    """Write `beats.txt` and `speeds.txt`."""
+    bad = packet(9.0)
+    cut, long, foreign = bad[:-1], bad + bytes(8), b"\0\2" + bad[2:]
+    packets = [packet(1.0), cut, packet(0.75), long, cut[:5], packet(-2.5), foreign, packet(1e300)]
+    speeds = (1.0, 0.75, -2.5, 1e300)
+    (folder / "beats.txt").write_text("".join(beat for each in packets for beat in beats(each)))
+    (folder / "speeds.txt").write_text("".join(f"{struct.pack('>d', s).hex()}\n" for s in speeds))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

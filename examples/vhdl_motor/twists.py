@@ -1,0 +1,35 @@
+"""Write the packets of the bench, and the speeds that the motor is to have, one after the other.
+
+rosbags serializes the messages. Some are damaged on the way; their speed, 9 m/s, is none.
+"""
+
+from __future__ import annotations
+
+import struct
+import sys
+from pathlib import Path
+
+from rosbags.typesys import Stores, get_typestore
+
+STORE = get_typestore(Stores.ROS2_LYRICAL)
+TWIST, VECTOR = (STORE.types[f"geometry_msgs/msg/{name}"] for name in ("Twist", "Vector3"))
+
+
+def packet(speed: float) -> bytes:
+    """Serialize a Twist."""
+    message = TWIST(linear=VECTOR(x=speed, y=0.5, z=-1.0), angular=VECTOR(x=2.0, y=0.0, z=3.0))
+    return bytes(STORE.serialize_cdr(message, "geometry_msgs/msg/Twist"))
+
+
+def main(folder: Path) -> None:
+    """Write `packets.txt` and `speeds.txt`, in hexadecimal."""
+    bad = packet(9.0)
+    cut, long, foreign = bad[:-1], bad + bytes(8), b"\0\2" + bad[2:]
+    packets = [packet(1.0), cut, packet(0.75), long, cut[:5], packet(-2.5), foreign, packet(1e300)]
+    speeds = (1.0, 0.75, -2.5, 1e300)
+    (folder / "packets.txt").write_text("".join(f"{each.hex()}\n" for each in packets))
+    (folder / "speeds.txt").write_text("".join(f"{struct.pack('>d', s).hex()}\n" for s in speeds))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

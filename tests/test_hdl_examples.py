@@ -1,0 +1,112 @@
+"""The designs in `examples/` drop what is damaged; once they do not, their own benches fail."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from tests.export.conftest import need
+from tests.export.ghdl import GHDL
+from tests.test_examples import ROOT, load
+
+EXAMPLES = ROOT / "examples"
+
+# What a naive design does instead: it acts on `valid`, whatever the status says.
+NAIVE = {
+    "vhdl_motor": ("motor.vhd", r"take = '1' and status = STATUS_OK", "msg_valid = '1'"),
+    "vhdl_two_types": ("restamp.vhd", r"good <= '1' when [^;]*;", "good <= '1';"),
+    "sv_motor": ("motor.sv", r"status_valid && status == OK", "rx.linear_x_valid"),
+}
+
+
+@pytest.fixture
+def work(tmp_path):
+    """Copies of the examples, which build into themselves."""
+    need("make", shutil.which("make"))
+    shutil.copytree(EXAMPLES, tmp_path / "examples", ignore=shutil.ignore_patterns("work"))
+    return tmp_path / "examples"
+
+
+def make(folder: Path) -> tuple[int, str]:
+    """Make an example as users do, with this Python's environment active."""
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    done = subprocess.run(
+        ["make", "-C", str(folder)],
+        env={**os.environ, "PATH": path},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def spoil(work: Path, name: str) -> None:
+    """Make a design naive."""
+    file, safe, naive = NAIVE[name]
+    text, count = re.subn(safe, naive, (work / name / file).read_text())
+    assert count == 1
+    (work / name / file).write_text(text)
+
+
+def passes(work: Path, name: str, said: str = "PASS 8 packets, 4 speeds") -> None:
+    status, output = make(work / name)
+    assert status == 0 and said in output, output
+
+
+def fails(work: Path, name: str, said: str = "FAIL after") -> None:
+    status, output = make(work / name)
+    assert status != 0 and said in output and not re.search(r"PASS (?!=)", output), output
+
+
+def test_motors_obey_good_packets_alone(work):
+    """One test for the three, because all need the converters of a Twist."""
+    need("GHDL", GHDL)
+    need("Icarus Verilog", shutil.which("iverilog"))
+    passes(work, "vhdl_motor")
+    for name in ("sv_motor", "cocotb_motor"):
+        made = re.findall(r"^\t(firm-hdl build .*)$", (work / name / "Makefile").read_text(), re.M)
+        assert made == ["firm-hdl build geometry_msgs/msg/Twist --bus-bytes 4 --out $(WORK)"]
+        (work / name / "work").mkdir()
+        (work / name / "work" / "lyrical").symlink_to(work / "vhdl_motor" / "work" / "lyrical")
+    passes(work, "sv_motor")
+    spoil(work, "vhdl_motor")
+    fails(work, "vhdl_motor")
+    found = find_spec("cocotb") and find_spec("cocotbext") and find_spec("cocotbext.axi")
+    spoil(work, "sv_motor")
+    fails(work, "sv_motor")
+    need("cocotbext-axi", "here" if found else None)
+    fails(work, "cocotb_motor", "PASS=0 FAIL=1")
+    shutil.copy(EXAMPLES / "sv_motor" / "motor.sv", work / "sv_motor")
+    passes(work, "cocotb_motor", "PASS=1 FAIL=0")
+
+
+def test_clouds_with_headers_of_scans_are_good_ones_alone(work):
+    need("GHDL", GHDL)
+    passes(work, "vhdl_two_types", "PASS 8 scans and clouds, 3 clouds with new headers")
+    spoil(work, "vhdl_two_types")
+    fails(work, "vhdl_two_types", "FAIL packet")
+
+
+def test_naive_filter_lets_damaged_scans_pass(tmp_path, capsys):
+    text = (EXAMPLES / "range_filter.py").read_text()
+    safe, naive = "held.verdict.payload.eq(good)", "held.verdict.payload.eq(1)"
+    assert text.count(safe) == 1
+    (tmp_path / "naive_filter.py").write_text(text.replace(safe, naive))
+    assert load(tmp_path / "naive_filter.py").main() == 1
+    assert "'laser': [inf, inf" in capsys.readouterr().out
+
+
+def test_make_examples_runs_every_one():
+    text = (ROOT / "Makefile").read_text()
+    (named,) = re.findall(r"^HDL_EXAMPLES := (.*)$", text, re.M)
+    assert sorted(named.split()) == sorted(path.parent.name for path in EXAMPLES.glob("*/Makefile"))
+    page = (ROOT / "README.md").read_text()
+    assert all(f"(examples/{name}/" in page for name in named.split())
