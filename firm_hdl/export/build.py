@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from firm_hdl.export.timing import Timing, describe, timing
 from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, Direction, Top, ports_of
 from firm_hdl.export.verilog import WAIVERS, to_verilog, waivers
 from firm_hdl.export.vhdl_user_build import FOLDER, Ports, to_vhdl
+from firm_hdl.export.vhdl_user_tree import tree_of
 from firm_hdl.frontend import DEFAULT_DISTRO, Library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
@@ -121,6 +123,7 @@ def build(
         packets = list(stimuli(message, plan)) if stimuli is not None else []
         tasks.append(_task(library, message, plan, Path(out), ports, packets))
     _check_folders(tasks)
+    _check_packages(tasks)
     built = []
     for task in tasks:
         built.append(_do(task, force))
@@ -219,6 +222,40 @@ def _check_folders(tasks: list[_Task]) -> None:
                 raise BuildError(f"{task.message.name}: '{task.folder}' holds {other}")
         elif task.folder.exists() and not is_empty(task.folder):
             raise BuildError(f"'{task.folder}' is not a folder that firm-hdl made; move it away")
+
+
+def _check_packages(tasks: list[_Task]) -> None:
+    """Refuse two types in ROS whose VHDL package has one name, in messages built side by side.
+
+    Within a message, the second one gets a number. A design with both messages compiles the files
+    of one name once, so the name has to mean the same in all folders.
+    """
+    owners: dict[Path, tuple[str, Path]] = {}
+    for task in (task for task in tasks if task.inputs["options"]["ports"] == "records"):
+        for package in tree_of(task.message, task.plan).packages:
+            file, owner = task.folder.parent / package.name, package.message.name
+            if file not in owners:
+                owners[file] = _owner(file, tasks) or (owner, task.folder)
+            other, folder = owners[file]
+            if other != owner:
+                raise BuildError(
+                    f"{task.message.name}: the VHDL package '{package.name}' would be that of "
+                    f"{owner}, and in '{folder}' it is that of {other}; build one of them into "
+                    "another folder (--out), and compile it into another library"
+                )
+
+
+def _owner(file: Path, tasks: list[_Task]) -> tuple[str, Path] | None:
+    """Find whose package it is in the folder of a message that is not built now."""
+    made_anew = {task.folder for task in tasks}
+    for path in sorted(file.parent.glob(f"[!.]*/{FOLDER}/{file.name}.vhd")):
+        folder = path.parent.parent
+        found = None if folder in made_anew else read_manifest(folder)
+        with suppress(AttributeError, KeyError, TypeError):  # If that is no manifest of ours.
+            for each in (found or {"vhdl": {"shared_packages": []}})["vhdl"]["shared_packages"]:
+                if each["name"] == file.name and each["message"]:
+                    return str(each["message"]), folder
+    return None
 
 
 def _do(task: _Task, force: bool) -> Built:

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
-from firm_hdl.export.build import build
+from firm_hdl.export.build import BuildError, build
 from firm_hdl.export.vhdl_types import user_layer
 from firm_hdl.export.vhdl_user_wrapper import Core
 from firm_hdl.frontend import Library
@@ -194,6 +194,72 @@ def test_package_of_a_type_is_the_same_wherever_the_type_is():
 
 
 PACKAGES = ("geometry_msgs/", "sensor_msgs/", "nav_msgs/", "std_msgs/")
+
+
+# Each message of the second column has a type whose package is called like one of the first's.
+SIMILAR = {
+    "p/Inner.msg": "uint8 x\n",
+    "p/INNER.msg": "uint16 x\n",
+    "p/A.msg": "Inner a\n",
+    "p/B.msg": "INNER b\n",
+    "p/Both.msg": "Inner a\nINNER b\n",
+    "p_q/R.msg": "uint8 x\n",
+    "p/q_R.msg": "uint16 x\n",
+    "p/C.msg": "p_q/R a\n",
+    "p/D.msg": "q_R b\n",
+}
+
+
+@pytest.fixture
+def similar(tmp_path) -> Path:
+    for name, text in SIMILAR.items():
+        package, _, file = name.partition("/")
+        (tmp_path / "ws" / package / "msg").mkdir(parents=True, exist_ok=True)
+        (tmp_path / "ws" / package / "msg" / file).write_text(text)
+        (tmp_path / "ws" / package / "package.xml").write_text(
+            f"<package format='2'><name>{package}</name><version>1.0.0</version></package>"
+        )
+    return tmp_path / "ws"
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "package", "types"),
+    [
+        ("p/A", "p/B", "p_inner_ros1_8_pkg", ("p/INNER", "p/Inner")),
+        ("p/C", "p/D", "p_q_r_ros1_8_pkg", ("p/q_R", "p_q/R")),
+        ("p/B", "p/Both", "p_inner_ros1_8_pkg", ("p/Inner", "p/INNER")),
+    ],
+)
+def test_two_types_whose_package_has_one_name_are_not_built_side_by_side(
+    similar, tmp_path, one, other, package, types
+):
+    options = {"distro": "noetic", "paths": [similar]}
+    said = f"{other}: the VHDL package '{package}' would be that of {types[0]}, and in .* it is "
+    with pytest.raises(BuildError, match=f"^{said}that of {types[1]}; build one of them"):
+        build([one, other], tmp_path / "at once", **options)
+    assert not (tmp_path / "at once").exists()
+
+
+def test_what_was_built_before_counts(similar, tmp_path):
+    options = {"out": tmp_path / "out", "distro": "noetic", "paths": [similar]}
+    (before,) = build(["p/A"], **options)
+    with pytest.raises(BuildError, match=r"that of p/INNER, and in '.*p_A_ros1_8' it is that"):
+        build(["p/B"], **options)
+    assert [before.folder] == list(before.folder.parent.glob("[!.]*"))
+    # What is no manifest says nothing.
+    (before.folder / "manifest.json").write_text(
+        '{"vhdl": 5, "inputs": {}, "files": {}, "inputs_sha256": ""}'
+    )
+    build(["p/B"], **options)
+
+
+def test_types_that_are_similar_within_a_message_have_packages_each(ghdl, similar, tmp_path):
+    (built,) = build(["p/Both"], tmp_path / "out", distro="noetic", paths=[similar])
+    files = (built.folder / "vhdl" / "files.txt").read_text().split()
+    assert {"p_inner_ros1_8_pkg.vhd", "p_inner_ros1_8_2_pkg.vhd"} <= {*files}
+    (tmp_path / "work").mkdir()
+    options = ["--std=08", f"--workdir={tmp_path / 'work'}", "--warn-error"]
+    assert run([ghdl, "-a", *options, *files], built.folder / "vhdl") == (0, "")
 
 
 def test_tools_have_each_file_once(folders, tmp_path):
