@@ -9,10 +9,11 @@ VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
-  verify-corpus report prove oracles oracles-ros2 fuzz mutate bench examples tools ghdl verilog clean
+  verify-corpus verify-languages report prove oracles oracles-ros2 fuzz mutate bench examples tools \
+  ghdl verilog clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-16s %s\n", $$1, $$2 }' Makefile
 
 demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware
 	$(BIN)/python examples/demo.py
@@ -91,6 +92,10 @@ report: $(VENV)/.installed ## one page of all results that are in build/verify
 
 verify-vhdl: $(VENV)/.installed ghdl ## every bench of lyrical and noetic in GHDL (10 minutes)
 	$(BIN)/python -m firm_hdl.verify --systems bench --distro lyrical --distro noetic --jobs $(JOBS)
+
+verify-languages: $(VENV)/.installed-dev verilog ## Verilog of four types, in every language of Icarus and Verilator
+	FIRM_HDL_EVERY_LANGUAGE=1 CI=1 $(BIN)/python -m pytest -q -k language -n $(JOBS) \
+	  tests/verify/test_crosscheck_verilog.py
 
 prove: $(VENV)/.installed-dev ghdl ## proofs that VHDL equals RTLIL, for types with all constructs
 	$(BIN)/python -m firm_hdl.equivalence --jobs $(JOBS) $(PROVE_ARGS)

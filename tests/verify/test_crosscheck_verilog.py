@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -10,11 +13,13 @@ from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.export.build import build
 from firm_hdl.export.top import Top
 from firm_hdl.verify import Options, Result, accept
+from firm_hdl.verify.processes import ToolError, run_tool
 from firm_hdl.verify.simulators import (
     Icarus,
     SimulatorMissingError,
     TextSimulator,
     Verilator,
+    verilator,
     verilog,
 )
 from firm_hdl.verify.simulators.verilog import write_inputs
@@ -41,7 +46,6 @@ WIDE = ("lyrical", "service_msgs/msg/ServiceEventInfo", 16)
     [
         # Ports of all widths, among them some of more than 64 bits.
         ("iverilog", WIDE),
-        ("verilator", WIDE),
         # A bus of one byte; no bytes at all, and a leaf that only triggers.
         ("iverilog", ("noetic", "std_msgs/Header", 1)),
         ("iverilog", ("noetic", "bond/Constants", 8)),
@@ -86,16 +90,16 @@ def standards(of_verilog, monkeypatch) -> list[str]:
     return done
 
 
-@pytest.mark.parametrize("of_verilog", ["iverilog"], indirect=True)
-@pytest.mark.parametrize(
-    "name",
-    [
-        "geometry_msgs/msg/Twist",
-        "sensor_msgs/msg/LaserScan",
-        "sensor_msgs/msg/PointCloud2",
-        "diagnostic_msgs/msg/DiagnosticArray",
-    ],
+TYPES = (
+    "geometry_msgs/msg/Twist",
+    "sensor_msgs/msg/LaserScan",
+    "sensor_msgs/msg/PointCloud2",
+    "diagnostic_msgs/msg/DiagnosticArray",
 )
+
+
+@pytest.mark.parametrize("of_verilog", ["iverilog"], indirect=True)
+@pytest.mark.parametrize("name", TYPES)
 def test_verilog_is_the_same_in_every_language(of_verilog, standards, name):
     result = accepted(of_verilog, "lyrical", name, most_cases=2)
     assert_passed(result)
@@ -115,6 +119,69 @@ def test_process_that_waits_for_its_first_change_is_found(of_verilog, standards,
     result = accepted(of_verilog, "lyrical", HEADER)
     assert "m_axis_status_tdata of the deserializer is 'XXXXXXXX'" in result.failures[0]
     assert standards[-1] == "2005-sv"
+
+
+EVERY_LANGUAGE = ("1364-2001", "1364-2005", "1800-2005", "1800-2009", "1800-2012", "1800-2017")
+# C++ takes its time: `make verify-languages` has the four types.
+IN_VERILATOR = [("lyrical", name, 8) for name in TYPES]
+IN_VERILATOR = IN_VERILATOR if os.environ.get("FIRM_HDL_EVERY_LANGUAGE") else [WIDE]
+
+
+def model(folder: Path) -> dict[str, str]:
+    """Read what Verilator has made, without comments, which have names of folders."""
+    made = [path for path in folder.glob("Vreplay*") if path.suffix in (".h", ".cpp")]
+    return {path.name: re.sub(r"(?m)^//.*", "", path.read_text()) for path in made}
+
+
+def make_models(of_verilog: Verilator, files: list[str], folder: Path) -> Iterator[dict[str, str]]:
+    """Have Verilator read files in each language."""
+    for each in EVERY_LANGUAGE:
+        options = ["--Mdir", each, "--default-language", each]
+        run_tool([of_verilog.path, *verilator.VERILATE, *options, *files], folder)
+        yield model(folder / each)
+
+
+@pytest.mark.parametrize("of_verilog", ["verilator"], indirect=True)
+@pytest.mark.parametrize("sample", IN_VERILATOR, ids=lambda sample: sample[1])
+def test_verilator_makes_the_same_of_every_language(of_verilog, monkeypatch, sample):
+    made = []
+    replay = Verilator.replay
+
+    def replayed(self, trace, tops, folder):
+        rows = replay(self, trace, tops, folder)
+        files = [path.name for path in folder.glob("*.v")]
+        made.extend([model(folder / verilator.MODELS), *make_models(self, files, folder)])
+        return rows
+
+    monkeypatch.setattr(Verilator, "replay", replayed)
+    result = accepted(of_verilog, *sample)
+    assert_passed(result)
+    found = result.comparison
+    assert found is not None
+    assert found.cycles == result.simulated_cycles + 4
+    assert (found.packets, found.statuses) == (result.packets, 2 * result.packets)
+    # What ran is what each language makes.
+    ran, *others = made
+    assert len(ran) > 3 and len(others) == len(EVERY_LANGUAGE)
+    assert all(other == ran for other in others)
+
+
+@pytest.mark.parametrize("of_verilog", ["verilator"], indirect=True)
+def test_what_verilator_makes_is_another_of_another_text(of_verilog, tmp_path):
+    text = "module replay(input [1:0] a, output reg [1:0] z); {} z = a{}; endmodule\n"
+    for name, process, more in (
+        ("one", "always @*", ""),
+        ("two", "always @*", "+ 1"),
+        ("new", "always_comb", ""),
+    ):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "replay.v").write_text(text.format(process, more))
+    one, two = (
+        list(make_models(of_verilog, ["replay.v"], tmp_path / name)) for name in ("one", "two")
+    )
+    assert all(each == one[0] for each in one) and not any(each == one[0] for each in two)
+    with pytest.raises(ToolError, match="always_comb"):
+        next(make_models(of_verilog, ["replay.v"], tmp_path / "new"))
 
 
 def test_text_is_that_of_build(tmp_path):
