@@ -44,8 +44,6 @@ from firm_hdl.model import (
 __all__ = ["Resolver"]
 
 _MOST_SUGGESTIONS = 20
-# What rosidl_adapter writes into the IDL of an empty message, because IDL has no empty structures.
-_PADDING_MEMBER = "structure_needs_at_least_one_member"
 
 _Primitives: TypeAlias = Mapping[str, Primitive]
 
@@ -237,8 +235,6 @@ class Resolver:
             return
         syntax, package = entry.syntax, entry.name.package
         fields = [m for m in syntax.members if isinstance(m, FieldSyntax)]
-        if syntax.language == "idl" and [m.name.text for m in fields] == [_PADDING_MEMBER]:
-            fields = []
         constants = [m for m in syntax.members if isinstance(m, ConstantSyntax)]
         is_idl = syntax.language == "idl"
         primitives = self._idl_primitives if is_idl else PRIMITIVES[self._dialect]

@@ -20,7 +20,8 @@ from firm_hdl.model import (
     Text,
 )
 from firm_hdl.verify.ts1.case import Case
-from firm_hdl.verify.ts1.rule import Known, Line, by_lines, mend_constants
+from firm_hdl.verify.ts1.facts import Facts
+from firm_hdl.verify.ts1.rule import Known, Line, by_lines, mend_constants, mend_members
 from firm_hdl.verify.ts1.texts import (
     FLOATS,
     INTEGERS,
@@ -96,6 +97,26 @@ def _upper_lines(line: Line, case: Case) -> Line:
 
 def _rename_back(constant: dict[str, Any]) -> dict[str, Any]:
     return {**constant, "name": original(constant["name"])}
+
+
+# A name of a field that rosbags gives itself, to messages without any.
+
+_PLACEHOLDER, _STAND_IN = "structure_needs_at_least_one_member", "structure_has_one_more_member"
+
+
+def _plain_placeholders(line: Line, case: Case) -> Line:
+    is_one = line.name == _PLACEHOLDER and not line.equals
+    return replace(line, name=_STAND_IN) if is_one else line
+
+
+def _placeholders_back(facts: Facts, case: Case) -> Facts:
+    def back(field: dict[str, Any]) -> dict[str, Any]:
+        return {**field, "name": _PLACEHOLDER} if field["name"] == _STAND_IN else field
+
+    facts = mend_members("fields", back)(facts, case)
+    # It is that of another name.
+    is_named = _PLACEHOLDER in (case.text if case.before is None else case.before)
+    return {name: fact for name, fact in facts.items() if name != "hash" or not is_named}
 
 
 # Texts: it looks for numbers in them, for quotes, and never for what ends them.
@@ -214,6 +235,12 @@ ROSBAGS: tuple[Known, ...] = (
         dialect="ros1",
         rewrite=by_lines(_upper_lines),
         theirs=mend_constants(_rename_back),
+    ),
+    _entry(
+        "rosbags-placeholders",
+        "rosbags takes a field of this name for the one that messages without fields get.",
+        rewrite=by_lines(_plain_placeholders),
+        theirs=_placeholders_back,
     ),
     _entry(
         "rosbags-texts",

@@ -33,6 +33,9 @@ class _RefusedError(Exception):
     pass
 
 
+PLACEHOLDER = "structure_needs_at_least_one_member", "uint8"
+
+
 class _Rosidl:
     def __init__(self, rosidl_adapter, rosidl_parser, folder):
         self.reader = rosidl_adapter.parser
@@ -50,12 +53,28 @@ class _Rosidl:
 
     def parser(self, request):
         content = self.content(request)
-        facts = {"structure": _parsed(content, has_events=request["has_events"])}
+        parsed = _parsed(content, has_events=request["has_events"])
+        facts = {"structure": self._without_placeholders(parsed, request)}
         # What has a name for a bound has no hash: there is no number.
         is_numbered = not _has_named_bounds(facts["structure"])
         if self.hashes is not None and request["has_events"] and is_numbered:
             facts["hash"] = self.hashes.of(content, request)
         return facts
+
+    def _without_placeholders(self, messages, request):
+        """Leave out the member that rosidl_adapter gives to messages without fields."""
+        if request["file"].endswith(".idl"):
+            empty = [
+                name
+                for name, each in messages.items()
+                if [(one["name"], one["type"]) for one in each["fields"]] == [PLACEHOLDER]
+            ]
+        else:
+            empty = [name for name, spec in self._read(request)[0].items() if not spec.fields]
+        return {
+            name: {**each, "fields": []} if name in empty else each
+            for name, each in messages.items()
+        }
 
     def content(self, request):
         """Read a definition and look for what it needs; return what rosidl_parser made of it."""
@@ -225,7 +244,6 @@ def _parsed_message(message):
     members = [
         {"name": each.name, "type": _type(each.type), "default": _default(each)}
         for each in message.structure.members
-        if each.name != "structure_needs_at_least_one_member"
     ]
     constants = []
     for each in message.constants:

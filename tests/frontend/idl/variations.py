@@ -119,7 +119,7 @@ AGREED: dict[str, str] = {
     ),
     "extensibility": _struct().replace("struct", "@final @extensibility(APPENDABLE) struct"),
     "transfer mode": _struct().replace("struct", "@transfer_mode(SHMEM_REF) struct"),
-    "padding member alone is no field": _struct("long structure_needs_at_least_one_member;"),
+    "padding member of another type": _struct("long structure_needs_at_least_one_member;"),
     # Refused.
     "sequence of sequences": _struct("sequence<sequence<long>> a;"),
     "array of sequences": _struct("sequence<long> a[3];"),

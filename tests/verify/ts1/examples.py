@@ -169,6 +169,12 @@ EXAMPLES: tuple[Example, ...] = (
         more={"p/msg/Header.msg": "int8 x\n"},
     ),
     _ros2("rosbags-special-types", "rosbags", "time t\n", _accept),
+    _ros2(
+        "rosbags-placeholders",
+        "rosbags",
+        "uint8 structure_needs_at_least_one_member 3\nint8 a\n",
+        _field(0, name="structure_has_one_more_member"),
+    ),
     _ros1("rosbags-constant-names", "rosbags", "uint8 low=1\nint8 a\n", _constant(name="LOW")),
     _ros1("rosbags-constant-names", "rosbags", "uint8 low = 1\n", _constant(value=2)),
     _ros1("rosbags-constant-names", "rosbags", "uint8 _A=1\nint8 a\n", _constant(name="A")),

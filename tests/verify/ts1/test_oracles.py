@@ -229,3 +229,31 @@ def test_ros2_is_missing_where_it_is_not_installed(court, monkeypatch):
     from firm_hdl.verify.ts1.ros2_oracle import Ros2Proto
 
     assert Ros2Proto(universe).missing() == "there is no command 'ros2'; source ROS 2's setup"
+
+
+@pytest.mark.parametrize("oracle", ["rosidl_parser", "rosidl_adapter"])
+@pytest.mark.parametrize(
+    ("text", "count"),
+    [("uint8 {}\n", 1), ("uint8 {}\nint8 x\n", 2), ("int32 {}\n", 1), ("uint8 {} 3\n", 1), ("", 0)],
+)
+def test_a_field_called_as_the_placeholder_of_empty_messages_is_one(court, oracle, text, count):
+    text = text.format("structure_needs_at_least_one_member")
+    here = court("lyrical", {"p/msg/A.msg": text})
+    assert_passed(here.outcome(oracle, "p/A"))
+    (case,) = here.universe.select(["p/A"])
+    (answer,) = here.oracle(oracle).judge([case])
+    assert len(answer.facts["structure"]["p/msg/A"]["fields"]) == count
+
+
+@pytest.mark.parametrize(
+    ("members", "count"),
+    [("uint8 {};", 0), ("uint8 {}; long x;", 2), ("long {};", 1), ("long x;", 1)],
+)
+def test_the_placeholder_of_empty_messages_is_no_field_in_idl_if_it_is_alone(court, members, count):
+    members = members.format("structure_needs_at_least_one_member")
+    text = f"module p {{ module msg {{ struct A {{ {members} }}; }}; }};"
+    here = court("lyrical", {"p/msg/A.idl": text})
+    assert_passed(here.outcome("rosidl_parser", "p/A"))
+    (case,) = here.universe.select(["p/A"])
+    (answer,) = here.oracle("rosidl_parser").judge([case])
+    assert len(answer.facts["structure"]["p/msg/A"]["fields"]) == count
