@@ -26,6 +26,8 @@ class Case:
         All of it, line ends as they are.
     before : str or None
         If `text` is another one than the file's: that of the file.
+    included : tuple of str
+        In IDL, the texts of the files that it includes, and of those that they do.
     """
 
     dialect: Dialect
@@ -35,6 +37,7 @@ class Case:
     language: Language
     text: str
     before: str | None = None
+    included: tuple[str, ...] = ()
 
     @property
     def is_changed(self) -> bool:

@@ -8,6 +8,7 @@ somebody's.
 from __future__ import annotations
 
 from firm_hdl.verify.ts1.known_idl import IDL
+from firm_hdl.verify.ts1.known_idl_fit import IDL_FIT
 from firm_hdl.verify.ts1.known_idl_values import IDL_VALUES
 from firm_hdl.verify.ts1.known_lenient import LENIENT
 from firm_hdl.verify.ts1.known_ros import ROS
@@ -16,5 +17,5 @@ from firm_hdl.verify.ts1.rule import Known
 
 __all__ = ["KNOWN"]
 
-KNOWN: tuple[Known, ...] = (*ROSBAGS, *LENIENT, *ROS, *IDL, *IDL_VALUES)
+KNOWN: tuple[Known, ...] = (*ROSBAGS, *LENIENT, *ROS, *IDL_FIT, *IDL, *IDL_VALUES)
 """All entries, in the order in which they are applied."""

@@ -17,7 +17,7 @@ from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.rule import Known, mend_constants
 from firm_hdl.verify.ts1.texts import original, renamed
 
-__all__ = ["IDL_VALUES", "blanked"]
+__all__ = ["DECLARED", "IDL_VALUES", "TYPEDEF", "blanked", "integer_of"]
 
 _QUIET = re.compile(r'("(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/)', re.DOTALL)
 
@@ -52,7 +52,7 @@ _PYTHON_ONLY = re.compile(r"\b0[bo]|\b\d\w*_", re.IGNORECASE)
 _TWO_SIGNS = re.compile(r"(?:^|[(*/%&|^<>+~-])\s*[-+~]\s*[-+~]")
 
 
-def _value(expression: str, names: Mapping[str, int], modules: set[str]) -> int | None:
+def integer_of(expression: str, names: Mapping[str, int], modules: set[str]) -> int | None:
     """Work out an integer; `None` if it is none, or none to IDL."""
     scopes = re.findall(r"(\w+)\s*::", expression)
     is_odd = _TWO_SIGNS.search(expression) or _PYTHON_ONLY.search(expression)
@@ -94,7 +94,7 @@ def _worked_out(node: ast.expr, names: Mapping[str, int]) -> int:
     return found
 
 
-_DECLARED = re.compile(r"\bconst\s+([\w :]+?)\s+(\w+)\s*=\s*([^;]*?)\s*;")
+DECLARED = re.compile(r"\bconst\s+([\w :]+?)\s+(\w+)\s*=\s*([^;]*?)\s*;")
 _PLACES = re.compile(
     r"(?P<const>\bconst\s+[\w :]+?\s+\w+\s*=\s*)(?P<a>[^;]*?)(?=\s*;)"
     r"|(?P<size>\[\s*)(?P<b>[^\]]*?)(?=\s*\])"
@@ -109,8 +109,8 @@ def _literals(case: Case) -> str:
     code = blanked(case.text)
     names: dict[str, int] = {}
     modules = set(re.findall(r"\bmodule\s+(\w+)", code))
-    for _, name, expression in _DECLARED.findall(code):
-        value = _value(expression, names, modules)
+    for _, name, expression in DECLARED.findall(code):
+        value = integer_of(expression, names, modules)
         if value is not None:
             names[name] = value
     pieces, end = [], 0
@@ -119,9 +119,9 @@ def _literals(case: Case) -> str:
         expression = match[which]
         if not expression or re.fullmatch(r"-?\s*(?:0|[1-9]\d*)", expression):
             continue
-        if which != "a" and "'" in expression:  # A character is no length.
+        if which in "bcd" and "'" in expression:  # A character is no length.
             continue
-        value = _value(expression, names, modules)
+        value = integer_of(expression, names, modules)
         if value is not None:
             start = match.start(which)
             pieces += [case.text[end:start], str(value)]
@@ -136,7 +136,7 @@ def _truth_values(constant: dict[str, Any]) -> dict[str, Any]:
 
 # Typedefs.
 
-_TYPEDEF = re.compile(r"\btypedef\s+([^;{}]*?)\s*\b(\w+)\s*((?:\[[^\]]*\])?)\s*;")
+TYPEDEF = re.compile(r"\btypedef\s+([^;{}]*?)\s*\b(\w+)\s*((?:\[[^\]]*\])?)\s*;")
 
 
 def _plain_typedefs(case: Case) -> str:
@@ -144,7 +144,7 @@ def _plain_typedefs(case: Case) -> str:
     code = blanked(case.text)
     meanings: dict[str, tuple[str, str]] = {}
     changes: list[tuple[int, int, str]] = []
-    for match in _TYPEDEF.finditer(code):
+    for match in TYPEDEF.finditer(code):
         kind, name, size = match.groups()
         base = kind.rpartition("::")[2]
         if base in meanings and not (size and meanings[base][1]):
@@ -170,7 +170,7 @@ def _own_constants(case: Case) -> str:
     changes: list[tuple[int, int, str]] = []
     for block in re.finditer(r"\bmodule\s+\w+_Constants\s*\{([^{}]*)\}", code):
         mine: set[str] = set()
-        for match in _DECLARED.finditer(code, *block.span(1)):
+        for match in DECLARED.finditer(code, *block.span(1)):
             mine.add(match[2])
             if match[2] in seen:
                 changes.append((*match.span(2), renamed(match[2])))

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import copy
 import os
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 
@@ -17,6 +19,8 @@ from firm_hdl.model import Dialect, Interface
 from firm_hdl.verify.ts1.case import Case
 
 __all__ = ["Universe", "write_definitions"]
+
+_INCLUDE = re.compile(r'^\s*#\s*include\s*["<](?:[^">]*/)?(\w+)/(\w+)/(\w+)\.idl[">]', re.MULTILINE)
 
 
 class Universe:
@@ -109,7 +113,21 @@ class Universe:
             name=name,
             language=language,
             text=source.text,
+            included=tuple(self._included(source.text).values()) if language == "idl" else (),
         )
+
+    def _included(self, text: str) -> dict[str, str]:
+        """Give the texts of the files that one in IDL includes, by their types' names."""
+        found: dict[str, str] = {}
+        pending = [text]
+        while pending:
+            for package, kind, name in _INCLUDE.findall(pending.pop()):
+                with suppress(DefinitionError):
+                    definition = self._sources.find(package, kind, name)
+                    if definition is not None and f"{package}/{kind}/{name}" not in found:
+                        found[f"{package}/{kind}/{name}"] = definition.source.text
+                        pending.append(definition.source.text)
+        return found
 
     def changed(self, change: Callable[[Case], Case]) -> Universe:
         """Give the same definitions with the texts of messages in ``.msg`` changed."""

@@ -146,16 +146,21 @@ def _idl(
     name="A",
     modules=("p", "msg"),
     oracle="rosidl_parser",
+    include="",
     **more,
 ):
     text = (
-        f"module {modules[0]} {{ module {modules[1]} {{ {before} "
+        f"{include}module {modules[0]} {{ module {modules[1]} {{ {before} "
         f"struct {name} {{ {members} unsigned short last; }}; }}; }};"
     )
     return Example(key=key, oracle=oracle, text=text, plant=plant, idl=True, **more)
 
 
 _N = "module A_Constants { const long N = 3; };"
+_B = {
+    "p/msg/B.idl": "module p { module msg { module B_Constants { const long N = 4; }; "
+    "typedef sequence<long> L; typedef wstring T; struct B { long x; }; }; };"
+}
 
 EXAMPLES: tuple[Example, ...] = (
     # rosbags refuses it, or reads it otherwise.
@@ -301,6 +306,32 @@ EXAMPLES: tuple[Example, ...] = (
         "struct A_Response { string b; unsigned short last; }; }; };",
         plant=_response(lambda part: replace(part, constants=())),
     ),
+    _idl(
+        "idl-includes",
+        "T x; sequence<wstring<B_Constants::N>, p::msg::B_Constants::N> y; long z[B_Constants::N];",
+        _field(2, name="w"),
+        more=_B,
+        include='#include "p/msg/B.idl"\n',
+    ),
+    _idl("idl-defaults", '@default(value=1) @unit(value="m") @default(value=2) long x;', drop_last),
+    _idl(
+        "idl-values",
+        '@default(value=300) uint8 a; @default(value="(1, 2, 3)") long b[2]; '
+        '@default(value=5) string c; @default(value="(1, -1)") sequence<octet> d; '
+        "@default(value=TRUE) T e;",
+        drop_last,
+        before="typedef double T;",
+    ),
+    _idl(
+        "idl-values",
+        "long x;",
+        drop_last,
+        before="module A_Constants { const long long L = 9223372036854775808; "
+        'const float F = "x"; const boolean B = 2; };',
+    ),
+    _idl("idl-lists-of-one", '@default(value="(7)") sequence<long> x;', _field(0, default=(8,))),
+    _idl("ros2-wstring-sequences", "sequence<wstring<4>> x;", _field(0, name="y")),
+    _ros2("ros2-wstring-sequences", "rosidl_parser", "wstring<=4[] x\n", _field(0, name="y")),
     _idl("idl-unsupported", "@optional long x;", drop_last),
     Example(
         key="idl-lists-of-lists",
