@@ -25,6 +25,7 @@ from firm_hdl.files import check_file
 from firm_hdl.frontend.embedded import DISTROS
 from firm_hdl.frontend.expansion import Budget, bounded
 from firm_hdl.frontend.names import Kind
+from firm_hdl.frontend.recorded_idl import structs_of
 from firm_hdl.frontend.sources import Definition, Language
 from firm_hdl.model import Dialect
 
@@ -259,7 +260,17 @@ def _split(name: _Name, text: str, is_idl: bool) -> Iterator[tuple[_Name, Langua
             body = body[:-1]
         if body and not body.endswith("\n"):
             body += "\n"
-        yield part, _language(part, body, is_idl), body if is_idl else _usual(body)
+        if is_idl:
+            for each, alone in ({part: body} | _messages(part, body)).items():
+                yield each, "idl", alone
+        else:
+            yield part, _language(part, body), _usual(body)
+
+
+def _messages(name: _Name, text: str) -> dict[_Name, str]:
+    """Give the texts of all messages of a section in IDL, if that of its heading is one of many."""
+    found = structs_of(text)
+    return found if name in found else {}
 
 
 def _usual(text: str) -> str:
@@ -267,9 +278,7 @@ def _usual(text: str) -> str:
     return _FULL_NAME.sub(r"\1/", _INDENTED.sub("", text))
 
 
-def _language(name: _Name, text: str, is_idl: bool) -> Language:
-    if is_idl:
-        return "idl"
+def _language(name: _Name, text: str) -> Language:
     # A message of a service or of an action may be defined by itself.
     is_whole = name[1] != "msg" and _SERVICE_PARTS.search(text) is not None
     return name[1] if is_whole else "msg"

@@ -7,6 +7,7 @@ import sqlite3
 
 import pytest
 from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import get_types_from_idl
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library, open_library, show
@@ -63,6 +64,62 @@ def test_schemas_of_other_tools_are_named(tmp_path):
         each.write_bytes(each.read_bytes().replace(head, b" " * len(head)))
     with pytest.raises(DefinitionError, match="defines 'p/msg/A' in 'omgidl', and only ros2msg"):
         open_library(bags=[path])
+
+
+SEVERAL = """\
+module q { module msg { typedef long T;
+  @verbatim(language="comment", text="struct X { }; of q")
+  struct C { T t; }; }; };
+module p { module msg {
+  module A_Constants { const long N = 3; };
+  struct B { long b[A_Constants::N]; };  // struct D { long d; };
+  @verbatim(language="comment", text="of A")
+  struct A { B b; sequence<B> bs; p::msg::B more[2]; q::msg::C c; long B_last; };
+}; };
+"""
+
+
+def test_a_section_in_idl_may_declare_several_messages_in_recordings(tmp_path):
+    heading = f"{'=' * 80}\nIDL: p/msg/A\n"
+    ours = open_library(bags=[recorded(tmp_path / "r", heading + SEVERAL)])
+    a = ours.message("p/A")
+    assert [(f.name, str(f.type)) for f in a.fields] == [
+        ("b", "p/msg/B"), ("bs", "p/msg/B[]"), ("more", "p/msg/B[2]"), ("c", "q/msg/C"),
+        ("B_last", "int32"),
+    ]  # fmt: skip
+    assert (a.comment, [c.name for c in a.constants]) == ("of A", ["N"])
+    assert ours.message("q/C").comment == "struct X { }; of q"
+    assert [str(f.type) for f in ours.message("p/B").fields] == ["int32[3]"]
+    assert [str(name) for name in ours.names()] == ["p/msg/A", "p/msg/B", "q/msg/C"]
+    # rosbags reads the same.
+    theirs = get_types_from_idl(SEVERAL)
+    assert {name: len(fields) for name, (_, fields) in theirs.items() if fields} == {
+        str(name): len(ours.message(str(name)).fields) for name in ours.names()
+    }
+
+
+def test_mistakes_in_one_of_several_messages_are_shown_where_they_are(tmp_path):
+    heading = f"{'=' * 80}\nIDL: p/msg/A\n"
+    text = SEVERAL.replace("long B_last", "lang B_last")
+    ours = open_library(bags=[recorded(tmp_path / "r", heading + text)])
+    with pytest.raises(DefinitionError, match=r"p/msg/A\.idl:8:\d+: error: .*lang"):
+        ours.message("p/A")
+    assert len(ours.message("p/B").fields) == 1
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        STRUCTS.replace("struct A", "struct C"),
+        "module p { struct B { long b; }; struct A { long a; }; };",
+        "struct B { long b; }; struct A { long a; };",
+    ],
+)
+def test_several_structs_that_are_no_messages_of_ros_are_one_message_per_file(tmp_path, text):
+    heading = f"{'=' * 80}\nIDL: p/msg/A\n"
+    ours = open_library(bags=[recorded(tmp_path / "r", heading + text)])
+    with pytest.raises(DefinitionError):
+        ours.message("p/A")
 
 
 def idl(body, name="A"):
