@@ -23,7 +23,8 @@ _VHDL_2008 = frozenset(
 )
 
 # Our text is of 2008, but nobody should have to tell a tool that reads 2019 apart.
-_VHDL_2019 = frozenset(["private", "view"])
+# `vpkg` comes from the PSL of 2010, which that of 2019 has.
+_VHDL_2019 = frozenset(["private", "view", "vpkg"])
 
 # PSL has the word; the standard does not list it, but GHDL 2.0 keeps it in VHDL-2008.
 _GHDL = frozenset(["inherit"])

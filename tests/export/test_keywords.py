@@ -12,7 +12,7 @@ from firm_hdl.export.keywords import KEYWORDS, VERILOG, VHDL
 from firm_hdl.export.names import identifier, scope_names
 
 # Of VHDL-2019, and of PSL, that GHDL 2.0 does not keep.
-TAKEN = {"private", "view", "assume_guarantee", "fairness", "strong"}
+TAKEN = {"private", "view", "vpkg", "assume_guarantee", "fairness", "strong"}
 # Pygments knows them in front of a name only.
 IN_CONTEXT = {"class", "extends"}
 
