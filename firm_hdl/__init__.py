@@ -1,9 +1,9 @@
 """firm-hdl: from ROS interface definitions to hardware that reads and writes them.
 
-    from firm_hdl import Deserializer, Serializer, load_message
+from firm_hdl import Deserializer, Serializer, load_message
 
-    imu = load_message("sensor_msgs/msg/Imu", distro="humble")
-    rx = Deserializer(imu, bus_bytes=8)
+imu = load_message("sensor_msgs/msg/Imu", distro="humble")
+rx = Deserializer(imu, bus_bytes=8)
 """
 
 from importlib import import_module

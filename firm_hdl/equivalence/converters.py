@@ -86,9 +86,7 @@ def converter_vhdl(
     check_size(plan)
     core = Deserializer if direction == "deserializer" else Serializer
     top = Top(
-        core(
-            message, wire=plan.wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes
-        )
+        core(message, wire=plan.wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
     )
     base = identifier(f"{identifier(message.name)}_{plan.wire}_{bus_bytes}").lower()
     name = f"{base}_{direction}_flat"

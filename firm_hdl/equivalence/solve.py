@@ -23,12 +23,8 @@ __all__ = ["Difference", "Verdict", "solve"]
 
 # Equal cells of the two sides become one before they become gates. No part of this may see an
 # undefined value: there is none in a miter. `check` finds loops, whose value would be anything.
-_GATES = (
-    "read_json {name}.json; opt_expr; opt_merge; opt_clean; simplemap; techmap; check -assert"
-)
-_ABC = (
-    "abc -g AND -script +strash;&get,-n;&fraig,-x;&put; opt_clean; write_json answer.json"
-)
+_GATES = "read_json {name}.json; opt_expr; opt_merge; opt_clean; simplemap; techmap; check -assert"
+_ABC = "abc -g AND -script +strash;&get,-n;&fraig,-x;&put; opt_clean; write_json answer.json"
 _SAT = "sat -timeout {seconds} -prove differs 0 -show-ports -dump_json model.json"
 _FEW = 4
 

@@ -183,9 +183,7 @@ def load_all(library: Library, types: Iterable[str]) -> list[Message]:
     return list(messages.values())
 
 
-def plan_of(
-    message: Message, wire: Wire | None, bus_bytes: int, max_message_bytes: int
-) -> Plan:
+def plan_of(message: Message, wire: Wire | None, bus_bytes: int, max_message_bytes: int) -> Plan:
     """Plan a type's converters; options that do not fit the type are a `BuildError`."""
     try:
         return build_plan(

@@ -300,9 +300,7 @@ def vunit_bench(manifest: Manifest) -> str:
     """Write the entity that runs the benches as test cases of VUnit."""
     section = manifest["vhdl"]
     bench = section["bench"]
-    signals = "".join(
-        f"  signal over_{k} : boolean;\n" for k, _ in enumerate(bench["entities"])
-    )
+    signals = "".join(f"  signal over_{k} : boolean;\n" for k, _ in enumerate(bench["entities"]))
     tests = ""
     instances = ""
     for k, entity in enumerate(bench["entities"]):

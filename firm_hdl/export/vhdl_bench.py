@@ -143,8 +143,8 @@ _PACKETS = """
 
 def _converters(view: View, bus_bytes: int) -> Iterator[str]:
     for direction in DIRECTIONS:
-        side, (far, near) = ("rx", ("i", "s")) if direction == "deserializer" else (
-            "tx", ("o", "m")
+        side, (far, near) = (
+            ("rx", ("i", "s")) if direction == "deserializer" else ("tx", ("o", "m"))
         )
         packets = ["tdata", "tkeep", "tlast", *(["tuser"] * (side == "tx")), "tvalid", "tready"]
         names = view.packet_names[direction]

@@ -180,9 +180,7 @@ class _Writer:
         package = self.package_name
         return {
             f"{entity}.vhd": self.remark()
-            + stream_wrapper(
-                self.message, self.plan, self.tree, way, entity, package, cores[way]
-            )
+            + stream_wrapper(self.message, self.plan, self.tree, way, entity, package, cores[way])
             for way, entity in entities.items()
         }
 
@@ -194,9 +192,7 @@ class _Writer:
         package = self.package_name
         return {
             f"{entity}.vhd": self.remark()
-            + record_wrapper(
-                self.message, self.plan, self.values, way, entity, package, cores[way]
-            )
+            + record_wrapper(self.message, self.plan, self.values, way, entity, package, cores[way])
             for way, entity in entities.items()
         }
 

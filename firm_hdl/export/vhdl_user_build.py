@@ -208,14 +208,10 @@ def _add_records(
     }
 
 
-def _add_flat(
-    parts: _Parts, message: Message, plan: Plan, cores: Mapping[Direction, Core]
-) -> None:
+def _add_flat(parts: _Parts, message: Message, plan: Plan, cores: Mapping[Direction, Core]) -> None:
     """Add a package without records, and a bench."""
     package = f"{parts.base}_pkg"
-    text, constants = flat_package(
-        message, plan, name=package, cores=cores, header=parts.header
-    )
+    text, constants = flat_package(message, plan, name=package, cores=cores, header=parts.header)
     parts.design = {f"{package}.vhd": text, **parts.design}
     parts.add_bench(flat_view(plan, package, cores), plan)
     parts.section = {

@@ -98,9 +98,7 @@ def _unit(unit: str | None) -> str:
     return f" [{ascii_of(unit)}]" if unit else ""
 
 
-def named_constants(
-    message: Message, taken: Iterable[str], *, nested: bool = True
-) -> list[Named]:
+def named_constants(message: Message, taken: Iterable[str], *, nested: bool = True) -> list[Named]:
     """Name the constants of a message; with `nested`, those of all types in it.
 
     `taken` is in lower case.
@@ -166,9 +164,7 @@ def declarations(named: Iterable[Named], taken: Iterable[str]) -> Iterator[str]:
             yield f"  constant {entry.name} : string :=\n    {_string(constant.value)};\n"
 
 
-def _number(
-    name: str, kind: Primitive, value: object, unit: str, used: set[str]
-) -> Iterator[str]:
+def _number(name: str, kind: Primitive, value: object, unit: str, used: set[str]) -> Iterator[str]:
     assert isinstance(value, bool | int | float)
     bits, digits = 8 * kind.bytes, 2 * kind.bytes
     if kind.kind == "bool":

@@ -98,9 +98,7 @@ def values_of(tree: Tree, plan: Plan) -> dict[str, ValueType]:
     return made
 
 
-def _value_type(
-    package: Package, plan: Plan, made: Mapping[str, ValueType]
-) -> ValueType | None:
+def _value_type(package: Package, plan: Plan, made: Mapping[str, ValueType]) -> ValueType | None:
     members: list[Member] = []
     first = 0
     for node in package.node.children:
@@ -133,8 +131,10 @@ def _member(
         assert leaf is not None
         primitive = primitive_name(plan.leaves[leaf])
         name, bits = data_type(primitive), PRIMITIVE_BITS[primitive]
-        into, outof = ("", "") if name.startswith("std_logic") else (
-            "std_logic_vector", name.partition("(")[0]
+        into, outof = (
+            ("", "")
+            if name.startswith("std_logic")
+            else ("std_logic_vector", name.partition("(")[0])
         )
         if count is not None:
             name, into, outof = f"{primitive}_items_t", "to_slv", f"to_{primitive}_items"

@@ -169,7 +169,12 @@ def _entity(
 
 
 def stream_wrapper(
-    message: Message, plan: Plan, tree: Tree, direction: Direction, entity: str, package: str,
+    message: Message,
+    plan: Plan,
+    tree: Tree,
+    direction: Direction,
+    entity: str,
+    package: str,
     core: Core,
 ) -> str:
     """Write a converter with a record of streams, one for each leaf."""
@@ -177,13 +182,9 @@ def stream_wrapper(
     ports = ports_of(plan, direction)
     parts = {port.name: conversions.actual(port) for port in ports}
     lines = stream_lines(message, plan, tree, direction)
-    head = (
-        f"-- The {direction} of {message.name} with records.\n-- {core.entity} has flat ports.\n"
-    )
+    head = f"-- The {direction} of {message.name} with records.\n-- {core.entity} has flat ports.\n"
     return head + "".join(
-        _entity(
-            entity, package, lines, core, parts, conversions.signals, conversions.assignments
-        )
+        _entity(entity, package, lines, core, parts, conversions.signals, conversions.assignments)
     )
 
 
@@ -224,7 +225,9 @@ class _Conversions:
             convert = (
                 f"to_{primitive}_items"
                 if leaf.kind == "items"
-                else "signed" if leaf.signed else "unsigned"
+                else "signed"
+                if leaf.signed
+                else "unsigned"
             )
             self.assignments.append(f"  {whole} <= {convert}({port.name});\n")
         return port.name
@@ -247,9 +250,7 @@ def record_wrapper(
 ) -> str:
     """Write a converter with a record of values, all valid at once."""
     bits = values.bits
-    parts = {
-        port.name: _packet_actual(port) for port in record_ports(plan, direction, bits)
-    }
+    parts = {port.name: _packet_actual(port) for port in record_ports(plan, direction, bits)}
     parts["msg_data"] = "msg_data" if bits > 1 else "msg_data(0)"
     convert = (
         f"  msg <= to_{values.base}(msg_data);\n"

@@ -149,8 +149,8 @@ class Window(wiring.Component):
         low = bus.bit_length() - 1
         inside = offset[low:] == 0
         keep = Cat(
-            beat.keep & inside.replicate(bus) & ok.replicate(bus) for beat, ok in zip(beats, valid,
-            strict=True)
+            beat.keep & inside.replicate(bus) & ok.replicate(bus)
+            for beat, ok in zip(beats, valid, strict=True)
         )
         m.d.comb += [
             Value.cast(self.data).eq(

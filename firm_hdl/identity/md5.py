@@ -28,9 +28,13 @@ def md5sum(interface: Message | Service) -> str:
     """
     if interface.dialect != "ros1":
         raise ValueError(f"Only types of ROS 1 have md5 sums, and {interface} is of ROS 2")
-    parts = (interface,) if isinstance(interface, Message) else (
-        interface.request,
-        interface.response,
+    parts = (
+        (interface,)
+        if isinstance(interface, Message)
+        else (
+            interface.request,
+            interface.response,
+        )
     )
     sums: dict[str, str] = {}
     for message in in_order(parts):

@@ -54,8 +54,10 @@ def _features_of_field(item: Field, parts: Mapping[Message, frozenset[str]]) -> 
                 yield "long_doubles"
         case Text(bound=bound, wide=wide):
             of = "strings"
-            yield ("wstrings" if wide else "strings") if bound is None else (
-                "bounded_wstrings" if wide else "bounded_strings"
+            yield (
+                ("wstrings" if wide else "strings")
+                if bound is None
+                else ("bounded_wstrings" if wide else "bounded_strings")
             )
         case Message():
             of = "messages"

@@ -111,9 +111,7 @@ def _search_workspace(given: argparse.Namespace) -> None:
         given.path = [f for distro in distros for f in workspace_folders(distro, packages)]
         if not given.path:
             # Some of the types may be there.
-            given.tasks = collect_tasks(
-                given.distro or (), given.types, problems=given.problems
-            )
+            given.tasks = collect_tasks(given.distro or (), given.types, problems=given.problems)
 
 
 def _run_systems(given: argparse.Namespace) -> list[Judged]:

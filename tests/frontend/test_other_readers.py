@@ -133,6 +133,13 @@ def test_typedefs_are_found_by_any_scope_that_a_constant_has(tmp_path, scope):
     assert str(ours.message("p/A").fields[0].type) == "int32"
 
 
+@pytest.mark.parametrize("scope", ["::T", "p::T", "msg::msg::T", "q::msg::T", "::msg::T"])
+def test_typedefs_are_found_by_no_scope_that_they_have_not(tmp_path, scope):
+    text = idl("typedef long T;").replace("{ T a; }", f"{{ {scope} a; }}")
+    with pytest.raises(DefinitionError):
+        Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})]).message("p/A")
+
+
 def test_typedefs_of_a_module_beside_are_found_by_its_name(tmp_path):
     text = idl("module A_T { typedef long T; };").replace("{ T a; }", "{ A_T::T a; }")
     ours = Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})])

@@ -161,7 +161,8 @@ class Expander:
         # With a scope, it is looked for like a constant, from the module of the place outwards.
         around = range(0 if core.is_absolute else len(path), -1, -1)
         full = [(*path[:depth], *core.parts) for depth in around]
-        return core.parts[-1] if len(core.parts) == 1 or _full_name(alias) in full else None
+        is_bare = len(core.parts) == 1 and not core.is_absolute
+        return core.parts[-1] if is_bare or _full_name(alias) in full else None
 
     def _element(self, core: TypeNode, layer: _Layer) -> _Shape:
         match core:

@@ -178,15 +178,21 @@ def _positive_lengths(case: Case) -> str:
 
 _SCOPED = r"(?<![\w:])(?:\w+\s*::\s*)+\w+(?=\s+\w+\s*(?:[;,]|\[))"
 
+_SCOPED_ELEMENT = r"(\bsequence\s*<\s*)((?:\w+\s*::\s*)+\w+)(?=\s*[,>])"
+
 
 def _types_of_ros(case: Case) -> str:
     """Write a builtin type in place of one whose scopes are none of ROS."""
 
-    def kind(match: re.Match[str]) -> str:
-        scopes = [each.strip() for each in match[0].split("::")]
-        return match[0] if scopes[1:-1] in (["msg"], ["srv"], ["action"]) else "long"
+    def kind(name: str) -> str:
+        scopes = [each.strip() for each in name.split("::")]
+        return name if scopes[1:-1] in (["msg"], ["srv"], ["action"]) else "long"
 
-    return _in_code(case.text, _SCOPED, kind)
+    def element(match: re.Match[str]) -> str:
+        return match[1] + kind(match[2])
+
+    text = _in_code(case.text, _SCOPED, lambda match: kind(match[0]))
+    return _in_code(text, _SCOPED_ELEMENT, element)
 
 
 _TYPES = "octet|boolean|float|double|w?char|w?string|unsigned|short|long|u?int(?:8|16|32|64)"

@@ -139,6 +139,20 @@ def _truth_values(constant: dict[str, Any]) -> dict[str, Any]:
 TYPEDEF = re.compile(r"\btypedef\s+([^;{}]*?)\s*\b(\w+)\s*((?:\[[^\]]*\])?)\s*;")
 
 
+def _paths(code: str) -> list[str]:
+    """List the full names that typedefs declare."""
+    found: list[str] = []
+    scopes: list[str] = []
+    for mark in re.finditer(rf"\bmodule\s+(\w+)\s*{{|[{{}}]|{TYPEDEF.pattern}", code):
+        if mark[3] is not None:
+            found.append("::".join([*filter(None, scopes), mark[3]]))
+        elif mark[0] != "}":
+            scopes.append(mark[1] or "")
+        elif scopes:
+            scopes.pop()
+    return found
+
+
 def _plain_typedefs(case: Case) -> str:
     """Write what a typedef of a typedef means, and typedefs without their scopes."""
     code = blanked(case.text)
@@ -151,8 +165,12 @@ def _plain_typedefs(case: Case) -> str:
             kind, size = meanings[base][0], size or meanings[base][1]
             changes.append((match.start(1), match.end(3), f"{kind} {name}{size}"))
         meanings[name] = kind, size
-    for match in re.finditer(r"(?:::)?\b(?:\w+::)+(\w+)\b", code):
-        if match[1] in meanings and not any(a <= match.start() < b for a, b, _ in changes):
+    paths = _paths(code)
+    for match in re.finditer(r"(?<![\w:])(?:::)?\b(?:\w+::)+(\w+)\b", code):
+        is_one = any(
+            match[0] == f"::{path}" or f"::{path}".endswith(f"::{match[0]}") for path in paths
+        )
+        if is_one and not any(a <= match.start() < b for a, b, _ in changes):
             changes.append((*match.span(), match[1]))
     text = case.text
     for start, end, new in sorted(changes, reverse=True):

@@ -260,6 +260,7 @@ EXAMPLES: tuple[Example, ...] = (
     _idl("idl-long-names", "long longitude; unsigned long doubled[2];", _field(0, name="itude")),
     _idl("idl-words", "shortvalue; unsignedlong x;", drop_last),
     _idl("idl-type-scopes", "msg::X x; a::b::c::X y[2];", drop_last),
+    _idl("idl-type-scopes", "sequence<a::X> x; p::T y;", drop_last, before="typedef long T;"),
     _idl("idl-file-names", "long x;", drop_last, name="B"),
     _idl("idl-bounds-by-name", "sequence<wstring<N>, 2> x;", _constant(value=4), before=_N),
     _idl(
