@@ -69,10 +69,12 @@ class View:
     channels: Sequence[Channel]
 
 
+# No name of a user's is used without its package, because constants may be called like something in
+# `std.textio`; the clause itself is for tools that look for the order of files.
 _USES = """\
 use work.firm_hdl_bench_pkg.all;
 use work.{types}.all;
-use work.{package}.all;
+use work.{package};
 use work.{components}.all;
 """
 
@@ -108,8 +110,8 @@ def stream_view(plan: Plan, layer: UserLayer) -> View:
     return View(
         uses=_uses(layer),
         declarations=(
-            f"  signal rx_msg, tx_msg : {root.type};\n"
-            f"  signal rx_rdy, tx_rdy : {root.ready_type};\n"
+            f"  signal rx_msg, tx_msg : work.{layer.package}.{root.type};\n"
+            f"  signal rx_rdy, tx_rdy : work.{layer.package}.{root.ready_type};\n"
         ),
         instances=layer.entities,
         message_ports={
@@ -131,6 +133,7 @@ def _payload(leaf: Leaf) -> tuple[str, ...]:
 def record_view(layer: UserLayer) -> View:
     """See the converters with a record of values: one stream of whole messages."""
     assert layer.values is not None
+    image = f"to_hstring(work.{layer.package}.to_slv(rx_msg))"
     sides = [
         {"data": f"{side}_msg", "valid": f"{side}_valid", "ready": f"{side}_ready"}
         for side in ("rx", "tx")
@@ -138,7 +141,7 @@ def record_view(layer: UserLayer) -> View:
     return View(
         uses=_uses(layer),
         declarations=(
-            f"  signal rx_msg, tx_msg     : {layer.values.name};\n"
+            f"  signal rx_msg, tx_msg     : work.{layer.package}.{layer.values.name};\n"
             "  signal rx_valid, tx_valid : std_logic;\n"
             "  signal rx_ready, tx_ready : std_logic;\n"
         ),
@@ -149,9 +152,7 @@ def record_view(layer: UserLayer) -> View:
         },
         packet_names=_NO_NAMES,
         bit_keep=False,
-        channels=[
-            Channel(label="msg", rx=sides[0], tx=sides[1], image="to_hstring(to_slv(rx_msg))")
-        ],
+        channels=[Channel(label="msg", rx=sides[0], tx=sides[1], image=image)],
     )
 
 
@@ -182,9 +183,9 @@ def flat_view(plan: Plan, package: str, cores: Mapping[Direction, Core]) -> View
         image = "to_hstring" if widths[f"{base}_data"] > 1 else "to_string"
         channels.append(Channel(label=str(leaf), rx=rx, tx=tx, image=f"{image}({rx['data']})"))
     return View(
-        uses=f"use work.firm_hdl_bench_pkg.all;\nuse work.{package}.all;\n",
+        uses=f"use work.firm_hdl_bench_pkg.all;\nuse work.{package};\n",
         declarations="".join(map(_signals, ports["deserializer"])) + _STATUS,
-        instances={way: core.entity for way, core in cores.items()},
+        instances={way: f"component work.{package}.{cores[way].entity}" for way in cores},
         message_ports={
             way: [
                 (cores[way].names.get(port.name, port.name), f"{side}_{port.name}")

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from firm_hdl.export.keywords import KEYWORDS
 from firm_hdl.export.names import first_free, plain
 
-__all__ = ["USED", "Scope", "is_identifier", "legal"]
+__all__ = ["PREDEFINED", "USED", "Scope", "is_identifier", "legal"]
 
 USED = frozenset(
     """
@@ -26,6 +26,29 @@ USED = frozenset(
     """.split()
 )
 """Identifiers with a meaning in the text that we write; a signal of that name would hide them."""
+
+PREDEFINED = frozenset(
+    """
+    ack append_mode bel binary_read binary_write boolean_vector bread bs bwrite can
+    copyrightnotice cr dc1 dc2 dc3 dc4 del delay_length dle em enq eot esc etb etx ff
+    file_open_kind file_open_status find_leftmost find_rightmost foreign fs fsp gsp hex_read
+    hex_write hr hread ht hwrite integer_vector is_x lf maximum min minimum mode_error ms nak
+    name_error now ns nul octal_read octal_write open_ok oread owrite ps read read_mode
+    real_vector resolved rotate_left rotate_right rsp sec si so soh status_error std_match
+    std_ulogic_vector stx sub syn time_vector to_01 to_binary_string to_bit to_bit_vector
+    to_bitvector to_bstring to_bv to_hex_string to_octal_string to_slv to_std_logic_vector
+    to_std_ulogic_vector to_stdlogicvector to_stdulogic to_stdulogicvector to_sulv to_ux01
+    to_x01 to_x01z u_signed u_unsigned unresolved_signed unresolved_unsigned us usp ux01 ux01z
+    vt write write_mode x01 x01z
+    """.split()
+    + [f"c{number}" for number in range(128, 160)]
+)
+"""What std.standard, ieee.std_logic_1164 and ieee.numeric_std declare besides those in `USED`.
+
+Nearly every design sees these by use clauses. Of two things of one name that are seen in this way
+VHDL takes neither, unless both are subprograms or literals (12.4): after ``use`` of a package with
+a constant ``NS``, there is no ``5 ns``.
+"""
 
 _IDENTIFIER = re.compile(r"[A-Za-z](?:_?[A-Za-z0-9])*\Z")
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from math import isfinite
 
 from firm_hdl.export.names import first_free, scope_names
-from firm_hdl.export.vhdl_names import USED
+from firm_hdl.export.vhdl_names import PREDEFINED, USED
 from firm_hdl.export.vhdl_user_tree import snake
 from firm_hdl.model import Array, Constant, Field, Message, Primitive, Sequence
 
@@ -104,10 +104,10 @@ def named_constants(message: Message, taken: Iterable[str], *, nested: bool = Tr
     `taken` is in lower case.
 
     The message's own keep their names, as far as these do not hide what VHDL code needs (`ERROR` is
-    a severity, too); the others start with the name of their type.
+    a severity, and `NS` a unit); the others start with the name of their type.
     """
     found: dict[str, tuple[Message, Constant]] = {}
-    hiding = {*USED, *taken}
+    hiding = {*USED, *PREDEFINED, *taken}
     for owner in _types(message) if nested else [message]:
         prefix = "" if owner is message else f"{snake(owner.base_name).upper()}_"
         for constant in owner.constants:

@@ -14,7 +14,7 @@ use std.textio.all;
 
 use work.firm_hdl_bench_pkg.all;
 use work.firm_hdl_types_pkg.all;
-use work.geometry_msgs_msg_twist_cdr_8_pkg.all;
+use work.geometry_msgs_msg_twist_cdr_8_pkg;
 use work.geometry_msgs_msg_twist_cdr_8_components_pkg.all;
 
 entity geometry_msgs_msg_twist_cdr_8_record_tb is
@@ -64,7 +64,7 @@ architecture sim of geometry_msgs_msg_twist_cdr_8_record_tb is
   signal taken   : std_logic_vector(LEAVES - 1 downto 0);
 
   -- From the deserializer, and to the serializer.
-  signal rx_msg, tx_msg     : twist_value_t;
+  signal rx_msg, tx_msg     : work.geometry_msgs_msg_twist_cdr_8_pkg.twist_value_t;
   signal rx_valid, tx_valid : std_logic;
   signal rx_ready, tx_ready : std_logic;
 
@@ -160,7 +160,7 @@ begin
   begin
     if rising_edge(aclk) and aresetn = '1' then
       if (offered(0) and gate(0) and taken(0)) = '1' then
-        note("msg", to_hstring(to_slv(rx_msg)));
+        note("msg", to_hstring(work.geometry_msgs_msg_twist_cdr_8_pkg.to_slv(rx_msg)));
       end if;
     end if;
   end process;

@@ -13,7 +13,7 @@ use std.textio.all;
 
 use work.firm_hdl_bench_pkg.all;
 use work.firm_hdl_types_pkg.all;
-use work.geometry_msgs_msg_twist_cdr_8_pkg.all;
+use work.geometry_msgs_msg_twist_cdr_8_pkg;
 use work.geometry_msgs_msg_twist_cdr_8_components_pkg.all;
 
 entity geometry_msgs_msg_twist_cdr_8_tb is
@@ -63,8 +63,8 @@ architecture sim of geometry_msgs_msg_twist_cdr_8_tb is
   signal taken   : std_logic_vector(LEAVES - 1 downto 0);
 
   -- From the deserializer, and to the serializer.
-  signal rx_msg, tx_msg : twist_t;
-  signal rx_rdy, tx_rdy : twist_ready_t;
+  signal rx_msg, tx_msg : work.geometry_msgs_msg_twist_cdr_8_pkg.twist_t;
+  signal rx_rdy, tx_rdy : work.geometry_msgs_msg_twist_cdr_8_pkg.twist_ready_t;
 
 begin
 
