@@ -342,7 +342,8 @@ def test_the_targets_are_the_whole_program():
 
 
 def test_every_rule_finds_something_in_the_program():
-    found = {mutant.change.rule for mutant in all_mutants(ROOT)}
+    targets = ["gateware", "sim", "plan", "grammar"]
+    found = {mutant.change.rule for mutant in all_mutants(ROOT, targets)}
     assert len(found) > 40
     assert found >= {"swapped branches", "overridden assignment", "dropped clause", "wrong limit"}
     assert found >= {"swapped operand", "sticky flag", "missing reset", "wrong neighbour"}

@@ -12,7 +12,7 @@ from tests.verify.judged import assert_passed
 TASKS = list(collect_tasks((), ()))
 WIDTHS = (8, 4)
 OTHER_WIDTHS = (1, 2, 16, 32, 64)
-LARGEST = 10
+LARGEST = 12
 """The first ones have so many leaves that they would take as long as a hundred others."""
 SAMPLE = range(LARGEST, len(TASKS), 9)
 

@@ -31,8 +31,8 @@ ROS2 = {
 @pytest.mark.parametrize(
     ("distro", "oracle", "count"),
     [
-        ("noetic", "genmsg", 400),
-        ("lyrical", "rosidl_adapter", 400),
+        ("noetic", "genmsg", 250),
+        ("lyrical", "rosidl_adapter", 250),
         ("lyrical", "rosidl_parser", 100),
     ],
 )
