@@ -44,6 +44,8 @@ def _build(given: argparse.Namespace) -> None:
     def report(built: Built) -> None:
         state = "current" if built.was_current else "wrote"
         print(f"{state:8}{built.folder}{os.sep}", flush=True)
+        for old, new in sorted(built.renamed.items()):
+            print(f"        your own {old} there is {new} now", flush=True)
 
     done = build(
         given.types,

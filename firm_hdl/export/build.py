@@ -6,11 +6,12 @@ written. A folder appears, or is replaced, as a whole; one that is current is le
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -51,12 +52,16 @@ class Built:
         Whether there was nothing to do.
     description : str
         What the converters cost, for people; see :func:`firm_hdl.export.timing.describe`.
+    renamed : mapping of str to str
+        What a user's own files in the folder are called now, where they had the name of one that
+        was written.
     """
 
     name: str
     folder: Path
     was_current: bool
     description: str
+    renamed: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -274,7 +279,7 @@ def _written(task: _Task, figures: Timing, force: bool) -> Built:
         description=describe(task.message.name, task.plan, figures),
     )
     if not built.was_current:
-        replace(task.folder, _files(task, figures))
+        built = dataclasses.replace(built, renamed=replace(task.folder, _files(task, figures)))
     return built
 
 

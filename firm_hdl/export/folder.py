@@ -68,8 +68,13 @@ def is_current(folder: Path, inputs: Mapping[str, Any]) -> bool:
         return False
 
 
-def replace(folder: Path, files: Mapping[str, str]) -> None:
+def replace(folder: Path, files: Mapping[str, str]) -> dict[str, str]:
     """Make a folder have these files, and what users have put there.
+
+    Returns
+    -------
+    dict of str to str
+        Of a user's files that have the name of one of these: what each is called now.
 
     Raises
     ------
@@ -80,19 +85,21 @@ def replace(folder: Path, files: Mapping[str, str]) -> None:
     folder.parent.mkdir(parents=True, exist_ok=True)
     with locked(folder.parent) as alone:
         made: list[Path] = []
+        renamed: dict[str, str] = {}
         if alone:
             _clear_up(folder, _leftovers(folder))
         try:
             staging = _make(folder, _NEW, made)
             _write_files(staging, files)
             if os.path.lexists(folder):
-                _keep_others(folder, staging, files)
+                renamed = _keep_others(folder, staging, files)
                 _swap(folder, staging, made)
             else:
                 staging.rename(folder)
         finally:
             # Of the two, the one that is not in use, whichever that is.
             _clear_up(folder, _leftovers(folder) if alone else made)
+    return renamed
 
 
 def clear_up(folder: Path) -> None:
@@ -178,8 +185,12 @@ def _ours(folder: Path) -> set[str]:
     return {MANIFEST, *(found["files"] if found is not None else ())}
 
 
-def _keep_others(folder: Path, staging: Path, files: Mapping[str, str]) -> None:
-    """Give a new folder all that the old one has and firm-hdl did not write."""
+def _keep_others(folder: Path, staging: Path, files: Mapping[str, str]) -> dict[str, str]:
+    """Give a new folder all that the old one has and firm-hdl did not write.
+
+    Returns new names by old ones where they differ.
+    """
+    renamed: dict[str, str] = {}
     ours = _ours(folder)
     folders = {os.path.dirname(name) for name in ours}
     copies: dict[Path, Path] = {}
@@ -195,9 +206,12 @@ def _keep_others(folder: Path, staging: Path, files: Mapping[str, str]) -> None:
         for target in _names(kept):
             if not os.path.lexists(target):
                 _link(folder / name, target)
+                if target != staging / name:
+                    renamed[name] = target.relative_to(staging).as_posix()
                 break
     for source, target in copies.items():
         shutil.copystat(source, target)
+    return renamed
 
 
 def _free(name: str, is_folder: bool, files: Mapping[str, str]) -> str:
@@ -215,10 +229,11 @@ def _free(name: str, is_folder: bool, files: Mapping[str, str]) -> str:
 
 def _names(path: Path) -> Iterator[Path]:
     """Yield a path, then others for what cannot have it."""
+    name = path.name.removesuffix(".kept")
     yield path
-    yield path.with_name(f"{path.name}.kept")
+    yield path.with_name(f"{name}.kept")
     for number in count(2):
-        yield path.with_name(f"{path.name}.kept{number}")
+        yield path.with_name(f"{name}.kept{number}")
 
 
 def _link(source: Path, target: Path) -> None:

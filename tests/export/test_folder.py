@@ -7,12 +7,15 @@ import os
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 import firm_hdl
+from firm_hdl.cli import main
 from firm_hdl.export import folder as module
+from firm_hdl.export.build import Built
 from firm_hdl.export.exchange import exchange, locked
 from tests.export import strikes
 from tests.export.strikes import NEW, OLD, texts, with_manifest
@@ -124,6 +127,43 @@ def test_what_is_written_to_the_old_folder_meanwhile_is_moved(target, monkeypatc
     assert found["late.txt"] == "late"
     assert {found["notes"], found["notes.kept"]} == {"first", "changed"}
     assert sorted(path.name for path in target.parent.iterdir()) == ["type"]
+
+
+def test_what_gets_another_name_is_told(target):
+    new = "mine.txt"
+    (target / "notes").write_text("mine")
+    for number in ("1", "2", "3"):
+        (target / new).write_text(number)
+        renamed = module.replace(target, with_manifest(NEW))
+        assert list(renamed) == [new]
+        assert (target / renamed[new]).read_text() == number
+        assert (target / new).read_text() == NEW[new]
+        # As if another version had not written it.
+        module.replace(target, with_manifest(OLD))
+        assert not (target / new).exists()
+    kept = {each.name: each.read_text() for each in target.glob(f"{new}.kept*")}
+    assert kept == {f"{new}.kept": "1", f"{new}.kept2": "2", f"{new}.kept3": "3"}
+    assert (target / "notes").read_text() == "mine"
+    assert module.replace(target, with_manifest(OLD)) == {}
+
+
+def test_the_command_says_what_got_another_name(monkeypatch, capsys):
+    def build(
+        *arguments: object, report: Callable[[Built], None], **options: object
+    ) -> list[Built]:
+        renamed = {"mine.txt": "mine.txt.kept", "a": "a.kept"}
+        made = Built(
+            name="T", folder=Path("out"), was_current=False, description="", renamed=renamed
+        )
+        report(made)
+        return [made]
+
+    monkeypatch.setattr(sys.modules["firm_hdl.export.build"], "build", build)
+    main(["build", "std_msgs/msg/Bool"])
+    assert capsys.readouterr().out.splitlines()[1:3] == [
+        "        your own a there is a.kept now",
+        "        your own mine.txt there is mine.txt.kept now",
+    ]
 
 
 @pytest.mark.parametrize("kind", ["fifo", "link", "dangling", "socket_name", "read_only"])
