@@ -21,8 +21,8 @@ from rosbags.typesys import Stores, get_typestore
 
 from firm_hdl import load_message
 from firm_hdl.cli import main as firm_hdl
-from firm_hdl.export.names import identifier
 from firm_hdl.gateware.signatures import Status
+from firm_hdl.names.identifiers import identifier
 from firm_hdl.sim import loopback
 
 __all__ = ["main"]

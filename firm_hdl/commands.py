@@ -85,7 +85,7 @@ def _plan(given: argparse.Namespace) -> None:
 
 def _info(given: argparse.Namespace) -> None:
     from firm_hdl.export.build import load_all, plan_of
-    from firm_hdl.export.timing import describe, timing
+    from firm_hdl.plan.timing import describe, timing
 
     for message in load_all(_library(given), given.types):
         plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
@@ -158,7 +158,7 @@ def _library(given: argparse.Namespace) -> Library:
 
 
 def _add_build(command: argparse.ArgumentParser) -> None:
-    from firm_hdl.export.vhdl_user_build import PORTS
+    from firm_hdl.export.vhdl.backend import PORTS
 
     _add_types(command)
     _add_options(command)

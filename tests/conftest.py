@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import os
+import shutil
 from pathlib import Path
 
 import pytest
+
+from tests.tools import need
+from tests.vhdl.ghdl import GHDL
 
 # The packages of the workspace that happens to be active are nobody's business here.
 for _name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
@@ -24,3 +28,21 @@ def corpus() -> Path:
     if folder is None and os.environ.get("CI"):
         pytest.fail("FIRM_HDL_CORPUS is not set, and CI must not skip this")
     pytest.skip("FIRM_HDL_CORPUS names no folder")
+
+
+@pytest.fixture
+def ghdl() -> str:
+    """GHDL's path."""
+    return need("GHDL", GHDL)
+
+
+@pytest.fixture
+def iverilog() -> str:
+    """Icarus Verilog's path."""
+    return need("Icarus Verilog", shutil.which("iverilog"))
+
+
+@pytest.fixture
+def verilator() -> str:
+    """Verilator's path."""
+    return need("Verilator", shutil.which("verilator"))

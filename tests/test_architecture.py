@@ -13,9 +13,15 @@ MOST_LINES = 450
 
 # Text to syntax to model to layout to plan to circuit to Verilog and VHDL: what each part may use.
 MAY_IMPORT = {
+    # Of no message: these could be packages of their own.
     "terminal": set[str](),
     "errors": {"terminal"},
     "files": set[str](),
+    "jobs": set[str](),
+    "names": set[str](),
+    "rtlil": set[str](),
+    "vhdl": {"names", "rtlil"},
+    # Of messages.
     "model": {"errors"},
     "frontend": {"errors", "files", "model"},
     "identity": {"errors", "model", "frontend"},
@@ -24,14 +30,19 @@ MAY_IMPORT = {
     "plan": {"errors", "model", "wire"},
     "gateware": {"errors", "model", "wire", "plan"},
     "sim": {"errors", "model", "frontend", "wire", "plan", "gateware"},
-    "export": {"firm_hdl", "errors", "files", "model", "frontend", "wire", "plan", "gateware"},
+    "export": {"firm_hdl", "errors", "files", "names", "vhdl", "model", "frontend", "wire", "plan"},
 }
+MAY_IMPORT["export"] |= {"gateware"}
 MAY_IMPORT["verify"] = {
     *MAY_IMPORT["export"],
-    *("export", "identity", "metrics", "sim", "terminal"),
+    *("export", "identity", "jobs", "metrics", "sim", "terminal"),
 }
-# Of `verify`, it uses what runs many processes.
-MAY_IMPORT["equivalence"] = {*MAY_IMPORT["verify"], "verify"}
+MAY_IMPORT["equivalence"] = {
+    *("firm_hdl", "errors", "jobs", "names", "rtlil", "terminal", "vhdl"),
+    *("model", "frontend", "wire", "plan", "gateware", "export"),
+    # Which types have all constructs, and where tools are.
+    "verify",
+}
 MAY_IMPORT["commands"] = {*MAY_IMPORT["verify"], "verify", "identity", "metrics", "equivalence"}
 MAY_IMPORT["cli"] = {"firm_hdl", "errors", "terminal", "commands"}
 # The package's own face.

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.export.conftest import need
-from tests.export.ghdl import GHDL
 from tests.test_examples import ROOT, load
+from tests.tools import need
+from tests.vhdl.ghdl import GHDL
 
 EXAMPLES = ROOT / "examples"
 

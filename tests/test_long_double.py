@@ -9,9 +9,9 @@ import pytest
 
 from firm_hdl.cli import main
 from firm_hdl.verify import ts2
+from tests.tools import need
+from tests.vhdl.ghdl import GHDL
 
-from .export.conftest import need
-from .export.ghdl import GHDL
 from .frontend.workspace import make_files
 
 TEXT = """\

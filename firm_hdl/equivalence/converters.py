@@ -11,14 +11,14 @@ from firm_hdl.equivalence.circuit import ProofError
 from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT, Proof, prove
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, check_size, plan_of
-from firm_hdl.export.names import identifier
 from firm_hdl.export.top import DIRECTIONS, Direction, Top
-from firm_hdl.export.vhdl import Vhdl, convert
 from firm_hdl.frontend import open_library
 from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.jobs.processes import in_processes
 from firm_hdl.model import Message
+from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
-from firm_hdl.verify.processes import in_processes
+from firm_hdl.vhdl.convert import Vhdl, convert
 from firm_hdl.wire import Wire
 
 __all__ = ["Attempt", "Task", "attempt", "both", "converter_vhdl", "prove_converter", "run_tasks"]

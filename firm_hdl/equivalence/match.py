@@ -18,7 +18,7 @@ _CELL = re.compile(r"cell \\(\S+) \\(\S+)$")
 
 
 class Names(Protocol):
-    """What one module's things are called in VHDL; see `firm_hdl.export.vhdl.EntityNames`."""
+    """What one module's things are called in VHDL; see `firm_hdl.vhdl.convert.EntityNames`."""
 
     @property
     def signals(self) -> Mapping[str, str]:

@@ -17,7 +17,7 @@ from firm_hdl.equivalence.rtlil_side import read_rtlil
 from firm_hdl.equivalence.solve import solve
 from firm_hdl.equivalence.tools import Tools, find_tools
 from firm_hdl.equivalence.vhdl_side import read_vhdl
-from firm_hdl.export.vhdl import Vhdl, convert
+from firm_hdl.vhdl.convert import Vhdl, convert
 
 __all__ = ["DEFAULT_TIMEOUT", "Proof", "Result", "prove"]
 
@@ -88,7 +88,7 @@ def prove(
     design : elaboratable or str
         An Amaranth component or other elaboratable, or RTLIL text of `amaranth.back.rtlil`.
     vhdl : Vhdl or None
-        What `firm_hdl.export.vhdl.convert` has made of it; made here by default.
+        What `firm_hdl.vhdl.convert.convert` has made of it; made here by default.
     name, ports, platform
         As for `convert`.
     timeout : float

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from firm_hdl.export.build import BuildError, Built, build
-from firm_hdl.export.names import flat_names, identifier, scope_names
 from firm_hdl.export.top import Port, Top, ports_of
 from firm_hdl.export.verilog import to_verilog
+from firm_hdl.names.identifiers import flat_names, identifier, scope_names
 
 __all__ = [
     "BuildError",

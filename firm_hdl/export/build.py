@@ -18,19 +18,19 @@ from typing import Any
 from firm_hdl.errors import DefinitionError, Diagnostic, UserError
 from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
 from firm_hdl.export.manifest import MANIFEST, inputs_of, make_manifest, module_name, to_json
-from firm_hdl.export.names import identifier
 from firm_hdl.export.packaging import packaging
-from firm_hdl.export.picture import to_svg
-from firm_hdl.export.timing import Timing, describe, timing
 from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, Direction, Top, ports_of
 from firm_hdl.export.verilog import WAIVERS, to_verilog, waivers
-from firm_hdl.export.vhdl_user_build import FOLDER, Ports, to_vhdl
-from firm_hdl.export.vhdl_user_tree import tree_of
+from firm_hdl.export.vhdl.backend import FOLDER, Ports, to_vhdl
+from firm_hdl.export.vhdl.tree import tree_of
 from firm_hdl.frontend import DEFAULT_DISTRO, Library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
+from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan, to_yaml
+from firm_hdl.plan.timing import Timing, describe, timing
 from firm_hdl.wire import Wire, lay_out, refusals
+from firm_hdl.wire.picture import to_svg
 
 __all__ = ["BuildError", "Built", "build", "check_size", "load_all", "plan_of"]
 
@@ -51,7 +51,7 @@ class Built:
     was_current : bool
         Whether there was nothing to do.
     description : str
-        What the converters cost, for people; see :func:`firm_hdl.export.timing.describe`.
+        What the converters cost, for people; see :func:`firm_hdl.plan.timing.describe`.
     renamed : mapping of str to str
         What a user's own files in the folder are called now, where they had the name of one that
         was written.

@@ -14,11 +14,11 @@ from math import isfinite
 from typing import Any
 
 import firm_hdl
-from firm_hdl.export.timing import LINE_RATES, Cost, Timing, clock_mhz
 from firm_hdl.export.top import DIRECTIONS, Direction, leaf_names, ports_of
 from firm_hdl.gateware.signatures import LATENCY_CYCLES, Status
 from firm_hdl.model import Array, Constant, Field, Message, Sequence
 from firm_hdl.plan import Leaf, Plan, to_yaml
+from firm_hdl.plan.timing import LINE_RATES, Cost, Timing, clock_mhz
 
 __all__ = ["FORMAT", "MANIFEST", "inputs_of", "make_manifest", "module_name", "to_json"]
 
@@ -83,7 +83,7 @@ def make_manifest(
     files : mapping of str to str
         Text of every other file in it, by name.
     vhdl : mapping
-        What there is in VHDL; see :func:`firm_hdl.export.vhdl_user_build.to_vhdl`.
+        What there is in VHDL; see :func:`firm_hdl.export.vhdl.backend.to_vhdl`.
     """
     statuses: Any = Status
     return {

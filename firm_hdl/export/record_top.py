@@ -1,7 +1,7 @@
 """Top levels with the record view: a message of fixed size as one vector, all of it valid at once.
 
 The vector is the record's layout as `gateware.record_layout` gives it, the first field lowest; the
-user's layer in VHDL makes a record of it (:mod:`firm_hdl.export.vhdl_user_values`).
+user's layer in VHDL makes a record of it (:mod:`firm_hdl.export.vhdl.values`).
 """
 
 from __future__ import annotations

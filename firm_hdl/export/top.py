@@ -15,9 +15,9 @@ from amaranth.hdl import Cat, ClockDomain, Module, Mux, Shape, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.export.names import flat_names
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.signatures import leaf_shape
+from firm_hdl.names.identifiers import flat_names
 from firm_hdl.plan import Leaf, Plan
 
 __all__ = ["DIRECTIONS", "MAX_INPUT_BITS", "Direction", "Port", "Top", "leaf_names", "ports_of"]

@@ -21,9 +21,9 @@ from amaranth._toolchain.yosys import find_yosys
 from amaranth.back import rtlil
 
 from firm_hdl.errors import UserError
-from firm_hdl.export.keywords import KEYWORDS
-from firm_hdl.export.names import first_free
 from firm_hdl.export.top import Top
+from firm_hdl.names.identifiers import first_free
+from firm_hdl.names.keywords import KEYWORDS
 
 if sys.platform != "win32":
     import resource

@@ -19,9 +19,10 @@ from collections.abc import Set as AbstractSet
 from itertools import chain
 from typing import Any
 
-from firm_hdl.export.names import identifier
 from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.model import Message
+from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Edge, Payload, build_plan
 from firm_hdl.plan.edges import edges
 from firm_hdl.plan.interpret import decode, encode
@@ -54,7 +55,6 @@ from firm_hdl.verify.figures import digest, figures
 from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.options import Options, Result
 from firm_hdl.verify.oracle import Oracle, Transfers
-from firm_hdl.verify.processes import cpu_seconds
 from firm_hdl.verify.references import WIDE_REFERENCES, confirm, may_stand_in
 from firm_hdl.verify.simulators import simulator
 from firm_hdl.verify.user_oracle import Judge, NotJudgedError, judge_of

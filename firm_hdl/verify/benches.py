@@ -25,14 +25,14 @@ from tqdm import tqdm
 
 from firm_hdl.export.build import BuildError, Built, build, check_size, plan_of
 from firm_hdl.export.manifest import MANIFEST
-from firm_hdl.export.vhdl_bench import RUN_SCRIPT
+from firm_hdl.export.vhdl.bench import RUN_SCRIPT
 from firm_hdl.frontend import DISTROS
+from firm_hdl.jobs.executors import run_each
+from firm_hdl.jobs.processes import ToolError, cpu_seconds, made_by, run_tool
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
 from firm_hdl.sim.payloads import encoder_of
 from firm_hdl.verify.cases import Case
-from firm_hdl.verify.executors import run_each
 from firm_hdl.verify.libraries import library_of
-from firm_hdl.verify.processes import ToolError, cpu_seconds, made_by, run_tool
 from firm_hdl.verify.records import Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.references import WIDE_REFERENCES, confirm, may_stand_in
 from firm_hdl.verify.runner import Task

@@ -15,13 +15,13 @@ from firm_hdl.errors import Diagnostic
 from firm_hdl.export.build import BuildError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.search import workspace_folders
+from firm_hdl.jobs.executors import PROCESSES, ExecutorError, check_executor
+from firm_hdl.jobs.processes import unwound_when_terminated
 from firm_hdl.plan import BUS_BYTES
 from firm_hdl.verify.benches import Benches
 from firm_hdl.verify.ending import concluded, is_well
 from firm_hdl.verify.environment import code_digest, environment, inputs_digest
-from firm_hdl.verify.executors import PROCESSES, ExecutorError, check_executor
 from firm_hdl.verify.options import LONGEST, Options
-from firm_hdl.verify.processes import unwound_when_terminated
 from firm_hdl.verify.replay_command import (
     add_replay_arguments,
     check_replay,

@@ -18,8 +18,8 @@ from pathlib import Path
 from firm_hdl.export.build import BuildError, check_size
 from firm_hdl.export.top import Top
 from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.jobs.processes import ToolError
 from firm_hdl.sim.record import Seen
-from firm_hdl.verify.processes import ToolError
 from firm_hdl.verify.semantics import Traffic, traffic
 from firm_hdl.verify.simulators import TextSimulator
 from firm_hdl.verify.trace import Trace, read_row

@@ -16,10 +16,10 @@ from pathlib import Path
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
-from firm_hdl.export.names import identifier
 from firm_hdl.files import read_file
 from firm_hdl.frontend import DISTROS, Library, open_library
 from firm_hdl.model import Message
+from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan, check, from_yaml, to_yaml
 from firm_hdl.plan.compare import Change, compare
 from firm_hdl.verify.verdict import Failed, Passed, Verdict

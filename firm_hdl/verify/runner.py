@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend import Library
 from firm_hdl.identity import in_order
+from firm_hdl.jobs.executors import PROCESSES, run_each
 from firm_hdl.model import Message
 from firm_hdl.verify.acceptance import Options, Result, accept
-from firm_hdl.verify.executors import PROCESSES, run_each
 from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.oracle import DISTRO_STORES, distro_oracle
 from firm_hdl.verify.replay import replay
@@ -149,7 +149,7 @@ def run_tasks(
     Parameters
     ----------
     executor : str
-        See :func:`firm_hdl.verify.executors.run_each`.
+        See :func:`firm_hdl.jobs.executors.run_each`.
     golden_only : container of Task
         Those whose circuit is not to be simulated.
     """

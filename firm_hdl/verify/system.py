@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, TypeVar
 
 from firm_hdl.frontend import DISTROS
-from firm_hdl.verify.executors import PROCESSES, ExecutorError, run_each
+from firm_hdl.jobs.executors import PROCESSES, ExecutorError, run_each
 from firm_hdl.verify.records import Record, Test, settled
 from firm_hdl.verify.results import ResultsWriter
 from firm_hdl.verify.verdict import Verdict
@@ -138,7 +138,7 @@ def run_shares(
     Raises
     ------
     ExecutorError
-        See :func:`firm_hdl.verify.executors.run_each`.
+        See :func:`firm_hdl.jobs.executors.run_each`.
     """
     again: list[tuple[K, ...]] = []
     tasks = [(share, (context, share)) for share in shares]

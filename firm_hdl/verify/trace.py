@@ -18,10 +18,10 @@ from dataclasses import dataclass
 from amaranth.hdl import Cat, Const, Value
 from amaranth.lib import data
 
-from firm_hdl.export.names import identifier
 from firm_hdl.export.top import Direction, Port, leaf_names, ports_of
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.signatures import leaf_streams
+from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan
 
 __all__ = ["ARESETN", "Device", "Pin", "Trace", "read_row"]

@@ -20,13 +20,13 @@ from tqdm import tqdm
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
+from firm_hdl.jobs.executors import PROCESSES
+from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, check, from_yaml, to_yaml
-from firm_hdl.verify.executors import PROCESSES
 from firm_hdl.verify.figures import digest, figures
 from firm_hdl.verify.golden import Checked, Golden, check_golden, read_golden
 from firm_hdl.verify.libraries import library_of
-from firm_hdl.verify.processes import cpu_seconds
 from firm_hdl.verify.records import Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.runner import Task
 from firm_hdl.verify.system import (
@@ -148,7 +148,7 @@ class Ts2(System):
     jobs : int or None
         Processes; `None`: one per processor.
     executor : str
-        See :func:`firm_hdl.verify.executors.run_each`.
+        See :func:`firm_hdl.jobs.executors.run_each`.
 
     Raises
     ------

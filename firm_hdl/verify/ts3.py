@@ -12,7 +12,7 @@ from typing import Any
 from tqdm import tqdm
 
 from firm_hdl.frontend import DISTROS
-from firm_hdl.verify.executors import PROCESSES
+from firm_hdl.jobs.executors import PROCESSES
 from firm_hdl.verify.options import Options, Result
 from firm_hdl.verify.recorded import record_of, same_circuits, test_of
 from firm_hdl.verify.records import Record, Test, settled
@@ -34,7 +34,7 @@ class How:
     jobs : int or None
         Processes; `None`: one per processor.
     executor : str
-        See :func:`firm_hdl.verify.executors.run_each`.
+        See :func:`firm_hdl.jobs.executors.run_each`.
     share_circuits : bool
         Whether types with the same circuit are simulated once.
     """

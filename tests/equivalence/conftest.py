@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.equivalence import MissingToolError, Tools, find_tools
-from tests.export.conftest import need
+from tests.tools import need
 
 
 @pytest.fixture

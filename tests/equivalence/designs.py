@@ -12,7 +12,7 @@ from itertools import pairwise
 from amaranth.back import rtlil
 from amaranth.hdl import Elaboratable, Module, Signal
 
-from firm_hdl.export.vhdl import Vhdl
+from firm_hdl.vhdl.convert import Vhdl
 
 __all__ = ["Small", "broken_rtlil", "broken_vhdl", "small_rtlil"]
 

@@ -20,9 +20,9 @@ from firm_hdl.equivalence import ProofError, Tools, prove
 from firm_hdl.equivalence.converters import converter_vhdl, prove_converter
 from firm_hdl.export import build
 from firm_hdl.export.top import DIRECTIONS, Direction
-from firm_hdl.export.vhdl import Vhdl, convert
+from firm_hdl.vhdl.convert import Vhdl, convert
 from tests.equivalence.designs import Small, broken_rtlil, broken_vhdl, small_rtlil
-from tests.export import random_designs
+from tests.vhdl import random_designs
 
 EVERY = 1 if os.environ.get("FIRM_HDL_BROKEN") else 5
 

@@ -15,7 +15,7 @@ import pytest
 import firm_hdl
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, Built, build, check_size
-from firm_hdl.export.vhdl_user_build import VhdlFolder
+from firm_hdl.export.vhdl.backend import VhdlFolder
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, from_yaml
 from firm_hdl.wire import lay_out

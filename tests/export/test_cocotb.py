@@ -13,7 +13,7 @@ import pytest
 
 from firm_hdl.export.build import build
 from firm_hdl.verify.stimuli import stimuli
-from tests.export.conftest import need
+from tests.tools import need
 
 LOOPBACK = """\
 module loopback (

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.export import names
 from firm_hdl.export.build import build
-from firm_hdl.export.keywords import KEYWORDS, VERILOG, VHDL
-from firm_hdl.export.vhdl_types import user_layer
-from firm_hdl.export.vhdl_user_wrapper import Core
+from firm_hdl.export.vhdl.layer import user_layer
+from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.frontend import Library
+from firm_hdl.names import identifiers as names
+from firm_hdl.names.keywords import KEYWORDS, VERILOG, VHDL
 from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out
 from tests.export.test_packaging import run

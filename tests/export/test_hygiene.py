@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 
 from firm_hdl.export.build import build
-from firm_hdl.export.keywords import KEYWORDS, VERILOG, VHDL
-from tests.export.conftest import need
+from firm_hdl.names.keywords import KEYWORDS, VERILOG, VHDL
+from tests.tools import need
 
 # Strings and nested sequences; a fixed size and so a record view; arrays in a record view.
 TYPES = (

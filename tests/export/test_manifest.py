@@ -9,12 +9,12 @@ import struct
 import pytest
 
 from firm_hdl.export.manifest import FORMAT, inputs_of, make_manifest, to_json
-from firm_hdl.export.timing import LINE_RATES, timing
 from firm_hdl.export.top import DIRECTIONS, leaf_names, ports_of
 from firm_hdl.frontend import Library
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.model import Message
 from firm_hdl.plan import build_plan, decode, encode, to_yaml
+from firm_hdl.plan.timing import LINE_RATES, timing
 from firm_hdl.wire import lay_out
 from tests.frontend.workspace import library
 

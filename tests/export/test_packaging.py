@@ -15,7 +15,7 @@ import pytest
 from firm_hdl.export.build import build
 from firm_hdl.export.packaging import packaging
 from firm_hdl.verify.stimuli import stimuli
-from tests.export.conftest import need
+from tests.tools import need
 
 TYPES = ("geometry_msgs/msg/Vector3", "std_msgs/msg/Header")
 VECTOR, HEADER = "geometry_msgs_msg_vector3_cdr_8", "std_msgs_msg_header_cdr_8"

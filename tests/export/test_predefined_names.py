@@ -13,17 +13,17 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.export.keywords import KEYWORDS
-from firm_hdl.export.vhdl_names import PREDEFINED, USED
-from firm_hdl.export.vhdl_user_constants import named_constants
+from firm_hdl.export.vhdl.constants import named_constants
+from firm_hdl.names.keywords import KEYWORDS
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.stimuli import stimuli
+from firm_hdl.vhdl.names import PREDEFINED, USED
 from firm_hdl.wire import lay_out
-from tests.export.conftest import need
-from tests.export.ghdl import GHDL
-from tests.export.test_vhdl_bench import run
-from tests.export.test_vhdl_types import analyse, vhdl_of, write
+from tests.export.vhdl.test_bench import run
+from tests.export.vhdl.test_layer import analyse, vhdl_of, write
 from tests.frontend.workspace import library
+from tests.tools import need
+from tests.vhdl.ghdl import GHDL
 
 # Packages of the benches; the first three are those that nearly every design uses.
 PACKAGES = {

@@ -144,7 +144,7 @@ def test_every_test_file_is_of_one_system_or_of_the_rest():
     assert {system_of(name) for name in names} == {*SYSTEMS, REST}
     assert not any(name.startswith("tests/mutation") for name in names)
     assert system_of("tests/frontend/idl/test_read.py::test_it[1]") == "ts1"
-    assert system_of("tests/export/test_vhdl_bench.py") == "ghdl"
+    assert system_of("tests/export/vhdl/test_bench.py") == "ghdl"
     assert system_of("tests/test_cli.py") == "rest"
     assert test_files(ROOT, ["tests/wire"]) == [name for name in names if "tests/wire/" in name]
     assert mirrors("tests/frontend/idl/test_parse.py", "firm_hdl/frontend/idl/idl.lark")

@@ -6,7 +6,7 @@ import pytest
 
 from firm_hdl.verify.simulators import SimulatorMissingError, TextSimulator, find_ghdl, simulator
 from firm_hdl.verify.sut import client
-from tests.export.conftest import need
+from tests.tools import need
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 import firm_hdl.verify.benches as benches
 import firm_hdl.verify.references as references
 from firm_hdl.cli import main
-from firm_hdl.export.vhdl_bench import RUN_SCRIPT
+from firm_hdl.export.vhdl.bench import RUN_SCRIPT
 from firm_hdl.frontend import Library
 from firm_hdl.verify.benches import Benches, BenchRun, run_bench
 from firm_hdl.verify.results import read_results
@@ -15,13 +15,13 @@ from firm_hdl.verify.runner import collect_tasks
 from firm_hdl.verify.sut import client
 from firm_hdl.verify.system import Recorder
 from firm_hdl.verify.verdict import Failed, NotJudged
-from tests.export.conftest import need
+from tests.tools import need
 from tests.verify.judged import assert_passed
 from tests.verify.samples import own_package
 
 HEADER = "std_msgs/msg/Header"
 
-# Those of tests/export/test_vhdl_bench.py have no loops and no arrays but of floats.
+# Those of tests/export/vhdl/test_bench.py have no loops and no arrays but of floats.
 SAMPLE = [
     # Two levels of loops over strings.
     ("lyrical", "diagnostic_msgs/msg/DiagnosticArray", 8),

@@ -12,10 +12,10 @@ import firm_hdl.verify.acceptance as acceptance
 import firm_hdl.verify.simulators.ghdl as exported
 from firm_hdl import Serializer, load_message
 from firm_hdl.export.top import Top
+from firm_hdl.jobs.processes import ToolError
 from firm_hdl.sim import Harness, Stalls
 from firm_hdl.verify import Options, Result, accept
 from firm_hdl.verify.crosscheck import first_difference
-from firm_hdl.verify.processes import ToolError
 from firm_hdl.verify.semantics import traffic
 from firm_hdl.verify.simulators import Ghdl, SimulatorMissingError, TextSimulator, find_ghdl
 from firm_hdl.verify.trace import Trace

@@ -12,8 +12,8 @@ import pytest
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.export.build import build
 from firm_hdl.export.top import Top
+from firm_hdl.jobs.processes import ToolError, run_tool
 from firm_hdl.verify import Options, Result, accept
-from firm_hdl.verify.processes import ToolError, run_tool
 from firm_hdl.verify.simulators import (
     Icarus,
     SimulatorMissingError,

@@ -11,7 +11,7 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.verify import Options
 from firm_hdl.verify.recording import Selection, select, topics_of
 from firm_hdl.verify.replay import replay
-from tests.export.conftest import need
+from tests.tools import need
 from tests.verify.judged import assert_passed
 from tests.verify.robot import FORMATS, robot, write
 

@@ -12,7 +12,7 @@ from firm_hdl.verify.references import WRITERS, confirm, find_references, refere
 from firm_hdl.verify.sut import CLIENTS, Refusal, client
 from firm_hdl.verify.sut.client import UnsupportedError
 from firm_hdl.verify.verdict import NotJudged
-from tests.export.conftest import need
+from tests.tools import need
 from tests.verify.judged import NAN_KEY, assert_passed
 
 FAST_CDR = ("fastcdr", "fastcdr-2.2", "fastcdr-2.3")

@@ -158,7 +158,7 @@ def test_times_are_no_part_of_what_is_compared():
 FAKE = """
 import sys, time
 from tests.verify.report.samples import a_record, a_test
-from firm_hdl.verify.executors import run_each
+from firm_hdl.jobs.executors import run_each
 from firm_hdl.verify.results import ResultsWriter
 from firm_hdl.verify.verdict import Failed, Passed
 

@@ -12,16 +12,16 @@ from firm_hdl.cli import main
 from firm_hdl.equivalence import MissingToolError, ProofError, Tools, find_tools, prove
 from firm_hdl.equivalence.converters import converter_vhdl
 from firm_hdl.frontend import Library
+from firm_hdl.jobs.processes import ToolError
 from firm_hdl.verify import Options, accept, distro_oracle, make_cases
 from firm_hdl.verify.crosscheck import Comparison
-from firm_hdl.verify.processes import ToolError
 from firm_hdl.verify.references import confirm
 from firm_hdl.verify.simulators import SimulatorMissingError, Verilator
 from firm_hdl.verify.sut import CLIENTS
 from firm_hdl.verify.sut.client import ClientDiedError, each_answered
 from firm_hdl.verify.sut.judge import Contest
 from firm_hdl.verify.verdict import Failed, NotJudged, Passed
-from tests.export.conftest import need
+from tests.tools import need
 
 BOOL = "std_msgs/msg/Bool"
 SILENT = {0: "#!/bin/sh\nexit 0\n", 1: "#!/bin/sh\nexit 1\n"}

@@ -10,12 +10,12 @@ import pytest
 import firm_hdl
 from firm_hdl import load_message
 from firm_hdl.errors import DefinitionError
-from firm_hdl.export.timing import timing
 from firm_hdl.frontend import Library, show
 from firm_hdl.identity import TooLargeError, proto
 from firm_hdl.metrics import metrics_of
 from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence
 from firm_hdl.plan import build_plan
+from firm_hdl.plan.timing import timing
 from firm_hdl.wire import MAX_LEAVES, MAX_LEVELS, lay_out, refusals
 from tests.frontend.workspace import make_files
 from tests.steps import calls_at_most
@@ -139,7 +139,7 @@ def test_an_example_is_counted_to_the_character(monkeypatch, tmp_path):
 
 
 def test_loops_in_loops_end_the_search_for_the_hardest_packet(monkeypatch):
-    monkeypatch.setattr("firm_hdl.export.timing.MOST_TRANSFERS", 100)
+    monkeypatch.setattr("firm_hdl.plan.timing.MOST_TRANSFERS", 100)
     top = chain(10, lambda kind: Sequence(element=kind, bound=None))
     plan = build_plan(lay_out(top))
     with calls_at_most(60_000):

@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from firm_hdl.export.top import Top
-from firm_hdl.export.vhdl import convert
-from firm_hdl.verify.processes import made_by, run_tool
+from firm_hdl.jobs.processes import made_by, run_tool
 from firm_hdl.verify.replay_bench import replay_bench
 from firm_hdl.verify.simulators.interface import find_program
 from firm_hdl.verify.trace import Trace
+from firm_hdl.vhdl.convert import convert
 
 __all__ = ["Ghdl", "find_ghdl"]
 

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from firm_hdl.export.top import Top
-from firm_hdl.verify.processes import ToolError, made_by, run_tool
+from firm_hdl.jobs.processes import ToolError, made_by, run_tool
 from firm_hdl.verify.simulators.interface import SimulatorMissingError, find_program
 from firm_hdl.verify.simulators.verilog import (
     RESULTS,

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from firm_hdl.export.manifest import module_name
-from firm_hdl.export.names import identifier
 from firm_hdl.export.top import Top
 from firm_hdl.export.verilog import to_verilog
+from firm_hdl.names.identifiers import identifier
 from firm_hdl.verify.trace import Device, Pin, Trace
 
 __all__ = ["RESULTS", "STIMULI", "instances", "module_of", "vector", "write_inputs"]

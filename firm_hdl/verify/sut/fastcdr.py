@@ -19,9 +19,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
+from firm_hdl.jobs.processes import ToolError, hang_up, made_by, run_tool
 from firm_hdl.model import Array, FieldType, Message, Primitive, Text
 from firm_hdl.model import Sequence as SequenceType
-from firm_hdl.verify.processes import ToolError, hang_up, made_by, run_tool
 from firm_hdl.verify.ros2_wheels import RELEASES, Release
 from firm_hdl.verify.sut.client import (
     BatchCodec,

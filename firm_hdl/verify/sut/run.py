@@ -7,13 +7,13 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
 from firm_hdl.errors import DefinitionError
+from firm_hdl.jobs.processes import in_processes
 from firm_hdl.model import Message
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.cases import make_cases
 from firm_hdl.verify.directed import more_cases
 from firm_hdl.verify.effort import some_cases
 from firm_hdl.verify.libraries import library_of
-from firm_hdl.verify.processes import in_processes
 from firm_hdl.verify.runner import Task
 from firm_hdl.verify.sut.clients import REFERENCES, client
 from firm_hdl.verify.sut.judge import Contest, Trial

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from firm_hdl.errors import DefinitionError
+from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.model import Interface
-from firm_hdl.verify.processes import cpu_seconds
 from firm_hdl.verify.records import OracleVerdict
 from firm_hdl.verify.ts1.again import Again
 from firm_hdl.verify.ts1.case import Case

@@ -14,7 +14,7 @@ from functools import cached_property
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
-from firm_hdl.verify.executors import ExecutorError
+from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.verify.records import OracleVerdict
 from firm_hdl.verify.runner import UnknownTypeError
 from firm_hdl.verify.system import run_shares, shares_of

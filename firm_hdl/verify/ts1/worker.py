@@ -10,7 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from firm_hdl.verify.processes import hang_up
+from firm_hdl.jobs.processes import hang_up
 
 __all__ = ["DIED", "ROS_PYTHON", "Worker"]
 

@@ -21,7 +21,7 @@ from firm_hdl.frontend.syntax import (
     TypeSyntax,
     ValueSyntax,
 )
-from tests.export.conftest import need
+from tests.tools import need
 
 __all__ = ["describe", "read", "rosidl"]
 

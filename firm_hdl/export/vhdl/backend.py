@@ -1,0 +1,235 @@
+"""The VHDL folder of a message type: cores, the user's layer, test benches, stimuli and script."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeAlias
+
+from firm_hdl.export.record_top import RecordTop, why_no_record
+from firm_hdl.export.top import DIRECTIONS, Direction, Top
+from firm_hdl.export.vhdl.bench import RUN_SCRIPT, STIMULI, bench, run_script
+from firm_hdl.export.vhdl.bench_views import View, flat_view, record_view, stream_view
+from firm_hdl.export.vhdl.constants import Named
+from firm_hdl.export.vhdl.layer import flat_package, user_layer
+from firm_hdl.export.vhdl.parts import PARTS, packets_text
+from firm_hdl.export.vhdl.types import TYPES_NAME
+from firm_hdl.export.vhdl.wrapper import Core
+from firm_hdl.model import Message
+from firm_hdl.names.identifiers import identifier
+from firm_hdl.plan import Plan
+from firm_hdl.vhdl.convert import convert
+from firm_hdl.vhdl.package import PACKAGE_NAME
+
+__all__ = ["FOLDER", "PORTS", "Ports", "VhdlFolder", "to_vhdl"]
+
+Ports: TypeAlias = Literal["records", "flat"]
+PORTS: tuple[Ports, ...] = ("records", "flat")
+
+FOLDER = "vhdl"
+"""Where in a type's folder the VHDL is."""
+
+COMMON = (f"{TYPES_NAME}.vhd", f"{PACKAGE_NAME}.vhd")
+"""Files that are the same for all types."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VhdlFolder:
+    """Files, and what the manifest says of them.
+
+    Attributes
+    ----------
+    files : dict of str to str
+        Texts by file name.
+    manifest : dict
+        Its section on VHDL.
+    """
+
+    files: dict[str, str]
+    manifest: dict[str, Any]
+
+
+@dataclass(slots=True, kw_only=True)
+class _Parts:
+    """What there is so far; `design` and `benches` are texts by file name, in compile order."""
+
+    base: str
+    header: str
+    design: dict[str, str] = field(default_factory=dict)
+    benches: dict[str, str] = field(default_factory=dict)
+    section: dict[str, Any] = field(default_factory=dict)
+
+    def core(self, top: Top, name: str) -> Core:
+        made = convert(top, name=name, header=self.header)
+        self.design.update(made.files)
+        # The outermost entity is the last one.
+        return Core(entity=made.top, names=list(made.entities.values())[-1].ports)
+
+    def add_bench(self, view: View, plan: Plan, kind: str = "") -> None:
+        top = f"{self.base}{kind}_tb"
+        what = f"{plan.message}{kind.replace('_', ' ')}, {plan.wire}, bus of {plan.bus_bytes} bytes"
+        self.benches[top] = bench(
+            top, view, bus_bytes=plan.bus_bytes, what=what, files=kind, header=self.header
+        )
+
+
+def to_vhdl(
+    message: Message,
+    plan: Plan,
+    tops: Mapping[Direction, Top],
+    *,
+    name: str,
+    header: str = "",
+    stimuli: Sequence[bytes] = (),
+    ports: Ports = "records",
+) -> VhdlFolder:
+    """Write the VHDL of a message type.
+
+    Parameters
+    ----------
+    tops : mapping of direction to Top
+        Both converters.
+    name : str
+        What all names start with, once they are identifiers in lower case.
+    header : str
+        Lines for a comment at the head of every file that is the type's own.
+    stimuli : sequence of bytes
+        Packets for the test benches. Without any, there is no file of them.
+    ports : "records" or "flat"
+        Whether there is a layer with records around the converters.
+    """
+    parts = _Parts(base=identifier(name).lower(), header=header)
+    cores = {way: parts.core(tops[way], f"{parts.base}_{way}_flat") for way in DIRECTIONS}
+    if ports == "records":
+        _add_records(parts, message, plan, cores)
+    else:
+        _add_flat(parts, message, plan, cores)
+    common = [file for file in COMMON if file in parts.design]
+    design = [*common, *(file for file in parts.design if file not in common)]
+    benches = {**PARTS, **{f"{top}.vhd": text for top, text in parts.benches.items()}}
+    entities = list(parts.benches)
+    files = {
+        **{file: parts.design[file] for file in design},
+        **benches,
+        RUN_SCRIPT: run_script([*design, *benches], entities[0]),
+    }
+    if stimuli:
+        remark = f"Packets of {message.name}, {plan.wire}, written by rosbags; one a line."
+        files[STIMULI] = packets_text(list(stimuli), remark)
+    bench = {
+        "entity": entities[0],
+        "entities": entities,
+        "files": list(benches),
+        "common_files": list(PARTS),
+        "script": RUN_SCRIPT,
+        "stimuli": STIMULI if stimuli else None,
+    }
+    return VhdlFolder(files=files, manifest=_section(parts, ports, design, common, bench))
+
+
+def _section(
+    parts: _Parts,
+    ports: Ports,
+    design: Sequence[str],
+    common: Sequence[str],
+    bench: Mapping[str, Any],
+) -> dict[str, Any]:
+    """Return what the manifest says of the folder; files in the order in which they compile."""
+    return {
+        "folder": FOLDER,
+        "name": parts.base,
+        "standard": "2008",
+        "ports": ports,
+        **parts.section,
+        "files": design,
+        "common_files": common,
+        "bench": bench,
+    }
+
+
+def _add_records(
+    parts: _Parts, message: Message, plan: Plan, cores: Mapping[Direction, Core]
+) -> None:
+    """Add the layer with records, and its benches."""
+    reason = why_no_record(message, plan)
+    whole: dict[Direction, Core] = {}
+    if not reason:
+        options: dict[str, Any] = {"wire": plan.wire, "bus_bytes": plan.bus_bytes}
+        for way in DIRECTIONS:
+            top = RecordTop.of(message, way, max_message_bytes=plan.max_message_bytes, **options)
+            whole[way] = parts.core(top, f"{parts.base}_{way}_record_flat")
+    layer = user_layer(
+        message,
+        plan,
+        name=parts.base,
+        cores=cores,
+        record_cores=whole,
+        header=parts.header,
+    )
+    parts.design = {**layer.packages, **parts.design, **layer.wrappers}
+    parts.add_bench(stream_view(plan, layer), plan)
+    record: dict[str, Any] = {"built": False, "reason": reason}
+    if layer.values is not None:
+        parts.add_bench(record_view(layer), plan, "_record")
+        whole_type = layer.values
+        record = {"built": True, "message_type": whole_type.name, "bits": whole_type.bits}
+    parts.section = {
+        "package": layer.package,
+        "entities": {
+            way: {
+                "records": layer.entities[way],
+                "flat": cores[way].entity,
+                **({"record": layer.record_entities[way]} if whole else {}),
+            }
+            for way in DIRECTIONS
+        },
+        "message_type": layer.tree.root.type,
+        "ready_type": layer.tree.root.ready_type,
+        "record_view": record,
+        "leaves": {
+            str(plan.leaves[node.leaf]): node.access
+            for node in layer.tree.root.leaves()
+            if node.leaf is not None
+        },
+        "constants": [
+            entry
+            for package, named in layer.constants.items()
+            for entry in _constants(named, package)
+        ],
+        "shared_packages": [
+            {
+                "name": each.name,
+                "file": f"{each.name}.vhd",
+                "message": each.message or None,
+                "needs": list(each.needs),
+            }
+            for each in layer.shared
+        ],
+    }
+
+
+def _add_flat(parts: _Parts, message: Message, plan: Plan, cores: Mapping[Direction, Core]) -> None:
+    """Add a package without records, and a bench."""
+    package = f"{parts.base}_pkg"
+    text, constants = flat_package(message, plan, name=package, cores=cores, header=parts.header)
+    parts.design = {f"{package}.vhd": text, **parts.design}
+    parts.add_bench(flat_view(plan, package, cores), plan)
+    parts.section = {
+        "package": package,
+        "entities": {way: {"flat": cores[way].entity} for way in DIRECTIONS},
+        "record_view": {"built": False, "reason": "The ports are flat"},
+        "constants": _constants(constants, package),
+        "shared_packages": [],
+    }
+
+
+def _constants(named: Iterable[Named], package: str) -> list[dict[str, str]]:
+    return [
+        {
+            "type": entry.owner.name,
+            "constant": entry.constant.name,
+            "package": package,
+            "name": entry.name,
+        }
+        for entry in named
+    ]

@@ -1,0 +1,204 @@
+"""What the test benches see of a pair of converters: streams that go from one to the other.
+
+A bench is the same text whether the converters have records of streams, a record of values, or
+plain ports; a view says how to connect them and what each stream is called.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from firm_hdl.export.top import DIRECTIONS, Direction, Port, leaf_names, ports_of
+from firm_hdl.export.vhdl.layer import UserLayer
+from firm_hdl.export.vhdl.types import TYPES_NAME, primitive_name
+from firm_hdl.export.vhdl.wrapper import Core
+from firm_hdl.plan import Leaf, Plan
+
+__all__ = ["Channel", "View", "flat_view", "record_view", "stream_view"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Channel:
+    """A stream between the converters.
+
+    Attributes
+    ----------
+    label : str
+        What it is called in the file of transfers.
+    rx, tx : mapping of str to str
+        Signals of the deserializer and of the serializer: ``data``, ``valid``, ``ready``, and for
+        items ``last``.
+    image : str
+        The data as a string.
+    """
+
+    label: str
+    rx: Mapping[str, str]
+    tx: Mapping[str, str]
+    image: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class View:
+    """How a bench sees the converters.
+
+    Attributes
+    ----------
+    uses : str
+        Use clauses.
+    declarations : str
+        Signals, and what else stands in front of the architecture's ``begin``.
+    instances : mapping of direction to str
+        What to instantiate.
+    message_ports : mapping of direction to list of (str, str)
+        Ports on the message side, and their signals.
+    packet_names : mapping of direction to mapping of str to str
+        What the other ports are called that are not called as :func:`ports_of` says.
+    bit_keep : bool
+        Whether ``tkeep`` is a bit on a bus of one byte.
+    channels : list of Channel
+    """
+
+    uses: str
+    declarations: str
+    instances: Mapping[Direction, str]
+    message_ports: Mapping[Direction, Sequence[tuple[str, str]]]
+    packet_names: Mapping[Direction, Mapping[str, str]]
+    bit_keep: bool
+    channels: Sequence[Channel]
+
+
+# No name of a user's is used without its package, because constants may be called like something in
+# `std.textio`; the clause itself is for tools that look for the order of files.
+_USES = """\
+use work.firm_hdl_bench_pkg.all;
+use work.{types}.all;
+use work.{package};
+use work.{components}.all;
+"""
+
+
+def _uses(layer: UserLayer) -> str:
+    components = f"{layer.name}_components_pkg"
+    return _USES.format(types=TYPES_NAME, package=layer.package, components=components)
+
+
+_NO_NAMES: Mapping[Direction, Mapping[str, str]] = {way: {} for way in DIRECTIONS}
+
+
+def stream_view(plan: Plan, layer: UserLayer) -> View:
+    """See the converters with a record of streams."""
+    root = layer.tree.root
+    channels = []
+    for node in root.leaves():
+        assert node.leaf is not None
+        leaf = plan.leaves[node.leaf]
+        sides = [
+            {
+                **{name: f"{side}_msg.{node.access}.{name}" for name in _payload(leaf)},
+                "valid": f"{side}_msg.{node.access}.valid",
+                "ready": f"{side}_rdy.{node.access}",
+            }
+            for side in ("rx", "tx")
+        ]
+        data = sides[0]["data"]
+        whole = f"to_slv({data})" if leaf.kind == "items" else data
+        one_bit = leaf.kind != "items" and primitive_name(leaf) == "bool"
+        image = f"to_string({whole})" if one_bit else f"to_hstring({whole})"
+        channels.append(Channel(label=str(leaf), rx=sides[0], tx=sides[1], image=image))
+    return View(
+        uses=_uses(layer),
+        declarations=(
+            f"  signal rx_msg, tx_msg : work.{layer.package}.{root.type};\n"
+            f"  signal rx_rdy, tx_rdy : work.{layer.package}.{root.ready_type};\n"
+        ),
+        instances=layer.entities,
+        message_ports={
+            way: [("msg", f"{side}_msg"), ("rdy", f"{side}_rdy")] for way, side in _SIDES.items()
+        },
+        packet_names=_NO_NAMES,
+        bit_keep=False,
+        channels=channels,
+    )
+
+
+_SIDES: Mapping[Direction, str] = {"deserializer": "rx", "serializer": "tx"}
+
+
+def _payload(leaf: Leaf) -> tuple[str, ...]:
+    return ("data", "last") if leaf.kind == "items" else ("data",)
+
+
+def record_view(layer: UserLayer) -> View:
+    """See the converters with a record of values: one stream of whole messages."""
+    assert layer.values is not None
+    image = f"to_hstring(work.{layer.package}.to_slv(rx_msg))"
+    sides = [
+        {"data": f"{side}_msg", "valid": f"{side}_valid", "ready": f"{side}_ready"}
+        for side in ("rx", "tx")
+    ]
+    return View(
+        uses=_uses(layer),
+        declarations=(
+            f"  signal rx_msg, tx_msg     : work.{layer.package}.{layer.values.name};\n"
+            "  signal rx_valid, tx_valid : std_logic;\n"
+            "  signal rx_ready, tx_ready : std_logic;\n"
+        ),
+        instances=layer.record_entities,
+        message_ports={
+            way: [(f"msg{end}", f"{side}_{end[1:] or 'msg'}") for end in ("", "_valid", "_ready")]
+            for way, side in _SIDES.items()
+        },
+        packet_names=_NO_NAMES,
+        bit_keep=False,
+        channels=[Channel(label="msg", rx=sides[0], tx=sides[1], image=image)],
+    )
+
+
+_STATUS = """
+  constant STATUS_OK : std_logic_vector(7 downto 0) := x"00";
+
+  function status_name (status : std_logic_vector(7 downto 0)) return string is
+  begin
+    return "code " & to_hstring(status);
+  end function;
+"""
+
+
+def flat_view(plan: Plan, package: str, cores: Mapping[Direction, Core]) -> View:
+    """See the converters with plain ports; there is no record anywhere."""
+    names = leaf_names(plan)
+    ports = {
+        way: [port for port in ports_of(plan, way) if port.leaf is not None] for way in DIRECTIONS
+    }
+    widths = {port.name: port.width for port in ports["deserializer"]}
+    channels = []
+    for leaf in plan.leaves:
+        base = names[leaf.path]
+        rx, tx = (
+            {name: f"{side}_{base}_{name}" for name in (*_payload(leaf), "valid", "ready")}
+            for side in ("rx", "tx")
+        )
+        image = "to_hstring" if widths[f"{base}_data"] > 1 else "to_string"
+        channels.append(Channel(label=str(leaf), rx=rx, tx=tx, image=f"{image}({rx['data']})"))
+    return View(
+        uses=f"use work.firm_hdl_bench_pkg.all;\nuse work.{package};\n",
+        declarations="".join(map(_signals, ports["deserializer"])) + _STATUS,
+        instances={way: f"component work.{package}.{cores[way].entity}" for way in cores},
+        message_ports={
+            way: [
+                (cores[way].names.get(port.name, port.name), f"{side}_{port.name}")
+                for port in ports[way]
+            ]
+            for way, side in _SIDES.items()
+        },
+        packet_names={way: core.names for way, core in cores.items()},
+        bit_keep=True,
+        channels=channels,
+    )
+
+
+def _signals(port: Port) -> str:
+    kind = f"std_logic_vector({port.width - 1} downto 0)" if port.width > 1 else "std_logic"
+    return f"  signal rx_{port.name}, tx_{port.name} : {kind};\n"

@@ -1,0 +1,109 @@
+"""The VHDL package of a bus width: strings, arrays and sequences of primitives as streams.
+
+How many items go in one transfer depends on the primitive and on the width of the bus, and on
+nothing else; so these types are the same for all messages on a bus of one width.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from firm_hdl.export.vhdl.records import Element, stream_record
+from firm_hdl.export.vhdl.types import PRIMITIVE_BYTES, TYPES_NAME
+
+__all__ = ["BUS_TYPES", "bus_name", "bus_package"]
+
+_TEXTS = {"string": "uint8", "wstring": "uint32"}
+_FORMS = ("sequence", "array")
+_RECORDS = (
+    *_TEXTS,
+    *(f"{name}_{form}" for name in (*PRIMITIVE_BYTES, *_TEXTS) for form in _FORMS),
+)
+
+BUS_TYPES = frozenset(
+    [
+        *(f"{name}_items_stream_{what}" for name in PRIMITIVE_BYTES for what in ("t", "idle")),
+        *(
+            f"{name}_stream_{what}"
+            for name in _RECORDS
+            for what in ("t", "ready_t", "idle", "all_ready")
+        ),
+    ]
+)
+"""All that the package declares, in lower case."""
+
+_LENGTH = Element(
+    name="length",
+    type="uint32_stream_t",
+    ready_type="std_logic",
+    idle="UINT32_STREAM_IDLE",
+    all_ready="'1'",
+    remark="  -- how many follow",
+)
+
+
+def bus_name(bus_bytes: int) -> str:
+    """Name the package."""
+    return f"firm_hdl_bus_{bus_bytes}_pkg"
+
+
+def bus_package(bus_bytes: int) -> str:
+    """Write the package."""
+    return "".join(_package(bus_bytes))
+
+
+def _package(bus_bytes: int) -> Iterator[str]:
+    name = bus_name(bus_bytes)
+    yield f"""\
+-- Streams of strings, arrays and sequences on a bus of {bus_bytes} bytes, for all message types.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use work.{TYPES_NAME}.all;
+
+package {name} is
+"""
+    for primitive, size in PRIMITIVE_BYTES.items():
+        yield from _items(primitive, max(1, bus_bytes // size))
+    for text, primitive in _TEXTS.items():
+        yield from stream_record(f"{text}_stream", [_LENGTH, _of_items(primitive)])
+    for primitive in PRIMITIVE_BYTES:
+        items = _of_items(primitive)
+        yield from stream_record(f"{primitive}_sequence_stream", [_LENGTH, items])
+        yield from stream_record(f"{primitive}_array_stream", [items])
+    for text in _TEXTS:
+        item = Element(
+            name="item",
+            type=f"{text}_stream_t",
+            ready_type=f"{text}_stream_ready_t",
+            idle=f"{text.upper()}_STREAM_IDLE",
+            all_ready=f"{text.upper()}_STREAM_ALL_READY",
+        )
+        yield from stream_record(f"{text}_sequence_stream", [_LENGTH, item])
+        yield from stream_record(f"{text}_array_stream", [item])
+    yield f"\nend package {name};\n"
+
+
+def _items(primitive: str, lanes: int) -> Iterator[str]:
+    zeros = "(others => '0')" if primitive == "bool" else "(others => (others => '0'))"
+    yield (
+        f"\n  type {primitive}_items_stream_t is record\n"
+        f"    data  : {primitive}_items_t(0 to {lanes - 1});  -- past the end: zeros\n"
+        "    last  : std_logic;  -- the transfer ends its array\n"
+        "    valid : std_logic;\n"
+        "  end record;\n"
+        f"\n  constant {primitive.upper()}_ITEMS_STREAM_IDLE : {primitive}_items_stream_t := (\n"
+        f"    data => {zeros}, last => '0', valid => '0');\n"
+    )
+
+
+def _of_items(primitive: str) -> Element:
+    return Element(
+        name="items",
+        type=f"{primitive}_items_stream_t",
+        ready_type="std_logic",
+        idle=f"{primitive.upper()}_ITEMS_STREAM_IDLE",
+        all_ready="'1'",
+    )

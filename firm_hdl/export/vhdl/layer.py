@@ -1,0 +1,247 @@
+"""The user's layer in VHDL: a message as nested records, and converters that speak them.
+
+For each message type: a package with the records of its fields and its constants, which all
+converters share; a package with components; and an entity per direction around the core, whose flat
+ports stay usable on their own. A message of fixed size also gets entities that give, and take, all
+of it at once. What the records are is decided in :mod:`firm_hdl.export.vhdl.tree` and
+:mod:`firm_hdl.export.vhdl.values`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
+from firm_hdl.export.vhdl.bus import bus_name, bus_package
+from firm_hdl.export.vhdl.constants import (
+    Named,
+    comment,
+    declarations,
+    named_constants,
+    quoted,
+)
+from firm_hdl.export.vhdl.package import constants_of, message_package
+from firm_hdl.export.vhdl.tree import Tree, tree_of
+from firm_hdl.export.vhdl.types import TYPES_NAME, types_package
+from firm_hdl.export.vhdl.values import ValueType, values_of
+from firm_hdl.export.vhdl.wrapper import (
+    IEEE,
+    LIBRARIES,
+    Core,
+    component,
+    plain_lines,
+    record_lines,
+    record_wrapper,
+    stream_lines,
+    stream_wrapper,
+)
+from firm_hdl.model import Message
+from firm_hdl.plan import Plan
+
+__all__ = ["Shared", "UserLayer", "flat_package", "user_layer"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shared:
+    """A package that other message types' folders have, too, with the same text.
+
+    Attributes
+    ----------
+    name : str
+    needs : tuple of str
+        Others that it uses; the packages of all bus widths are not among them.
+    message : str
+        The message type that it is of; empty for that of the bus width.
+    """
+
+    name: str
+    needs: tuple[str, ...] = ()
+    message: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class UserLayer:
+    """The user's layer of a message type.
+
+    Attributes
+    ----------
+    name : str
+        What the names of its entities start with.
+    package : str
+        With the message's own records.
+    entities : mapping of direction to str
+        With a record of streams.
+    record_entities : mapping of direction to str
+        With a record of values; empty if the message has none.
+    tree : Tree
+    values : ValueType or None
+    constants : dict of str to list of Named
+        By package.
+    shared : tuple of Shared
+        Packages that other messages' folders have, too, in compile order.
+    packages : mapping of str to str
+        Texts by file name, in compile order, among them those of all messages.
+    wrappers : mapping of str to str
+        Likewise; they need the packages and the cores.
+    """
+
+    name: str
+    package: str
+    entities: Mapping[Direction, str]
+    record_entities: Mapping[Direction, str]
+    tree: Tree
+    values: ValueType | None
+    constants: Mapping[str, list[Named]]
+    shared: tuple[Shared, ...]
+    packages: Mapping[str, str]
+    wrappers: Mapping[str, str]
+
+
+def user_layer(
+    message: Message,
+    plan: Plan,
+    *,
+    name: str,
+    cores: Mapping[Direction, Core],
+    record_cores: Mapping[Direction, Core] | None = None,
+    header: str = "",
+) -> UserLayer:
+    """Write the user's layer of a message type.
+
+    Parameters
+    ----------
+    name : str
+        A legal identifier; the entities are ``name_deserializer`` and ``name_serializer``, and the
+        package of their components ``name_components_pkg``.
+    cores : mapping of direction to Core
+        The entities with flat ports.
+    record_cores : mapping of direction to Core, or None
+        Those of the record view, if there is one.
+    header : str
+        Lines for a comment at the head of every file that is the message's alone.
+    """
+    entities = {direction: f"{name}_{direction}" for direction in DIRECTIONS}
+    whole = {way: f"{entity}_record" for way, entity in entities.items() if record_cores}
+    tree = tree_of(message, plan)
+    values = values_of(tree, plan)
+    bus = bus_name(plan.bus_bytes)
+    writer = _Writer(message, plan, tree, values.get(message.name), header)
+    components = f"{name}_components_pkg"
+    return UserLayer(
+        name=name,
+        package=tree.packages[-1].name,
+        entities=entities,
+        record_entities=whole,
+        tree=tree,
+        values=writer.values if whole else None,
+        constants={package.name: constants_of(package, plan) for package in tree.packages},
+        shared=(
+            Shared(name=bus),
+            *(
+                Shared(name=each.name, needs=(bus, *each.needs), message=each.message.name)
+                for each in tree.packages
+            ),
+        ),
+        packages={
+            f"{TYPES_NAME}.vhd": types_package(),
+            f"{bus}.vhd": bus_package(plan.bus_bytes),
+            **{
+                f"{each.name}.vhd": message_package(each, plan, values.get(each.message.name))
+                for each in tree.packages
+            },
+            f"{components}.vhd": writer.components(components, entities, whole),
+        },
+        wrappers={
+            **writer.wrappers(entities, cores),
+            **writer.record_wrappers(whole, record_cores or {}),
+        },
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Writer:
+    message: Message
+    plan: Plan
+    tree: Tree
+    values: ValueType | None
+    header: str
+
+    @property
+    def package_name(self) -> str:
+        return self.tree.packages[-1].name
+
+    def remark(self) -> str:
+        return "".join(comment(self.header, ""))
+
+    def wrappers(
+        self, entities: Mapping[Direction, str], cores: Mapping[Direction, Core]
+    ) -> dict[str, str]:
+        package = self.package_name
+        return {
+            f"{entity}.vhd": self.remark()
+            + stream_wrapper(self.message, self.plan, self.tree, way, entity, package, cores[way])
+            for way, entity in entities.items()
+        }
+
+    def record_wrappers(
+        self, entities: Mapping[Direction, str], cores: Mapping[Direction, Core]
+    ) -> dict[str, str]:
+        if self.values is None:
+            return {}
+        package = self.package_name
+        return {
+            f"{entity}.vhd": self.remark()
+            + record_wrapper(self.message, self.plan, self.values, way, entity, package, cores[way])
+            for way, entity in entities.items()
+        }
+
+    def components(
+        self, name: str, entities: Mapping[Direction, str], whole: Mapping[Direction, str]
+    ) -> str:
+        text = [
+            self.remark(),
+            *comment(f"Components of the converters of {self.message.name}.", ""),
+            f"\n{LIBRARIES}use work.{self.package_name}.all;\n\npackage {name} is\n",
+        ]
+        for way, entity in entities.items():
+            text += component(entity, stream_lines(self.message, self.plan, self.tree, way))
+        if self.values is not None:
+            for way, entity in whole.items():
+                lines = record_lines(self.message, self.plan, self.values, way)
+                text += component(entity, lines)
+        text.append(f"\nend package {name};\n")
+        return "".join(text)
+
+
+def flat_package(
+    message: Message,
+    plan: Plan,
+    *,
+    name: str,
+    cores: Mapping[Direction, Core],
+    header: str = "",
+) -> tuple[str, list[Named]]:
+    """Write a package without any record: constants of a message, and the flat entities.
+
+    Parameters
+    ----------
+    name : str
+        The package.
+    cores, header
+        As for :func:`user_layer`.
+    """
+    taken = frozenset([name.lower(), *(core.entity.lower() for core in cores.values())])
+    constants = named_constants(message, taken)
+    text = [
+        *comment(header, ""),
+        *comment(f"Constants of {message.name}, and its converters with flat ports.", ""),
+        *(["--\n"] if message.comment else []),
+        *quoted(message.comment, ""),
+        f"\n{IEEE}\npackage {name} is\n",
+        *declarations(constants, taken),
+    ]
+    for direction, core in cores.items():
+        text += component(core.entity, plain_lines(ports_of(plan, direction), core.names))
+    text.append(f"\nend package {name};\n")
+    return "".join(text), constants

@@ -1,0 +1,122 @@
+"""The VHDL package of a message type: its records, its constants, and what ties them off.
+
+The text depends on the type, the wire and the width of the bus alone. So it is the same in the
+folder of every message that has the type in it, and a design compiles it once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from firm_hdl.export.vhdl.bus import BUS_TYPES, bus_name
+from firm_hdl.export.vhdl.constants import (
+    Named,
+    comment,
+    declarations,
+    named_constants,
+    origin,
+    quoted,
+)
+from firm_hdl.export.vhdl.records import Element, stream_record
+from firm_hdl.export.vhdl.tree import Node, Package, derived
+from firm_hdl.export.vhdl.types import SHARED_WORDS, TYPES_NAME
+from firm_hdl.export.vhdl.values import ValueType
+from firm_hdl.plan import Plan
+from firm_hdl.vhdl.text import wrap
+
+__all__ = ["constants_of", "message_package"]
+
+
+def constants_of(package: Package, plan: Plan) -> list[Named]:
+    """Name the constants of a message's own."""
+    return named_constants(package.message, _taken(package, plan), nested=False)
+
+
+def _taken(package: Package, plan: Plan) -> frozenset[str]:
+    """Give what no constant may hide: the package's own names, and those that it uses."""
+    own = {package.name, *derived(package.base)}
+    return frozenset({*own, *SHARED_WORDS, *BUS_TYPES, bus_name(plan.bus_bytes)})
+
+
+def message_package(package: Package, plan: Plan, values: ValueType | None) -> str:
+    """Write the package, and its body if it has values."""
+    text = [*_head(package, plan), *_streams(package, plan)]
+    if values is not None:
+        text += values.declarations()
+    text += declarations(constants_of(package, plan), _taken(package, plan))
+    text.append(f"\nend package {package.name};\n")
+    if values is not None:
+        text += [f"\npackage body {package.name} is\n", *values.bodies()]
+        text.append(f"\nend package body {package.name};\n")
+    lines = (part for line in "".join(text).splitlines() for part in wrap(line))
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _head(package: Package, plan: Plan) -> Iterator[str]:
+    base, message = package.base, package.message
+    yield from comment(
+        f"Records of {message.name}: {base}_t has data and valid of every field, {base}_ready_t "
+        f"has ready, the other way. With {base.upper()}_ALL_READY everything is taken, with "
+        f"{base.upper()}_IDLE nothing is offered.",
+        "",
+    )
+    yield from comment(
+        f"The same for all converters, made by firm-hdl, with wire {plan.wire} and a bus of "
+        f"{plan.bus_bytes} bytes: compile it once.",
+        "",
+    )
+    if message.comment:
+        yield "--\n"
+        yield from quoted(message.comment, "")
+    # Tools that look for the order of files see these clauses. The names themselves are
+    # written in full below: what two types of one name declare would hide each other.
+    needs = "".join(f"use work.{name};\n" for name in package.needs)
+    yield f"""
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use work.{TYPES_NAME}.all;
+use work.{bus_name(plan.bus_bytes)}.all;
+{needs}
+package {package.name} is
+"""
+
+
+def _streams(package: Package, plan: Plan) -> Iterator[str]:
+    base = package.base
+    yield from stream_record(
+        base, [_element(child, package.name, plan) for child in package.node.children]
+    )
+    item = Element(
+        name="item",
+        type=f"{base}_t",
+        ready_type=f"{base}_ready_t",
+        idle=f"{base.upper()}_IDLE",
+        all_ready=f"{base.upper()}_ALL_READY",
+    )
+    length = Element(
+        name="length",
+        type="uint32_stream_t",
+        ready_type="std_logic",
+        idle="UINT32_STREAM_IDLE",
+        all_ready="'1'",
+        remark="  -- how many follow",
+    )
+    yield "\n  -- Several of them: one after the other.\n"
+    yield from stream_record(f"{base}_sequence", [length, item])
+    yield from stream_record(f"{base}_array", [item])
+
+
+def _element(node: Node, package: str, plan: Plan) -> Element:
+    base = node.type.removesuffix("_t").upper()
+    ready = node.leaf is not None
+    return Element(
+        name=node.name,
+        type=node.seen_from(package, node.type),
+        ready_type=node.seen_from(package, node.ready_type),
+        idle=node.seen_from(package, f"{base}_IDLE"),
+        all_ready="'1'" if ready else node.seen_from(package, f"{base}_ALL_READY"),
+        comment=tuple(quoted(node.source.comment, "    ")) if node.source is not None else (),
+        remark=origin(node.source, node.name) if node.source is not None else "",
+    )

@@ -1,0 +1,247 @@
+"""The records of a message type in VHDL: what is nested in what, and what everything is called.
+
+Decisions only; :mod:`firm_hdl.export.vhdl.package` prints them. A type in ROS has one package
+for each wire and bus width, whatever message it is in: names depend on nothing but the type itself.
+So all converters of a design share the packages, and a header goes from one message to another.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from firm_hdl.export.vhdl.bus import BUS_TYPES, bus_name
+from firm_hdl.export.vhdl.types import SHARED_TYPES, SHARED_WORDS, primitive_name
+from firm_hdl.model import Array, Field, FieldType, Message, Sequence, Text
+from firm_hdl.names.identifiers import first_free, identifier, scope_names
+from firm_hdl.plan import Leaf, Plan
+from firm_hdl.wire import Wire
+
+__all__ = ["Node", "Package", "Tree", "derived", "member_names", "package_name", "snake", "tree_of"]
+
+_Paths = dict[str, "_Paths | int"]
+
+
+@dataclass(slots=True, kw_only=True)
+class Node:
+    """A message, a part of one, or a leaf.
+
+    Attributes
+    ----------
+    name : str
+        As a field of the record that it is in.
+    access : str
+        Dotted names from the message's record down; empty for the message itself.
+    leaf : int or None
+        Index into `Plan.leaves`.
+    source : Field or None
+        The definition's field, if it is one.
+    children : list of Node
+    type : str
+        Its record type, forwards; ``_ready_t`` in place of ``_t`` gives the one backwards.
+    package : str
+        The package of a message type that declares `type`; empty: a package that all use.
+    """
+
+    name: str
+    access: str
+    leaf: int | None = None
+    source: Field | None = None
+    children: list[Node] = field(default_factory=list)
+    type: str = ""
+    package: str = ""
+
+    @property
+    def ready_type(self) -> str:
+        """Type of what goes backwards."""
+        return "std_logic" if self.leaf is not None else f"{self.type.removesuffix('_t')}_ready_t"
+
+    def seen_from(self, package: str, name: str) -> str:
+        """Give a name that this node's package declares as another package says it."""
+        # A use clause would leave out what two types in different packages have in common.
+        own = not self.package or self.package == package
+        return name if own else f"work.{self.package}.{name}"
+
+    def walk(self) -> Iterator[Node]:
+        """Yield all nodes, children before their parents."""
+        for child in self.children:
+            yield from child.walk()
+        yield self
+
+    def leaves(self) -> Iterator[Node]:
+        """Yield the leaves in wire order."""
+        return (node for node in self.walk() if node.leaf is not None)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Package:
+    """The package of a message type.
+
+    Attributes
+    ----------
+    message : Message
+    name : str
+    base : str
+        What the names of its types start with.
+    node : Node
+        The message, somewhere.
+    needs : tuple of str
+        Packages of the types of its fields.
+    """
+
+    message: Message
+    name: str
+    base: str
+    node: Node
+    needs: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tree:
+    """A message's records.
+
+    Attributes
+    ----------
+    root : Node
+    packages : tuple of Package
+        Of all message types in it, each after those that it needs; the message's own is the last.
+    """
+
+    root: Node
+    packages: tuple[Package, ...]
+
+
+def snake(name: str) -> str:
+    """Give a message's name as VHDL writers write types.
+
+    >>> snake("PoseWithCovariance"), snake("PointCloud2"), snake("IMUData")
+    ('pose_with_covariance', 'point_cloud2', 'imu_data')
+    """
+    text = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name)
+    return re.sub("_+", "_", text).lower().strip("_")
+
+
+def member_names(names: Iterable[str]) -> dict[str, str]:
+    """Give the identifiers for the members of a record.
+
+    >>> member_names(["x", "range", "float64_stream_t"])
+    {'x': 'x', 'range': 'range_field', 'float64_stream_t': 'float64_stream_t_2'}
+    """
+    # A member that has the name of a type, or of the library, would hide it from its neighbours.
+    return scope_names(names, {*SHARED_TYPES, *BUS_TYPES, "work"})
+
+
+def package_name(message: Message, wire: Wire, bus_bytes: int) -> str:
+    """Name the package of a message type.
+
+    >>> package_name(Message(name="time", dialect="ros1", fields=()), "ros1", 8)
+    'builtin_time_ros1_8_pkg'
+    """
+    name = message.name if message.package else f"builtin/{message.name}"
+    return f"{identifier(identifier(name) + f'_{wire}_{bus_bytes}').lower()}_pkg"
+
+
+def derived(base: str) -> tuple[str, ...]:
+    """Give all identifiers of a message's package but for constants of ROS, in lower case."""
+    kinds = (base, f"{base}_sequence", f"{base}_array")
+    return (
+        *(f"{kind}_{what}" for kind in kinds for what in ("t", "ready_t", "all_ready", "idle")),
+        *(f"{base}_value_t", f"{base}_values_t", f"{base}_value_bits"),
+        *(f"to_{base}_value", f"to_{base}_values"),
+    )
+
+
+def tree_of(message: Message, plan: Plan) -> Tree:
+    """Decide on the records of a message."""
+    paths: _Paths = {}
+    for index, leaf in enumerate(plan.leaves):
+        place = paths
+        for name in leaf.path[:-1]:
+            below = place.setdefault(name, {})
+            assert isinstance(below, dict), "a leaf has nothing below it"
+            place = below
+        place[leaf.path[-1]] = index
+    maker = _Maker(plan)
+    root = maker.node(paths, message, "", "")
+    return Tree(root=root, packages=tuple(maker.packages.values()))
+
+
+@dataclass(slots=True)
+class _Maker:
+    plan: Plan
+    packages: dict[str, Package] = field(default_factory=dict)
+    # Names of packages, in lower case.
+    taken: set[str] = field(default_factory=set)
+
+    def node(self, paths: _Paths, kind: FieldType | None, name: str, access: str) -> Node:
+        node = Node(name=name, access=access)
+        for child, vhdl in member_names(paths).items():
+            below = paths[child]
+            member, child_kind = _below(kind, child)
+            path = f"{access}.{vhdl}".lstrip(".")
+            if isinstance(below, int):
+                made = Node(name=vhdl, access=path, leaf=below)
+                made.type = _leaf_type(self.plan.leaves[below])
+            else:
+                made = self.node(below, child_kind, vhdl, path)
+            made.source = member
+            node.children.append(made)
+        self.name_type(node, kind)
+        return node
+
+    def name_type(self, node: Node, kind: FieldType | None) -> None:
+        element = kind.element if isinstance(kind, Array | Sequence) else None
+        form = "array" if isinstance(kind, Array) else "sequence"
+        if isinstance(kind, Message):
+            package = self.package(kind, node)
+            node.type, node.package = f"{package.base}_t", package.name
+        elif isinstance(kind, Text):
+            node.type = f"{_text(kind)}_stream_t"
+        elif isinstance(element, Message):
+            package = self.packages[element.name]
+            node.type, node.package = f"{package.base}_{form}_t", package.name
+        elif isinstance(element, Text):
+            node.type = f"{_text(element)}_{form}_stream_t"
+        else:
+            items = next(child for child in node.children if child.name == "items")
+            assert items.leaf is not None
+            node.type = f"{primitive_name(self.plan.leaves[items.leaf])}_{form}_stream_t"
+
+    def package(self, message: Message, node: Node) -> Package:
+        found = self.packages.get(message.name)
+        if found is None:
+            wanted = package_name(message, self.plan.wire, self.plan.bus_bytes)
+            # Of `a_b/C` and `a/b_C`, which are one name here, the second gets a number.
+            name = first_free(wanted.removesuffix("_pkg"), self.taken, lambda n: (f"{n}_pkg",))
+            self.taken.add(f"{name}_pkg")
+            wanted = snake(re.sub(r"[^A-Za-z0-9]+", "_", message.base_name)) or "message"
+            hidden = {*SHARED_WORDS, *BUS_TYPES, bus_name(self.plan.bus_bytes), f"{name}_pkg"}
+            needs = dict.fromkeys(self.packages[child.name].name for child in message.children)
+            found = Package(
+                message=message,
+                name=f"{name}_pkg",
+                base=first_free(wanted, hidden, derived),
+                node=node,
+                needs=tuple(needs),
+            )
+            self.packages[message.name] = found
+        return found
+
+
+def _text(kind: Text) -> str:
+    return "wstring" if kind.wide else "string"
+
+
+def _leaf_type(leaf: Leaf) -> str:
+    return f"{primitive_name(leaf)}{'_items' if leaf.kind == 'items' else ''}_stream_t"
+
+
+def _below(kind: FieldType | None, name: str) -> tuple[Field | None, FieldType | None]:
+    """Give the field and the type of a member of a type."""
+    if isinstance(kind, Message):
+        found = next((item for item in kind.fields if item.name == name), None)
+        return (found, found.type) if found is not None else (None, None)
+    if isinstance(kind, Array | Sequence) and name == "item":
+        return None, kind.element
+    return None, None

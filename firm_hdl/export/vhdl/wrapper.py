@@ -1,0 +1,266 @@
+"""Entities of the user's layer in VHDL: records outside, the circuit's plain ports inside."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from firm_hdl.export.record_top import record_ports
+from firm_hdl.export.top import Direction, Port, leaf_names, ports_of
+from firm_hdl.export.vhdl.constants import comment
+from firm_hdl.export.vhdl.tree import Tree
+from firm_hdl.export.vhdl.types import TYPES_NAME, primitive_name
+from firm_hdl.export.vhdl.values import ValueType
+from firm_hdl.model import Message
+from firm_hdl.plan import Plan
+
+__all__ = [
+    "IEEE",
+    "LIBRARIES",
+    "Core",
+    "Line",
+    "component",
+    "plain_lines",
+    "record_lines",
+    "record_wrapper",
+    "stream_lines",
+    "stream_wrapper",
+]
+
+IEEE = """\
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+"""
+
+LIBRARIES = f"""\
+{IEEE}
+use work.{TYPES_NAME}.all;
+"""
+
+Line = tuple[str, str, str]
+"""A port: name, direction and type, meaning."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Core:
+    """A circuit with plain ports.
+
+    Attributes
+    ----------
+    entity : str
+    names : mapping of str to str
+        What ports are called that are not called as :func:`ports_of` says.
+    """
+
+    entity: str
+    names: Mapping[str, str]
+
+
+def stream_lines(message: Message, plan: Plan, tree: Tree, direction: Direction) -> list[Line]:
+    """List the ports of a converter with a record of streams."""
+    forwards, backwards = ("out", "in ") if direction == "deserializer" else ("in ", "out")
+    return _around(
+        [port for port in ports_of(plan, direction) if port.leaf is None],
+        [
+            ("msg", f"{forwards} {tree.root.type}", f"The fields of {message.name}."),
+            ("rdy", f"{backwards} {tree.root.ready_type}", "Which of them are taken."),
+        ],
+    )
+
+
+def record_lines(
+    message: Message, plan: Plan, values: ValueType, direction: Direction
+) -> list[Line]:
+    """List the ports of a converter with a record of values."""
+    forwards, backwards = ("out", "in ") if direction == "deserializer" else ("in ", "out")
+    return _around(
+        [port for port in ports_of(plan, direction) if port.leaf is None],
+        [
+            ("msg", f"{forwards} {values.name}", f"The fields of {message.name}."),
+            ("msg_valid", f"{forwards} std_logic", "message: offered, all of it."),
+            ("msg_ready", f"{backwards} std_logic", "message: taken."),
+        ],
+    )
+
+
+def plain_lines(ports: Iterable[Port], names: Mapping[str, str]) -> list[Line]:
+    """List ports as a circuit has them."""
+    return [
+        (
+            names.get(port.name, port.name),
+            f"{port.direction:3} {_kind(port.width, vector=port.width > 1)}",
+            port.meaning,
+        )
+        for port in ports
+    ]
+
+
+def _around(ports: list[Port], message: list[Line]) -> list[Line]:
+    """Put a message's ports before those of the status."""
+    lines = [
+        (
+            port.name,
+            f"{port.direction:3} {_kind(port.width, vector=port.width > 1 or _is_vector(port))}",
+            port.meaning,
+        )
+        for port in ports
+    ]
+    status = next(k for k, line in enumerate(lines) if line[0].startswith("m_axis_status"))
+    return [*lines[:status], *message, *lines[status:]]
+
+
+def _kind(width: int, *, vector: bool) -> str:
+    return f"std_logic_vector({width - 1} downto 0)" if vector else "std_logic"
+
+
+def _is_vector(port: Port) -> bool:
+    """Tell whether a packet port is a vector whatever the bus: AXI4-Stream's ``tkeep`` is."""
+    return port.name.endswith("_tkeep")
+
+
+def component(entity: str, lines: list[Line]) -> Iterator[str]:
+    """Yield the declaration of a component."""
+    yield f"\n  component {entity} is\n"
+    yield from (f"  {line}" for line in _port_clause(lines, meanings=False))
+    yield "  end component;\n"
+
+
+def _port_clause(lines: list[Line], *, meanings: bool = True) -> Iterator[str]:
+    """Yield a port clause, a line each."""
+    names = max(len(name) for name, _, _ in lines)
+    kinds = max(len(kind) for _, kind, _ in lines) + 1
+    yield "  port (\n"
+    for index, (name, kind, meaning) in enumerate(lines):
+        end = ";" if index < len(lines) - 1 else ""
+        line = f"    {name:{names}} : {kind + end:{kinds}}  -- {meaning}"
+        if not meanings or len(line) > 100:
+            if meanings:
+                yield from comment(meaning, "    ")
+            line = f"    {name:{names}} : {kind}{end}"
+        yield f"{line}\n"
+    yield "  );\n"
+
+
+def _entity(
+    entity: str,
+    package: str,
+    lines: list[Line],
+    core: Core,
+    parts: Mapping[str, str],
+    signals: list[tuple[str, str]],
+    assignments: list[str],
+) -> Iterator[str]:
+    """Yield an entity around a core; `parts` says what the core's ports are connected to."""
+    width = max(len(core.names.get(port, port)) for port in parts)
+    names = max((len(name) for name, _ in signals), default=0)
+    joined = ",\n".join(
+        f"      {core.names.get(port, port):{width}} => {actual}" for port, actual in parts.items()
+    )
+    yield f"\n{LIBRARIES}use work.{package}.all;\n\nentity {entity} is\n"
+    yield from _port_clause(lines)
+    yield f"end entity;\n\narchitecture wrapper of {entity} is\n"
+    yield "\n" * bool(signals)
+    yield from (f"  signal {name:{names}} : {kind};\n" for name, kind in signals)
+    yield f"\nbegin\n\n  core : entity work.{core.entity}\n    port map (\n{joined}\n    );\n"
+    yield "\n" * bool(assignments)
+    yield from assignments
+    yield "\nend architecture;\n"
+
+
+def stream_wrapper(
+    message: Message,
+    plan: Plan,
+    tree: Tree,
+    direction: Direction,
+    entity: str,
+    package: str,
+    core: Core,
+) -> str:
+    """Write a converter with a record of streams, one for each leaf."""
+    conversions = _Conversions(plan, tree, direction)
+    ports = ports_of(plan, direction)
+    parts = {port.name: conversions.actual(port) for port in ports}
+    lines = stream_lines(message, plan, tree, direction)
+    head = f"-- The {direction} of {message.name} with records.\n-- {core.entity} has flat ports.\n"
+    return head + "".join(
+        _entity(entity, package, lines, core, parts, conversions.signals, conversions.assignments)
+    )
+
+
+class _Conversions:
+    """What a core's ports are connected to; conversions get a signal of their own.
+
+    Some synthesis tools take no conversion in a port map.
+    """
+
+    def __init__(self, plan: Plan, tree: Tree, direction: Direction) -> None:
+        self.plan, self.direction = plan, direction
+        self.nodes = {node.leaf: node for node in tree.root.leaves()}
+        self.names = leaf_names(plan)
+        self.signals: list[tuple[str, str]] = []
+        self.assignments: list[str] = []
+
+    def actual(self, port: Port) -> str:
+        if port.leaf is None:
+            return _packet_actual(port)
+        leaf = self.plan.leaves[port.leaf]
+        node = self.nodes[port.leaf]
+        member = port.name.removeprefix(f"{self.names[leaf.path]}_")
+        if member == "ready":
+            return f"rdy.{node.access}"
+        whole = f"msg.{node.access}.{member}"
+        if member != "data":
+            return whole
+        primitive = primitive_name(leaf)
+        if leaf.kind == "items" and port.width == 1:
+            return f"{whole}(0)"
+        if leaf.kind != "items" and (primitive == "bool" or primitive.startswith("float")):
+            return whole
+        self.signals.append((port.name, _kind(port.width, vector=True)))
+        if self.direction == "serializer":
+            convert = "to_slv" if leaf.kind == "items" else "std_logic_vector"
+            self.assignments.append(f"  {port.name} <= {convert}({whole});\n")
+        else:
+            convert = (
+                f"to_{primitive}_items"
+                if leaf.kind == "items"
+                else "signed"
+                if leaf.signed
+                else "unsigned"
+            )
+            self.assignments.append(f"  {whole} <= {convert}({port.name});\n")
+        return port.name
+
+
+def _packet_actual(port: Port) -> str:
+    """Give what a port that is not the message's is connected to: that of the same name."""
+    # A vector of one bit is a bit to the core.
+    return f"{port.name}(0)" if port.width == 1 and _is_vector(port) else port.name
+
+
+def record_wrapper(
+    message: Message,
+    plan: Plan,
+    values: ValueType,
+    direction: Direction,
+    entity: str,
+    package: str,
+    core: Core,
+) -> str:
+    """Write a converter with a record of values, all valid at once."""
+    bits = values.bits
+    parts = {port.name: _packet_actual(port) for port in record_ports(plan, direction, bits)}
+    parts["msg_data"] = "msg_data" if bits > 1 else "msg_data(0)"
+    convert = (
+        f"  msg <= to_{values.base}(msg_data);\n"
+        if direction == "deserializer"
+        else "  msg_data <= to_slv(msg);\n"
+    )
+    lines = record_lines(message, plan, values, direction)
+    signals = [("msg_data", _kind(bits, vector=True))]
+    head = (
+        f"-- The {direction} of {message.name}: whole messages, as a record of values.\n"
+        f"-- {core.entity} has flat ports.\n"
+    )
+    return head + "".join(_entity(entity, package, lines, core, parts, signals, [convert]))

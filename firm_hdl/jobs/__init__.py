@@ -1,0 +1,8 @@
+"""Work in other processes: tools that are run, and tasks that are shared out."""
+
+from __future__ import annotations
+
+from firm_hdl.jobs.executors import PROCESSES, ExecutorError, run_each
+from firm_hdl.jobs.processes import ToolError, run_tool, worker_pool
+
+__all__ = ["PROCESSES", "ExecutorError", "ToolError", "run_each", "run_tool", "worker_pool"]

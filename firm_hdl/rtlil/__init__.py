@@ -1,0 +1,8 @@
+"""RTLIL, the netlist that Amaranth writes: read, simplified, and evaluated. Knows no messages."""
+
+from __future__ import annotations
+
+from firm_hdl.rtlil.read import parse
+from firm_hdl.rtlil.simplify import simplified
+
+__all__ = ["parse", "simplified"]

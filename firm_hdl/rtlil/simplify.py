@@ -1,0 +1,248 @@
+"""Work out what is constant, or the same as something else, before anyone has to read it.
+
+Amaranth emits operators on constants as it finds them: generators leave many, such as a comparison
+with a width of 0 or a condition that no message of this type can meet. Registers, memories and
+instances stay as they are; a signal that turns out constant keeps its name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from firm_hdl.rtlil.evaluate import constant, evaluate
+from firm_hdl.rtlil.ir import (
+    Assign,
+    Bits,
+    Case,
+    Cell,
+    Module,
+    Process,
+    Slice,
+    Spec,
+    Statement,
+    Switch,
+    cut,
+    join,
+    spec_width,
+)
+
+__all__ = ["simplified"]
+
+_OUTPUTS = {"$dff": "Q", "$adff": "Q", "$memrd_v2": "DATA", "$tribuf": "Y"}
+
+
+def simplified(module: Module) -> Module:
+    """Give a module that does the same with less."""
+    return _Simplifier(module).run()
+
+
+class _Simplifier:
+    def __init__(self, module: Module) -> None:
+        self._module = module
+        self._known: dict[str, Spec] = {}
+        self._changed = True
+
+    def run(self) -> Module:
+        items = self._module.items
+        while self._changed:
+            self._changed = False
+            items = tuple(self._pass(items))
+        connections = [(target, self._resolve(value)) for target, value in self._module.connections]
+        for name in self._known:
+            if not name.startswith("$"):
+                whole = Slice(name, 0, self._module.wires[name].width, True)
+                connections.append(((whole,), self._resolve((whole,))))
+        return replace(self._module, items=items, connections=tuple(connections))
+
+    def _resolve(self, spec: Spec) -> Spec:
+        if not any(isinstance(chunk, Slice) and chunk.wire in self._known for chunk in spec):
+            return spec
+        parts: list[Spec] = []
+        for chunk in spec:
+            if isinstance(chunk, Slice) and chunk.wire in self._known:
+                parts.append(self._resolve(cut(self._known[chunk.wire], chunk.low, chunk.width)))
+            else:
+                parts.append((chunk,))
+        return join(*parts)
+
+    def _pass(self, items: tuple[Cell | Process, ...]) -> Iterator[Cell | Process]:
+        for item in items:
+            kept = self._cell(item) if isinstance(item, Cell) else self._process(item)
+            if kept is not None:
+                yield kept
+
+    def _cell(self, cell: Cell) -> Cell | None:
+        if "Y" in cell.ports and cell.kind.startswith("$") and cell.kind != "$tribuf":
+            ports = {
+                port: spec if port == "Y" else self._resolve(spec)
+                for port, spec in cell.ports.items()
+            }
+            cell = replace(cell, ports=ports) if ports != cell.ports else cell
+            value = evaluate(cell)
+            if value is None or not ports["Y"]:
+                return cell
+            self._learn(ports["Y"], value)
+            return None
+        output = _OUTPUTS.get(cell.kind)
+        ports = {
+            port: spec if port == output else self._resolve(spec)
+            for port, spec in cell.ports.items()
+        }
+        if cell.kind in ("$dff", "$adff") and (value := self._constant_register(cell, ports)):
+            self._learn(ports["Q"], value)
+            return None
+        return replace(cell, ports=ports) if ports != cell.ports else cell
+
+    def _constant_register(self, cell: Cell, ports: Mapping[str, Spec]) -> Spec:
+        """Give the value of a register that never leaves the one that it starts with."""
+        if not ports["Q"]:
+            return ()
+        (chunk,) = ports["Q"]
+        assert isinstance(chunk, Slice)
+        init = self._module.wires[chunk.wire].attributes.get("init")
+        if not isinstance(init, Bits) or cell.parameters.get("ARST_VALUE", init) != init:
+            return ()
+        return (init,) if ports["D"] in (ports["Q"], (init,)) else ()
+
+    def _learn(self, target: Spec, value: Spec) -> None:
+        (chunk,) = target
+        assert isinstance(chunk, Slice) and spec_width(value) == chunk.width
+        self._known[chunk.wire] = value
+        self._changed = True
+
+    def _process(self, process: Process) -> Process | None:
+        target = _whole_target(process)
+        if target is None:
+            return process
+        body = self._body(process.body, None, start=True)
+        if body and all(isinstance(statement, Assign) for statement in body):
+            value: Spec = ()
+            for statement in body:
+                assert isinstance(statement, Assign)
+                value = _overlaid(value, statement)
+            self._learn(target, value)
+            return None
+        return replace(process, body=body)
+
+    def _body(
+        self, body: tuple[Statement, ...], state: Spec | None, *, start: bool = False
+    ) -> tuple[Statement, ...]:
+        """Simplify statements.
+
+        Parameters
+        ----------
+        state : Spec or None
+            What the whole target has been assigned so far, if that is known.
+        start : bool
+            The first assignment is the default of a process: it is to the whole target.
+        """
+        result: list[Statement] = []
+        pending = list(reversed(body))
+        while pending:
+            statement = pending.pop()
+            if isinstance(statement, Switch):
+                taken = self._switch(statement, state)
+                if any(isinstance(inner, Switch) for inner in taken):
+                    result.extend(taken)
+                    state = None
+                else:
+                    pending.extend(reversed(taken))
+                continue
+            value = self._resolve(statement.value)
+            if not value or value == state:
+                continue
+            whole = start and not result
+            whole |= state is not None and spec_width(state) == spec_width(value)
+            state = value if whole else None
+            _append(result, Assign(target=statement.target, value=value))
+        return tuple(result)
+
+    def _switch(self, switch: Switch, state: Spec | None) -> tuple[Statement, ...]:
+        selector = self._resolve(switch.selector)
+        fixed, kept, positions = _split(selector)
+        cases: list[Case] = []
+        for case in switch.cases:
+            patterns = [
+                "".join(pattern[i] for i in positions)
+                for pattern in case.patterns
+                if all(pattern[i] in (mark, "-") for i, mark in fixed.items())
+            ]
+            if case.patterns and not patterns:
+                continue
+            total = not case.patterns or any(not pattern.strip("-") for pattern in patterns)
+            unique = () if total else tuple(dict.fromkeys(patterns))
+            cases.append(Case(patterns=unique, body=self._body(case.body, state)))
+            if total:
+                break
+        cases = _without_idle(cases)
+        if not cases:
+            return ()
+        if not cases[0].patterns:
+            return cases[0].body
+        return (Switch(selector=kept, cases=tuple(cases)),)
+
+
+def _without_idle(cases: list[Case]) -> list[Case]:
+    """Drop arms that do nothing, unless a later one would match instead."""
+    while cases and not cases[-1].body:
+        cases = cases[:-1]
+    if any(not c.patterns or any("-" in pattern for pattern in c.patterns) for c in cases):
+        return cases
+    seen: set[str] = set()
+    result: list[Case] = []
+    for case in cases:
+        patterns = tuple(pattern for pattern in case.patterns if pattern not in seen)
+        seen.update(patterns)
+        if patterns and case.body:
+            result.append(Case(patterns=patterns, body=case.body))
+    return result
+
+
+def _append(result: list[Statement], statement: Assign) -> None:
+    """Add an assignment, to the one before it if that ends where it starts."""
+    last = result[-1] if result else None
+    if isinstance(last, Assign) and len(last.target) == len(statement.target) == 1:
+        target = join(last.target, statement.target)
+        if len(target) == 1:
+            result[-1] = Assign(target=target, value=join(last.value, statement.value))
+            return
+    result.append(statement)
+
+
+def _whole_target(process: Process) -> Spec | None:
+    """Give the wire that a process drives; its first assignment is to all of it."""
+    first = process.body[0] if process.body else None
+    if not isinstance(first, Assign) or not first.target:
+        return None
+    (chunk,) = first.target
+    assert isinstance(chunk, Slice)
+    return (chunk,)
+
+
+def _overlaid(value: Spec, statement: Assign) -> Spec:
+    """Replace the bits of a value that an assignment gives."""
+    if not value:
+        return statement.value
+    (chunk,) = statement.target
+    assert isinstance(chunk, Slice)
+    top = chunk.low + chunk.width
+    return join(cut(value, 0, chunk.low), statement.value, cut(value, top, spec_width(value) - top))
+
+
+def _split(selector: Spec) -> tuple[dict[int, str], Spec, list[int]]:
+    """Split a selector into its constant bits and the rest, with the pattern positions of each."""
+    fixed: dict[int, str] = {}
+    kept: list[Spec] = []
+    positions: list[int] = []
+    end = spec_width(selector)
+    for chunk in selector:
+        places = range(end - chunk.width, end)
+        end -= chunk.width
+        if constant((chunk,)) is None:
+            kept.append((chunk,))
+            positions[:0] = places
+        else:
+            assert isinstance(chunk, Bits)
+            fixed.update(zip(places, chunk.text, strict=True))
+    return fixed, join(*kept), positions

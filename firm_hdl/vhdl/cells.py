@@ -1,0 +1,270 @@
+"""Amaranth's operators in terms of `ieee.numeric_std`.
+
+The rules of widths are those of Yosys (`kernel/calc.cc`): operands are extended to the width of the
+result, or to the wider operand if that is more, signed only where both are, and the result is cut.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from operator import eq, ge, gt, le, lt, ne
+from typing import TYPE_CHECKING
+
+from firm_hdl.rtlil.ir import Cell, Spec, spec_width
+from firm_hdl.vhdl.text import Text, atom, call, infix, literal, prefix
+from firm_hdl.vhdl.uses import int_parameter, output, trim
+
+if TYPE_CHECKING:
+    from firm_hdl.vhdl.expr import Values
+
+__all__ = ["COMPARISONS", "Cells"]
+
+NATURAL_BITS = 31
+"""Widest number that is written in decimal: VHDL's integers have 32 bits and a sign."""
+
+COMPARISONS = {"$eq": "=", "$ne": "/=", "$lt": "<", "$le": "<=", "$gt": ">", "$ge": ">="}
+_INVERSE = {"=": "/=", "/=": "=", "<": ">=", "<=": ">", ">": "<=", ">=": "<"}
+_MIRRORED = {"=": "=", "/=": "/=", "<": ">", "<=": ">=", ">": "<", ">=": "<="}
+_COMPARE: dict[str, Callable[..., bool]] = {"=": eq, "/=": ne, "<": lt, "<=": le, ">": gt, ">=": ge}
+_BITWISE = {"$and": "and", "$or": "or", "$xor": "xor"}
+_REDUCTIONS = {
+    "$reduce_or": "or",
+    "$reduce_bool": "or",
+    "$reduce_and": "and",
+    "$reduce_xor": "xor",
+}
+
+
+class Cells:
+    """Writes operators of one module, whose operands are `values`."""
+
+    def __init__(self, values: Values) -> None:
+        self._values = values
+
+    def width(self, cell: Cell) -> int:
+        """Count the bits of the result that anybody reads."""
+        return self._values.width(output(cell))
+
+    def is_condition(self, cell: Cell) -> bool:
+        """Tell results that are better written as a condition: they compare something."""
+        if cell.kind in COMPARISONS:
+            return spec_width(cell.ports["A"]) > 1 or spec_width(cell.ports["B"]) > 1
+        if cell.kind in ("$and", "$or", "$not") and self.width(cell) == 1:
+            operands = [cell.ports[port] for port in ("A", "B") if cell.ports.get(port)]
+            inner = [self._values.folded(trim(spec, 1)) for spec in operands]
+            return any(part is not None and self.is_condition(part) for part in inner)
+        return False
+
+    def boolean(self, cell: Cell, *, inverted: bool = False) -> Text:
+        """Write a result of one bit as a condition, or the opposite of it."""
+        kind, ports = cell.kind, cell.ports
+        if kind in COMPARISONS:
+            return self._compare(cell, inverted=inverted)
+        if kind == "$not":
+            return self._condition(trim(ports["A"], 1), inverted=not inverted)
+        if kind in ("$and", "$or") and ports["A"] and ports["B"]:
+            a = self._condition(trim(ports["A"], 1), inverted=inverted)
+            b = self._condition(trim(ports["B"], 1), inverted=inverted)
+            return infix("and" if (kind == "$and") != inverted else "or", a, b)
+        if kind in ("$reduce_or", "$reduce_bool") and ports["A"]:
+            if spec_width(ports["A"]) == 1:
+                return self._condition(ports["A"], inverted=inverted)
+            operand = self._values.unsigned(ports["A"])
+            return infix("=" if inverted else "/=", operand, atom("0"))
+        text = self.logic(cell)
+        if text.text in ("'0'", "'1'"):
+            return atom("true" if (text.text == "'1'") != inverted else "false")
+        return infix("=", text, atom("'0'" if inverted else "'1'"))
+
+    def _condition(self, spec: Spec, *, inverted: bool) -> Text:
+        cell = self._values.folded(spec)
+        if cell is not None:
+            return self.boolean(cell, inverted=inverted)
+        if not inverted:
+            return self._values.boolean(spec)
+        if self._values.constant(spec) is not None:
+            return atom("false" if self._values.constant(spec) else "true")
+        return infix("=", self._values.logic(spec), atom("'0'"))
+
+    def logic(self, cell: Cell) -> Text:
+        """Write a result of one bit as `std_logic`."""
+        kind, ports, values = cell.kind, cell.ports, self._values
+        if kind in COMPARISONS:
+            return self._compare_bits(cell) or call("to_std_logic", self._compare(cell))
+        if kind in _REDUCTIONS:
+            if spec_width(ports["A"]) < 2:
+                return values.logic(ports["A"]) if ports["A"] else atom("'0'")
+            return prefix(_REDUCTIONS[kind], values.unsigned(ports["A"]))
+        if kind == "$mux":
+            return call("mux", *(values.logic(trim(ports[port], 1)) for port in "SBA"))
+        operands = [self._low_bit(ports[port]) for port in ("A", "B") if port in ports]
+        if kind == "$not":
+            return prefix("not", operands[0])
+        if kind in _BITWISE:
+            return infix(_BITWISE[kind], *operands)
+        if kind in ("$add", "$sub"):
+            return infix("xor", *operands)
+        if kind == "$mul":
+            return infix("and", *operands)
+        if kind == "$neg":
+            return operands[0]
+        return call("lsb", self._vector(cell, 1))
+
+    def _low_bit(self, spec: Spec) -> Text:
+        return self._values.logic(trim(spec, 1)) if spec else atom("'0'")
+
+    def unsigned(self, cell: Cell) -> Text:
+        """Write a result of more than one bit."""
+        return self._vector(cell, self.width(cell))
+
+    def _vector(self, cell: Cell, width: int) -> Text:
+        kind, ports, values = cell.kind, cell.ports, self._values
+        signed = int_parameter(cell, "A_SIGNED") == 1
+        if kind in ("$add", "$sub"):
+            return self._sum(cell, width, signed)
+        if kind == "$neg":
+            return infix("-", atom("0"), values.extended(ports["A"], width, signed=signed))
+        if kind == "$mul":
+            return self._product(cell, width, signed)
+        if kind == "$not":
+            return prefix("not", values.extended(ports["A"], width, signed=signed))
+        if kind in _BITWISE:
+            a, b = (self._bitwise(ports[port], width, signed) for port in "AB")
+            return infix(_BITWISE[kind], a, b)
+        if kind == "$mux":
+            a, b = (values.unsigned(ports[port], width, target=True) for port in "AB")
+            return call("mux", values.logic(ports["S"]), b, a)
+        if kind in ("$divfloor", "$modfloor"):
+            return self._division(cell, width, signed)
+        if kind in ("$shl", "$shr", "$sshr", "$shift"):
+            return self._shift(cell, width, signed)
+        # Comparisons and reductions have one bit; a wider result would be zeros above it.
+        return call("resize", self.logic(cell), width)
+
+    def _bitwise(self, spec: Spec, width: int, signed: bool) -> Text:
+        if spec_width(spec) == width:
+            return self._values.unsigned(spec, target=self._values.constant(spec) is not None)
+        return self._values.extended(spec, width, signed=signed)
+
+    def _sum(self, cell: Cell, width: int, signed: bool) -> Text:
+        values = self._values
+        operator = "+" if cell.kind == "$add" else "-"
+        a, b = (trim(cell.ports[port], width) for port in "AB")
+        if operator == "+" and values.constant(a) is not None:
+            a, b = b, a
+        value = values.constant(b, signed=signed)
+        if value is not None and abs(value) < 1 << min(width, NATURAL_BITS):
+            if value < 0:
+                operator, value = ("-" if operator == "+" else "+"), -value
+            return infix(operator, values.extended(a, width, signed=signed), atom(str(value)))
+        value = values.constant(a)
+        if value is not None and not signed and value < 1 << min(width, NATURAL_BITS):
+            return infix(operator, atom(str(value)), values.unsigned(b, width))
+        if signed or (spec_width(a) < width and spec_width(b) < width):
+            left = values.extended(a, width, signed=signed)
+            right = values.extended(b, width, signed=True) if signed else self._short(b)
+            return infix(operator, left, right)
+        if spec_width(a) == 1 and operator == "+":
+            a, b = b, a
+        if spec_width(a) == 1:
+            return infix(operator, values.unsigned(a, width), self._short(b))
+        # numeric_std extends the shorter operand by itself.
+        return infix(operator, self._short(a), self._short(b))
+
+    def _short(self, spec: Spec) -> Text:
+        """Write an operand that numeric_std may extend: VHDL-2008 adds single bits, too."""
+        return self._values.logic(spec) if spec_width(spec) == 1 else self._values.unsigned(spec)
+
+    def _product(self, cell: Cell, width: int, signed: bool) -> Text:
+        values = self._values
+        a, b = (trim(cell.ports[port], width) for port in "AB")
+        natural = max(spec_width(a), 1) + max(spec_width(b), 1)
+        if signed and width <= natural:
+            product = call("unsigned", infix("*", values.signed(a), values.signed(b)))
+        else:
+            left, right = (
+                values.extended(x, width, signed=True) if signed else values.unsigned(x)
+                for x in (a, b)
+            )
+            product = infix("*", left, right)
+            natural = 2 * width if signed else natural
+        return product if width == natural else call("resize", product, width)
+
+    def _division(self, cell: Cell, width: int, signed: bool) -> Text:
+        values = self._values
+        a, b = cell.ports["A"], cell.ports["B"]
+        function = "floor_div" if cell.kind == "$divfloor" else "floor_mod"
+        if signed:
+            inner = call(function, values.signed(a), values.signed(b))
+            natural = spec_width(b)
+            if function == "floor_div":
+                natural = max(spec_width(a), spec_width(b)) + 1
+            text = call("unsigned", inner)
+            if width > natural:
+                return call("sign_extend", text, width)
+        else:
+            text = call(function, values.unsigned(a), values.unsigned(b))
+            natural = max(spec_width(a if function == "floor_div" else b), 1)
+        return text if natural == width else call("resize", text, width)
+
+    def _shift(self, cell: Cell, width: int, signed: bool) -> Text:
+        values, a = self._values, cell.ports["A"]
+        if cell.kind == "$shl":
+            operand = values.extended(trim(a, width), width, signed=signed)
+            return call("shift_left", operand, self._distance(cell.ports["B"], width))
+        whole = max(spec_width(a), int_parameter(cell, "Y_WIDTH"), 1)
+        distance = self._distance(cell.ports["B"], whole)
+        operand = values.extended(a, whole, signed=signed)
+        if signed:
+            shifted = call("unsigned", call("shift_right", call("signed", operand), distance))
+        else:
+            shifted = call("shift_right", operand, distance)
+        return shifted if whole == width else call("resize", shifted, width)
+
+    def _distance(self, spec: Spec, width: int) -> Text:
+        """Write a shift distance that any integer holds."""
+        value = self._values.constant(spec)
+        if value is not None:
+            return atom(str(min(value, width)))
+        if spec_width(spec) < NATURAL_BITS:
+            return self._values.number(spec)
+        bits = width.bit_length()
+        return call("to_integer", call("saturate", self._values.unsigned(spec), bits))
+
+    def _compare_bits(self, cell: Cell) -> Text | None:
+        """Compare single bits for equality without a detour over `boolean`."""
+        a, b = cell.ports["A"], cell.ports["B"]
+        if cell.kind not in ("$eq", "$ne") or spec_width(a) != 1 or spec_width(b) != 1:
+            return None
+        for bit, other in ((a, b), (b, a)):
+            value = self._values.constant(bit)
+            if value is not None:
+                text = self._values.logic(other)
+                return text if (value == 1) == (cell.kind == "$eq") else prefix("not", text)
+        text = infix("xor", self._values.logic(a), self._values.logic(b))
+        return prefix("not", text) if cell.kind == "$eq" else text
+
+    def _compare(self, cell: Cell, *, inverted: bool = False) -> Text:
+        values = self._values
+        operator = COMPARISONS[cell.kind]
+        if inverted:
+            operator = _INVERSE[operator]
+        a, b = cell.ports["A"], cell.ports["B"]
+        signed = int_parameter(cell, "A_SIGNED") == 1
+        numbers = [values.constant(spec, signed=signed) for spec in (a, b)]
+        if None not in numbers:
+            return atom("true" if _COMPARE[operator](*numbers) else "false")
+        if values.constant(a) is not None and values.constant(b) is None:
+            a, b, operator = b, a, _MIRRORED[operator]
+        if not signed and spec_width(a) == spec_width(b) == 1 and operator in ("=", "/="):
+            return infix(operator, values.logic(a), values.logic(b))
+        left = values.signed(a) if signed else values.unsigned(a)
+        value = values.constant(b, signed=signed)
+        if value is None:
+            return infix(operator, left, values.signed(b) if signed else values.unsigned(b))
+        if -(1 << NATURAL_BITS) < value < 1 << NATURAL_BITS:
+            return infix(operator, left, atom(str(value)))
+        right = call("signed", values.unsigned(b)) if signed else values.unsigned(b)
+        if not signed and value.bit_length() == spec_width(b):
+            right = atom(literal(f"{value:b}"))
+        return infix(operator, left, right)

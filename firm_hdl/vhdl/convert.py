@@ -1,0 +1,163 @@
+"""VHDL-2008 from any Amaranth design.
+
+The design's hierarchy stays: one entity and architecture for each module, in a file of its own.
+Signals and instances keep their names as far as VHDL allows; what they are called is in the result.
+The text depends on the design alone: it has no paths, no dates and no source locations.
+
+Types: one bit is `std_logic`, more are `unsigned`, whatever their sign, because Amaranth's
+operators say for themselves how they take their operands; ports of the outermost entity are
+`std_logic_vector`, or `unsigned` by option.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from amaranth.back import rtlil as amaranth_rtlil
+
+from firm_hdl.rtlil.ir import Cell, Design, Module
+from firm_hdl.rtlil.read import parse
+from firm_hdl.rtlil.simplify import simplified
+from firm_hdl.vhdl.declare import part_names
+from firm_hdl.vhdl.module import EntityNames, ModuleWriter
+from firm_hdl.vhdl.names import Scope
+from firm_hdl.vhdl.package import PACKAGE, PACKAGE_NAME
+
+__all__ = ["EntityNames", "Vhdl", "convert"]
+
+_REFUSED = {
+    "$anyconst": "AnyConst",
+    "$anyseq": "AnySeq",
+    "$initstate": "Initial",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Vhdl:
+    """A design in VHDL.
+
+    Attributes
+    ----------
+    top : str
+        The outermost entity.
+    files : mapping of str to str
+        Texts by file name, in an order in which they compile.
+    entities : mapping of str to EntityNames
+        By module of the netlist: what its ports, signals, memories and instances are called.
+        Wires without bits, and made-up ones (``$1``) that became part of an expression, have no
+        entry.
+    """
+
+    top: str
+    files: Mapping[str, str]
+    entities: Mapping[str, EntityNames]
+
+
+def convert(
+    design: Any,
+    *,
+    name: str = "top",
+    ports: Any = None,
+    platform: Any = None,
+    unsigned_ports: bool = False,
+    header: str = "",
+) -> Vhdl:
+    """Write a design as VHDL-2008.
+
+    Parameters
+    ----------
+    design : elaboratable or str
+        An Amaranth component or other elaboratable, or RTLIL text of `amaranth.back.rtlil`.
+    name : str
+        Name of the outermost entity; those within it are called after it and their path.
+    ports, platform
+        As for `amaranth.back.rtlil.convert`; a component needs no ports.
+    unsigned_ports : bool
+        Give the outermost entity ports of type `unsigned` instead of `std_logic_vector`.
+    header : str
+        Lines for a comment at the head of every entity's file.
+
+    Returns
+    -------
+    Vhdl
+        Files in compile order, and all names.
+
+    Raises
+    ------
+    ValueError
+        The design has something that VHDL cannot express, such as `AnyConst`, or the text is no
+        RTLIL that Amaranth 0.5 prints.
+    """
+    if not isinstance(design, str):
+        design = amaranth_rtlil.convert(
+            design, name=name, platform=platform, ports=ports, emit_src=False
+        )
+    netlist = _read(design)
+    prefix = netlist.top.name
+    entities = Scope([PACKAGE_NAME]).give_all(
+        {module: name + module.removeprefix(prefix) for module in netlist.modules}
+    )
+    port_names = {module.name: _port_names(module, entities) for module in netlist.modules.values()}
+    remark = "".join(f"-- {line}".rstrip() + "\n" for line in header.splitlines())
+    files = {f"{PACKAGE_NAME}.vhd": PACKAGE}
+    names: dict[str, EntityNames] = {}
+    for module in _bottom_up(netlist):
+        writer = ModuleWriter(
+            module,
+            entities=entities,
+            port_names=port_names,
+            modules=netlist.modules,
+            vectors=module is netlist.top and not unsigned_ports,
+        )
+        files[f"{entities[module.name]}.vhd"] = remark + writer.text()
+        names[module.name] = writer.names()
+    return Vhdl(top=entities[netlist.top.name], files=files, entities=names)
+
+
+def _read(text: str) -> Design:
+    """Read and simplify a netlist; refuse what VHDL has nothing for."""
+    netlist = parse(text)
+    if not netlist.modules:
+        raise ValueError("The design is empty: it has no module with anything in it")
+    _refuse(netlist)
+    return Design(modules={module.name: simplified(module) for module in netlist.modules.values()})
+
+
+def _port_names(module: Module, entities: Mapping[str, str]) -> dict[str, str]:
+    """Name the ports of a module, clocks and resets first."""
+    ports = [wire.name for wire in module.wires.values() if wire.direction and wire.width]
+    parts = part_names(module)
+    given = Scope([entities[module.name], "rtl"]).give_all(
+        {port: parts.get(port, port) for port in ports}
+    )
+    clocks = ("clk", "rst", "_clk", "_rst")
+    first = [p for p in ports if p in clocks[:2] or p.endswith(clocks[2:])]
+    return {port: given[port] for port in dict.fromkeys([*first, *ports])}
+
+
+def _bottom_up(netlist: Design) -> list[Module]:
+    """Order modules so that each comes after those that it instantiates."""
+    order: dict[str, Module] = {}
+    stack = [(netlist.top, False)]
+    while stack:
+        module, visited = stack.pop()
+        if visited:
+            order.setdefault(module.name, module)
+            continue
+        stack.append((module, True))
+        for item in reversed(module.items):
+            if isinstance(item, Cell) and item.kind in netlist.modules:
+                stack.append((netlist.modules[item.kind], False))
+    return list(order.values())
+
+
+def _refuse(netlist: Design) -> None:
+    for module in netlist.modules.values():
+        for item in module.items:
+            if isinstance(item, Cell) and item.kind in _REFUSED:
+                raise ValueError(
+                    f"module {module.name!r} has {_REFUSED[item.kind]} ({item.kind}), which only a "
+                    "formal tool can choose; VHDL has nothing like it"
+                )

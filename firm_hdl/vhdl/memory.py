@@ -1,0 +1,220 @@
+"""Amaranth's memories as arrays: contents, write ports, read ports.
+
+Reading or writing beyond the last word gives 0 or does nothing, as in Amaranth's simulator. A read
+register starts at 0. A port that is transparent for a write port reads what that one writes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from firm_hdl.rtlil.ir import Bits, Cell, Memory, Slice, Spec, cut, spec_width
+from firm_hdl.vhdl.expr import Declared, Values
+from firm_hdl.vhdl.text import Text, atom, bit_literal, chain, infix, literal
+from firm_hdl.vhdl.uses import enable_runs, int_parameter
+
+__all__ = ["MemoryText", "edge", "memory_id"]
+
+
+def memory_id(cell: Cell) -> str:
+    """Name the memory that a port belongs to."""
+    return str(cell.parameters["MEMID"]).removeprefix("\\")
+
+
+def edge(values: Values, cell: Cell) -> str:
+    """Write the clock edge of a cell as a condition."""
+    function = "rising_edge" if int_parameter(cell, "CLK_POLARITY") else "falling_edge"
+    return f"{function}({values.logic(cell.ports['CLK']).text})"
+
+
+class MemoryText:
+    """Writes one memory.
+
+    Parameters
+    ----------
+    memory : Memory
+    name : str
+        Identifier of the signal; its type is called after it.
+    ports : sequence of Cell
+        Its cells.
+    values : Values
+    targets : mapping of str to Declared
+        Signals that read ports drive.
+    """
+
+    def __init__(
+        self,
+        memory: Memory,
+        name: str,
+        ports: Sequence[Cell],
+        values: Values,
+        targets: Mapping[str, Declared],
+    ) -> None:
+        self._memory = memory
+        self._name = name
+        self._values = values
+        self._targets = targets
+        self._writes = [cell for cell in ports if cell.kind == "$memwr_v2"]
+        self._reads = [cell for cell in ports if cell.kind == "$memrd_v2"]
+        self._contents = [cell for cell in ports if cell.kind == "$meminit_v2"]
+
+    @property
+    def type_name(self) -> str:
+        """The array type."""
+        return f"{self._name}_array"
+
+    def declarations(self) -> Iterator[str]:
+        """Yield lines for the declarative part."""
+        width = self._memory.width
+        element = "std_logic" if width == 1 else f"unsigned({width - 1} downto 0)"
+        yield f"type {self.type_name} is array (0 to {self._memory.size - 1}) of {element};"
+        words = self._words()
+        zero = "'0'" if width == 1 else "(others => '0')"
+        used = [(i, word) for i, word in enumerate(words) if "1" in word]
+        if not used:
+            yield f"signal {self._name} : {self.type_name} := (others => {zero});"
+            return
+        yield f"signal {self._name} : {self.type_name} := ("
+        for i, word in used:
+            last = i == self._memory.size - 1 == len(used) - 1
+            text = bit_literal(word) if width == 1 else literal(word)
+            yield f"  {i} => {text}{'' if last else ','}"
+        if len(used) < self._memory.size:
+            yield f"  others => {zero}"
+        yield ");"
+
+    def _words(self) -> list[str]:
+        width, words = self._memory.width, []
+        for cell in self._contents:
+            bits = "".join(c.text for c in reversed(cell.ports["DATA"]) if isinstance(c, Bits))
+            words = [bits[end - width : end] for end in range(len(bits), 0, -width)]
+        return words
+
+    def processes(self) -> Iterator[str]:
+        """Yield lines for the architecture body."""
+        if self._writes:
+            clocks = dict.fromkeys(
+                self._values.logic(cell.ports["CLK"]).text for cell in self._writes
+            )
+            yield f"process ({', '.join(clocks)})"
+            yield "begin"
+            edges: dict[str, list[Cell]] = {}
+            for cell in self._writes:
+                edges.setdefault(edge(self._values, cell), []).append(cell)
+            for condition, cells in edges.items():
+                yield f"  if {condition} then"
+                yield from (f"    {line}" for cell in cells for line in self._write(cell))
+                yield "  end if;"
+            yield "end process;"
+        for cell in self._reads:
+            yield ""
+            if int_parameter(cell, "CLK_ENABLE"):
+                yield from self._clocked_read(cell)
+            else:
+                yield self._direct_read(cell)
+
+    def _guard(self, address: Spec) -> Text | None:
+        """Write the test that an address is one of a word, if there are others."""
+        if self._memory.size >= 1 << spec_width(address):
+            return None
+        constant = self._values.constant(address)
+        if constant is not None:
+            return None if constant < self._memory.size else atom("false")
+        return infix("<", self._values.unsigned(address), atom(str(self._memory.size)))
+
+    def _word(self, address: Spec) -> str:
+        constant = self._values.constant(address)
+        # Behind a guard that is false; but VHDL checks constants before it looks at conditions.
+        number = "0" if (constant or 0) >= self._memory.size else self._values.number(address).text
+        return f"{self._name}({number})"
+
+    def _write(self, cell: Cell) -> Iterator[str]:
+        address, data = cell.ports["ADDR"], cell.ports["DATA"]
+        guard = self._guard(address)
+        for bit, low, width in enable_runs(cell.ports["EN"]):
+            if isinstance(bit, Bits) and bit.text != "1":
+                continue
+            tests = [] if isinstance(bit, Bits) else [self._values.boolean((bit,))]
+            tests += [guard] if guard else []
+            part = cut(data, low, width)
+            value = (
+                self._values.logic(part) if width == 1 else self._values.unsigned(part, target=True)
+            )
+            target = Declared(name=self._word(address), width=self._memory.width)
+            line = f"{target.part(low, width)} <= {value.text};"
+            if tests:
+                yield f"if {chain('and', *tests).text} then"
+                yield f"  {line}"
+                yield "end if;"
+            else:
+                yield line
+
+    def _direct_read(self, cell: Cell) -> str:
+        target, address = self._target(cell), cell.ports["ADDR"]
+        guard = self._guard(address)
+        word = target.accept(atom(self._word(address)), target.width)
+        if guard is None:
+            return f"{target.name} <= {word};"
+        return f"{target.name} <= {word} when {guard.text} else {target.zero};"
+
+    def _clocked_read(self, cell: Cell) -> Iterator[str]:
+        enable = cell.ports["EN"]
+        yield f"process ({self._values.logic(cell.ports['CLK']).text})"
+        yield "begin"
+        yield f"  if {edge(self._values, cell)} then"
+        constant = self._values.constant(enable)
+        if constant is None:
+            yield f"    if {self._values.boolean(enable).text} then"
+            yield from (f"      {line}" for line in self._read_statements(cell))
+            yield "    end if;"
+        elif constant:
+            yield from (f"    {line}" for line in self._read_statements(cell))
+        yield "  end if;"
+        yield "end process;"
+
+    def _read_statements(self, cell: Cell) -> Iterator[str]:
+        target, address = self._target(cell), cell.ports["ADDR"]
+        guard = self._guard(address)
+        line = f"{target.name} <= {target.accept(atom(self._word(address)), target.width)};"
+        if guard is None:
+            yield line
+        else:
+            yield f"if {guard.text} then"
+            yield f"  {line}"
+            yield "else"
+            yield f"  {target.name} <= {target.zero};"
+            yield "end if;"
+        mask = int_parameter(cell, "TRANSPARENCY_MASK")
+        for write in self._writes:
+            if mask >> int_parameter(write, "PORTID") & 1:
+                yield from self._bypass(cell, write)
+
+    def _bypass(self, cell: Cell, write: Cell) -> Iterator[str]:
+        target, values = self._target(cell), self._values
+        here, there = cell.ports["ADDR"], write.ports["ADDR"]
+        same: list[Text] = []
+        if values.constant(here) is not None and values.constant(there) is not None:
+            if values.constant(here) != values.constant(there):
+                return
+        elif spec_width(here) == 1:
+            same = [infix("=", values.logic(here), values.logic(there))]
+        else:
+            same = [infix("=", values.unsigned(here), values.unsigned(there))]
+        for bit, low, width in enable_runs(write.ports["EN"]):
+            if isinstance(bit, Bits) and bit.text != "1":
+                continue
+            tests = same + ([] if isinstance(bit, Bits) else [values.boolean((bit,))])
+            part = cut(write.ports["DATA"], low, width)
+            value = values.logic(part) if width == 1 else values.unsigned(part, target=True)
+            line = f"{target.part(low, width)} <= {target.accept(value, width)};"
+            if tests:
+                yield f"if {chain('and', *tests).text} then  -- being written"
+                yield f"  {line}"
+                yield "end if;"
+            else:
+                yield line
+
+    def _target(self, cell: Cell) -> Declared:
+        (chunk,) = cell.ports["DATA"]
+        assert isinstance(chunk, Slice)
+        return self._targets[chunk.wire]

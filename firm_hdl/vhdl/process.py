@@ -1,0 +1,361 @@
+"""Amaranth's statements as VHDL: `if`, `case`, conditional assignments, clocked processes.
+
+RTLIL's switch takes the first arm that matches and knows don't-care bits; it becomes a `case` where
+every arm is plain and different, and a chain of conditions otherwise, which is what an Amaranth
+`If` was before it became a switch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from firm_hdl.rtlil.ir import (
+    Assign,
+    Case,
+    Cell,
+    Slice,
+    Spec,
+    Statement,
+    Switch,
+    cut,
+    spec_width,
+)
+from firm_hdl.vhdl.expr import Declared, Values
+from firm_hdl.vhdl.text import Text, atom, chain, infix, literal
+
+__all__ = ["Arm", "Statements", "flatten", "merged"]
+
+# A conditional assignment of more is a list that nobody reads; a `case` of fewer is an `if`.
+_MAX_CHOICES = 6
+_MIN_CHOICES = 3
+
+Comment = Callable[[Spec, str], str]
+
+
+@dataclass(frozen=True, slots=True)
+class Arm:
+    """One arm of a chain: its condition (`None`: otherwise) and its statements."""
+
+    condition: Text | None
+    body: tuple[Statement, ...]
+
+
+def flatten(body: tuple[Statement, ...]) -> tuple[Statement, ...]:
+    """Drop switches that choose nothing: Amaranth uses them to keep assignments in order."""
+    result: list[Statement] = []
+    for statement in body:
+        if isinstance(statement, Assign):
+            if statement.target:
+                result.append(statement)
+            continue
+        cases = tuple(
+            Case(patterns=case.patterns, body=flatten(case.body)) for case in statement.cases
+        )
+        if not statement.selector:
+            result.extend(cases[0].body if cases else ())
+        elif any(case.body for case in cases):
+            result.append(Switch(selector=statement.selector, cases=cases))
+    return tuple(result)
+
+
+def merged(first: tuple[Statement, ...], second: tuple[Statement, ...]) -> tuple[Statement, ...]:
+    """Join the statements of two registers; a switch that both have is written once.
+
+    Amaranth splits a process into one for each signal. As no statement of a clocked process reads
+    what another one assigns, order matters only among the statements of one register.
+    """
+    result = list(first)
+    earliest = 0
+    for statement in second:
+        place = next(
+            (i for i in range(earliest, len(first)) if _same_choice(result[i], statement)), None
+        )
+        if place is None:
+            result.append(statement)
+            earliest = len(first)
+            continue
+        a, b = result[place], statement
+        assert isinstance(a, Switch) and isinstance(b, Switch)
+        result[place] = _joined(a, b)
+        earliest = place + 1
+    return tuple(result)
+
+
+def _joined(a: Switch, b: Switch) -> Switch:
+    if [case.patterns for case in a.cases] == [case.patterns for case in b.cases]:
+        cases = tuple(
+            Case(patterns=x.patterns, body=merged(x.body, y.body))
+            for x, y in zip(a.cases, b.cases, strict=True)
+        )
+        return Switch(selector=a.selector, cases=cases)
+    bodies: dict[str, tuple[Statement, ...]] = {}
+    for switch in (a, b):
+        for case in switch.cases:
+            for pattern in case.patterns:
+                bodies[pattern] = merged(bodies.get(pattern, ()), case.body)
+    return Switch(
+        selector=a.selector,
+        cases=tuple(Case(patterns=(pattern,), body=body) for pattern, body in bodies.items()),
+    )
+
+
+def _same_choice(a: Statement, b: Statement) -> bool:
+    """Tell switches with the same arms, or on one selector with plain ones only."""
+    if not isinstance(a, Switch) or not isinstance(b, Switch) or a.selector != b.selector:
+        return False
+    if [case.patterns for case in a.cases] == [case.patterns for case in b.cases]:
+        return True
+    return _is_plain(a) and _is_plain(b)
+
+
+def _is_plain(switch: Switch) -> bool:
+    """Tell switches of which no two arms match, and that do nothing if none does."""
+    patterns = [pattern for case in switch.cases for pattern in case.patterns]
+    return (
+        all(case.patterns for case in switch.cases)
+        and not any("-" in pattern for pattern in patterns)
+        and len(set(patterns)) == len(patterns)
+        and spec_width(switch.selector) > 1
+    )
+
+
+class Statements:
+    """Writes statements.
+
+    Parameters
+    ----------
+    values : Values
+        For what is read.
+    targets : mapping of str to Declared
+        Signals by the wire that is assigned; for a next state, the register.
+    comment : callable
+        What to remark at a choice of a `case`.
+    """
+
+    def __init__(self, values: Values, targets: Mapping[str, Declared], comment: Comment) -> None:
+        self._values = values
+        self._targets = targets
+        self._comment = comment
+
+    def body(self, statements: tuple[Statement, ...]) -> Iterator[str]:
+        """Yield lines."""
+        for statement in statements:
+            if isinstance(statement, Assign):
+                yield from self.assign(statement)
+            elif (plain := self._plain_cases(statement)) is not None:
+                yield from self._case(statement, plain)
+            else:
+                yield from self._if(self.arms(statement))
+
+    def assign(self, statement: Assign) -> Iterator[str]:
+        """Yield an assignment, one line a chunk of its target."""
+        position = 0
+        for chunk in statement.target:
+            assert isinstance(chunk, Slice)
+            part = cut(statement.value, position, chunk.width)
+            target = self._targets[chunk.wire]
+            cell = self._values.folded(part)
+            if cell is not None and cell.kind == "$mux":
+                yield from self._choose(chunk, cell)
+                position += chunk.width
+                continue
+            value = self.value(part, whole=chunk.width == target.width)
+            yield f"{target.part(chunk.low, chunk.width)} <= {target.accept(value, chunk.width)};"
+            position += chunk.width
+
+    def _choose(self, chunk: Slice, cell: Cell) -> Iterator[str]:
+        """Yield the assignment of a multiplexer, which reads better as an `if`."""
+        yield f"if {self._values.boolean(cell.ports['S']).text} then"
+        for port, end in (("B", "else"), ("A", "end if;")):
+            value = cut(cell.ports[port], 0, chunk.width)
+            lines = self.assign(Assign(target=(chunk,), value=value))
+            yield from (f"  {line}" for line in lines)
+            yield end
+
+    def value(self, spec: Spec, *, whole: bool = True) -> Text:
+        """Write what is assigned. `whole`: to a signal, not a part of one."""
+        if spec_width(spec) == 1:
+            return self._values.logic(spec)
+        constant = self._values.constant(spec)
+        if whole and constant == 0:
+            return Text("(others => '0')", "literal")
+        return self._values.unsigned(spec, target=True)
+
+    def arms(self, switch: Switch) -> list[Arm]:
+        """Turn a switch into a chain of conditions."""
+        chain_: list[Arm] = []
+        seen: set[str] = set()
+        for case in switch.cases:
+            patterns = [p for p in dict.fromkeys(case.patterns) if p not in seen]
+            seen.update(patterns)
+            if case.patterns and not patterns:
+                continue
+            total = not patterns or any(not p.strip("-") for p in patterns)
+            last_bit = len(seen) == 2 and seen == {"0", "1"}
+            if total or last_bit:
+                chain_.append(Arm(None, case.body))
+                break
+            tests = [self._test(switch.selector, pattern) for pattern in patterns]
+            if chain_ and chain_[-1].body == case.body and chain_[-1].condition is not None:
+                tests.insert(0, chain_.pop().condition or tests[0])
+                tests = list(dict.fromkeys(tests))
+            chain_.append(Arm(chain("or", *tests), case.body))
+        while chain_ and not chain_[-1].body:
+            chain_.pop()
+        if len(chain_) == 1 and chain_[0].condition is not None:
+            return [self._nested(chain_[0])]
+        if len(chain_) == 2 and not chain_[0].body and chain_[1].condition is None:
+            return self._inverted(switch, chain_[1].body) or chain_
+        return chain_
+
+    def _nested(self, arm: Arm) -> Arm:
+        """Join the condition of an `if` with that of an `if` which is all that it holds."""
+        if len(arm.body) != 1 or not isinstance(arm.body[0], Switch) or arm.condition is None:
+            return arm
+        inner = arm.body[0]
+        if self._plain_cases(inner) is not None:
+            return arm
+        chain_ = self.arms(inner)
+        if len(chain_) != 1 or chain_[0].condition is None:
+            return arm
+        return Arm(chain("and", arm.condition, chain_[0].condition), chain_[0].body)
+
+    def _inverted(self, switch: Switch, body: tuple[Statement, ...]) -> list[Arm] | None:
+        """Write an empty `if` with an `else` as the `if` of the opposite."""
+        if spec_width(switch.selector) != 1 or len(switch.cases[0].patterns) != 1:
+            return None
+        opposite = "1" if switch.cases[0].patterns[0] == "0" else "0"
+        return [Arm(self._test(switch.selector, opposite), body)]
+
+    def _test(self, selector: Spec, pattern: str) -> Text:
+        tests: list[Text] = []
+        position = len(pattern)
+        for chunk in selector:
+            part = pattern[position - chunk.width : position]
+            position -= chunk.width
+            for low, bits in reversed(_cared(part)):
+                tests.append(self._equal(cut((chunk,), low, len(bits)), bits))
+        return chain("and", *tests) if tests else atom("true")
+
+    def _equal(self, spec: Spec, bits: str) -> Text:
+        constant = self._values.constant(spec)
+        if constant is not None:
+            return atom("true" if constant == int(bits, 2) else "false")
+        if len(bits) > 1:
+            return infix("=", self._values.unsigned(spec), atom(literal(bits)))
+        cell = self._values.folded(spec)
+        if cell is not None:
+            return self._values.cells.boolean(cell, inverted=bits == "0")
+        if bits == "1":
+            return self._values.boolean(spec)
+        return infix("=", self._values.logic(spec), atom("'0'"))
+
+    def _plain_cases(self, switch: Switch) -> list[tuple[list[str], Case]] | None:
+        """Give the choices of a `case` statement, if there is one that does the same."""
+        if not self._values.is_name(switch.selector) or spec_width(switch.selector) < 2:
+            return None
+        seen: set[str] = set()
+        plain: list[tuple[list[str], Case]] = []
+        default: Case | None = None
+        for case in switch.cases:
+            if any("-" in pattern for pattern in case.patterns):
+                return None
+            if not case.patterns:
+                default = case
+                break
+            new = [p for p in dict.fromkeys(case.patterns) if p not in seen]
+            seen.update(new)
+            same = next((old for old, other in plain if other.body == case.body), None)
+            if same is not None:
+                same.extend(new)
+            elif new:
+                plain.append((new, case))
+        otherwise = default.body if default is not None else ()
+        # All choices differ, so those that do what `others` does can be left to it.
+        plain = [(new, case) for new, case in plain if case.body != otherwise]
+        if len(plain) < 2 and sum(len(new) for new, _ in plain) < _MIN_CHOICES:
+            return None
+        return [*plain, ([], Case(patterns=(), body=otherwise))]
+
+    def _case(self, switch: Switch, plain: list[tuple[list[str], Case]]) -> Iterator[str]:
+        (chunk,) = switch.selector
+        selector = self._values.unsigned(switch.selector).text
+        yield f"case {selector} is"
+        for patterns, case in plain:
+            choices = " | ".join(literal(p) for p in sorted(patterns)) if patterns else "others"
+            remark = " or ".join(
+                filter(None, (self._comment((chunk,), p) for p in sorted(patterns)))
+            )
+            yield f"  when {choices} =>{f'  -- {remark}' if remark else ''}"
+            yield from (f"    {line}" for line in self.body(case.body))
+            if not case.body:
+                yield "    null;"
+        yield "end case;"
+
+    def _if(self, chain_: list[Arm]) -> Iterator[str]:
+        if chain_ and chain_[0].condition is None:
+            yield from self.body(chain_[0].body)
+            return
+        keyword = "if"
+        for arm in chain_:
+            yield f"{keyword} {arm.condition.text} then" if arm.condition else "else"
+            yield from (f"  {line}" for line in self.body(arm.body))
+            if not arm.body:
+                yield "  null;"
+            keyword = "elsif"
+        if chain_:
+            yield "end if;"
+
+    def conditional(self, body: tuple[Statement, ...]) -> list[tuple[str, str | None]] | None:
+        """Give (value, condition) pairs of a conditional assignment that does what a process does.
+
+        The body must be a default for the whole signal and at most one switch, whose arms assign
+        the whole signal once.
+        """
+        first = body[0]
+        if not isinstance(first, Assign) or len(body) > 2 or not self._is_whole(first):
+            return None
+        default = self._accepted(first)
+        if len(body) == 1:
+            return [(default, None)]
+        switch = body[1]
+        if not isinstance(switch, Switch) or self._plain_cases(switch) is not None:
+            return None
+        pairs: list[tuple[str, str | None]] = []
+        for arm in self.arms(switch):
+            if len(arm.body) > 1 or (arm.body and not self._is_whole(arm.body[0])):
+                return None
+            inner = arm.body[0] if arm.body else first
+            assert isinstance(inner, Assign)
+            value = self._accepted(inner)
+            pairs.append((value, arm.condition.text if arm.condition else None))
+        if not pairs or pairs[-1][1] is not None:
+            pairs.append((default, None))
+        while len(pairs) > 1 and pairs[-2][0] == pairs[-1][0]:
+            del pairs[-2]
+        return pairs if len(pairs) <= _MAX_CHOICES else None
+
+    def _accepted(self, statement: Assign) -> str:
+        (chunk,) = statement.target
+        assert isinstance(chunk, Slice)
+        return self._targets[chunk.wire].accept(self.value(statement.value), chunk.width)
+
+    def _is_whole(self, statement: Statement) -> bool:
+        if not isinstance(statement, Assign) or len(statement.target) != 1:
+            return False
+        (chunk,) = statement.target
+        return isinstance(chunk, Slice) and chunk.width == self._targets[chunk.wire].width
+
+
+def _cared(pattern: str) -> list[tuple[int, str]]:
+    """Split a pattern into its runs of bits that matter, each with its lowest bit's index."""
+    runs: list[tuple[int, str]] = []
+    start = None
+    for index, mark in enumerate(f"{pattern}-"):
+        if mark != "-" and start is None:
+            start = index
+        elif mark == "-" and start is not None:
+            runs.append((len(pattern) - index, pattern[start:index]))
+            start = None
+    return runs

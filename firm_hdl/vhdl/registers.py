@@ -1,0 +1,171 @@
+"""Flip-flops: one clocked process for all that share a clock edge and a reset."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from firm_hdl.rtlil.ir import Assign, Bits, Cell, Slice, Spec, Statement, Switch, spec_width
+from firm_hdl.vhdl.declare import Names, initial_value
+from firm_hdl.vhdl.expr import Values
+from firm_hdl.vhdl.graph import Graph
+from firm_hdl.vhdl.memory import edge
+from firm_hdl.vhdl.process import Statements, flatten, merged
+
+__all__ = ["Registers"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Register:
+    wire: str
+    cell: Cell
+    body: tuple[Statement, ...]
+    reset: Spec
+
+
+@dataclass(frozen=True, slots=True)
+class _Group:
+    """What registers of one process have in common, as text."""
+
+    edge: str
+    clock: str
+    reset: str
+    asynchronous: bool
+
+
+class Registers:
+    """Writes the registers of a module."""
+
+    def __init__(self, graph: Graph, values: Values, statements: Statements, names: Names) -> None:
+        self._graph = graph
+        self._values = values
+        self._statements = statements
+        self._names = names
+
+    def summary(self) -> Iterator[str]:
+        """Yield remarks on clocks and resets."""
+        for group, registers in self._groups.items():
+            count = len(registers)
+            noun = "1 register" if count == 1 else f"{count} registers"
+            kind = "asynchronous" if group.asynchronous else "synchronous"
+            reset = f"{kind} reset {group.reset}" if group.reset else "no reset"
+            yield f"{noun} at {group.edge}, {reset}."
+
+    @cached_property
+    def _groups(self) -> dict[_Group, list[_Register]]:
+        groups: dict[_Group, list[_Register]] = defaultdict(list)
+        for wire, cell in self._graph.register_of.items():
+            register = self._register(wire, cell)
+            asynchronous = cell.kind == "$adff"
+            spec = cell.ports["ARST"] if asynchronous else register.reset
+            group = _Group(
+                edge=edge(self._values, cell),
+                clock=self._values.logic(cell.ports["CLK"]).text,
+                reset=self._values.boolean(spec).text if spec else "",
+                asynchronous=asynchronous,
+            )
+            groups[group].append(register)
+        return groups
+
+    def _register(self, wire: str, cell: Cell) -> _Register:
+        process = self._graph.next_state.get(wire)
+        if process is None:
+            whole = (Slice(wire, 0, spec_width(cell.ports["D"])),)
+            body: tuple[Statement, ...] = (Assign(target=whole, value=cell.ports["D"]),)
+        else:
+            body = flatten(process.body)
+        if body and self._holds(body[0], wire):
+            body = body[1:]
+        reset: Spec = ()
+        if cell.kind == "$dff" and body and (reset := self._reset_of(body[-1], wire)):
+            body = body[:-1]
+        if not body:
+            # One that holds what it has; with nothing but a reset it would be a latch.
+            whole = (Slice(wire, 0, self._graph.width[wire]),)
+            body = (Assign(target=whole, value=whole),)
+        return _Register(wire, cell, body, reset)
+
+    def _holds(self, statement: Statement, wire: str) -> bool:
+        """Tell the default of a register: to stay what it is."""
+        if not isinstance(statement, Assign) or len(statement.value) != 1:
+            return False
+        (chunk,) = statement.value
+        return (
+            isinstance(chunk, Slice)
+            and chunk.wire == wire
+            and chunk.low == 0
+            and chunk.width == self._graph.width[wire]
+            and len(statement.target) == 1
+            and statement.target[0].width == chunk.width
+        )
+
+    def _reset_of(self, statement: Statement, wire: str) -> Spec:
+        """Give the signal that brings a register to its initial value, whatever else is said."""
+        if not isinstance(statement, Switch) or spec_width(statement.selector) != 1:
+            return ()
+        if len(statement.cases) != 1 or statement.cases[0].patterns != ("1",):
+            return ()
+        (chunk,) = statement.selector
+        body = statement.cases[0].body
+        if not isinstance(chunk, Slice) or chunk.wire in self._graph.folded or len(body) != 1:
+            return ()
+        inner = body[0]
+        init = self._graph.module.wires[wire].attributes.get("init")
+        if (
+            not isinstance(inner, Assign)
+            or not isinstance(init, Bits)
+            or spec_width(inner.target) != init.width
+            or not all(isinstance(part, Bits) for part in inner.value)
+        ):
+            return ()
+        given = "".join(part.text for part in reversed(inner.value) if isinstance(part, Bits))
+        return statement.selector if given == init.text else ()
+
+    def processes(self) -> Iterator[Iterator[str]]:
+        """Yield one block for each process."""
+        for group, registers in self._groups.items():
+            yield self._process(group, registers)
+
+    def _process(self, group: _Group, registers: list[_Register]) -> Iterator[str]:
+        label = self._names.scope.give(f"p_{group.clock.partition('(')[0]}")
+        sensitivity = group.clock
+        if group.asynchronous:
+            cell = registers[0].cell
+            sensitivity += f", {self._values.logic(cell.ports['ARST']).text}"
+        body: tuple[Statement, ...] = ()
+        for register in registers:
+            body = merged(body, register.body)
+        lines = list(self._statements.body(body))
+        start = [self._start(register) for register in registers]
+        yield f"{label} : process ({sensitivity})"
+        yield "begin"
+        if group.asynchronous:
+            yield f"  if {group.reset} then"
+            yield from (f"    {line}" for line in start)
+            yield f"  elsif {group.edge} then"
+            yield from (f"    {line}" for line in lines)
+        else:
+            yield f"  if {group.edge} then"
+            if group.reset:
+                yield f"    if {group.reset} then"
+                yield from (f"      {line}" for line in start)
+                if lines:
+                    yield "    else"
+                    yield from (f"      {line}" for line in lines)
+                yield "    end if;"
+            else:
+                yield from (f"    {line}" for line in lines)
+        yield "  end if;"
+        yield "end process;"
+
+    def _start(self, register: _Register) -> str:
+        declared = self._names.declared[register.wire]
+        wire = self._graph.module.wires[register.wire]
+        value = initial_value(wire, declared.width)
+        if register.cell.kind == "$adff":
+            reset = register.cell.parameters["ARST_VALUE"]
+            assert isinstance(reset, Bits)
+            value = self._statements.value((reset,)).text
+        return f"{declared.name} <= {value};"

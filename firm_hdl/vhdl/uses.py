@@ -1,0 +1,147 @@
+"""What reads a wire, and whether an expression may stand in its place there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from firm_hdl.rtlil.ir import (
+    Assign,
+    Bits,
+    Cell,
+    Chunk,
+    Slice,
+    Spec,
+    Statement,
+    Switch,
+    cut,
+    spec_width,
+)
+
+__all__ = [
+    "INLINE",
+    "MODULAR",
+    "Use",
+    "enable_runs",
+    "int_parameter",
+    "output",
+    "statement_uses",
+    "trim",
+    "uses_of",
+]
+
+MODULAR = frozenset("$add $sub $mul $neg $and $or $xor $not $mux $shl".split())
+"""Kinds whose low result bits depend on the low operand bits alone."""
+
+INLINE = MODULAR | frozenset(
+    "$reduce_bool $reduce_or $reduce_and $reduce_xor $divfloor $modfloor $shr $sshr $shift "
+    "$eq $ne $lt $le $gt $ge".split()
+)
+"""Kinds that are an expression."""
+
+
+def trim(spec: Spec, width: int) -> Spec:
+    """Keep the `width` low bits."""
+    return cut(spec, 0, width)
+
+
+def int_parameter(cell: Cell, name: str) -> int:
+    """Read a parameter that is a number."""
+    value = cell.parameters.get(name, 0)
+    if isinstance(value, Bits):
+        return int(value.text or "0", 2)
+    if not isinstance(value, int):
+        raise ValueError(f"RTLIL line {cell.line}: parameter {name} of {cell.kind} is no number")
+    return value
+
+
+def output(cell: Cell) -> str:
+    """Name the wire that an operator, flip-flop or memory port drives."""
+    port = {"$dff": "Q", "$adff": "Q", "$memrd_v2": "DATA"}.get(cell.kind, "Y")
+    chunk = cell.ports[port][0]
+    assert isinstance(chunk, Slice)
+    return chunk.wire
+
+
+def enable_runs(spec: Spec) -> list[tuple[Chunk, int, int]]:
+    """Split a write enable, one bit per data bit, into (bit, lowest data bit, number of bits)."""
+    runs: list[tuple[Chunk, int, int]] = []
+    position = 0
+    for chunk in spec:
+        for i in range(chunk.width):
+            bit: Chunk = (
+                Bits(chunk.text[-1 - i])
+                if isinstance(chunk, Bits)
+                else Slice(chunk.wire, chunk.low + i, 1)
+            )
+            if runs and runs[-1][0] == bit:
+                runs[-1] = (bit, runs[-1][1], runs[-1][2] + 1)
+            else:
+                runs.append((bit, position, 1))
+            position += 1
+    return runs
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """A reading of a specification. `inline`: an expression may stand there."""
+
+    spec: Spec
+    inline: bool
+
+
+def uses_of(cell: Cell, width: Mapping[str, int]) -> Iterator[Use]:
+    """Yield what a cell reads; `width` has the bits of each wire that anybody reads."""
+    kind, ports = cell.kind, cell.ports
+    if kind in INLINE:
+        bits = width[output(cell)]
+        for port, spec in ports.items():
+            # A select and a distance count as a whole, whatever the result is cut to.
+            cut_port = kind in MODULAR and port != "S" and (kind != "$shl" or port != "B")
+            if port != "Y":
+                yield Use(trim(spec, bits) if cut_port else spec, True)
+    elif kind in ("$dff", "$adff"):
+        yield Use(ports["D"], True)
+        yield Use(ports["CLK"], False)
+        yield Use(ports.get("ARST", ()), False)
+    elif kind == "$memwr_v2":
+        runs = enable_runs(ports["EN"])
+        yield Use(ports["ADDR"], False)
+        yield Use(ports["DATA"], False)
+        yield Use(ports["CLK"], False)
+        yield from (Use((bit,), len(runs) == 1) for bit, _, _ in runs)
+    elif kind == "$memrd_v2":
+        yield Use(ports["ADDR"], False)
+        yield Use(ports["EN"], True)
+        yield Use(ports["CLK"], False)
+    elif kind in ("$check", "$print"):
+        yield from (Use(spec, port in ("A", "EN")) for port, spec in ports.items())
+    elif kind == "$tribuf":
+        yield from (Use(ports[port], True) for port in ("A", "EN"))
+    elif kind != "$meminit_v2":
+        yield from (Use(spec, False) for port, spec in ports.items())
+
+
+def statement_uses(body: tuple[Statement, ...]) -> Iterator[Use]:
+    for statement in body:
+        if isinstance(statement, Assign):
+            yield Use(statement.value, True)
+            continue
+        yield from _selector_uses(statement)
+        for case in statement.cases:
+            yield from statement_uses(case.body)
+
+
+def _selector_uses(switch: Switch) -> Iterator[Use]:
+    """A bit of a selector may be an expression if one arm alone looks at it."""
+    position = spec_width(switch.selector)
+    for chunk in reversed(switch.selector):
+        low = position - chunk.width
+        looks = sum(
+            any(mark != "-" for mark in pattern[len(pattern) - position : len(pattern) - low])
+            for case in switch.cases
+            for pattern in case.patterns
+        )
+        both = len(switch.selector) == 1 and looks == 2 and position == 1
+        yield Use((chunk,), chunk.width == 1 and (looks <= 1 or both))
+        position = low

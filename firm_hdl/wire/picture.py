@@ -1,0 +1,158 @@
+"""A picture of a message's bytes, as SVG: eight to a row, in the order of the wire.
+
+Drawn here rather than by a library for bit fields: messages have parts whose size varies, and rows
+of hundreds of equal items that nobody wants to see one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from xml.sax.saxutils import escape
+
+from firm_hdl.wire import Layout
+from firm_hdl.wire.bands import Band, Cell, Grid, Note, bands
+
+__all__ = ["to_svg"]
+
+ROW_BYTES = 8
+BYTE_WIDTH = 42
+ROW_HEIGHT = 22
+LEFT = 64
+INDENT = 18
+CHARACTER_WIDTH = 6.7
+GRID_WIDTH = ROW_BYTES * BYTE_WIDTH
+
+COLOURS = {
+    "header": "#d9d9d9",
+    "padding": "#f4f4f4",
+    "length": "#fbe3b4",
+    "field": "#cfe2f7",
+    "data": "#d8efd3",
+    "loop": "#eadcf5",
+}
+STYLE = (
+    "text{font-family:monospace;font-size:11px;fill:#222}"
+    ".o{fill:#777;text-anchor:end}.h{font-weight:bold;font-size:13px}.c{text-anchor:middle}"
+    "rect{stroke:#555;stroke-width:1}"
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Piece:
+    """A cell's part of a row, which may stand for a number of rows that are left out."""
+
+    cell: Cell
+    row: int
+    first: int
+    bytes: int
+    starts: bool
+    left_out: int = 0
+
+
+def to_svg(layout: Layout, title: str) -> str:
+    """Draw a layout."""
+    shapes = [f'<text class="h" x="8" y="20">{escape(title)}</text>']
+    y = 34
+    for lane in range(ROW_BYTES):
+        x = LEFT + lane * BYTE_WIDTH + BYTE_WIDTH // 2
+        shapes.append(f'<text class="o c" x="{x}" y="{y + 10}">+{lane}</text>')
+    y += 16
+    right = int(len(title) * CHARACTER_WIDTH * 1.2)
+    for band in bands(layout):
+        drawn, height, edge = _draw(band, y)
+        shapes += drawn
+        right = max(right, edge)
+        y += height + 6
+    width = right + 12
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {y}" '
+        f'width="{width}" height="{y}">\n'
+        f"<style>{STYLE}</style>\n"
+        f'<rect x="0" y="0" width="{width}" height="{y}" style="fill:#fff;stroke:none"/>\n'
+        + "\n".join(shapes)
+        + "\n</svg>\n"
+    )
+
+
+def _draw(band: Band, y: int) -> tuple[list[str], int, int]:
+    """Return shapes, their height, and their right edge."""
+    left = LEFT + band.depth * INDENT
+    drawn = _note(band, left, y) if isinstance(band, Note) else _grid(band, left, y)
+    shapes, height, right = drawn
+    rails = [
+        f'<rect x="{6 + 8 * level}" y="{y - 6}" width="5" height="{height + 6}" '
+        f'style="fill:{COLOURS["loop"]};stroke:none"/>'
+        for level in range(band.depth)
+    ]
+    return rails + shapes, height, right
+
+
+def _note(note: Note, left: int, y: int) -> tuple[list[str], int, int]:
+    dashes = "" if note.kind == "loop" else ' stroke-dasharray="5 3"'
+    width = max(GRID_WIDTH, int(len(note.text) * CHARACTER_WIDTH) + 16)
+    shapes = [
+        f'<rect x="{left}" y="{y}" width="{width}" height="{ROW_HEIGHT}" '
+        f'fill="{COLOURS[note.kind]}"{dashes}/>',
+        f'<text x="{left + 8}" y="{y + 15}">{escape(note.text)}</text>',
+    ]
+    return shapes, ROW_HEIGHT, left + width
+
+
+def _grid(grid: Grid, left: int, y: int) -> tuple[list[str], int, int]:
+    rows: dict[int, list[_Piece]] = {}
+    for cell in grid.cells:
+        for piece in _pieces(cell):
+            rows.setdefault(piece.row, []).append(piece)
+    shapes = []
+    right = x = left + GRID_WIDTH + 10
+    for line, (row, pieces) in enumerate(sorted(rows.items())):
+        top = y + line * ROW_HEIGHT
+        offset = row * ROW_BYTES
+        text = str(grid.start + offset) if grid.start is not None else f"+{offset}"
+        if not pieces[0].left_out:
+            shapes.append(f'<text class="o" x="{left - 8}" y="{top + 15}">{text}</text>')
+        for piece in pieces:
+            shapes += _cell(piece, left, top)
+        named = (p.cell for p in pieces if p.starts and p.cell.kind != "padding")
+        label = ", ".join(f"{cell.name} {cell.type}".strip() for cell in named)
+        if label:
+            shapes.append(f'<text x="{x}" y="{top + 15}">{escape(label)}</text>')
+            right = max(right, x + int(len(label) * CHARACTER_WIDTH))
+    return shapes, len(rows) * ROW_HEIGHT, right
+
+
+def _pieces(cell: Cell) -> Iterator[_Piece]:
+    """Cut a cell into rows; of many, only the outer ones."""
+    end = cell.at + cell.bytes
+    rows = list(range(cell.at // ROW_BYTES, -(-end // ROW_BYTES)))
+    shown = rows if len(rows) <= 4 else [rows[0], rows[1], rows[-1]]
+    for row in shown:
+        first = max(cell.at, row * ROW_BYTES)
+        last = min(end, (row + 1) * ROW_BYTES)
+        left_out = len(rows) - 2 if len(shown) < len(rows) and row == rows[1] else 0
+        yield _Piece(
+            cell=cell,
+            row=row,
+            first=first % ROW_BYTES,
+            bytes=last - first,
+            starts=row == rows[0],
+            left_out=left_out,
+        )
+
+
+def _cell(piece: _Piece, left: int, top: int) -> Iterator[str]:
+    cell = piece.cell
+    x, width = left + piece.first * BYTE_WIDTH, piece.bytes * BYTE_WIDTH
+    short = cell.name.rpartition(".")[2] if cell.kind != "length" else "length"
+    text = f"... {piece.left_out} rows" if piece.left_out else short if piece.starts else ""
+    room = int((width - 6) / CHARACTER_WIDTH)
+    if len(text) > room:
+        text = text[: room - 1] + "~" if room > 2 else ""
+    yield (
+        f'<rect x="{x}" y="{top}" width="{width}" height="{ROW_HEIGHT}" '
+        f'fill="{COLOURS[cell.kind]}">'
+        f"<title>{escape(f'{cell.name} {cell.type}'.strip())}, {cell.bytes} bytes</title></rect>"
+    )
+    if text:
+        yield f'<text class="c" x="{x + width // 2}" y="{top + 15}">{escape(text)}</text>'

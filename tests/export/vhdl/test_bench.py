@@ -1,0 +1,127 @@
+"""The generated test bench, in GHDL: it passes on what is right and fails on what is not."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from firm_hdl import load_message
+from firm_hdl.export.vhdl.parts import packets_text
+from firm_hdl.verify.stimuli import stimuli
+from firm_hdl.verify.user_oracle import NotJudgedError
+from tests.export.vhdl.test_layer import nasty, vhdl_of, write
+
+
+def run(folder: Path, *arguments: str, **environment: str) -> tuple[int, str]:
+    """Run the script from elsewhere; its status, and what it said."""
+    done = subprocess.run(
+        ["sh", str(folder / "run_ghdl.sh"), *arguments],
+        cwd="/",
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def made(folder: Path, name: str, distro: str, bus_bytes: int) -> list[bytes]:
+    """Write the folder of a type; return its packets."""
+    message = load_message(name, distro=distro)
+    _, plan = vhdl_of(message, bus_bytes)
+    packets = stimuli(message, plan)
+    assert packets
+    write(folder, vhdl_of(message, bus_bytes, packets)[0].files)
+    return packets
+
+
+@pytest.mark.parametrize(
+    ("name", "distro", "bus_bytes"),
+    [
+        ("geometry_msgs/msg/Twist", "lyrical", 8),
+        ("sensor_msgs/msg/Imu", "humble", 1),
+        ("sensor_msgs/msg/PointCloud2", "lyrical", 4),
+        ("sensor_msgs/msg/PointCloud2", "lyrical", 16),
+        ("nav_msgs/Odometry", "noetic", 8),
+        ("std_msgs/Empty", "noetic", 8),
+        ("std_msgs/msg/Empty", "lyrical", 1),
+    ],
+)
+def test_passes(ghdl, tmp_path, name, distro, bus_bytes):
+    folder = tmp_path / "with space"
+    packets = made(folder, name, distro, bus_bytes)
+    for seed, stalls in ((1, 40), (2, 0)):
+        status, said = run(folder, f"-gseed={seed}", f"-gstalls={stalls}", GHDL=ghdl)
+        assert status == 0, said
+        size = sum(map(len, packets))
+        assert said.startswith(f"PASS {name}, "), said
+        assert f": {len(packets)} packets, {size} bytes, " in said
+        assert len(said.splitlines()) == 1, said
+    assert (folder / "work" / "results.txt").read_text() == packets_text(packets)
+    assert (folder / "work" / "transfers.txt").read_text().count("\n") >= len(packets)
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 8])
+def test_nasty_names_pass(ghdl, tmp_path, bus_bytes):
+    message = nasty(tmp_path)
+    _, plan = vhdl_of(message, bus_bytes)
+    packets = stimuli(message, plan)
+    assert packets
+    write(tmp_path / "vhdl", vhdl_of(message, bus_bytes, packets)[0].files)
+    status, said = run(tmp_path / "vhdl", GHDL=ghdl)
+    assert status == 0 and said.startswith("PASS "), said
+
+
+def test_changed_byte_more_and_fewer_packets_fail(ghdl, tmp_path):
+    packets = made(tmp_path, "geometry_msgs/msg/Twist", "lyrical", 8)
+    changed = [bytearray(packet) for packet in packets]
+    changed[2][17] ^= 1
+    longer = [packets[0] + b"\0", *packets[1:]]
+    for what, wrong, message in (
+        ("changed", changed, "FAIL packet 2: byte 17 is "),
+        ("longer", longer, "FAIL packet 0 has "),
+        ("more", [*packets, packets[0]], "FAIL nothing moves: "),
+        ("fewer", packets[:-1], f"FAIL packet {len(packets) - 1}: no such packet is expected"),
+    ):
+        path = tmp_path / f"{what}.txt"
+        path.write_text(packets_text(list(map(bytes, wrong))))
+        status, said = run(tmp_path, f"-gexpected={path}", "-gpatience=1000", GHDL=ghdl)
+        assert status != 0, what
+        assert message in said
+        assert "PASS" not in said
+
+
+def test_packet_that_is_not_of_the_type_fails(ghdl, tmp_path):
+    packets = made(tmp_path, "geometry_msgs/msg/Twist", "lyrical", 8)
+    (tmp_path / "stimuli.txt").write_text(packets_text([packets[0][:-1]]))
+    status, said = run(tmp_path, GHDL=ghdl)
+    assert status != 0
+    assert "FAIL packet 0" in said
+
+
+def test_missing_stimuli_and_missing_ghdl_are_told(tmp_path):
+    made(tmp_path, "std_msgs/msg/Empty", "lyrical", 8)
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    for tool in ("dirname", "sh", "mkdir", "cat"):
+        (empty / tool).symlink_to(Path("/usr/bin") / tool)
+    status, said = run(tmp_path, PATH=str(empty), GHDL="")
+    assert (status, said.count("apt install ghdl")) == (127, 1)
+    (tmp_path / "stimuli.txt").unlink()
+    status, said = run(tmp_path, GHDL="true")
+    assert (status, said.count("stimuli.txt, one a line")) == (2, 1)
+
+
+def test_type_that_rosbags_cannot_write_has_no_stimuli(monkeypatch):
+    def refuse(*arguments, **options):
+        raise NotJudgedError("too odd")
+
+    monkeypatch.setattr("firm_hdl.verify.stimuli.judge_of", refuse)
+    message = load_message("std_msgs/msg/String")
+    vhdl, plan = vhdl_of(message)
+    assert stimuli(message, plan) == []
+    assert "stimuli.txt" not in vhdl.files

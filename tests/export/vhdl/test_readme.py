@@ -1,0 +1,107 @@
+"""The README's pieces of code, with what they leave out, are designs that act on good packets."""
+
+# amaranth: UnusedElaboratable=no
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from firm_hdl import load_message
+from firm_hdl.export.vhdl.parts import PARTS
+from tests.export.vhdl.test_layer import analyse, vhdl_of, write
+from tests.test_examples import load
+
+ROOT = Path(__file__).parents[3]
+README = (ROOT / "README.md").read_text()
+BLOCKS = re.findall(r"^```vhdl\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+EXAMPLES = ROOT / "examples"
+SAFE = r" and status = STATUS_OK;"
+
+DESIGN = """\
+library ieee;
+use ieee.std_logic_1164.all;
+{uses}
+entity design is
+  port (
+    aclk, aresetn, tlast, tvalid : in std_logic;
+    tdata        : in  std_logic_vector(63 downto 0);
+    tkeep        : in  std_logic_vector(7 downto 0);
+    tready       : out std_logic;
+    status       : out std_logic_vector(7 downto 0);
+    status_valid : out std_logic;
+    speed        : out std_logic_vector(63 downto 0) := (others => '0')
+  );
+end entity;
+architecture rtl of design is
+{signals}
+begin
+{statements}
+end architecture;
+"""
+INSTANCE = """\
+  dut : entity work.design
+    port map (
+      aclk => aclk, aresetn => aresetn, tdata => tdata, tkeep => tkeep, tlast => tlast,
+      tvalid => tvalid, tready => tready, status => open, status_valid => open, speed => speed
+    );
+"""
+
+
+@pytest.fixture(scope="module")
+def converters():
+    made, _ = vhdl_of(load_message("geometry_msgs/msg/Twist", distro="lyrical"))
+    return made
+
+
+def bench() -> str:
+    """Return the bench of the motor in the examples, for these designs, whose bus is wider."""
+    text = (EXAMPLES / "vhdl_motor" / "motor_tb.vhd").read_text()
+    for old, new in (("(31 downto", "(63 downto"), ("(3 downto", "(7 downto"), ("=> 4,", "=> 8,")):
+        assert old in text
+        text = text.replace(old, new)
+    text, count = re.subn(r"  dut : .*?;\n", INSTANCE, text, flags=re.DOTALL)
+    assert count == 1
+    return text
+
+
+def run(ghdl: str, converters, folder: Path, block: str) -> tuple[int, str]:
+    uses, signals, statements = block.split("...\n")
+    text = DESIGN.format(uses=uses, signals=signals, statements=statements)
+    parts = {name: PARTS[name] for name in ("firm_hdl_bench_pkg.vhd", "firm_hdl_axis_source.vhd")}
+    write(folder, {**converters.files, **parts, "design.vhd": text, "motor_tb.vhd": bench()})
+    files = [*converters.manifest["files"], *parts, "design.vhd", "motor_tb.vhd"]
+    analyse(ghdl, folder, files)
+    load(EXAMPLES / "vhdl_motor" / "twists.py").main(folder)
+    done = subprocess.run(
+        [ghdl, "--elab-run", "--std=08", "motor_tb", "--ieee-asserts=disable-at-0"],
+        cwd=folder, capture_output=True, text=True, timeout=300, check=False,
+    )  # fmt: skip
+    return done.returncode, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("number", range(2))
+def test_pieces_act_on_good_packets_alone(ghdl, converters, tmp_path, number):
+    assert len(BLOCKS) == 2
+    status, said = run(ghdl, converters, tmp_path, BLOCKS[number])
+    assert status == 0 and "PASS 8 packets, 4 speeds" in said, said
+
+
+def test_piece_that_does_not_look_at_the_status_fails(ghdl, converters, tmp_path):
+    naive, count = re.subn(SAFE, ";", BLOCKS[0])
+    assert count == 1
+    status, said = run(ghdl, converters, tmp_path, naive)
+    assert status != 0 and "FAIL after" in said, said
+
+
+def test_piece_of_systemverilog_is_the_examples_own():
+    (piece,) = re.findall(r"^```systemverilog\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+    example = (EXAMPLES / "sv_motor" / "motor.sv").read_text()
+    constant = re.search(r"OK = (8'd\d+);", example)
+    assert constant is not None
+    (action,) = re.findall(r"if \(.*?<= linear_x;", piece)
+    assert action.replace(constant[1], "OK") in example
+    assert ".linear_x_ready(status_valid)" in README and ".linear_x_ready(status_valid)" in example

@@ -1,0 +1,285 @@
+# amaranth: UnusedElaboratable=no
+"""The record view in VHDL: whole messages of fixed size, through both entities, in GHDL."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from firm_hdl import Deserializer, load_message
+from firm_hdl.export.record_top import RecordTop, record_ports, why_no_record
+from firm_hdl.export.top import DIRECTIONS
+from firm_hdl.export.vhdl.parts import packets_text
+from firm_hdl.model import Message
+from firm_hdl.plan import build_plan
+from firm_hdl.verify.stimuli import stimuli
+from firm_hdl.wire import lay_out
+from tests.export.vhdl.test_bench import run
+from tests.export.vhdl.test_layer import WARNINGS, analyse, vhdl_of, write
+
+ARRAYS = """\
+# Keywords, names that meet, and all kinds of arrays.
+uint8 RANGE_VALUE_BITS=3
+bool range
+bool[11] flags
+Point[3] corners
+Range other
+int16[5] signal
+Point POINT
+byte data
+char letter
+time when
+float32 speed  # [m/s]
+Inside value
+Inside[2] values
+int64 std_logic_vector
+"""
+POINT = "uint16 x\nint16 y\nuint8[3] label\nEmpty nothing\n"
+RANGE = "uint8 bits\nfloat64[2] units\n"
+INSIDE = "Point[2] k\n"
+
+
+def arrays(tmp_path: Path, distro: str) -> Message:
+    folder = tmp_path / "src" / "array_msgs" / "msg"
+    folder.mkdir(parents=True)
+    text = ARRAYS
+    if distro != "noetic":
+        text = text.replace("time when", "builtin_interfaces/Time when").replace("POINT", "spot")
+        text = text.replace("Point spot\n", "Point spot\nbool[2] unsigned\n")
+    (folder / "Arrays.msg").write_text(text)
+    (folder / "Point.msg").write_text(POINT)
+    (folder / "Range.msg").write_text(RANGE)
+    (folder / "Inside.msg").write_text(INSIDE)
+    (folder / "Empty.msg").write_text("")
+    return load_message("array_msgs/Arrays", distro=distro, paths=[tmp_path / "src"])
+
+
+def made(folder: Path, message: Message, bus_bytes: int) -> tuple[str, list[bytes]]:
+    """Write the folder of a type; return its record bench and its packets."""
+    plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
+    packets = stimuli(message, plan)
+    assert packets
+    vhdl, _ = vhdl_of(message, bus_bytes, packets)
+    write(folder, vhdl.files)
+    [_, bench] = vhdl.manifest["bench"]["entities"]
+    assert bench.endswith("_record_tb")
+    return bench, packets
+
+
+def check(ghdl: str, folder: Path, message: Message, bus_bytes: int) -> None:
+    bench, packets = made(folder, message, bus_bytes)
+    for stalls in (0, 40):
+        status, said = run(folder, f"-gstalls={stalls}", GHDL=ghdl, BENCH=bench)
+        assert status == 0, said
+        assert said.startswith(f"PASS {message.name} record, "), said
+        assert f": {len(packets)} packets, " in said
+    assert (folder / "work" / "results_record.txt").read_text() == packets_text(packets)
+    rows = (folder / "work" / "transfers_record.txt").read_text().splitlines()
+    assert [row.split()[1] for row in rows] == ["msg"] * len(packets)
+
+
+@pytest.mark.parametrize(
+    ("name", "distro", "bus_bytes"),
+    [
+        ("geometry_msgs/msg/Twist", "lyrical", 8),
+        ("geometry_msgs/PoseWithCovariance", "noetic", 8),
+        ("std_msgs/msg/Bool", "lyrical", 1),
+    ],
+)
+def test_whole_messages_come_back(ghdl, tmp_path, name, distro, bus_bytes):
+    check(ghdl, tmp_path, load_message(name, distro=distro), bus_bytes)
+
+
+@pytest.mark.parametrize(
+    ("distro", "bus_bytes"), [("noetic", 1), ("noetic", 16), ("lyrical", 4), ("lyrical", 8)]
+)
+def test_arrays_and_nasty_names_come_back(ghdl, tmp_path, distro, bus_bytes):
+    check(ghdl, tmp_path / "vhdl", arrays(tmp_path, distro), bus_bytes)
+
+
+def test_changed_byte_fails(ghdl, tmp_path):
+    bench, packets = made(tmp_path, load_message("geometry_msgs/msg/Twist"), 8)
+    changed = [bytearray(packet) for packet in packets]
+    changed[2][17] ^= 1
+    (tmp_path / "changed.txt").write_text(packets_text(list(map(bytes, changed))))
+    status, said = run(tmp_path, f"-gexpected={tmp_path}/changed.txt", GHDL=ghdl, BENCH=bench)
+    assert status != 0
+    assert "FAIL packet 2: byte 17 is " in said
+
+
+def test_swapped_members_fail(ghdl, tmp_path):
+    # What the benches would miss if both ways were wrong alike is in the user's own design below.
+    bench, _ = made(tmp_path, load_message("geometry_msgs/msg/Twist"), 8)
+    [package] = tmp_path.glob("*vector3_cdr_8_pkg.vhd")
+    text = package.read_text()
+    assert "    value.x := all_bits(63 downto 0);\n" in text
+    text = text.replace("value.x := all_bits", "value.@ := all_bits")
+    text = text.replace("value.y := all_bits", "value.x := all_bits")
+    package.write_text(text.replace("value.@ := all_bits", "value.y := all_bits"))
+    status, said = run(tmp_path, GHDL=ghdl, BENCH=bench)
+    assert status != 0
+    assert "FAIL packet " in said
+
+
+@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+def test_arrays_are_analysed_without_warnings(ghdl, tmp_path, distro):
+    vhdl, _ = vhdl_of(arrays(tmp_path, distro))
+    write(tmp_path / "vhdl", vhdl.files)
+    analyse(
+        ghdl, tmp_path / "vhdl", [*vhdl.manifest["files"], *vhdl.manifest["bench"]["files"]]
+    )
+    assert "--warn-hide" in WARNINGS
+
+
+def test_package_reads_like_the_definition(tmp_path):
+    vhdl, _ = vhdl_of(arrays(tmp_path, "noetic"))
+    text = vhdl.files["array_msgs_arrays_ros1_8_pkg.vhd"]
+    start = text.index("  type arrays_value_t is record\n")
+    record = text[start : text.index("  end record;\n", start)]
+    # What a long line has behind it stands above it.
+    record = re.sub(r"\n    (--.*)\n(.*)", r"\n\2 \1", record.replace("work.array_msgs_", ""))
+    assert [" ".join(line.split()) for line in record.splitlines()[1:]] == [
+        "range_field : std_logic; -- range: bool",
+        "flags : bool_items_t(0 to 10); -- bool[11]",
+        "corners : point_ros1_8_pkg.point_values_t(0 to 2); -- array_msgs/Point[3]",
+        "other : range_ros1_8_pkg.range_value_t; -- array_msgs/Range",
+        "signal_field : int16_items_t(0 to 4); -- signal: int16[5]",
+        "POINT : point_ros1_8_pkg.point_value_t; -- array_msgs/Point",
+        "data : signed(7 downto 0); -- byte",
+        "letter : unsigned(7 downto 0); -- char",
+        "when_field : work.builtin_time_ros1_8_pkg.time_value_t; -- when: time",
+        "speed : std_logic_vector(31 downto 0); -- float32 [m/s]",
+        "value : inside_ros1_8_pkg.inside_value_t; -- array_msgs/Inside",
+        "values : inside_ros1_8_pkg.inside_values_t(0 to 1); -- array_msgs/Inside[2]",
+        "std_logic_vector_2 : signed(63 downto 0); -- std_logic_vector: int64",
+    ]
+    assert vhdl.manifest["record_view"]["message_type"] == "arrays_value_t"
+    inner = vhdl.files["array_msgs_range_ros1_8_pkg.vhd"]
+    assert "constant RANGE_VALUE_BITS " in inner
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("uint8[] a\n", "big_msgs/msg/Big has no fixed size"),
+        ("", "Message big_msgs/msg/Big has no field of fixed size for a record"),
+        (
+            "uint64[1024] a\n",
+            "Record of big_msgs/msg/Big is too wide: a has 65536 bits, and Amaranth elaborates at "
+            "most 65535",
+        ),
+        (
+            "uint8[8191] a\nbool[7] b\n",
+            "Record of big_msgs/msg/Big is too wide: it has 65535 bits, its serializer 65540 input "
+            "bits, and Amaranth elaborates at most 65535",
+        ),
+    ],
+)
+def test_what_has_no_record_says_why(tmp_path, text, reason):
+    folder = tmp_path / "big_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Big.msg").write_text(text)
+    message = load_message("big_msgs/msg/Big", paths=[tmp_path])
+    plan = build_plan(lay_out(message))
+    assert why_no_record(message, plan) == reason
+    with pytest.raises(ValueError) as caught:
+        RecordTop(Deserializer(message), message)
+    assert str(caught.value) == reason
+    if "8191" not in text and "1024" not in text:
+        vhdl, _ = vhdl_of(message)
+        assert vhdl.manifest["record_view"] == {"built": False, "reason": reason}
+        assert not [name for name in vhdl.files if "record" in name]
+
+
+def test_ports_are_those_of_the_converter_around_the_record():
+    plan = build_plan(lay_out(load_message("std_msgs/msg/Bool")), bus_bytes=1)
+    for direction in DIRECTIONS:
+        ports = [
+            f"{port.direction} {port.name} {port.width}"
+            for port in record_ports(plan, direction, 1)
+            if port.name.startswith("msg")
+        ]
+        to, fro = ("out", "in") if direction == "deserializer" else ("in", "out")
+        assert ports == [f"{to} msg_data 1", f"{to} msg_valid 1", f"{fro} msg_ready 1"]
+
+
+USERS_OWN = """\
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+use work.firm_hdl_types_pkg.all;
+use work.geometry_msgs_msg_twist_cdr_8_pkg.all;
+use work.geometry_msgs_msg_twist_cdr_8_components_pkg.all;
+
+entity user is end entity;
+
+architecture sim of user is
+  signal aclk, aresetn, tlast, tvalid, tready, status_valid : std_logic := '0';
+  signal tdata  : std_logic_vector(63 downto 0) := (others => '0');
+  signal tkeep  : std_logic_vector(7 downto 0) := (others => '1');
+  signal status : std_logic_vector(7 downto 0);
+  signal msg    : twist_value_t;
+  signal fifo   : std_logic_vector(TWIST_VALUE_BITS - 1 downto 0);
+  signal msg_valid, msg_ready : std_logic := '0';
+begin
+  aclk <= not aclk after 5 ns when now < 1 us;
+
+  dut : geometry_msgs_msg_twist_cdr_8_deserializer_record
+    port map (
+      aclk => aclk, aresetn => aresetn, s_axis_tdata => tdata, s_axis_tkeep => tkeep,
+      s_axis_tlast => tlast, s_axis_tvalid => tvalid, s_axis_tready => tready, msg => msg,
+      msg_valid => msg_valid, msg_ready => msg_ready, m_axis_status_tdata => status,
+      m_axis_status_tvalid => status_valid, m_axis_status_tready => '1'
+    );
+
+  fifo <= to_slv(msg);
+
+  process
+    -- 1.0 in linear.x, 2.0 in angular.z, behind the encapsulation header.
+    type words_t is array (natural range <>) of std_logic_vector(63 downto 0);
+    constant WORDS : words_t(0 to 6) := (
+      x"00000000_00000100", x"00000000_3ff00000", x"00000000_00000000", x"00000000_00000000",
+      x"00000000_00000000", x"00000000_00000000", x"00000000_40000000");
+  begin
+    wait until rising_edge(aclk);
+    aresetn <= '1';
+    for k in WORDS'range loop
+      tdata <= WORDS(k);
+      tlast <= '1' when k = WORDS'right else '0';
+      tkeep <= x"0f" when k = WORDS'right else x"ff";
+      tvalid <= '1';
+      wait until rising_edge(aclk) and tready = '1';
+    end loop;
+    tvalid <= '0';
+    wait until rising_edge(aclk) and msg_valid = '1';
+    assert msg.linear.x = x"3ff0000000000000" report "not 1.0" severity failure;
+    assert msg.linear.y = x"0000000000000000" report "not 0.0" severity failure;
+    assert msg.angular.z = x"4000000000000000" report "not 2.0" severity failure;
+    assert to_twist_value(fifo) = msg report "not the same" severity failure;
+    msg_ready <= '1';
+    wait until rising_edge(aclk);
+    msg_ready <= '0';
+    wait until rising_edge(aclk);
+    assert msg_valid = '0' report "taken, and still there" severity failure;
+    report "USER DONE";
+    wait;
+  end process;
+end architecture;
+"""
+
+
+def test_users_own_design_reads_a_whole_twist(ghdl, tmp_path):
+    vhdl, _ = vhdl_of(load_message("geometry_msgs/msg/Twist", distro="lyrical"))
+    write(tmp_path, {**vhdl.files, "user.vhd": USERS_OWN})
+    subprocess.run(
+        [ghdl, "-a", "--std=08", *vhdl.manifest["files"], "user.vhd"], cwd=tmp_path, check=True
+    )
+    command = [ghdl, "--elab-run", "--std=08", "user", "--ieee-asserts=disable-at-0"]
+    done = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "USER DONE" in done.stdout + done.stderr

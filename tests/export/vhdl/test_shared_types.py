@@ -1,0 +1,312 @@
+"""Two messages in one design have the types in common that they share in ROS."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rosbags.typesys import Stores, get_typestore
+
+from firm_hdl.export.build import BuildError, build
+from firm_hdl.export.vhdl.layer import user_layer
+from firm_hdl.export.vhdl.wrapper import Core
+from firm_hdl.frontend import Library
+from firm_hdl.plan import build_plan
+from firm_hdl.wire import lay_out
+from tests.export.test_packaging import STUBS, fusesoc, run
+from tests.tools import need
+
+SCAN, CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory) -> list[Path]:
+    out = tmp_path_factory.mktemp("built")
+    return [each.folder / "vhdl" for each in build([SCAN, CLOUD], out)]
+
+
+def once(folders: Iterable[Path], listed: str) -> list[Path]:
+    """List the files of several folders, of each name the first."""
+    found: dict[str, Path] = {}
+    for folder in folders:
+        for name in (folder / listed).read_text().split():
+            found.setdefault(name, folder / name)
+    return list(found.values())
+
+
+def packets(frame_id: str) -> tuple[bytes, bytes]:
+    """Serialize a scan, and a cloud without points that has its header."""
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    stamp = store.types["builtin_interfaces/msg/Time"](sec=-5, nanosec=7)
+    header = store.types["std_msgs/msg/Header"](stamp=stamp, frame_id=frame_id)
+    ranges = np.arange(5, dtype=np.float32)
+    scan = store.types[SCAN](header, *(0.5,) * 7, ranges=ranges, intensities=ranges[:2])
+    nothing = np.zeros(0, dtype=np.uint8)
+    cloud = store.types[CLOUD](header, 1, 0, [], False, 0, 0, nothing, True)
+    return (
+        bytes(store.serialize_cdr(scan, SCAN)),
+        bytes(store.serialize_cdr(cloud, CLOUD)),
+    )
+
+
+DESIGN = """\
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+use work.sensor_msgs_msg_laserscan_cdr_8_pkg.all;
+use work.sensor_msgs_msg_pointcloud2_cdr_8_pkg.all;
+
+entity design is
+end entity;
+
+architecture sim of design is
+  signal aclk, aresetn : std_logic := '0';
+  signal s_data, m_data : std_logic_vector(63 downto 0);
+  signal s_keep, m_keep : std_logic_vector(7 downto 0);
+  signal s_last, s_valid, s_ready, m_last, m_valid, m_ready, m_user : std_logic;
+  signal scan      : laser_scan_t;
+  signal scan_rdy  : laser_scan_ready_t;
+  signal cloud     : point_cloud2_t;
+  signal cloud_rdy : point_cloud2_ready_t;
+  signal sent, came, bytes, total : natural;
+begin
+  aclk <= not aclk after 5 ns when now < 100 us;
+  aresetn <= '1' after 20 ns;
+
+  source : entity work.firm_hdl_axis_source
+    generic map (bus_bytes => 8, stimuli => "stimuli.txt", seed => 1, stalls => 30)
+    port map (
+      aclk => aclk, aresetn => aresetn, tdata => s_data, tkeep => s_keep, tlast => s_last,
+      tvalid => s_valid, tready => s_ready, packets => sent, done => open);
+
+  rx : entity work.sensor_msgs_msg_laserscan_cdr_8_deserializer
+    port map (
+      aclk => aclk, aresetn => aresetn, s_axis_tdata => s_data, s_axis_tkeep => s_keep,
+      s_axis_tlast => s_last, s_axis_tvalid => s_valid, s_axis_tready => s_ready,
+      msg => scan, rdy => scan_rdy, m_axis_status_tdata => open, m_axis_status_tvalid => open,
+      m_axis_status_tready => '1');
+
+  process (all) begin
+    scan_rdy <= LASER_SCAN_ALL_READY;
+    scan_rdy.header <= cloud_rdy.header;
+    cloud <= POINT_CLOUD2_IDLE;
+    cloud.header <= scan.header;
+    cloud.height <= (data => to_unsigned(1, 32), valid => '1');
+    cloud.width.valid <= '1';
+    cloud.fields.length.valid <= '1';
+    cloud.is_bigendian.valid <= '1';
+    cloud.point_step.valid <= '1';
+    cloud.row_step.valid <= '1';
+    cloud.data.length.valid <= '1';
+    cloud.is_dense <= (data => '1', valid => '1');
+  end process;
+
+  tx : entity work.sensor_msgs_msg_pointcloud2_cdr_8_serializer
+    port map (
+      aclk => aclk, aresetn => aresetn, m_axis_tdata => m_data, m_axis_tkeep => m_keep,
+      m_axis_tlast => m_last, m_axis_tuser => m_user, m_axis_tvalid => m_valid,
+      m_axis_tready => m_ready, msg => cloud, rdy => cloud_rdy, m_axis_status_tdata => open,
+      m_axis_status_tvalid => open, m_axis_status_tready => '1');
+
+  sink : entity work.firm_hdl_axis_sink
+    generic map (
+      bus_bytes => 8, expected => "expected.txt", results => "results.txt", seed => 2, stalls => 30)
+    port map (
+      aclk => aclk, aresetn => aresetn, tdata => m_data, tkeep => m_keep, tlast => m_last,
+      tuser => m_user, tvalid => m_valid, tready => m_ready, packets => came, bytes => bytes,
+      total => total);
+
+  process begin
+    wait until came = 2 for 90 us;
+    assert came = 2 report "FAIL: packets are missing" severity failure;
+    report "PASS";
+    wait;
+  end process;
+end architecture;
+"""
+
+
+def simulated(ghdl: str, folders: list[Path], work: Path, expected: Iterable[bytes]) -> str:
+    (work / "design.vhd").write_text(DESIGN)
+    sent = [packets(frame_id)[0] for frame_id in ("map", "a longer name")]
+    (work / "stimuli.txt").write_text("".join(f"{packet.hex()}\n" for packet in sent))
+    (work / "expected.txt").write_text("".join(f"{packet.hex()}\n" for packet in expected))
+    files = [*once(folders, "files.txt"), *once(folders, "bench_files.txt")]
+    files = [file for file in files if "_tb" not in file.name]
+    options = ["--std=08", f"--workdir={work}"]
+    status, said = run(
+        [ghdl, "-a", *options, "--warn-error", *map(str, files), "design.vhd"], work
+    )
+    assert (status, said) == (0, "")
+    return run([ghdl, "--elab-run", *options, "design", "--ieee-asserts=disable-at-0"], work)[1]
+
+
+def test_header_of_one_message_goes_to_another(ghdl, folders, tmp_path):
+    expected = [packets(frame_id)[1] for frame_id in ("map", "a longer name")]
+    said = simulated(ghdl, folders, tmp_path, expected)
+    assert "PASS" in said and "FAIL" not in said
+
+
+def test_another_header_is_found(ghdl, folders, tmp_path):
+    expected = [packets(frame_id)[1] for frame_id in ("map", "a longer Name")]
+    said = simulated(ghdl, folders, tmp_path, expected)
+    assert "FAIL packet 1" in said and "PASS" not in said
+
+
+def test_what_folders_have_in_common_is_one_text(folders):
+    one, other = ({path.name: path for path in folder.iterdir()} for folder in folders)
+    both = {name for name in {*one} & {*other} if name.endswith((".vhd", ".core"))}
+    assert {
+        "builtin_interfaces_msg_time_cdr_8_pkg.vhd",
+        "firm_hdl_bus_8_pkg.core",
+        "firm_hdl_bus_8_pkg.vhd",
+        "firm_hdl_types_pkg.vhd",
+        "std_msgs_msg_header_cdr_8_pkg.core",
+        "std_msgs_msg_header_cdr_8_pkg.vhd",
+    } <= both
+    for name in both:
+        assert one[name].read_text() == other[name].read_text(), name
+
+
+def test_package_of_a_type_is_the_same_wherever_the_type_is():
+    library = Library("lyrical")
+    texts: dict[str, tuple[str, str]] = {}
+    names = [name for name in map(str, library.interfaces()) if name.startswith(PACKAGES)]
+    assert len(names) > 40
+    shared = 0
+    for name in names:
+        message = library.message(name)
+        plan = build_plan(lay_out(message), bus_bytes=4)
+        core = {way: Core(entity=way, names={}) for way in ("deserializer", "serializer")}
+        made = user_layer(message, plan, name="t", cores=core)
+        for each in made.shared:
+            text = made.packages[f"{each.name}.vhd"]
+            before, owner = texts.setdefault(each.name, (text, name))
+            assert text == before, f"{each.name} in {name} and in {owner}"
+            shared += owner != name
+    assert shared > 100
+
+
+PACKAGES = ("geometry_msgs/", "sensor_msgs/", "nav_msgs/", "std_msgs/")
+
+
+# Each message of the second column has a type whose package is called like one of the first's.
+SIMILAR = {
+    "p/Inner.msg": "uint8 x\n",
+    "p/INNER.msg": "uint16 x\n",
+    "p/A.msg": "Inner a\n",
+    "p/B.msg": "INNER b\n",
+    "p/Both.msg": "Inner a\nINNER b\n",
+    "p_q/R.msg": "uint8 x\n",
+    "p/q_R.msg": "uint16 x\n",
+    "p/C.msg": "p_q/R a\n",
+    "p/D.msg": "q_R b\n",
+}
+
+
+@pytest.fixture
+def similar(tmp_path) -> Path:
+    for name, text in SIMILAR.items():
+        package, _, file = name.partition("/")
+        (tmp_path / "ws" / package / "msg").mkdir(parents=True, exist_ok=True)
+        (tmp_path / "ws" / package / "msg" / file).write_text(text)
+        (tmp_path / "ws" / package / "package.xml").write_text(
+            f"<package format='2'><name>{package}</name><version>1.0.0</version></package>"
+        )
+    return tmp_path / "ws"
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "package", "types"),
+    [
+        ("p/A", "p/B", "p_inner_ros1_8_pkg", ("p/INNER", "p/Inner")),
+        ("p/C", "p/D", "p_q_r_ros1_8_pkg", ("p/q_R", "p_q/R")),
+        ("p/B", "p/Both", "p_inner_ros1_8_pkg", ("p/Inner", "p/INNER")),
+    ],
+)
+def test_two_types_whose_package_has_one_name_are_not_built_side_by_side(
+    similar, tmp_path, one, other, package, types
+):
+    options = {"distro": "noetic", "paths": [similar]}
+    said = f"{other}: the VHDL package '{package}' would be that of {types[0]}, and in .* it is "
+    with pytest.raises(BuildError, match=f"^{said}that of {types[1]}; build one of them"):
+        build([one, other], tmp_path / "at once", **options)
+    assert not (tmp_path / "at once").exists()
+
+
+def test_what_was_built_before_counts(similar, tmp_path):
+    options = {"out": tmp_path / "out", "distro": "noetic", "paths": [similar]}
+    (before,) = build(["p/A"], **options)
+    with pytest.raises(BuildError, match=r"that of p/INNER, and in '.*p_A_ros1_8' it is that"):
+        build(["p/B"], **options)
+    assert [before.folder] == list(before.folder.parent.glob("[!.]*"))
+    # What is no manifest says nothing.
+    (before.folder / "manifest.json").write_text(
+        '{"vhdl": 5, "inputs": {}, "files": {}, "inputs_sha256": ""}'
+    )
+    build(["p/B"], **options)
+
+
+def test_types_that_are_similar_within_a_message_have_packages_each(ghdl, similar, tmp_path):
+    (built,) = build(["p/Both"], tmp_path / "out", distro="noetic", paths=[similar])
+    files = (built.folder / "vhdl" / "files.txt").read_text().split()
+    assert {"p_inner_ros1_8_pkg.vhd", "p_inner_ros1_8_2_pkg.vhd"} <= {*files}
+    (tmp_path / "work").mkdir()
+    options = ["--std=08", f"--workdir={tmp_path / 'work'}", "--warn-error"]
+    assert run([ghdl, "-a", *options, *files], built.folder / "vhdl") == (0, "")
+
+
+def test_tools_have_each_file_once(folders, tmp_path):
+    tclsh = need("tclsh", shutil.which("tclsh"))
+    (tmp_path / "stubs.tcl").write_text(STUBS)
+    status, said = run(
+        [tclsh, "stubs.tcl", *(str(folder / "vivado.tcl") for folder in folders)], tmp_path
+    )
+    assert status == 0, said
+    read = [Path(line.split()[-1]).name for line in said.splitlines()]
+    assert read == [path.name for path in once(folders, "files.txt")]
+    shutil.copytree(folders[0].parents[1], tmp_path / "cores")
+    (tmp_path / "both.core").write_text(
+        "CAPI=2:\nname: my:own:both:1\nfilesets:\n  all:\n    depend:\n"
+        "      - firm-hdl:lyrical:sensor_msgs_msg_laserscan_cdr_8\n"
+        "      - firm-hdl:lyrical:sensor_msgs_msg_pointcloud2_cdr_8\n"
+        "targets:\n  default:\n    filesets: [all]\n"
+        "  sim:\n    default_tool: ghdl\n    filesets: [all]\n    toplevel: x\n"
+    )
+    status, said = run([*fusesoc(), "run", "--setup", "--target=sim", "my:own:both"], tmp_path)
+    assert status == 0, said
+    (listed,) = (tmp_path / "build").rglob("*.eda.yml")
+    text = listed.read_text()
+    for path in once(folders, "files.txt"):
+        assert text.count(f"/{path.name}\n") == 1, path.name
+
+
+def test_vhdl_compiles_as_a_library_of_vunit(ghdl, folders, tmp_path):
+    (tmp_path / "run.py").write_text(
+        "import sys\nfrom pathlib import Path\nfrom vunit import VUnit\n"
+        "folders = [Path(each) for each in sys.argv[1:3]]\n"
+        "vunit = VUnit.from_argv(['--compile'], compile_builtins=False)\n"
+        "library = vunit.add_library('mine')\n"
+        "files = {}\n"
+        "for folder in folders:\n"
+        "    for name in (folder / 'files.txt').read_text().split():\n"
+        "        files.setdefault(name, folder / name)\n"
+        "for file in files.values():\n"
+        "    library.add_source_file(file, vhdl_standard='2008')\n"
+        "vunit.main()\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "run.py", *map(str, folders)],
+        cwd=tmp_path,
+        env={**os.environ, "VUNIT_SIMULATOR": "ghdl"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr

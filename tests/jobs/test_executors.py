@@ -1,0 +1,162 @@
+"""Executors: results do not depend on where tasks run, and a dead worker takes nobody else's."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import time
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.jobs import executors
+from firm_hdl.jobs.executors import ExecutorError, check_executor, run_each
+from firm_hdl.verify import Options, collect_tasks, run_tasks
+from firm_hdl.verify.recorded import record_of
+from tests.verify.judged import assert_passed
+
+TASKS = [(f"task {number}", (number,)) for number in range(30)]
+SQUARES = {f"task {number}": number * number for number in range(30)}
+
+
+def square(number: int) -> int:
+    return number * number
+
+
+def square_or_fail(number: int) -> int:
+    if number == 7:
+        raise RuntimeError("seven")
+    return number * number
+
+
+def square_or_die(number: int) -> int:
+    if number in (5, 20):
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number * number
+
+
+def slow_square(number: int) -> int:
+    time.sleep(0.1)
+    return number * number
+
+
+def noted_square(number: int, folder: str) -> int:
+    Path(folder, str(number)).touch()
+    return slow_square(number)
+
+
+@pytest.mark.parametrize("jobs", [1, 2, None])
+def test_processes_give_the_results_of_one(jobs):
+    assert dict(run_each(square, TASKS, jobs=jobs)) == SQUARES
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_exceptions_are_results(jobs):
+    found = dict(run_each(square_or_fail, TASKS, jobs=jobs))
+    failed = found.pop("task 7")
+    assert isinstance(failed, RuntimeError) and str(failed) == "seven"
+    assert found == {key: value for key, value in SQUARES.items() if key != "task 7"}
+
+
+def test_process_that_dies_is_blamed_alone():
+    found = dict(run_each(square_or_die, TASKS, jobs=2))
+    for key in ("task 5", "task 20"):
+        assert str(found.pop(key)) == "the process that ran it died, and died again"
+    assert found == {k: v for k, v in SQUARES.items() if k not in ("task 5", "task 20")}
+
+
+def test_nothing_goes_on_after_a_run_was_closed(tmp_path):
+    run = run_each(noted_square, [(key, (*task, str(tmp_path))) for key, task in TASKS], jobs=2)
+    next(run)
+    run.close()
+    done = len(list(tmp_path.iterdir()))
+    assert done < len(TASKS) // 2
+    time.sleep(0.3)
+    assert len(list(tmp_path.iterdir())) == done
+
+
+@pytest.mark.parametrize("name", ["threads", "dask://", "dask://host", "dask://:1", "dask://h:x"])
+def test_unknown_executors_are_refused(name):
+    with pytest.raises(ExecutorError, match=r"^executor must be 'processes' or 'dask://HOST:PORT'"):
+        check_executor(name)
+
+
+def test_dask_that_is_not_installed_is_an_error(monkeypatch):
+    def missing(name):
+        raise ImportError(name)
+
+    monkeypatch.setattr(executors.importlib, "import_module", missing)
+    with pytest.raises(ExecutorError, match=r"^Dask is not installed: .*firm-hdl\[distributed\]"):
+        list(run_each(square, TASKS, executor="dask://127.0.0.1:1"))
+
+
+@pytest.fixture
+def cluster():
+    """Return a Dask cluster of two workers on this machine, and how to call it as an executor."""
+    distributed = pytest.importorskip("distributed")
+    made = distributed.LocalCluster(
+        n_workers=2,
+        threads_per_worker=1,
+        host="127.0.0.1",
+        dashboard_address=None,
+        worker_dashboard_address=None,
+        silence_logs=50,
+    )
+    try:
+        yield made, made.scheduler_address.replace("tcp://", "dask://")
+    finally:
+        with contextlib.suppress(Exception):
+            made.close()
+
+
+# Dask leaves sockets and loops to the garbage collector.
+@pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")
+class TestDask:
+    """On a cluster."""
+
+    def test_results_are_those_of_processes(self, cluster):
+        _, executor = cluster
+        assert dict(run_each(square, TASKS, executor=executor)) == SQUARES
+        found = dict(run_each(square_or_fail, TASKS, executor=executor))
+        assert isinstance(found["task 7"], RuntimeError) and len(found) == len(TASKS)
+
+    def test_verified_types_have_the_records_of_processes(self, cluster):
+        _, executor = cluster
+        options = Options(most_cases=3)
+        tasks = collect_tasks(["humble"], ["std_msgs/Bool", "std_msgs/String", "std_msgs/Header"])
+        here, there = (
+            {
+                task.name: record_of(task, result, options).without_times
+                for task, result in run_tasks(tasks, options, 2, executor=where)
+            }
+            for where in ("processes", executor)
+        )
+        assert here == there and all(assert_passed(record) for record in here.values())
+
+    def test_lost_worker_loses_nothing(self, cluster):
+        made, executor = cluster
+        found = {}
+        for key, result in run_each(slow_square, TASKS, executor=executor):
+            found[key] = result
+            if len(found) == 5:
+                os.kill(made.workers[0].pid, signal.SIGKILL)
+        assert found == SQUARES
+
+    def test_lost_cluster_is_an_error_that_keeps_what_came(self, cluster, monkeypatch):
+        made, executor = cluster
+        monkeypatch.setattr(executors, "CHECK_SECONDS", 0.5)
+        monkeypatch.setattr(executors, "MOST_IDLE_SECONDS", 2)
+        found = []
+        with pytest.raises(ExecutorError, match=r"results so far are kept"):
+            for key, _ in run_each(slow_square, TASKS, executor=executor):
+                found.append(key)
+                if len(found) == 5:
+                    made.close()
+        assert 5 <= len(found) < len(TASKS)
+
+    def test_scheduler_that_is_not_there_is_an_error(self, monkeypatch):
+        pytest.importorskip("distributed")
+        monkeypatch.setattr(executors, "CONNECT_SECONDS", 1)
+        with pytest.raises(ExecutorError, match=r"^no Dask scheduler at 127\.0\.0\.1:1: "):
+            list(run_each(square, TASKS, executor="dask://127.0.0.1:1"))

@@ -1,0 +1,132 @@
+"""Programs and processes: what they say, and that an interruption leaves nothing behind."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.jobs.processes import ToolError, in_processes, run_tool
+
+
+def test_tool_says_what_it_says(tmp_path):
+    said = run_tool(["sh", "-c", "pwd; echo $WHAT >&2"], tmp_path, environment={"WHAT": "this"})
+    assert said == f"{tmp_path}\nthis\n"
+
+
+def test_tool_that_fails_is_an_error_with_what_it_said(tmp_path):
+    with pytest.raises(ToolError, match=r"^so what$"):
+        run_tool(["sh", "-c", "echo so what; exit 3"], tmp_path)
+    with pytest.raises(ToolError, match=r"^exit status 3$"):
+        run_tool(["sh", "-c", "exit 3"], tmp_path)
+
+
+def test_tool_that_takes_too_long_is_ended_with_all_that_it_started(tmp_path):
+    script = "sleep 60 & echo $! > child; wait"
+    with pytest.raises(ToolError, match=r"^sh took more than 1 s$"):
+        run_tool(["sh", "-c", script], tmp_path, timeout=1)
+    gone(int((tmp_path / "child").read_text()))
+
+
+def gone(process: int) -> None:
+    """Wait until a process has ended."""
+    for _ in range(100):
+        try:
+            state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+        except (FileNotFoundError, ProcessLookupError):
+            return
+        # Nobody may be there to wait for an orphan.
+        if state == "Z":
+            return
+        time.sleep(0.1)
+    raise AssertionError(f"process {process} is still there")
+
+
+def double(number: int) -> int:
+    if number == 7:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return 2 * number
+
+
+def test_tasks_are_shared_out():
+    tasks = [(str(number), (number,)) for number in range(6)]
+    for jobs in (1, 2):
+        assert dict(in_processes(double, tasks, jobs)) == {str(n): 2 * n for n in range(6)}
+
+
+def test_process_that_dies_is_told():
+    (result,) = in_processes(double, [("seven", (7,))], 2)
+    assert result[0] == "seven" and "BrokenProcessPool" in str(result[1])
+
+
+INTERRUPTED = """
+import signal
+import sys
+from pathlib import Path
+from firm_hdl.jobs.processes import in_processes, run_tool
+from tests.jobs.test_processes import work
+
+if __name__ == "__main__":
+    # Shells have it ignored by what they start in the background, and so these tests may have.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        list(in_processes(work, [(n, (sys.argv[1], n)) for n in range(9)], 2))
+    except KeyboardInterrupt:
+        sys.exit(130)
+"""
+
+
+def work(folder: str, number: int) -> None:
+    """Leave a temporary folder, and a program that runs for long."""
+    import tempfile
+
+    with tempfile.TemporaryDirectory() as own:
+        script = f"echo $$ {own} > {folder}/new{number}; mv {folder}/new{number} {folder}/{number}"
+        run_tool(["sh", "-c", f"{script}; sleep 60"], Path(own))
+
+
+def vanished(folder: Path) -> None:
+    """Wait until a folder is no longer there."""
+    for _ in range(100):
+        if not folder.exists():
+            return
+        time.sleep(0.1)
+    raise AssertionError(f"{folder} is still there")
+
+
+@pytest.mark.skipif(not Path("/proc").exists(), reason="it looks at processes")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_interruption_ends_everything_and_leaves_nothing(tmp_path, number):
+    (tmp_path / "go.py").write_text(INTERRUPTED)
+    (tmp_path / "seen").mkdir()
+    (tmp_path / "temporary").mkdir()
+    root = str(Path(__file__).parents[2])
+    environment = {**os.environ, "PYTHONPATH": root, "TMPDIR": str(tmp_path / "temporary")}
+    process = subprocess.Popen(
+        [sys.executable, str(tmp_path / "go.py"), str(tmp_path / "seen")], env=environment
+    )
+    seen: list[Path] = []
+    for _ in range(600):
+        seen = [tmp_path / "seen" / name for name in ("0", "1")]
+        if all(path.exists() for path in seen):
+            break
+        time.sleep(0.1)
+    started = [path.read_text().split() for path in seen]
+    # To it alone: what it has started must not depend on hearing that as well.
+    process.send_signal(number)
+    if number == signal.SIGINT:
+        assert process.wait(timeout=60) == 130
+    for child, folder in started:
+        # If it was killed, it cannot be waited for yet: nobody knows but its children.
+        gone(int(child))
+        vanished(Path(folder))
+    process.wait(timeout=60)
+    for folder in (tmp_path / "temporary").iterdir():
+        vanished(folder)
+    assert list((tmp_path / "temporary").iterdir()) == []
+    assert sorted(path.name for path in (tmp_path / "seen").iterdir()) == ["0", "1"]

@@ -1,0 +1,107 @@
+"""The reader of RTLIL: all that Amaranth prints, and errors for what it does not."""
+
+# amaranth: UnusedElaboratable=no
+
+from __future__ import annotations
+
+import pytest
+from amaranth.back import rtlil as amaranth_rtlil
+from amaranth.hdl import Instance, Module, Signal
+
+from firm_hdl.rtlil.ir import (
+    Assign,
+    Bits,
+    Cell,
+    Process,
+    Slice,
+    Switch,
+    cut,
+    join,
+    spec_width,
+)
+from firm_hdl.rtlil.read import parse
+
+HEAD = "attribute \\top 1\nmodule \\top\n"
+WIRES = "wire width 4 \\a\nwire width 4 input 0  signed \\b\nwire width 4 $1\n"
+
+
+def one(text: str) -> Cell | Process:
+    (item,) = parse(f"{HEAD}{WIRES}{text}\nend\n").top.items
+    return item
+
+
+def test_the_first_line_counts() -> None:
+    with pytest.raises(ValueError, match=r"^RTLIL line 1: expected a module, not 'wires'$"):
+        parse(f"wires\n{HEAD}end\n")
+
+
+def test_reads_wires_with_attributes() -> None:
+    text = 'attribute \\init 4\'0101\nattribute \\note "say \\"a\\"\\n"\nwire width 4 \\c\n'
+    wires = parse(f"{HEAD}{WIRES}{text}end\n").top.wires
+    assert [wire.name for wire in wires.values()] == ["a", "b", "$1", "c"]
+    assert wires["c"].attributes == {"init": Bits("0101"), "note": 'say "a"\n'}
+    assert (wires["b"].direction, wires["b"].signed) == ("input", True)
+
+
+def test_reads_specifications_least_significant_first() -> None:
+    cell = one(
+        "cell $and $2\nconnect \\A { \\a [3:2] 2'01 }\nconnect \\B \\b [1]\nconnect \\Y $1\nend"
+    )
+    assert isinstance(cell, Cell)
+    assert cell.ports["A"] == (Bits("01"), Slice("a", 2, 2))
+    assert cell.ports["B"] == (Slice("b", 1, 1),)
+    assert cell.ports["Y"] == (Slice("$1", 0, 4),)
+
+
+def test_reads_processes() -> None:
+    process = one(
+        "process $2\nassign $1 [3:0] 4'0000\nswitch \\a [1:0]\ncase 2'0-, 2'11\n"
+        "assign $1 [3:0] \\b [3:0]\ncase\nend\nend"
+    )
+    assert isinstance(process, Process)
+    default, switch = process.body
+    assert default == Assign(target=(Slice("$1", 0, 4),), value=(Bits("0000"),))
+    assert isinstance(switch, Switch)
+    assert [case.patterns for case in switch.cases] == [("0-", "11"), ()]
+
+
+def test_reads_what_amaranth_prints_of_an_instance() -> None:
+    module, value = Module(), Signal(4)
+    module.submodules.unit = Instance(
+        "unit", p_number=-5, p_text='a "b"', p_real=1.5, i_x=value[:2], o_y=Signal(3, name="y")
+    )
+    text = amaranth_rtlil.convert(module, ports=[value])
+    (cell,) = (item for item in parse(text).top.items if isinstance(item, Cell))
+    assert cell.parameters == {"number": -5, "text": 'a "b"', "real": 1.5}
+    assert {name: spec_width(spec) for name, spec in cell.ports.items()} == {"x": 2, "y": 3}
+    (chunk,) = cell.ports["y"]
+    assert isinstance(chunk, Slice) and chunk.bare
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("cell $pow $2\nend", r"^RTLIL line 6: cell kind \$pow is none that Amaranth 0\.5 emits$"),
+        ("wire \\x", r"^RTLIL line 6: malformed wire 'wire \\\\x'$"),
+        ("wire width 1 \\a", r"^RTLIL line 6: wire 'a' is declared twice$"),
+        ("connect \\a \\b [1:0]", r"^RTLIL line 6: widths 4 and 2 differ$"),
+        ("connect \\a \\c [3:0]", r"^RTLIL line 6: no wire 'c'$"),
+        ("connect \\a \\b [4:1]", r"^RTLIL line 6: slice \[4:1\] of nothing that has these bits$"),
+        ("connect \\a 4'01", r"^RTLIL line 6: constant 4'01 has 2 bits$"),
+        ("process $2\nswitch \\a\ncase 2'01\nend\nend", r"^RTLIL line 8: pattern .* does not fit"),
+        ("sync always", r"^RTLIL line 6: unexpected 'sync always' in a module$"),
+        ("cell $not $2", r"^RTLIL line \d+: unexpected|the text ends inside a block$"),
+    ],
+)
+def test_refuses_with_a_line_number(text: str, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        parse(f"{HEAD}{WIRES}{text}\nend\n")
+
+
+def test_cuts_and_joins() -> None:
+    spec = (Bits("01"), Slice("a", 4, 4))
+    assert cut(spec, 1, 3) == (Bits("0"), Slice("a", 4, 2))
+    assert join((Slice("a", 0, 2),), (Slice("a", 2, 1),), (Bits("1"),), (Bits("0"),)) == (
+        Slice("a", 0, 3),
+        Bits("01"),
+    )

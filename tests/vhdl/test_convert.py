@@ -1,0 +1,395 @@
+"""VHDL of small designs that show one thing each, and of our own converters."""
+
+# amaranth: UnusedElaboratable=no
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from amaranth.hdl import (
+    Assert,
+    Cat,
+    ClockDomain,
+    Const,
+    Cover,
+    Elaboratable,
+    Format,
+    Instance,
+    IOBufferInstance,
+    IOPort,
+    Module,
+    Print,
+    Signal,
+    Value,
+    unsigned,
+)
+from amaranth.lib import enum, wiring
+from amaranth.lib.memory import Memory
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl import Deserializer, Serializer, load_message
+from firm_hdl.vhdl.convert import convert
+from tests.vhdl.ghdl import analyse, difference, expected, run, simulate, synthesize, vectors
+
+
+class State(enum.Enum, shape=unsigned(2)):
+    IDLE = 0
+    BUSY = 1
+    DONE = 2
+
+
+class Counter(wiring.Component):
+    """Count while enabled."""
+
+    def __init__(self) -> None:
+        super().__init__({"enable": In(1), "limit": In(4), "count": Out(4), "state": Out(State)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        with m.If(self.enable):
+            m.d.sync += self.count.eq(self.count + 1)
+            with m.If(self.count == self.limit):
+                m.d.sync += [self.count.eq(0), self.state.eq(State.DONE)]
+        with m.Switch(self.state):
+            with m.Case(State.BUSY, State.IDLE):
+                m.d.sync += self.state.eq(State.BUSY)
+            with m.Case(State.DONE):
+                m.d.sync += self.state.eq(State.IDLE)
+        return m
+
+
+COUNTER = """\
+-- Module counter of the Amaranth design.
+-- 2 registers at rising_edge(clk), synchronous reset rst = '1'.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use work.firm_hdl_pkg.all;
+
+entity counter is
+  port (
+    clk    : in  std_logic;
+    rst    : in  std_logic;
+    enable : in  std_logic;
+    limit  : in  std_logic_vector(3 downto 0);
+    count  : out std_logic_vector(3 downto 0);
+    state  : out std_logic_vector(1 downto 0)  -- 0 IDLE, 1 BUSY, 2 DONE
+  );
+end entity;
+
+architecture rtl of counter is
+
+  -- Registers.
+  signal count_q : unsigned(3 downto 0) := (others => '0');
+  signal state_q : unsigned(1 downto 0) := (others => '0');  -- 0 IDLE, 1 BUSY, 2 DONE
+begin
+
+  p_clk : process (clk)
+  begin
+    if rising_edge(clk) then
+      if rst = '1' then
+        count_q <= (others => '0');
+        state_q <= (others => '0');
+      else
+        if enable = '1' then
+          count_q <= count_q + 1;
+          if count_q = unsigned(limit) then
+            count_q <= (others => '0');
+            state_q <= "10";
+          end if;
+        end if;
+        case state_q is
+          when "00" | "01" =>  -- IDLE or BUSY
+            state_q <= "01";
+          when "10" =>  -- DONE
+            state_q <= (others => '0');
+          when others =>
+            null;
+        end case;
+      end if;
+    end if;
+  end process;
+
+  count <= std_logic_vector(count_q);
+  state <= std_logic_vector(state_q);
+
+end architecture;
+"""
+
+
+def test_reads_like_written_by_hand() -> None:
+    assert convert(Counter(), name="counter").files["counter.vhd"] == COUNTER
+
+
+def test_is_the_same_each_time_and_has_no_paths() -> None:
+    first, second = convert(Counter(), name="counter"), convert(Counter(), name="counter")
+    assert first == second
+    assert "test_vhdl" not in "".join(first.files.values())
+
+
+def test_gives_a_header_and_unsigned_ports() -> None:
+    text = convert(Counter(), name="c", unsigned_ports=True, header="Hello.\n\nYou.").files["c.vhd"]
+    assert text.startswith("-- Hello.\n--\n-- You.\n")
+    assert "limit  : in  unsigned(3 downto 0);" in text
+
+
+class Unless(wiring.Component):
+    """A register that is written in an `else` alone."""
+
+    def __init__(self) -> None:
+        super().__init__({"hold": In(1), "a": In(2), "o": Out(2)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        with m.If(self.hold):
+            pass
+        with m.Else():
+            m.d.sync += self.o.eq(self.a)
+        return m
+
+
+def test_an_if_without_anything_is_turned_round() -> None:
+    text = convert(Unless(), name="unless").files["unless.vhd"]
+    assert "if hold = '0' then\n          o_q <= unsigned(a);\n        end if;" in text
+    assert "null" not in text
+
+
+def test_a_condition_with_two_arms_is_written_in_place() -> None:
+    m = Module()
+    a, b, o = (Signal(4, name=name) for name in "abo")
+    with m.Switch(a == b):
+        with m.Case(0):
+            m.d.comb += o.eq(a)
+        with m.Case(1):
+            m.d.comb += o.eq(~b)
+    text = convert(m, name="arms", ports=[a, b, o]).files["arms.vhd"]
+    assert "when unsigned(a) /= unsigned(b) else" in text
+    assert "signal" not in text
+
+
+def test_of_a_choice_that_comes_twice_the_first_one_counts() -> None:
+    m = Module()
+    a, o = Signal(2, name="a"), Signal(4, name="o")
+    with m.Switch(a):
+        for value, choices in enumerate([(0, 1), (1, 2), (2, 3)]):
+            with m.Case(*choices):
+                m.d.comb += o.eq(5 + value)
+    text = convert(m, name="twice", ports=[a, o]).files["twice.vhd"]
+    # In VHDL, a choice that comes twice is an error.
+    assert re.findall(r'when (.*) =>\n *o <= "(.*)";', text) == [
+        ('"00" | "01"', "0101"),
+        ('"10"', "0110"),
+        ('"11"', "0111"),
+    ]
+
+
+def test_what_a_port_alone_reads_is_written_in_place() -> None:
+    m = Module()
+    a, b = (Signal(4, name=name) for name in "ab")
+    o = Signal(8)
+    m.d.comb += o.eq(Cat(a & b, b))
+    text = convert(m, name="place", ports=[a, b, o]).files["place.vhd"]
+    assert "unsigned(b) & (unsigned(a) and unsigned(b))" in text
+    assert "signal" not in text
+
+
+def test_assigns_to_several_wires_at_once() -> None:
+    # Amaranth 0.5 prints no such connection; RTLIL has them.
+    rtlil = r"""
+attribute \top 1
+module \top
+  wire width 8 input 0 \i
+  wire width 1 output 1 \a
+  wire width 3 output 2 \b
+  wire width 4 output 3 \c
+  connect { \c \b \a } \i
+end
+"""
+    text = list(convert(rtlil).files.values())[-1]
+    assert "a <= i(0);" in text
+    assert "b <= std_logic_vector(unsigned(i(3 downto 1)));" in text
+    assert "c <= std_logic_vector(unsigned(i(7 downto 4)));" in text
+
+
+def test_names_are_legal_and_never_merged(tmp_path: Path) -> None:
+    names = "signal a__b a_b A_B _a a_ range RANGE 0x a$b a.b resize work top rtl p_clk".split()
+    module = Module()
+    source = Signal(8, name="source")
+    signals = [Signal(8, name=name) for name in names]
+    for index, signal in enumerate(signals):
+        module.d.sync += signal.eq(source + index)
+    vhdl = convert(module, name="top", ports=[source, *signals])
+    given = vhdl.entities["top"].ports
+    assert len({name.lower() for name in given.values()}) == len(given) == len(names) + 3
+    assert given["a_b"] == "a_b" and given["rtl"] != "rtl" and given["a__b"] != "a_b"
+    analyse(vhdl, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        ("AnyConst", r"^module 'top' has AnyConst \(\$anyconst\), which only a formal tool can"),
+        ("AnySeq", r"^module 'top' has AnySeq \(\$anyseq\), which only a formal tool can"),
+    ],
+)
+def test_refuses_what_only_formal_tools_know(make: str, message: str) -> None:
+    from amaranth import asserts
+
+    module, out = Module(), Signal(4)
+    module.d.comb += out.eq(getattr(asserts, make)(4))
+    with pytest.raises(ValueError, match=message):
+        convert(module, ports=[out])
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_keeps_hierarchy_and_instances(tmp_path: Path) -> None:
+    top, inner = Module(), Module()
+    a, b, c = Signal(4, name="a"), Signal(4, name="b"), Signal(name="c")
+    inner.d.sync += b.eq(a)
+    top.submodules.inner = inner
+    top.submodules.pll = Instance(
+        "PLL_2__x", p_RATIO=3, p_MODE="fast", p_MASK=Const(5, 4), i_A=Cat(a[:2], b[2:]), o_Q=c
+    )
+    vhdl = convert(top, ports=[a, b, c])
+    assert list(vhdl.files) == ["firm_hdl_pkg.vhd", "top_inner.vhd", "top.vhd"]
+    assert vhdl.entities["top"].instances == {"inner": "inner", "pll": "pll"}
+    text = vhdl.files["top.vhd"]
+    assert "inner : entity work.top_inner" in text
+    assert "component \\PLL_2__x\\ is" in text and 'MODE  => "fast"' in text
+    assert "A(1 downto 0) => a(1 downto 0)" in text
+    analyse(vhdl, tmp_path)
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_connects_foreign_components_of_all_directions(tmp_path: Path) -> None:
+    top, inner = Module(), Module()
+    a, b, c = Signal(4, name="a"), Signal(4, name="b"), Signal(6, name="c")
+    x, pad = Signal(4, name="x"), IOPort(4, name="pad")
+    inner.submodules.u = Instance("one", i_A=Cat(a, Const(2, 2), b[1]), o_Q=x, io_P=pad[1:3])
+    top.submodules.inner = inner
+    top.submodules.v = Instance("two", o_Q=c, i_B=x + 1, io_P=pad[0])
+    top.d.comb += b.eq(~x)
+    vhdl = convert(top, ports=[a, b, c])
+    inside, outside = vhdl.files["top_inner.vhd"], vhdl.files["top.vhd"]
+    assert "Q : out std_logic_vector(3 downto 0);" in inside and "P : inout" in inside
+    assert 'A(5 downto 4) => "10",' in inside and "x <= unsigned(x_i);" in inside
+    assert "=> pad(2 downto 1)" in outside and "Q => c," in outside
+    analyse(vhdl, tmp_path)
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_memories_without_words_read_as_zero(tmp_path: Path) -> None:
+    module, out = Module(), Signal(4, name="out_value")
+    module.submodules.memory = memory = Memory(shape=4, depth=0, init=[])
+    module.d.comb += out.eq(memory.read_port(domain="comb").data + 1)
+    vhdl = convert(module, ports=[out])
+    assert simulate(vhdl, [{}], {}, {"out_value": 4}, tmp_path) == [{"out_value": 1}]
+
+
+def test_what_is_written_is_read_at_once_if_the_addresses_are_the_same() -> None:
+    m = Module()
+    m.submodules.memory = memory = Memory(shape=4, depth=4, init=[])
+    write = memory.write_port()
+    read = memory.read_port(transparent_for=[write])
+    ports = [write.addr, write.data, write.en, read.addr, read.data, read.en]
+    text = convert(m, name="bypass", ports=ports).files["bypass.vhd"]
+    same = "if unsigned(read_addr) = unsigned(write_addr) and write_en = '1' then"
+    assert f"{same}  -- being written" in text
+
+
+class Pads(Elaboratable):
+    """A pad of each direction, one level down."""
+
+    def __init__(self) -> None:
+        self.pads = [IOPort(3, name="pin_i"), IOPort(3, name="pin_o"), IOPort(3, name="pin_io")]
+        self.out, self.enable, self.seen = Signal(3), Signal(), Signal(3)
+        self.out.name, self.enable.name, self.seen.name = "out_value", "enable", "seen"
+
+    def elaborate(self, platform: object) -> Module:
+        m, inner = Module(), Module()
+        m.submodules.inner = inner
+        into, back = Signal(3), Signal(3)
+        inner.submodules.i = IOBufferInstance(self.pads[0], i=into)
+        inner.submodules.o = IOBufferInstance(self.pads[1], o=self.out)
+        inner.submodules.io = IOBufferInstance(self.pads[2], i=back, o=self.out, oe=self.enable)
+        m.d.comb += self.seen.eq(into ^ back)
+        return m
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_drives_and_reads_pads(tmp_path: Path) -> None:
+    design = Pads()
+    vhdl = convert(design, name="pads", ports=[design.out, design.enable, design.seen])
+    analyse(vhdl, tmp_path)
+    assert "pin_io    : inout std_logic_vector(2 downto 0)" in vhdl.files["pads.vhd"]
+    assert 'else "ZZZ";' in "".join(vhdl.files.values())
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_asserts_and_prints_in_simulation(tmp_path: Path) -> None:
+    module = Module()
+    value = Signal(8, name="value", init=250)
+    module.d.sync += value.eq(value + 1)
+    with module.If(value == 254):
+        module.d.sync += Print(Format("value {} {:x} {:s} {{}}", value, value, Const(0x4142, 16)))
+    module.d.sync += Assert(value != 255, "too far")
+    module.d.comb += Cover(value == 3)
+    vhdl = convert(module, name="dut", ports=[value])
+    analyse(vhdl, tmp_path)
+    (tmp_path / "bench.vhd").write_text("""\
+library ieee;
+use ieee.std_logic_1164.all;
+entity bench is end entity;
+architecture sim of bench is
+  signal clk : std_logic := '0';
+begin
+  dut : entity work.dut port map (clk => clk, rst => '0', value => open);
+  process begin
+    for i in 1 to 20 loop wait for 1 ns; clk <= not clk; end loop;
+    wait;
+  end process;
+end architecture;
+""")
+    run(tmp_path, "-a", "--std=08", "bench.vhd")
+    said = run(tmp_path, "--elab-run", "--std=08", "bench", "--ieee-asserts=disable-at-0")
+    assert "(report note): value 254 FE AB {}" in said
+    assert "(assertion error): too far" in said
+
+
+def _ports(component: Any) -> tuple[dict[str, Value], dict[str, Value]]:
+    inputs, outputs = {}, {}
+    for path, member, value in component.signature.flatten(component):
+        side = inputs if member.flow == wiring.In else outputs
+        side["__".join(map(str, path))] = Value.cast(value)
+    return inputs, outputs
+
+
+@pytest.mark.usefixtures("ghdl")
+@pytest.mark.parametrize("bus_bytes", [1, 8, 64])
+@pytest.mark.parametrize("converter", [Deserializer, Serializer])
+@pytest.mark.parametrize(
+    "name", ["geometry_msgs/msg/Twist", "sensor_msgs/msg/PointCloud2", "std_msgs/msg/Empty"]
+)
+def test_converters_do_in_ghdl_what_they_do_in_python(
+    name: str, converter: Any, bus_bytes: int, tmp_path: Path
+) -> None:
+    message = load_message(name, distro="humble")
+    vhdl = convert(converter(message, bus_bytes=bus_bytes), name="dut")
+    component = converter(message, bus_bytes=bus_bytes)
+    top, domain = Module(), ClockDomain("sync")
+    top.domains.sync = domain
+    top.submodules.dut = component
+    inputs, outputs = _ports(component)
+    inputs = {"clk": domain.clk, "rst": domain.rst, **inputs}
+    widths = {port: len(value) for port, value in inputs.items()}
+    steps = vectors(widths, ["clk"], steps=200, seed=1, rare=0.02)
+    want = expected(top, inputs, outputs, steps)
+    sizes = {port: len(value) for port, value in outputs.items()}
+    assert difference(want, simulate(vhdl, steps, widths, sizes, tmp_path)) is None
+    if bus_bytes == 8:
+        assert "latch" not in synthesize(vhdl, tmp_path).lower()

@@ -1,0 +1,89 @@
+"""Random designs: VHDL in GHDL against `amaranth.sim`, step by step.
+
+``FIRM_HDL_DESIGNS=500`` runs more of them, ``FIRM_HDL_DESIGNS=1000:1500`` others.
+"""
+
+# amaranth: UnusedElaboratable=no
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.vhdl.convert import Vhdl, convert
+from tests.vhdl.ghdl import Steps, difference, expected, simulate, synthesize, vectors
+from tests.vhdl.random_designs import RandomDesign
+
+STEPS = 100
+
+
+def _seeds() -> range:
+    first, _, last = os.environ.get("FIRM_HDL_DESIGNS", "0:30").rpartition(":")
+    return range(int(first or 0), int(last))
+
+
+def _both(seed: int) -> tuple[RandomDesign, Vhdl, Steps, Steps]:
+    """Give a design, its VHDL, input vectors, and what Amaranth makes of them."""
+    written, simulated = RandomDesign(seed), RandomDesign(seed)
+    vhdl = convert(written, name="dut", ports=written.ports)
+    inputs = {signal.name: signal for signal in simulated.inputs}
+    outputs = {signal.name: signal for signal in simulated.outputs}
+    widths = {name: len(signal) for name, signal in inputs.items()}
+    clocks = [clock.name for clock in simulated.clocks]
+    steps = vectors(widths, clocks, steps=STEPS, seed=seed)
+    return simulated, vhdl, steps, expected(simulated, inputs, outputs, steps)
+
+
+def _run(design: RandomDesign, vhdl: Vhdl, steps: Steps, folder: Path) -> Steps:
+    inputs = {signal.name: len(signal) for signal in design.inputs}
+    outputs = {signal.name: len(signal) for signal in design.outputs}
+    return simulate(vhdl, steps, inputs, outputs, folder)
+
+
+@pytest.mark.usefixtures("ghdl")
+@pytest.mark.parametrize("seed", _seeds())
+def test_vhdl_does_what_amaranth_does(seed: int, tmp_path: Path) -> None:
+    design, vhdl, steps, want = _both(seed)
+    assert difference(want, _run(design, vhdl, steps, tmp_path)) is None
+
+
+@pytest.mark.usefixtures("ghdl")
+@pytest.mark.parametrize("seed", [1, 36])
+def test_no_latches_are_synthesized(seed: int, tmp_path: Path) -> None:
+    # GHDL 2.0 itself fails for constants of more than 32 bits in products, and for some memories.
+    _, vhdl, _, _ = _both(seed)
+    assert "latch" not in synthesize(vhdl, tmp_path).lower()
+
+
+@pytest.mark.usefixtures("ghdl")
+@pytest.mark.parametrize("seed", [3, 4, 5])
+def test_a_changed_operator_is_noticed(seed: int, tmp_path: Path) -> None:
+    """The twin of the test above: of the operators of a design, most changes must show."""
+    design, vhdl, steps, want = _both(seed)
+    noticed = tried = 0
+    for index, twin in enumerate(_twins(vhdl)):
+        folder = tmp_path / str(index)
+        folder.mkdir()
+        tried += 1
+        noticed += difference(want, _run(design, twin, steps, folder)) is not None
+        if noticed:
+            return
+    pytest.fail(f"none of {tried} changed operators was noticed")
+
+
+def _twins(vhdl: Vhdl) -> list[Vhdl]:
+    """Change one operator of the outermost architecture in each."""
+    name = f"{vhdl.top}.vhd"
+    head, body = vhdl.files[name].split("\nbegin\n", 1)
+    twins = []
+    for match in re.finditer(r" (and|or|xor|\+|-|<|>=) ", body):
+        other = {"and": "or", "or": "and", "xor": "or", "+": "-", "-": "+", "<": ">=", ">=": "<"}
+        changed = body[: match.start(1)] + other[match[1]] + body[match.end(1) :]
+        # Only a change of one operator may differ, not one that VHDL would not accept.
+        if match[1] in ("+", "-", "<", ">="):
+            twins.append(replace(vhdl, files={**vhdl.files, name: f"{head}\nbegin\n{changed}"}))
+    return twins[:8]

@@ -1,0 +1,189 @@
+"""The picture of a layout: the bytes of the wire, in their order, and nothing else."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+
+from firm_hdl.frontend import Library
+from firm_hdl.wire import lay_out
+from firm_hdl.wire.bands import Note, bands
+from firm_hdl.wire.picture import BYTE_WIDTH, INDENT, LEFT, ROW_BYTES, to_svg
+from tests.frontend.workspace import library
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+TEXTS = {
+    "p/T": "uint8 a\nuint16 b\nPart[2] parts\nstring<=5 s\nPart[<=3] more\nuint8[] raw\n"
+    "float64[<=4] d\nuint32[3] e\nPart last\n",
+    "p/Part": "uint8 x\nuint32 y\nfloat32[] z\n",
+}
+
+
+def shown(found):
+    """Bands in words: grids with where they start, and each cell's place."""
+    lines = []
+    for band in found:
+        indent = "  " * band.depth
+        if isinstance(band, Note):
+            lines.append(f"{indent}{band.kind}: {band.text}")
+            continue
+        lines.append(f"{indent}from {band.start}")
+        for cell in band.cells:
+            lines.append(f"{indent}- {cell.at}+{cell.bytes} {cell.kind} {cell.name} {cell.type}")
+    return [line.rstrip() for line in lines]
+
+
+CDR = """\
+from 0
+- 0+4 header encapsulation 4 bytes
+from 4
+- 0+1 field a uint8
+- 1+1 padding padding
+- 2+2 field b uint16
+loop: parts: 2 times
+  from None
+  - 0+1 field parts.item.x uint8
+  - 1+3 padding padding
+  - 4+4 field parts.item.y uint32
+  - 8+4 length parts.item.z.length uint32
+  data: parts.item.z: length x float32
+from None
+- 0+4 length s.length uint32
+data: s: length x uint8, at most 5, and a NUL that length counts
+padding: 0 to 3 bytes of padding, to a multiple of 4
+from None
+- 0+4 length more.length uint32
+loop: more: length (at most 3) times
+  from None
+  - 0+1 field more.item.x uint8
+  - 1+3 padding padding
+  - 4+4 field more.item.y uint32
+  - 8+4 length more.item.z.length uint32
+  data: more.item.z: length x float32
+from None
+- 0+4 length raw.length uint32
+data: raw: length x uint8
+padding: 0 to 3 bytes of padding, to a multiple of 4
+from None
+- 0+4 length d.length uint32
+data: d: length x float64, at most 4, aligned to 8 if there are any
+from None
+- 0+12 field e uint32[3]
+- 12+1 field last.x uint8
+- 13+3 padding padding
+- 16+4 field last.y uint32
+- 20+4 length last.z.length uint32
+data: last.z: length x float32
+"""
+
+ROS1_TEXTS = {
+    "p/T": "uint8 a\nuint32 b\nstring s\ntime t\nPart[] q\nuint16[2] w\nEmpty n\n",
+    "p/Part": "int8 x\n",
+    "p/Empty": "",
+}
+ROS1 = """\
+from 0
+- 0+1 field a uint8
+- 1+4 field b uint32
+- 5+4 length s.length uint32
+data: s: length x uint8
+from None
+- 0+4 field t.secs uint32
+- 4+4 field t.nsecs uint32
+- 8+4 length q.length uint32
+loop: q: length times
+  from None
+  - 0+1 field q.item.x int8
+from None
+- 0+4 field w uint16[2]
+data: n: no bytes
+"""
+
+
+def test_bands_are_the_wire_in_order(tmp_path):
+    message = library(tmp_path / "cdr", TEXTS).message("p/T")
+    assert shown(bands(lay_out(message, "cdr"))) == CDR.splitlines()
+    message = library(tmp_path / "ros1", ROS1_TEXTS, "ros1").message("p/T")
+    assert shown(bands(lay_out(message, "ros1"))) == ROS1.splitlines()
+
+
+def rects(picture):
+    """Cells that are drawn: left edge, top, width, and what is said of each."""
+    found = []
+    for rect in picture.iter(f"{SVG}rect"):
+        title = rect.find(f"{SVG}title")
+        if title is not None:
+            x, y, width = (int(rect.get(name)) for name in ("x", "y", "width"))
+            found.append((x, y, width, title.text))
+    return found
+
+
+@pytest.mark.parametrize("name", ["sensor_msgs/msg/Imu", "sensor_msgs/msg/PointCloud2"])
+@pytest.mark.parametrize("wire", ["cdr", "ros1"])
+def test_cells_stand_where_their_bytes_are(name, wire):
+    layout = lay_out(Library().message(name), wire)
+    picture = ElementTree.fromstring(to_svg(layout, name))
+    drawn = rects(picture)
+    width, height = (float(picture.get(key)) for key in ("width", "height"))
+    assert all(x + w <= width and y < height for x, y, w, _ in drawn)
+    for band in bands(layout):
+        if isinstance(band, Note):
+            continue
+        left = LEFT + band.depth * INDENT
+        for cell in band.cells:
+            text = f"{f'{cell.name} {cell.type}'.strip()}, {cell.bytes} bytes"
+            x, y, w, _ = next(rect for rect in drawn if rect[3] == text)
+            drawn.remove((x, y, w, text))
+            assert (x - left) / BYTE_WIDTH == cell.at % ROW_BYTES
+            row = min(cell.bytes, ROW_BYTES - cell.at % ROW_BYTES)
+            assert w == row * BYTE_WIDTH
+            pieces = [row]
+            rows = -(-(cell.at + cell.bytes) // ROW_BYTES) - cell.at // ROW_BYTES
+            # Of more than four rows, three are drawn.
+            for _ in range(min(rows, 4 if rows <= 4 else 3) - 1):
+                x, y_next, w, _ = next(rect for rect in drawn if rect[3] == text and rect[1] > y)
+                drawn.remove((x, y_next, w, text))
+                assert x == left
+                y = y_next
+                pieces.append(w // BYTE_WIDTH)
+            if rows <= 4:
+                assert sum(pieces) == cell.bytes
+            else:
+                last = (cell.at + cell.bytes) % ROW_BYTES or ROW_BYTES
+                assert pieces[1:] == [ROW_BYTES, last]
+    assert drawn == []
+
+
+def texts_of(text):
+    return [each.text for each in ElementTree.fromstring(text).iter(f"{SVG}text")]
+
+
+def test_offsets_count_from_the_start_of_the_packet(tmp_path):
+    message = library(tmp_path, {"p/T": "uint64[9] a\nuint8 b\nuint8[] c"}).message("p/T")
+    texts = texts_of(to_svg(lay_out(message, "cdr"), "p/T"))
+    rows = [text for text in texts if re.fullmatch(r"\+?\d+", text)]
+    # The heads of the columns; the header; and then 9 rows of 8 bytes, of which six are left out.
+    assert rows == [*(f"+{lane}" for lane in range(8)), "0", "4", "68", "76"]
+    assert "... 7 rows" in texts
+    # What is behind a part of any size counts anew.
+    message = library(tmp_path, {"p/U": "string s\nuint64[2] a"}).message("p/U")
+    texts = texts_of(to_svg(lay_out(message, "ros1"), "p/U"))
+    rows = [text for text in texts if re.fullmatch(r"\+?\d+", text)]
+    assert rows[8:] == ["0", "+0", "+8"]
+
+
+def test_names_are_beside_the_row_where_they_start(tmp_path):
+    message = library(tmp_path, {"p/T": "uint8 a\nuint16 b\nuint64 c"}).message("p/T")
+    texts = texts_of(to_svg(lay_out(message, "cdr"), "p/T"))
+    assert "a uint8, b uint16" in texts and "c uint64" in texts
+    # Padding has no name there.
+    assert not [text for text in texts if "padding" in text and "," in text]
+
+
+def test_whatever_a_title_has_is_text(tmp_path):
+    message = library(tmp_path, {"p/T": "uint8 a"}).message("p/T")
+    title = "</text><script>&\"'"
+    assert texts_of(to_svg(lay_out(message), title))[0] == title
