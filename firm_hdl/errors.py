@@ -14,7 +14,7 @@ from functools import lru_cache
 
 from firm_hdl.terminal import printable
 
-__all__ = ["DefinitionError", "Diagnostic", "Source", "Span", "UserError"]
+__all__ = ["DefinitionError", "Diagnostic", "Source", "Span", "UserError", "described"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,3 +130,10 @@ class DefinitionError(Exception):
 
 class UserError(Exception):
     """What was asked for cannot be done; the text says why, for whoever asked."""
+
+
+def described(error: BaseException) -> str:
+    """Return what an error says; of one that is not meant for users, with its name in Python."""
+    if isinstance(error, DefinitionError | UserError):
+        return str(error)
+    return f"{type(error).__name__}: {error}"

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pickle
 
-from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
+from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span, UserError, described
+from firm_hdl.verify import accept
 from tests.steps import calls_at_most
 
 
@@ -51,3 +52,18 @@ def test_error_survives_pickling():
     error = DefinitionError([diagnostic("a b", 2, 3)])
     again = pickle.loads(pickle.dumps(error))
     assert str(again) == str(error) and again.diagnostics == error.diagnostics
+
+
+def test_what_is_meant_for_users_has_no_name_in_python():
+    assert described(UserError("Yosys needs memory")) == "Yosys needs memory"
+    wrong = diagnostic("int8 a", 0, 4)
+    assert described(DefinitionError([wrong])) == str(wrong)
+    assert described(KeyError("x")) == "KeyError: 'x'"
+
+
+def test_a_type_that_cannot_be_run_says_so_in_the_words_for_users(monkeypatch):
+    def refused(*_):
+        raise UserError("Yosys needs memory")
+
+    monkeypatch.setattr("firm_hdl.verify.acceptance.library_of", refused)
+    assert accept("lyrical", "std_msgs/msg/Bool").failures == ["Yosys needs memory"]

@@ -19,6 +19,7 @@ from collections.abc import Set as AbstractSet
 from itertools import chain
 from typing import Any
 
+from firm_hdl.errors import described
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.model import Message
@@ -120,7 +121,7 @@ def measured(
     except NotJudgedError as error:
         result.obstacle = NotJudged(str(error) or type(error).__name__)
     except Exception as error:  # Whatever it is, the other types are to go on.
-        result.failures.append(f"{type(error).__name__}: {error}")
+        result.failures.append(described(error))
     result.seconds = time.perf_counter() - began
     result.cpu_seconds = cpu_seconds() - began_cpu
     return result

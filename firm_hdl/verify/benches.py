@@ -23,6 +23,7 @@ from typing import Any
 
 from tqdm import tqdm
 
+from firm_hdl.errors import described
 from firm_hdl.export.build import BuildError, Built, build, check_size, plan_of
 from firm_hdl.export.manifest import MANIFEST
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT
@@ -116,7 +117,7 @@ def run_bench(distro: str, name: str, run: BenchRun) -> BenchResult:
     except (AssertionError, ToolError) as error:
         verdict = Failed((str(error),))
     except Exception as error:  # Whatever it is, the other types are to go on.
-        verdict = Failed((f"{type(error).__name__}: {error}",))
+        verdict = Failed((described(error),))
     return BenchResult(
         verdict=verdict,
         packets=packets,

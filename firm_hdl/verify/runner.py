@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Container, Generator, Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.errors import DefinitionError, Diagnostic, described
 from firm_hdl.frontend import Library
 from firm_hdl.identity import in_order
 from firm_hdl.jobs.executors import PROCESSES, run_each
@@ -162,7 +162,7 @@ def run_tasks(
     for task, result in run_each(run, work, executor=executor, jobs=jobs):
         if isinstance(result, Exception):
             failed = Result(distro=task.distro, name=task.name)
-            failed.failures.append(f"{type(result).__name__}: {result}")
+            failed.failures.append(described(result))
             failed.command = options.command(task.distro, task.name)
             yield task, failed
         else:

@@ -18,7 +18,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from firm_hdl.errors import DefinitionError
+from firm_hdl.errors import DefinitionError, described
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.jobs.executors import PROCESSES
 from firm_hdl.jobs.processes import cpu_seconds
@@ -319,9 +319,8 @@ def _checked(options: Ts2Options, item: _Item) -> Invariants:
         read = time.perf_counter() - began
         found = check_plan(message, options.wire, item.bus_bytes)
     except Exception as error:  # Whatever it is, the other types are to go on.
-        is_own = isinstance(error, DefinitionError)
-        problem = str(error) if is_own else f"{type(error).__name__}: {error}"
-        return Invariants(verdict=Failed((problem,)), cpu_seconds=cpu_seconds() - began_cpu)
+        verdict = Failed((described(error),))
+        return Invariants(verdict=verdict, cpu_seconds=cpu_seconds() - began_cpu)
     return replace(
         found,
         planning_seconds=read + found.planning_seconds,
