@@ -12,9 +12,9 @@ from collections.abc import Callable, Mapping
 from firm_hdl.equivalence.circuit import Bit, Bits, Cell, ProofError
 from firm_hdl.equivalence.dump import Instance
 
-__all__ = ["Fresh", "Gate", "divided", "gate_cells", "renamed"]
+__all__ = ["Gate", "divided", "gate_cells", "renamed"]
 
-Fresh = Callable[[int], tuple[int, ...]]
+_Fresh = Callable[[int], tuple[int, ...]]
 """Makes new nets that nothing drives."""
 
 _BINARY = {
@@ -72,7 +72,7 @@ class Gate:
     """
 
     def __init__(
-        self, instance: Instance, inputs: Mapping[str, Bits], width: int, fresh: Fresh
+        self, instance: Instance, inputs: Mapping[str, Bits], width: int, fresh: _Fresh
     ) -> None:
         self.kind = instance.kind
         self.name = instance.name
@@ -196,7 +196,7 @@ def _binary(gate: Gate, values: list[Bits], output: tuple[int, ...]) -> list[Cel
 
 
 def divided(
-    kind: str, signed: bool, left: Bits, right: Bits, output: tuple[int, ...], fresh: Fresh
+    kind: str, signed: bool, left: Bits, right: Bits, output: tuple[int, ...], fresh: _Fresh
 ) -> list[Cell]:
     """Give a division whose result is anything if the divisor is 0."""
     result, by_zero = fresh(len(output)), fresh(1)

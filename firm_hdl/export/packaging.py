@@ -10,16 +10,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 __all__ = [
-    "bench_list",
-    "common_core",
     "core",
-    "design_list",
     "makefile",
     "packaging",
-    "shared_core",
-    "vivado_script",
-    "vunit_bench",
-    "vunit_script",
 ]
 
 Manifest = Mapping[str, Any]
@@ -33,27 +26,27 @@ def packaging(manifest: Manifest) -> dict[str, str]:
     """Write all files, by name; they are to be in the folder of the VHDL."""
     name = str(manifest["vhdl"]["name"])
     files = {
-        "files.txt": design_list(manifest),
-        "bench_files.txt": bench_list(manifest),
-        f"{COMMON}.core": common_core(manifest, COMMON),
-        f"{BENCH}.core": common_core(manifest, BENCH),
-        **{f"{each['name']}.core": shared_core(manifest, each) for each in _shared(manifest)},
+        "files.txt": _design_list(manifest),
+        "bench_files.txt": _bench_list(manifest),
+        f"{COMMON}.core": _common_core(manifest, COMMON),
+        f"{BENCH}.core": _common_core(manifest, BENCH),
+        **{f"{each['name']}.core": _shared_core(manifest, each) for each in _shared(manifest)},
         f"{name}.core": core(manifest),
-        "vivado.tcl": vivado_script(manifest),
+        "vivado.tcl": _vivado_script(manifest),
         "Makefile": makefile(manifest),
     }
     if manifest["vhdl"]["bench"]["stimuli"] is not None:
-        files["vunit_run.py"] = vunit_script(manifest)
-        files[f"tb_{name}_vunit.vhd"] = vunit_bench(manifest)
+        files["vunit_run.py"] = _vunit_script(manifest)
+        files[f"tb_{name}_vunit.vhd"] = _vunit_bench(manifest)
     return files
 
 
-def design_list(manifest: Manifest) -> str:
+def _design_list(manifest: Manifest) -> str:
     """List what is to be synthesized, a file a line, in the order in which it compiles."""
     return _lines(manifest["vhdl"]["files"])
 
 
-def bench_list(manifest: Manifest) -> str:
+def _bench_list(manifest: Manifest) -> str:
     """List the files of the test benches, which compile after the design, for simulation only."""
     return _lines(manifest["vhdl"]["bench"]["files"])
 
@@ -86,7 +79,7 @@ def _own(files: Iterable[str], section: Manifest) -> list[str]:
     return [file for file in files if file not in others]
 
 
-def common_core(manifest: Manifest, name: str) -> str:
+def _common_core(manifest: Manifest, name: str) -> str:
     """Describe to FuseSoC what all types share: `COMMON` for synthesis, `BENCH` for test benches.
 
     The folder of every type has the same text.
@@ -114,7 +107,7 @@ def _bench(manifest: Manifest) -> str:
     return f"firm-hdl:vhdl:bench:{_version(manifest)}"
 
 
-def shared_core(manifest: Manifest, package: Manifest) -> str:
+def _shared_core(manifest: Manifest, package: Manifest) -> str:
     """Describe to FuseSoC a package that is the same in the folders of several messages."""
     what = f"Records of {package['message']}" if package["message"] else "Streams of one bus width"
     depends = [_common(manifest), *(_shared_vlnv(manifest, name) for name in package["needs"])]
@@ -195,7 +188,7 @@ def _parameter(name: str, default: int, description: str) -> Iterator[str]:
     yield f"    description: {description}\n"
 
 
-def vivado_script(manifest: Manifest) -> str:
+def _vivado_script(manifest: Manifest) -> str:
     """Write the Tcl that reads a design into Vivado, without its benches."""
     section = manifest["vhdl"]
     others = [*section["common_files"], *(each["file"] for each in _shared(manifest))]
@@ -267,7 +260,7 @@ clean:
 """
 
 
-def vunit_script(manifest: Manifest) -> str:
+def _vunit_script(manifest: Manifest) -> str:
     """Write the script that runs the benches by VUnit."""
     section = manifest["vhdl"]
     files = [*section["files"], *section["bench"]["files"], f"tb_{section['name']}_vunit.vhd"]
@@ -296,7 +289,7 @@ vunit.main()
 '''
 
 
-def vunit_bench(manifest: Manifest) -> str:
+def _vunit_bench(manifest: Manifest) -> str:
     """Write the entity that runs the benches as test cases of VUnit."""
     section = manifest["vhdl"]
     bench = section["bench"]

@@ -16,9 +16,9 @@ from firm_hdl.gateware import Deserializer, RecordReader, RecordWriter, Serializ
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
-__all__ = ["RECORD", "RecordTop", "record_ports", "why_no_record"]
+__all__ = ["RecordTop", "record_ports", "why_no_record"]
 
-RECORD = "msg"
+_RECORD = "msg"
 """What the names of the record's ports start with."""
 
 
@@ -52,9 +52,9 @@ def record_ports(plan: Plan, direction: Direction, bits: int) -> tuple[Port, ...
     status = next(k for k, port in enumerate(ports) if port.name.startswith("m_axis_status"))
     to, fro = ("in", "out") if direction == "serializer" else ("out", "in")
     record = [
-        (f"{RECORD}_data", to, bits, f"{plan.message}, the first field in the lowest bits."),
-        (f"{RECORD}_valid", to, 1, "message: offered, all of it."),
-        (f"{RECORD}_ready", fro, 1, "message: taken."),
+        (f"{_RECORD}_data", to, bits, f"{plan.message}, the first field in the lowest bits."),
+        (f"{_RECORD}_valid", to, 1, "message: offered, all of it."),
+        (f"{_RECORD}_ready", fro, 1, "message: taken."),
     ]
     ports[status:status] = [
         Port(name=name, direction="in" if way == "in" else "out", width=width, meaning=meaning)

@@ -19,7 +19,7 @@ from amaranth.hdl import Cat, Value
 from amaranth.lib import data, stream
 from amaranth.sim import SimulatorContext
 
-__all__ = ["PacketRules", "StreamRuleError", "StreamRules", "is_packet_stream", "watch"]
+__all__ = ["PacketRules", "StreamRuleError", "StreamRules", "watch"]
 
 
 class StreamRuleError(AssertionError):
@@ -104,7 +104,7 @@ class PacketRules:
         self._inside = not last
 
 
-def is_packet_stream(port: Any) -> bool:
+def _is_packet_stream(port: Any) -> bool:
     """Whether a stream carries packets."""
     shape = port.payload.shape()
     return isinstance(shape, data.StructLayout) and list(shape.members) == ["data", "count", "last"]
@@ -130,7 +130,7 @@ def watch(streams: Mapping[str, stream.Interface]) -> Callable[[SimulatorContext
     packets = {
         number: PacketRules(name, len(port.payload.data))
         for number, (name, port) in enumerate(streams.items())
-        if is_packet_stream(port)
+        if _is_packet_stream(port)
     }
 
     async def watcher(ctx: SimulatorContext) -> None:

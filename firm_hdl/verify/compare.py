@@ -17,7 +17,6 @@ __all__ = [
     "Expected",
     "packet_differences",
     "run_differences",
-    "status_differences",
     "transfer_differences",
 ]
 
@@ -53,13 +52,13 @@ def run_differences(
         ("sent_status", seen.sent_statuses, wanted.sent_statuses),
     ):
         got = [status.name for status in statuses]
-        yield from status_differences(f"{where}: {what}", got, right, names)
+        yield from _status_differences(f"{where}: {what}", got, right, names)
     marked = [status != "OK" for status in wanted.sent_statuses]
     if seen.marked != marked:
         yield f"{where}: packet_error is {seen.marked} instead of {marked}"
 
 
-def status_differences(
+def _status_differences(
     what: str, got: Sequence[str], wanted: Sequence[str], names: Sequence[str] = ()
 ) -> Iterator[str]:
     """Say which status is the first that differs, if one does."""

@@ -27,7 +27,6 @@ __all__ = [
     "Record",
     "Seconds",
     "Test",
-    "clipped",
     "clipped_verdict",
     "settled",
 ]
@@ -281,7 +280,7 @@ class Record:
         return record
 
 
-def clipped(failures: Sequence[str]) -> tuple[str, ...]:
+def _clipped(failures: Sequence[str]) -> tuple[str, ...]:
     """Return failures as a record keeps them: not too many, and none too long."""
     found = [
         text
@@ -298,9 +297,9 @@ def clipped_verdict(verdict: Verdict) -> Verdict:
     """Return a verdict as a record keeps it: without too many failures, and no long texts."""
     match verdict:
         case Failed(failures):
-            return Failed(clipped(failures))
+            return Failed(_clipped(failures))
         case NotJudged(reason):
-            return NotJudged(clipped([reason])[0])
+            return NotJudged(_clipped([reason])[0])
         case _:
             return verdict
 

@@ -34,7 +34,7 @@ from firm_hdl.verify.recording import RecordedMessage, Selection, Topic, select,
 from firm_hdl.verify.user_oracle import Judge, NotJudgedError
 from firm_hdl.wire import lay_out
 
-__all__ = ["MOST_MESSAGES", "recorded_message", "replay"]
+__all__ = ["MOST_MESSAGES", "replay"]
 
 MOST_MESSAGES = 100
 """Most messages of a type, if nobody says otherwise."""
@@ -68,7 +68,7 @@ def replay(distro: str, name: str, options: Options) -> Result:
     return measured(distro, name, options, _replay)
 
 
-def recorded_message(library: Library, topic: Topic) -> Message | None:
+def _recorded_message(library: Library, topic: Topic) -> Message | None:
     """Return the type of a topic; `None` if its definition cannot be used."""
     try:
         return library.message(topic.type)
@@ -117,7 +117,7 @@ def _topics(
         topic
         for bag in bags
         for topic in topics_of(bag)
-        if (found := recorded_message(library, topic)) is not None and found.name == message.name
+        if (found := _recorded_message(library, topic)) is not None and found.name == message.name
     ]
     digest = next((topic.digest for topic in mine if topic.digest), "")
     others = [topic for topic in mine if topic.digest not in ("", digest)]

@@ -20,7 +20,6 @@ from firm_hdl.rtlil.ir import (
 
 __all__ = [
     "INLINE",
-    "MODULAR",
     "Use",
     "enable_runs",
     "int_parameter",
@@ -30,10 +29,10 @@ __all__ = [
     "uses_of",
 ]
 
-MODULAR = frozenset("$add $sub $mul $neg $and $or $xor $not $mux $shl".split())
+_MODULAR = frozenset("$add $sub $mul $neg $and $or $xor $not $mux $shl".split())
 """Kinds whose low result bits depend on the low operand bits alone."""
 
-INLINE = MODULAR | frozenset(
+INLINE = _MODULAR | frozenset(
     "$reduce_bool $reduce_or $reduce_and $reduce_xor $divfloor $modfloor $shr $sshr $shift "
     "$eq $ne $lt $le $gt $ge".split()
 )
@@ -97,7 +96,7 @@ def uses_of(cell: Cell, width: Mapping[str, int]) -> Iterator[Use]:
         bits = width[output(cell)]
         for port, spec in ports.items():
             # A select and a distance count as a whole, whatever the result is cut to.
-            cut_port = kind in MODULAR and port != "S" and (kind != "$shl" or port != "B")
+            cut_port = kind in _MODULAR and port != "S" and (kind != "$shl" or port != "B")
             if port != "Y":
                 yield Use(trim(spec, bits) if cut_port else spec, True)
     elif kind in ("$dff", "$adff"):

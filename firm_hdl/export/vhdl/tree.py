@@ -18,7 +18,7 @@ from firm_hdl.names.identifiers import first_free, identifier, scope_names
 from firm_hdl.plan import Leaf, Plan
 from firm_hdl.wire import Wire
 
-__all__ = ["Node", "Package", "Tree", "derived", "member_names", "package_name", "snake", "tree_of"]
+__all__ = ["Node", "Package", "Tree", "derived", "package_name", "snake", "tree_of"]
 
 _Paths = dict[str, "_Paths | int"]
 
@@ -122,10 +122,10 @@ def snake(name: str) -> str:
     return re.sub("_+", "_", text).lower().strip("_")
 
 
-def member_names(names: Iterable[str]) -> dict[str, str]:
+def _member_names(names: Iterable[str]) -> dict[str, str]:
     """Give the identifiers for the members of a record.
 
-    >>> member_names(["x", "range", "float64_stream_t"])
+    >>> _member_names(["x", "range", "float64_stream_t"])
     {'x': 'x', 'range': 'range_field', 'float64_stream_t': 'float64_stream_t_2'}
     """
     # A member that has the name of a type, or of the library, would hide it from its neighbours.
@@ -176,7 +176,7 @@ class _Maker:
 
     def node(self, paths: _Paths, kind: FieldType | None, name: str, access: str) -> Node:
         node = Node(name=name, access=access)
-        for child, vhdl in member_names(paths).items():
+        for child, vhdl in _member_names(paths).items():
             below = paths[child]
             member, child_kind = _below(kind, child)
             path = f"{access}.{vhdl}".lstrip(".")

@@ -16,7 +16,7 @@ from firm_hdl.verify.report.verdicts import OracleSum, Said, oracle_sums, said_o
 from firm_hdl.verify.results import Results
 from firm_hdl.verify.verdict import Failed, NotJudged
 
-__all__ = ["LIMITS", "TOP", "CoverageSum", "Curve", "Group", "Run", "Summary", "Trend", "summarise"]
+__all__ = ["LIMITS", "CoverageSum", "Curve", "Group", "Run", "Summary", "Trend", "summarise"]
 
 LIMITS = (0.01, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 60)
 """Seconds that shares of tests are given for."""
@@ -24,7 +24,7 @@ LIMITS = (0.01, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 60)
 MOST_POINTS = 1000
 """So many points of a chart are kept; statistics are of all."""
 
-TOP = 15
+_TOP = 15
 """How many of the slowest and of the most complex types are listed."""
 
 
@@ -225,7 +225,7 @@ class Summary:
         known.sort(key=lambda pair: pair[0], reverse=True)
         first: dict[object, Outcome] = {}
         for _, each in known:
-            if len(first) == TOP:
+            if len(first) == _TOP:
                 break
             first.setdefault(each.test.type if of_types else each.test.key, each)
         return list(first.values())

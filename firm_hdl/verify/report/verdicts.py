@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from firm_hdl.verify.report.outcomes import NotRun, Outcome
 from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
 
-__all__ = ["OracleSum", "Reason", "Said", "oracle_sums", "reason_groups", "reason_of", "said_of"]
+__all__ = ["OracleSum", "Reason", "Said", "oracle_sums", "reason_groups", "said_of"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,7 +130,7 @@ def reason_groups(
     groups: dict[str, list[Outcome]] = defaultdict(list)
     texts: dict[str, str] = {}
     for outcome in outcomes:
-        text = (text_of or reason_of)(outcome)
+        text = (text_of or _reason_of)(outcome)
         key = _without_names(text)
         texts.setdefault(key, text)
         groups[key].append(outcome)
@@ -138,7 +138,7 @@ def reason_groups(
     return sorted(found, key=lambda reason: -len(reason.outcomes))
 
 
-def reason_of(outcome: Outcome) -> str:
+def _reason_of(outcome: Outcome) -> str:
     """Say why a test was not judged or not run; empty for one that was judged."""
     return outcome.verdict.reason if isinstance(outcome.verdict, NotJudged | NotRun) else ""
 

@@ -11,13 +11,13 @@ from firm_hdl.export.verilog import to_verilog
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.verify.trace import Device, Pin, Trace
 
-__all__ = ["RESULTS", "STIMULI", "instances", "module_of", "vector", "write_inputs"]
+__all__ = ["RESULTS", "STIMULI", "instances", "vector", "write_inputs"]
 
 STIMULI = "stimuli.txt"
 RESULTS = "results.txt"
 
 
-def module_of(device: Device) -> str:
+def _module_of(device: Device) -> str:
     """Name a device's module as ``firm-hdl build`` names it."""
     plan = device.plan
     folder = f"{identifier(plan.message)}_{plan.wire}_{plan.bus_bytes}"
@@ -31,7 +31,7 @@ def write_inputs(trace: Trace, tops: Sequence[Top], folder: Path) -> list[str]:
     """
     files = []
     for device, top in zip(trace.devices, tops, strict=True):
-        module = module_of(device)
+        module = _module_of(device)
         files.append(f"{module}.v")
         text = to_verilog(top, module=module, header="")
         (folder / files[-1]).write_text(text, encoding="utf-8")
@@ -53,4 +53,4 @@ def instances(trace: Trace) -> Iterator[str]:
             mine = [pin for pin in pins if pin.device == number]
             pairs += [f".{pin.port.name}({letter}{pin.number})" for pin in mine]
         joined = ",\n    ".join(pairs)
-        yield f"  {module_of(device)} {device.direction} (\n    {joined});\n"
+        yield f"  {_module_of(device)} {device.direction} (\n    {joined});\n"
