@@ -10,6 +10,8 @@ import firm_hdl
 
 PACKAGE = Path(firm_hdl.__file__).parent
 MOST_LINES = 450
+# Of a function, with its docstring.
+MOST_SIZE = 60
 
 # Text to syntax to model to layout to plan to circuit to Verilog and VHDL: what each part may use.
 MAY_IMPORT = {
@@ -60,6 +62,9 @@ def problems(package: Path) -> Iterator[str]:
             yield f"{where}: no literal __all__"
         if len(text.splitlines()) > MOST_LINES:
             yield f"{where}: more than {MOST_LINES} lines"
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and _size(node) > MOST_SIZE:
+                yield f"{where}: {node.name} has more than {MOST_SIZE} lines"
         part = "firm_hdl" if where.name == "__init__.py" and len(where.parts) == 1 else (
             where.parts[0].removesuffix(".py")
         )
@@ -69,6 +74,10 @@ def problems(package: Path) -> Iterator[str]:
         for imported in sorted(set(_imports(tree))):
             if imported != part and imported not in MAY_IMPORT[part]:
                 yield f"{where}: {part} imports {imported}"
+
+
+def _size(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
+    return (node.end_lineno or 0) - node.lineno + 1
 
 
 def _has_all(tree: ast.Module) -> bool:
@@ -115,6 +124,8 @@ def test_violations_are_found(tmp_path: Path) -> None:
         "sim/b.py": '__all__ = ["a", *b]\n',
         "cli.py": '"""Doc."""\nfrom firm_hdl.verify import accept\n__all__ = []\n' + "\n" * 450,
         "utils.py": '"""Doc."""\n__all__ = []\n',
+        "plan/a.py": '"""Doc."""\n__all__ = []\ndef long():\n' + "    pass\n" * 60,
+        "plan/b.py": '"""Doc."""\n__all__ = []\ndef long():\n' + "    pass\n" * 59,
         "gateware/__main__.py": '"""Doc."""\nimport firm_hdl\nimport os\n',
     }
     for name, text in files.items():
@@ -126,6 +137,7 @@ def test_violations_are_found(tmp_path: Path) -> None:
         "cli.py: cli imports verify",
         "gateware/__main__.py: gateware imports firm_hdl",
         "model.py: model imports wire",
+        "plan/a.py: long has more than 60 lines",
         "sim/a.py: no literal __all__",
         "sim/a.py: sim imports export",
         "sim/b.py: no docstring",

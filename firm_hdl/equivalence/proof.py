@@ -106,13 +106,7 @@ def prove(
     """
     began = time.perf_counter()
     found = tools or find_tools()
-    rtlil: str = (
-        design
-        if isinstance(design, str)
-        else amaranth_rtlil.convert(
-            design, name=name, ports=ports, platform=platform, emit_src=False
-        )
-    )
+    rtlil = _rtlil(design, name=name, ports=ports, platform=platform)
     vhdl = convert(rtlil, name=name) if vhdl is None else vhdl
     with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
         miter = _miter(rtlil, vhdl, found, Path(folder), timeout)
@@ -134,6 +128,13 @@ def prove(
         claims=len(miter.claims),
         seconds=time.perf_counter() - began,
     )
+
+
+def _rtlil(design: Any, **options: Any) -> str:
+    if isinstance(design, str):
+        return design
+    text: str = amaranth_rtlil.convert(design, emit_src=False, **options)
+    return text
 
 
 def _miter(rtlil: str, vhdl: Vhdl, tools: Tools, folder: Path, timeout: float) -> Miter:

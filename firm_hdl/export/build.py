@@ -129,11 +129,13 @@ def build(
         tasks.append(_task(library, message, plan, Path(out), ports, packets))
     _check_folders(tasks)
     _check_packages(tasks)
-    built = []
-    for task in tasks:
-        built.append(_do(task, force))
-        if report is not None:
-            report(built[-1])
+    return [_done(task, force, report) for task in tasks]
+
+
+def _done(task: _Task, force: bool, report: Callable[[Built], None] | None) -> Built:
+    built = _do(task, force)
+    if report is not None:
+        report(built)
     return built
 
 

@@ -111,9 +111,6 @@ class Harness:
             encodes=self.serializer is not None,
             table=self.table,
         )
-        if limit is None:
-            size = sum(map(len, packets or ())) + sum(map(len, (transfers or {}).values()))
-            limit = 10_000 + 50 * (size + 8 * expected) * (1 + self._longest(stalls))
         job = Job(
             sources=self._sources(packets or (), transfers or {}),
             takes=run.takes(),
@@ -121,19 +118,24 @@ class Harness:
             outstanding=run.outstanding,
             stalls=stalls,
             deadline=deadline,
-            limit=limit,
+            limit=self._limit(packets, transfers, expected, stalls) if limit is None else limit,
             observe=observe,
         )
         run.seen.beats_in = sum(beats_of(len(p), self.plan.bus_bytes) for p in packets or ())
         self.bench.run(job, vcd=vcd)
-        seen = run.result()
-        for leaf, offered in (transfers or {}).items():
-            if left := len(offered) - len(seen.transfers[leaf]):
-                seen.left[leaf] = left
-        return seen
+        return _with_what_is_left(run.result(), transfers or {})
 
-    def _longest(self, stalls: StallPlan) -> int:
-        return max(stalls_of(stalls, name).longest for name in self.bench.names)
+    def _limit(
+        self,
+        packets: Sequence[bytes] | None,
+        transfers: Mapping[int, Sequence[Payload]] | None,
+        messages: int,
+        stalls: StallPlan,
+    ) -> int:
+        """Return much more cycles than any legal packets take."""
+        size = sum(map(len, packets or ())) + sum(map(len, (transfers or {}).values()))
+        longest = max(stalls_of(stalls, name).longest for name in self.bench.names)
+        return 10_000 + 50 * (size + 8 * messages) * (1 + longest)
 
     def _refuse_leaf_stalls(self, stalls: StallPlan) -> None:
         if isinstance(stalls, Mapping):
@@ -207,3 +209,11 @@ class _Circuit(Elaboratable):
                     outputs[leaf].ready.eq(inputs[leaf].ready & self.gates[leaf]),
                 ]
         return m
+
+
+def _with_what_is_left(seen: Seen, transfers: Mapping[int, Sequence[Payload]]) -> Seen:
+    """Note how many transfers of each leaf were offered and not taken."""
+    for leaf, offered in transfers.items():
+        if left := len(offered) - len(seen.transfers[leaf]):
+            seen.left[leaf] = left
+    return seen
