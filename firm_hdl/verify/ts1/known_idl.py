@@ -80,7 +80,7 @@ def _called_as_file(case: Case) -> str:
     if len(bases) != 1 or case.name in found:
         return case.text
     (base,) = bases
-    ends = rf"(?=_(?:{'|'.join(_PARTS)})\b|_Constants\b|\b)"
+    ends = rf"(?=(?:_(?:{'|'.join(_PARTS)}))?(?:_Constants)?\b)"
     return _in_code(case.text, rf"\b{base}{ends}", case.name)
 
 
