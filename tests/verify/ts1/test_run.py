@@ -12,11 +12,17 @@ import pytest
 from firm_hdl.cli import main
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DISTROS
+from firm_hdl.verify.records import OracleVerdict
 from firm_hdl.verify.results import read_results
+from firm_hdl.verify.runner import UnknownTypeError
 from firm_hdl.verify.ts1 import ORACLES, Selection, Ts1Run, run_ts1, selections_of
 from firm_hdl.verify.ts1 import judge as judging
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.judge import Outcome
 from firm_hdl.verify.ts1.oracle import Refused
+from firm_hdl.verify.ts1.run import Tally
 from firm_hdl.verify.ts1.universe import Universe
+from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
 from tests.frontend.workspace import make_files
 from tests.verify.ts1.conftest import need
 
@@ -133,8 +139,83 @@ def test_a_message_of_a_service_has_no_definition_of_its_own(source):
 def test_distributions_that_have_the_types_are_chosen():
     assert [s.distro for s in selections_of(None, (), ["sensor_msgs/Imu"])] == list(DISTROS)
     assert [s.distro for s in selections_of(None, (), ["std_msgs/msg/Header"])] == list(DISTROS)
+    # Some are in distributions that stand between those that lack them, some in the last alone.
+    for name, distros in {
+        "actionlib/msg/TestAction": ["noetic"],
+        "libstatistics_collector/DummyMessage": ["foxy"],
+        "geometry_msgs/PolygonInstance": ["jazzy", "kilted", "lyrical"],
+        "nav_msgs/msg/Trajectory": ["lyrical"],
+    }.items():
+        assert [s.distro for s in selections_of(None, (), [name])] == distros
+        assert [s.distro for s in selections_of(None, (), ["std_msgs/Header", name])] == distros
     assert [s.distro for s in selections_of(None, ("x",))] == ["lyrical"]
     assert [s.distro for s in selections_of(["foxy"], ("x",))] == ["foxy"]
+
+
+def test_a_type_that_no_distribution_has_is_named():
+    with pytest.raises(UnknownTypeError, match=r"^No distribution has std_msgs/Header, p/None$"):
+        selections_of(None, (), ["std_msgs/Header", "p/None"])
+
+
+def test_all_that_was_asked_for_is_in_each_selection():
+    more = {"mutations": 3, "seed": 7}
+    found = selections_of(["foxy", "iron"], ("x", "y"), ("p/A", "q/B"), **more)
+    assert found == [
+        Selection(distro=name, paths=("x", "y"), types=("p/A", "q/B"), **more)
+        for name in ("foxy", "iron")
+    ]
+
+
+CASE = Case(
+    dialect="ros2", package="p", kind="srv", name="S", language="srv", text="---", before=None
+)
+
+
+@pytest.mark.parametrize(
+    ("types", "number", "oracles", "command"),
+    [
+        ((), None, (), "p/srv/S"),
+        (("p/S", "q/B"), None, ("genmsg", "rosbags"), "--oracle genmsg --oracle rosbags p/srv/S"),
+        ((), 0, (), "--mutations 1 --seed 0 --all"),
+        (("p/S", "q/B"), 5, ("rosbags",), "--oracle rosbags --mutations 1 --seed 5 p/S q/B"),
+    ],
+)
+def test_the_command_that_repeats_a_test(types, number, oracles, command):
+    selection = Selection(distro="iron", paths=("a b", "c"), types=types, mutations=9, seed=4)
+    words = "firm-hdl verify --systems ts1 --distro iron --path 'a b' --path c"
+    assert selection.command(CASE, number, oracles) == f"{words} {command}"
+
+
+def test_verdicts_are_counted_by_oracle_and_name():
+    def said(oracle, verdict, **more):
+        return Outcome.of(CASE, OracleVerdict(oracle=oracle, verdict=verdict, **more))
+
+    failed = said("one", Failed(("x", "y")))
+    tally = Tally()
+    tally.add(said("one", Passed(3), is_refused=True))
+    tally.add(said("one", Passed(2)))
+    tally.add(failed, 7)
+    tally.add(said("two", KnownDifference(("k", "l"), 3)))
+    tally.add(said("two", NotJudged("because")))
+    assert tally.verdicts == {
+        ("one", "passed"): 2,
+        ("one", "failed"): 1,
+        ("two", "known difference"): 1,
+        ("two", "not judged"): 1,
+    }
+    assert tally.refused == {"one": 1, "two": 0}
+    assert tally.differing == [(failed, 7)]
+    assert tally.details == {
+        ("two", "known difference", "k"): 1,
+        ("two", "known difference", "l"): 1,
+        ("two", "not judged", "because"): 1,
+    }
+    both = Tally(shown=[failed])
+    both.update(tally)
+    both.update(tally)
+    assert both.verdicts["one", "passed"] == 4 and both.refused["one"] == 2
+    assert both.details["two", "known difference", "l"] == 2
+    assert both.differing == [(failed, 7)] * 2 and both.shown == [failed]
 
 
 def test_a_crash_of_ours_ends_no_run(source, monkeypatch):

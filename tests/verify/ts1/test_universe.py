@@ -1,0 +1,161 @@
+"""Which definitions there are for oracles, and what they are given of each."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.verify.ts1.universe import Universe
+from tests.frontend.workspace import make_files
+
+FILES = {
+    "p/msg/A.msg": "q/B b\n",
+    "p/msg/Both.msg": "int8 m\n",
+    "p/srv/Both.srv": "int8 s\n---\n",
+    "p/action/Both.action": "int8 a\n---\n---\n",
+    "p/srv/S.srv": "int8 a\n---\n",
+    "p/action/F.action": "int8 g\n---\n---\n",
+    "q/msg/B.msg": "int8 x\n",
+}
+
+
+@pytest.fixture
+def universe_of(tmp_path):
+    def make(distro, files):
+        (tmp_path / "src").mkdir()
+        make_files(tmp_path / "src", files)
+        return Universe(distro, [str(tmp_path / "src")])
+
+    return make
+
+
+@pytest.mark.parametrize(
+    ("asked", "found"),
+    [
+        ("p/A", "p/msg/A"),
+        ("p/msg/A", "p/msg/A"),
+        ("p/S", "p/srv/S"),
+        ("p/srv/S", "p/srv/S"),
+        ("p/F", "p/action/F"),
+        ("p/action/F", "p/action/F"),
+        ("p/Both", "p/msg/Both"),
+        ("p/msg/Both", "p/msg/Both"),
+        ("p/srv/Both", "p/srv/Both"),
+        ("p/action/Both", "p/action/Both"),
+    ],
+)
+@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+def test_a_type_is_found_by_its_name_with_and_without_its_kind(universe_of, distro, asked, found):
+    universe = universe_of(distro, FILES)
+    (case,) = universe.select([asked])
+    assert case.spelled_name == found
+    assert case.text == FILES[f"{found}.{case.kind}"]
+    assert case.language == case.kind
+    assert universe.interface(case).name == case.full_name
+
+
+@pytest.mark.parametrize("name", ["p/msg/S", "p/srv/A", "p/action/S", "p/C", "r/A", "A", "p/x/A"])
+def test_what_is_not_there_is_not_found(universe_of, name):
+    with pytest.raises(DefinitionError):
+        universe_of("lyrical", FILES).select(["p/A", name])
+
+
+def test_types_come_in_the_order_in_which_they_are_named_and_all_in_that_of_their_names(
+    universe_of,
+):
+    universe = universe_of("lyrical", FILES)
+    names = [case.spelled_name for case in universe.select(["q/B", "p/F", "p/A"])]
+    assert names == ["q/msg/B", "p/action/F", "p/msg/A"]
+    names = [case.spelled_name for case in universe.select([])]
+    assert names == sorted(name.rpartition(".")[0] for name in FILES)
+
+
+def test_without_folders_all_that_a_distribution_has_is_taken():
+    found = {case.package for case in Universe("lyrical").select([])}
+    assert {"std_msgs", "sensor_msgs"} <= found and "p" not in found
+
+
+def test_messages_alone_are_message_cases(universe_of):
+    universe = universe_of("lyrical", FILES)
+    assert universe.message_case("p", "A") == universe.select(["p/A"])[0]
+    assert universe.message_case("p", "S") is None
+    assert universe.message_case("p", "C") is None
+
+
+def test_changed_texts_are_read_in_place_of_the_files(universe_of):
+    universe = universe_of("noetic", FILES)
+    (case,) = universe.select(["p/A"])
+    mutant = replace(case, text="int8 other\n", before=case.text)
+    assert [each.name for each in universe.interface(mutant).fields] == ["other"]
+    assert universe.show(mutant) == "int8 other\n"
+    assert universe.show(case) == "q/B b\n  int8 x\n"
+    # And only for that.
+    (other,) = universe.select(["q/B"])
+    both = replace(other, text="int8 y\n", before=other.text)
+    assert [each.name for each in universe.interface(both).fields] == ["y"]
+    assert [each.name for each in universe.interface(other).fields] == ["x"]
+
+
+def test_all_messages_are_changed_and_nothing_else(universe_of):
+    universe = universe_of("lyrical", FILES)
+    seen = []
+
+    def change(case):
+        seen.append(case)
+        return replace(case, text=case.text.replace("int8", "int16"), before=case.text)
+
+    changed = universe.changed(change)
+    texts = {case.spelled_name: case.text for case in changed.select([])}
+    expected = {
+        name.rpartition(".")[0]: text.replace("int8", "int16") if name.endswith(".msg") else text
+        for name, text in FILES.items()
+    }
+    assert texts == expected
+    assert {(each.dialect, each.language, each.kind) for each in seen} == {("ros2", "msg", "msg")}
+    assert "q/msg/B" in {each.spelled_name for each in seen}
+    # What it was made of stays as it was.
+    assert universe.select(["q/B"])[0].text == "int8 x\n"
+    (case,) = changed.select(["p/A"])
+    (field,) = changed.interface(case).fields
+    assert str(field.type.fields[0].type) == "int16"
+
+
+def idl(name, kind="msg", body="", package="p"):
+    struct = f"struct {name} {{ long a; }};"
+    return f"{body}module {package} {{ module {kind} {{ {struct} }}; }};\n"
+
+
+def test_included_files_are_given_with_those_that_they_include(universe_of):
+    files = {
+        "p/msg/A.idl": idl("A", body='#include "p/msg/B.idl"\n # include <x/y/q/msg/D.idl>\n'),
+        "p/msg/B.idl": idl("B", body='#include "p/msg/C.idl"\n#include "p/msg/A.idl"\n'),
+        "p/msg/C.idl": idl("C", body='#include "p/msg/None.idl"\n#include "p/msg/B.idl"\n'),
+        "p/msg/E.idl": idl("E", body='// #include "p/msg/B.idl"\n'),
+        "q/msg/D.idl": idl("D", package="q"),
+        "q/msg/F.msg": '# include "q/msg/D.idl"\nint8 a\n',
+    }
+    cases = {case.name: case for case in universe_of("lyrical", files).select([])}
+    texts = {name.rpartition("/")[2][0]: text for name, text in files.items()}
+    assert set(cases["A"].included) == {texts["A"], texts["B"], texts["C"], texts["D"]}
+    assert len(cases["A"].included) == 4
+    assert set(cases["C"].included) == {texts["A"], texts["B"], texts["C"], texts["D"]}
+    assert cases["D"].included == cases["E"].included == cases["F"].included == ()
+    assert {case.language for case in cases.values() if case.name != "F"} == {"idl"}
+
+
+def test_a_file_that_is_no_text_is_a_definition_as_well(universe_of, tmp_path):
+    universe_of("lyrical", {"p/msg/A.msg": "int8 x\n"})
+    folder = tmp_path / "src" / "p"
+    (folder / "msg" / "Bad.msg").write_bytes(b"int8 \xff\n")
+    (folder / "msg" / "Worse.idl").write_bytes(b"\xff\n")
+    universe = Universe("lyrical", [str(folder.parent)])
+    cases = {case.name: case for case in universe.select([])}
+    assert {name: case.language for name, case in cases.items()} == {
+        "A": "msg",
+        "Bad": "msg",
+        "Worse": "idl",
+    }
+    with pytest.raises(DefinitionError):
+        universe.interface(cases["Bad"])
