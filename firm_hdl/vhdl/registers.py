@@ -151,9 +151,8 @@ class Registers:
             if group.reset:
                 yield f"    if {group.reset} then"
                 yield from (f"      {line}" for line in start)
-                if lines:
-                    yield "    else"
-                    yield from (f"      {line}" for line in lines)
+                yield "    else"
+                yield from (f"      {line}" for line in lines)
                 yield "    end if;"
             else:
                 yield from (f"    {line}" for line in lines)
