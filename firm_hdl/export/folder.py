@@ -12,6 +12,7 @@ up in the old one after that is moved over.
 
 from __future__ import annotations
 
+import errno
 import filecmp
 import hashlib
 import json
@@ -244,7 +245,7 @@ def _link(source: Path, target: Path) -> None:
     except OSError:
         # No hard links here, or not of this file. What cannot be read cannot be kept.
         if os.path.lexists(target):
-            raise
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(target)) from None
         shutil.copy2(source, target, follow_symlinks=False)
 
 

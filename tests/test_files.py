@@ -1,0 +1,79 @@
+"""Files of others: regular ones up to their limit are read, and no others."""
+
+from __future__ import annotations
+
+import errno
+import os
+import socket
+
+import pytest
+
+from firm_hdl.files import check_file, read_file
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "file"
+    path.write_bytes(b"12345")
+    return path
+
+
+@pytest.mark.parametrize("most", [5, 6, 1 << 20])
+def test_a_file_up_to_its_limit_is_read(file, most):
+    assert read_file(file, most) == b"12345"
+    assert read_file(os.fspath(file), most) == b"12345"
+    check_file(file, most)
+
+
+@pytest.mark.parametrize("most", [0, 4])
+def test_a_file_beyond_its_limit_is_refused(file, most):
+    for read in (read_file, check_file):
+        with pytest.raises(OSError) as error:
+            read(file, most)
+        assert error.value.errno == errno.EFBIG
+        assert error.value.strerror == f"it has 5 bytes, and at most {most} are read"
+        assert error.value.filename == os.fspath(file)
+    check_file(file)
+
+
+def test_a_file_that_does_not_tell_its_size_is_measured_while_it_is_read():
+    path = "/proc/self/status"
+    if not os.path.exists(path) or os.stat(path).st_size:
+        pytest.skip("no file here hides its size")
+    assert read_file(path, 1 << 20).startswith(b"Name:")
+    with pytest.raises(OSError) as error:
+        read_file(path, 5)
+    assert error.value.strerror == "it has more than 5 bytes, and at most 5 are read"
+
+
+def test_what_is_no_file_is_named(tmp_path):
+    os.mkfifo(tmp_path / "fifo")
+    (tmp_path / "folder").mkdir()
+    with socket.socket(socket.AF_UNIX) as here:
+        here.bind(os.path.relpath(tmp_path / "socket"))
+        for path, what in (
+            (tmp_path / "fifo", "a FIFO"),
+            (tmp_path / "folder", "a folder"),
+            (tmp_path / "socket", "a socket"),
+            ("/dev/null", "a device"),
+        ):
+            for read in (read_file, check_file):
+                with pytest.raises(OSError) as error:
+                    read(path, 10)
+                assert error.value.errno == errno.EINVAL
+                assert error.value.strerror == f"it is {what}, not a regular file"
+
+
+def test_what_is_not_there_is_not_read(tmp_path):
+    for read in (read_file, check_file):
+        with pytest.raises(FileNotFoundError):
+            read(tmp_path / "none", 10)
+
+
+def test_a_file_that_becomes_a_fifo_meanwhile_is_not_waited_for(file, monkeypatch):
+    # As it was looked at, it was a file.
+    monkeypatch.setattr("firm_hdl.files.check_file", lambda *given: None)
+    file.unlink()
+    os.mkfifo(file)
+    with pytest.raises(OSError, match="it is a FIFO"):
+        read_file(file, 10)
