@@ -1,0 +1,335 @@
+"""What the check says of each fault: every sentence that it has, and nothing besides."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from firm_hdl.plan import Begin, Exits, Fixed, Jump, Pad, Part, Step, build_plan, check
+from firm_hdl.wire import lay_out
+from tests.strategies import make
+
+from .test_check import RICH
+
+
+def plan_of(fields, bus_bytes=8, dialect="ros1"):
+    return build_plan(lay_out(make(dialect, fields)), bus_bytes=bus_bytes)
+
+
+PLANS = {
+    "rich": build_plan(lay_out(RICH), bus_bytes=8),
+    # A string and items wider than the bus, which are a loop.
+    "narrow": plan_of({"m": "float32[7]", "s": "string"}, 1),
+    "trigger": plan_of({"a": "uint8", "e": make("ros1", {}, "E")}),
+    # A run of constant count: begun by a step, and loaded by a jump.
+    "begun": plan_of({"a": "uint8[21]"}, 8, "ros2"),
+    "entered": plan_of({"b": "uint8[24]"}),
+    # A transfer in two steps.
+    "cut": plan_of({"b": "uint64"}, 4),
+    "last": plan_of({"a": "uint8", "b": "uint8", "c": "uint8"}),
+    "side": plan_of({"a": "uint8", "b": "uint64"}, 16),
+}
+
+
+def damaged(node: Any, path: list[str], new: Any) -> Any:
+    """Return a plan with another value at a path of attributes and indexes."""
+    if not path:
+        return new
+    if isinstance(node, tuple):
+        index = int(path[0])
+        return (*node[:index], damaged(node[index], path[1:], new), *node[index + 1 :])
+    assert path[0] in {field.name for field in dataclasses.fields(node)}
+    return replace(node, **{path[0]: damaged(getattr(node, path[0]), path[1:], new)})
+
+
+def problems_of(which, changes):
+    plan = PLANS[which]
+    for path, new in changes.items():
+        plan = damaged(plan, path.split("."), new)
+    return check(plan)
+
+
+PLAIN = Exits(default=Jump(step=None))
+COUNTS = Begin(length=1, count=None, limit=1, terminated=False, level=None, run=0, body=None)
+BYTE = Part(at=4, bytes=1, leaf=0, first=0, size=1)
+X = PLANS["rich"].steps[5].slices[0]
+RULE = "a length must be complete just where it starts something"
+AGREE = "the length and the run do not agree about a NUL"
+JOIN = "the parts of a transfer do not join"
+OWN = "step 2: the body of a run has bytes or a start of its own"
+BOTH = "one of a length and a constant must count"
+
+# Which plan, what is changed in it, and what is said of that.
+CASES: list[tuple[str, dict[str, Any], list[str]]] = [
+    # Tables.
+    ("rich", {"bus_bytes": 3}, ["bus of 3 bytes"]),
+    ("rich", {"header_bytes": 0}, ["header or slack is not that of cdr"]),
+    ("rich", {"slack_bytes": 0}, ["header or slack is not that of cdr"]),
+    ("rich", {"wire": "ros1"}, ["header or slack is not that of ros1"]),
+    ("rich", {"leaves.6.path": ("ps", "item", "x")}, ["two leaves have one path"]),
+    ("rich", {"leaves.0.type": "uint7"}, ["leaf a: type 'uint7' is not a primitive"]),
+    ("rich", {"leaves.0.signed": True}, ["leaf a: signedness is not that of uint8"]),
+    ("rich", {"leaves.0.lanes": 2}, ["leaf a: 2 lanes, not 1"]),
+    ("rich", {"leaves.2.lanes": 3}, ["leaf q.items: 3 lanes, not 4"]),
+    ("rich", {"leaves.2.path": ("q", "item")}, ["leaf q.item: path does not end in 'items'"]),
+    ("rich", {"leaves.2.path": ()}, ["leaf : path does not end in 'items'"]),
+    (
+        "rich",
+        {"leaves.1.type": "uint16"},
+        ["leaf q.length: a length is of type uint32, not uint16"],
+    ),
+    (
+        "trigger",
+        {"leaves.1.type": "uint8"},
+        ["leaf e.trigger: a trigger is of type bool, not uint8"],
+    ),
+    ("rich", {"runs.3.items": 2}, ["two runs have the same items"]),
+    ("rich", {"runs.1.items": 0}, ["run 1: it has no items"]),
+    ("rich", {"runs.1.items": 15}, ["run 1: it has no items"]),
+    ("rich", {"runs.1.items": -1}, ["run 1: it has no items"]),
+    ("narrow", {"runs.0.items": 0}, ["run 0: items are wider than the bus"]),
+    ("rich", {"runs.0.terminated": True}, ["run 0: a NUL follows items that are not bytes"]),
+    # Steps.
+    ("rich", {"steps": ()}, ["there are no steps"]),
+    ("rich", {"steps.3.align": 3}, ["step 3: alignment to 3"]),
+    ("rich", {"steps.3.align": 16}, ["step 3: alignment to 16"]),
+    ("rich", {"steps.2.bytes": 1}, [OWN]),
+    ("rich", {"steps.2.slices": (BYTE,)}, [OWN]),
+    ("rich", {"steps.2.begin": COUNTS}, [OWN]),
+    ("rich", {"steps.2.run": 4}, ["step 2: there is no run 4"]),
+    ("rich", {"steps.2.run": -1}, ["step 2: there is no run -1"]),
+    ("rich", {"steps.2.head": 7}, ["step 2: 7 bytes of q.items a cycle do not suit words of 8"]),
+    ("rich", {"steps.2.head": 9}, ["step 2: 9 bytes of q.items a cycle do not suit words of 8"]),
+    ("rich", {"steps.8.head": 9}, []),
+    (
+        "rich",
+        {"steps.8.head": 10},
+        ["step 8: 10 bytes of ps.item.s.items a cycle do not suit words of 8"],
+    ),
+    ("rich", {"steps.3.slices.0.leaf": 15}, ["step 3: there is no leaf 15"]),
+    ("rich", {"steps.3.slices.0.leaf": -1}, ["step 3: there is no leaf -1"]),
+    ("rich", {"steps.12.slices.0.size": 12}, ["step 12: a transfer of m.items has 12 bytes"]),
+    (
+        "rich",
+        {"steps.12.slices.0.size": 0},
+        ["step 12: a transfer of m.items has 0 bytes", "step 12: m.items has no bytes 0 to 3"],
+    ),
+    ("trigger", {"steps.0.slices.1.size": 1}, ["step 0: a transfer of e.trigger has 1 bytes"]),
+    ("rich", {"steps.3.slices.0.first": -1}, ["step 3: b has no bytes -1 to 6"]),
+    ("rich", {"steps.3.slices.0.first": 1}, ["step 3: b has no bytes 1 to 8"]),
+    ("rich", {"steps.3.slices.0.bytes": 9}, ["step 3: b has no bytes 0 to 8"]),
+    ("rich", {"steps.3.slices.0.bytes": 0}, ["step 3: b has no bytes 0 to -1"]),
+    ("rich", {"steps.12.slices.0.last": False}, ["step 12: what ends m.items is not said once"]),
+    ("rich", {"steps.12.slices.0.last_level": 0}, ["step 12: what ends m.items is not said once"]),
+    ("rich", {"steps.3.slices.0.last": True}, ["step 3: what ends b is not said once"]),
+    ("rich", {"steps.3.slices.0.last_level": 0}, ["step 3: what ends b is not said once"]),
+    ("rich", {"steps.0.slices.3": Pad(at=5, bytes=0)}, ["step 0: nothing at byte 5"]),
+    ("rich", {"steps.0.slices.1.data": b""}, ["step 0: nothing at byte 2"]),
+    ("rich", {"steps.3.bytes": 9}, ["step 3: the map has 8 bytes, the step 9"]),
+    ("rich", {"steps.3.head": 1}, ["step 3: a head, but no run"]),
+    ("rich", {"steps.12.slices.0.size": 8}, ["step 12: m.items is interrupted"]),
+    (
+        "side",
+        {"steps.0.slices.1.first": 1, "steps.0.slices.1.bytes": 7, "steps.0.bytes": 8},
+        ["step 0: b goes on behind something else"],
+    ),
+    # What a step begins.
+    ("rich", {"steps.1.begin": None}, [f"step 1: {RULE}"]),
+    ("rich", {"steps.3.begin": PLANS["rich"].steps[1].begin}, [f"step 3: {RULE}"]),
+    (
+        "rich",
+        {
+            "steps.1.slices": (*PLANS["rich"].steps[1].slices, Pad(at=4, bytes=1)),
+            "steps.1.bytes": 5,
+        },
+        [f"step 1: {RULE}"],
+    ),
+    ("rich", {"steps.4.begin.length": None}, [f"step 4: {RULE}", f"step 4: {BOTH}"]),
+    ("rich", {"steps.4.begin.count": 4}, [f"step 4: {BOTH}"]),
+    (
+        "rich",
+        {"steps.4.begin.level": None},
+        ["step 4: one of a loop and a run must be started"],
+    ),
+    ("rich", {"steps.4.begin.run": 0}, ["step 4: one of a loop and a run must be started"]),
+    ("rich", {"steps.4.begin.limit": -1}, ["step 4: a count has the limit -1"]),
+    ("rich", {"steps.4.begin.limit": 0}, []),
+    ("begun", {"steps.0.begin.count": 15}, ["step 0: a count has the limit 16"]),
+    (
+        "begun",
+        {"steps.0.begin.count": 0, "steps.0.begin.limit": 0},
+        ["step 0: a count has the limit 0"],
+    ),
+    ("begun", {"steps.0.begin.count": 1, "steps.0.begin.limit": 1}, []),
+    ("rich", {"steps.4.begin.body": None}, ["step 4: a loop has no body"]),
+    ("rich", {"steps.4.begin.terminated": True}, ["step 4: a loop has no NUL, gap or head"]),
+    ("rich", {"steps.4.begin.gap": 1}, ["step 4: a loop has no NUL, gap or head"]),
+    ("rich", {"steps.4.begin.head": 1}, ["step 4: a loop has no NUL, gap or head"]),
+    ("rich", {"steps.1.begin.run": 4}, ["step 1: there is no run 4"]),
+    ("rich", {"steps.1.begin.run": -1}, ["step 1: there is no run -1"]),
+    ("rich", {"steps.7.begin.terminated": False}, [f"step 7: {AGREE}"]),
+    ("rich", {"steps.1.begin.terminated": True}, [f"step 1: {AGREE}"]),
+    (
+        "begun",
+        {"runs.0.terminated": True, "steps.0.begin.terminated": True},
+        [f"step 0: {AGREE}"],
+    ),
+    (
+        "rich",
+        {"steps.1.begin.head": 7},
+        ["step 1: 7 bytes of q.items a cycle do not suit words of 8"],
+    ),
+    ("rich", {"steps.1.begin.gap": 8}, ["step 1: a gap of 8 bytes"]),
+    ("rich", {"steps.1.begin.gap": -1}, ["step 1: a gap of -1 bytes"]),
+    # The header.
+    ("rich", {"steps.0.slices.0.data": b"\0\0"}, ["the header is not that of cdr"]),
+    ("rich", {"steps.0.slices.0.check": False}, ["the header is not that of cdr"]),
+    ("rich", {"steps.0.slices.1.check": True}, ["the header is not that of cdr"]),
+    ("rich", {"steps.0.slices.1.data": b"\0\1"}, ["the header is not that of cdr"]),
+    (
+        "rich",
+        {"steps.5.slices": (X, Fixed(at=1, data=b"x", check=False)), "steps.5.bytes": 2},
+        ["fixed bytes stand behind the header", "the header is not that of cdr"],
+    ),
+    # Transfers.
+    (
+        "rich",
+        {"steps.3.slices.0.leaf": 6},
+        [
+            "leaf ps.item.d is out of order",
+            "leaf ps.length is out of order",
+            "leaf b: 0 transfers and 0 runs",
+            "leaf ps.item.d: 2 transfers and 0 runs",
+        ],
+    ),
+    (
+        "rich",
+        {
+            "steps.0.slices": (
+                *PLANS["rich"].steps[0].slices[:3],
+                replace(BYTE, at=5),
+                Pad(at=6, bytes=2),
+            )
+        },
+        ["leaf a: 2 transfers and 0 runs"],
+    ),
+    ("rich", {"runs.2.last": True}, ["leaf m.items: its end is not where the run says"]),
+    ("rich", {"runs.0.last": False}, ["leaf q.items: its end is not where the run says"]),
+    (
+        "rich",
+        {"steps.12.slices.0.last": False, "steps.12.slices.0.last_level": 0},
+        ["leaf m.items: the tail of a run is in a loop"],
+    ),
+    (
+        "last",
+        {"steps.0.slices.1.leaf": 2, "steps.0.slices.2.leaf": 1},
+        ["leaf c is out of order", "leaf b is out of order"],
+    ),
+    (
+        "last",
+        {"steps.0.slices.2.leaf": 0},
+        [
+            "leaf a is out of order",
+            "leaf a: 2 transfers and 0 runs",
+            "leaf c: 0 transfers and 0 runs",
+        ],
+    ),
+    # What is cut at the end of a step.
+    ("cut", {"steps.1.align": 4}, [f"step 1: {JOIN}"]),
+    (
+        "cut",
+        {"steps.1.slices.0.first": 3},
+        ["leaf b: 0 transfers and 0 runs", f"step 1: {JOIN}", "the last transfer is cut"],
+    ),
+    ("cut", {"steps.0.exits.repeats": ((0, Jump(step=0)),)}, [f"step 1: {JOIN}"]),
+    ("cut", {"steps.0.slices.0.bytes": 3, "steps.0.bytes": 3}, [f"step 1: {JOIN}"]),
+    ("cut", {"steps.0.slices": (), "steps.0.bytes": 0}, [f"step 1: {JOIN}"]),
+    ("narrow", {"steps.1.slices.0.last_level": 1}, [f"step 1: {JOIN}", f"step 2: {JOIN}"]),
+    (
+        "narrow",
+        {"steps.1.slices.0.last_level": None, "steps.1.slices.0.last": True},
+        [f"step 1: {JOIN}", f"step 2: {JOIN}"],
+    ),
+    # The flow.
+    ("rich", {"start.step": 1}, ["start: goes to step 1, not 0"]),
+    ("rich", {"start.step": None}, ["start: goes to step 15, not 0"]),
+    (
+        "rich",
+        {"start.enter": (("run", 1),)},
+        ["step 0: the counter of the run is not loaded, or in vain"],
+    ),
+    ("rich", {"levels": 2}, ["2 loop counters, of which 1 are used"]),
+    ("rich", {"levels": 0}, ["step 4, next: loop 0 inside 0 loops"]),
+    ("rich", {"steps.4.exits.default.enter": ((0, 0),)}, ["step 4, next: 0 elements"]),
+    ("rich", {"steps.4.exits.default.enter": ((0, 5),)}, ["step 7, next: 6 elements"]),
+    ("rich", {"steps.7.exits.default.enter": ((0, 5),)}, ["step 7, next: 5 elements"]),
+    (
+        "rich",
+        {"steps.4.exits.default.enter": ()},
+        ["step 10: loop 0 ends inside 0 loops"],
+    ),
+    ("rich", {"steps.4.exits.default.enter": ((1, 6),)}, ["step 4, next: loop 1 inside 0 loops"]),
+    (
+        "rich",
+        {"steps.10.exits.default.enter": (("run", 6), ("run", 6))},
+        ["step 10, next: the counter of the run is loaded twice"],
+    ),
+    (
+        "rich",
+        {"steps.10.exits.default.enter": ()},
+        ["step 11: the counter of the run is not loaded, or in vain"],
+    ),
+    (
+        "rich",
+        {"steps.9.exits.default.enter": (("run", 6),)},
+        ["step 10: the counter of the run is not loaded, or in vain"],
+    ),
+    ("entered", {"runs.0.terminated": True}, ["step 0: a constant run counts a NUL"]),
+    (
+        "rich",
+        {"steps.14.exits.default.enter": (("run", 1),)},
+        ["step 14, next: ends within a loop or a run"],
+    ),
+    (
+        "narrow",
+        {"steps.8.exits.default": Jump(step=9), "steps.7.exits.default": Jump(step=9)},
+        ["step 7, next: there is no step 9"],
+    ),
+    (
+        "rich",
+        {"steps.8.exits.default.enter": ()},
+        ["step 8, next: step 9 is reached with other loops open before"],
+    ),
+    ("rich", {"steps.14.exits.default.step": 15}, ["step 14, next: there is no step 15"]),
+    ("rich", {"steps.13.exits.default.step": 15}, ["step 13, next: goes to step 15, not 14"]),
+    ("rich", {"steps.4.begin.level": 1}, ["step 4: loop 1 inside 0 loops"]),
+    ("rich", {"steps.4.begin.body.step": 6}, ["step 4, body: goes to step 6, not 5"]),
+    (
+        "rich",
+        {"steps.7.exits.repeats.0": (1, Jump(step=5))},
+        ["step 7: loop 1 ends inside 1 loops"],
+    ),
+    (
+        "rich",
+        {"steps.10.exits.repeats.0.1.step": 10},
+        ["step 10, loop 0 again: goes to step 10, not 9"],
+    ),
+    (
+        "narrow",
+        {f"steps.{n}.slices.0.last_level": 1 for n in range(4)},
+        ["step 0: loop 1 is not the innermost"],
+    ),
+    (
+        "trigger",
+        {"steps": (*PLANS["trigger"].steps, Step(exits=PLAIN))},
+        ["step 0, next: goes to step 2, not 1"],
+    ),
+]
+
+
+@pytest.mark.parametrize(("which", "changes", "said"), CASES)
+def test_fault_is_said_in_so_many_words(which, changes, said):
+    assert problems_of(which, changes) == said
