@@ -155,9 +155,10 @@ def _listed(value: Any, kind: Any) -> Any:
     if not isinstance(kind, Primitive) or kind.name != "float32":
         return value
     try:
-        return struct.unpack("f", struct.pack("f", value))[0]
+        (rounded,) = struct.unpack("f", struct.pack("f", value))
     except OverflowError:
         return float("inf") if value > 0 else float("-inf")
+    return rounded
 
 
 def _dump(value: Any) -> str:

@@ -148,7 +148,7 @@ def _cell(piece: _Piece, left: int, top: int) -> Iterator[str]:
     text = f"... {piece.left_out} rows" if piece.left_out else short if piece.starts else ""
     room = int((width - 6) / CHARACTER_WIDTH)
     if len(text) > room:
-        text = text[: room - 1] + "~" if room > 2 else ""
+        text = text[: room - 1] + "~"
     yield (
         f'<rect x="{x}" y="{top}" width="{width}" height="{ROW_HEIGHT}" '
         f'fill="{COLOURS[cell.kind]}">'

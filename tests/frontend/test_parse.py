@@ -216,3 +216,23 @@ def test_number_longer_than_python_reads_is_reported(dialect):
 )
 def test_names_of_types(dialect, name, is_legal):
     assert is_type_name(name, dialect) is is_legal
+
+
+@pytest.mark.parametrize(
+    ("size", "rest"), [("1__0", "__0"), ("1_", "_"), ("1_0_", "_"), ("0x1", "x1"), ("+1_+0", "_+0")]
+)
+@pytest.mark.parametrize("form", ["int8[{}]", "int8[<={}]"])
+def test_sizes_end_where_python_would_not_go_on(form, size, rest):
+    assert refused(f"{form.format(size)} x", "ros2") == f"expected ']', not '{rest}]'"
+
+
+@pytest.mark.parametrize("size", ["1__0", "1_", "_1", "++1", "+", "+_1", "0x1", "1_0_", "1 0"])
+@pytest.mark.parametrize("form", ["int8[{}]", "int8[<={}]", "string<={}"])
+def test_sizes_that_python_does_not_read_are_refused(form, size):
+    assert "too long" not in refused(f"{form.format(size)} x", "ros2")
+
+
+@pytest.mark.parametrize(("size", "count"), [("1_0", 10), ("+7", 7), ("1_2_3", 123), ("+0_1", 1)])
+@pytest.mark.parametrize("form", ["int8[{}]", "int8[<={}]", "string<={}"])
+def test_sizes_are_numbers_of_python(form, size, count):
+    assert spelled(f"{form.format(size)} x") == form.format(count)

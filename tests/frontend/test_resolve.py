@@ -214,3 +214,14 @@ def test_random_definitions_come_back_from_their_texts(tmp_path_factory, definit
     message = definition.message
     lib = Library("noetic" if message.dialect == "ros1" else "lyrical", [root])
     assert lib.message(message.name) == message
+
+
+def test_all_that_is_wrong_behind_a_cycle_is_told(tmp_path):
+    """Of a type that contains itself, what else its fields need is looked at, too."""
+    with pytest.raises(DefinitionError) as caught:
+        load(tmp_path, "T a\nNope b\nU c\nint8 d\nT e\n", U="Never x\n")
+    found = [(each.span.line, each.message.partition(":")[0]) for each in caught.value.diagnostics]
+    cycle = "type 'p/msg/T' contains itself"
+    missing = "type '{}' is not defined in package 'p'"
+    # A type that is needed twice is told of once.
+    assert found == [(1, cycle), (2, missing.format("Nope")), (1, missing.format("Never"))]

@@ -264,3 +264,48 @@ def test_nesting_too_deep_for_pyyaml_is_refused():
         top = Message(name=f"p/L{level}", dialect="ros1", fields=(Field(name="f", type=top),))
     with pytest.raises(TooLargeError, match=r"^p/L999 has an example of more than 100 levels$"):
         proto(top)
+
+
+def test_size_is_that_of_the_text_before_it_is_written(tmp_path, monkeypatch):
+    texts = {
+        "p/Top": "Part part\nPart[3] parts\nPart[] more\nNone none\nNone[2] nones\nint8[] on [1]\n",
+        "p/Part": "Leaf leaf\nint8[2] two\nfloat32[12] y\nstring s 'a b'\nbool[2] z [true, true]\n",
+        "p/Leaf": "float32 x\nLeast[11] least\n",
+        "p/Least": "int8 y 1\nstring[2] null\nwstring[] w\n",
+    }
+    ours = library(tmp_path, {**texts, "p/None": ""})
+    examples = {name: proto(ours.message(name), quotes=False) for name in texts}
+    for name, text in examples.items():
+        monkeypatch.setattr("firm_hdl.identity.proto_ros2._MOST_CHARACTERS", len(text))
+        assert proto(ours.message(name), quotes=False) == text
+        monkeypatch.setattr("firm_hdl.identity.proto_ros2._MOST_CHARACTERS", len(text) - 1)
+        said = f" has an example of {len(text)} characters, which is more than {len(text) - 1}$"
+        with pytest.raises(TooLargeError, match=said):
+            proto(ours.message(name))
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("int8 a\nstring b\n", 4),
+        # Each element of a list counts, and what it is.
+        ("string[3] a\n", 1 + 3 * 2),
+        ("Part p\n", 1 + 4),
+        ("Part[2] p\n", 1 + 2 * (1 + 4)),
+        # A list of any length has one.
+        ("string[] a\n", 1 + 1 + 1),
+        ("Part[] p\n", 1 + 1 + 4),
+        # 16 bytes are as much as a value.
+        ("uint8[15] a\n", 1 + 1),
+        ("uint8[16] a\n", 1 + 2),
+        ("uint8[33] a\n", 1 + 3),
+    ],
+)
+def test_values_of_ros1_are_counted_before_they_are_written(tmp_path, monkeypatch, text, values):
+    message = library(tmp_path, {"p/A": text, "p/Part": "int8 x\nint8 y\n"}, "ros1").message("p/A")
+    monkeypatch.setattr("firm_hdl.identity.proto_ros1._MOST_VALUES", values)
+    proto(message)
+    monkeypatch.setattr("firm_hdl.identity.proto_ros1._MOST_VALUES", values - 1)
+    said = f"^p/(A|Part) has an example of {values} values, which is more than {values - 1}$"
+    with pytest.raises(TooLargeError, match=said):
+        proto(message)

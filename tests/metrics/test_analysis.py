@@ -77,9 +77,11 @@ def fill(description, store, fullest):
     kind, detail = description
     if kind == Nodetype.NAME:
         values = [fill(d, store, fullest) for _, d in store.fielddefs[detail][1]]
-        return None if None in [*map(type, values)] or any(
-            value is None for value in values
-        ) else store.types[detail](*values)
+        return (
+            None
+            if None in [*map(type, values)] or any(value is None for value in values)
+            else store.types[detail](*values)
+        )
     if kind == Nodetype.BASE:
         name, bound = detail
         if name == "string":
@@ -233,3 +235,27 @@ def test_the_whole_corpus_has_figures(corpus):
         assert len(rows) > 5000
         if dialect == "ros1":
             assert max(row.leaves for row in rows) == 37138
+
+
+@pytest.mark.parametrize(
+    ("text", "sizes", "places"),
+    [
+        # An empty message is one byte on the wire, so what follows is padded.
+        ("None n\nint16 x\n", (4, 4), (1, 1, 0)),
+        ("None n\nNone m\nint16 x\n", (4, 4), (3, 0, 0)),
+        ("None[3] n\nint32 x\n", (8, 8), (1, 1, 0)),
+        ("None[4] n\nint32 x\n", (8, 8), (2, 0, 0)),
+        # Behind any number of bytes, the padding differs.
+        ("None[<=2] n\nint16 x\n", (6, 8), (2, 0, 1)),
+        ("Two n\nint16 x\n", (8, 8), (2, 2, 0)),
+        ("int8 a\nTwo[2] n\nint64 x\n", (24, 24), (4, 1, 0)),
+    ],
+)
+def test_empty_messages_take_a_byte_of_cdr(tmp_path, text, sizes, places):
+    texts = {"p/A": text, "p/None": "", "p/Two": "None n\nint16 y\nNone m\n"}
+    message = library(tmp_path, texts).message("p/A")
+    figures = metrics_of(message)
+    assert (figures.min_bytes - 4, figures.max_bytes - 4) == sizes
+    assert (figures.aligned, figures.padded, figures.shifting) == places
+    want = of_layout(message, "cdr")
+    assert {key: getattr(figures, key) for key in want} == want

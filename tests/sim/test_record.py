@@ -9,7 +9,7 @@ import pytest
 from firm_hdl.gateware.signatures import packet_layout
 from firm_hdl.plan import build_plan
 from firm_hdl.sim.payloads import all_beats, packet_beats
-from firm_hdl.sim.record import Recorder
+from firm_hdl.sim.record import Recorder, Seen
 from firm_hdl.sim.watch import StreamRuleError
 from firm_hdl.wire import lay_out
 from tests.strategies import make
@@ -144,3 +144,10 @@ def test_noise_leaves_the_bytes_of_a_packet_as_they_are():
         text = b"ef" if parts.last else b"abcd"
         assert bytes(parts.data)[: len(text)] == text
         assert parts.count == 2 or not parts.last
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "cycles"), [(-1, -1, 0), (0, -1, 0), (0, 0, 1), (3, 3, 1), (3, 7, 5)]
+)
+def test_cycles_are_counted_with_the_first_and_the_last(first, last, cycles):
+    assert Seen(first_cycle=first, last_cycle=last).cycles == cycles

@@ -187,3 +187,17 @@ def test_whatever_a_title_has_is_text(tmp_path):
     message = library(tmp_path, {"p/T": "uint8 a"}).message("p/T")
     title = "</text><script>&\"'"
     assert texts_of(to_svg(lay_out(message), title))[0] == title
+
+
+@pytest.mark.parametrize(
+    ("kind", "fits", "cut"),
+    # A byte has room for 5 characters, two for 11, and a row of eight for 49.
+    [("uint8", 5, 4), ("uint16", 11, 10), ("uint64", 49, 48)],
+)
+def test_names_without_room_are_cut(tmp_path, kind, fits, cut):
+    for more in (0, 1):
+        name = "n" * (fits + more)
+        message = library(tmp_path / str(more), {"p/T": f"{kind} {name}"}).message("p/T")
+        picture = ElementTree.fromstring(to_svg(lay_out(message, "ros1"), "p/T"))
+        cells = [each.text for each in picture.iter(f"{SVG}text") if each.get("class") == "c"]
+        assert cells == [name if not more else "n" * cut + "~"]

@@ -153,3 +153,22 @@ def test_nesting_ends_at_its_limit():
 def test_chains_may_be_long():
     (module,) = parse("module m { const long A = " + "+".join("1" * 20_000) + "; };")
     assert len(module.definitions[0].value.operands) == 20_000
+
+
+@pytest.mark.parametrize(
+    ("member", "wanted"),
+    [
+        # In a bound, '>' ends it; in an index, it would be half of a shift.
+        ("sequence<long, 3 x> a;", "an operator or '>', not 'x'"),
+        ("string<3 x> a;", "an operator or '>', not 'x'"),
+        ("long a[3 x];", "an operator or ']', not 'x'"),
+        ("sequence<long x> a;", "',' or '>', not 'x'"),
+        ("long a[3", "an operator or ']', not '}'"),
+        ("sequence<long, 3", "an operator or '>', not '}'"),
+    ],
+)
+def test_what_may_follow_is_told(member, wanted):
+    text = f"module p {{ struct T {{ {member} }}; }};"
+    found = parse_file(Source(name="test.idl", text=text))
+    assert isinstance(found, Diagnostic)
+    assert found.message == f"expected {wanted}"

@@ -330,3 +330,32 @@ def test_long_types_in_front_of_many_names_take_no_time():
     text = f"module p {{ struct T {{ sequence<long, {chain}> {','.join('a' * 5000)}; }}; }};"
     with calls_at_most(7_000_000):
         read(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "(1,2,3)",
+        "[1,2,3]",
+        " (1, 2, 3) ",
+        "( 1,2,3 )",
+        "(1 ,2 ,3 )",
+        "(1,2,3,)",
+        "(1,2,3, )",
+        "(+1,2,3\t)",
+    ],
+)
+def test_blanks_in_a_list_mean_nothing(text):
+    source = f'module p {{ struct T {{ @default(value="{text}") sequence<long> a; }}; }};'
+    messages, wrong = read(source)
+    assert wrong == []
+    (member,) = messages["T"].members
+    assert [item.value for item in member.default.items] == [1, 2, 3]
+
+
+@pytest.mark.parametrize(
+    "text", ["(1,2,3", "1,2,3)", "(1,2,3]", "[1,2,3)", "(", "", "(1 2)", "(,)", "(1,,2)", "(1,2);"]
+)
+def test_what_is_no_list_is_refused(text):
+    source = f'module p {{ struct T {{ @default(value="{text}") sequence<long> a; }}; }};'
+    assert len(read(source)[1]) == 1
