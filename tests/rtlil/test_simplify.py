@@ -282,3 +282,27 @@ def test_a_register_that_never_changes_is_a_constant(kind: str, data: Spec) -> N
 def test_other_registers_stay(kind: str, data: Spec, init: object, more: dict[str, Bits]) -> None:
     (cell,) = register(kind, data, init, **more).items
     assert isinstance(cell, Cell) and cell.ports["Q"] == (Y,)
+
+
+def test_an_arm_that_always_matches_ends_the_list() -> None:
+    default = Assign(target=(Y,), value=(Slice("t", 0, 2), Slice("s", 0, 2)))
+    one, other, more = (Assign(target=(Y,), value=(Bits(text),)) for text in ("1010", "0101", "11"))
+    first = Case(patterns=("001",), body=(one,))
+    for total in (("---",), ("010", "---"), ()):
+        switch = Switch(
+            selector=(S,),
+            cases=(
+                first,
+                Case(patterns=total, body=(other,)),
+                Case(patterns=("100",), body=(more,)),
+            ),
+        )
+        expected = Switch(selector=(S,), cases=(first, Case(patterns=(), body=(other,))))
+        assert body_of(default, switch) == (default, expected)
+
+
+def test_what_may_have_changed_is_assigned_again() -> None:
+    one, other = (Assign(target=(Y,), value=(Bits(text),)) for text in ("1010", "0101"))
+    switch = Switch(selector=(S,), cases=(Case(patterns=("001",), body=(other,)),))
+    assert body_of(one, switch, one) == (one, switch, one)
+    assert body_of(one, one, switch) == (one, switch)
