@@ -333,3 +333,104 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
 @pytest.mark.parametrize(("which", "changes", "said"), CASES)
 def test_fault_is_said_in_so_many_words(which, changes, said):
     assert problems_of(which, changes) == said
+
+
+RICH_STEPS = PLANS["rich"].steps
+PLANS["gap"] = plan_of({"a": "uint8[]", "d": "float64[]"}, 8, "ros2")
+
+
+def missing(step, leaf, offsets):
+    """What is said of a leaf without its padding, at each offset."""
+    return {
+        f"step {step}: {leaf} has {got} bytes of padding in front, not {need}, at offset {offset} "
+        "modulo 8"
+        for offset, got, need in offsets
+    }
+
+
+# Where leaves stand. Each place modulo 8 that a packet can have is told of.
+OFFSETS: list[tuple[str, dict[str, Any], set[str]]] = [
+    (
+        "rich",
+        {"steps.0.slices.3": Pad(at=5, bytes=2), "steps.0.bytes": 7},
+        missing(1, "q.length", [(1, 2, 3)]) | missing(1, "q.items", [(7, 0, 1)]),
+    ),
+    (
+        "rich",
+        {"steps.0.slices.3": Pad(at=5, bytes=7), "steps.0.bytes": 12},
+        missing(1, "q.length", [(1, 7, 3)]),
+    ),
+    (
+        "rich",
+        {"steps.0.slices.3": Pad(at=5, bytes=8), "steps.0.bytes": 13},
+        missing(1, "q.length", [(1, 7, 3)]) | {"step 0: 8 padding bytes or more"},
+    ),
+    ("rich", {"steps.9.align": 2}, {"step 9: grid.item.row.items is aligned to 2, not 1"}),
+    ("rich", {"steps.11.align": 8}, {"step 11: m.items is aligned to 8, not 4"}),
+    (
+        "rich",
+        {"steps.0.align": 4},
+        {"step 0: alignment in front of nothing", "step 0: is aligned already"},
+    ),
+    ("rich", {"steps.2.align": 2}, {"step 2: is aligned already"}),
+    ("rich", {"steps.1.begin.gap": 1}, missing(1, "q.items", [(0, 1, 0)])),
+    (
+        "rich",
+        {"steps.2.align": 2, "steps.1.begin.head": 8},
+        {
+            "step 1: q.items starts here and in an aligned step, too",
+            "step 2: is aligned already",
+        },
+    ),
+    (
+        "gap",
+        {"steps.3.begin": None, "steps.3.align": 8, "steps.2.begin.gap": 4},
+        {"step 2: d.items starts here and in an aligned step, too"},
+    ),
+    ("gap", {"steps.3.align": 1}, missing(2, "d.items", [(4, 0, 4)])),
+    # An item of 2 bytes behind 3 bytes, in each round of a loop.
+    (
+        "rich",
+        {"steps.10.align": 1},
+        missing(10, "grid.item.t", [(offset, 0, 1) for offset in (1, 3, 5, 7)]),
+    ),
+    (
+        "rich",
+        {"steps.5.slices": (X, Pad(at=1, bytes=1)), "steps.5.bytes": 2},
+        {"step 6: padding in front of nothing"},
+    ),
+    (
+        "rich",
+        {"steps.9.slices": (*RICH_STEPS[9].slices, Pad(at=3, bytes=1)), "steps.9.bytes": 4},
+        {"step 10: padding in front of nothing"},
+    ),
+    (
+        "rich",
+        {"steps.10.slices": (*RICH_STEPS[10].slices, Pad(at=2, bytes=1)), "steps.10.bytes": 3},
+        missing(9, "grid.item.row.items", [(offset, 1, 0) for offset in (0, 2, 4, 6)])
+        | {"step 11: padding in front of nothing"},
+    ),
+    (
+        "rich",
+        {"steps.3.slices": (*RICH_STEPS[3].slices, Pad(at=8, bytes=1)), "steps.3.bytes": 9},
+        missing(4, "ps.length", [(0, 1, 0)]),
+    ),
+    (
+        "side",
+        {
+            "steps.0.slices": (
+                PLANS["side"].steps[0].slices[0],
+                Pad(at=1, bytes=1),
+                replace(PLANS["side"].steps[0].slices[1], at=2),
+            ),
+            "steps.0.bytes": 10,
+        },
+        missing(0, "b", [(1, 1, 0)]),
+    ),
+]
+
+
+@pytest.mark.parametrize(("which", "changes", "said"), OFFSETS)
+def test_fault_in_padding_is_said_for_each_offset(which, changes, said):
+    found = problems_of(which, changes)
+    assert set(found) == said and len(found) == len(said)

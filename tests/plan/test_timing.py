@@ -10,6 +10,7 @@ from firm_hdl.wire import lay_out
 from tests.strategies import make
 
 PAIR = make("ros1", {"x": "uint16", "y": "uint16"}, "Pair")
+WIDE = make("ros1", {"x": "uint64", "y": "uint64"}, "Wide")
 TEXT = make("ros1", {"s": "string"}, "Text")
 ROW = make("ros1", {"texts": (TEXT, "[]")}, "Row")
 
@@ -48,6 +49,8 @@ def test_window_of_steps_that_stand_anywhere():
         ({"d": "uint64[3]", "t": (TEXT, "[<=3]")}, 8, cost(28, 4, 4), cost(43, 6, 10)),
         # In loops in loops 4 of each: a cycle for each length but the first, and each character.
         ({"d": "uint64[3]", "rows": (ROW, "[]")}, 8, cost(28, 4, 4), cost(124, 16, 40)),
+        # Texts make it harder, and elements that fill the bus easier: a character, and no element.
+        ({"s": "string", "w": (WIDE, "[]")}, 8, cost(8, 1, 2), cost(9, 2, 3)),
         # Elements that fill the bus are no harder than none.
         ({"pairs": (PAIR, "[]")}, 4, cost(4, 1, 1), cost(4, 1, 1)),
     ],
