@@ -118,7 +118,7 @@ class Library:
                 text = f"'{candidate}' is {what}, not a message"
                 parts = [str(candidate)[: -len(candidate.name)] + part for part in unit.messages]
                 raise self._error(did_you_mean(text, parts))
-        raise self._unknown(candidates[0])
+        raise self._unknown(candidates)
 
     def interface(self, name: str) -> Interface:
         """Give the model of a message, a service or an action.
@@ -142,7 +142,7 @@ class Library:
             message = self._resolver.resolve(candidate)
             if message is not None:
                 return message
-        raise self._unknown(candidates[0])
+        raise self._unknown(candidates)
 
     def source(self, name: str) -> Source:
         """Give the text that defines a type, which may be a service or an action."""
@@ -197,7 +197,7 @@ class Library:
             unit = self._resolver.unit(candidate) or self._resolver.unit_of(candidate)
             if unit is not None:
                 return unit
-        raise self._unknown(candidates[0])
+        raise self._unknown(candidates)
 
     def _assembled(self, name: TypeName, unit: Unit) -> Service | Action:
         if name not in self._interfaces:
@@ -230,7 +230,11 @@ class Library:
             found[asked[there]] = None
         return list(found)
 
-    def _unknown(self, name: TypeName) -> DefinitionError:
+    def _unknown(self, names: list[TypeName]) -> DefinitionError:
+        for each in names:
+            # A recording may know why it has no definition.
+            self._sources.find(each.package, each.kind, each.name)
+        name = names[0]
         message = unknown_type(self._sources, name.package, name.name)
         similar = similar_types(self._sources, name.package, name.name)
         return self._error(did_you_mean(message, self._spell(similar)))

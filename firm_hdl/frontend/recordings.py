@@ -81,10 +81,16 @@ class RecordingOrigin:
         self.distro: str | None = None
         self._definitions: dict[_Name, Definition] = {}
         self._missing: set[_Name] = set()
+        # Messages without fields have definitions without text.
+        self._empty: set[_Name] = set()
+        # Types of topics that have no name of ROS's form.
+        self._odd: set[str] = set()
         # In OMG IDL as DDS tools write it: all types in one text, without headings.
         self._foreign: set[_Name] = set()
         for connection in self._connections():
             self._add(connection)
+        for name in sorted(self._empty - self._definitions.keys()):
+            self._define(name, "msg", "")
         self._missing -= self._definitions.keys()
         if not self._definitions:
             raise _refusal(self._why_empty())
@@ -123,28 +129,32 @@ class RecordingOrigin:
         return use_recording(self.path, look)
 
     def _add(self, connection: Connection) -> None:
-        name = _parse(connection.msgtype)
+        text, language = connection.msgdef.data, connection.msgdef.format
+        is_idl = language == MessageDefinitionFormat.IDL
+        # In omgidl, names have scopes of IDL.
+        name = _parse(connection.msgtype.replace("::", "/") if is_idl else connection.msgtype)
         if name is None:
-            return
-        text = connection.msgdef.data
-        if connection.msgdef.format == MessageDefinitionFormat.NONE or not (
-            text or self.dialect == "ros1"
-        ):
+            self._odd.add(connection.msgtype)
+        elif language == MessageDefinitionFormat.NONE or (is_idl and not text):
             self._missing.add(name)
-            return
-        is_idl = connection.msgdef.format == MessageDefinitionFormat.IDL
-        if is_idl and not text.startswith("===") and len(_STRUCT.findall(text)) > 1:
+        elif not text and self.dialect == "ros2":
+            self._empty.add(name)
+        elif is_idl and _is_of_dds(connection.msgtype, text):
             self._foreign.add(name)
-            return
-        for part, language, body in _split(name, text, is_idl):
-            package, kind, base = part
-            place = f"<{self.path}>/{package}/{kind}/{base}.{language}"
-            source = Source(name=place, text=body)
-            self._definitions.setdefault(part, Definition(source=source, language=language))
+        else:
+            for part, kind, body in _split(name, text, is_idl):
+                self._define(part, kind, body)
+
+    def _define(self, name: _Name, language: Language, text: str) -> None:
+        """Note a definition, unless there is one of that name."""
+        source = Source(name=f"<{self.path}>/{'/'.join(name)}.{language}", text=text)
+        self._definitions.setdefault(name, Definition(source=source, language=language))
 
     def _why_empty(self) -> str:
         if self._foreign:
             return self._in_omgidl("/".join(min(self._foreign)))
+        if self._odd and not self._missing:
+            return f"'{self.path}' has a topic of type {min(self._odd)!r}, which is no name in ROS"
         if not self._missing:
             return f"'{self.path}' has no topics, and so no definitions"
         return (
@@ -243,6 +253,11 @@ def _parse(name: str) -> _Name | None:
         case [package, kind, base] if package and base and kind in _KINDS:
             return package, _KINDS[kind], base
     return None
+
+
+def _is_of_dds(name: str, text: str) -> bool:
+    """Whether a definition in IDL is one as DDS tools write it, without headings."""
+    return "::" in name or (not text.startswith("===") and len(_STRUCT.findall(text)) > 1)
 
 
 def _split(name: _Name, text: str, is_idl: bool) -> Iterator[tuple[_Name, Language, str]]:

@@ -142,9 +142,9 @@ def select(
 
 
 def _topic(bag: str, connection: Connection) -> Topic:
-    return Topic(
-        bag=bag, name=connection.topic, type=connection.msgtype, digest=connection.digest or ""
-    )
+    # DDS tools write the scopes of IDL; whether the definition can be read is said elsewhere.
+    name = connection.msgtype.replace("::", "/")
+    return Topic(bag=bag, name=connection.topic, type=name, digest=connection.digest or "")
 
 
 def _messages(

@@ -30,9 +30,9 @@ def test_zeros_in_front_of_a_length_are_kept_as_genmsg_keeps_them(tmp_path, leng
     assert md5sum(ours.message("p/A")) == hashlib.md5(text.strip().encode()).hexdigest()
 
 
-def recorded(path, text):
+def recorded(path, text, name="p/msg/A"):
     with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-        writer.add_connection("/t", "p/msg/A", msgdef=text, rihs01="RIHS01_" + "0" * 64)
+        writer.add_connection("/t", name, msgdef=text, rihs01="RIHS01_" + "0" * 64)
     return path
 
 
@@ -64,6 +64,20 @@ def test_schemas_of_other_tools_are_named(tmp_path):
         each.write_bytes(each.read_bytes().replace(head, b" " * len(head)))
     with pytest.raises(DefinitionError, match="defines 'p/msg/A' in 'omgidl', and only ros2msg"):
         open_library(bags=[path])
+
+
+def test_scopes_of_idl_in_the_name_of_a_topics_type_are_those_of_omgidl(tmp_path):
+    (path,) = recorded(tmp_path / "r", "struct W { long b; };", "p/msg//Long").glob("*.mcap")
+    data = path.read_bytes().replace(b"p/msg//Long", b"p::msg::Lon")
+    path.write_bytes(data.replace(b"ros2msg", b"ros2idl"))
+    said = "defines 'p/msg/Lon' in 'omgidl', and only ros2msg"
+    with pytest.raises(DefinitionError, match=said):
+        open_library(bags=[path])
+    other = recorded(tmp_path / "other", "int8 a\n")
+    with pytest.raises(DefinitionError, match=said):
+        open_library(bags=[other, path]).message("p/Lon")
+    with pytest.raises(DefinitionError, match="package 'q' is not found"):
+        open_library(bags=[other]).message("q/Lon")
 
 
 SEVERAL = """\

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import sqlite3
 
 import pytest
 from rosbags.rosbag2 import StoragePlugin
@@ -196,7 +197,7 @@ def test_recording_without_definitions_says_what_to_do(tmp_path):
 
 
 def test_topic_without_definition_is_told_from_one_that_is_not_there(tmp_path):
-    path = record(tmp_path / "r", "p/msg/A", "int8 a\n", ("p/msg/B", ""))
+    path = without_definition(tmp_path / "r", "p/msg/B")
     ours = open_library(bags=[path])
     assert ours.names() == ["p/msg/A"]
     with pytest.raises(DefinitionError) as error:
@@ -204,6 +205,40 @@ def test_topic_without_definition_is_told_from_one_that_is_not_there(tmp_path):
     assert str(error.value) == (
         f"error: '{path}' has a topic of type 'p/msg/B', but not its definition"
     )
+
+
+def without_definition(path, name):
+    """Record two topics, and take the definition of one away."""
+    with Writer2(path, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
+        for topic in ("p/msg/A", name):
+            writer.add_connection(f"/{topic}", topic, msgdef="int8 a\n", rihs01="RIHS01_0")
+    (file,) = path.glob("*.db3")
+    database = sqlite3.connect(file)
+    database.execute("DELETE FROM message_definitions WHERE topic_type = ?", [name])
+    database.commit()
+    database.close()
+    return path
+
+
+@pytest.mark.parametrize("storage", list(StoragePlugin))
+def test_messages_without_fields_have_definitions_without_text(tmp_path, storage):
+    path = tmp_path / "r"
+    with Writer2(path, version=9, storage_plugin=storage) as writer:
+        writer.add_connection("/t", "std_msgs/msg/Empty", msgdef="", rihs01="RIHS01_0")
+    ours = open_library(bags=[path])
+    assert ours.names() == ["std_msgs/msg/Empty"]
+    assert ours.message("std_msgs/Empty").fields == ()
+
+
+@pytest.mark.parametrize("name", ["a/b/c/d", "plain", "p::msg::A"])
+def test_topics_whose_types_have_no_name_in_ros_are_named(tmp_path, name):
+    path = record(tmp_path / "r", name, "int8 a\n")
+    with pytest.raises(DefinitionError) as error:
+        open_library(bags=[path])
+    said = f"error: '{path}' has a topic of type '{name}', which is no name in ROS"
+    assert str(error.value) == said
+    both = record(tmp_path / "both", name, "int8 a\n", ("p/msg/B", "int8 b\n"))
+    assert open_library(bags=[both]).names() == ["p/msg/B"]
 
 
 def test_what_is_no_recording_is_refused(tmp_path):
