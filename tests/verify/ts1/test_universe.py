@@ -7,7 +7,8 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.verify.ts1.universe import Universe
+from firm_hdl.verify.ts1.again import _needed_names as needed_names
+from firm_hdl.verify.ts1.universe import Universe, write_definitions
 from tests.frontend.workspace import make_files
 
 FILES = {
@@ -159,3 +160,48 @@ def test_a_file_that_is_no_text_is_a_definition_as_well(universe_of, tmp_path):
     }
     with pytest.raises(DefinitionError):
         universe.interface(cases["Bad"])
+
+
+def test_definitions_are_written_as_they_are_wherever_they_are_from(tmp_path):
+    files = {
+        "one/p/msg/A.msg": "int8 x\n",
+        "one/p/msg/B.msg": "int8 y\n",
+        "two/p/msg/A.msg": "int16 other\n",
+        "two/p/msg/C.msg": "int8 z\n",
+        "two/std_msgs/msg/Own.msg": "int8 own\n",
+        "two/q/srv/S.srv": "int8 s\n---\n",
+    }
+    make_files(tmp_path, files)
+    paths = [str(tmp_path / name) for name in ("one", "two")]
+    universe = Universe("lyrical", paths, str(tmp_path / "all"))
+    write_definitions(universe)
+    folder = tmp_path / "all"
+    texts = {path.name: path.read_text() for path in (folder / "p" / "msg").iterdir()}
+    # The first folder that has a type is the one.
+    assert texts == {"A.msg": "int8 x\n", "B.msg": "int8 y\n", "C.msg": "int8 z\n"}
+    # Some of a package are files, and some come with firm-hdl.
+    assert (folder / "std_msgs" / "msg" / "Own.msg").read_text() == "int8 own\n"
+    assert "string data" in (folder / "std_msgs" / "msg" / "String.msg").read_text()
+    # A folder that is whole is linked.
+    assert (folder / "q" / "srv").is_symlink()
+    assert (folder / "q" / "srv" / "S.srv").read_text() == "int8 s\n---\n"
+    for case in universe.select([]):
+        assert (folder / case.package / case.kind / case.file).read_text() == case.text
+
+
+def test_all_that_a_type_needs_is_found_at_each_level(tmp_path):
+    files = {
+        "p/msg/A.msg": "B b\nC c\nB[] again\nint8 x\n",
+        "p/msg/B.msg": "D d\nE e\n",
+        "p/msg/C.msg": "E[2] e\nq/F f\n",
+        "p/msg/D.msg": "int8 x\n",
+        "p/msg/E.msg": "int8 x\n",
+        "q/msg/F.msg": "G g\n",
+        "q/msg/G.msg": "int8 x\n",
+    }
+    universe = Universe("lyrical", [str(make_files(tmp_path, files))])
+    (case,) = universe.select(["p/A"])
+    names = [*"BCDE"]
+    expected = {*(f"p/msg/{name}" for name in names), "q/msg/F", "q/msg/G"}
+    found = needed_names(universe.interface(case))
+    assert set(found) == expected and len(found) == len(expected)
