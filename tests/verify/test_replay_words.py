@@ -190,3 +190,18 @@ def test_topics_of_another_definition_are_named(monkeypatch):
     found, left = replay._topics(SimpleNamespace(name="p/A"), None, ["one", "two"])
     assert [each.name for each in found] == ["/a", "/b", "/d"]
     assert left == ["/c left out: its definition is another one (y)"]
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (ValueError(" first\nsecond"), "first"),
+        (KeyError(3), "3"),
+        (OverflowError(), "OverflowError"),
+    ],
+)
+def test_what_rosbags_raises_is_told_in_a_line(error, said):
+    here = case("message 3", given=b"12345", status="TRUNCATED")
+    found = replay._refused(None, None, here, SimpleNamespace(status="TRUNCATED"), error)
+    assert found.finding == replay._misfit(here, f"rosbags says: {said.strip()}")
+    assert (found.case, found.kind) == (here, "")

@@ -244,3 +244,27 @@ def test_workers_end_with_a_run_that_was_killed(tmp_path):
             return
         time.sleep(0.1)
     raise AssertionError(f"workers {workers} are still there")
+
+
+@pytest.mark.parametrize(
+    ("line", "reason"),
+    [
+        # In Python's words a list's indices must be integers; nobody wrote that for readers.
+        ("[]", "it is damaged"),
+        ("{}", "it is damaged"),
+        ("3", "it is damaged"),
+        ("{", "it is damaged"),
+        ('{"record": {"test": {"age": 3}}}', "it is damaged"),
+        ('{"record": {"test": {"system": "x"}}}', "it is damaged"),
+        ('{"record": []}', "A record must be an object, not list"),
+        ('{"record": {"test": 3}}', "Test must be an object, not int"),
+    ],
+)
+def test_a_line_that_is_none_is_named_with_the_reason(tmp_path, line, reason):
+    path = written(tmp_path / "r.jsonl", a_record())
+    with path.open("a") as file:
+        file.write(f"{line}\n")
+    number = len(path.read_text().splitlines())
+    with pytest.raises(ResultsError) as error:
+        read_results(path)
+    assert str(error.value) == f"'{path}', line {number}: {reason}"

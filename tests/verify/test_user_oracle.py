@@ -10,6 +10,7 @@ from firm_hdl import load_message
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message
 from firm_hdl.verify import Options, accept
+from firm_hdl.verify import user_oracle as module
 from firm_hdl.verify.oracle import distro_oracle
 from firm_hdl.verify.user_oracle import NotJudgedError, judge_of, oracle_name
 from tests.verify.judged import assert_passed
@@ -84,3 +85,22 @@ def test_chars_of_idl_are_signed(tmp_path):
     assert dict(plain.oracle.fields(plain.name))["one"][1][0] == "char" and plain.note == ""
     result = accept("lyrical", "own_msgs/msg/Chars", Options(paths=(str(tmp_path),)))
     assert_passed(result)
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (KeyError("gone"), "'gone'"),
+        (ValueError("first\nsecond"), "first"),
+        (RecursionError(), "RecursionError"),
+    ],
+)
+def test_what_rosbags_refuses_is_not_judged(tmp_path, monkeypatch, error, said):
+    def refuse(*given: object) -> None:
+        raise error
+
+    message = own(tmp_path, "uint8 a\n")
+    monkeypatch.setattr(module, "get_types_from_msg", refuse)
+    with pytest.raises(NotJudgedError) as raised:
+        module._oracle(message, {message.name: "uint8 a\n"})
+    assert str(raised.value) == f"rosbags refuses the definition: {said}"
