@@ -34,6 +34,9 @@ def refused(line, dialect):
     with pytest.raises(DefinitionError) as error:
         parse(line, dialect)
     (diagnostic,) = error.value.diagnostics
+    # Whatever is wrong is shown where it stands, or right behind what stands there.
+    assert diagnostic.span is not None
+    assert 0 <= diagnostic.span.start <= diagnostic.span.end <= len(line) + 1
     return diagnostic.message
 
 

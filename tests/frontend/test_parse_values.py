@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend.check import check_members
 from firm_hdl.frontend.syntax import ListSyntax
 
-from .reading import constant, field, refused
+from .reading import constant, field, parse, refused
 
 
 @pytest.mark.parametrize(
@@ -231,3 +233,25 @@ def test_constants_of_other_types_are_refused(dialect, line):
 
 def test_constants_of_bounded_strings_are_refused():
     refused("string<=5 X=a", "ros2")
+
+
+@pytest.mark.parametrize(
+    ("line", "dialect", "words"),
+    [
+        (" string A=x", "ros1", "string"),
+        ("int8 A=300", "ros2", "300"),
+        ("int8 A=x", "ros2", "x"),
+        ("int8 a 300", "ros2", "300"),
+        ("int8[2] a [1, 300]", "ros2", "300"),
+        ("int8[2] a [1, 2, 3]", "ros2", "[1, 2, 3]"),
+        ("string<=2 a 'xyz'", "ros2", "'xyz'"),
+        ("int8[99999999999999999999] a", "ros2", "99999999999999999999"),
+    ],
+)
+def test_what_is_wrong_with_a_value_is_pointed_at(line, dialect, words):
+    try:
+        wrong = check_members(parse(line, dialect))
+    except DefinitionError as error:
+        wrong = error.diagnostics
+    (diagnostic,) = wrong
+    assert line[diagnostic.span.start : diagnostic.span.end] == words

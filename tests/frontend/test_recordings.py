@@ -319,3 +319,18 @@ def test_each_of_several_recordings_is_to_be_of_one_ros(tmp_path, place):
     paths[place] = make_recording(tmp_path, "bag")
     with pytest.raises(DefinitionError, match="read them one at a time"):
         open_library(bags=paths)
+
+
+@pytest.mark.parametrize(
+    ("said", "distro"),
+    [("humble", "humble"), ("jazzy", "jazzy"), ("noetic", None), ("rosbags", None), ("[]", None)],
+)
+def test_distribution_is_the_one_that_the_recording_says(tmp_path, said, distro):
+    path = make_recording(tmp_path, "mcap")
+    metadata = path / "metadata.yaml"
+    text = metadata.read_text()
+    assert text.count("ros_distro: rosbags\n") == 1
+    metadata.write_text(text.replace("ros_distro: rosbags\n", f"ros_distro: {said}\n"))
+    found = RecordingOrigin(path)
+    assert (found.distro, found.dialect) == (distro, "ros2")
+    assert open_library(bags=[path]).distro == (distro or "lyrical")

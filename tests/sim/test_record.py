@@ -151,3 +151,9 @@ def test_noise_leaves_the_bytes_of_a_packet_as_they_are():
 )
 def test_cycles_are_counted_with_the_first_and_the_last(first, last, cycles):
     assert Seen(first_cycle=first, last_cycle=last).cycles == cycles
+
+
+def test_nothing_is_seen_at_first():
+    run = recorder().seen
+    assert (run.packets, run.marked, run.statuses, run.sent_statuses) == ([], [], [], [])
+    assert (run.beats_in, run.beats_out, run.cycles) == (0, 0, 0)
