@@ -359,3 +359,15 @@ def test_blanks_in_a_list_mean_nothing(text):
 def test_what_is_no_list_is_refused(text):
     source = f'module p {{ struct T {{ @default(value="{text}") sequence<long> a; }}; }};'
     assert len(read(source)[1]) == 1
+
+
+@pytest.mark.parametrize(("kind", "text"), [("char", "'x'"), ("wchar", "L'x'")])
+def test_named_characters_are_characters(kind, text):
+    """They may stand where a character may, and not where a number is wanted."""
+    head = f"module p {{ module T_Constants {{ const {kind} A = {text};"
+    tail = "struct T { long a; }; };"
+    messages, wrong = read(f"{head} const {kind} B = A; }}; {tail}")
+    assert wrong == []
+    assert [member.value.value for member in messages["T"].members[:2]] == [120, 120]
+    (problem,) = read(f"{head} const long B = A; }}; {tail}")[1]
+    assert problem.message == "an integer must stand here, not a character"
