@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, TypeAlias
 if TYPE_CHECKING:
     from firm_hdl.export.build import Built
     from firm_hdl.frontend import Library
+    from firm_hdl.model import Message
+    from firm_hdl.plan import Plan
 
 __all__ = ["COMMANDS", "Command"]
 
@@ -54,6 +56,7 @@ def _build(given: argparse.Namespace) -> None:
         wire=given.wire,
         bus_bytes=given.bus_bytes,
         max_message_bytes=given.max_message_bytes,
+        window_words=given.window_words,
         ports=given.ports,
         force=given.force,
         stimuli=stimuli,
@@ -74,21 +77,29 @@ def _show(given: argparse.Namespace) -> None:
     print(show(_library(given), given.type), end="")
 
 
+def _planned(message: Message, given: argparse.Namespace) -> Plan:
+    from firm_hdl.export.build import plan_of
+
+    return plan_of(
+        message, given.wire, given.bus_bytes, given.max_message_bytes, given.window_words
+    )
+
+
 def _plan(given: argparse.Namespace) -> None:
-    from firm_hdl.export.build import load_all, plan_of
+    from firm_hdl.export.build import load_all
     from firm_hdl.plan import to_yaml
 
     for index, message in enumerate(load_all(_library(given), [given.type])):
-        plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
+        plan = _planned(message, given)
         print("---\n" * bool(index) + to_yaml(plan), end="")
 
 
 def _info(given: argparse.Namespace) -> None:
-    from firm_hdl.export.build import load_all, plan_of
+    from firm_hdl.export.build import load_all
     from firm_hdl.plan.timing import describe, timing
 
     for message in load_all(_library(given), given.types):
-        plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
+        plan = _planned(message, given)
         print(describe(message.name, plan, timing(plan)))
 
 
@@ -162,6 +173,7 @@ def _add_build(command: argparse.ArgumentParser) -> None:
 
     _add_types(command)
     _add_options(command)
+    _add_window(command)
     command.add_argument("--out", default="vhdl_out", help="folder to write to (%(default)s)")
     command.add_argument(
         "--ports",
@@ -185,12 +197,14 @@ def _add_show(command: argparse.ArgumentParser) -> None:
 def _add_plan(command: argparse.ArgumentParser) -> None:
     command.add_argument("type", metavar="TYPE")
     _add_options(command)
+    _add_window(command)
     command.set_defaults(run=_plan)
 
 
 def _add_info(command: argparse.ArgumentParser) -> None:
     _add_types(command)
     _add_options(command)
+    _add_window(command)
     command.set_defaults(run=_info)
 
 
@@ -342,6 +356,18 @@ def _add_options(command: argparse.ArgumentParser) -> None:
         default=DEFAULT_MAX_MESSAGE_BYTES,
         metavar="N",
         help="longest message to accept; default: %(default)s",
+    )
+
+
+def _add_window(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--window-words",
+        type=int,
+        choices=(1, 2),
+        default=1,
+        metavar="N",
+        help="bus words that are converted in one cycle: 1, or 2 for many short fields at a lower "
+        "clock rate; default: %(default)s",
     )
 
 

@@ -71,6 +71,7 @@ class _Task:
     folder: Path
     inputs: dict[str, Any]
     stimuli: Sequence[bytes]
+    window_words: int
 
 
 def build(
@@ -83,6 +84,7 @@ def build(
     wire: Wire | None = None,
     bus_bytes: int = 8,
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+    window_words: int = 1,
     ports: Ports = "records",
     force: bool = False,
     stimuli: Callable[[Message, Plan], Sequence[bytes]] | None = None,
@@ -100,7 +102,7 @@ def build(
         As for `Library`.
     library : Library or None
         What to take the types from, instead of `distro` and `paths`.
-    wire, bus_bytes, max_message_bytes
+    wire, bus_bytes, max_message_bytes, window_words
         As for the converters.
     ports : "records" or "flat"
         Whether the VHDL has a layer with records; "flat" is for tools that dislike them.
@@ -123,10 +125,10 @@ def build(
         library = Library(distro, paths)
     tasks = []
     for message in load_all(library, types):
-        plan = plan_of(message, wire, bus_bytes, max_message_bytes)
+        plan = plan_of(message, wire, bus_bytes, max_message_bytes, window_words)
         check_size(plan)
         packets = list(stimuli(message, plan)) if stimuli is not None else []
-        tasks.append(_task(library, message, plan, Path(out), ports, packets))
+        tasks.append(_task(library, message, plan, Path(out), ports, packets, window_words))
     _check_folders(tasks)
     _check_packages(tasks)
     return [_done(task, force, report) for task in tasks]
@@ -146,6 +148,7 @@ def _task(
     out: Path,
     ports: Ports,
     packets: Sequence[bytes],
+    window_words: int,
 ) -> _Task:
     inputs = inputs_of(
         message,
@@ -154,10 +157,19 @@ def _task(
         definition_sha256=library.definition_hash(message),
         ports=ports,
     )
+    if window_words != 1:
+        inputs["options"]["window_words"] = window_words
     inputs["stimuli_sha256"] = _digest(packets)
     name = f"{identifier(message.name)}_{plan.wire}_{plan.bus_bytes}"
     folder = out / library.distro / name
-    return _Task(message=message, plan=plan, folder=folder, inputs=inputs, stimuli=packets)
+    return _Task(
+        message=message,
+        plan=plan,
+        folder=folder,
+        inputs=inputs,
+        stimuli=packets,
+        window_words=window_words,
+    )
 
 
 def _digest(packets: Sequence[bytes]) -> str:
@@ -190,11 +202,20 @@ def load_all(library: Library, types: Iterable[str]) -> list[Message]:
     return list(messages.values())
 
 
-def plan_of(message: Message, wire: Wire | None, bus_bytes: int, max_message_bytes: int) -> Plan:
+def plan_of(
+    message: Message,
+    wire: Wire | None,
+    bus_bytes: int,
+    max_message_bytes: int,
+    window_words: int = 1,
+) -> Plan:
     """Plan a type's converters; options that do not fit the type are a `BuildError`."""
     try:
         return build_plan(
-            lay_out(message, wire), bus_bytes=bus_bytes, max_message_bytes=max_message_bytes
+            lay_out(message, wire),
+            bus_bytes=bus_bytes,
+            max_message_bytes=max_message_bytes,
+            window_words=window_words,
         )
     except ValueError as error:
         raise BuildError(f"{message.name}: {error}") from None
@@ -318,6 +339,7 @@ def _texts(task: _Task) -> tuple[dict[str, str], dict[str, Any]]:
                 wire=plan.wire,
                 bus_bytes=plan.bus_bytes,
                 max_message_bytes=plan.max_message_bytes,
+                window_words=task.window_words,
             )
         )
         module = module_name(name, direction)
@@ -333,6 +355,7 @@ def _texts(task: _Task) -> tuple[dict[str, str], dict[str, Any]]:
         header=_header(task, name, "converters"),
         stimuli=task.stimuli,
         ports=task.inputs["options"]["ports"],
+        window_words=task.window_words,
     )
     files.update((f"{FOLDER}/{file}", text) for file, text in vhdl.files.items())
     return files, vhdl.manifest

@@ -75,7 +75,8 @@ def replace(folder: Path, files: Mapping[str, str]) -> dict[str, str]:
     Returns
     -------
     dict of str to str
-        Of a user's files that have the name of one of these: what each is called now.
+        What a user's files are called now: those that have the name of one of these, and those that
+        were written while the folder was replaced.
 
     Raises
     ------
@@ -99,8 +100,8 @@ def replace(folder: Path, files: Mapping[str, str]) -> dict[str, str]:
                 staging.rename(folder)
         finally:
             # Of the two, the one that is not in use, whichever that is.
-            _clear_up(folder, _leftovers(folder) if alone else made)
-    return renamed
+            late = _clear_up(folder, _leftovers(folder) if alone else made)
+    return renamed | late
 
 
 def clear_up(folder: Path) -> None:
@@ -252,8 +253,9 @@ def _link(source: Path, target: Path) -> None:
 # What a build leaves.
 
 
-def _clear_up(folder: Path, leftovers: list[Path]) -> None:
-    """Delete leftovers, but for what is a user's."""
+def _clear_up(folder: Path, leftovers: list[Path]) -> dict[str, str]:
+    """Delete leftovers, but for what is a user's; return new names of that by old ones."""
+    renamed: dict[str, str] = {}
     for leftover in leftovers:
         is_missing = leftover.name.endswith(_OLD) and not os.path.lexists(folder)
         if is_missing and read_manifest(leftover) is not None:
@@ -261,10 +263,11 @@ def _clear_up(folder: Path, leftovers: list[Path]) -> None:
         else:
             # What cannot be deleted stays for the next time; the folder itself is whole.
             with suppress(OSError):
-                _discard(leftover, folder)
+                _discard(leftover, folder, renamed)
+    return renamed
 
 
-def _discard(leftover: Path, folder: Path) -> None:
+def _discard(leftover: Path, folder: Path, renamed: dict[str, str]) -> None:
     """Delete a folder; move what is a user's, and is nowhere else, to the one that is in use."""
     ours = _ours(leftover)
     linked = {_identity(folder / name) for name, _ in _walk(folder)} if folder.is_dir() else set()
@@ -280,7 +283,9 @@ def _discard(leftover: Path, folder: Path) -> None:
         elif name in ours or _identity(entry) in linked or _is_copied(leftover, folder, name):
             entry.unlink()
         elif folder.is_dir():
-            _move(entry, folder, name)
+            place = _move(entry, folder, name).relative_to(folder).as_posix()
+            if place != name:
+                renamed[name] = place
     rest = os.listdir(leftover)
     if rest == [MANIFEST]:
         (leftover / MANIFEST).unlink()
@@ -322,9 +327,9 @@ def _is_same(one: Path, other: Path) -> bool:
         return False
 
 
-def _move(entry: Path, folder: Path, name: str) -> None:
-    """Move a user's file, over nothing that is there."""
-    target = folder / name
+def _move(entry: Path, folder: Path, name: str) -> Path:
+    """Move a user's file, over nothing that is there; return where it is."""
+    place = target = folder / name
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):
@@ -336,3 +341,4 @@ def _move(entry: Path, folder: Path, name: str) -> None:
                 _link(entry, place)
             break
     entry.unlink()
+    return place

@@ -92,6 +92,10 @@ def _there_is() -> str:
     return f"{free / _GB:.1f} GB are free now"
 
 
+# How what runs Yosys passes on an error of the operating system.
+_SYSTEM = re.compile(r"([^\n:]*)\(os error \d+\)")
+
+
 def is_out_of_memory(said: str) -> bool:
     """Whether that is what Yosys, or what runs it, says when memory is short."""
     return bool(_NO_MEMORY.search(said))
@@ -126,6 +130,8 @@ def to_verilog(top: Top, *, module: str, header: str) -> str:
             # What runs it has errors of its own, by a dozen names.
             if is_out_of_memory(str(error)):
                 raise UserError(f"{module}: {out_of_memory()}") from None
+            if found := _SYSTEM.search(str(error)):
+                raise UserError(f"{module}: Yosys cannot be run: {found[1].strip()}") from None
             raise
     # The first line names the Yosys; the manifest does, too.
     _, _, body = text.partition("\n")

@@ -210,6 +210,8 @@ class Library:
 
     def _parse(self, name: str) -> list[TypeName]:
         """List what a name can mean, the likeliest first."""
+        if not isinstance(name, str):
+            raise TypeError(f"Name of a type must be a string, not {name!r}")
         kinds: tuple[Kind, ...] = KINDS
         match name.split("/"):
             case [package, base] if package and base:

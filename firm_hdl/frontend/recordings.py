@@ -8,6 +8,7 @@ same way as any other.
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 from collections.abc import Callable, Iterable, Iterator
@@ -198,7 +199,8 @@ def _use(path: str, use: Callable[[Reader], _T], budget: Budget) -> _T:
         with reader(Path(path)) as recording:
             return use(recording)
     except OSError as error:
-        reason = error.strerror or str(error)
+        # A damaged file asks for places that no file has.
+        reason = "it is damaged" if error.errno == errno.EINVAL else error.strerror or str(error)
     except (ReaderError1, ReaderError2) as error:
         # Of what it did not look for, rosbags passes on Python's own words.
         odd = isinstance(error.__context__, TypeError | AttributeError | KeyError | ValueError)

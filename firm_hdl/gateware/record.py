@@ -91,6 +91,8 @@ def _bits(kind: FieldType) -> int:
 
 def _record(message: Message, plan: Plan, fields: Iterable[str] | None) -> _Record:
     leaves = {leaf.path: leaf for leaf in plan.leaves}
+    if isinstance(fields, str):
+        raise TypeError(f"Fields must be a list of names, not the text {fields!r}")
     wanted = None if fields is None else [tuple(name.split(".")) for name in fields]
     unknown = set(wanted or ())
     record = _Record(data.StructLayout({}))

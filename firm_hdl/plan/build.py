@@ -91,6 +91,11 @@ def build_plan(
         raise TypeError(f"Maximum message size must be an integer, not {max_message_bytes!r}")
     if not isinstance(window_words, int) or isinstance(window_words, bool):
         raise TypeError(f"Window must have an integer number of words, not {window_words!r}")
+    if layout.min_bytes >= 1 << 32:
+        raise ValueError(
+            f"Each message has at least {layout.min_bytes} bytes, and at most {(1 << 32) - 1} are "
+            "possible"
+        )
     if not layout.min_bytes <= max_message_bytes < 1 << 32:
         raise ValueError(
             f"Maximum message size must be from {layout.min_bytes} bytes, the least that a "

@@ -65,6 +65,25 @@ def test_nothing_that_is_there_is_replaced_or_written_twice(target):
     }
 
 
+def test_what_was_written_while_a_folder_was_replaced_is_told(target, monkeypatch):
+    """An editor writes a file anew and gives it the old one's name, when that is already kept."""
+    (target / "notes").write_text("first")
+    swap = module._swap
+
+    def saved_meanwhile(folder, staging, made):
+        (folder / "notes").unlink()
+        (folder / "notes").write_text("second")
+        (folder / "more").write_text("more")
+        swap(folder, staging, made)
+
+    monkeypatch.setattr(module, "_swap", saved_meanwhile)
+    assert module.replace(target, with_manifest(NEW)) == {"notes": "notes.kept"}
+    found = texts(target)
+    assert (found["notes"], found["notes.kept"], found["more"]) == ("first", "second", "more")
+    monkeypatch.setattr(module, "_swap", swap)
+    assert module.replace(target, with_manifest(NEW)) == {}
+
+
 def test_a_copy_without_a_link_is_kept_once(target):
     # Where there are no hard links, a copy stands under its name, or with an ending.
     (target / "a").write_text("text")

@@ -10,6 +10,7 @@ import pytest
 
 import firm_hdl
 from firm_hdl import Deserializer, Serializer, load_message
+from firm_hdl.errors import UserError
 from firm_hdl.export.top import DIRECTIONS, Top, ports_of
 from firm_hdl.export.verilog import to_verilog
 from firm_hdl.plan import Plan, build_plan, encode
@@ -152,3 +153,24 @@ def test_packets_come_back_in_iverilog(bus_bytes, tmp_path):
             statuses.append(int(words[0]))
     assert came == packets
     assert statuses == [0] * 8
+
+
+class BrokenYosys:
+    """Yosys where what runs it fails, as wasmtime does."""
+
+    def __init__(self, said):
+        self.said = said
+
+    def run(self, *arguments, **options):
+        raise RuntimeError(self.said)
+
+
+def test_errors_of_the_system_are_told_in_its_words(monkeypatch):
+    top = Top(Deserializer(load_message("std_msgs/msg/Bool")))
+    said = "failed to write the module\n\nCaused by:\n    File too large (os error 27)"
+    monkeypatch.setattr("firm_hdl.export.verilog.find_yosys", lambda _: BrokenYosys(said))
+    with pytest.raises(UserError, match=r"^m: Yosys cannot be run: File too large$"):
+        to_verilog(top, module="m", header="")
+    monkeypatch.setattr("firm_hdl.export.verilog.find_yosys", lambda _: BrokenYosys("a fault"))
+    with pytest.raises(RuntimeError, match="^a fault$"):
+        to_verilog(top, module="m", header="")

@@ -282,3 +282,9 @@ def test_hash_tells_where_a_text_ends(tmp_path):
 def test_hash_stays_what_it_is(distro, digest):
     # A change of this rebuilds what users have generated: it must be on purpose.
     assert Library(distro).definition_hash("sensor_msgs/Imu") == digest
+
+
+@pytest.mark.parametrize("name", [5, None, ["std_msgs/msg/Bool"]])
+def test_names_of_types_are_strings(name):
+    with pytest.raises(TypeError, match=r"^Name of a type must be a string, not "):
+        Library().message(name)

@@ -334,3 +334,14 @@ def test_distribution_is_the_one_that_the_recording_says(tmp_path, said, distro)
     found = RecordingOrigin(path)
     assert (found.distro, found.dialect) == (distro, "ros2")
     assert open_library(bags=[path]).distro == (distro or "lyrical")
+
+
+def test_a_file_that_ends_too_early_is_damaged(tmp_path):
+    (file,) = make_recording(tmp_path, "mcap").glob("*.mcap")
+    data = file.read_bytes()
+    for size in (9, 30, 100, len(data) - 9):
+        short = tmp_path / f"{size}.mcap"
+        short.write_bytes(data[:size])
+        with pytest.raises(DefinitionError) as error:
+            RecordingOrigin(short)
+        assert "Invalid argument" not in str(error.value)

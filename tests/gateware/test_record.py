@@ -301,3 +301,11 @@ def test_writer_begins_again(count):
         assert not ctx.get(a.valid)
 
     run_with_reset(dut, before, after)
+
+
+@pytest.mark.parametrize("adapter", [RecordReader, RecordWriter])
+def test_fields_are_a_list_of_names(adapter):
+    message = make("ros1", {"a": "uint8", "b": "uint8"})
+    with pytest.raises(TypeError, match=r"^Fields must be a list of names, not the text 'a'$"):
+        adapter(message, fields="a")
+    adapter(message, fields=["a"])

@@ -31,6 +31,15 @@ def test_the_largest_message_has_room_for_the_smallest(size):
         build_plan(lay_out(BLOB), max_message_bytes=size)
 
 
+def test_a_message_that_no_limit_allows_is_refused_for_what_it_is():
+    layout = lay_out(make("ros1", {"a": "uint8[4294967295]"}))
+    assert build_plan(layout, max_message_bytes=(1 << 32) - 1).max_message_bytes == (1 << 32) - 1
+    layout = lay_out(make("ros1", {"a": "uint8[4294967295]", "b": "uint8"}))
+    message = "Each message has at least 4294967296 bytes, and at most 4294967295 are possible"
+    with pytest.raises(ValueError, match=f"^{message}$"):
+        build_plan(layout)
+
+
 def test_the_smallest_message_is_the_largest_if_so_wished():
     plan = build_plan(lay_out(BLOB), max_message_bytes=12)
     packet = bytes.fromhex("00010000 05000000 00000000")

@@ -82,6 +82,7 @@ def to_vhdl(
     header: str = "",
     stimuli: Sequence[bytes] = (),
     ports: Ports = "records",
+    window_words: int = 1,
 ) -> VhdlFolder:
     """Write the VHDL of a message type.
 
@@ -101,7 +102,7 @@ def to_vhdl(
     parts = _Parts(base=identifier(name).lower(), header=header)
     cores = {way: parts.core(tops[way], f"{parts.base}_{way}_flat") for way in DIRECTIONS}
     if ports == "records":
-        _add_records(parts, message, plan, cores)
+        _add_records(parts, message, plan, cores, window_words)
     else:
         _add_flat(parts, message, plan, cores)
     common = [file for file in COMMON if file in parts.design]
@@ -148,15 +149,24 @@ def _section(
 
 
 def _add_records(
-    parts: _Parts, message: Message, plan: Plan, cores: Mapping[Direction, Core]
+    parts: _Parts,
+    message: Message,
+    plan: Plan,
+    cores: Mapping[Direction, Core],
+    window_words: int,
 ) -> None:
     """Add the layer with records, and its benches."""
     reason = why_no_record(message, plan)
     whole: dict[Direction, Core] = {}
     if not reason:
-        options: dict[str, Any] = {"wire": plan.wire, "bus_bytes": plan.bus_bytes}
+        options: dict[str, Any] = {
+            "wire": plan.wire,
+            "bus_bytes": plan.bus_bytes,
+            "max_message_bytes": plan.max_message_bytes,
+            "window_words": window_words,
+        }
         for way in DIRECTIONS:
-            top = RecordTop.of(message, way, max_message_bytes=plan.max_message_bytes, **options)
+            top = RecordTop.of(message, way, **options)
             whole[way] = parts.core(top, f"{parts.base}_{way}_record_flat")
     layer = user_layer(
         message,
