@@ -172,5 +172,5 @@ def test_errors_of_the_system_are_told_in_its_words(monkeypatch):
     with pytest.raises(UserError, match=r"^m: Yosys cannot be run: File too large$"):
         to_verilog(top, module="m", header="")
     monkeypatch.setattr("firm_hdl.export.verilog.find_yosys", lambda _: BrokenYosys("a fault"))
-    with pytest.raises(RuntimeError, match="^a fault$"):
+    with pytest.raises(RuntimeError, match=r"^a fault$"):
         to_verilog(top, module="m", header="")
