@@ -36,11 +36,13 @@ def _run(arguments: Sequence[str] | None) -> int:
     sys.stderr = sys.stderr or io.StringIO()
     with printable_streams():
         try:
-            status = _dispatch(sys.argv[1:] if arguments is None else list(arguments))
-            sys.stdout.flush()
+            try:
+                return _dispatch(sys.argv[1:] if arguments is None else list(arguments))
+            finally:
+                # Help, too, which leaves by an exception.
+                sys.stdout.flush()
         except OSError as error:
             return _failed(error)
-    return status
 
 
 def _dispatch(arguments: list[str]) -> int:

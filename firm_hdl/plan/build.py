@@ -56,6 +56,22 @@ def check_bus_bytes(bus_bytes: int) -> None:
         )
 
 
+def _check_limit(layout: Layout, max_message_bytes: int) -> None:
+    # To Python, a truth value is an integer, too.
+    if not isinstance(max_message_bytes, int) or isinstance(max_message_bytes, bool):
+        raise TypeError(f"Maximum message size must be an integer, not {max_message_bytes!r}")
+    if layout.min_bytes >= 1 << 32:
+        raise ValueError(
+            f"Each message has at least {layout.min_bytes} bytes, and at most {(1 << 32) - 1} are "
+            "possible"
+        )
+    if not layout.min_bytes <= max_message_bytes < 1 << 32:
+        raise ValueError(
+            f"Maximum message size must be from {layout.min_bytes} bytes, the least that a "
+            f"{layout.message.name} has, to {(1 << 32) - 1}, not {max_message_bytes!r}"
+        )
+
+
 def build_plan(
     layout: Layout,
     *,
@@ -86,21 +102,9 @@ def build_plan(
         If a parameter is out of range, or no message of the type fits `max_message_bytes`.
     """
     check_bus_bytes(bus_bytes)
-    # To Python, a truth value is an integer, too.
-    if not isinstance(max_message_bytes, int) or isinstance(max_message_bytes, bool):
-        raise TypeError(f"Maximum message size must be an integer, not {max_message_bytes!r}")
+    _check_limit(layout, max_message_bytes)
     if not isinstance(window_words, int) or isinstance(window_words, bool):
         raise TypeError(f"Window must have an integer number of words, not {window_words!r}")
-    if layout.min_bytes >= 1 << 32:
-        raise ValueError(
-            f"Each message has at least {layout.min_bytes} bytes, and at most {(1 << 32) - 1} are "
-            "possible"
-        )
-    if not layout.min_bytes <= max_message_bytes < 1 << 32:
-        raise ValueError(
-            f"Maximum message size must be from {layout.min_bytes} bytes, the least that a "
-            f"{layout.message.name} has, to {(1 << 32) - 1}, not {max_message_bytes!r}"
-        )
     if window_words not in (1, 2):
         raise ValueError(f"Window must have 1 or 2 bus words, not {window_words!r}")
     # Where no length is counted, a wide window costs no time, and the bus is kept busy with it.

@@ -104,8 +104,10 @@ for line in json.loads(sys.argv[1]):
     out, error = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error):
         status = main(line)
-    kib = max(resource.getrusage(who).ru_maxrss
-              for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    # Its `ru_maxrss` is not less than that of the process of pytest, which it comes from.
+    with open("/proc/self/status") as status_file:
+        (own,) = (int(each.split()[1]) for each in status_file if each.startswith("VmHWM:"))
+    kib = max(own, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
     print(json.dumps([line[0], status, out.getvalue() + error.getvalue(), kib]))
 """
 LAID_OUT = (

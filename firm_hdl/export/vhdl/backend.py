@@ -157,17 +157,7 @@ def _add_records(
 ) -> None:
     """Add the layer with records, and its benches."""
     reason = why_no_record(message, plan)
-    whole: dict[Direction, Core] = {}
-    if not reason:
-        options: dict[str, Any] = {
-            "wire": plan.wire,
-            "bus_bytes": plan.bus_bytes,
-            "max_message_bytes": plan.max_message_bytes,
-            "window_words": window_words,
-        }
-        for way in DIRECTIONS:
-            top = RecordTop.of(message, way, **options)
-            whole[way] = parts.core(top, f"{parts.base}_{way}_record_flat")
+    whole = {} if reason else _record_cores(parts, message, plan, window_words)
     layer = user_layer(
         message,
         plan,
@@ -216,6 +206,16 @@ def _add_records(
             for each in layer.shared
         ],
     }
+
+
+def _record_cores(
+    parts: _Parts, message: Message, plan: Plan, window_words: int
+) -> dict[Direction, Core]:
+    """Add converters with the whole message as one vector."""
+    options = {"bus_bytes": plan.bus_bytes, "max_message_bytes": plan.max_message_bytes}
+    options["window_words"] = window_words
+    tops = {way: RecordTop.of(message, way, wire=plan.wire, **options) for way in DIRECTIONS}
+    return {way: parts.core(top, f"{parts.base}_{way}_record_flat") for way, top in tops.items()}
 
 
 def _add_flat(parts: _Parts, message: Message, plan: Plan, cores: Mapping[Direction, Core]) -> None:
