@@ -41,7 +41,12 @@ class Command:
 
 def _build(given: argparse.Namespace) -> None:
     from firm_hdl.export.build import build
-    from firm_hdl.verify.stimuli import stimuli
+
+    def packets_of(message: Message, plan: Plan) -> list[bytes]:
+        # This imports NumPy and rosbags, which a build that is refused need not wait for.
+        from firm_hdl.verify.stimuli import stimuli
+
+        return stimuli(message, plan)
 
     def report(built: Built) -> None:
         state = "current" if built.was_current else "wrote"
@@ -59,7 +64,7 @@ def _build(given: argparse.Namespace) -> None:
         window_words=given.window_words,
         ports=given.ports,
         force=given.force,
-        stimuli=stimuli,
+        stimuli=packets_of,
         report=report,
     )
     for built in done:

@@ -10,6 +10,7 @@ from firm_hdl.verify.options import LONGEST
 from firm_hdl.verify.recording import topics_of
 from firm_hdl.verify.replay import MOST_MESSAGES
 from firm_hdl.verify.runner import Task, UnknownTypeError
+from firm_hdl.wire import refusals
 
 __all__ = ["add_replay_arguments", "check_replay", "collect_recorded"]
 
@@ -61,7 +62,8 @@ def collect_recorded(given: argparse.Namespace) -> list[Task]:
     Raises
     ------
     DefinitionError
-        If a recording cannot be used, or the definition of a type that is named.
+        If a recording cannot be used, or the definition of a type that is named: it has to fit a
+        wire (:func:`firm_hdl.wire.refusals`).
     UnknownTypeError
         If there is no topic of a type that is named, or the recording is of another wire format.
     """
@@ -80,6 +82,8 @@ def collect_recorded(given: argparse.Namespace) -> list[Task]:
         raise UnknownTypeError(
             f"There is no topic of {', '.join(missing)}, only of {', '.join(sorted(found))}"
         )
+    if no_layout := [each for name in given.types for each in refusals(library.message(name))]:
+        raise DefinitionError(no_layout)
     return [Task(distro=library.distro, name=name, same=(library.distro,)) for name in names]
 
 

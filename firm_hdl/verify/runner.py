@@ -18,6 +18,7 @@ from firm_hdl.verify.acceptance import Options, Result, accept
 from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.oracle import DISTRO_STORES, distro_oracle
 from firm_hdl.verify.replay import replay
+from firm_hdl.wire import refusals
 
 __all__ = ["Task", "UnknownTypeError", "collect_own", "collect_tasks", "run_tasks"]
 
@@ -101,7 +102,8 @@ def collect_own(
     distros : iterable of str
         Whose rules and types the folders' own are read with, in turn.
     names : sequence of str
-        Types, services or actions; none: all that are in the folders.
+        Types, services or actions; none: all that are in the folders. Types that are named have to
+        fit a wire (:func:`firm_hdl.wire.refusals`).
     paths : sequence of str
     own : sequence of str or None
         Those of `paths` whose types are meant by all; `None`: all of them.
@@ -123,6 +125,10 @@ def collect_own(
                 messages = library.interface(name).messages
             except DefinitionError as error:
                 wrong.update((str(problem), problem) for problem in error.diagnostics)
+                continue
+            # A type that is named and fits no wire is an error at once; of all, it is not judged.
+            if no_layout := [each for message in messages for each in refusals(message) if names]:
+                wrong.update((str(problem), problem) for problem in no_layout)
                 continue
             found.update(((distro, message.name), _weight(message)) for message in messages)
     if wrong and (problems is None or (names and not found)):
