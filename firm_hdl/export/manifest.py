@@ -16,7 +16,7 @@ from typing import Any
 import firm_hdl
 from firm_hdl.export.top import DIRECTIONS, Direction, leaf_names, ports_of
 from firm_hdl.gateware.signatures import LATENCY_CYCLES, Status
-from firm_hdl.model import Array, Constant, Field, Message, Sequence
+from firm_hdl.model import Array, Constant, Field, Message, Sequence, closure
 from firm_hdl.plan import Leaf, Plan, to_yaml
 from firm_hdl.plan.timing import LINE_RATES, Cost, Timing, clock_mhz
 
@@ -119,14 +119,7 @@ def _digest(text: str) -> str:
 
 
 def _dependencies(message: Message) -> list[str]:
-    found: dict[str, Message] = {}
-    pending = [message]
-    while pending:
-        for child in pending.pop().children:
-            if child.name not in found:
-                found[child.name] = child
-                pending.append(child)
-    return sorted(found)
+    return sorted(child.name for child in closure(message.children))
 
 
 def _timing(figures: Timing) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend.interfaces import Unit
+from firm_hdl.frontend.names import ACTION_SERVICES, ACTION_WRAPPERS, EVENT, PARTS
 from firm_hdl.model import Action, Message, Service
 
 __all__ = ["assemble"]
@@ -62,16 +63,15 @@ def _in_order(unit: Unit, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]
 
 def _service(unit: Unit, base: str, messages: dict[str, Message]) -> Service:
     dialect = unit.name.dialect
-    joint = "_" if dialect == "ros2" else ""
-    request = messages[f"{base}{joint}Request"]
+    request, response = (messages[base + suffix] for suffix in PARTS[dialect, "srv"])
     package = str(unit.name)[: -len(unit.name.name)]
     is_whole = base == unit.name.name
     return Service(
         name=package + base,
         dialect=dialect,
         request=request,
-        response=messages[f"{base}{joint}Response"],
-        event=messages.get(f"{base}_Event") if dialect == "ros2" else None,
+        response=response,
+        event=messages.get(base + EVENT) if dialect == "ros2" else None,
         comment=request.comment if is_whole else "",
         text=unit.source.text if is_whole else "",
     )
@@ -79,25 +79,16 @@ def _service(unit: Unit, base: str, messages: dict[str, Message]) -> Service:
 
 def _action(unit: Unit, messages: dict[str, Message]) -> Action:
     base, dialect = unit.name.name, unit.name.dialect
-    joint = "_" if dialect == "ros2" else ""
-    goal, result, feedback = (
-        messages[f"{base}{joint}{part}"] for part in ("Goal", "Result", "Feedback")
-    )
-    services: tuple[Service, ...] = ()
-    wrappers: tuple[str, ...] = ("_FeedbackMessage",)
-    if dialect == "ros2":
-        names = (f"{base}_SendGoal", f"{base}_GetResult")
-        services = tuple(_service(unit, name, messages) for name in names)
-    else:
-        wrappers = ("ActionGoal", "ActionResult", "ActionFeedback", "Action")
+    goal, result, feedback = (messages[base + suffix] for suffix in PARTS[dialect, "action"])
+    services = ACTION_SERVICES if dialect == "ros2" else ()
     return Action(
         name=str(unit.name),
         dialect=dialect,
         goal=goal,
         result=result,
         feedback=feedback,
-        services=services,
-        wrappers=tuple(messages[base + suffix] for suffix in wrappers),
+        services=tuple(_service(unit, base + suffix, messages) for suffix in services),
+        wrappers=tuple(messages[base + suffix] for suffix in ACTION_WRAPPERS[dialect]),
         comment=goal.comment,
         text=unit.source.text,
     )

@@ -16,7 +16,7 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 
 from firm_hdl.errors import Source
-from firm_hdl.model import Dialect
+from firm_hdl.model import EMPTY_MEMBER, Dialect
 
 __all__ = ["DEFAULT_DISTRO", "DISTROS", "Distro", "embedded_names", "embedded_source"]
 
@@ -84,8 +84,6 @@ _ROS1_BUILTINS = {
     "builtin_interfaces/msg/Time": "time",
     "builtin_interfaces/msg/Duration": "duration",
 }
-# What rosidl_generator adds to an empty message; it stands in no definition.
-_PADDING_MEMBER = "structure_needs_at_least_one_member"
 
 # (constants, fields) of a type, as rosbags types them in its private `Typesdict`.
 _Definition = tuple[list[tuple[str, str, Any]], list[tuple[str, Any]]]
@@ -118,7 +116,7 @@ def embedded_source(distro: str, package: str, name: str) -> Source | None:
         f"{_field_type(description, package, dialect)} {field}"
         f"{_default(distro, package, name, field)}"
         for field, description in fields
-        if field != _PADDING_MEMBER
+        if field != EMPTY_MEMBER
     ]
     return Source(
         name=f"<rosbags {distro}>/{package}/msg/{name}.msg",

@@ -16,7 +16,7 @@ from firm_hdl.frontend.names import KINDS, Kind, TypeName, owners
 from firm_hdl.frontend.resolve import Resolver
 from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin, Origin, Sources
 from firm_hdl.frontend.suggest import did_you_mean, similar_types, unknown_type
-from firm_hdl.model import Action, Dialect, Interface, Message, Service
+from firm_hdl.model import Action, Dialect, Interface, Message, Service, closure
 
 __all__ = ["Library", "load_message"]
 
@@ -167,17 +167,10 @@ class Library:
             lines end.
         """
         roots = (self.interface(name) if isinstance(name, str) else name).messages
-        found = {root.name: root for root in roots}
-        pending = [*roots]
-        while pending:
-            for child in pending.pop().children:
-                # The builtin types of ROS 1 have neither a text nor a package.
-                if child.package and child.name not in found:
-                    found[child.name] = child
-                    pending.append(child)
         digest = hashlib.sha256()
         given = {root.name for root in roots}
-        others = [message for message in found.values() if message.name not in given]
+        # The builtin types of ROS 1 have neither a text nor a package.
+        others = [each for each in closure(roots) if each.package and each.name not in given]
         for message in [*roots, *sorted(others, key=str)]:
             text = message.text.replace("\r\n", "\n").replace("\r", "\n")
             parts = [message.name, text]

@@ -13,7 +13,16 @@ from typing import Literal, TypeAlias
 
 from firm_hdl.model import Dialect
 
-__all__ = ["KINDS", "Kind", "TypeName", "owners"]
+__all__ = [
+    "ACTION_SERVICES",
+    "ACTION_WRAPPERS",
+    "EVENT",
+    "KINDS",
+    "PARTS",
+    "Kind",
+    "TypeName",
+    "owners",
+]
 
 Kind: TypeAlias = Literal["msg", "srv", "action"]
 """What a definition declares; in ROS 2 also the namespace of its messages."""
@@ -39,31 +48,48 @@ class TypeName:
         return f"{self.package}{middle}{self.name}"
 
 
-# What the names of messages end in, longer suffixes first.
-_SUFFIXES: dict[Dialect, dict[Kind, tuple[str, ...]]] = {
-    "ros1": {
-        "msg": (),
-        "srv": ("Request", "Response"),
-        "action": (
-            *("ActionGoal", "ActionResult", "ActionFeedback", "Action"),
-            *("Goal", "Result", "Feedback"),
-        ),
-    },
-    "ros2": {
-        "msg": (),
-        "srv": ("_Request", "_Response", "_Event"),
-        "action": (
-            *(f"_SendGoal_{part}" for part in ("Request", "Response", "Event")),
-            *(f"_GetResult_{part}" for part in ("Request", "Response", "Event")),
-            *("_FeedbackMessage", "_Goal", "_Result", "_Feedback"),
-        ),
-    },
+PARTS: dict[tuple[Dialect, Kind], tuple[str, ...]] = {
+    ("ros1", "msg"): ("",),
+    ("ros2", "msg"): ("",),
+    ("ros1", "srv"): ("Request", "Response"),
+    ("ros2", "srv"): ("_Request", "_Response"),
+    ("ros1", "action"): ("Goal", "Result", "Feedback"),
+    ("ros2", "action"): ("_Goal", "_Result", "_Feedback"),
 }
+"""Suffixes of the messages that a definition declares itself, in the order of its text."""
+
+EVENT = "_Event"
+"""Suffix of the message that ROS 2 makes of a service from iron on."""
+
+ACTION_SERVICES = ("_SendGoal", "_GetResult")
+"""Suffixes of the services that ROS 2 makes of an action."""
+
+ACTION_WRAPPERS: dict[Dialect, tuple[str, ...]] = {
+    "ros1": ("ActionGoal", "ActionResult", "ActionFeedback", "Action"),
+    "ros2": ("_FeedbackMessage",),
+}
+"""Suffixes of the messages that ROS puts around those of an action."""
+
+
+def _suffixes(dialect: Dialect, kind: Kind) -> tuple[str, ...]:
+    """List what the names of an interface's messages end in, longer suffixes first."""
+    if kind == "msg":
+        return ()
+    if kind == "action":
+        return (*_made_of_action(dialect), *PARTS[dialect, kind])
+    return (*PARTS[dialect, kind], *((EVENT,) if dialect == "ros2" else ()))
+
+
+def _made_of_action(dialect: Dialect) -> Iterator[str]:
+    if dialect == "ros2":
+        for service in ACTION_SERVICES:
+            yield from (service + suffix for suffix in _suffixes(dialect, "srv"))
+    yield from ACTION_WRAPPERS[dialect]
 
 
 def owners(name: TypeName) -> Iterator[TypeName]:
     """List the interfaces that may have a message of this name, the likeliest first."""
-    for suffix in _SUFFIXES[name.dialect][name.kind]:
+    for suffix in _suffixes(name.dialect, name.kind):
         base = name.name.removesuffix(suffix)
         if base and base != name.name:
             yield replace(name, name=base)

@@ -10,14 +10,14 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from firm_hdl.frontend.names import KINDS, Kind
+from firm_hdl.frontend.names import KINDS, PARTS, Kind
 
 __all__ = ["structs_of"]
 
 _QUIET = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 _MARK = re.compile(r"\bmodule\s+(?P<module>\w+)\s*\{|\bstruct\s+(?P<struct>\w+)\s*\{|[{}]")
 _EMPTY = re.compile(r"\bmodule\s+\w+\s*\{\s*\}\s*;?")
-_PARTS = re.compile(r"_(?:Request|Response|Goal|Result|Feedback)$")
+_SUFFIXES = PARTS["ros2", "srv"] + PARTS["ros2", "action"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ def structs_of(text: str) -> dict[tuple[str, Kind, str], str]:
     It is empty if there is nothing to cut: one message, a service or an action.
     """
     found = _find(_blank(text))
-    if len(found) < 2 or any(_PARTS.search(each.name) for each in found):
+    if len(found) < 2 or any(each.name.endswith(_SUFFIXES) for each in found):
         return {}
     texts: dict[tuple[str, Kind, str], str] = {}
     for each in found:

@@ -16,14 +16,13 @@ from firm_hdl.frontend.library import Library
 from firm_hdl.frontend.parse import lines_of
 from firm_hdl.model import (
     Action,
-    Array,
     Constant,
     Field,
     Interface,
     Message,
-    Sequence,
     Service,
     Value,
+    closure,
 )
 
 __all__ = ["MOST_CHARACTERS", "show"]
@@ -95,14 +94,7 @@ def _check_characters(printer: _Ros1 | _Ros2, interface: Interface) -> None:
             raise DefinitionError([Diagnostic(message=message)])
 
     for part in _parts(interface):
-        # Nesting may be deeper than Python's recursion limit.
-        pending = [*part.children]
-        while pending:
-            missing = [child for child in pending[-1].children if child.name not in lines]
-            if missing:
-                pending += missing
-                continue
-            message = pending.pop()
+        for message in closure(part.children):
             if message.name not in lines:
                 note(message.name, printer.nested(message))
     note(interface.name, printer.root(interface))
@@ -119,7 +111,7 @@ def _parts(interface: Interface) -> tuple[Message, ...]:
 
 
 def _message_in(item: Field) -> Message | None:
-    kind = item.type.element if isinstance(item.type, Array | Sequence) else item.type
+    kind = item.element_type
     # ROS 1's builtin types have no package.
     return kind if isinstance(kind, Message) and kind.package else None
 

@@ -7,6 +7,7 @@ from contextlib import suppress
 
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend import Library
+from firm_hdl.frontend.names import ACTION_SERVICES
 from firm_hdl.identity.md5 import md5sum
 from firm_hdl.identity.proto import TooLargeError, proto
 from firm_hdl.identity.rihs import type_hash
@@ -138,7 +139,7 @@ def load_interfaces(
 
 
 def _interface(library: Library, name: str) -> Interface:
-    for suffix in ("_SendGoal", "_GetResult"):
+    for suffix in ACTION_SERVICES:
         if library.dialect == "ros2" and name.endswith(suffix):
             with suppress(DefinitionError):
                 action = library.interface(name.removesuffix(suffix))

@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import hashlib
 
-from firm_hdl.identity.order import in_order
-from firm_hdl.model import Array, Message, Sequence, Service
+from firm_hdl.model import Message, Service, closure
 
 __all__ = ["md5sum"]
 
@@ -37,7 +36,7 @@ def md5sum(interface: Message | Service) -> str:
         )
     )
     sums: dict[str, str] = {}
-    for message in in_order(parts):
+    for message in closure(parts):
         sums[message.name] = _digest(_text(message, sums))
     return _digest("".join(_text(message, sums) for message in parts))
 
@@ -49,7 +48,7 @@ def _digest(text: str) -> str:
 def _text(message: Message, sums: dict[str, str]) -> str:
     lines = [f"{item.type} {item.name}={item.text}" for item in message.constants]
     for field in message.fields:
-        kind = field.type.element if isinstance(field.type, Array | Sequence) else field.type
+        kind = field.element_type
         # The builtin times have no package, and stand for themselves.
         is_nested = isinstance(kind, Message) and kind.package != ""
         lines.append(f"{sums[str(kind)] if is_nested else field.type_text} {field.name}")

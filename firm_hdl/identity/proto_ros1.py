@@ -14,9 +14,18 @@ from dataclasses import dataclass
 
 import yaml
 
-from firm_hdl.identity.order import in_order
 from firm_hdl.identity.proto_errors import TooLargeError
-from firm_hdl.model import PRIMITIVES, Array, Field, FieldType, Message, Primitive, Sequence, Text
+from firm_hdl.model import (
+    PRIMITIVES,
+    Array,
+    Field,
+    FieldType,
+    Message,
+    Primitive,
+    Sequence,
+    Text,
+    closure,
+)
 
 __all__ = ["ros1_proto"]
 
@@ -40,7 +49,7 @@ _PACKED = frozenset({"uint8", "char"})
 def ros1_proto(message: Message) -> str:
     """Print an example of a message of ROS 1, without quotes around it."""
     values: dict[str, int] = {}
-    for part in in_order([message]):
+    for part in closure([message]):
         values[part.name] = sum(1 + _values(item.type, values) for item in part.fields)
         if values[part.name] > _MOST_VALUES:
             raise TooLargeError(

@@ -15,9 +15,8 @@ from typing import Any
 
 import yaml
 
-from firm_hdl.identity.order import in_order
 from firm_hdl.identity.proto_errors import TooLargeError
-from firm_hdl.model import Array, Field, Message, Primitive, Sequence, Text, Value
+from firm_hdl.model import Array, Field, Message, Primitive, Sequence, Text, Value, closure
 
 __all__ = ["ros2_proto"]
 
@@ -29,7 +28,7 @@ _LINE = re.compile(r"^(?=.)", re.MULTILINE)
 
 def ros2_proto(message: Message) -> str:
     """Print an example of a message of ROS 2, without quotes around it."""
-    parts = in_order([message])
+    parts = closure([message])
     sizes: dict[str, _Size] = {}
     for part in parts:
         sizes[part.name] = _size(part, sizes)

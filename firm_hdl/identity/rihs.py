@@ -12,8 +12,8 @@ import hashlib
 import json
 from typing import Any, TypeAlias
 
-from firm_hdl.identity.order import in_order
 from firm_hdl.model import (
+    EMPTY_MEMBER,
     Action,
     Array,
     FieldType,
@@ -22,6 +22,7 @@ from firm_hdl.model import (
     Primitive,
     Sequence,
     Service,
+    closure,
 )
 
 __all__ = ["type_description", "type_hash"]
@@ -43,7 +44,7 @@ _TEXT, _BOUNDED_TEXT = 17, 21  # One more for wide ones.
 _ARRAY, _BOUNDED_SEQUENCE, _UNBOUNDED_SEQUENCE = 48, 96, 144
 
 # rosidl gives an empty message one member, which stands in no definition.
-_EMPTY = ("structure_needs_at_least_one_member", "uint8")
+_EMPTY = (EMPTY_MEMBER, "uint8")
 
 _Member: TypeAlias = "tuple[str, FieldType | Service]"
 
@@ -77,7 +78,7 @@ def type_description(interface: Interface) -> dict[str, Any]:
     if interface.dialect != "ros2":
         raise ValueError(f"Only types of ROS 2 have type hashes, and {interface} is of ROS 1")
     described: dict[str, dict[str, Any]] = {}
-    for message in in_order(interface.messages):
+    for message in closure(interface.messages):
         described[message.name] = _individual(message.name, _members(message))
     services = interface.services if isinstance(interface, Action) else ()
     for service in services:

@@ -14,10 +14,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from firm_hdl.errors import DefinitionError, Diagnostic
-from firm_hdl.identity import in_order
 from firm_hdl.metrics.features import FEATURES, features_of
-from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text
-from firm_hdl.wire import CDR, ROS1, Wire, WireRules, refusals
+from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text, closure
+from firm_hdl.wire import RULES, Wire, WireRules, refusals
 from firm_hdl.wire import residues as rs
 
 __all__ = ["Analyses", "Metrics", "metrics_of"]
@@ -130,7 +129,7 @@ class Analyses:
     _places: dict[_Key, _Counts] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self._rules = CDR if self.wire == "cdr" else ROS1
+        self._rules = RULES[self.wire]
 
     def metrics(self, message: Message) -> Metrics:
         """Give the figures of a type.
@@ -143,7 +142,7 @@ class Analyses:
         if message.leaf_count > _MOST_LEAVES:
             problem = f"{message.name} has more than 10^100 fields when it is written out"
             raise DefinitionError([Diagnostic(message=problem)])
-        parts = in_order([message])
+        parts = closure([message])
         for part in parts:
             if part not in self._types:
                 self._types[part] = self._analyse(part)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from firm_hdl.model import Array, Field, Message, Primitive, Sequence, Text
+from firm_hdl.model import Array, Field, Message, Primitive, Sequence, Text, element_of
 
 __all__ = ["FEATURES", "features_of"]
 
@@ -46,7 +46,7 @@ def _features_of_field(item: Field, parts: Mapping[Message, frozenset[str]]) -> 
     if item.default is not None:
         yield "defaults"
     kind = item.type
-    element = kind.element if isinstance(kind, Array | Sequence) else kind
+    element = element_of(kind)
     match element:
         case Primitive():
             of = "primitives"

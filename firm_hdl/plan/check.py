@@ -15,7 +15,7 @@ from firm_hdl.plan.build import BUS_BYTES
 from firm_hdl.plan.conform import against_layout
 from firm_hdl.plan.ir import RUN_COUNTER, Begin, Fixed, Jump, Leaf, Pad, Part, Plan, Slice, Step
 from firm_hdl.plan.offsets import Span, check_offsets, loop_spans
-from firm_hdl.wire import CDR, ROS1, Layout
+from firm_hdl.wire import RULES, Layout
 
 __all__ = ["check"]
 
@@ -35,7 +35,7 @@ def _tables(plan: Plan) -> Iterator[str]:
     if plan.bus_bytes not in BUS_BYTES:
         yield f"bus of {plan.bus_bytes} bytes"
         return
-    rules = CDR if plan.wire == "cdr" else ROS1
+    rules = RULES[plan.wire]
     if (plan.header_bytes, plan.slack_bytes) != (rules.header_bytes, rules.slack_bytes):
         yield f"header or slack is not that of {plan.wire}"
     if len({leaf.path for leaf in plan.leaves}) != len(plan.leaves):
@@ -86,7 +86,7 @@ def _steps(plan: Plan) -> Iterator[str]:
 
 
 def _header(plan: Plan) -> Iterator[str]:
-    rules = CDR if plan.wire == "cdr" else ROS1
+    rules = RULES[plan.wire]
     slices = [item for step in plan.steps for item in step.slices]
     fixed = [item for item in slices if isinstance(item, Fixed)]
     if fixed != slices[: len(fixed)]:

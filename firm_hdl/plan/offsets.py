@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from firm_hdl.plan.ir import RUN_COUNTER, Begin, Fixed, Jump, Leaf, Pad, Part, Plan, Step
-from firm_hdl.wire import CDR, ROS1
+from firm_hdl.wire import RULES
 
 __all__ = ["Span", "check_offsets", "jumps", "loop_spans", "paddings"]
 
@@ -83,7 +83,7 @@ class _Walk:
 
     def __post_init__(self) -> None:
         self.spans = loop_spans(self.plan)
-        self.max_align = (CDR if self.plan.wire == "cdr" else ROS1).max_align
+        self.max_align = RULES[self.plan.wire].max_align
         for jump in jumps(self.plan):
             for counter, count in jump.enter:
                 if jump.step is not None:

@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 
 from firm_hdl.errors import DefinitionError, Diagnostic, described
 from firm_hdl.frontend import Library
-from firm_hdl.identity import in_order
 from firm_hdl.jobs.executors import PROCESSES, run_each
-from firm_hdl.model import Message
+from firm_hdl.model import Message, closure
 from firm_hdl.verify.acceptance import Options, Result, accept
 from firm_hdl.verify.libraries import library_of
 from firm_hdl.verify.oracle import DISTRO_STORES, distro_oracle
@@ -139,7 +138,7 @@ def collect_own(
 
 def _weight(message: Message) -> int:
     """Estimate how long a type takes: by its fields, nested ones included."""
-    return sum(len(part.fields) for part in in_order([message]))
+    return sum(len(part.fields) for part in closure([message]))
 
 
 def run_tasks(

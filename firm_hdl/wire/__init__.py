@@ -1,7 +1,19 @@
 """Wire formats: from a message model to its layout."""
 
 from firm_hdl.wire.cdr import CDR
-from firm_hdl.wire.layout import Gap, Layout, Loop, Node, Path, Run, Scalar, Trigger, lay_out, walk
+from firm_hdl.wire.layout import (
+    RULES,
+    Gap,
+    Layout,
+    Loop,
+    Node,
+    Path,
+    Run,
+    Scalar,
+    Trigger,
+    lay_out,
+    walk,
+)
 from firm_hdl.wire.refusals import MAX_LEAVES, MAX_LEVELS, refusals
 from firm_hdl.wire.ros1 import ROS1
 from firm_hdl.wire.rules import Wire, WireRules
@@ -11,6 +23,7 @@ __all__ = [
     "MAX_LEAVES",
     "MAX_LEVELS",
     "ROS1",
+    "RULES",
     "Gap",
     "Layout",
     "Loop",

@@ -7,6 +7,7 @@ multiple of four). That ROS 2 gives an empty message one octet is a rule of rosi
 
 from __future__ import annotations
 
+from firm_hdl.model import EMPTY_MEMBER
 from firm_hdl.wire.rules import WireRules
 
 __all__ = ["CDR"]
@@ -17,6 +18,6 @@ CDR = WireRules(
     option_bytes=2,
     max_align=8,
     terminated=True,
-    empty_member="structure_needs_at_least_one_member",
+    empty_member=EMPTY_MEMBER,
     slack_bytes=3,
 )

@@ -22,7 +22,8 @@ from firm_hdl.wire.rules import Wire, WireRules
 __all__ = ["Gap", "Layout", "Loop", "Node", "Path", "Run", "Scalar", "Trigger", "lay_out", "walk"]
 
 Path: TypeAlias = "tuple[str, ...]"
-RULES: dict[str, WireRules] = {"ros1": ROS1, "cdr": CDR}
+RULES: dict[Wire, WireRules] = {"ros1": ROS1, "cdr": CDR}
+"""The rules of each wire format, by its name."""
 LENGTH = PRIMITIVES["ros2"]["uint32"]
 OCTET = PRIMITIVES["ros2"]["uint8"]
 

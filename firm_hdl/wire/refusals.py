@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from firm_hdl.errors import Diagnostic
-from firm_hdl.model import Array, Message, Primitive, Sequence
+from firm_hdl.model import Message, Primitive
 
 __all__ = ["MAX_LEAVES", "MAX_LEVELS", "refusals"]
 
@@ -60,7 +60,7 @@ def _without_bytes(message: Message) -> list[Diagnostic]:
     while pending:
         owner = pending.pop()
         for item in owner.fields:
-            kind = item.type.element if isinstance(item.type, Array | Sequence) else item.type
+            kind = item.element_type
             if isinstance(kind, Primitive) and not kind.has_wire_format:
                 what = f"field '{item.name}' of {owner.name} is of type '{kind}'"
                 why = "systems do not agree about its bytes, so it cannot be put on a wire"

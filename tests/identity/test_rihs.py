@@ -10,7 +10,7 @@ from rosbags.typesys.msg import TypesysError
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DISTROS, Library
-from firm_hdl.identity import in_order, type_description, type_hash
+from firm_hdl.identity import type_description, type_hash
 from firm_hdl.model import (
     IDL_PRIMITIVES,
     Array,
@@ -20,6 +20,7 @@ from firm_hdl.model import (
     Primitive,
     Sequence,
     Text,
+    closure,
 )
 
 from ..frontend.workspace import library, make_files
@@ -120,7 +121,7 @@ def test_hash_of_services_and_actions_is_the_published_one(jazzy, name):
 
 
 def kinds_in(message: Message) -> list[FieldType]:
-    return [getattr(f.type, "element", f.type) for m in in_order([message]) for f in m.fields]
+    return [getattr(f.type, "element", f.type) for m in closure([message]) for f in m.fields]
 
 
 def has_char(message: Message) -> bool:
@@ -160,7 +161,7 @@ def test_hashes_of_the_corpus_are_those_of_rosbags(corpus):
             message = ours.message(name)
         except DefinitionError:
             continue  # docs/limitations.md
-        is_known = all(part.name in store.fielddefs for part in in_order([message]))
+        is_known = all(part.name in store.fielddefs for part in closure([message]))
         if is_known and not has_wide(message):
             compared += 1
             if type_hash(message) != store.hash_rihs01(name) and not has_char(message):

@@ -11,7 +11,6 @@ from firm_hdl.cli import main
 from firm_hdl.frontend import Library
 from firm_hdl.identity import (
     TooLargeError,
-    in_order,
     md5sum,
     proto,
     proto_ros1,
@@ -19,6 +18,7 @@ from firm_hdl.identity import (
     type_description,
 )
 from firm_hdl.identity.command import load_interfaces
+from firm_hdl.model import closure
 
 from ..frontend.workspace import library, make_files
 
@@ -38,7 +38,7 @@ def digest(text):
 
 
 def test_order_has_all_types_of_one_name(tmp_path):
-    names = [m.name for m in in_order([library(tmp_path, PARTS).message("p/T")])]
+    names = [m.name for m in closure([library(tmp_path, PARTS).message("p/T")])]
     assert names == [
         "p/msg/Part", "q/msg/Part", "r/msg/Zed", "q/msg/Whole", "p/msg/T"
     ]  # fmt: skip

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from math import isfinite
 
 from firm_hdl.export.vhdl.tree import snake
-from firm_hdl.model import Array, Constant, Field, Message, Primitive, Sequence
+from firm_hdl.model import Constant, Field, Message, Primitive
 from firm_hdl.names.identifiers import first_free, scope_names
 from firm_hdl.vhdl.names import PREDEFINED, USED
 
@@ -133,7 +133,7 @@ def _types(message: Message) -> list[Message]:
         if kind.name not in found:
             found[kind.name] = kind
             for item in kind.fields:
-                inner = item.type.element if isinstance(item.type, Array | Sequence) else item.type
+                inner = item.element_type
                 if isinstance(inner, Message):
                     visit(inner)
 

@@ -43,6 +43,7 @@ from firm_hdl.frontend.idl.values import (
     evaluate,
     fit,
 )
+from firm_hdl.frontend.names import PARTS, Kind
 from firm_hdl.frontend.syntax import (
     ConstantSyntax,
     FieldSyntax,
@@ -53,20 +54,18 @@ from firm_hdl.frontend.syntax import (
     TypeSyntax,
     ValueSyntax,
 )
+from firm_hdl.model import EMPTY_MEMBER
 
 __all__ = ["read_idl"]
 
 # Nobody reads on after so many.
 _MOST_DIAGNOSTICS = 1000
 
-# What rosidl_adapter gives to messages without fields; it stands in no definition.
-_PADDING_MEMBER = "structure_needs_at_least_one_member"
-
-# What the structs of a file are, by their number.
-_PARTS = {
-    1: ("a message", ("",)),
-    2: ("a service", ("_Request", "_Response")),
-    3: ("an action", ("_Goal", "_Result", "_Feedback")),
+# What a file declares, by the number of its structs.
+_DECLARED: dict[int, tuple[str, Kind]] = {
+    1: ("a message", "msg"),
+    2: ("a service", "srv"),
+    3: ("an action", "action"),
 }
 
 
@@ -238,7 +237,7 @@ class _Reader:
         fields = [field for member in node.members for field in self._fields(member, path, node)]
         match fields:
             case [FieldSyntax(name=NameSyntax(text=name), type=type_)] if (
-                name == _PADDING_MEMBER and type_.name == "uint8" and type_.array == "one"
+                name == EMPTY_MEMBER and type_.name == "uint8" and type_.array == "one"
             ):
                 fields = []
         members: list[MemberSyntax] = [
@@ -319,13 +318,14 @@ def _check_structs(file: FileSyntax, structs: list[tuple[Path, Struct]]) -> Iter
         start = Span(source=file.source, start=0, end=0)
         yield Diagnostic(message="this file declares no struct", span=start)
         return
-    for _, struct in structs[len(_PARTS) :]:
+    for _, struct in structs[len(_DECLARED) :]:
         message = (
             "a file has one struct for a message, two for a service, three for an action; "
             f"'{struct.name.text}' is one more"
         )
         yield Diagnostic(message=message, span=struct.name.span)
-    what, suffixes = _PARTS[min(len(structs), len(_PARTS))]
+    what, kind = _DECLARED[min(len(structs), len(_DECLARED))]
+    suffixes = PARTS["ros2", kind]
     names = [struct.name.text for _, struct in structs]
     if len(structs) == 2 and not any(name.endswith(suffixes) for name in names):
         # No service was meant.

@@ -1,16 +1,16 @@
-"""Message types in an order in which each comes after those that it is made of."""
+"""The transitive closure of message types: they and all types that they are made of."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from firm_hdl.model import Message
+from firm_hdl.model.message import Message
 
-__all__ = ["in_order"]
+__all__ = ["closure"]
 
 
-def in_order(roots: Iterable[Message]) -> list[Message]:
-    """List messages and all that they are made of, each once, parts first.
+def closure(roots: Iterable[Message]) -> list[Message]:
+    """List messages and all messages in them, each once and after those that it is made of.
 
     The stack is our own: how deep definitions nest is their author's business. What has the same
     name is taken for the same type, as it is in one library.

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from firm_hdl.identity import in_order
-from firm_hdl.model import Field, Message, Sequence
+from firm_hdl.model import Field, Message, Sequence, closure
 
 
 def message(name, *parts):
@@ -18,13 +17,13 @@ def test_parts_come_first_and_once():
     a = message("A")
     b, c = message("B", a), message("C", a, a)
     d = message("D", c, b)
-    assert [m.base_name for m in in_order([d])] == ["A", "C", "B", "D"]
-    assert [m.base_name for m in in_order([b, d, a])] == ["A", "B", "C", "D"]
-    assert in_order([]) == []
+    assert [m.base_name for m in closure([d])] == ["A", "C", "B", "D"]
+    assert [m.base_name for m in closure([b, d, a])] == ["A", "B", "C", "D"]
+    assert closure([]) == []
 
 
 def test_nesting_may_be_deeper_than_pythons_recursion_limit():
     top = message("L0")
     for level in range(1, 5000):
         top = message(f"L{level}", top)
-    assert [m.base_name for m in in_order([top])] == [f"L{level}" for level in range(5000)]
+    assert [m.base_name for m in closure([top])] == [f"L{level}" for level in range(5000)]

@@ -1,0 +1,49 @@
+"""The message model: what a ROS interface definition means, with every name resolved.
+
+A model is a tree of frozen values, equal when the definitions mean the same. It knows nothing of
+bytes on a wire beyond the size of each primitive; that is the business of :mod:`firm_hdl.wire`.
+Analyses are cached attributes, computed when first read (reference attribute grammars are the model
+of that: each attribute is an equation over the node and its children).
+"""
+
+from firm_hdl.model.closure import closure
+from firm_hdl.model.interfaces import Action, Interface, Service
+from firm_hdl.model.message import Constant, Field, Message
+from firm_hdl.model.types import (
+    EMPTY_MEMBER,
+    IDL_PRIMITIVES,
+    PRIMITIVE_OF,
+    PRIMITIVES,
+    Array,
+    Dialect,
+    FieldType,
+    Primitive,
+    Sequence,
+    Text,
+    Value,
+    element_of,
+    idl_primitives,
+)
+
+__all__ = [
+    "EMPTY_MEMBER",
+    "IDL_PRIMITIVES",
+    "PRIMITIVES",
+    "PRIMITIVE_OF",
+    "Action",
+    "Array",
+    "Constant",
+    "Dialect",
+    "Field",
+    "FieldType",
+    "Interface",
+    "Message",
+    "Primitive",
+    "Sequence",
+    "Service",
+    "Text",
+    "Value",
+    "closure",
+    "element_of",
+    "idl_primitives",
+]

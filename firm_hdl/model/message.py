@@ -1,0 +1,196 @@
+"""Messages: their fields and constants."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+from firm_hdl.errors import Span
+from firm_hdl.model.types import (
+    Array,
+    Dialect,
+    FieldType,
+    Primitive,
+    Text,
+    Value,
+    element_of,
+)
+
+__all__ = ["Constant", "Field", "Message"]
+
+_LENGTH = re.compile(r"\[(0\d{1,18})\]\s*\Z")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Field:
+    """One member of a message.
+
+    Attributes
+    ----------
+    default : Value or None
+        ROS 2 only; never on the wire.
+    comment : str
+        Comment lines above and behind it, without the `#`, joined by newlines.
+    unit : str or None
+        A comment's ``[unit]``, as rosidl reads it.
+    span : Span or None
+        The field's name in the text. Not compared.
+    """
+
+    name: str
+    type: FieldType
+    default: Value | None = None
+    comment: str = field(default="", compare=False)
+    unit: str | None = field(default=None, compare=False)
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def element_type(self) -> Primitive | Text | Message:
+        """The type, or that of the elements of an array or a sequence."""
+        return element_of(self.type)
+
+    @property
+    def type_text(self) -> str:
+        """The type as genmsg has it, which keeps zeros in front of an array's length."""
+        text = str(self.type)
+        if not isinstance(self.type, Array) or self.span is None:
+            return text
+        written = _LENGTH.search(self.span.line_text[: self.span.column - 1])
+        if written is None or int(written[1]) != self.type.count:
+            return text
+        return f"{text[: text.rindex('[')]}[{written[1]}]"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Constant:
+    """A named value of a message type; never on the wire.
+
+    Attributes
+    ----------
+    text : str
+        The value as the definition writes it (for ROS 1 strings: all that follows ``=``).
+    """
+
+    name: str
+    type: Primitive | Text
+    value: Value
+    text: str = field(default="", compare=False)
+    comment: str = field(default="", compare=False)
+    unit: str | None = field(default=None, compare=False)
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+# No slots: cached attributes live in the instance's dictionary.
+@dataclass(frozen=True, kw_only=True)
+class Message:
+    """A message type.
+
+    Attributes
+    ----------
+    name : str
+        Full name: ``sensor_msgs/msg/Imu`` in ROS 2, ``sensor_msgs/Imu`` in ROS 1; plain ``time``
+        and ``duration`` for the built-in types of ROS 1.
+    dialect : "ros1" or "ros2"
+    fields : tuple of Field
+        In wire order. Empty for an empty message: what stands on the wire then depends on the wire.
+    constants : tuple of Constant
+    comment : str
+        The comment at the head of the file.
+    text : str
+        The definition as it was read.
+    """
+
+    name: str
+    dialect: Dialect
+    fields: tuple[Field, ...]
+    constants: tuple[Constant, ...] = ()
+    comment: str = field(default="", compare=False)
+    text: str = field(default="", compare=False, repr=False)
+
+    def __hash__(self) -> int:
+        # Equal messages have equal names; hashing the tree at every level would be quadratic.
+        return hash((self.dialect, self.name))
+
+    def __str__(self) -> str:
+        return self.name
+
+    @property
+    def messages(self) -> tuple[Message, ...]:
+        """The message alone: what services and actions have several of."""
+        return (self,)
+
+    @property
+    def package(self) -> str:
+        """Name of the package; empty for a built-in type."""
+        return self.name.partition("/")[0] if "/" in self.name else ""
+
+    @property
+    def base_name(self) -> str:
+        """Last part of the name."""
+        return self.name.rpartition("/")[2]
+
+    @property
+    def wire(self) -> Literal["ros1", "cdr"]:
+        """Wire format that the dialect's own middleware uses."""
+        return "ros1" if self.dialect == "ros1" else "cdr"
+
+    @cached_property
+    def children(self) -> tuple[Message, ...]:
+        """Distinct message types that fields name directly, in order of appearance."""
+        found: dict[str, Message] = {}
+        for item in self.fields:
+            if isinstance(kind := item.element_type, Message):
+                found.setdefault(kind.name, kind)
+        return tuple(found.values())
+
+    @cached_property
+    def depth(self) -> int:
+        """Levels of messages: 1 for a message without message fields."""
+        self._settle("depth")
+        return 1 + max((child.depth for child in self.children), default=0)
+
+    @cached_property
+    def leaf_count(self) -> int:
+        """Fields of all levels that are no messages; an array or a sequence counts one element.
+
+        A message without fields counts as one. Types that use each other many times have numbers
+        that nobody could count out.
+        """
+        self._settle("leaf_count")
+
+        def count(kind: FieldType) -> int:
+            return kind.leaf_count if isinstance(kind, Message) else 1
+
+        return sum(count(item.element_type) for item in self.fields) or 1
+
+    @cached_property
+    def is_fixed_size(self) -> bool:
+        """Whether every value of the message has the same number of bytes on a given wire."""
+        self._settle("is_fixed_size")
+
+        def fixed(kind: FieldType) -> bool:
+            match kind:
+                case Primitive():
+                    return True
+                case Message():
+                    return kind.is_fixed_size
+                case Array():
+                    return fixed(kind.element)
+                case _:
+                    return False
+
+        return all(fixed(item.type) for item in self.fields)
+
+    def _settle(self, attribute: str) -> None:
+        """Evaluate an attribute of all messages below, deepest first.
+
+        Nesting may be deeper than Python's recursion limit.
+        """
+        pending = list(self.children)
+        while pending:
+            missing = [c for c in pending[-1].children if attribute not in vars(c)]
+            pending += missing
+            if not missing:
+                getattr(pending.pop(), attribute)

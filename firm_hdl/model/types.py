@@ -1,0 +1,174 @@
+"""Types of fields: numbers, strings, arrays and sequences."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+if TYPE_CHECKING:
+    from firm_hdl.model.message import Message
+
+__all__ = [
+    "EMPTY_MEMBER",
+    "IDL_PRIMITIVES",
+    "PRIMITIVES",
+    "PRIMITIVE_OF",
+    "Array",
+    "Dialect",
+    "FieldType",
+    "Primitive",
+    "Sequence",
+    "Text",
+    "Value",
+    "element_of",
+    "idl_primitives",
+]
+
+Dialect: TypeAlias = Literal["ros1", "ros2"]
+"""Whose rules a definition follows: ROS 1 (genmsg) or ROS 2 (rosidl)."""
+
+Value: TypeAlias = "bool | int | float | str | bytes | tuple[Value, ...]"
+"""A constant's or a default's value."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Primitive:
+    """A number of fixed size.
+
+    Attributes
+    ----------
+    name : str
+        As ROS writes it: ``bool``, ``byte``, ``char``, ``int8`` ... ``uint64``, ``float32``,
+        ``float64``; from IDL also ``wchar`` and ``long double``.
+    bytes : int
+        Size on every wire, in bytes: 1, 2, 4 or 8; of `wchar`, that of a distribution. For `long
+        double` 16, which is that of the standard; it is on no wire, see `has_wire_format`.
+    signed : bool
+        Whether an integer is two's complement. `byte` is signed in ROS 1 only, `char` in IDL only.
+    kind : "bool", "int" or "float"
+        How the bits are to be read.
+    """
+
+    name: str
+    bytes: int
+    signed: bool
+    kind: Literal["bool", "int", "float"]
+
+    def __str__(self) -> str:
+        return self.name
+
+    @property
+    def has_wire_format(self) -> bool:
+        """Whether all systems agree about its bytes; of `long double` they do not.
+
+        By OMG CDR it is an IEEE quadruple. ROS 2 leaves it to the compiler's type of that name,
+        and Fast CDR warns that Windows and Unix do not understand each other's.
+        """
+        return self.name != "long double"
+
+
+def _primitives(dialect: Dialect) -> dict[str, Primitive]:
+    sizes = {"int8": 1, "int16": 2, "int32": 4, "int64": 8}
+    table = {
+        "bool": Primitive(name="bool", bytes=1, signed=False, kind="bool"),
+        # genmsg: byte is a deprecated int8, char a deprecated uint8; rosidl: byte is an octet.
+        "byte": Primitive(name="byte", bytes=1, signed=dialect == "ros1", kind="int"),
+        "char": Primitive(name="char", bytes=1, signed=False, kind="int"),
+        "float32": Primitive(name="float32", bytes=4, signed=True, kind="float"),
+        "float64": Primitive(name="float64", bytes=8, signed=True, kind="float"),
+    }
+    for name, size in sizes.items():
+        table[name] = Primitive(name=name, bytes=size, signed=True, kind="int")
+        table["u" + name] = Primitive(name="u" + name, bytes=size, signed=False, kind="int")
+    return table
+
+
+PRIMITIVES: dict[Dialect, dict[str, Primitive]] = {
+    "ros1": _primitives("ros1"),
+    "ros2": _primitives("ros2"),
+}
+"""Every primitive by name, for each dialect."""
+
+
+def idl_primitives(wchar_bytes: int) -> dict[str, Primitive]:
+    """List every primitive that a definition in OMG IDL can name.
+
+    Parameters
+    ----------
+    wchar_bytes : 2 or 4
+        Size of a `wchar` on the wire, which changed from one distribution to the next.
+    """
+    return PRIMITIVES["ros2"] | {
+        # A C `signed char`, unlike the `char` of .msg files.
+        "char": Primitive(name="char", bytes=1, signed=True, kind="int"),
+        "wchar": Primitive(name="wchar", bytes=wchar_bytes, signed=False, kind="int"),
+        "long double": Primitive(name="long double", bytes=16, signed=True, kind="float"),
+    }
+
+
+IDL_PRIMITIVES: dict[str, Primitive] = idl_primitives(2)
+"""Those of the newest distribution. In C++ and Python a `wchar` has 16 bits in every one."""
+
+PRIMITIVE_OF: dict[tuple[str, bool], Primitive] = {
+    (item.name, item.signed and item.kind == "int"): item
+    for table in (*PRIMITIVES.values(), IDL_PRIMITIVES)
+    for item in table.values()
+    # On a wire, a wchar is an unsigned integer.
+    if item.has_wire_format and item.name != "wchar"
+}
+"""Every primitive that a leaf can have, by its name and whether it is a signed integer."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Text:
+    """A string.
+
+    Attributes
+    ----------
+    bound : int or None
+        Most characters that it may have (bytes for `string`, UTF-16 units for `wstring`).
+    wide : bool
+        True for `wstring`.
+    """
+
+    bound: int | None = None
+    wide: bool = False
+
+    def __str__(self) -> str:
+        return ("wstring" if self.wide else "string") + (
+            "" if self.bound is None else f"<={self.bound}"
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Array:
+    """A fixed number of elements, at least one."""
+
+    element: Primitive | Text | Message
+    count: int
+
+    def __str__(self) -> str:
+        return f"{self.element}[{self.count}]"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sequence:
+    """A number of elements that each message says anew; at most `bound`, unless that is `None`."""
+
+    element: Primitive | Text | Message
+    bound: int | None = None
+
+    def __str__(self) -> str:
+        return f"{self.element}[{'' if self.bound is None else f'<={self.bound}'}]"
+
+
+FieldType: TypeAlias = "Primitive | Text | Array | Sequence | Message"
+
+
+EMPTY_MEMBER = "structure_needs_at_least_one_member"
+"""The `uint8` that rosidl gives to a message without fields. It stands in no definition."""
+
+
+def element_of(kind: FieldType) -> Primitive | Text | Message:
+    """Give the type of an array's or a sequence's elements, and any other type as it is."""
+    return kind.element if isinstance(kind, Array | Sequence) else kind
