@@ -95,7 +95,7 @@ verify-vhdl: $(VENV)/.installed ghdl ## every bench of lyrical and noetic in GHD
 
 verify-languages: $(VENV)/.installed-dev verilog ## Verilog of four types, in every language of Icarus and Verilator
 	FIRM_HDL_EVERY_LANGUAGE=1 CI=1 $(BIN)/python -m pytest -q -k "language or every_tool" \
-	  -n $(JOBS) tests/verify/test_crosscheck_verilog.py tests/export/test_every_keyword.py
+	  -n $(JOBS) tests/verify/simulators/test_crosscheck_verilog.py tests/export/test_every_keyword.py
 
 prove: $(VENV)/.installed-dev ghdl ## proofs that VHDL equals RTLIL, for types with all constructs
 	$(BIN)/python -m firm_hdl.equivalence --jobs $(JOBS) $(PROVE_ARGS)

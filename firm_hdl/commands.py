@@ -44,7 +44,7 @@ def _build(given: argparse.Namespace) -> None:
 
     def packets_of(message: Message, plan: Plan) -> list[bytes]:
         # This imports NumPy and rosbags, which a build that is refused need not wait for.
-        from firm_hdl.verify.stimuli import stimuli
+        from firm_hdl.verify.cases.stimuli import stimuli
 
         return stimuli(message, plan)
 
@@ -263,7 +263,7 @@ def _add_prove(command: argparse.ArgumentParser) -> None:
 
 
 def _add_golden(command: argparse.ArgumentParser) -> None:
-    from firm_hdl.verify.golden_command import add_golden_arguments, run_golden
+    from firm_hdl.verify.ts2.golden_command import add_golden_arguments, run_golden
 
     add_golden_arguments(command)
     _add_options(command)
@@ -271,7 +271,7 @@ def _add_golden(command: argparse.ArgumentParser) -> None:
 
 
 def _add_cover(command: argparse.ArgumentParser) -> None:
-    from firm_hdl.verify.cover_command import add_cover_arguments, run_cover
+    from firm_hdl.covering.command import add_cover_arguments, run_cover
 
     add_cover_arguments(command)
     _add_options(command)

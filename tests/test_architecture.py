@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Container, Iterator
 from pathlib import Path
 
 import firm_hdl
@@ -12,6 +13,8 @@ PACKAGE = Path(firm_hdl.__file__).parent
 MOST_LINES = 450
 # Of a function, with its docstring.
 MOST_SIZE = 60
+# In a folder, its `__init__.py` included.
+MOST_MODULES = 20
 
 # Text to syntax to model to layout to plan to circuit to Verilog and VHDL: what each part may use.
 MAY_IMPORT = {
@@ -35,20 +38,45 @@ MAY_IMPORT = {
     "export": {"firm_hdl", "errors", "files", "names", "vhdl", "model", "frontend", "wire", "plan"},
 }
 MAY_IMPORT["export"] |= {"gateware"}
+MAY_IMPORT["covering"] = {
+    *("errors", "files", "model", "frontend", "wire", "plan", "gateware", "export"),
+}
 MAY_IMPORT["verify"] = {
     *MAY_IMPORT["export"],
     *("export", "identity", "jobs", "metrics", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
     *("firm_hdl", "errors", "jobs", "names", "rtlil", "terminal", "vhdl"),
-    *("model", "frontend", "wire", "plan", "gateware", "export"),
-    # Which types have all constructs, and where tools are.
-    "verify",
+    *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
-MAY_IMPORT["commands"] = {*MAY_IMPORT["verify"], "verify", "identity", "metrics", "equivalence"}
+MAY_IMPORT["commands"] = {*MAY_IMPORT["verify"], "verify", "covering", "equivalence"}
 MAY_IMPORT["cli"] = {"firm_hdl", "errors", "terminal", "commands"}
 # The package's own face.
 MAY_IMPORT["firm_hdl"] = {"errors", "frontend", "gateware"}
+
+# The same for the parts of `firm_hdl.verify`.
+VERIFY_MAY_IMPORT = {
+    "results": set[str](),
+    "ros2_wheels": set[str](),
+    "ros_python": set[str](),
+    "references": {"results", "ros2_wheels", "ros_python"},
+    "cases": {"references", "results"},
+    "simulators": {"results"},
+    "systems": {"references", "results"},
+    "clients": {"cases", "references", "results", "systems"},
+    "ts1": {"results", "ros2_wheels", "ros_python", "systems"},
+    "ts2": {"cases", "results", "systems"},
+    "ts3": {"cases", "clients", "references", "results", "simulators", "systems"},
+    "bench": {"cases", "references", "results", "systems", "ts3"},
+    "report": {"results"},
+}
+VERIFY_MAY_IMPORT["command"] = {
+    *("bench", "clients", "references", "report", "results"),
+    *("simulators", "systems", "ts1", "ts2", "ts3"),
+}
+VERIFY_MAY_IMPORT["__main__"] = {"command"}
+# Its own face.
+VERIFY_MAY_IMPORT["verify"] = {"cases", "references", "systems", "ts3"}
 
 
 def problems(package: Path) -> Iterator[str]:
@@ -65,15 +93,29 @@ def problems(package: Path) -> Iterator[str]:
         for node in ast.walk(tree):
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and _size(node) > MOST_SIZE:
                 yield f"{where}: {node.name} has more than {MOST_SIZE} lines"
-        part = "firm_hdl" if where.name == "__init__.py" and len(where.parts) == 1 else (
-            where.parts[0].removesuffix(".py")
-        )
-        if part not in MAY_IMPORT:
-            yield f"{where}: a part of the package that the architecture does not know"
-            continue
-        for imported in sorted(set(_imports(tree))):
-            if imported != part and imported not in MAY_IMPORT[part]:
-                yield f"{where}: {part} imports {imported}"
+        yield from _wrong_imports(where, tree, "firm_hdl", MAY_IMPORT)
+        if where.parts[0] == "verify":
+            yield from _wrong_imports(where, tree, "verify", VERIFY_MAY_IMPORT)
+    for folder, count in sorted(Counter(p.parent for p in package.rglob("*.py")).items()):
+        if count > MOST_MODULES:
+            yield f"{folder.relative_to(package)}: more than {MOST_MODULES} modules"
+
+
+def _wrong_imports(
+    where: Path, tree: ast.Module, whole: str, may_import: dict[str, set[str]]
+) -> Iterator[str]:
+    """Yield what a module imports from parts of `whole` that are not below its own.
+
+    `whole` is the package, or one of its parts that has parts itself.
+    """
+    inside = where.parts[1:] if whole == "verify" else where.parts
+    part = whole if inside == ("__init__.py",) else inside[0].removesuffix(".py")
+    if part not in may_import:
+        yield f"{where}: a part of the package that the architecture does not know"
+        return
+    for imported in sorted(set(_imports(tree, whole, may_import))):
+        if imported != part and imported not in may_import[part]:
+            yield f"{where}: {part} imports {imported}"
 
 
 def _size(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
@@ -89,25 +131,25 @@ def _has_all(tree: ast.Module) -> bool:
     return False
 
 
-def _imports(tree: ast.Module) -> Iterator[str]:
-    """Yield the parts of firm_hdl that a module imports, wherever in it."""
+def _imports(tree: ast.Module, whole: str, parts: Container[str]) -> Iterator[str]:
+    """Yield the parts of `whole` that a module imports, wherever in it."""
+    prefix = "firm_hdl" if whole == "firm_hdl" else f"firm_hdl.{whole}"
     for node in ast.walk(tree):
         names: list[str] = []
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, "imports are absolute"
-            if node.module == "firm_hdl":
+            if node.module == prefix:
                 # A name of the package's face, or one of its parts.
-                names = [
-                    f"firm_hdl.{a.name}" if a.name in MAY_IMPORT else "firm_hdl" for a in node.names
-                ]
+                names = [f"{prefix}.{a.name}" if a.name in parts else prefix for a in node.names]
             else:
                 names = [node.module or ""]
         for name in names:
-            parts = name.split(".")
-            if parts[0] == "firm_hdl":
-                yield parts[1] if len(parts) > 1 else "firm_hdl"
+            if name == prefix:
+                yield whole
+            elif name.startswith(f"{prefix}."):
+                yield name.removeprefix(f"{prefix}.").partition(".")[0]
 
 
 def test_package_keeps_to_its_architecture() -> None:
@@ -127,9 +169,20 @@ def test_violations_are_found(tmp_path: Path) -> None:
         "plan/a.py": '"""Doc."""\n__all__ = []\ndef long():\n' + "    pass\n" * 60,
         "plan/b.py": '"""Doc."""\n__all__ = []\ndef long():\n' + "    pass\n" * 59,
         "gateware/__main__.py": '"""Doc."""\nimport firm_hdl\nimport os\n',
+        "verify/report/a.py": (
+            '"""Doc."""\nfrom firm_hdl.verify import accept\n__all__ = []\n'
+            "import firm_hdl.verify.results.file\nfrom firm_hdl.verify import ts3\n"
+        ),
+        "verify/ts1/known/a.py": (
+            '"""Doc."""\nimport firm_hdl.verify.ts2.golden\n__all__ = []\n'
+            "from firm_hdl.verify.ts1.known import b\nimport firm_hdl.verify.command\n"
+        ),
+        "verify/more.py": '"""Doc."""\n__all__ = []\n',
+        **{f"wire/{n}.py": '"""Doc."""\n__all__ = []\n' for n in range(18)},
+        **{f"rtlil/{n}.py": '"""Doc."""\n__all__ = []\n' for n in range(21)},
     }
     for name, text in files.items():
-        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
         (tmp_path / name).write_text(text)
     assert list(problems(tmp_path)) == [
         "__init__.py: firm_hdl imports export",
@@ -143,5 +196,11 @@ def test_violations_are_found(tmp_path: Path) -> None:
         "sim/b.py: no docstring",
         "sim/b.py: no literal __all__",
         "utils.py: a part of the package that the architecture does not know",
+        "verify/more.py: a part of the package that the architecture does not know",
+        "verify/report/a.py: report imports ts3",
+        "verify/report/a.py: report imports verify",
+        "verify/ts1/known/a.py: ts1 imports command",
+        "verify/ts1/known/a.py: ts1 imports ts2",
         "wire/cdr.py: wire imports frontend",
+        "rtlil: more than 20 modules",
     ]

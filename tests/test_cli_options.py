@@ -23,8 +23,8 @@ from tests.frontend.workspace import make_files
 BUILD = importlib.import_module("firm_hdl.export.build")
 RUN = {
     "verify": "firm_hdl.verify.command",
-    "golden": "firm_hdl.verify.golden_command",
-    "cover": "firm_hdl.verify.cover_command",
+    "golden": "firm_hdl.verify.ts2.golden_command",
+    "cover": "firm_hdl.covering.command",
     "report": "firm_hdl.verify.report.command",
     "prove": "firm_hdl.equivalence.command",
 }

@@ -65,5 +65,5 @@ def test_a_type_that_cannot_be_run_says_so_in_the_words_for_users(monkeypatch):
     def refused(*_):
         raise UserError("Yosys needs memory")
 
-    monkeypatch.setattr("firm_hdl.verify.acceptance.library_of", refused)
+    monkeypatch.setattr("firm_hdl.verify.ts3.acceptance.library_of", refused)
     assert accept("lyrical", "std_msgs/msg/Bool").failures == ["Yosys needs memory"]

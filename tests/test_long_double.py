@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.verify import ts2
+from firm_hdl.verify.ts2 import system as ts2
 from tests.tools import need
 from tests.vhdl.ghdl import GHDL
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from firm_hdl.covering.choose import choose, cost, features
 from firm_hdl.equivalence.converters import Task, both
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
-from firm_hdl.verify.cover import choose, cost, features
 
 __all__ = ["DISTROS", "covering_tasks", "write_definitions"]
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from firm_hdl.equivalence.circuit import ProofError
 from firm_hdl.export.verilog import is_out_of_memory, out_of_memory
-from firm_hdl.verify.simulators import SimulatorMissingError, find_ghdl
+from firm_hdl.jobs.programs import ProgramMissingError, find_ghdl
 
 __all__ = ["MissingToolError", "TooSlowError", "ToolError", "Tools", "answer_of", "find_tools"]
 
@@ -98,7 +98,7 @@ def find_tools() -> Tools:
     ghdl = ""
     try:
         ghdl = find_ghdl()
-    except SimulatorMissingError as error:
+    except ProgramMissingError as error:
         missing.append(str(error))
     yosys = _yosys()
     if yosys is None:

@@ -5,10 +5,11 @@
 
 from __future__ import annotations
 
-from firm_hdl.verify.acceptance import Options, Result, accept, accept_message
-from firm_hdl.verify.cases import Case, make_cases
-from firm_hdl.verify.oracle import Oracle, distro_oracle
-from firm_hdl.verify.runner import Task, collect_tasks, run_tasks
+from firm_hdl.verify.cases.make import Case, make_cases
+from firm_hdl.verify.references.oracle import Oracle, distro_oracle
+from firm_hdl.verify.systems.tasks import Task, collect_tasks
+from firm_hdl.verify.ts3.acceptance import Options, Result, accept, accept_message
+from firm_hdl.verify.ts3.runner import run_tasks
 
 __all__ = [
     "Case",

@@ -17,32 +17,33 @@ from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.search import workspace_folders
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, check_executor
 from firm_hdl.jobs.processes import unwound_when_terminated
+from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.plan import BUS_BYTES
-from firm_hdl.verify.benches import Benches
-from firm_hdl.verify.ending import concluded, is_well
-from firm_hdl.verify.environment import code_digest, environment, inputs_digest
-from firm_hdl.verify.options import LONGEST, Options
-from firm_hdl.verify.replay_command import (
-    add_replay_arguments,
-    check_replay,
-    collect_recorded,
-)
-from firm_hdl.verify.report.command import write_report
-from firm_hdl.verify.results import ResultsError, ResultsWriter
-from firm_hdl.verify.runner import Task, UnknownTypeError, collect_own, collect_tasks
-from firm_hdl.verify.simulators import SIMULATORS, SimulatorMissingError
-from firm_hdl.verify.sut.arguments import (
+from firm_hdl.verify.bench.system import Benches
+from firm_hdl.verify.clients.arguments import (
     add_sut_arguments,
     check_sut,
     references_of,
     sut_options,
 )
-from firm_hdl.verify.sut.client import ClientMissingError
-from firm_hdl.verify.sut.command import run_sut
-from firm_hdl.verify.system import Judged, Recorder, System
+from firm_hdl.verify.clients.command import run_sut
+from firm_hdl.verify.references.client import ClientMissingError
+from firm_hdl.verify.report.command import write_report
+from firm_hdl.verify.results.environment import code_digest, environment, inputs_digest
+from firm_hdl.verify.results.file import ResultsError, ResultsWriter
+from firm_hdl.verify.simulators import SIMULATORS
+from firm_hdl.verify.systems.ending import concluded, is_well
+from firm_hdl.verify.systems.system import Judged, Recorder, System
+from firm_hdl.verify.systems.tasks import Task, UnknownTypeError, collect_own, collect_tasks
 from firm_hdl.verify.ts1 import ORACLES, Ts1, selections_of
-from firm_hdl.verify.ts2 import Ts2, Ts2Options
-from firm_hdl.verify.ts3 import How, Ts3
+from firm_hdl.verify.ts2.system import Ts2, Ts2Options
+from firm_hdl.verify.ts3.options import LONGEST, Options
+from firm_hdl.verify.ts3.replay_command import (
+    add_replay_arguments,
+    check_replay,
+    collect_recorded,
+)
+from firm_hdl.verify.ts3.system import How, Ts3
 
 __all__ = ["SYSTEMS", "add_verify_arguments", "run_verify"]
 
@@ -86,7 +87,7 @@ def run_verify(given: argparse.Namespace) -> int:
         ClientMissingError,
         ExecutorError,
         ResultsError,
-        SimulatorMissingError,
+        ProgramMissingError,
         UnknownTypeError,
     ) as error:
         print(f"error: {error}", file=sys.stderr)

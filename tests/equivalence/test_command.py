@@ -12,7 +12,7 @@ from firm_hdl.cli import main
 from firm_hdl.equivalence import Proof, Tools, command, converters, tools
 from firm_hdl.equivalence.converters import Attempt, Task
 from firm_hdl.equivalence.covering import covering_tasks, write_definitions
-from firm_hdl.verify.simulators import find_ghdl
+from firm_hdl.jobs.programs import find_ghdl
 from tests.frontend.recordings import make_recording
 
 TASK = Task(distro="lyrical", name="a/msg/B", direction="serializer")

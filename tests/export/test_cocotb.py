@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.export.build import build
-from firm_hdl.verify.stimuli import stimuli
+from firm_hdl.verify.cases.stimuli import stimuli
 from tests.tools import need
 
 LOOPBACK = """\

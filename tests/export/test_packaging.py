@@ -14,7 +14,7 @@ import pytest
 
 from firm_hdl.export.build import build
 from firm_hdl.export.packaging import packaging
-from firm_hdl.verify.stimuli import stimuli
+from firm_hdl.verify.cases.stimuli import stimuli
 from tests.tools import need
 
 TYPES = ("geometry_msgs/msg/Vector3", "std_msgs/msg/Header")

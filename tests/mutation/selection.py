@@ -24,7 +24,7 @@ BATCH_SECONDS = (4.0, 15.0, 60.0, 300.0)
 TURN_SECONDS = 0.25
 # Names of modules that another Python runs, and which module starts them.
 FOREIGN = "worker_"
-STARTS_THEM = "firm_hdl/verify/ts1/worker.py"
+STARTS_THEM = "firm_hdl/verify/ros_python/worker.py"
 Place = tuple[str, frozenset[int]]
 
 

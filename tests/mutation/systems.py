@@ -15,12 +15,12 @@ __all__ = ["REST", "SNAPSHOT", "SYSTEMS", "mirrored", "mirrors", "system_of", "t
 # Patterns of names of test files; `*` stands for folders, too. The first system that fits counts.
 SYSTEMS = {
     "ts1": ["tests/frontend/*", "tests/verify/ts1/*"],
-    "ts2": ["tests/wire/*", "tests/plan/*", "tests/verify/test_golden*"],
-    "ts3": ["tests/gateware/*", "tests/verify/test_acceptance.py"],
+    "ts2": ["tests/wire/*", "tests/plan/*", "tests/verify/ts2/test_golden*"],
+    "ts3": ["tests/gateware/*", "tests/verify/ts3/test_acceptance.py"],
     "ghdl": [
         *("tests/export/test_sample.py", "tests/export/vhdl/*"),
         *("tests/names/*", "tests/rtlil/*", "tests/vhdl/*"),
-        "tests/verify/test_crosscheck.py",
+        "tests/verify/simulators/test_crosscheck.py",
         "tests/equivalence/*",
     ],
 }

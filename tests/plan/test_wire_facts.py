@@ -2,7 +2,7 @@
 
 The hexadecimal of CDR is what ROS 2's own type support writes or follows from OMG DDS-XTypes 1.3,
 clause 7.4; spaces stand between fields, `|` in front of padding. Fast CDR 1.0.26, 2.2.5 and 2.3.3
-(humble, jazzy, kilted) write all of `FACTS` so: ``tests/verify/sut/test_fast_cdr.py``.
+(humble, jazzy, kilted) write all of `FACTS` so: ``tests/verify/references/test_fast_cdr.py``.
 """
 
 from __future__ import annotations

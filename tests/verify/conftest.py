@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import count
+
 import pytest
 
-from firm_hdl.verify.simulators import SimulatorMissingError, TextSimulator, find_ghdl, simulator
-from firm_hdl.verify.sut import client
+from firm_hdl.frontend import Library
+from firm_hdl.jobs.programs import ProgramMissingError, find_ghdl
+from firm_hdl.verify.references import client
+from firm_hdl.verify.simulators import TextSimulator, simulator
 from tests.tools import need
 
 
@@ -14,7 +18,7 @@ def ghdl() -> str:
     """GHDL's path."""
     try:
         return find_ghdl()
-    except SimulatorMissingError:
+    except ProgramMissingError:
         return need("GHDL", None)
 
 
@@ -24,7 +28,7 @@ def of_verilog(request: pytest.FixtureRequest) -> TextSimulator:
     found = None
     try:
         found = simulator(request.param)
-    except SimulatorMissingError:
+    except ProgramMissingError:
         need(request.param, None)
     assert found is not None
     return found
@@ -41,3 +45,20 @@ def library_here():
         return found
 
     return get
+
+
+@pytest.fixture
+def make_message(tmp_path):
+    """Make a message type of a text; texts of others may follow, by name."""
+    numbers = count()
+
+    def make(text, distro="lyrical", **others):
+        root = tmp_path / f"workspace{next(numbers)}"
+        folder = root / "p" / "msg"
+        folder.mkdir(parents=True)
+        for name, each in {"A": text, **others}.items():
+            end = "idl" if each.startswith("module") else "msg"
+            (folder / f"{name}.{end}").write_text(each)
+        return Library(distro, [root]).message("p/A" if distro == "noetic" else "p/msg/A")
+
+    return make

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from firm_hdl.verify.verdict import KnownDifference, Passed
+from firm_hdl.verify.results.verdict import KnownDifference, Passed
 
 __all__ = ["NAN_KEY", "TIME_KEY", "assert_known", "assert_passed"]
 

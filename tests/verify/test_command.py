@@ -12,8 +12,8 @@ import pytest
 import firm_hdl.verify.command as command
 from firm_hdl.cli import main
 from firm_hdl.verify.__main__ import main as alias
-from firm_hdl.verify.system import Judged, System
-from firm_hdl.verify.verdict import Failed, Passed
+from firm_hdl.verify.results.verdict import Failed, Passed
+from firm_hdl.verify.systems.system import Judged, System
 from tests.verify.samples import own_package
 
 BOOL = ["--distro", "lyrical", "--jobs", "1", "--cases", "2", "std_msgs/msg/Bool"]

@@ -7,20 +7,21 @@ import stat
 
 import pytest
 
-import firm_hdl.verify.ts1.worker as worker
+import firm_hdl.verify.ros_python.worker as worker
 from firm_hdl.cli import main
 from firm_hdl.equivalence import MissingToolError, ProofError, Tools, find_tools, prove
 from firm_hdl.equivalence.converters import converter_vhdl
 from firm_hdl.frontend import Library
 from firm_hdl.jobs.processes import ToolError
+from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.verify import Options, accept, distro_oracle, make_cases
-from firm_hdl.verify.crosscheck import Comparison
-from firm_hdl.verify.references import confirm
-from firm_hdl.verify.simulators import SimulatorMissingError, Verilator
-from firm_hdl.verify.sut import CLIENTS
-from firm_hdl.verify.sut.client import ClientDiedError, each_answered
-from firm_hdl.verify.sut.judge import Contest
-from firm_hdl.verify.verdict import Failed, NotJudged, Passed
+from firm_hdl.verify.clients.judge import Contest
+from firm_hdl.verify.references import CLIENTS
+from firm_hdl.verify.references.client import ClientDiedError, each_answered
+from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
+from firm_hdl.verify.simulators import Verilator
+from firm_hdl.verify.simulators.crosscheck import Comparison
+from firm_hdl.verify.ts3.confirm import confirm
 from tests.tools import need
 
 BOOL = "std_msgs/msg/Bool"
@@ -77,7 +78,7 @@ def test_cross_check_does_not_pass_with_a_simulator_that_says_nothing(
 def test_cross_check_does_not_pass_with_a_compiler_that_says_nothing(fake):
     try:
         Verilator()
-    except SimulatorMissingError as error:
+    except ProgramMissingError as error:
         need(f"verilator ({error})", None)
     compiler = fake(SILENT[0], "g++")
     result = accept("lyrical", BOOL, Options(simulator="verilator", most_cases=1))

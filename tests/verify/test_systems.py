@@ -15,14 +15,14 @@ import pytest
 from firm_hdl.cli import main
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
-from firm_hdl.verify import ts2
-from firm_hdl.verify.records import Record
-from firm_hdl.verify.results import ResultsWriter, read_results
-from firm_hdl.verify.system import run_shares, shares_of
+from firm_hdl.verify.results.file import ResultsWriter, read_results
+from firm_hdl.verify.results.records import Record
+from firm_hdl.verify.results.verdict import Failed, NotJudged
+from firm_hdl.verify.systems.system import run_shares, shares_of
 from firm_hdl.verify.ts1 import ORACLES
 from firm_hdl.verify.ts1 import run as ts1_run
-from firm_hdl.verify.ts1.oracle import Refused
-from firm_hdl.verify.verdict import Failed, NotJudged
+from firm_hdl.verify.ts1.oracles.oracle import Refused
+from firm_hdl.verify.ts2 import system as ts2
 from tests.frontend.workspace import make_files
 from tests.verify.judged import assert_known, assert_passed
 
@@ -189,7 +189,7 @@ def test_what_has_a_record_is_not_tested_again(tmp_path, monkeypatch, capsys):
     def never(*arguments):
         raise AssertionError("it was tested before")
 
-    for where in ("ts2._checked", "ts1.run.judge_case", "runner.accept"):
+    for where in ("ts2.system._checked", "ts1.run.judge_case", "ts3.runner.accept"):
         monkeypatch.setattr(f"firm_hdl.verify.{where}", never)
     assert verify(*ALL, "--results", path, BOOL, CHAR) == 0
     again = capsys.readouterr().out

@@ -15,14 +15,14 @@ from typing import Any
 from amaranth.hdl import Cat, Value
 from amaranth.sim import Simulator
 
-from firm_hdl.verify.simulators import SimulatorMissingError, find_ghdl
+from firm_hdl.jobs.programs import ProgramMissingError, find_ghdl
 from firm_hdl.vhdl.convert import Vhdl
 
 __all__ = ["GHDL", "analyse", "difference", "expected", "run", "simulate", "synthesize", "vectors"]
 
 try:
     GHDL: str | None = find_ghdl()
-except SimulatorMissingError:
+except ProgramMissingError:
     GHDL = None
 
 Steps = list[dict[str, int]]

@@ -12,7 +12,7 @@ from firm_hdl.verify.report.as_json import to_json
 from firm_hdl.verify.report.html import to_html
 from firm_hdl.verify.report.markdown import to_markdown
 from firm_hdl.verify.report.summary import Summary, summarise
-from firm_hdl.verify.results import ResultsError, read_results
+from firm_hdl.verify.results.file import ResultsError, read_results
 
 __all__ = ["FORMATS", "add_report_arguments", "run_report", "write_report"]
 

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from firm_hdl.verify.records import Record, Test, settled
-from firm_hdl.verify.results import Results
-from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
+from firm_hdl.verify.results.file import Results
+from firm_hdl.verify.results.records import Record, Test, settled
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 
 __all__ = ["VERDICTS", "Counts", "NotRun", "Outcome", "count", "failures_of", "outcomes_of"]
 

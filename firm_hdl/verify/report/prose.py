@@ -10,7 +10,7 @@ from firm_hdl.verify.report.outcomes import NotRun, Outcome
 from firm_hdl.verify.report.summary import Group, Summary, Trend
 from firm_hdl.verify.report.svg import number, seconds
 from firm_hdl.verify.report.tables import SIGNS
-from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 
 __all__ = [
     "SECTIONS",

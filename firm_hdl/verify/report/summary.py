@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from firm_hdl.verify.records import STAGES, Record
 from firm_hdl.verify.report.outcomes import Counts, NotRun, Outcome, count, outcomes_of
 from firm_hdl.verify.report.stats import Box, Correlation, box_of, correlate, curve_of, share_within
 from firm_hdl.verify.report.verdicts import OracleSum, Said, oracle_sums, said_of
-from firm_hdl.verify.results import Results
-from firm_hdl.verify.verdict import Failed, NotJudged
+from firm_hdl.verify.results.file import Results
+from firm_hdl.verify.results.records import STAGES, Record
+from firm_hdl.verify.results.verdict import Failed, NotJudged
 
 __all__ = ["LIMITS", "CoverageSum", "Curve", "Group", "Run", "Summary", "Trend", "summarise"]
 

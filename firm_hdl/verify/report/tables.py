@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from firm_hdl.verify.records import STAGES
 from firm_hdl.verify.report.charts import law_text, line_text
 from firm_hdl.verify.report.outcomes import Counts, NotRun, Outcome, failures_of
 from firm_hdl.verify.report.summary import LIMITS, Curve, Group, Summary, Trend
 from firm_hdl.verify.report.svg import number, seconds
-from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.results.records import STAGES
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 
 __all__ = [
     "MOST_ROWS",

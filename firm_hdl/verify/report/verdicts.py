@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from firm_hdl.verify.report.outcomes import NotRun, Outcome
-from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 
 __all__ = ["OracleSum", "Reason", "Said", "oracle_sums", "reason_groups", "said_of"]
 

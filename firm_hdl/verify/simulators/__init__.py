@@ -1,27 +1,25 @@
 """Simulators of exported text, behind one small interface.
 
-A simulator replays a trace (:mod:`firm_hdl.verify.trace`): it makes the text of the devices, drives
-the rows of inputs, and gives the rows of outputs that it saw. To add one is to write a class with
-the members of `TextSimulator` and to name it in `SIMULATORS`.
+A simulator replays a trace (:mod:`firm_hdl.verify.simulators.trace`): it makes the text of the
+devices, drives the rows of inputs, and gives the rows of outputs that it saw. To add one is to
+write a class with the members of `TextSimulator` and to name it in `SIMULATORS`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from firm_hdl.verify.simulators.ghdl import Ghdl, find_ghdl
+from firm_hdl.verify.simulators.ghdl import Ghdl
 from firm_hdl.verify.simulators.icarus import Icarus
-from firm_hdl.verify.simulators.interface import SimulatorMissingError, TextSimulator
+from firm_hdl.verify.simulators.interface import TextSimulator
 from firm_hdl.verify.simulators.verilator import Verilator
 
 __all__ = [
     "SIMULATORS",
     "Ghdl",
     "Icarus",
-    "SimulatorMissingError",
     "TextSimulator",
     "Verilator",
-    "find_ghdl",
     "simulator",
 ]
 
@@ -38,6 +36,6 @@ def simulator(name: str) -> TextSimulator | None:
 
     Raises
     ------
-    SimulatorMissingError
+    ProgramMissingError
     """
     return None if name == "python" else SIMULATORS[name]()

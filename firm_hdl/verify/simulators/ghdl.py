@@ -7,14 +7,13 @@ from pathlib import Path
 
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import made_by, run_tool
-from firm_hdl.verify.replay_bench import replay_bench
-from firm_hdl.verify.simulators.interface import find_program
-from firm_hdl.verify.trace import Trace
+from firm_hdl.jobs.programs import find_ghdl
+from firm_hdl.verify.simulators.replay_bench import replay_bench
+from firm_hdl.verify.simulators.trace import Trace
 from firm_hdl.vhdl.convert import convert
 
-__all__ = ["Ghdl", "find_ghdl"]
+__all__ = ["Ghdl"]
 
-NAMES = ("ghdl", "ghdl-mcode", "ghdl-llvm", "ghdl-gcc")
 RUN = ("--ieee-asserts=disable-at-0",)
 
 
@@ -23,7 +22,7 @@ class Ghdl:
 
     Raises
     ------
-    SimulatorMissingError
+    ProgramMissingError
     """
 
     title = "GHDL"
@@ -46,13 +45,3 @@ class Ghdl:
         run_tool([self.path, "-a", "--std=08", *files], folder)
         run_tool([self.path, "--elab-run", "--std=08", "replay", *RUN], folder)
         return made_by(self.title, folder / "results.txt").read_text().splitlines()
-
-
-def find_ghdl() -> str:
-    """Return the command of GHDL: the environment's ``GHDL``, or the first that is installed.
-
-    Raises
-    ------
-    SimulatorMissingError
-    """
-    return find_program("GHDL", "GHDL", NAMES, "ghdl-mcode")

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import made_by, run_tool
-from firm_hdl.verify.simulators.interface import SimulatorMissingError, find_program
+from firm_hdl.jobs.programs import ProgramMissingError, find_program
+from firm_hdl.verify.simulators.trace import ARESETN, Trace
 from firm_hdl.verify.simulators.verilog import (
     RESULTS,
     STIMULI,
@@ -17,7 +18,6 @@ from firm_hdl.verify.simulators.verilog import (
     vector,
     write_inputs,
 )
-from firm_hdl.verify.trace import ARESETN, Trace
 
 __all__ = ["Icarus"]
 
@@ -70,7 +70,7 @@ class Icarus:
 
     Raises
     ------
-    SimulatorMissingError
+    ProgramMissingError
     """
 
     title = "Icarus Verilog"
@@ -82,7 +82,7 @@ class Icarus:
         beside = os.pathsep.join([str(Path(self.path).parent), os.environ.get("PATH", "")])
         run = shutil.which("vvp", path=beside)
         if run is None:
-            raise SimulatorMissingError(f"{self.title} has no command vvp beside '{self.path}'")
+            raise ProgramMissingError(f"{self.title} has no command vvp beside '{self.path}'")
         self.run_path = run
 
     def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:

@@ -1,21 +1,15 @@
-"""What a simulator of exported text has to do, and where its programs are."""
+"""What a simulator of exported text has to do."""
 
 from __future__ import annotations
 
-import os
-import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
 from firm_hdl.export.top import Top
-from firm_hdl.verify.trace import Trace
+from firm_hdl.verify.simulators.trace import Trace
 
-__all__ = ["SimulatorMissingError", "TextSimulator", "find_program"]
-
-
-class SimulatorMissingError(ValueError):
-    """A simulator is not installed; the text says how to get it."""
+__all__ = ["TextSimulator"]
 
 
 class TextSimulator(Protocol):
@@ -45,30 +39,3 @@ class TextSimulator(Protocol):
         ------
         ToolError
         """
-
-
-def find_program(title: str, variable: str, names: Sequence[str], package: str) -> str:
-    """Return the path of a program: the environment's `variable`, or the first that is installed.
-
-    Parameters
-    ----------
-    title : str
-        What it is called in messages.
-    variable : str
-        A variable that names a command, or has its path.
-    names : sequence of str
-        Commands to look for without the variable.
-    package : str
-        What to install on Debian and Ubuntu.
-
-    Raises
-    ------
-    SimulatorMissingError
-    """
-    given = os.environ.get(variable)
-    for name in [given] if given else names:
-        if path := shutil.which(name):
-            return path
-    if given:
-        raise SimulatorMissingError(f"{title} is '{given}' in the environment, and no such command")
-    raise SimulatorMissingError(f"{title} is not installed (Debian, Ubuntu: apt install {package})")

@@ -18,7 +18,8 @@ from pathlib import Path
 
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import ToolError, made_by, run_tool
-from firm_hdl.verify.simulators.interface import SimulatorMissingError, find_program
+from firm_hdl.jobs.programs import ProgramMissingError, find_program
+from firm_hdl.verify.simulators.trace import ARESETN, Trace
 from firm_hdl.verify.simulators.verilog import (
     RESULTS,
     STIMULI,
@@ -26,7 +27,6 @@ from firm_hdl.verify.simulators.verilog import (
     vector,
     write_inputs,
 )
-from firm_hdl.verify.trace import ARESETN, Trace
 
 __all__ = ["Verilator"]
 
@@ -76,7 +76,7 @@ class Verilator:
 
     Raises
     ------
-    SimulatorMissingError
+    ProgramMissingError
     """
 
     title = "Verilator"
@@ -109,8 +109,8 @@ def _find_compiler() -> tuple[str, ...]:
         if path := shutil.which(name):
             return (path, *given[1:])
     if given:
-        raise SimulatorMissingError(f"CXX is '{given[0]}' in the environment, and no such command")
-    raise SimulatorMissingError(
+        raise ProgramMissingError(f"CXX is '{given[0]}' in the environment, and no such command")
+    raise ProgramMissingError(
         "Verilator needs a C++ compiler, and none is installed (Debian, Ubuntu: apt install g++)"
     )
 

@@ -9,7 +9,7 @@ from firm_hdl.export.manifest import module_name
 from firm_hdl.export.top import Top
 from firm_hdl.export.verilog import to_verilog
 from firm_hdl.names.identifiers import identifier
-from firm_hdl.verify.trace import Device, Pin, Trace
+from firm_hdl.verify.simulators.trace import Device, Pin, Trace
 
 __all__ = ["RESULTS", "STIMULI", "instances", "vector", "write_inputs"]
 

@@ -7,13 +7,13 @@ from typing import TypeAlias
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.model import Interface, Message
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, Passed, Verdict
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.comparison import Compared, compared
 from firm_hdl.verify.ts1.known import KNOWN
-from firm_hdl.verify.ts1.oracle import Accepted, Answer, NotJudged, Oracle
-from firm_hdl.verify.ts1.rule import Known
+from firm_hdl.verify.ts1.known.rule import Known
+from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle
 from firm_hdl.verify.ts1.universe import Universe
-from firm_hdl.verify.verdict import Failed, KnownDifference, Passed, Verdict
 
 __all__ = ["Again"]
 

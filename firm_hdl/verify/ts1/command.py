@@ -11,17 +11,17 @@ from typing import Any
 
 from tqdm import tqdm
 
-from firm_hdl.verify.records import (
+from firm_hdl.verify.results.records import (
     OracleVerdict,
     Record,
     Seconds,
     Test,
     clipped_verdict,
 )
-from firm_hdl.verify.system import Judged, Recorder, System
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
+from firm_hdl.verify.systems.system import Judged, Recorder, System
 from firm_hdl.verify.ts1.judge import Judgement, Outcome
 from firm_hdl.verify.ts1.run import Selection, Tally, Ts1Run
-from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 
 __all__ = ["Ts1", "run_ts1"]
 

@@ -10,7 +10,7 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.identity import md5sum, proto, type_hash
 from firm_hdl.model import Action, Interface, Message, Service
 from firm_hdl.verify.ts1.facts import Difference, Facts, count_facts, differences, structure
-from firm_hdl.verify.ts1.oracle import Accepted, Answer, Refused
+from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, Refused
 
 __all__ = ["Compared", "compared"]
 

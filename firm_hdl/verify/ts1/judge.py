@@ -9,12 +9,12 @@ from dataclasses import dataclass, field
 from firm_hdl.errors import DefinitionError
 from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.model import Interface
-from firm_hdl.verify.records import OracleVerdict
+from firm_hdl.verify.results.records import OracleVerdict
+from firm_hdl.verify.results.verdict import Failed, NotJudged, Verdict
 from firm_hdl.verify.ts1.again import Again
 from firm_hdl.verify.ts1.case import Case
-from firm_hdl.verify.ts1.oracle import Answer, Oracle
+from firm_hdl.verify.ts1.oracles.oracle import Answer, Oracle
 from firm_hdl.verify.ts1.universe import Universe
-from firm_hdl.verify.verdict import Failed, NotJudged, Verdict
 
 __all__ = ["Judgement", "Outcome", "compare", "judge", "judge_case", "read"]
 

@@ -15,16 +15,16 @@ from functools import cached_property
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.jobs.executors import ExecutorError
-from firm_hdl.verify.records import OracleVerdict
-from firm_hdl.verify.runner import UnknownTypeError
-from firm_hdl.verify.system import run_shares, shares_of
+from firm_hdl.verify.results.records import OracleVerdict
+from firm_hdl.verify.results.verdict import Failed
+from firm_hdl.verify.systems.system import run_shares, shares_of
+from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.judge import Judgement, Outcome, judge_case
 from firm_hdl.verify.ts1.mutate import mutation
-from firm_hdl.verify.ts1.oracle import Oracle
 from firm_hdl.verify.ts1.oracles import ORACLES
+from firm_hdl.verify.ts1.oracles.oracle import Oracle
 from firm_hdl.verify.ts1.universe import Universe, write_definitions
-from firm_hdl.verify.verdict import Failed
 
 __all__ = ["Selection", "Tally", "Ts1Run", "selections_of"]
 

@@ -10,8 +10,8 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.export.vhdl.parts import packets_text
-from firm_hdl.verify.stimuli import stimuli
-from firm_hdl.verify.user_oracle import NotJudgedError
+from firm_hdl.verify.cases.stimuli import stimuli
+from firm_hdl.verify.results.verdict import NotJudgedError
 from tests.export.vhdl.test_layer import nasty, vhdl_of, write
 
 
@@ -120,7 +120,7 @@ def test_type_that_rosbags_cannot_write_has_no_stimuli(monkeypatch):
     def refuse(*arguments, **options):
         raise NotJudgedError("too odd")
 
-    monkeypatch.setattr("firm_hdl.verify.stimuli.judge_of", refuse)
+    monkeypatch.setattr("firm_hdl.verify.cases.stimuli.judge_of", refuse)
     message = load_message("std_msgs/msg/String")
     vhdl, plan = vhdl_of(message)
     assert stimuli(message, plan) == []

@@ -9,7 +9,7 @@ import pytest
 from firm_hdl import load_message
 from firm_hdl.cli import main
 from firm_hdl.export.build import build
-from firm_hdl.verify.stimuli import stimuli
+from firm_hdl.verify.cases.stimuli import stimuli
 from tests.export.vhdl.test_bench import run
 from tests.export.vhdl.test_layer import analyse, nasty, vhdl_of, write
 

@@ -15,7 +15,7 @@ from firm_hdl.export.top import DIRECTIONS
 from firm_hdl.export.vhdl.parts import packets_text
 from firm_hdl.model import Message
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.stimuli import stimuli
+from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.wire import lay_out
 from tests.export.vhdl.test_bench import run
 from tests.export.vhdl.test_layer import WARNINGS, analyse, vhdl_of, write

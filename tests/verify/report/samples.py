@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import random
 
-from firm_hdl.verify.records import PlanCoverage, Record, Seconds, Test
-from firm_hdl.verify.results import Results
-from firm_hdl.verify.verdict import Passed
+from firm_hdl.verify.results.file import Results
+from firm_hdl.verify.results.records import PlanCoverage, Record, Seconds, Test
+from firm_hdl.verify.results.verdict import Passed
 
 __all__ = ["a_record", "a_run", "a_test"]
 

@@ -11,7 +11,6 @@ import re
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.verify.records import OracleVerdict, PlanCoverage, Seconds
 from firm_hdl.verify.report import FORMATS, count, outcomes_of, summarise
 from firm_hdl.verify.report import markdown as markdown_writer
 from firm_hdl.verify.report.outcomes import Counts
@@ -27,8 +26,9 @@ from firm_hdl.verify.report.tables import (
     stage_table,
     within_table,
 )
-from firm_hdl.verify.results import Results, ResultsWriter
-from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.results.file import Results, ResultsWriter
+from firm_hdl.verify.results.records import OracleVerdict, PlanCoverage, Seconds
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from tests.verify.report.samples import a_record, a_test
 
 VERDICTS = {

@@ -10,14 +10,14 @@ from html.parser import HTMLParser
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.verify.records import OracleVerdict, PlanCoverage, Seconds
 from firm_hdl.verify.report import FORMATS, count, outcomes_of, summarise
 from firm_hdl.verify.report import html as page_writer
 from firm_hdl.verify.report import summary as summary_of
 from firm_hdl.verify.report.outcomes import failures_of
 from firm_hdl.verify.report.verdicts import reason_groups
-from firm_hdl.verify.results import Results, ResultsWriter
-from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.results.file import Results, ResultsWriter
+from firm_hdl.verify.results.records import OracleVerdict, PlanCoverage, Seconds
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from tests.verify.report.samples import a_record, a_run, a_test
 
 FAILED = a_record(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from firm_hdl.verify.records import PlanCoverage, Seconds
 from firm_hdl.verify.report import html
 from firm_hdl.verify.report.prose import facts, headline, shown_packages, shown_tests, sources
 from firm_hdl.verify.report.summary import summarise
@@ -15,8 +14,9 @@ from firm_hdl.verify.report.tables import (
     title_of,
     writer_table,
 )
-from firm_hdl.verify.results import Results
-from firm_hdl.verify.verdict import Failed, NotJudged
+from firm_hdl.verify.results.file import Results
+from firm_hdl.verify.results.records import PlanCoverage, Seconds
+from firm_hdl.verify.results.verdict import Failed, NotJudged
 from tests.verify.report.samples import a_record, a_test
 
 

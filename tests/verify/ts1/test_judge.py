@@ -8,10 +8,10 @@ import pytest
 
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.model import Primitive, Sequence, Text
+from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.judge import compare, judge, judge_case
-from firm_hdl.verify.ts1.oracle import Accepted, Refused
-from firm_hdl.verify.verdict import Failed, NotJudged, Passed
+from firm_hdl.verify.ts1.oracles.oracle import Accepted, Refused
 from tests.verify.judged import assert_passed
 
 GOOD = {

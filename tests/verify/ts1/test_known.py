@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged
 from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.known import KNOWN
-from firm_hdl.verify.ts1.texts import hidden, original, renamed, shown
-from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged
+from firm_hdl.verify.ts1.known.texts import hidden, original, renamed, shown
 from tests.verify.judged import assert_known, assert_passed
 from tests.verify.ts1.examples import EXAMPLES, drop_last, refuse
 
@@ -104,7 +104,7 @@ def test_an_entry_normalises_one_thing_and_leaves_other_texts_alone(entry, diale
 )
 def test_a_known_difference_hides_no_other(court, distro, oracle, text):
     from firm_hdl.verify.ts1.judge import compare, read
-    from firm_hdl.verify.ts1.oracle import Accepted
+    from firm_hdl.verify.ts1.oracles.oracle import Accepted
 
     here = court(distro, {"p/msg/A.msg": text})
     case = here.universe.select(["p/A"])[0]

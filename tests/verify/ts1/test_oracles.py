@@ -5,17 +5,20 @@ from __future__ import annotations
 import os
 import signal
 import stat
+from pathlib import Path
 
 import pytest
 
-from firm_hdl.verify.ts1.debian import Genmsg
+from firm_hdl.verify.results.verdict import Failed
+from firm_hdl.verify.ros_python.worker import Worker
 from firm_hdl.verify.ts1.judge import judge_case
-from firm_hdl.verify.ts1.oracle import Accepted, NotJudged, Refused
-from firm_hdl.verify.ts1.worker import Worker
-from firm_hdl.verify.verdict import Failed
+from firm_hdl.verify.ts1.oracles import debian
+from firm_hdl.verify.ts1.oracles.debian import Genmsg
+from firm_hdl.verify.ts1.oracles.oracle import Accepted, NotJudged, Refused
 from tests.verify.judged import assert_passed
 from tests.verify.ts1.conftest import need
 
+MODULES = Path(debian.__file__).parent
 FILES = {
     "p/msg/A.msg": "int8 N=010\nq/B[2] bs\nHeader header\nHeader[] headers\n",
     "p/msg/Header.msg": "string x\n",
@@ -123,7 +126,7 @@ def test_rosbags_gives_structure_and_hash(court):
 
 
 def worker(court, distro, family):
-    found = Worker(family, court(distro, FILES).universe.folder)
+    found = Worker(family, court(distro, FILES).universe.folder, modules=MODULES)
     need(family, found.missing)
     return found
 
@@ -162,7 +165,7 @@ def test_whatever_a_definition_is_the_worker_answers(court):
 
 @pytest.mark.parametrize("python", ["/nowhere/python", "/bin/false", "/bin/cat"])
 def test_a_python_that_has_not_what_is_needed(tmp_path, python):
-    assert Worker("genmsg", str(tmp_path), python).missing
+    assert Worker("genmsg", str(tmp_path), modules=MODULES, python=python).missing
 
 
 def test_what_a_worker_says_is_an_answer(court):
@@ -226,7 +229,7 @@ def test_ros2_that_says_nothing_has_not_judged(court, ros2_command):
 def test_ros2_is_missing_where_it_is_not_installed(court, monkeypatch):
     monkeypatch.setenv("PATH", "/nowhere")
     universe = court("lyrical", {}).universe
-    from firm_hdl.verify.ts1.ros2_oracle import Ros2Proto
+    from firm_hdl.verify.ts1.oracles.ros2_oracle import Ros2Proto
 
     assert Ros2Proto(universe).missing() == "there is no command 'ros2'; source ROS 2's setup"
 

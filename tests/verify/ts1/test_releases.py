@@ -6,12 +6,12 @@ import pytest
 
 from firm_hdl.frontend import Library
 from firm_hdl.identity import type_hash
+from firm_hdl.verify.results.verdict import Failed, NotJudged
 from firm_hdl.verify.ros2_wheels import RELEASES
 from firm_hdl.verify.ts1 import comparison
 from firm_hdl.verify.ts1.judge import judge
-from firm_hdl.verify.ts1.oracle import Accepted
 from firm_hdl.verify.ts1.oracles import ORACLES
-from firm_hdl.verify.verdict import Failed, NotJudged
+from firm_hdl.verify.ts1.oracles.oracle import Accepted
 from tests.verify.judged import assert_known
 
 PARSERS = [f"rosidl_parser-{release.rosidl}" for release in RELEASES]

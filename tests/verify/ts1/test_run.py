@@ -12,17 +12,17 @@ import pytest
 from firm_hdl.cli import main
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DISTROS
-from firm_hdl.verify.records import OracleVerdict
-from firm_hdl.verify.results import read_results
-from firm_hdl.verify.runner import UnknownTypeError
+from firm_hdl.verify.results.file import read_results
+from firm_hdl.verify.results.records import OracleVerdict
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1 import ORACLES, Selection, Ts1Run, run_ts1, selections_of
 from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.judge import Outcome
-from firm_hdl.verify.ts1.oracle import Refused
+from firm_hdl.verify.ts1.oracles.oracle import Refused
 from firm_hdl.verify.ts1.run import Tally
 from firm_hdl.verify.ts1.universe import Universe
-from firm_hdl.verify.verdict import Failed, KnownDifference, NotJudged, Passed
 from tests.frontend.workspace import make_files
 from tests.verify.ts1.conftest import need
 

@@ -1,0 +1,105 @@
+"""Which branches the generator takes for a type: layout, plan and elaboration.
+
+A branch is a step from one line of the generator's code to the next one within a function, as
+Python's own tracing shows it. Their names have numbers of lines, so they mean something only within
+one run, on one version of Python: they are for comparing types with each other. What exports text
+is left out; it transcribes what has been elaborated, and takes ten times as long.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from types import CodeType, FrameType
+from typing import Any
+
+from amaranth.hdl import Fragment
+
+from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.model import Message
+from firm_hdl.plan import Plan, build_plan
+from firm_hdl.wire import lay_out
+
+__all__ = ["PARTS", "branches", "traced"]
+
+PARTS = ("wire", "plan", "gateware")
+"""The parts of the package that are looked at."""
+
+_ROOT = Path(__file__).parents[1]
+
+
+def branches(message: Message, plan: Plan) -> frozenset[str]:
+    """Make a type's converters up to Amaranth's fragments, and name the branches that it took.
+
+    Parameters
+    ----------
+    plan : Plan
+        The type's; its wire, bus and limit are what the converters are made for.
+    """
+
+    def make() -> None:
+        build_plan(
+            lay_out(message, plan.wire),
+            bus_bytes=plan.bus_bytes,
+            max_message_bytes=plan.max_message_bytes,
+        )
+        for converter in (Deserializer, Serializer):
+            _elaborate(
+                converter(
+                    message,
+                    wire=plan.wire,
+                    bus_bytes=plan.bus_bytes,
+                    max_message_bytes=plan.max_message_bytes,
+                )
+            )
+
+    return traced(make, [_ROOT / part for part in PARTS])
+
+
+def _elaborate(design: Any) -> None:
+    pending = [design]
+    while pending:
+        fragment = Fragment.get(pending.pop(), None)
+        pending += [inner for inner, *_ in fragment.subfragments]
+
+
+def traced(work: Callable[[], object], folders: Iterable[Path]) -> frozenset[str]:
+    """Call a function, and return the branches that it took in the code of some folders."""
+    prefixes = tuple(f"{folder}{os.sep}" for folder in folders)
+    wanted: dict[CodeType, bool] = {}
+    found: set[tuple[CodeType, int, int]] = set()
+
+    def enter(frame: FrameType, event: str, argument: object) -> Any:
+        code = frame.f_code
+        is_wanted = wanted.get(code)
+        if is_wanted is None:
+            is_wanted = wanted[code] = code.co_filename.startswith(prefixes)
+        if not is_wanted:
+            return None
+        last = code.co_firstlineno
+
+        def step(frame: FrameType, event: str, argument: object) -> Any:
+            nonlocal last
+            if event == "line":
+                found.add((code, last, frame.f_lineno))
+                last = frame.f_lineno
+            return step
+
+        return step
+
+    # Somebody may be measuring already.
+    before = sys.gettrace()
+    sys.settrace(enter)
+    try:
+        work()
+    finally:
+        sys.settrace(before)
+    return frozenset(f"{_where(code)}:{start}->{end}" for code, start, end in found)
+
+
+def _where(code: CodeType) -> str:
+    path = Path(code.co_filename)
+    inside = path.relative_to(_ROOT).as_posix() if path.is_relative_to(_ROOT) else path.name
+    return f"{inside} {code.co_name}"

@@ -1,0 +1,193 @@
+"""Which types are worth testing: a small set with everything in it that the whole set has.
+
+Features of a type are of five families: the productions of the grammar that its text uses, what
+its definition means, the constructs of its layout and of its plan, and the branches that the
+generator takes for it (:mod:`firm_hdl.covering.branches`). The subset is chosen greedily: each time
+the type that adds most, the cheaper of two; that is within a logarithmic factor of the smallest set
+(Chvatal, 1979), and the same on every run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+
+from firm_hdl.covering.branches import branches
+from firm_hdl.frontend import Library
+from firm_hdl.frontend.productions import productions
+from firm_hdl.model import Array, Field, Message, Primitive, Sequence, Text
+from firm_hdl.plan import Plan
+from firm_hdl.plan.shape import constructs
+from firm_hdl.wire import Wire, lay_out
+from firm_hdl.wire.layout import Gap, Loop, Node, Run, Scalar, walk
+
+__all__ = ["FAMILIES", "Chosen", "all_features", "choose", "cost", "features"]
+
+FAMILIES = ("grammar", "definition", "layout", "plan", "branch")
+"""Which families of features there are; ``family: `` is in front of what `all_features` gives."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chosen:
+    """A type of a covering set.
+
+    Attributes
+    ----------
+    name : str
+    adds : tuple of str
+        The features that no type chosen before has.
+    """
+
+    name: str
+    adds: tuple[str, ...]
+
+
+def features(message: Message, plan: Plan) -> frozenset[str]:
+    """Name what a type is made of: in its definition and in its plan."""
+    return frozenset(_meaning(message)) | constructs(plan)
+
+
+def all_features(
+    library: Library, message: Message, plan: Plan, *, with_branches: bool = False
+) -> frozenset[str]:
+    """Name what a type has of every family.
+
+    Parameters
+    ----------
+    library : Library
+        What the message is from: it knows what definitions are written in.
+    with_branches : bool
+        Whether to elaborate the type's converters, which takes some tenths of a second.
+    """
+    found = {f"grammar: {name}" for name in _grammar(library, message)}
+    found |= {f"definition: {name}" for name in _meaning(message)}
+    found |= {f"layout: {name}" for name in _layout(message, plan.wire)}
+    found |= {f"plan: {name}" for name in constructs(plan)}
+    if with_branches:
+        found |= {f"branch: {name}" for name in branches(message, plan)}
+    return frozenset(found)
+
+
+def cost(plan: Plan) -> float:
+    """Estimate what a type costs to simulate: its set-up, then about as much as there are steps."""
+    return 20.0 + len(plan.steps)
+
+
+def _all_messages(message: Message) -> Iterator[Message]:
+    """Yield a message and all that are in it, each once."""
+    pending = [message]
+    seen = {message.name}
+    while pending:
+        current = pending.pop()
+        yield current
+        for child in current.children:
+            if child.name not in seen:
+                seen.add(child.name)
+                pending.append(child)
+
+
+def _grammar(library: Library, message: Message) -> Iterator[str]:
+    for each in _all_messages(message):
+        # The builtin types of ROS 1 have no text.
+        if each.package:
+            is_idl = library.is_idl(each.name)
+            language = "idl" if is_idl else each.dialect
+            for production in _productions(each, is_idl):
+                yield f"{language} {production}"
+
+
+@cache
+def _productions(message: Message, is_idl: bool) -> frozenset[str]:
+    return productions(message.text, message.dialect, is_idl=is_idl)
+
+
+def _meaning(message: Message) -> Iterator[str]:
+    for each in _all_messages(message):
+        yield from _own(each)
+
+
+def _layout(message: Message, wire: Wire) -> Iterator[str]:
+    for node in walk(lay_out(message, wire).nodes):
+        yield _node(node)
+
+
+def _node(node: Node) -> str:
+    match node:
+        case Scalar():
+            return f"scalar of {node.type.bytes} bytes, {_gap(node.gap)}"
+        case Run() | Loop():
+            words = [f"run of {node.item.bytes} bytes" if isinstance(node, Run) else "loop"]
+            words.append(
+                "of a constant length" if node.gap is None else f"length: {_gap(node.gap)}"
+            )
+            words += [f"items: {_gap(node.item_gap)}"] if isinstance(node, Run) else []
+            words += [] if node.bound is None else ["bounded"]
+            words += ["NUL"] if isinstance(node, Run) and node.terminated else []
+            return ", ".join(words)
+        case _:
+            return "trigger"
+
+
+def _gap(gap: Gap) -> str:
+    if gap.bytes is None:
+        return f"gap to a multiple of {gap.align}, by packet"
+    return f"gap of {gap.bytes}"
+
+
+def _own(message: Message) -> Iterator[str]:
+    if not message.fields:
+        yield "empty message"
+    for constant in message.constants:
+        yield f"constant {constant.type if isinstance(constant.type, Primitive) else 'string'}"
+    for item in message.fields:
+        yield from _field(item)
+
+
+def _field(item: Field) -> Iterator[str]:
+    kind = item.type
+    if item.default is not None:
+        yield f"default of {_kind(kind.element if isinstance(kind, Array | Sequence) else kind)}"
+    match kind:
+        case Array():
+            yield f"array of {_kind(kind.element)}"
+        case Sequence():
+            bound = "" if kind.bound is None else "bounded "
+            yield f"{bound}sequence of {_kind(kind.element)}"
+        case _:
+            yield f"field {_kind(kind)}"
+
+
+def _kind(kind: Primitive | Text | Message) -> str:
+    match kind:
+        case Primitive():
+            return kind.name
+        case Text():
+            bound = "" if kind.bound is None else "bounded "
+            return f"{bound}{'wstring' if kind.wide else 'string'}"
+        case _:
+            return "message" if kind.fields else "empty message"
+
+
+def choose(types: Mapping[str, Iterable[str]], costs: Mapping[str, float]) -> list[Chosen]:
+    """Choose types that together have every feature.
+
+    Parameters
+    ----------
+    types : mapping of str to iterable of str
+        Features by name of type.
+    costs : mapping of str to float
+        What each costs to test, above zero: of types that add equally much per cost, the first by
+        name is taken.
+    """
+    left = {name: set(found) for name, found in types.items()}
+    missing = set().union(*left.values()) if left else set()
+    chosen = []
+    while missing:
+        best = min(left, key=lambda name: (-len(left[name]) / costs[name], name))
+        adds = left.pop(best)
+        chosen.append(Chosen(name=best, adds=tuple(sorted(adds))))
+        missing -= adds
+        for found in left.values():
+            found -= adds
+    return chosen

@@ -1,0 +1,144 @@
+"""``firm-hdl cover``: few types that have every feature of all, chosen or checked."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+from tqdm import tqdm
+
+from firm_hdl.covering.choose import FAMILIES, all_features, choose, cost
+from firm_hdl.errors import DefinitionError
+from firm_hdl.export.build import BuildError, load_all, plan_of
+from firm_hdl.files import read_file
+from firm_hdl.frontend import Library, open_library
+from firm_hdl.model import Message
+from firm_hdl.plan.shape import shape
+
+__all__ = ["add_cover_arguments", "read_chosen", "run_cover"]
+
+_HEAD = """\
+# Types that together have every feature that any of {where} has; bus of {bus_bytes} bytes.
+# Written by `firm-hdl cover`, which --check FILE compares with today's features.
+"""
+
+
+def add_cover_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what ``firm-hdl cover`` takes, beside ``--distro``, ``--path`` and the options."""
+    parser.add_argument(
+        "types",
+        nargs="*",
+        metavar="TYPE",
+        help="to choose from; default: all; with --path, all in those folders",
+    )
+    parser.add_argument(
+        "--branches",
+        action="store_true",
+        help="count the generator's branches as features, too (some tenths of a second per type)",
+    )
+    do = parser.add_mutually_exclusive_group()
+    do.add_argument("--out", metavar="FILE", help="write the names of the chosen types to a file")
+    do.add_argument(
+        "--check", metavar="FILE", help="choose nothing; say what the types of such a file lack"
+    )
+
+
+def read_chosen(path: str | Path) -> list[str]:
+    """Read the names of types from a file that ``--out`` wrote.
+
+    Raises
+    ------
+    BuildError
+        If it names none.
+    """
+    try:
+        lines = read_file(path, 1 << 24).decode("utf-8").splitlines()
+    except UnicodeDecodeError:
+        raise BuildError(f"'{path}' is not UTF-8 text") from None
+    names = [line.strip() for line in lines if line.strip() and not line.startswith("#")]
+    if not names:
+        raise BuildError(f"'{path}' names no types")
+    return names
+
+
+def run_cover(given: argparse.Namespace) -> int:
+    """Run ``firm-hdl cover``; return 1 if types that are checked lack something."""
+    library = open_library(given.distro, given.path, given.bag, depends=given.depends)
+    kept = None if given.check is None else read_chosen(given.check)
+    messages = load_all(library, given.types) if given.types else _usable(library, given.path)
+    types: dict[str, frozenset[str]] = {}
+    costs, shapes = {}, set()
+    for message in tqdm(messages, unit="type", desc="features", disable=None):
+        try:
+            plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
+        except BuildError as error:
+            if given.types:
+                raise
+            tqdm.write(f"left out: {error}", file=sys.stderr)
+            continue
+        types[message.name] = all_features(library, message, plan, with_branches=given.branches)
+        costs[message.name] = cost(plan)
+        shapes.add(shape(plan))
+    if kept is not None:
+        return _check(types, kept, given.check)
+    chosen = choose(types, costs)
+    for each in chosen:
+        print(f"{each.name}: {', '.join(each.adds)}")
+    names = [each.name for each in chosen]
+    if given.out is not None:
+        where = "the folders" if given.path else library.distro
+        head = _HEAD.format(where=where, bus_bytes=given.bus_bytes)
+        text = head + "".join(f"{name}\n" for name in sorted(names))
+        Path(given.out).parent.mkdir(parents=True, exist_ok=True)
+        Path(given.out).write_text(text, encoding="utf-8", newline="\n")
+    print(f"{_share(types, names)}; {len(shapes)} different circuits", file=sys.stderr)
+    return 0
+
+
+def _usable(library: Library, paths: Sequence[str]) -> list[Message]:
+    """Return all types of folders, or of a library, and say what is wrong with the others."""
+    found = []
+    # Of folders, services and actions as well, which the distributions do not have.
+    there = Library(library.distro, paths, origins=()) if paths else library
+    for name in there.interfaces():
+        try:
+            found += load_all(library, [name])
+        except DefinitionError as error:
+            for problem in error.diagnostics:
+                print(f"left out: {name}: {problem.message}", file=sys.stderr)
+    return found
+
+
+def _check(types: Mapping[str, frozenset[str]], kept: list[str], path: str) -> int:
+    if unknown := [name for name in kept if name not in types]:
+        raise BuildError(f"'{path}' names {', '.join(unknown)}, not among the types")
+    missing = _union(types.values()) - _union(types[name] for name in kept)
+    for feature in sorted(missing):
+        # The smallest one shows it best.
+        having = [name for name in types if feature in types[name]]
+        least = min(having, key=lambda name: (len(types[name]), name))
+        print(f"missing: {feature} (in {least})")
+    print(_share(types, kept), file=sys.stderr)
+    return 1 if missing else 0
+
+
+def _share(types: Mapping[str, frozenset[str]], names: list[str]) -> str:
+    """Say how many features of all types some of them have, by family."""
+    all_of = Counter(feature.partition(":")[0] for feature in _union(types.values()))
+    some_of = Counter(
+        feature.partition(":")[0] for feature in _union(types[name] for name in names)
+    )
+    families = ", ".join(
+        f"{family} {some_of[family]} of {all_of[family]}" for family in FAMILIES if all_of[family]
+    )
+    have, all_ = some_of.total(), all_of.total()
+    # Rounded down: 100 % is all of them.
+    share = 100 * have // all_ if all_ else 100
+    return f"{len(names)} of {len(types)} types have {share} % of the {all_} features ({families})"
+
+
+def _union(sets: Iterable[frozenset[str]]) -> frozenset[str]:
+    return frozenset().union(*sets)

@@ -1,0 +1,137 @@
+"""Cases until every decision of a plan was taken.
+
+:mod:`firm_hdl.verify.cases.make` chooses lengths and values for themselves. Some decisions need
+more: a padding of five bytes between two strings, or a second element in the last turn of an outer
+loop.
+Those are searched for: more cases are drawn, and one is kept if it takes a decision that none took
+before. What is still missing in the end is named, so that nobody takes silence for coverage.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from firm_hdl.plan import Edge, Plan, decode, encode
+from firm_hdl.plan.edges import edges
+from firm_hdl.verify.cases.make import Case, make_cases
+from firm_hdl.verify.references.oracle import Oracle
+
+__all__ = ["Coverage", "bare_packets", "coverage", "more_cases"]
+
+TRIES = 300
+"""How many seeds to draw cases from that nothing new comes of."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Coverage:
+    """How much of a plan some packets reach.
+
+    Attributes
+    ----------
+    possible : frozenset of Edge
+        All decisions of the plan.
+    taken : frozenset of Edge
+        Those among them that a packet took.
+    """
+
+    possible: frozenset[Edge]
+    taken: frozenset[Edge]
+
+    @property
+    def missing(self) -> list[Edge]:
+        """What no packet took, in the order of the plan."""
+        return sorted(self.possible - self.taken)
+
+    def __str__(self) -> str:
+        return f"{len(self.taken)} of {len(self.possible)}"
+
+
+def coverage(plan: Plan, packets: Iterable[bytes]) -> Coverage:
+    """Find out which decisions of a plan packets take, by the golden model."""
+    taken: set[Edge] = set()
+    for packet in packets:
+        taken |= decode(plan, packet).edges
+    possible = edges(plan)
+    return Coverage(possible=possible, taken=possible & taken)
+
+
+def more_cases(
+    oracle: Oracle, name: str, plan: Plan, cases: Sequence[Case], *, seed: int = 0
+) -> list[Case]:
+    """Return cases that take decisions which none of the given ones takes.
+
+    Parameters
+    ----------
+    name : str
+        ``package/msg/Type``.
+    plan : Plan
+        Of that type.
+    seed : int
+        Of the given cases.
+    """
+    missing = set(edges(plan))
+    for case in cases:
+        missing -= _taken(plan, case)
+    found: list[Case] = []
+    idle = number = 0
+    while missing and idle < TRIES:
+        number += 1
+        idle += 1
+        drawn = make_cases(
+            oracle,
+            name,
+            wire=plan.wire,
+            bus_bytes=plan.bus_bytes,
+            seed=(seed << 32) + number,
+            most=3,
+        )
+        for case in drawn:
+            new = missing & _taken(plan, case)
+            if new:
+                missing -= new
+                found.append(case)
+                idle = 0
+    return found
+
+
+def _taken(plan: Plan, case: Case) -> frozenset[Edge]:
+    """Return what a case takes, and what only its form with bare strings takes."""
+    decoded = decode(plan, case.packet)
+    bare = _bare_edges(plan)
+    if not bare:
+        return decoded.edges
+    packet, _ = encode(plan, decoded.streams, bare_strings=True)
+    return decoded.edges | (bare & decode(plan, packet).edges)
+
+
+def bare_packets(plan: Plan, cases: Iterable[Case]) -> list[tuple[Case, bytes]]:
+    """Return what cases with empty CDR strings look like if those have the length 0.
+
+    ROS 2 reads such packets, and so does a deserializer, but nobody writes them: a converter's
+    answer is the case's own packet. Empty for ROS 1, and for types without strings.
+    """
+    missing = _bare_edges(plan)
+    found = []
+    for case in cases:
+        if not missing:
+            break
+        packet, _ = encode(plan, decode(plan, case.packet).streams, bare_strings=True)
+        new = missing & decode(plan, packet).edges
+        if new:
+            missing -= new
+            found.append((case, packet))
+    return found
+
+
+def _bare_edges(plan: Plan) -> frozenset[Edge]:
+    """Return the decisions that only the length 0 of a CDR string takes."""
+    return frozenset(
+        edge
+        for edge in edges(plan)
+        if (begin := plan.steps[edge.step].begin) is not None
+        and begin.terminated
+        and not begin.head
+        and edge.way != "body"
+        and not edge.way.startswith("padding")
+    )

@@ -1,0 +1,211 @@
+"""``firm-hdl verify --sut``: what it prints of client libraries."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import closing
+from dataclasses import replace
+from typing import Any
+
+from tqdm import tqdm
+
+from firm_hdl.frontend import DISTROS
+from firm_hdl.verify.clients.finding import Finding
+from firm_hdl.verify.clients.judge import Trial
+from firm_hdl.verify.clients.run import SutOptions, contest_of, judge_types, reference_of
+from firm_hdl.verify.clients.shrink import shrunk
+from firm_hdl.verify.references.client import ClientMissingError, Refusal
+from firm_hdl.verify.references.clients import CLIENTS, REFERENCES, client, close_clients
+from firm_hdl.verify.references.objects import full_text
+from firm_hdl.verify.references.values import shown
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.systems.system import Judged
+from firm_hdl.verify.systems.tasks import Task
+from firm_hdl.wire import Wire
+
+__all__ = ["find_clients", "run_sut"]
+
+MOST_SHOWN = 5
+"""So many differences of each library are made small and shown."""
+
+MOST_NAMED = 5
+"""So many types are named with each kind of difference."""
+
+MOST_CHARACTERS = 400
+
+_SAID = {
+    Passed.name: "agree",
+    KnownDifference.name: "known",
+    Failed.name: "differ",
+    NotJudged.name: "not judged",
+}
+"""What is printed of a library, in the order of the columns."""
+
+
+def find_clients(names: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
+    """Return versions of the libraries that are here, and why the others are not."""
+    versions, missing = {}, {}
+    for name in names:
+        why = client(name).missing()
+        if why is None:
+            versions[name] = client(name).version()
+        else:
+            missing[name] = why
+    # Processes that are forked must not have ours.
+    close_clients()
+    return versions, missing
+
+
+def run_sut(tasks: Sequence[Task], options: SutOptions, jobs: int | None = None) -> list[Judged]:
+    """Judge libraries on types, print what came of it, and return it.
+
+    Parameters
+    ----------
+    options : SutOptions
+        `here` is found out.
+
+    Raises
+    ------
+    ClientMissingError
+        If a library is not here.
+    """
+    began = time.perf_counter()
+    references = {name for wire in _wires(tasks, options) for name in REFERENCES[wire]}
+    asked = [*options.libraries, *(name for name in CLIENTS if name in references)]
+    versions, missing = find_clients(list(dict.fromkeys(asked)))
+    for name in options.libraries:
+        if name in missing:
+            raise ClientMissingError(missing[name])
+    here = tuple(name for name in CLIENTS if name in references and name in versions)
+    options = replace(options, here=here)
+    for line in _judges(_wires(tasks, options), options, versions, missing):
+        print(line)
+    trials: list[tuple[Task, Trial]] = []
+    with (
+        tqdm(total=len(tasks), unit="type", desc="client libraries", disable=None) as bar,
+        closing(judge_types(tasks, options, jobs)) as run,
+    ):
+        for task, found in run:
+            trials += [(task, trial) for trial in found]
+            bar.update()
+    for line in _differences(trials, options):
+        print(line)
+    for line in _summary([trial for _, trial in trials], options, versions):
+        print(line)
+    close_clients()
+    count = sum(isinstance(trial.verdict, Failed) for _, trial in trials)
+    print(f"{len(tasks)} types, {time.perf_counter() - began:.0f} s, {count} differ")
+    return [
+        Judged(what=f"{task.name} ({', '.join(task.same)}), {trial.library}", verdict=trial.verdict)
+        for task, trial in trials
+        if trial.is_asked
+    ]
+
+
+def _wires(tasks: Sequence[Task], options: SutOptions) -> list[Wire]:
+    if options.wire is not None:
+        return [options.wire]
+    dialects = {DISTROS[task.distro].dialect for task in tasks}
+    return [wire for dialect, wire in _WIRES if dialect in dialects]
+
+
+_WIRES: tuple[tuple[str, Wire], ...] = (("ros1", "ros1"), ("ros2", "cdr"))
+
+
+def _judges(
+    wires: Sequence[Wire], options: SutOptions, versions: dict[str, str], missing: dict[str, str]
+) -> Iterator[str]:
+    """Say who judges whom."""
+    for wire in wires:
+        ros = REFERENCES[wire][0]
+        if ros in missing:
+            yield f"{ros}, which is ROS's own on {wire}, is not here: {missing[ros]}"
+        for library in options.libraries:
+            if wire in CLIENTS[library].wires:
+                judge = reference_of(library, wire, options.here)
+                said = f"{judge} {versions[judge]}" if judge else "nobody"
+                yield f"{library} {versions[library]} on {wire}: judged by {said}"
+
+
+def _differences(trials: Sequence[tuple[Task, Trial]], options: SutOptions) -> Iterator[str]:
+    """Print what is new, the first few of each library with the smallest case."""
+    shown_of: Counter[tuple[str, str]] = Counter()
+    for task, trial in sorted(trials, key=lambda each: (each[1].library, each[1].type)):
+        for finding in trial.findings:
+            key = trial.library, finding.what
+            shown_of[key] += 1
+            head = f"DIFFERS {trial.library}, {finding.what}: {trial.type} ({task.distro})"
+            again = options.command(task.distro, task.name, trial.library)
+            if shown_of[key] == 1 and len(shown_of) <= MOST_SHOWN * len(options.libraries):
+                small = shrunk(finding, contest_of(trial, finding.wire).again)
+                yield "\n".join([head, *described(small), f"    again: {again}"])
+            elif shown_of[key] <= MOST_NAMED:
+                yield f"{head}\n    again: {again}"
+    for task, trial in trials:
+        if isinstance(trial.obstacle, Failed):
+            why = trial.obstacle.failures[0]
+            yield f"FAIL {trial.library}: {trial.type} ({task.distro}): {why}"
+    for (library, what), count in shown_of.items():
+        if count > MOST_NAMED:
+            yield f"DIFFERS {library}, {what}: and {count - MOST_NAMED} more types"
+
+
+def described(finding: Finding) -> list[str]:
+    """Describe a difference in lines: definition, value, packet, and both answers."""
+    lines = [f"    {line}" for line in full_text(finding.message).splitlines()]
+    lines.append(f"    value: {_clip(shown(finding.message, finding.value))}")
+    if not finding.what.startswith("encode"):
+        lines.append(f"    packet: {_clip(finding.packet.hex() or 'no bytes')}")
+    for name, answer in (
+        (finding.reference, finding.expected),
+        (finding.library, finding.got),
+    ):
+        lines.append(f"    {name}: {_clip(_answer(finding, answer))}")
+    return lines
+
+
+def _answer(finding: Finding, answer: Any) -> str:
+    if isinstance(answer, Refusal):
+        return f"refuses: {answer}"
+    if isinstance(answer, bytes):
+        return answer.hex() or "no bytes"
+    try:
+        return shown(finding.message, answer) or "a message without fields"
+    # A library may give values that do not fit the type.
+    except (TypeError, ValueError, KeyError, IndexError):
+        return repr(answer)
+
+
+def _clip(text: str) -> str:
+    if len(text) <= MOST_CHARACTERS:
+        return text
+    return f"{text[:MOST_CHARACTERS]}... ({len(text)} characters)"
+
+
+def _summary(
+    trials: Sequence[Trial], options: SutOptions, versions: dict[str, str]
+) -> Iterator[str]:
+    head = "".join(f"{name:>11}" for name in _SAID.values())
+    yield f"{'types':24}{head}{'comparisons':>13}"
+    for library in options.libraries:
+        own = [trial for trial in trials if trial.library == library]
+        counts = Counter(trial.verdict.name for trial in own)
+        row = "".join(f"{counts[name]:11}" for name in _SAID)
+        total = sum(trial.comparisons for trial in own)
+        yield f"{f'{library} {versions[library]}':24}{row}{total:13}"
+    for library in options.libraries:
+        known: Counter[str] = Counter()
+        reasons: Counter[str] = Counter()
+        for trial in trials:
+            if trial.library == library:
+                known.update(trial.known)
+                if isinstance(trial.verdict, NotJudged):
+                    reasons[trial.verdict.reason] += 1
+        for key, count in sorted(known.items()):
+            yield f"known, {library}: {key}: {count}"
+        for reason, count in reasons.most_common(MOST_NAMED):
+            yield f"not judged, {library}: {reason}: {count}"
+        if left := reasons.most_common()[MOST_NAMED:]:
+            yield f"not judged, {library}: other reasons: {sum(count for _, count in left)}"

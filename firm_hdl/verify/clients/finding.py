@@ -1,0 +1,120 @@
+"""A difference between a client library and its reference, and what may be known of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeAlias
+
+from firm_hdl.model import Array, FieldType, Message
+from firm_hdl.model import Sequence as SequenceType
+from firm_hdl.verify.references.client import Refusal
+from firm_hdl.verify.references.values import Plain
+from firm_hdl.wire import Wire
+
+__all__ = ["Change", "Finding", "Known", "changed"]
+
+Change: TypeAlias = "Callable[[FieldType, Plain], Plain]"
+"""Returns what a text, a number or a ROS 1 time is to be replaced by."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """One difference.
+
+    Attributes
+    ----------
+    library, reference : str
+    wire : Wire
+    what : str
+        ``encode`` or ``decode``, the name of an oddity, or ``encode`` with that.
+    message : Message
+    value : Plain
+        What was to be written, or what the packet comes from.
+    packet : bytes
+        What was to be read.
+    expected, got : bytes, Plain or Refusal
+        The answers of the reference and of the library.
+    """
+
+    library: str
+    reference: str
+    wire: Wire
+    what: str
+    message: Message
+    value: Plain = field(repr=False)
+    packet: bytes = field(repr=False)
+    expected: Any = field(repr=False)
+    got: Any = field(repr=False)
+
+    def answers(self, library: str) -> tuple[Any, Any]:
+        """Return the answer of one of the two, and that of the other."""
+        if library == self.library:
+            return self.got, self.expected
+        return self.expected, self.got
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Known:
+    """One known difference.
+
+    Attributes
+    ----------
+    key : str
+        Its name, here and in docs/divergences.md.
+    libraries : tuple of str
+        Who does it in another way than ROS, or in a way of its own.
+    wires : str
+        ``ros1``, ``cdr``, or both.
+    text : str
+        What it does, in one sentence.
+    tame : callable or None
+        Takes what it is about out of a value, so that all write the same.
+    same : callable or None
+        Takes it out of what was read.
+    whats : tuple of str
+        Oddities that it is about.
+    answer : "takes", "refuses" or None
+        What it does with them, when the other does the opposite; `None`: both take them.
+    """
+
+    key: str
+    libraries: tuple[str, ...]
+    wires: str
+    text: str
+    tame: Change | None = None
+    same: Change | None = None
+    whats: tuple[str, ...] = ()
+    answer: Literal["takes", "refuses"] | None = None
+
+    def is_about(self, finding: Finding) -> str | None:
+        """Return the library that it is about; `None` if neither."""
+        if finding.wire not in self.wires.split():
+            return None
+        both = (finding.library, finding.reference)
+        return next((name for name in both if name in self.libraries), None)
+
+    def explains_answer(self, finding: Finding) -> bool:
+        """Whether it explains who takes an odd packet or value."""
+        name = self.is_about(finding)
+        if name is None or finding.what not in self.whats:
+            return False
+        mine, other = (isinstance(each, Refusal) for each in finding.answers(name))
+        return (mine, other) == {
+            "takes": (False, True),
+            "refuses": (True, False),
+            None: (False, False),
+        }[self.answer]
+
+
+def changed(kind: FieldType, value: Plain, change: Change) -> Plain:
+    """Return a value with each text, number and ROS 1 time replaced."""
+    match kind:
+        case Message(name="time" | "duration"):
+            return change(kind, value)
+        case Message():
+            return {item.name: changed(item.type, value[item.name], change) for item in kind.fields}
+        case Array(element=element) | SequenceType(element=element):
+            return [changed(element, each, change) for each in value]
+        case _:
+            return change(kind, value)

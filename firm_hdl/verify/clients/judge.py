@@ -1,0 +1,230 @@
+"""A client library against ROS's own serializer, on one message type."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from firm_hdl.model import Message
+from firm_hdl.verify.clients.finding import Finding
+from firm_hdl.verify.clients.known import known_keys
+from firm_hdl.verify.clients.odd import (
+    ODDITIES,
+    odd_packet,
+    odd_packets,
+    odd_value,
+    odd_values,
+    plain_packet,
+)
+from firm_hdl.verify.references.client import (
+    Client,
+    ClientDiedError,
+    Codec,
+    Refusal,
+    UnsupportedError,
+    each_answered,
+)
+from firm_hdl.verify.references.values import Plain
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
+from firm_hdl.wire import Wire
+
+__all__ = ["Contest", "Trial"]
+
+
+@dataclass(slots=True, kw_only=True)
+class Trial:
+    """What came of a library and a type.
+
+    Attributes
+    ----------
+    library, reference : str
+    type : str
+    comparisons : int
+        How often both were asked for the same.
+    answers : int
+        How often the reference had an answer to that, and did not refuse.
+    known : counter of str
+        Keys of differences that are known.
+    findings : list of Finding
+        Others, the first of each kind.
+    unknown : int
+        How many others there are.
+    obstacle : NotJudged, Failed or None
+        Why there is nothing: a library has no such type, or broke down.
+    is_asked : bool
+        Whether the library was asked to judge just this: not if it does not speak the wire of a
+        distribution that nobody named.
+    """
+
+    library: str
+    reference: str
+    type: str
+    comparisons: int = 0
+    answers: int = 0
+    known: Counter[str] = field(default_factory=Counter)
+    findings: list[Finding] = field(default_factory=list)
+    unknown: int = 0
+    obstacle: NotJudged | Failed | None = None
+    is_asked: bool = True
+
+    @property
+    def verdict(self) -> Verdict:
+        """What all of this comes to; cases are comparisons."""
+        if self.unknown:
+            kinds = [f"{each.what} differs from {self.reference}" for each in self.findings]
+            return Failed(tuple(kinds) or (f"{self.unknown} differences",))
+        if self.obstacle is not None:
+            return self.obstacle
+        if not self.answers:
+            return NotJudged(f"{self.reference or 'the reference'} had no answer to anything")
+        if self.known:
+            return KnownDifference(tuple(sorted(self.known)), self.comparisons)
+        return Passed(self.comparisons)
+
+    def add(self, finding: Finding, codecs: tuple[Codec, Codec]) -> None:
+        """Count a difference."""
+        if keys := known_keys(finding, *codecs):
+            self.known.update(keys)
+            return
+        self.unknown += 1
+        if all(each.what != finding.what for each in self.findings):
+            self.findings.append(finding)
+
+
+class Contest:
+    """A library and its reference.
+
+    Parameters
+    ----------
+    library, reference : Client
+    wire : Wire
+    """
+
+    def __init__(self, library: Client, reference: Client, wire: Wire):
+        self.library, self.reference, self.wire = library, reference, wire
+
+    def judge(self, message: Message, values: Sequence[Plain]) -> Trial:
+        """Compare what they make of values, and of packets that come from these."""
+        trial = Trial(library=self.library.name, reference=self.reference.name, type=message.name)
+        try:
+            self._judge(trial, message, values, *self._open(message))
+        except ClientDiedError as error:
+            trial.obstacle = Failed((str(error),))
+        except UnsupportedError as error:
+            trial.obstacle = NotJudged(str(error) or "the type is not supported")
+        return trial
+
+    def _open(self, message: Message) -> tuple[Codec, Codec]:
+        for client in (self.library, self.reference):
+            if self.wire not in client.wires:
+                raise UnsupportedError(f"{client.name} does not speak {self.wire}")
+        return self.library.open(message, self.wire), self.reference.open(message, self.wire)
+
+    def _judge(
+        self,
+        trial: Trial,
+        message: Message,
+        values: Sequence[Plain],
+        theirs: Codec,
+        right: Codec,
+    ) -> None:
+        name = self.reference.name
+        packets = each_answered(name, values, right.encode_all(values))
+        asked = [_Asked("encode", value, None) for value in values]
+        pairs = [(v, p) for v, p in zip(values, packets, strict=True) if isinstance(p, bytes)]
+        asked += [_Asked("decode", value, packet) for value, packet in pairs]
+        asked += [
+            _Asked(f"encode {name}", value, None) for name, value in odd_values(message, values)
+        ]
+        usable = [v for v, p in pairs if plain_packet(message, self.wire, v) == p]
+        asked += [
+            _Asked(oddity.name, value, packet)
+            for oddity, value, packet in odd_packets(message, self.wire, usable)
+            if self._reads(oddity.name)
+        ]
+        expectations = _answers(name, right, asked)
+        answers = zip(asked, expectations, _answers(self.library.name, theirs, asked), strict=True)
+        for each, expected, got in answers:
+            trial.comparisons += 1
+            trial.answers += not isinstance(expected, Refusal)
+            if expected != got:
+                trial.add(self._finding(message, each, expected, got), (theirs, right))
+
+    def _reads(self, oddity: str) -> bool:
+        both = (self.library, self.reference)
+        return oddity != "big-endian" or all("big" in each.byte_orders for each in both)
+
+    def _finding(self, message: Message, asked: _Asked, expected: Any, got: Any) -> Finding:
+        return Finding(
+            library=self.library.name,
+            reference=self.reference.name,
+            wire=self.wire,
+            what=asked.what,
+            message=message,
+            value=asked.value,
+            packet=asked.packet or b"",
+            expected=expected,
+            got=got,
+        )
+
+    def ask(
+        self, message: Message, what: str, value: Plain
+    ) -> tuple[Finding, Sequence[str]] | None:
+        """Ask for one thing, and return a difference and what explains it; `None` if there is none.
+
+        Parameters
+        ----------
+        what : str
+            See `Finding`. What is odd is done to `value`, or to its packet.
+        """
+        try:
+            theirs, right = self._open(message)
+            asked = self._asked(message, what, value, right)
+            if asked is None:
+                return None
+            (expected,) = _answers(self.reference.name, right, [asked])
+            (got,) = _answers(self.library.name, theirs, [asked])
+        except UnsupportedError:
+            return None
+        finding = self._finding(message, asked, expected, got)
+        return None if expected == got else (finding, known_keys(finding, theirs, right))
+
+    def again(self, message: Message, what: str, value: Plain) -> Finding | None:
+        """Ask for one thing; return a difference that nothing explains."""
+        found = self.ask(message, what, value)
+        return None if found is None or found[1] else found[0]
+
+    def _asked(self, message: Message, what: str, value: Plain, right: Codec) -> _Asked | None:
+        if what.startswith("encode"):
+            odd = what.removeprefix("encode").strip()
+            changed = odd_value(message, value, odd) if odd else value
+            return None if changed is None else _Asked(what, changed, None)
+        (plain,) = right.encode_all([value])
+        if isinstance(plain, Refusal):
+            return None
+        if what == "decode":
+            return _Asked(what, value, plain)
+        if plain != plain_packet(message, self.wire, value):
+            return None
+        packet = odd_packet(message, self.wire, value, ODDITIES[what])
+        return None if packet is None else _Asked(what, value, packet)
+
+
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    """What both are asked: to write a value, or, if there is a packet, to read that."""
+
+    what: str
+    value: Plain
+    packet: bytes | None
+
+
+def _answers(name: str, codec: Codec, asked: Sequence[_Asked]) -> list[Any]:
+    """Ask a library, all values and all packets at once."""
+    values = [each.value for each in asked if each.packet is None]
+    packets = [each.packet for each in asked if each.packet is not None]
+    written = iter(each_answered(name, values, codec.encode_all(values)) if values else ())
+    read = iter(each_answered(name, packets, codec.decode_all(packets)) if packets else ())
+    return [next(written) if each.packet is None else next(read) for each in asked]

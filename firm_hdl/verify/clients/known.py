@@ -1,0 +1,89 @@
+"""What explains a difference, if it is known.
+
+A difference in values is explained if it is gone once what an entry is about is taken out of the
+values; so one that is known hides no other. One in whether a packet is taken is explained by what
+is odd about the packet, and by who takes it. A difference that no entry explains is new.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from firm_hdl.model import Message
+from firm_hdl.verify.clients.divergences import KNOWN
+from firm_hdl.verify.clients.finding import Finding, Known, changed
+from firm_hdl.verify.references.client import Codec, Refusal, UnsupportedError
+from firm_hdl.verify.references.clients import client
+from firm_hdl.verify.references.values import Plain
+from firm_hdl.wire import Wire
+
+__all__ = ["known_keys", "known_writing"]
+
+
+def known_keys(finding: Finding, theirs: Codec, right: Codec) -> Sequence[str]:
+    """Return the keys of what explains a difference; none if it is new."""
+    entries = [entry for entry in KNOWN if entry.is_about(finding)]
+    for entry in entries:
+        if entry.explains_answer(finding):
+            return [entry.key]
+    is_writing = finding.what.startswith("encode")
+    if is_writing:
+        return _explained_writing(finding, entries, theirs, right)
+    if isinstance(finding.expected, Refusal) or isinstance(finding.got, Refusal):
+        return ()
+    found, expected, got = [], finding.expected, finding.got
+    for entry in entries:
+        if entry.same is not None:
+            one, other = (changed(finding.message, each, entry.same) for each in (expected, got))
+            if (one, other) != (expected, got):
+                found.append(entry.key)
+            expected, got = one, other
+    return found if expected == got else ()
+
+
+def _explained_writing(
+    finding: Finding, entries: Sequence[Known], theirs: Codec, right: Codec
+) -> Sequence[str]:
+    found, value = [], finding.value
+    for entry in entries:
+        if entry.tame is not None:
+            tamed = changed(finding.message, value, entry.tame)
+            if tamed != value:
+                found.append(entry.key)
+            value = tamed
+    if not found:
+        return ()
+    one, other = right.encode_all([value])[0], theirs.encode_all([value])[0]
+    return found if one == other and not isinstance(one, Refusal) else ()
+
+
+def known_writing(
+    message: Message, wire: Wire, value: Plain, library: str, reference: str, codec: Codec
+) -> Sequence[str]:
+    """Return the keys of what explains that two libraries write a value in different ways.
+
+    It does if the library writes the value without what is known in the way of the reference.
+    Nothing does if the reference does not have the type.
+
+    Parameters
+    ----------
+    codec : Codec
+        Of `library`. That of the reference is opened here.
+    """
+    try:
+        right = client(reference).open(message, wire)
+    except UnsupportedError:
+        # Without the type, there is nothing in its way.
+        return ()
+    finding = Finding(
+        library=library,
+        reference=reference,
+        wire=wire,
+        what="encode",
+        message=message,
+        value=value,
+        packet=b"",
+        expected=b"",
+        got=b"",
+    )
+    return known_keys(finding, codec, right)

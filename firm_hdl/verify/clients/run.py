@@ -1,0 +1,148 @@
+"""Client libraries against ROS's own serializers, over many types, in several processes."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.jobs.processes import in_processes
+from firm_hdl.model import Message
+from firm_hdl.plan import build_plan
+from firm_hdl.verify.cases.directed import more_cases
+from firm_hdl.verify.cases.effort import some_cases
+from firm_hdl.verify.cases.make import make_cases
+from firm_hdl.verify.clients.judge import Contest, Trial
+from firm_hdl.verify.references.clients import REFERENCES, client
+from firm_hdl.verify.references.user_oracle import judge_of
+from firm_hdl.verify.references.values import Plain, from_objects
+from firm_hdl.verify.results.verdict import NotJudged, NotJudgedError
+from firm_hdl.verify.systems.libraries import library_of
+from firm_hdl.verify.systems.tasks import Task
+from firm_hdl.wire import Wire, lay_out
+
+__all__ = ["SutOptions", "contest_of", "judge_type", "judge_types", "reference_of"]
+
+BUS_BYTES = 8
+"""Lengths of sequences and texts are chosen as for a bus of so many bytes."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SutOptions:
+    """What to judge, and how.
+
+    Attributes
+    ----------
+    libraries : tuple of str
+        Systems under test.
+    here : tuple of str
+        References that can be used.
+    wire : Wire or None
+        `None`: that of the distribution.
+    seed : int
+    most_cases : int or None
+    paths : tuple of str
+        Folders with ROS packages, searched first.
+    names_wires : bool
+        Whether the user has said on which wires, or of which distributions: then a library that
+        does not speak one of them has not judged what it was asked to.
+    """
+
+    libraries: tuple[str, ...]
+    here: tuple[str, ...] = ()
+    wire: Wire | None = None
+    seed: int = 0
+    most_cases: int | None = None
+    paths: tuple[str, ...] = ()
+    names_wires: bool = True
+
+    def command(self, distro: str, name: str, library: str) -> str:
+        """Return the command that judges one library on one type again."""
+        parts = ["firm-hdl", "verify", "--sut", library, "--distro", distro]
+        for path in self.paths:
+            parts += ["--path", path]
+        parts += ["--wire", self.wire] if self.wire else []
+        parts += ["--seed", str(self.seed)] if self.seed else []
+        parts += [] if self.most_cases is None else ["--cases", str(self.most_cases)]
+        return shlex.join([*parts, name])
+
+
+def reference_of(library: str, wire: Wire, here: Sequence[str]) -> str | None:
+    """Return who judges a library on a wire, if it has the type; `None` if nobody is here."""
+    return next(iter(_references(library, wire, here)), None)
+
+
+def _references(library: str, wire: Wire, here: Sequence[str]) -> list[str]:
+    own, *others = REFERENCES[wire]
+    # ROS's own is not judged by another release of itself, if anybody else is here.
+    names = reversed(others) if library == own else (own, *others)
+    return [name for name in names if name in here and name != library]
+
+
+def contest_of(trial: Trial, wire: Wire) -> Contest:
+    """Return what a trial came from, to ask again."""
+    return Contest(client(trial.library), client(trial.reference), wire)
+
+
+def judge_type(distro: str, name: str, options: SutOptions) -> list[Trial]:
+    """Judge all libraries on one type. Nothing is raised: what goes wrong is in the trials."""
+    try:
+        message = library_of(distro, options.paths).message(name)
+        wire = options.wire or message.wire
+        values = _values(distro, name, wire, options)
+    # Whatever it is, the other types are to go on.
+    except (NotJudgedError, DefinitionError, ValueError) as error:
+        return [_not_judged(library, name, str(error)) for library in options.libraries]
+    trials = [_judged(library, message, wire, values, options) for library in options.libraries]
+    for trial in trials:
+        trial.is_asked = options.names_wires or wire in client(trial.library).wires
+    return trials
+
+
+def _judged(
+    library: str, message: Message, wire: Wire, values: Sequence[Plain], options: SutOptions
+) -> Trial:
+    """Judge a library by the first reference that has the type."""
+    first: Trial | None = None
+    for reference in _references(library, wire, options.here):
+        trial = Contest(client(library), client(reference), wire).judge(message, values)
+        if not isinstance(trial.obstacle, NotJudged):
+            return trial
+        first = first or trial
+    return first or _not_judged(library, message.name, f"nobody is here who judges it on {wire}")
+
+
+def _not_judged(library: str, name: str, why: str) -> Trial:
+    return Trial(library=library, reference="", type=name, obstacle=NotJudged(why))
+
+
+def _values(distro: str, name: str, wire: Wire, options: SutOptions) -> list[Plain]:
+    """Choose values as TS3 does: all lengths and extremes, and what decisions of a plan need."""
+    message = library_of(distro, options.paths).message(name)
+    judge = judge_of(message, None if options.paths else distro, stand_in=True)
+    made = make_cases(
+        judge.oracle,
+        judge.name,
+        wire=wire,
+        bus_bytes=BUS_BYTES,
+        seed=options.seed,
+        most=options.most_cases,
+    )
+    cases = list(some_cases(made))
+    if options.most_cases is None:
+        plan = build_plan(lay_out(message, wire), bus_bytes=BUS_BYTES)
+        cases += more_cases(judge.oracle, judge.name, plan, cases, seed=options.seed)
+    return [from_objects(message, case.value) for case in cases]
+
+
+def judge_types(
+    tasks: Sequence[Task], options: SutOptions, jobs: int | None
+) -> Generator[tuple[Task, list[Trial]], None, None]:
+    """Judge all libraries on types, and yield what comes of each, as it comes."""
+    work = [(task, (task.distro, task.name, options)) for task in tasks]
+    for task, trials in in_processes(judge_type, work, jobs):
+        if isinstance(trials, Exception):
+            # In one process: an exception of our own code. Such a run is no result.
+            raise trials
+        yield task, trials

@@ -1,0 +1,153 @@
+"""The smallest type and value that still show a difference."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from firm_hdl.model import Array, Field, FieldType, Message, Primitive, Text
+from firm_hdl.model import Sequence as SequenceType
+from firm_hdl.verify.clients.finding import Finding
+from firm_hdl.verify.references.objects import full_text
+from firm_hdl.verify.references.values import Plain, messages_of, packed
+
+__all__ = ["shrunk"]
+
+MOST_SECONDS = 10.0
+
+
+def shrunk(
+    finding: Finding,
+    again: Callable[[Message, str, Plain], Finding | None],
+    *,
+    seconds: float = MOST_SECONDS,
+) -> Finding:
+    """Return a difference of the same kind that nothing can be taken away from.
+
+    Parameters
+    ----------
+    again : callable
+        Asks again for what was asked, of another type and value; see `Contest.again`.
+    seconds : float
+        After these it gives what it has.
+    """
+    until = time.monotonic() + seconds
+    is_smaller = True
+    while is_smaller:
+        is_smaller = False
+        for message, value in _smaller(finding.message, finding.value):
+            if time.monotonic() > until:
+                return finding
+            found = again(message, finding.what, value)
+            # What is odd may have been put back into the value.
+            if found is not None and _size(found) < _size(finding):
+                finding, is_smaller = found, True
+                break
+    return finding
+
+
+def _size(finding: Finding) -> tuple[int, int, int]:
+    """Tell how much there is: of the definition, of the value, and in the value."""
+    data = packed(finding.message, finding.value)
+    return len(full_text(finding.message)), len(data), sum(byte not in b"\0x" for byte in data)
+
+
+def _smaller(message: Message, value: Plain) -> Iterator[tuple[Message, Plain]]:
+    """Yield types and values with less in them, what takes most away first."""
+    for item in message.fields:
+        yield from _inside(item.type, value[item.name])
+    fields = message.fields
+    for size in dict.fromkeys((len(fields) // 2, len(fields) // 4, 1)):
+        if not 0 < size < len(fields):
+            continue
+        for first in range(0, len(fields), size):
+            kept = fields[:first] + fields[first + size :]
+            yield replace(message, fields=kept), {f.name: value[f.name] for f in kept}
+    for item in message.fields:
+        for kind, inner in _smaller_field(item.type, value[item.name]):
+            changed = [replace(f, type=kind) if f is item else f for f in fields]
+            yield replace(message, fields=tuple(changed)), {**value, item.name: inner}
+    for nested in messages_of(message)[:-1]:
+        for item in nested.fields if nested.package else ():
+            yield _without(message, value, nested, item)
+
+
+def _inside(kind: FieldType, value: Plain) -> Iterator[tuple[Message, Plain]]:
+    match kind:
+        case Message() if kind.package:
+            yield kind, value
+        case Array(element=Message() as element) | SequenceType(element=Message() as element):
+            if element.package:
+                yield from ((element, each) for each in value[:4])
+
+
+def _smaller_field(kind: FieldType, value: Plain) -> Iterator[tuple[FieldType, Plain]]:
+    match kind:
+        case Primitive() if value:
+            yield kind, type(value)(0)
+        case Text() | SequenceType() if value:
+            yield kind, value[:0]
+            yield kind, value[: len(value) // 2]
+            yield kind, value[len(value) // 2 :]
+            yield kind, value[1:]
+        case Array() if kind.count > 1:
+            yield replace(kind, count=1), value[:1]
+            half = kind.count // 2
+            yield replace(kind, count=half), value[:half]
+            yield replace(kind, count=kind.count - half), value[half:]
+    match kind:
+        case Text(wide=False) if value.strip(b"x"):
+            yield kind, b"x" * len(value)
+        case Array(element=element) | SequenceType(element=element) if value:
+            # One at a time: what all have at once, is not minimal.
+            for n, each in enumerate(value[:8]):
+                for inner, changed in _smaller_element(element, each):
+                    if inner == element:
+                        yield kind, [*value[:n], changed, *value[n + 1 :]]
+        case Message() if kind.package:
+            for item in kind.fields:
+                for inner, changed in _smaller_field(item.type, value[item.name]):
+                    if inner == item.type:
+                        yield kind, {**value, item.name: changed}
+
+
+def _smaller_element(kind: FieldType, value: Plain) -> Iterator[tuple[FieldType, Plain]]:
+    yield from _smaller_field(kind, value)
+
+
+def _without(message: Message, value: Plain, owner: Message, item: Field) -> tuple[Message, Plain]:
+    """Take a field out of a nested message type, wherever that is."""
+    made: dict[str, Message] = {}
+
+    def kind_of(kind: FieldType) -> FieldType:
+        match kind:
+            case Message():
+                if kind.name not in made:
+                    kept = [f for f in kind.fields if not (kind == owner and f.name == item.name)]
+                    fields = tuple(replace(f, type=kind_of(f.type)) for f in kept)
+                    made[kind.name] = replace(kind, fields=fields)
+                return made[kind.name]
+            case Array(element=Message()) | SequenceType(element=Message()):
+                element = kind_of(kind.element)
+                assert isinstance(element, Message)
+                return replace(kind, element=element)
+            case _:
+                return kind
+
+    def value_of(kind: FieldType, given: Plain) -> Plain:
+        match kind:
+            case Message():
+                return {
+                    f.name: value_of(f.type, given[f.name])
+                    for f in kind.fields
+                    if not (kind == owner and f.name == item.name)
+                }
+            case Array(element=Message() as element) | SequenceType(element=Message() as element):
+                return [value_of(element, each) for each in given]
+            case _:
+                return given
+
+    changed = kind_of(message)
+    assert isinstance(changed, Message)
+    return changed, value_of(message, value)

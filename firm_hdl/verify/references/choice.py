@@ -1,0 +1,69 @@
+"""Which libraries confirm the bytes that rosbags writes, and which of them are here."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from firm_hdl.model import Message
+from firm_hdl.verify.references.client import ClientMissingError
+from firm_hdl.verify.references.clients import client, close_clients
+from firm_hdl.verify.references.fastcdr import NEWER
+from firm_hdl.verify.references.values import messages_of
+from firm_hdl.verify.references.wide_oracle import stand_ins
+from firm_hdl.wire import Wire
+
+__all__ = [
+    "NO_REFERENCE",
+    "WIDE_REFERENCES",
+    "WRITERS",
+    "find_references",
+    "may_stand_in",
+    "references_here",
+]
+
+WRITERS: dict[str, tuple[Wire, ...]] = {
+    "genpy": ("ros1",),
+    "fastcdr": ("cdr",),
+    **{kind.name: ("cdr",) for kind in NEWER},
+    "cyclonedds": ("cdr",),
+}
+"""Libraries that may confirm what rosbags writes, and on which wires."""
+
+NO_REFERENCE = "none"
+
+WIDE_REFERENCES = ("fastcdr", *(kind.name for kind in NEWER))
+"""Who has wide text, which rosbags has not: one of them is enough."""
+
+
+def references_here(wanted: Sequence[str] | None = None) -> tuple[str, ...]:
+    """Return the libraries that can be asked in this process, `None`: of all."""
+    names = WRITERS if wanted is None else [name for name in WRITERS if name in wanted]
+    return tuple(name for name in names if client(name).missing() is None)
+
+
+def may_stand_in(message: Message, wanted: Sequence[str] | None = None) -> bool:
+    """Whether a type has wide text, and somebody is here who knows how it is written."""
+    names = [name for name in WIDE_REFERENCES if wanted is None or name in wanted]
+    return bool(stand_ins(messages_of(message))) and bool(references_here(names))
+
+
+def find_references(wanted: Sequence[str] | None, wires: Sequence[str]) -> list[str]:
+    """Say which libraries are not here; for a process that starts others.
+
+    Raises
+    ------
+    ClientMissingError
+        If one of those that are wanted by name is not.
+    """
+    said = []
+    for name in WRITERS if wanted is None else wanted:
+        if wanted is None and not set(wires) & set(WRITERS[name]):
+            continue
+        why = client(name).missing()
+        if why is not None and wanted is not None:
+            raise ClientMissingError(why)
+        if why is not None:
+            said.append(f"{name} does not confirm bytes: {why}")
+    # Processes that are forked must not have ours.
+    close_clients()
+    return said

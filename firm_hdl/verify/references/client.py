@@ -1,0 +1,168 @@
+"""What a client library is: somebody's code that writes and reads packets of ROS messages.
+
+To add one, write a subclass of :class:`Client`, and name it in
+`firm_hdl.verify.references.clients`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from typing import ClassVar, TypeVar
+
+from firm_hdl.model import Message
+from firm_hdl.verify.references.values import Plain
+from firm_hdl.wire import Wire
+
+__all__ = [
+    "BatchCodec",
+    "Client",
+    "ClientDiedError",
+    "ClientMissingError",
+    "Codec",
+    "Refusal",
+    "UnsupportedError",
+    "each_answered",
+]
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+class Refusal(Exception):  # noqa: N818 - it is an answer, which may be right.
+    """A library refuses a value or a packet; the text is what it says."""
+
+    def __eq__(self, other: object) -> bool:
+        # Nobody agrees on words.
+        return isinstance(other, Refusal)
+
+    def __hash__(self) -> int:
+        return hash(Refusal)
+
+
+class ClientMissingError(Exception):
+    """A library that was asked for is not here; the text says how to get it."""
+
+
+class UnsupportedError(Exception):
+    """A library cannot have a type at all; the text says why."""
+
+
+class ClientDiedError(UnsupportedError):
+    """A library broke down when it was asked: its process died, or gave answers to other questions.
+
+    Whoever judges by it, or judges it, has to say so.
+    """
+
+
+class Codec(ABC):
+    """A library's writer and reader of one message type on one wire."""
+
+    @abstractmethod
+    def encode(self, value: Plain) -> bytes:
+        """Write a packet.
+
+        Raises
+        ------
+        Refusal
+        """
+
+    @abstractmethod
+    def decode(self, packet: bytes) -> Plain:
+        """Read a packet.
+
+        Raises
+        ------
+        Refusal
+        """
+
+    def encode_all(self, values: Sequence[Plain]) -> list[bytes | Refusal]:
+        """Write packets; what is refused is in the list."""
+        return [_answer(self.encode, value) for value in values]
+
+    def decode_all(self, packets: Sequence[bytes]) -> list[Plain | Refusal]:
+        """Read packets; what is refused is in the list."""
+        return [_answer(self.decode, packet) for packet in packets]
+
+
+class BatchCodec(Codec):
+    """A codec that is asked for many at a time: its library is in another process."""
+
+    @abstractmethod
+    def encode_all(self, values: Sequence[Plain]) -> list[bytes | Refusal]:
+        """Write packets."""
+
+    @abstractmethod
+    def decode_all(self, packets: Sequence[bytes]) -> list[Plain | Refusal]:
+        """Read packets."""
+
+    def encode(self, value: Plain) -> bytes:
+        (answer,) = self.encode_all([value])
+        if isinstance(answer, Refusal):
+            raise answer
+        return answer
+
+    def decode(self, packet: bytes) -> Plain:
+        (answer,) = self.decode_all([packet])
+        if isinstance(answer, Refusal):
+            raise answer
+        return answer
+
+
+def each_answered(library: str, questions: Sequence[object], answers: Sequence[R]) -> Sequence[R]:
+    """Return the answers, if there is one to each question.
+
+    Raises
+    ------
+    ClientDiedError
+    """
+    if len(answers) != len(questions):
+        raise ClientDiedError(
+            f"{library} gave {len(answers)} answers to {len(questions)} questions"
+        )
+    return answers
+
+
+def _answer(ask: Callable[[T], R], question: T) -> R | Refusal:
+    try:
+        return ask(question)
+    except Refusal as refusal:
+        return refusal
+
+
+class Client(ABC):
+    """A client library.
+
+    Attributes
+    ----------
+    name : str
+        As ``--sut`` takes it.
+    wires : set of "ros1" and "cdr"
+        What it speaks.
+    byte_orders : tuple of "little" and "big"
+        Which byte orders of CDR it is meant to read.
+    """
+
+    name: ClassVar[str]
+    wires: ClassVar[frozenset[Wire]]
+    byte_orders: ClassVar[tuple[str, ...]] = ("little",)
+
+    @abstractmethod
+    def missing(self) -> str | None:
+        """Tell why the library cannot be used here, and how to get it; `None` if it can."""
+
+    @abstractmethod
+    def version(self) -> str:
+        """Tell which release it is. It is there."""
+
+    @abstractmethod
+    def open(self, message: Message, wire: Wire) -> Codec:
+        """Get ready for a message type.
+
+        Raises
+        ------
+        UnsupportedError
+        """
+
+    def close(self) -> None:  # noqa: B027 - most have nothing to do.
+        """End what the library has started. It can be used again after that."""

@@ -1,0 +1,59 @@
+"""All client libraries, and which of them ROS itself uses."""
+
+from __future__ import annotations
+
+import atexit
+import os
+from functools import cache
+
+from firm_hdl.verify.references.client import Client
+from firm_hdl.verify.references.fastcdr import NEWER, FastCdr
+from firm_hdl.verify.references.genpy import Genpy
+from firm_hdl.verify.references.libraries import CycloneDds, McapRos1, McapRos2, Rosbags
+from firm_hdl.verify.references.own import FirmHdl
+
+__all__ = ["CLIENTS", "REFERENCES", "client", "close_clients"]
+
+_ALL: tuple[type[Client], ...] = (
+    FirmHdl,
+    Rosbags,
+    Genpy,
+    FastCdr,
+    *NEWER,
+    CycloneDds,
+    McapRos1,
+    McapRos2,
+)
+
+CLIENTS: dict[str, type[Client]] = {kind.name: kind for kind in _ALL}
+"""Every client library by name, in the order of reports."""
+
+REFERENCES = {
+    "ros1": ("genpy", "rosbags"),
+    "cdr": ("fastcdr", *(kind.name for kind in reversed(NEWER)), "rosbags"),
+}
+"""Who judges a library on a wire: ROS's own serializer, and who comes next if it is not here, is
+the one that is judged, or does not have the type."""
+
+
+def client(name: str) -> Client:
+    """Return a client library, of which there is one in a process."""
+    return _client(name, os.getpid())
+
+
+@cache
+def _client(name: str, process: int) -> Client:
+    # A process that was forked must not talk to what its parent has started.
+    return CLIENTS[name]()
+
+
+def close_clients() -> None:
+    """End what client libraries of this process have started."""
+    if _client.cache_info().currsize:
+        for name in CLIENTS:
+            client(name).close()
+        _client.cache_clear()
+
+
+# Processes that they started wait for more otherwise.
+atexit.register(close_clients)

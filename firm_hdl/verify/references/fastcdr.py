@@ -1,0 +1,299 @@
+"""eProsima Fast CDR, which writes and reads the messages of ROS 2's default middleware.
+
+``fastcdr_worker.cpp`` calls the library for each field of a type that is described to it, so that
+nothing is compiled for a type. The program is compiled when it is first needed, for each release
+of Fast CDR, and kept in the user's cache folder. Debian has the Fast CDR of ROS 2 humble; those of
+newer releases are PyPI's, and their names end in their versions.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import struct
+import subprocess
+import tempfile
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import ClassVar
+
+from firm_hdl.jobs.processes import ToolError, hang_up, made_by, run_tool
+from firm_hdl.model import Array, FieldType, Message, Primitive, Text
+from firm_hdl.model import Sequence as SequenceType
+from firm_hdl.verify.references.client import (
+    BatchCodec,
+    Client,
+    ClientDiedError,
+    Codec,
+    Refusal,
+    UnsupportedError,
+)
+from firm_hdl.verify.references.values import Plain, messages_of, packed, unpacked
+from firm_hdl.verify.ros2_wheels import RELEASES, Release
+from firm_hdl.wire import Wire
+
+__all__ = ["NEWER", "FastCdr"]
+
+_SOURCE = Path(__file__).with_name("fastcdr_worker.cpp")
+_HOW = "(Debian, Ubuntu: apt install g++ libfastcdr-dev)"
+_CODES = {"bool": "?", "float32": "f", "float64": "d", "wchar": "W"}
+
+
+class FastCdr(Client):
+    """Fast CDR as ROS 2's type support calls it.
+
+    Attributes
+    ----------
+    release : Release or None
+        Whose environment it is in; `None`: the system's.
+    wchar_bytes : int
+        What it writes for a wide character.
+    """
+
+    name: ClassVar[str] = "fastcdr"
+    wires: ClassVar = frozenset({"cdr"})
+    byte_orders = ("little", "big")
+    release: ClassVar[Release | None] = None
+    wchar_bytes: ClassVar[int] = 4
+
+    @cached_property
+    def _program(self) -> _Program:
+        return _Program(_compiled(self.release))
+
+    @cached_property
+    def _why_not(self) -> str | None:
+        try:
+            _ = self._program
+        except ToolError as error:
+            return str(error)
+        return None
+
+    def missing(self) -> str | None:
+        return self._why_not
+
+    def version(self) -> str:
+        return self._program.version
+
+    def open(self, message: Message, wire: Wire) -> Codec:
+        types = _described(message)
+        for size in _wchar_sizes(message) - {self.wchar_bytes}:
+            raise UnsupportedError(
+                f"{self.name} has wide characters of {self.wchar_bytes} bytes, not {size}"
+            )
+        return _FastCdrCodec(self._program, message, types)
+
+    def close(self) -> None:
+        if "_program" in self.__dict__:
+            self._program.close()
+            del self._program
+
+
+class _FastCdrCodec(BatchCodec):
+    def __init__(self, program: _Program, message: Message, types: str):
+        self._program = program
+        self._message = message
+        self._types = types
+
+    def encode_all(self, values: Sequence[Plain]) -> list[bytes | Refusal]:
+        items = [packed(self._message, value) for value in values]
+        return self._program.ask(self._types, b"E", items)
+
+    def decode_all(self, packets: Sequence[bytes]) -> list[Plain | Refusal]:
+        answers = self._program.ask(self._types, b"D", packets)
+        return [
+            each if isinstance(each, Refusal) else unpacked(self._message, each) for each in answers
+        ]
+
+
+def _newer() -> Iterator[type[FastCdr]]:
+    for release in RELEASES:
+        members = {
+            "__doc__": FastCdr.__doc__,
+            "name": f"fastcdr-{release.fastcdr}",
+            "release": release,
+            "wchar_bytes": 2,
+        }
+        yield type(f"FastCdr_{release.name}", (FastCdr,), members)
+
+
+NEWER = tuple(_newer())
+"""Releases that PyPI has, oldest first."""
+
+
+def _wchar_sizes(message: Message) -> set[int]:
+    kinds = [item.type for each in messages_of(message) for item in each.fields]
+    inner = [kind.element if isinstance(kind, Array | SequenceType) else kind for kind in kinds]
+    return {kind.bytes for kind in inner if isinstance(kind, Primitive) and kind.name == "wchar"}
+
+
+def _described(message: Message) -> str:
+    """Describe a type as the program wants it."""
+    kinds = messages_of(message)
+    lines = {kind.name: number for number, kind in enumerate(kinds)}
+
+    def word(kind: FieldType) -> str:
+        match kind:
+            case Message():
+                return f"m{lines[kind.name]}"
+            case Text(wide=wide):
+                return "w" if wide else "t"
+            case Array():
+                return f"a{kind.count}:{word(kind.element)}"
+            case SequenceType():
+                return f"s{kind.bound or 0}:{word(kind.element)}"
+            case Primitive():
+                return _CODES.get(kind.name) or _integer(kind)
+
+    return "".join(" ".join(word(item.type) for item in kind.fields) + "\n" for kind in kinds)
+
+
+def _integer(kind: Primitive) -> str:
+    code = {1: "b", 2: "h", 4: "i", 8: "q"}.get(kind.bytes)
+    if code is None or kind.kind != "int":
+        raise UnsupportedError(f"fastcdr is not asked about {kind.name}")
+    return code if kind.signed else code.upper()
+
+
+class _Program:
+    """The program as it runs; it is started again if it dies."""
+
+    def __init__(self, file: Path):
+        self._file = file
+        self._process: subprocess.Popen[bytes] | None = None
+        self._types = ""
+        self.version = ""
+        self._start()
+
+    def _start(self) -> None:
+        self._process = subprocess.Popen(
+            [str(self._file)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            # It ends when its input does, not when somebody presses Ctrl-C.
+            start_new_session=True,
+        )
+        self._types = ""
+        try:
+            self.version = str(_text(self._read()))
+        except (struct.error, ValueError):
+            self.close()
+            raise ToolError("the program that calls Fast CDR does not say what it is") from None
+
+    def ask(self, types: str, what: bytes, items: Sequence[bytes]) -> list[bytes | Refusal]:
+        """Ask for all items at once."""
+        try:
+            if self._process is None:
+                self._start()
+            if types != self._types:
+                list(self._exchange(b"T" + types.encode("ascii")))
+                self._types = types
+            sized = b"".join(struct.pack("<I", len(item)) + item for item in items)
+            answers = list(self._exchange(what + struct.pack("<I", len(items)) + sized))
+        except (OSError, ToolError, struct.error):
+            self.close()
+            raise ClientDiedError("the program that calls Fast CDR died") from None
+        return answers
+
+    def _exchange(self, request: bytes) -> Iterator[bytes | Refusal]:
+        assert self._process is not None and self._process.stdin is not None
+        self._process.stdin.write(struct.pack("<I", len(request)) + request)
+        self._process.stdin.flush()
+        return _items(self._read())
+
+    def _read(self) -> bytes:
+        assert self._process is not None and self._process.stdout is not None
+        (size,) = struct.unpack("<I", self._process.stdout.read(4))
+        return self._process.stdout.read(size)
+
+    def close(self) -> None:
+        if self._process is None:
+            return
+        process, self._process = self._process, None
+        # It has nothing to put in order; and a process that was forked may hold its input open.
+        hang_up(process)
+
+
+def _items(answer: bytes) -> Iterator[bytes | Refusal]:
+    at = 0
+    while at < len(answer):
+        refused, size = struct.unpack_from("<BI", answer, at)
+        at += 5 + size
+        data = answer[at - size : at]
+        yield Refusal(data.decode("utf-8", "replace")) if refused else data
+
+
+def _text(answer: bytes) -> str:
+    (item,) = _items(answer)
+    return item.decode() if isinstance(item, bytes) else ""
+
+
+def _compiled(release: Release | None) -> Path:
+    """Return the program, compiled if it was not yet.
+
+    Parameters
+    ----------
+    release : Release or None
+        Whose Fast CDR; `None`: that of the system.
+
+    Raises
+    ------
+    ToolError
+        If that fails; the text says how to get what it needs.
+    """
+    compiler = shutil.which(os.environ.get("CXX") or "g++")
+    how = _HOW if release is None else release.how
+    if compiler is None:
+        raise ToolError(f"there is no C++ compiler {_HOW}")
+    where: list[str] = []
+    link = ["-lfastcdr"]
+    if release is not None:
+        home = os.path.abspath(release.folder)
+        where = [f"-I{home}/include"]
+        link = [f"-L{home}/lib", *link, f"-Wl,-rpath,{home}/lib"]
+        if not os.path.exists(f"{home}/include/fastcdr/Cdr.h"):
+            # The system may have other ones.
+            raise ToolError(f"Fast CDR {release.fastcdr} is not installed {how}")
+    found = _found_headers([compiler, *where])
+    if b"FASTCDR" not in found:
+        raise ToolError(f"Fast CDR's headers are not installed {how}")
+    command = [compiler, "-std=c++14", "-O1", *where]
+    key = hashlib.sha256(_SOURCE.read_bytes())
+    key.update("\0".join([*command, *link]).encode() + b"\0" + found)
+    folder = _cache_folder()
+    program = folder / f"fastcdr-{key.hexdigest()[:16]}"
+    if program.exists():
+        return program
+    with tempfile.TemporaryDirectory(dir=folder) as scratch:
+        made = Path(scratch) / "program"
+        run_tool([*command, "-o", str(made), str(_SOURCE), *link], Path(scratch))
+        # Whoever comes second puts the same in its place.
+        os.replace(made_by(compiler, made), program)
+    return program
+
+
+def _found_headers(compiler: Sequence[str]) -> bytes:
+    """Return what identifies the compiler and the library that it finds; empty without them."""
+    done = subprocess.run(
+        [*compiler, "-E", "-dM", "-include", "fastcdr/Cdr.h", "-x", "c++", os.devnull],
+        capture_output=True,
+        check=False,
+    )
+    lines = done.stdout.splitlines()
+    return b"\n".join(
+        sorted(line for line in lines if b" FASTCDR_VERSION_" in line or b" __VERSION__ " in line)
+    )
+
+
+def _cache_folder() -> Path:
+    """Return the folder for compiled programs; where nothing can be kept, one for this process."""
+    base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    folder = Path(base) / "firm-hdl"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="firm-hdl-"))
+    return folder

@@ -1,0 +1,117 @@
+"""genpy, ROS 1's own serializer in Python, in the Python that Debian has it for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar
+
+from firm_hdl.model import Array, FieldType, Message
+from firm_hdl.model import Sequence as SequenceType
+from firm_hdl.verify.references.client import (
+    BatchCodec,
+    Client,
+    ClientDiedError,
+    Codec,
+    Refusal,
+    UnsupportedError,
+)
+from firm_hdl.verify.references.objects import full_text
+from firm_hdl.verify.references.values import Plain, from_json, messages_of, to_json
+from firm_hdl.verify.ros_python import worker
+from firm_hdl.wire import Wire
+
+__all__ = ["Genpy", "field_table"]
+
+
+def field_table(message: Message) -> dict[str, list[tuple[str, bool, str]]]:
+    """List the fields of all types that a type is made of, as `genpy_objects` wants them."""
+    return {
+        kind.name: [
+            (item.name, isinstance(item.type, Array | SequenceType), _base(item.type))
+            for item in kind.fields
+        ]
+        for kind in messages_of(message)
+        if kind.package
+    }
+
+
+def _base(kind: FieldType) -> str:
+    inner = kind.element if isinstance(kind, Array | SequenceType) else kind
+    return inner.name if isinstance(inner, Message) else str(inner)
+
+
+class Genpy(Client):
+    """genpy, on classes that it makes from the text of a definition."""
+
+    name = "genpy"
+    wires: ClassVar = frozenset({"ros1"})
+
+    @cached_property
+    def _worker(self) -> worker.Worker:
+        return worker.Worker(
+            "genpy", "", modules=Path(__file__).parent, python=worker.ROS_PYTHON
+        )
+
+    def missing(self) -> str | None:
+        why = self._worker.missing
+        return None if why is None else f"genpy cannot be used: {why} (Debian: python3-genpy)"
+
+    def version(self) -> str:
+        return self._worker.versions.get("genpy", "")
+
+    def open(self, message: Message, wire: Wire) -> Codec:
+        if message.dialect != "ros1":
+            raise UnsupportedError("genpy has no types of ROS 2")
+        return _GenpyCodec(self._worker, message)
+
+    def close(self) -> None:
+        if "_worker" in self.__dict__:
+            self._worker.close()
+
+
+class _GenpyCodec(BatchCodec):
+    _opened: ClassVar[dict[int, _GenpyCodec]] = {}
+    """Which codec a worker is ready for."""
+
+    def __init__(self, worker: worker.Worker, message: Message):
+        self._worker = worker
+        self._request = {
+            "oracle": "open",
+            "name": message.name,
+            "text": full_text(message),
+            "table": field_table(message),
+        }
+        self._open()
+
+    def _open(self) -> None:
+        self._facts(self._request)
+        self._opened[id(self._worker)] = self
+
+    def _facts(self, request: dict[str, Any]) -> Any:
+        from firm_hdl.verify.ros_python.worker import DIED
+
+        answer = self._worker.ask(request)
+        if "facts" in answer:
+            return answer["facts"]
+        self._opened.pop(id(self._worker), None)
+        said = answer.get("refused") or answer.get("failed")
+        if not said or said == DIED:
+            raise ClientDiedError(f"genpy: {said or 'it answered nothing'}")
+        raise UnsupportedError(f"genpy: {said}")
+
+    def _ask(self, what: str, items: Sequence[Any]) -> list[Any]:
+        if self._opened.get(id(self._worker)) is not self:
+            self._open()
+        answers = self._facts({"oracle": what, "items": items})
+        return [
+            Refusal(each["refused"]) if "refused" in each else from_json(each["item"])
+            for each in answers
+        ]
+
+    def encode_all(self, values: Sequence[Plain]) -> list[bytes | Refusal]:
+        return self._ask("encode", [to_json(value) for value in values])
+
+    def decode_all(self, packets: Sequence[bytes]) -> list[Plain | Refusal]:
+        return self._ask("decode", [packet.decode("latin-1") for packet in packets])

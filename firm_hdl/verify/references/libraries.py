@@ -1,0 +1,314 @@
+"""Client libraries in Python that run in this process: rosbags, Cyclone DDS, mcap's packages."""
+
+from __future__ import annotations
+
+import importlib
+import logging
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from importlib.metadata import version
+from io import StringIO
+from types import SimpleNamespace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text
+from firm_hdl.verify.references.client import Client, Codec, Refusal, UnsupportedError
+from firm_hdl.verify.references.genpy import field_table
+from firm_hdl.verify.references.genpy_objects import Objects
+from firm_hdl.verify.references.objects import (
+    ObjectCodec,
+    first_line,
+    full_text,
+    plainly_named,
+    refuse_wide,
+)
+from firm_hdl.verify.references.user_oracle import oracle_name, resolved_oracle
+from firm_hdl.verify.references.values import Plain, messages_of
+from firm_hdl.verify.results.verdict import NotJudgedError
+from firm_hdl.wire import Wire
+
+__all__ = ["CycloneDds", "McapRos1", "McapRos2", "Rosbags"]
+
+_HOW = "(python3 -m pip install 'firm-hdl[clients]')"
+
+
+class _Imported(Client):
+    """A library that is imported.
+
+    Attributes
+    ----------
+    package : str
+        As PyPI calls it.
+    module : str
+        What is imported of it.
+    """
+
+    package: ClassVar[str]
+    module: ClassVar[str]
+
+    def missing(self) -> str | None:
+        try:
+            importlib.import_module(self.module)
+        except ImportError:
+            return f"{self.package} is not installed {_HOW}"
+        return None
+
+    def version(self) -> str:
+        return version(self.package)
+
+
+# rosbags.
+
+
+class Rosbags(_Imported):
+    """rosbags, given the fields as they were resolved."""
+
+    name = package = module = "rosbags"
+    wires: ClassVar = frozenset({"ros1", "cdr"})
+    byte_orders = ("little", "big")
+
+    def open(self, message: Message, wire: Wire) -> Codec:
+        try:
+            return _RosbagsCodec(message, wire)
+        except NotJudgedError as error:
+            raise UnsupportedError(str(error)) from None
+
+
+class _RosbagsCodec(ObjectCodec):
+    def __init__(self, message: Message, wire: Wire):
+        super().__init__(message)
+        self._oracle = resolved_oracle(message)
+        self._wire = wire
+        self._name = oracle_name(message)
+        names = {kind.name: oracle_name(kind) for kind in messages_of(message)}
+        self._classes: dict[str, Any] = {
+            name: self._oracle.store.types[other] for name, other in names.items()
+        }
+        self._members = {
+            kind.name: dict(
+                zip(
+                    [item.name for item in kind.fields],
+                    self._classes[kind.name].__dataclass_fields__,
+                    strict=False,
+                )
+            )
+            for kind in messages_of(message)
+        }
+
+    def write(self, value: Any) -> bytes:
+        return self._oracle.write(value, self._name, self._wire)
+
+    def read(self, packet: bytes) -> Any:
+        return self._oracle.read(packet, self._name, self._wire)
+
+    def made(self, kind: Message, members: dict[str, Any]) -> Any:
+        if not kind.fields and self._oracle.dialect == "ros2":
+            return self._classes[kind.name](structure_needs_at_least_one_member=0)
+        return self._classes[kind.name](*members.values())
+
+    def member(self, value: Any, kind: Message, name: str) -> Any:
+        return getattr(value, self._members[kind.name][name])
+
+    def array(self, kind: Primitive, numbers: list[Any]) -> Any:
+        if kind.kind == "float":
+            return np.array(numbers, f"u{kind.bytes}").view(f"f{kind.bytes}")
+        return np.array(numbers, _dtype(kind))
+
+    def items(self, kind: Primitive, values: Any) -> list[Plain]:
+        if kind.kind == "float":
+            values = values.astype(f"<f{kind.bytes}").view(f"<u{kind.bytes}")
+        elif kind.name == "byte" and kind.signed:
+            # An array of bytes is not signed to it, and neither is right or wrong in ROS 1.
+            values = values.view(np.int8)
+        return list(values.tolist())
+
+
+def _dtype(kind: Primitive) -> str:
+    if kind.kind == "bool":
+        return "bool"
+    return ("i" if kind.signed else "u") + str(kind.bytes)
+
+
+# Cyclone DDS.
+
+
+MOST_CYCLONE_BOUND = 0xFFFF
+"""Of sequences in cyclonedds 11.0.1; text and arrays may be longer."""
+
+
+class CycloneDds(_Imported):
+    """Eclipse Cyclone DDS: its own serializer in Python, on classes that are made for a type."""
+
+    name = package = "cyclonedds"
+    module = "cyclonedds.idl"
+    wires: ClassVar = frozenset({"cdr"})
+    byte_orders = ("little", "big")
+
+    def open(self, message: Message, wire: Wire) -> Codec:
+        refuse_wide(message, self.name)
+        return _CycloneCodec(message)
+
+
+class _CycloneCodec(ObjectCodec):
+    def __init__(self, message: Message):
+        super().__init__(message)
+        self._idl: Any = importlib.import_module("cyclonedds.idl")
+        self._types: Any = importlib.import_module("cyclonedds.idl.types")
+        self._classes: dict[str, Any] = {}
+        for kind in messages_of(message):
+            self._classes[kind.name] = self._class(kind)
+
+    def _class(self, kind: Message) -> Any:
+        # Names do not reach the wire, and some of ROS's are keywords of Python.
+        members = {f"m{n}": self._type(item.type) for n, item in enumerate(kind.fields)}
+        name = "T_" + "".join(c if c.isalnum() else "_" for c in kind.name)
+        # What rosidl gives a message without fields, which IDL does not have.
+        members = members or {"m0": self._types.uint8}
+        found = self._idl.make_idl_struct(name, name, members, dataclassify=False)
+        # Instead of the data class that it makes otherwise, which takes its time.
+        found.__init__ = _take_members
+        return found
+
+    def _type(self, kind: FieldType) -> Any:
+        match kind:
+            case Message():
+                return self._classes[kind.name]
+            case Text():
+                return str if kind.bound is None else self._types.bounded_str[kind.bound]
+            case Primitive(kind="bool"):
+                return bool
+            case Primitive(kind="float"):
+                return getattr(self._types, kind.name)
+            case Primitive():
+                sign = "" if kind.signed else "u"
+                return getattr(self._types, f"{sign}int{8 * kind.bytes}")
+            case Array():
+                return self._types.array[self._type(kind.element), kind.count]
+            case Sequence(bound=None):
+                return self._types.sequence[self._type(kind.element)]
+            case Sequence(bound=bound):
+                assert bound is not None
+                if bound > MOST_CYCLONE_BOUND:
+                    raise UnsupportedError(f"cyclonedds has no bound of {bound} elements")
+                return self._types.sequence[self._type(kind.element), bound]
+
+    def write(self, value: Any) -> bytes:
+        return bytes(value.serialize(use_version_2=False))
+
+    def read(self, packet: bytes) -> Any:
+        return self._classes[self.message.name].deserialize(packet)
+
+    def made(self, kind: Message, members: dict[str, Any]) -> Any:
+        named = {f"m{n}": member for n, member in enumerate(members.values())}
+        return self._classes[kind.name](**(named or {"m0": 0}))
+
+    def member(self, value: Any, kind: Message, name: str) -> Any:
+        number = next(n for n, item in enumerate(kind.fields) if item.name == name)
+        return getattr(value, f"m{number}")
+
+
+def _take_members(self: Any, **members: Any) -> None:
+    vars(self).update(members)
+
+
+# mcap.
+
+
+class McapRos2(_Imported):
+    """mcap-ros2-support: what reads and writes the messages of ROS 2 in MCAP files."""
+
+    name = "mcap-ros2"
+    package = "mcap-ros2-support"
+    module = "mcap_ros2._dynamic"
+    wires: ClassVar = frozenset({"cdr"})
+    byte_orders = ("little", "big")
+
+    def open(self, message: Message, wire: Wire) -> Codec:
+        refuse_wide(message, self.name)
+        try:
+            # Its parser prints what it does not take.
+            with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+                return _McapRos2Codec(message)
+        # Whatever its parser raises.
+        except Exception as error:
+            raise UnsupportedError(
+                f"mcap-ros2 refuses the definition: {first_line(error)}"
+            ) from None
+
+
+class _McapRos2Codec(ObjectCodec):
+    def __init__(self, message: Message):
+        super().__init__(message)
+        dynamic: Any = importlib.import_module("mcap_ros2._dynamic")
+        named = plainly_named(message)
+        text = full_text(named)
+        self._write = dynamic.serialize_dynamic(named.name, text)[named.name]
+        self._read = dynamic.generate_dynamic(named.name, text)[named.name]
+
+    def write(self, value: Any) -> bytes:
+        return bytes(self._write(value))
+
+    def read(self, packet: bytes) -> Any:
+        return self._read(packet)
+
+    def made(self, kind: Message, members: dict[str, Any]) -> Any:
+        return SimpleNamespace(**members)
+
+
+class McapRos1(_Imported):
+    """mcap-ros1-support: what reads and writes the messages of ROS 1 in MCAP files."""
+
+    name = "mcap-ros1"
+    package = "mcap-ros1-support"
+    module = "mcap_ros1.decoder"
+    wires: ClassVar = frozenset({"ros1"})
+
+    def open(self, message: Message, wire: Wire) -> Codec:
+        try:
+            return _McapRos1Codec(message)
+        except Exception as error:
+            raise UnsupportedError(
+                f"mcap-ros1 refuses the definition: {first_line(error)}"
+            ) from None
+
+
+class _McapRos1Codec(Codec):
+    """It has a genpy of its own, whose objects are those of genpy."""
+
+    def __init__(self, message: Message):
+        dynamic: Any = importlib.import_module("mcap_ros1.decoder").dynamic
+        genpy: Any = importlib.import_module(dynamic.__name__.rpartition(".")[0])
+        # It reports each text that is not UTF-8, to standard error if nobody else listens.
+        logging.getLogger("rosout").addHandler(logging.NullHandler())
+        with _unchanged_path():
+            classes = dynamic.generate_dynamic(message.name, full_text(message))
+        self._objects = Objects(genpy, classes, field_table(message))
+        self._name = message.name
+
+    def encode(self, value: Plain) -> bytes:
+        packet: bytes = _refused(self._objects.encode, self._name, value)
+        return packet
+
+    def decode(self, packet: bytes) -> Plain:
+        return _refused(self._objects.decode, self._name, packet)
+
+
+def _refused(work: Any, name: str, given: Any) -> Any:
+    try:
+        return work(name, given)
+    # What it raises has no common base.
+    except Exception as error:
+        raise Refusal(first_line(error)) from None
+
+
+@contextmanager
+def _unchanged_path() -> Iterator[None]:
+    """Undo what genpy does to the search path for each module that it makes."""
+    before = list(sys.path)
+    try:
+        yield
+    finally:
+        sys.path[:] = before

@@ -1,0 +1,189 @@
+"""Codecs of libraries whose messages are Python objects; and definitions in ROS's own words.
+
+A text is a `str` to all of them. Bytes that are no UTF-8 become lone surrogates, which a library
+refuses to write in its own words.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import replace
+from typing import Any
+
+from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text
+from firm_hdl.verify.references.client import Codec, Refusal, UnsupportedError
+from firm_hdl.verify.references.values import Plain, as_float, bits_of, messages_of
+
+__all__ = [
+    "ObjectCodec",
+    "definition_text",
+    "first_line",
+    "full_text",
+    "plainly_named",
+    "refuse_wide",
+]
+
+
+class ObjectCodec(Codec):
+    """A codec of one type, by way of objects of the library.
+
+    Parameters
+    ----------
+    message : Message
+    """
+
+    def __init__(self, message: Message):
+        self.message = message
+
+    @abstractmethod
+    def write(self, value: Any) -> bytes:
+        """Serialize an object. Whatever is raised is a refusal."""
+
+    @abstractmethod
+    def read(self, packet: bytes) -> Any:
+        """Deserialize a packet. Whatever is raised is a refusal."""
+
+    @abstractmethod
+    def made(self, kind: Message, members: dict[str, Any]) -> Any:
+        """Make an object of a message type."""
+
+    def member(self, value: Any, kind: Message, name: str) -> Any:
+        """Take a field from an object."""
+        return getattr(value, name)
+
+    def array(self, kind: Primitive, numbers: list[Any]) -> Any:
+        """Make what the library wants for an array of numbers."""
+        return [_number(kind, each) for each in numbers]
+
+    def items(self, kind: Primitive, values: Any) -> list[Plain]:
+        """Return what an array of numbers has."""
+        return [_plain_number(kind, each) for each in values]
+
+    def encode(self, value: Plain) -> bytes:
+        try:
+            return self.write(self._built(self.message, value))
+        # What libraries raise for what they do not take has no common base.
+        except Exception as error:
+            raise Refusal(first_line(error)) from None
+
+    def decode(self, packet: bytes) -> Plain:
+        try:
+            return self._plain(self.message, self.read(packet))
+        except Exception as error:
+            raise Refusal(first_line(error)) from None
+
+    def _built(self, kind: FieldType, value: Plain) -> Any:
+        match kind:
+            case Message():
+                members = {
+                    item.name: self._built(item.type, value[item.name]) for item in kind.fields
+                }
+                return self.made(kind, members)
+            case Text():
+                return value.decode("utf-8", "surrogateescape")
+            case Primitive():
+                return _number(kind, value)
+            case Array(element=Primitive() as item) | Sequence(element=Primitive() as item):
+                return self.array(item, value)
+            case Array() | Sequence():
+                return [self._built(kind.element, each) for each in value]
+
+    def _plain(self, kind: FieldType, value: Any) -> Plain:
+        match kind:
+            case Message():
+                return {
+                    item.name: self._plain(item.type, self.member(value, kind, item.name))
+                    for item in kind.fields
+                }
+            case Text():
+                return value.encode("utf-8", "surrogateescape")
+            case Primitive():
+                return _plain_number(kind, value)
+            case Array(element=Primitive() as item) | Sequence(element=Primitive() as item):
+                return self.items(item, value)
+            case Array() | Sequence():
+                return [self._plain(kind.element, each) for each in value]
+
+
+def _number(kind: Primitive, value: int) -> Any:
+    return as_float(value, kind.bytes) if kind.kind == "float" else value
+
+
+def _plain_number(kind: Primitive, value: Any) -> Plain:
+    if kind.kind == "float":
+        return bits_of(float(value), kind.bytes)
+    return bool(value) if kind.kind == "bool" else int(value)
+
+
+def first_line(error: Exception) -> str:
+    """Say in one line what somebody else's exception says."""
+    lines = str(error).strip().splitlines()
+    return f"{type(error).__name__}: {lines[0][:300]}" if lines else type(error).__name__
+
+
+def definition_text(message: Message) -> str:
+    """Write the fields of a message type as a ``.msg`` file has them."""
+    return "".join(f"{_spelled(item.type)} {item.name}\n" for item in message.fields)
+
+
+def _spelled(kind: FieldType) -> str:
+    match kind:
+        case Message():
+            return f"{kind.package}/{kind.base_name}" if kind.package else kind.name
+        case Array():
+            return f"{_spelled(kind.element)}[{kind.count}]"
+        case Sequence():
+            bound = "" if kind.bound is None else f"<={kind.bound}"
+            return f"{_spelled(kind.element)}[{bound}]"
+        case _:
+            return str(kind)
+
+
+def plainly_named(message: Message) -> Message:
+    """Return a type in which the messages of services and actions have names like any others.
+
+    No name stands on a wire, and some parsers take no ``_``.
+    """
+    made: dict[str, Message] = {}
+
+    def renamed(kind: FieldType) -> Any:
+        match kind:
+            case Message() if kind.package:
+                return made[kind.name]
+            case Array(element=Message()) | Sequence(element=Message()):
+                return replace(kind, element=renamed(kind.element))
+            case _:
+                return kind
+
+    for number, kind in enumerate(messages_of(message)):
+        fields = tuple(replace(item, type=renamed(item.type)) for item in kind.fields)
+        head, _, base = kind.name.rpartition("/")
+        plain = base if "_" not in base else f"T{number}{base.replace('_', '')}"
+        made[kind.name] = replace(kind, name=f"{head}/{plain}" if head else base, fields=fields)
+    return made[message.name]
+
+
+def full_text(message: Message) -> str:
+    """Write the definitions of a type and of all that it is made of, as recordings have them."""
+    # genpy wants an empty line where there are no fields.
+    parts = [definition_text(message) or "\n"]
+    for kind in messages_of(message)[:-1]:
+        if kind.package:
+            parts.append(f"MSG: {_spelled(kind)}\n" + (definition_text(kind) or "\n"))
+    return ("=" * 80 + "\n").join(parts)
+
+
+def refuse_wide(message: Message, library: str) -> None:
+    """Refuse a type with wide text, for a library that has none.
+
+    Raises
+    ------
+    UnsupportedError
+    """
+    for kind in messages_of(message):
+        for item in kind.fields:
+            inner = item.type.element if isinstance(item.type, Array | Sequence) else item.type
+            if isinstance(inner, Text) and inner.wide:
+                raise UnsupportedError(f"{library} has no wstring")
+            if isinstance(inner, Primitive) and inner.name == "wchar":
+                raise UnsupportedError(f"{library} is not asked about wchar")

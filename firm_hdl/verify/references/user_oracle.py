@@ -1,0 +1,193 @@
+"""rosbags as the oracle of any type, a user's own included.
+
+rosbags gets the definitions of the type and of all that it is made of. It reads some texts in
+another way than ROS does, or not at all (``uint8 a = 1`` is a field to it); so it gets the fields
+as they were resolved, and whether it reads the texts to the same effect is said beside the result.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rosbags.interfaces import Nodetype
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from firm_hdl import model
+from firm_hdl.model import IDL_PRIMITIVES, Array, Message, Primitive, Sequence, Text
+from firm_hdl.verify.references.oracle import FieldType, Oracle, distro_oracle
+from firm_hdl.verify.references.wide_oracle import (
+    STAND_IN_NOTE,
+    WideOracle,
+    stand_in_type,
+    stand_ins,
+)
+from firm_hdl.verify.results.verdict import NotJudgedError
+from firm_hdl.wire import refusals
+
+__all__ = ["Judge", "check_wire", "judge_of", "oracle_name", "resolved_oracle"]
+
+_BUILTIN = {"time": "builtin_interfaces/msg/Time", "duration": "builtin_interfaces/msg/Duration"}
+_TIMES = dict.fromkeys(_BUILTIN, "int32 sec\nuint32 nanosec\n")
+"""To rosbags, the times of ROS 1 are those of ROS 2; the bytes are the same."""
+
+
+class Judge:
+    """An oracle that knows a type, and by which name.
+
+    Attributes
+    ----------
+    oracle : Oracle
+    name : str
+    note : str
+        What is to be known about it; empty in most cases.
+    """
+
+    def __init__(self, oracle: Oracle, name: str, note: str = ""):
+        self.oracle, self.name, self.note = oracle, name, note
+
+
+def judge_of(message: Message, distro: str | None = None, *, stand_in: bool = False) -> Judge:
+    """Find the oracle of a type.
+
+    Parameters
+    ----------
+    distro : str or None
+        The distribution, if `message` is one of its own types: rosbags has its own definition then.
+    stand_in : bool
+        Whether a wstring may be a message of numbers, see
+        :mod:`firm_hdl.verify.references.wide_oracle`.
+        Somebody who has wstring has to say whether the bytes are right.
+
+    Raises
+    ------
+    NotJudgedError
+    """
+    check_wire(message)
+    name = oracle_name(message)
+    if distro is not None:
+        oracle = distro_oracle(distro)
+        if name in oracle.store.fielddefs:
+            return Judge(oracle, name)
+    oracle = resolved_oracle(message, stand_in=stand_in)
+    if isinstance(oracle, WideOracle):
+        return Judge(oracle, name, STAND_IN_NOTE)
+    return Judge(oracle, name, _note(message, oracle, name))
+
+
+def resolved_oracle(message: Message, *, stand_in: bool = False) -> Oracle:
+    """Return an oracle that has the type and all that it is made of, as they were resolved.
+
+    Raises
+    ------
+    NotJudgedError
+    """
+    wide: dict[str, str] = {}
+    if stand_in:
+        wide = stand_ins(_all_messages(message))
+    else:
+        _refuse_wide(message)
+    resolved = {
+        kind.name: "".join(f"{_spelled(item.type)} {item.name}\n" for item in kind.fields)
+        for kind in _all_messages(message)
+    }
+    oracle = _oracle(message, resolved, wide)
+    if missing := _unknown(oracle, oracle_name(message)):
+        raise NotJudgedError(f"rosbags has no {missing}")
+    return oracle
+
+
+def _spelled(kind: model.FieldType) -> str:
+    """Return a type as rosbags has it, whose ``char`` is that of ``.msg`` files: not signed."""
+    inner = kind.element if isinstance(kind, Array | Sequence) else kind
+    if isinstance(inner, Text) and inner.wide:
+        return stand_in_type(kind, inner)
+    if isinstance(inner, Primitive) and (inner == IDL_PRIMITIVES["char"] or inner.name == "wchar"):
+        integer = f"{'' if inner.signed else 'u'}int{8 * inner.bytes}"
+        return str(kind).replace(inner.name, integer, 1)
+    return str(kind)
+
+
+def check_wire(message: Message) -> None:
+    """Raise `NotJudgedError` if a message has a field that no wire has: there is no packet."""
+    if wrong := refusals(message):
+        raise NotJudgedError(wrong[0].message)
+
+
+def oracle_name(message: Message) -> str:
+    """Name a type as rosbags does, ``package/msg/Type``."""
+    if message.name in _BUILTIN:
+        return _BUILTIN[message.name]
+    head, _, base = message.name.rpartition("/")
+    # rosbags' own rule: whatever is not in `msg` or `action` gets a `msg` in front of its name.
+    return message.name if head.endswith(("/msg", "/action")) else f"{head}/msg/{base}"
+
+
+def _all_messages(message: Message) -> list[Message]:
+    found = {message.name: message}
+    pending = [message]
+    while pending:
+        for child in pending.pop().children:
+            if child.name not in found:
+                found[child.name] = child
+                pending.append(child)
+    return list(found.values())
+
+
+def _refuse_wide(message: Message) -> None:
+    for kind in _all_messages(message):
+        for item in kind.fields:
+            inner = item.type.element if isinstance(item.type, Array | Sequence) else item.type
+            if isinstance(inner, Text) and inner.wide:
+                raise NotJudgedError(f"rosbags has no wstring, which {kind.name}.{item.name} is")
+
+
+def _oracle(
+    message: Message, texts: Mapping[str, str], wide: Mapping[str, str] | None = None
+) -> Oracle:
+    store = get_typestore(Stores.EMPTY)
+    names = {kind.name: oracle_name(kind) for kind in _all_messages(message)}
+    try:
+        for name, text in {**texts, **{k: v for k, v in _TIMES.items() if k in texts}}.items():
+            store.register(get_types_from_msg(text, names[name]))
+        for name, text in (wide or {}).items():
+            store.register(get_types_from_msg(text, name))
+    # What rosbags raises for what it does not know has no common base.
+    except Exception as error:
+        said = str(error).strip().splitlines() or [type(error).__name__]
+        raise NotJudgedError(f"rosbags refuses the definition: {said[0]}") from None
+    return (WideOracle if wide else Oracle)(store, message.dialect)
+
+
+def _unknown(oracle: Oracle, name: str) -> str:
+    """Return the first type that is named and not there."""
+    seen, pending = {name}, [name]
+    while pending:
+        owner = pending.pop()
+        if owner not in oracle.store.fielddefs:
+            return owner.replace("/msg/", "/") if "/" in owner else owner
+        for _, kind in oracle.fields(owner):
+            inner = _named(kind)
+            if inner is not None and inner not in seen:
+                seen.add(inner)
+                pending.append(inner)
+    return ""
+
+
+def _named(kind: FieldType) -> str | None:
+    node, detail = kind
+    if node == Nodetype.NAME:
+        return str(detail)
+    return None if node == Nodetype.BASE else _named(detail[0])
+
+
+def _note(message: Message, oracle: Oracle, name: str) -> str:
+    """Say whether rosbags reads the texts as we have."""
+    texts = {kind.name: kind.text for kind in _all_messages(message)}
+    try:
+        other = _oracle(message, texts)
+        if other.structure(name) == oracle.structure(name):
+            return ""
+        how = "reads the definition in another way"
+    except (NotJudgedError, KeyError):
+        how = "cannot read the definition"
+    return f"rosbags {how}, and was given the fields as they were resolved"

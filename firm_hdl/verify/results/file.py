@@ -1,0 +1,250 @@
+"""Results of a run as JSON lines, so that nothing is lost when the run is.
+
+The first line says what is tested and how; each other line is a record, on the disk before it is
+counted, or what a session ran on. A run that was stopped goes on with the same file: what is
+in it is not tested again. A last line without an end is what a killed process was writing, and is
+dropped. A file is continued only by a run with the same options and the same tests, for otherwise
+nobody could say what its figures are of.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field
+from io import FileIO
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from firm_hdl.files import read_file
+from firm_hdl.verify.results.records import Record, Test
+
+__all__ = ["FORMAT", "Results", "ResultsError", "ResultsWriter", "done", "read_results"]
+
+FORMAT = "firm-hdl results 2"
+
+
+# A thousand types on seven widths have a hundredth of that.
+_MOST_BYTES = 1 << 28
+
+
+class ResultsError(ValueError):
+    """A file is not one of results, or is of another run; the text says which and why."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Results:
+    """What is in a file.
+
+    Attributes
+    ----------
+    options : mapping of str to object
+        Of the run.
+    planned : tuple of Test
+        All tests of the run, whether there are records of them or not.
+    records : mapping of str to Record
+        By key; of several with the same key, the last.
+    sessions : tuple of mapping of str to str
+        What each session of the run ran on.
+    """
+
+    options: Mapping[str, Any] = field(default_factory=dict)
+    planned: tuple[Test, ...] = ()
+    records: Mapping[str, Record] = field(default_factory=dict)
+    sessions: tuple[Mapping[str, str], ...] = ()
+
+    @property
+    def missing(self) -> tuple[Test, ...]:
+        """Tests that there is no record of."""
+        return tuple(test for test in self.planned if test.key not in self.records)
+
+
+def done(path: str | os.PathLike[str], keys: Iterable[str]) -> set[str]:
+    """Return those of some keys that a file has records of; none if there is no file."""
+    if not Path(path).exists():
+        return set()
+    return set(keys) & set(read_results(path).records)
+
+
+def read_results(path: str | os.PathLike[str]) -> Results:
+    """Read a file of results; a last line that was not written to its end is no part of it.
+
+    Raises
+    ------
+    ResultsError
+        If it is something else.
+    OSError
+    """
+    return _read(Path(path))[0]
+
+
+def _read(path: Path) -> tuple[Results, int]:
+    """Return what is in a file, and how many bytes of it are whole lines."""
+    data = read_file(path, _MOST_BYTES)
+    whole = data.rfind(b"\n") + 1
+    lines = data[:whole].splitlines()
+    if not lines:
+        if data and not f'{{"format": "{FORMAT}"'.encode().startswith(data[:20]):
+            raise ResultsError(f"'{path}' has no results of firm-hdl verify")
+        return Results(), 0
+    options, planned = _header(path, lines[0])
+    records: dict[str, Record] = {}
+    sessions: list[Mapping[str, str]] = []
+    for number, line in enumerate(lines[1:], 2):
+        try:
+            given = json.loads(line)
+            if "session" in given:
+                sessions.append(given["session"])
+            else:
+                record = Record.from_json(given["record"])
+                records[record.test.key] = record
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+            # What `Record` and `Test` say of what they need; Python's own words start small.
+            is_ours = isinstance(error, ValueError | TypeError) and " must be " in str(error)
+            reason = str(error) if is_ours and str(error)[0].isupper() else "it is damaged"
+            raise ResultsError(f"'{path}', line {number}: {reason}") from None
+    found = Results(options=options, planned=planned, records=records, sessions=tuple(sessions))
+    return found, whole
+
+
+def _header(path: Path, line: bytes) -> tuple[Mapping[str, Any], tuple[Test, ...]]:
+    try:
+        given = json.loads(line)
+        if given["format"] != FORMAT:
+            raise ValueError
+        return given["options"], tuple(Test.from_json(test) for test in given["planned"])
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        raise ResultsError(f"'{path}' has no results of firm-hdl verify") from None
+
+
+class ResultsWriter:
+    """A file of results to add to; a context manager.
+
+    Parameters
+    ----------
+    path : path
+        Made if it is not there, continued if it is.
+    options : mapping of str to object
+        Of the run; what JSON can say.
+    planned : sequence of Test
+        All tests of the run.
+    session : mapping of str to str
+        What this session runs on.
+
+    Attributes
+    ----------
+    before : Results
+        What was in the file.
+
+    Raises
+    ------
+    ResultsError
+        If the file is no such file, or is of a run with other options or tests, or if another
+        process is writing to it.
+    OSError
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        options: Mapping[str, Any],
+        planned: Sequence[Test],
+        session: Mapping[str, str] | None = None,
+    ):
+        self.path = Path(path)
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        # Unbuffered, and each write at the end, wherever that is.
+        self._file = FileIO(os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666), "a")
+        try:
+            self.before = self._open(json.loads(json.dumps(dict(options))), planned)
+            if session:
+                self._write({"session": dict(session)})
+        except BaseException:
+            self._file.close()
+            raise
+
+    def _open(self, options: Mapping[str, Any], planned: Sequence[Test]) -> Results:
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise ResultsError(f"'{self.path}' is being written by another run") from None
+        found, whole = _read(self.path)
+        os.ftruncate(self._file.fileno(), whole)
+        if not whole:
+            tests = [_test(test) for test in planned]
+            self._write({"format": FORMAT, "options": options, "planned": tests})
+            _sync_folder(self.path.parent)
+            return Results(options=options, planned=tuple(planned))
+        if different := "; ".join(_differences(found, options, planned)):
+            raise ResultsError(
+                f"'{self.path}' is of another run: {different}; name another file, or remove it"
+            )
+        return found
+
+    def add(self, *records: Record) -> None:
+        """Add records; they are on the disk when this returns."""
+        self._write(*({"record": record.as_json()} for record in records))
+
+    def missing(self) -> list[Test]:
+        """Return the tests that were still to be run when the file was opened."""
+        return list(self.before.missing)
+
+    def _write(self, *lines: Mapping[str, Any]) -> None:
+        text = "".join(f"{json.dumps(line, allow_nan=False)}\n" for line in lines)
+        left = memoryview(text.encode())
+        while left:
+            left = left[self._file.write(left) :]
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def __enter__(self) -> ResultsWriter:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+def _test(test: Test) -> dict[str, Any]:
+    return {name: value for name, value in asdict(test).items() if value}
+
+
+def _sync_folder(folder: Path) -> None:
+    # So that the new file's name is on the disk, too, where a folder can be synced.
+    with suppress(OSError):
+        number = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(number)
+        finally:
+            os.close(number)
+
+
+def _differences(
+    before: Results, options: Mapping[str, Any], planned: Collection[Test]
+) -> Iterator[str]:
+    for name in sorted({*before.options, *options}):
+        old, new = (_said(each, name) for each in (before.options, options))
+        if old != new:
+            yield f"{name} was {old}, and is {new}"
+    new_keys = {test.key for test in planned}
+    old_keys = {test.key for test in before.planned}
+    for what, keys in (("not in it", new_keys - old_keys), ("only in it", old_keys - new_keys)):
+        if keys:
+            tests = "test is" if len(keys) == 1 else "tests are"
+            yield f"{len(keys)} {tests} {what}, such as '{min(keys)}'"
+
+
+def _said(options: Mapping[str, Any], name: str) -> str:
+    return json.dumps(options[name]) if name in options else "not given"

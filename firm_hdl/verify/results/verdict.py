@@ -1,0 +1,206 @@
+"""What a test system may say of what it was given to judge: one of four things.
+
+Only `Passed` is a pass. Each of the four carries what makes it believable, and refuses to be made
+without: a pass counts what was judged, a failure has a text, a missing judgement has a reason, and
+a known difference has a key and counts what was compared once the known thing was taken away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, TypeAlias
+
+__all__ = [
+    "Failed",
+    "KnownDifference",
+    "NotJudged",
+    "NotJudgedError",
+    "Passed",
+    "Verdict",
+    "verdict_from_json",
+    "verdict_to_json",
+    "worst",
+]
+
+SILENT = "failed without saying why"
+"""What stands for the text of a failure that has none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Passed:
+    """All that was judged is right.
+
+    Attributes
+    ----------
+    cases : int
+        What was judged: packets, definitions, plans; at least 1.
+
+    Raises
+    ------
+    ValueError
+        If nothing was judged.
+    """
+
+    name: ClassVar[str] = "passed"
+
+    cases: int
+
+    def __post_init__(self) -> None:
+        _check_cases(self.cases)
+
+    @property
+    def details(self) -> tuple[str, ...]:
+        """Nothing more is to be said."""
+        return ()
+
+
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """Something is wrong, or the judge broke down.
+
+    Attributes
+    ----------
+    failures : tuple of str
+        What is wrong, at least one text. A blank one becomes `SILENT`: a tool that fails without a
+        message fails all the same.
+
+    Raises
+    ------
+    ValueError
+        If there is no failure.
+    """
+
+    name: ClassVar[str] = "failed"
+
+    failures: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        if not self.failures:
+            raise ValueError("A failure must have at least one text")
+        texts = tuple(text if text.strip() else SILENT for text in self.failures)
+        object.__setattr__(self, "failures", texts)
+
+    @property
+    def details(self) -> tuple[str, ...]:
+        """The failures."""
+        return self.failures
+
+
+@dataclass(frozen=True, slots=True)
+class NotJudged:
+    """Nobody could say whether it is right.
+
+    Attributes
+    ----------
+    reason : str
+
+    Raises
+    ------
+    ValueError
+        If the reason is blank.
+    """
+
+    name: ClassVar[str] = "not judged"
+
+    reason: str
+
+    def __post_init__(self) -> None:
+        if not self.reason.strip():
+            raise ValueError("What was not judged must have a reason")
+
+    @property
+    def details(self) -> tuple[str, ...]:
+        """The reason."""
+        return (self.reason,)
+
+
+class NotJudgedError(Exception):
+    """Nobody can judge what was given, such as a type; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class KnownDifference:
+    """It differs as documented, and in nothing else.
+
+    Attributes
+    ----------
+    keys : tuple of str
+        Entries of the documentation that explain the difference, at least one.
+    cases : int
+        What was compared again without the known difference, at least 1.
+
+    Raises
+    ------
+    ValueError
+        If there is no key, a blank one, or nothing was compared.
+    """
+
+    name: ClassVar[str] = "known difference"
+
+    keys: tuple[str, ...]
+    cases: int
+
+    def __post_init__(self) -> None:
+        if not self.keys or not all(key.strip() for key in self.keys):
+            raise ValueError("A known difference must have the key that explains it")
+        _check_cases(self.cases)
+
+    @property
+    def details(self) -> tuple[str, ...]:
+        """The keys."""
+        return self.keys
+
+
+Verdict: TypeAlias = "Passed | Failed | NotJudged | KnownDifference"
+
+_KINDS: dict[str, type[Passed | Failed | NotJudged | KnownDifference]] = {
+    kind.name: kind for kind in (Failed, NotJudged, KnownDifference, Passed)
+}
+"""By name, the worst first."""
+
+
+def worst(verdicts: Iterable[Verdict]) -> Verdict:
+    """Return the worst verdict: failed, not judged, known difference, passed, in this order.
+
+    Of no verdicts at all the worst is that nothing was judged. Of equally bad ones it is the first.
+    """
+    order = list(_KINDS)
+    return min(
+        verdicts, key=lambda each: order.index(each.name), default=NotJudged("there was nothing")
+    )
+
+
+def verdict_to_json(verdict: Verdict) -> dict[str, Any]:
+    """Return a verdict as an object that JSON can carry, with its name as ``verdict``."""
+    values = {each.name: getattr(verdict, each.name) for each in fields(verdict)}
+    plain = {n: list(v) if isinstance(v, tuple) else v for n, v in values.items()}
+    return {"verdict": verdict.name, **plain}
+
+
+def verdict_from_json(given: object) -> Verdict:
+    """Return a verdict that `verdict_to_json` wrote.
+
+    Raises
+    ------
+    ValueError
+        If it is none.
+    """
+    if not isinstance(given, dict) or given.get("verdict") not in _KINDS:
+        raise ValueError(f"A verdict must be one of {', '.join(_KINDS)}, not {given!r}")
+    kind: Any = _KINDS[given["verdict"]]
+    values = {
+        name: tuple(value) if isinstance(value, list) else value
+        for name, value in given.items()
+        if name != "verdict"
+    }
+    try:
+        verdict: Verdict = kind(**values)
+    except (AttributeError, TypeError) as error:
+        raise ValueError(f"A verdict '{kind.name}' is not written so: {error}") from None
+    return verdict
+
+
+def _check_cases(cases: int) -> None:
+    if type(cases) is not int or cases < 1:
+        raise ValueError(f"A verdict must rest on at least 1 case, not {cases!r}")

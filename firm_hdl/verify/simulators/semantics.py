@@ -1,0 +1,199 @@
+"""Packets, transfers and statuses in rows of a trace, put together from ports alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from firm_hdl.export.top import leaf_names
+from firm_hdl.gateware.signatures import Status
+from firm_hdl.plan import Plan
+from firm_hdl.sim.payloads import decoder_of
+from firm_hdl.sim.record import Seen
+from firm_hdl.verify.simulators.trace import Trace, read_row
+
+__all__ = ["Traffic", "traffic"]
+
+
+@dataclass(slots=True, kw_only=True)
+class Traffic:
+    """What went over the ports of both converters in a run.
+
+    Attributes
+    ----------
+    name : str
+        The run's.
+    packets, marked, statuses, sent_statuses
+        As in :class:`firm_hdl.sim.record.Seen`; statuses as bits.
+    transfers : dict of int to list of str
+        Bits that each leaf of the deserializer transferred, with ``last`` in front of the items.
+    """
+
+    name: str
+    plan: Plan
+    packets: list[bytes] = field(default_factory=list)
+    marked: list[bool] = field(default_factory=list)
+    statuses: list[str] = field(default_factory=list)
+    sent_statuses: list[str] = field(default_factory=list)
+    transfers: dict[int, list[str]] = field(default_factory=dict)
+
+    def difference(self, seen: Seen) -> str | None:
+        """Describe the first thing that is not as the Python simulation showed it."""
+        for what, mine, right in (
+            ("packets", self.packets, seen.packets),
+            ("tuser", self.marked, seen.marked),
+            ("statuses of the deserializer", self.statuses, _bits(seen.statuses)),
+            ("statuses of the serializer", self.sent_statuses, _bits(seen.sent_statuses)),
+        ):
+            if mine != right:
+                return f"{what} differ: {_first(mine, right)}"
+        for number, leaf in enumerate(self.plan.leaves):
+            decode = decoder_of(leaf)
+            right_ones = seen.transfers.get(number, [])
+            try:
+                got = [decode(int(bits, 2)) for bits in self.transfers.get(number, ())]
+            except ValueError:
+                return f"transfers of {leaf} differ: some are undefined"
+            if got != right_ones:
+                return f"transfers of {leaf} differ: {_first(got, right_ones)}"
+        return None
+
+
+def _bits(statuses: Sequence[Status]) -> list[str]:
+    return [f"{status.value:08b}" for status in statuses]
+
+
+def _first(mine: Sequence[object], right: Sequence[object]) -> str:
+    pairs = enumerate(zip(mine, right, strict=False))
+    at = next((n for n, (a, b) in pairs if a != b), min(len(mine), len(right)))
+    return (
+        f"number {at} of {len(right)} is {list(mine[at : at + 1])} "
+        f"instead of {list(right[at : at + 1])}"
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Stream:
+    """A stream by its ports: ``i3`` is an input, ``o3`` an output."""
+
+    valid: str
+    ready: str
+    payload: tuple[str, ...]
+    take: Callable[[Traffic, list[str]], None]
+
+
+def traffic(trace: Trace, rows: Sequence[str]) -> list[Traffic]:
+    """Put together what rows of outputs say, with the trace's inputs; one entry for each run."""
+    watching: dict[str, list[_Stream]] = {}
+    for stream in _streams(trace):
+        watching.setdefault(stream.valid, []).append(stream)
+        watching.setdefault(stream.ready, []).append(stream)
+    values: dict[str, str] = {}
+    # In the order in which they were found to transfer; sets have none.
+    firing: dict[_Stream, None] = {}
+    plan = trace.devices[0].plan
+    found = [Traffic(name=name, plan=plan) for name, _ in trace.runs]
+    for run, changes in _cycles(trace, rows):
+        values.update(changes)
+        for key in changes:
+            for stream in watching.get(key, ()):
+                if values.get(stream.valid) == "1" == values.get(stream.ready):
+                    firing[stream] = None
+                else:
+                    firing.pop(stream, None)
+        if run is not None:
+            for stream in firing:
+                stream.take(found[run], [values[key] for key in stream.payload])
+    return found
+
+
+def _cycles(trace: Trace, rows: Sequence[str]) -> Iterator[tuple[int | None, dict[str, str]]]:
+    """Yield the run, `None` in a reset, and what changed in each cycle."""
+    starts = {first: number for number, (_, first) in enumerate(trace.runs)}
+    run = at = 0
+    for stimulus in trace.stimuli:
+        flag, _, inputs = stimulus.partition(" ")
+        changes = {f"i{number}": bits for number, bits in read_row(inputs)}
+        if flag == "0":
+            yield None, changes
+            continue
+        if at == len(rows):
+            return
+        run = starts.get(at, run)
+        changes.update((f"o{number}", bits) for number, bits in read_row(rows[at]))
+        at += 1
+        yield run, changes
+
+
+def _streams(trace: Trace) -> Iterator[_Stream]:
+    keys: dict[tuple[str, str], str] = {}
+    for letter, pins in (("i", trace.inputs), ("o", trace.outputs)):
+        for pin in pins:
+            direction = trace.devices[pin.device].direction
+            keys[direction, pin.port.name] = f"{letter}{pin.number}"
+    for device in trace.devices:
+
+        def key(name: str, direction: str = device.direction) -> str:
+            return keys[direction, name]
+
+        yield _Stream(
+            key("m_axis_status_tvalid"),
+            key("m_axis_status_tready"),
+            (key("m_axis_status_tdata"),),
+            _take_status if device.direction == "deserializer" else _take_sent_status,
+        )
+        if device.direction == "serializer":
+            payload = ("m_axis_tdata", "m_axis_tkeep", "m_axis_tlast", "m_axis_tuser")
+            yield _Stream(
+                key("m_axis_tvalid"),
+                key("m_axis_tready"),
+                tuple(key(name) for name in payload),
+                _Beats().take,
+            )
+            continue
+        for leaf, (path, base) in enumerate(leaf_names(device.plan).items()):
+            assert device.plan.leaves[leaf].path == path
+            last = keys.get(("deserializer", f"{base}_last"))
+            bits = (*([] if last is None else [last]), key(f"{base}_data"))
+            yield _Stream(key(f"{base}_valid"), key(f"{base}_ready"), bits, _Leaf(leaf).take)
+
+
+def _take_status(run: Traffic, payload: list[str]) -> None:
+    run.statuses.append(payload[0])
+
+
+def _take_sent_status(run: Traffic, payload: list[str]) -> None:
+    run.sent_statuses.append(payload[0])
+
+
+@dataclass(slots=True)
+class _Leaf:
+    """Collects the transfers of a leaf."""
+
+    number: int
+
+    def take(self, run: Traffic, payload: list[str]) -> None:
+        run.transfers.setdefault(self.number, []).append("".join(payload))
+
+
+@dataclass(slots=True)
+class _Beats:
+    """Puts packets together."""
+
+    run: Traffic | None = None
+    parts: list[bytes] = field(default_factory=list)
+
+    def take(self, run: Traffic, payload: list[str]) -> None:
+        if run is not self.run:
+            # A reset, and what had come of a packet is gone.
+            self.run, self.parts = run, []
+        data, keep, last, user = payload
+        count = keep[::-1].find("0") if "0" in keep else len(keep)
+        lanes = [data[at : at + 8] for at in range(len(data) - 8, -1, -8)]
+        # What is undefined is no byte: the packet is too short, and differs.
+        defined = [lane for lane in lanes[:count] if not set(lane) - {"0", "1"}]
+        self.parts.append(bytes(int(lane, 2) for lane in defined))
+        if last == "1":
+            run.packets.append(b"".join(self.parts))
+            run.marked.append(user == "1")
+            self.parts = []

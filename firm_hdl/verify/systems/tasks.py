@@ -1,0 +1,143 @@
+"""What test systems are to run: types, of distributions or of a user's own folders.
+
+Types that are the same in several distributions are run once and counted for each.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.frontend import Library
+from firm_hdl.model import Message, closure
+from firm_hdl.verify.references.oracle import DISTRO_STORES, distro_oracle
+from firm_hdl.verify.systems.libraries import library_of
+from firm_hdl.wire import refusals
+
+__all__ = ["Task", "UnknownTypeError", "collect_own", "collect_tasks"]
+
+
+class UnknownTypeError(ValueError):
+    """No distribution has a type of a name."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """One run.
+
+    Attributes
+    ----------
+    distro, name : str
+        Of the type that is run.
+    same : tuple of str
+        All distributions that have the type just so, `distro` included.
+    """
+
+    distro: str
+    name: str
+    same: tuple[str, ...]
+
+
+def collect_tasks(
+    distros: Iterable[str] = (),
+    names: Sequence[str] = (),
+    *,
+    problems: dict[str, Diagnostic] | None = None,
+) -> list[Task]:
+    """List what to run, the largest types first.
+
+    Parameters
+    ----------
+    distros : iterable of str
+        None: all of them.
+    names : sequence of str
+        Types as ``package/Type`` or ``package/msg/Type``; none: all types.
+    problems : dict or None
+        Takes the names that no distribution has, by what is to be said of them, if it has others.
+
+    Raises
+    ------
+    UnknownTypeError
+        If no distribution has a type of a name.
+    """
+    wanted = {_full(name) for name in names}
+    found: dict[tuple[str, str], list[str]] = defaultdict(list)
+    weights: dict[tuple[str, str], int] = {}
+    for distro in list(distros) or DISTRO_STORES:
+        oracle = distro_oracle(distro)
+        for name in oracle.names():
+            if not wanted or name in wanted:
+                structure = repr(oracle.structure(name))
+                found[name, structure].append(distro)
+                weights[name, structure] = len(structure)
+    if missing := wanted - {name for name, _ in found}:
+        which = ", ".join(sorted(missing))
+        if problems is None or not found:
+            raise UnknownTypeError(f"No distribution has {which}")
+        unknown = Diagnostic(message=f"no distribution has {which}")
+        problems[str(unknown)] = unknown
+    # The largest first, so that no processor is left with one at the end.
+    keys = sorted(found, key=lambda key: (-weights[key], key))
+    return [Task(distro=found[k][-1], name=k[0], same=tuple(found[k])) for k in keys]
+
+
+def collect_own(
+    distros: Iterable[str],
+    names: Sequence[str],
+    paths: Sequence[str],
+    *,
+    own: Sequence[str] | None = None,
+    problems: dict[str, Diagnostic] | None = None,
+) -> list[Task]:
+    """List what to run of the types in folders, the largest types first.
+
+    Parameters
+    ----------
+    distros : iterable of str
+        Whose rules and types the folders' own are read with, in turn.
+    names : sequence of str
+        Types, services or actions; none: all that are in the folders. Types that are named have to
+        fit a wire (:func:`firm_hdl.wire.refusals`).
+    paths : sequence of str
+    own : sequence of str or None
+        Those of `paths` whose types are meant by all; `None`: all of them.
+    problems : dict or None
+        Takes what is wrong with definitions, by its text; they are left out then.
+
+    Raises
+    ------
+    DefinitionError
+        With those of all of them, without `problems`, or if none of the named types can be used.
+    """
+    found: dict[tuple[str, str], int] = {}
+    wrong: dict[str, Diagnostic] = {} if problems is None else problems
+    for distro in distros:
+        library = library_of(distro, tuple(paths))
+        alone = Library(distro, paths if own is None else own, origins=())
+        for name in names or alone.interfaces():
+            try:
+                messages = library.interface(name).messages
+            except DefinitionError as error:
+                wrong.update((str(problem), problem) for problem in error.diagnostics)
+                continue
+            # A type that is named and fits no wire is an error at once; of all, it is not judged.
+            if no_layout := [each for message in messages for each in refusals(message) if names]:
+                wrong.update((str(problem), problem) for problem in no_layout)
+                continue
+            found.update(((distro, message.name), _weight(message)) for message in messages)
+    if wrong and (problems is None or (names and not found)):
+        raise DefinitionError(wrong.values())
+    keys = sorted(found, key=lambda key: (-found[key], key))
+    return [Task(distro=distro, name=name, same=(distro,)) for distro, name in keys]
+
+
+def _weight(message: Message) -> int:
+    """Estimate how long a type takes: by its fields, nested ones included."""
+    return sum(len(part.fields) for part in closure([message]))
+
+
+def _full(name: str) -> str:
+    package, _, base = name.rpartition("/")
+    return f"{package.removesuffix('/msg')}/msg/{base}"

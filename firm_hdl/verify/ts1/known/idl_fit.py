@@ -1,0 +1,309 @@
+"""Values in IDL that do not fit their types, and what another file declares.
+
+rosidl_parser takes any literal for the value of anything; what is generated from it does not
+compile, or has other values. Names that an included file declares are names to it.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.facts import Facts
+from firm_hdl.verify.ts1.known.idl_values import DECLARED, TYPEDEF, blanked, integer_of
+from firm_hdl.verify.ts1.known.rule import Known, mend_members
+
+__all__ = ["IDL_FIT"]
+
+_RANGES: Mapping[str, tuple[int, int]] = {
+    **{
+        kind: (-(1 << bits - 1), (1 << bits - 1) - 1)
+        for bits, kinds in {
+            8: ("int8", "char"),
+            16: ("int16", "short"),
+            32: ("int32", "long"),
+            64: ("int64", "long long"),
+        }.items()
+        for kind in kinds
+    },
+    **{
+        kind: (0, (1 << bits) - 1)
+        for bits, kinds in {
+            8: ("uint8", "octet"),
+            16: ("uint16", "unsigned short", "wchar"),
+            32: ("uint32", "unsigned long"),
+            64: ("uint64", "unsigned long long"),
+        }.items()
+        for kind in kinds
+    },
+}
+_FLOATS = ("float", "double", "long double")
+_NUMBER = re.compile(r"[-+]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_WORD = re.compile(r"[A-Za-z_]\w*")
+
+
+# What another file declares.
+
+
+def _without_includes(case: Case) -> str:
+    """Write what included files declare in place of its names."""
+    values: dict[str, int] = {}
+    kinds: dict[str, str] = {}
+    for code in map(blanked, case.included):
+        values.update(_values(code))
+        for kind, name, size in TYPEDEF.findall(code):
+            if not size:
+                kinds[name] = kinds.get(kind.rpartition("::")[2], kind)
+    code = blanked(case.text)
+    for _, name, _ in (*DECLARED.findall(code), *TYPEDEF.findall(code)):
+        values.pop(name, None)
+        kinds.pop(name, None)
+
+    def meaning(match: re.Match[str]) -> str:
+        before = code[: match.start()].rstrip()[-1:]
+        behind = code[match.end() :].lstrip()[:1]
+        if match[1] in values and before in tuple("<[,(=+-*/%&|^~") and behind not in ("", "="):
+            return str(values[match[1]])
+        is_type = match[1] in kinds and behind not in tuple(";=,[")
+        return kinds[match[1]] if is_type else match[0]
+
+    text = case.text
+    for match in reversed([*re.finditer(r"(?:::)?\b(?:\w+::)*(\w+)\b", code)]):
+        text = text[: match.start()] + meaning(match) + text[match.end() :]
+    return text if case.included else case.text
+
+
+def _values(code: str) -> dict[str, int]:
+    """Work out the integers that a text declares."""
+    names: dict[str, int] = {}
+    modules = set(re.findall(r"\bmodule\s+(\w+)", code))
+    for _, name, expression in DECLARED.findall(code):
+        value = integer_of(expression, names, modules)
+        if value is not None:
+            names[name] = value
+    return names
+
+
+# Values that do not fit.
+
+
+@dataclass(frozen=True, slots=True)
+class _Names:
+    """What values may refer to: integers, and all that is declared."""
+
+    integers: Mapping[str, int]
+    modules: set[str]
+    declared: set[str]
+
+    @classmethod
+    def of(cls, case: Case) -> _Names:
+        texts = [blanked(text) for text in (*case.included, case.text)]
+        code = "\n".join(texts)
+        return cls(
+            integers={name: each for text in texts for name, each in _values(text).items()},
+            modules=set(re.findall(r"\bmodule\s+(\w+)", code)),
+            declared={name for _, name, _ in DECLARED.findall(code)},
+        )
+
+    def integer(self, text: str) -> int | None:
+        return integer_of(text, self.integers, self.modules)
+
+
+def _is_value(kind: str, text: str, names: _Names) -> bool:
+    """Whether a text is a value of a scalar type; what is not understood is one."""
+    if _WORD.fullmatch(text) and text not in ("TRUE", "FALSE"):
+        return text in names.declared
+    is_truth, is_text = text in ("TRUE", "FALSE"), text[:1] == '"' or text[:2] == 'L"'
+    integer = names.integer(text)
+    if kind in _RANGES:
+        least, most = _RANGES[kind]
+        is_number = _NUMBER.fullmatch(text) is not None and integer is None
+        is_character = "'" in text and kind not in ("char", "wchar")
+        if is_truth or is_text or is_number or is_character:
+            return False
+        return integer is None or least <= integer <= most
+    is_number = integer is not None or _NUMBER.fullmatch(text) is not None
+    if kind == "boolean":
+        return not is_text and (integer in (0, 1) or not is_number)
+    if kind in _FLOATS:
+        return not is_text and not is_truth
+    match = re.fullmatch(r"w?string\s*(?:<(.*)>)?", kind)
+    if match is None:
+        return True
+    bound = None if match[1] is None else names.integer(match[1])
+    is_long = is_text and bound is not None and len(text.strip("L")) - 2 > bound
+    return not is_number and not is_truth and not is_long
+
+
+def _is_list(kind: str, text: str, count: int | None, at_most: bool, names: _Names) -> bool:
+    """Whether a text in quotes is a list of values of some type."""
+    if text[:1] != '"':
+        return False
+    try:
+        items = ast.literal_eval(text[1:-1])
+    except (ValueError, SyntaxError, MemoryError, RecursionError):
+        return True
+    if not isinstance(items, tuple | list):
+        return True  # That is another matter.
+    if count is not None and (len(items) > count if at_most else len(items) != count):
+        return False
+    return all(
+        _is_value(kind, str(item).upper() if isinstance(item, bool) else _literal(item), names)
+        for item in items
+    )
+
+
+def _literal(item: Any) -> str:
+    return f'"{item}"' if isinstance(item, str) else repr(item)
+
+
+_NOTE = r"@\s*[\w:]+\s*(?:\((?:[^()]|\([^()]*\))*\)\s*)?"
+_MEMBER = re.compile(
+    rf"(?P<notes>(?:{_NOTE})+)(?P<type>\w[\w: ]*?\s*(?:<[^;{{}}]*?>)?)\s+(?P<name>\w+)\s*"
+    r"(?:\[(?P<size>[^\]]*)\]\s*)?(?=[;,])"
+)
+_DEFAULT = re.compile(r"@\s*default\s*\(\s*value\s*=(?P<value>(?:[^()]|\([^()]*\))*)\)")
+
+
+@dataclass(frozen=True, slots=True)
+class _Default:
+    """A default, and where it stands: at `start` up to `end`."""
+
+    start: int
+    end: int
+    text: str
+
+
+def _members(case: Case) -> Iterator[tuple[re.Match[str], list[_Default]]]:
+    """Yield the members that have defaults."""
+    code = blanked(case.text)
+    for member in _MEMBER.finditer(code):
+        found = [
+            _Default(*match.span(), case.text[match.start("value") : match.end("value")].strip())
+            for match in _DEFAULT.finditer(code, *member.span("notes"))
+        ]
+        if found:
+            yield member, found
+
+
+def _fitting_values(case: Case) -> str:
+    """Write a value that fits in place of one that does not, and leave such defaults out."""
+    names = _Names.of(case)
+    code = blanked(case.text)
+    changes: list[tuple[int, int, str]] = []
+    for match in DECLARED.finditer(code):
+        kind = " ".join(match[1].split())
+        # Texts are blank there.
+        start, end = code.index("=", match.end(2)) + 1, match.end() - 1
+        if not _is_value(kind, case.text[start:end].strip(), names):
+            fit = {"boolean": "FALSE", "string": '""', "wstring": '""'}
+            new = fit.get(kind, "0.0" if kind in _FLOATS else "0")
+            changes.append((start, end, new))
+    kinds = {name: (kind, size.strip("[] ")) for kind, name, size in TYPEDEF.findall(code)}
+    for member, defaults in _members(case):
+        if not all(_is_default(member, each.text, kinds, names) for each in defaults):
+            changes += [(each.start, each.end, "") for each in defaults]
+    return _changed(case.text, changes)
+
+
+def _is_default(
+    member: re.Match[str], text: str, kinds: Mapping[str, tuple[str, str]], names: _Names
+) -> bool:
+    kind, size = " ".join(member["type"].split()), member["size"]
+    while (named := kinds.get(kind.rpartition("::")[2])) is not None:
+        kind, size = named[0], size or named[1] or None
+    sequence = re.fullmatch(r"sequence\s*<\s*(.*?)\s*(?:,([^,<>]*))?>", kind)
+    if sequence is not None:
+        count = None if sequence[2] is None else names.integer(sequence[2].strip())
+        return _is_list(sequence[1], text, count, True, names)
+    if size is not None:
+        return _is_list(kind, text, names.integer(size), False, names)
+    return _is_value(kind, text, names)
+
+
+def _one_default(case: Case) -> str:
+    """Leave all defaults of a member out but the first."""
+    further = [each for _, defaults in _members(case) for each in defaults[1:]]
+    return _changed(case.text, [(each.start, each.end, "") for each in further])
+
+
+def _changed(text: str, changes: list[tuple[int, int, str]]) -> str:
+    for start, end, new in sorted(changes, reverse=True):
+        text = text[:start] + new + text[end:]
+    return text
+
+
+def _lists_of_one(case: Case) -> str:
+    """Write a comma behind the only element of a list, as rosidl_adapter does."""
+    changes = [
+        (each.start, each.end, f'@default(value="({match[1]},)")')
+        for _, defaults in _members(case)
+        for each in defaults
+        if (match := re.fullmatch(r'"\(\s*([-+\w.]+)\s*\)"', each.text))
+    ]
+    return _changed(case.text, changes)
+
+
+# A bound that two share.
+
+_WIDE = re.compile(r"\bsequence\s*<\s*wstring\s*<[^<>]*>\s*>\s+(\w+)|\bwstring<=\d+\[\] +(\w+)")
+
+
+def _own_bounds(facts: Facts, case: Case) -> Facts:
+    """Take the bound of texts away from a sequence of them that has none."""
+    code = blanked(case.text) if case.language == "idl" else case.text
+    names = {one or other for one, other in _WIDE.findall(code)}
+
+    def own(field: dict[str, Any]) -> dict[str, Any]:
+        match = re.fullmatch(r"(wstring<=(\w+))\[<=\2\]", field["type"])
+        is_one = match is not None and field["name"] in names
+        return {**field, "type": f"{match[1]}[]"} if match is not None and is_one else field
+
+    mended = mend_members("fields", own)(facts, case)
+    if mended == facts:
+        return facts
+    # It is that of another type.
+    return {name: fact for name, fact in mended.items() if name != "hash"}
+
+
+def _entry(key: str, text: str, **more: Any) -> Known:
+    more = {"language": "idl", **more}
+    return Known(key=key, oracles=frozenset({"rosidl_parser"}), text=text, **more)
+
+
+IDL_FIT: tuple[Known, ...] = (
+    _entry(
+        "idl-includes",
+        "rosidl_parser does not look at included files.",
+        rewrite=_without_includes,
+    ),
+    _entry(
+        "idl-defaults",
+        "rosidl_parser takes several defaults of a member.",
+        rewrite=_one_default,
+        is_mistake=True,
+    ),
+    _entry(
+        "idl-values",
+        "rosidl_parser takes values that are none of their types.",
+        rewrite=_fitting_values,
+        is_mistake=True,
+    ),
+    _entry(
+        "idl-lists-of-one",
+        "Generators fail at a list that is written (1); rosidl_adapter writes (1, ).",
+        rewrite=_lists_of_one,
+    ),
+    _entry(
+        "ros2-wstring-sequences",
+        "rosidl_parser takes the bound of the texts in a sequence of wstring for the sequence's.",
+        language=None,
+        dialect="ros2",
+        theirs=_own_bounds,
+    ),
+)
+"""What is known of rosidl_parser, values and included files."""

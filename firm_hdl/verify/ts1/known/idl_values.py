@@ -1,0 +1,250 @@
+"""Constants, expressions and typedefs in IDL, which rosidl_parser does not all evaluate.
+
+It knows one literal as a value. Values are worked out here by Python's own rules for integers, in
+which nothing of firm-hdl has a part, and written in place of expressions.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.facts import Facts
+from firm_hdl.verify.ts1.known.rule import Known, mend_constants
+from firm_hdl.verify.ts1.known.texts import original, renamed
+
+__all__ = ["DECLARED", "IDL_VALUES", "TYPEDEF", "blanked", "integer_of"]
+
+_QUIET = re.compile(r'("(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/)', re.DOTALL)
+
+
+def blanked(text: str) -> str:
+    """Return a text of the same length with blanks for its texts and comments."""
+    return _QUIET.sub(lambda match: " " * len(match[0]), text)
+
+
+# Expressions.
+
+_OPERATORS: Mapping[type[ast.AST], Callable[..., int]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: lambda one, other: int(one / other) if other else 0,
+    ast.Mod: operator.mod,
+    ast.LShift: operator.lshift,
+    ast.RShift: operator.rshift,
+    ast.BitOr: operator.or_,
+    ast.BitXor: operator.xor,
+    ast.BitAnd: operator.and_,
+    ast.UAdd: operator.pos,
+    ast.USub: operator.neg,
+    ast.Invert: operator.invert,
+}
+_MOST = 1 << 64
+_ESCAPE = re.compile(r"L?'(?:\\x([0-9A-Fa-f]{1,2})|\\u([0-9A-Fa-f]{1,4})|\\(n)|([^\\']))'")
+
+
+_PYTHON_ONLY = re.compile(r"\b0[bo]|\b\d\w*_", re.IGNORECASE)
+_TWO_SIGNS = re.compile(r"(?:^|[(*/%&|^<>+~-])\s*[-+~]\s*[-+~]")
+
+
+def integer_of(expression: str, names: Mapping[str, int], modules: set[str]) -> int | None:
+    """Work out an integer; `None` if it is none, or none to IDL."""
+    scopes = re.findall(r"(\w+)\s*::", expression)
+    is_odd = _TWO_SIGNS.search(expression) or _PYTHON_ONLY.search(expression)
+    if is_odd or not modules.issuperset(scopes):
+        return None
+    text = re.sub(r"(?:::)?\b(?:\w+::)+(?=\w)", "", expression.strip())
+    text = re.sub(r"(?<![\w.])0(?=[0-7]+\b)", "0o", text)
+    text = _ESCAPE.sub(lambda match: str(_character(match)), text)
+    try:
+        return _worked_out(ast.parse(text, mode="eval").body, names)
+    except (SyntaxError, ValueError, KeyError, OverflowError, MemoryError, RecursionError):
+        return None
+
+
+def _character(match: re.Match[str]) -> int:
+    hexadecimal, wide, newline, plain = match.groups()
+    if newline:
+        return 10
+    return ord(plain) if plain else int(hexadecimal or wide, 16)
+
+
+def _worked_out(node: ast.expr, names: Mapping[str, int]) -> int:
+    match node:
+        case ast.Constant(value=int() as value) if type(value) is int:
+            found = value
+        case ast.Name(id=name):
+            found = names[name]
+        case ast.UnaryOp(op=sign, operand=operand):
+            found = _OPERATORS[type(sign)](_worked_out(operand, names))
+        case ast.BinOp(left=left, op=sign, right=right):
+            one, other = _worked_out(left, names), _worked_out(right, names)
+            if isinstance(sign, ast.LShift) and other > 64:
+                raise OverflowError
+            found = _OPERATORS[type(sign)](one, other)
+        case _:
+            raise ValueError
+    if abs(found) > _MOST:
+        raise OverflowError
+    return found
+
+
+DECLARED = re.compile(r"\bconst\s+([\w :]+?)\s+(\w+)\s*=\s*([^;]*?)\s*;")
+_PLACES = re.compile(
+    r"(?P<const>\bconst\s+[\w :]+?\s+\w+\s*=\s*)(?P<a>[^;]*?)(?=\s*;)"
+    r"|(?P<size>\[\s*)(?P<b>[^\]]*?)(?=\s*\])"
+    r"|(?P<text>\bw?string\s*<\s*)(?P<c>[^<>]*?)(?=\s*>)"
+    r"|(?P<list>\bsequence\s*<[^;{}]*?,\s*)(?P<d>[^<>,;]*?)(?=\s*>)"
+    r"|(?P<default>@default\s*\(\s*value\s*=\s*)(?P<e>[^\"]*?)(?=\s*\)\s*(?:@|[\w:]))"
+)
+
+
+def _literals(case: Case) -> str:
+    """Write the value of each integer expression in its place."""
+    code = blanked(case.text)
+    names: dict[str, int] = {}
+    modules = set(re.findall(r"\bmodule\s+(\w+)", code))
+    for _, name, expression in DECLARED.findall(code):
+        value = integer_of(expression, names, modules)
+        if value is not None:
+            names[name] = value
+    pieces, end = [], 0
+    for match in _PLACES.finditer(code):
+        which = next(name for name in "abcde" if match[name] is not None)
+        expression = match[which]
+        if not expression or re.fullmatch(r"-?\s*(?:0|[1-9]\d*)", expression):
+            continue
+        if which in "bcd" and "'" in expression:  # A character is no length.
+            continue
+        value = integer_of(expression, names, modules)
+        if value is not None:
+            start = match.start(which)
+            pieces += [case.text[end:start], str(value)]
+            end = match.end(which)
+    return "".join([*pieces, case.text[end:]])
+
+
+def _truth_values(constant: dict[str, Any]) -> dict[str, Any]:
+    is_number = constant["type"] == "bool" and type(constant["value"]) is int
+    return {**constant, "value": bool(constant["value"])} if is_number else constant
+
+
+# Typedefs.
+
+TYPEDEF = re.compile(r"\btypedef\s+([^;{}]*?)\s*\b(\w+)\s*((?:\[[^\]]*\])?)\s*;")
+
+
+def _paths(code: str) -> list[str]:
+    """List the full names that typedefs declare."""
+    found: list[str] = []
+    scopes: list[str] = []
+    for mark in re.finditer(rf"\bmodule\s+(\w+)\s*{{|[{{}}]|{TYPEDEF.pattern}", code):
+        if mark[3] is not None:
+            found.append("::".join([*filter(None, scopes), mark[3]]))
+        elif mark[0] != "}":
+            scopes.append(mark[1] or "")
+        elif scopes:
+            scopes.pop()
+    return found
+
+
+def _plain_typedefs(case: Case) -> str:
+    """Write what a typedef of a typedef means, and typedefs without their scopes."""
+    code = blanked(case.text)
+    meanings: dict[str, tuple[str, str]] = {}
+    changes: list[tuple[int, int, str]] = []
+    for match in TYPEDEF.finditer(code):
+        kind, name, size = match.groups()
+        base = kind.rpartition("::")[2]
+        if base in meanings and not (size and meanings[base][1]):
+            kind, size = meanings[base][0], size or meanings[base][1]
+            changes.append((match.start(1), match.end(3), f"{kind} {name}{size}"))
+        meanings[name] = kind, size
+    paths = _paths(code)
+    for match in re.finditer(r"(?<![\w:])(?:::)?\b(?:\w+::)+(\w+)\b", code):
+        is_one = any(
+            match[0] == f"::{path}" or f"::{path}".endswith(f"::{match[0]}") for path in paths
+        )
+        if is_one and not any(a <= match.start() < b for a, b, _ in changes):
+            changes.append((*match.span(), match[1]))
+    text = case.text
+    for start, end, new in sorted(changes, reverse=True):
+        text = text[:start] + new + text[end:]
+    return text
+
+
+# Constants of services.
+
+
+def _own_constants(case: Case) -> str:
+    """Give constants that another part has, too, names of their own."""
+    code = blanked(case.text)
+    seen: set[str] = set()
+    changes: list[tuple[int, int, str]] = []
+    for block in re.finditer(r"\bmodule\s+\w+_Constants\s*\{([^{}]*)\}", code):
+        mine: set[str] = set()
+        for match in DECLARED.finditer(code, *block.span(1)):
+            mine.add(match[2])
+            if match[2] in seen:
+                changes.append((*match.span(2), renamed(match[2])))
+        seen |= mine
+    text = case.text
+    for start, end, new in reversed(changes):
+        text = text[:start] + new + text[end:]
+    return text
+
+
+def _long_names(case: Case) -> str:
+    """Call a long int32, where the name behind it begins like the second word of a type."""
+    code = blanked(case.text)
+    text = case.text
+    pattern = r"\b(unsigned\s+)?long(?=\s+(?:long|double)\w+\s*[;,\[])"
+    for match in reversed([*re.finditer(pattern, code)]):
+        if re.search(r"\blong\s+$", code[: match.start()]) is None:
+            word = "uint32" if match[1] else "int32"
+            text = text[: match.start()] + word + text[match.end() :]
+    return text
+
+
+def _names_back(facts: Facts, case: Case) -> Facts:
+    return mend_constants(lambda each: {**each, "name": original(each["name"])})(facts, case)
+
+
+def _entry(key: str, text: str, **more: Any) -> Known:
+    return Known(key=key, oracles=frozenset({"rosidl_parser"}), text=text, language="idl", **more)
+
+
+IDL_VALUES: tuple[Known, ...] = (
+    _entry(
+        "idl-typedefs",
+        "rosidl_parser does not know typedefs of typedefs, and typedefs with their scopes.",
+        rewrite=_plain_typedefs,
+    ),
+    _entry(
+        "idl-expressions",
+        "rosidl_parser knows decimal numbers and no expressions, names of constants or characters.",
+        rewrite=_literals,
+    ),
+    _entry(
+        "idl-booleans",
+        "rosidl_parser keeps a boolean constant that is written as a number a number.",
+        theirs=mend_constants(_truth_values),
+    ),
+    _entry(
+        "idl-long-names",
+        "rosidl_parser reads 'long longitude' as a long long called itude.",
+        rewrite=_long_names,
+    ),
+    _entry(
+        "idl-service-constants",
+        "rosidl_parser gives the request what request and response both declare, twice.",
+        rewrite=_own_constants,
+        theirs=_names_back,
+    ),
+)
+"""What is known of rosidl_parser and values in IDL."""

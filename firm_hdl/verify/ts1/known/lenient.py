@@ -1,0 +1,198 @@
+"""What rosbags takes although ROS refuses it: it is no judge of mistakes.
+
+Each entry finds one sort of mistake by itself, and corrects it. What is left is judged. A text that
+rosbags takes, we refuse, and no entry has anything against, is a difference.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.known.rule import Known, Line, by_lines
+from firm_hdl.verify.ts1.known.texts import FLOATS, INTEGERS, TEXTS, float_of, integer_of, limits
+
+__all__ = ["LENIENT"]
+
+_PRIMITIVES = {*INTEGERS, *FLOATS, *TEXTS, "bool"}
+
+# Names of ROS 2.
+
+_FIELD_NAME = re.compile(r"(?!.*__)(?!.*_$)[a-z][a-z0-9_]*")
+_CONSTANT_NAME = re.compile(r"[A-Z](?:[A-Z0-9_]?[A-Z0-9]+)*")
+_TYPE_NAME = re.compile(r"(?:[a-z][a-z0-9_]*/(?:msg/)?)?[A-Z][A-Za-z0-9]*")
+_WORD = re.compile(r"[A-Za-z]\w*", re.ASCII)
+
+
+def _legal_names(line: Line, case: Case) -> Line:
+    pattern = _CONSTANT_NAME if line.equals else _FIELD_NAME
+    if pattern.fullmatch(line.name) or not _WORD.fullmatch(line.name):
+        return line
+    code = line.name.encode().hex()
+    return replace(line, name=f"RENAMED{code.upper()}" if line.equals else f"renamed{code}")
+
+
+def _has_illegal_type(case: Case) -> bool:
+    """Whether a message, or one that it needs, is called as ROS 2 does not let it be."""
+    if case.dialect != "ros2":
+        return False
+    found: list[str] = [case.name]
+
+    def look(line: Line, case: Case) -> Line:
+        if line.base not in _PRIMITIVES:
+            found.append(line.base)
+        return line
+
+    by_lines(look)(case)
+    return not all(map(_TYPE_NAME.fullmatch, found))
+
+
+# What is declared twice.
+
+
+def _distinct(case: Case) -> str:
+    seen: dict[str, int] = {}
+
+    def change(line: Line, case: Case) -> Line:
+        if line.equals and case.dialect == "ros1":  # There it may be.
+            return line
+        count = seen[line.name] = seen.get(line.name, 0) + 1
+        suffix = f"{'TWICE' if line.equals else 'twice'}{count}"
+        return line if count == 1 else replace(line, name=f"{line.name}{suffix}")
+
+    return by_lines(change)(case)
+
+
+# Values.
+
+
+def _is_value(kind: str, value: str, case: Case) -> bool:
+    """Whether a value is one of a scalar type without a bound."""
+    if kind in INTEGERS:
+        number = integer_of(value, case.dialect)
+        least, most = limits(kind, case.dialect)
+        return number is not None and least <= number <= most
+    if kind in FLOATS:
+        return float_of(value) is not None
+    if kind != "bool":
+        return kind in TEXTS
+    if case.dialect == "ros2":
+        return value.lower() in ("true", "false", "0", "1")
+    return value in ("True", "False") or integer_of(value, "ros2") is not None
+
+
+def _fits(line: Line, case: Case) -> bool:
+    """Whether the value of a constant or a default is one of its type."""
+    match = re.fullmatch(r"(\w+)(?:<=(\d+))?(?:\[(<=)?(\d*)\])?", line.type)
+    if match is None or match[1] not in _PRIMITIVES:
+        return False
+    kind, bound, at_most, count = match.groups()
+    if "[" not in line.type:
+        return _is_value(kind, line.value, case) and _is_short(line.value, bound)
+    if line.value[:1] != "[" or line.value[-1:] != "]":
+        return False
+    if kind in TEXTS:  # A comma in quotes is none; nobody has to be right about those here.
+        return True
+    items = [each.strip() for each in line.value[1:-1].split(",")] if line.value != "[]" else []
+    is_long = count and (len(items) > int(count) if at_most else len(items) != int(count))
+    return not is_long and all(_is_value(kind, each, case) for each in items)
+
+
+def _is_short(value: str, bound: str | None) -> bool:
+    return bound is None or len(value.strip("\"'")) <= int(bound)
+
+
+def _fitting_values(line: Line, case: Case) -> Line:
+    if line.equals:
+        is_legal = line.type not in _PRIMITIVES or _is_value(line.type, line.value, case)
+        if is_legal:
+            return line
+        legal = {"bool": "false" if case.dialect == "ros2" else "False"}
+        return line.with_value(legal.get(line.type, "0.0" if line.type in FLOATS else "0"))
+    if case.dialect == "ros1" or not line.value or _fits(line, case):
+        return line
+    return replace(line, rest=line.rest[line.rest.find("#") :] if "#" in line.rest else "")
+
+
+# Forms of types.
+
+
+def _legal_sizes(line: Line, case: Case) -> Line:
+    def size(match: re.Match[str]) -> str:
+        is_legal = int(match[2]) > 0 and (case.dialect == "ros2" or match[2].isdecimal())
+        return match[0] if is_legal else f"{match[1]}1"
+
+    return replace(line, type=re.sub(r"(\[(?:<=)?|<=)([+-]?\d+)", size, line.type))
+
+
+def _own_forms(line: Line, case: Case) -> Line:
+    """Take away bounds and defaults, which ROS 1 does not have."""
+    kind = re.sub(r"<=\d+", "", line.type)
+    is_field = not line.equals
+    comment = line.rest[line.rest.find("#") :] if "#" in line.rest else ""
+    return replace(line, type=kind, rest=comment if is_field and line.value else line.rest)
+
+
+def _plain_blanks(line: Line, case: Case) -> Line:
+    if case.dialect == "ros2":
+        return replace(line, indent="")
+    return replace(line, gap=line.gap.replace("\t", " "))
+
+
+def _without_annotations(case: Case) -> str:
+    return re.sub(r"(?m)^[ \t]*@[a-z]+[ \t]*(?:\n|$)", "", case.text)
+
+
+def _entry(key: str, text: str, **more: Any) -> Known:
+    more = {"is_mistake": "rewrite" in more, **more}
+    return Known(key=key, oracles=frozenset({"rosbags"}), text=text, **more)
+
+
+LENIENT: tuple[Known, ...] = (
+    _entry(
+        "rosbags-names",
+        "rosbags takes names of fields and constants that ROS 2 refuses.",
+        dialect="ros2",
+        rewrite=by_lines(_legal_names),
+    ),
+    _entry(
+        "rosbags-type-names",
+        "rosbags takes names of messages that ROS 2 refuses, which no other text can mend.",
+        dialect="ros2",
+        spoils=_has_illegal_type,
+    ),
+    _entry(
+        "rosbags-twice",
+        "rosbags takes what is declared twice.",
+        rewrite=_distinct,
+    ),
+    _entry(
+        "rosbags-values",
+        "rosbags takes values that do not fit their types.",
+        rewrite=by_lines(_fitting_values),
+    ),
+    _entry(
+        "rosbags-sizes",
+        "rosbags takes arrays and bounds of 0, and in ROS 1 sizes with a sign.",
+        rewrite=by_lines(_legal_sizes),
+    ),
+    _entry(
+        "rosbags-ros2-forms",
+        "rosbags takes bounds and defaults in ROS 1.",
+        dialect="ros1",
+        rewrite=by_lines(_own_forms),
+    ),
+    _entry(
+        "rosbags-blanks",
+        "rosbags takes blanks in front of a line in ROS 2, and tabs between words in ROS 1.",
+        rewrite=by_lines(_plain_blanks),
+    ),
+    _entry(
+        "rosbags-annotations",
+        "rosbags takes lines like @key.",
+        rewrite=_without_annotations,
+    ),
+)
+"""What it takes."""

@@ -1,0 +1,304 @@
+"""Where ROS's own readers of ``.msg``, ``.srv`` and ``.action`` say otherwise, on purpose."""
+
+from __future__ import annotations
+
+import ast
+import math
+import re
+import unicodedata
+from dataclasses import replace
+from itertools import groupby
+from typing import Any
+
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.facts import Facts
+from firm_hdl.verify.ts1.known.rule import Known, Line, by_lines, mend_constants, mend_members
+from firm_hdl.verify.ts1.known.texts import FLOATS, TEXTS, float_of, hidden, renamed, shown
+
+__all__ = ["ROS"]
+
+# What genmsg does not look at.
+
+_CONSTANT = re.compile(r"(\s*)(\w+)( +)(.*?)( *=.*)", re.DOTALL)
+_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+
+
+def _legal_constant_names(case: Case) -> str:
+    # The name may have blanks in it, so that it is no `Line`.
+    pieces = re.split(r"(\r\n|\r|\n)", case.text)
+    for index in range(0, len(pieces), 2):
+        match = _CONSTANT.fullmatch(pieces[index])
+        if match is None or "=" not in pieces[index].partition("#")[0]:
+            continue
+        indent, kind, gap, name, rest = match.groups()
+        if not _NAME.fullmatch(name):
+            pieces[index] = f"{indent}{kind}{gap}{renamed(name)}{rest}"
+    return "".join(pieces)
+
+
+def _plain_bools(line: Line, case: Case) -> Line:
+    """Write truth values as such."""
+    if line.type != "bool" or not line.equals or line.value in ("True", "False"):
+        return line
+    try:
+        value = ast.literal_eval(line.value)
+    except (ValueError, SyntaxError, MemoryError, RecursionError):
+        return line
+    return line.with_value(str(bool(value)))
+
+
+def _no_indent(line: Line, case: Case) -> Line:
+    return replace(line, indent="") if line.type == "string" and line.equals else line
+
+
+def _within_64_bits(line: Line, case: Case) -> Line:
+    limits = {"int64": 1 << 63, "uint64": 1 << 64}
+    if not line.equals or line.type not in limits:
+        return line
+    try:
+        number = int(line.value)
+    except ValueError:
+        return line
+    # One more than fits is what the rounded limits let through.
+    return line.with_value(str(number - 1)) if number == limits[line.type] else line
+
+
+def _arrays_of_one(line: Line, case: Case) -> Line:
+    return replace(line, type=re.sub(r"\[0+\]$", "[1]", line.type))
+
+
+# What all of them take in any script.
+
+
+def _ascii(text: str) -> str:
+    """Write letters, digits and blanks of other scripts in ASCII."""
+
+    def sign(character: str) -> str:
+        if character.isascii():
+            return character
+        if character.isdecimal():
+            return str(unicodedata.decimal(character))
+        if character.isspace():
+            return " "
+        return f"x{ord(character):x}" if character.isalnum() else character
+
+    return "".join(map(sign, text))
+
+
+def _ascii_lines(case: Case) -> str:
+    if case.language == "idl":
+        parts = re.split(r'("(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/)', case.text, flags=re.DOTALL)
+        return "".join(part if index % 2 else _ascii(part) for index, part in enumerate(parts))
+    pieces = re.split(r"(\r\n|\r|\n)", case.text)
+    for index in range(0, len(pieces), 2):
+        code, hash_, comment = pieces[index].partition("#")
+        if code.split(maxsplit=1)[:1] not in (["string"], ["wstring"]):
+            pieces[index] = f"{_ascii(code)}{hash_}{comment}"
+        elif "=" in pieces[index]:
+            name, equals, value = pieces[index].partition("=")
+            pieces[index] = f"{_ascii(name)}{equals}{value}"
+    return "".join(pieces)
+
+
+_LARGEST = 2**32 - 1
+
+
+def _sizes(case: Case) -> str:
+    """Write sizes and bounds that take more than 32 bits as the largest that takes no more."""
+
+    def size(match: re.Match[str]) -> str:
+        return match[1] + (match[2] if int(match[2]) <= _LARGEST else str(_LARGEST))
+
+    if case.language == "idl":
+        return re.sub(r"([<\[,]\s*)(\d+)(?=\s*[>\]])", size, case.text)
+
+    def change(line: Line, case: Case) -> Line:
+        return replace(line, type=re.sub(r"(\[(?:<=)?|<=)([0-9_]+)", size, line.type))
+
+    return by_lines(change)(case)
+
+
+# rosidl.
+
+
+def _no_escaped_quotes(line: Line, case: Case) -> Line:
+    """Write escaped quotes in lists as characters that stand for them."""
+    if line.equals or line.base not in TEXTS or not line.value.startswith("["):
+        return line
+
+    def element(match: re.Match[str]) -> str:
+        return re.sub(r"\\([\"'])", lambda found: hidden(found[1], found[1]), match[0])
+
+    code, hash_, comment = line.rest.partition("#")
+    return replace(line, rest=f"{_QUOTED.sub(element, code)}{hash_}{comment}")
+
+
+_QUOTED = re.compile(r"""\"(?:[^"\\]|\\.)*\"|'(?:[^'\\]|\\.)*'""")
+
+
+def _unquoted_default(field: dict[str, Any]) -> dict[str, Any]:
+    """Put quotes back, and take those around an element away, as rosidl_adapter does to all."""
+    default = field["default"]
+    if not isinstance(default, list):
+        return field
+    return {**field, "default": [_unquoted(each) for each in default]}
+
+
+def _unquoted(element: Any) -> Any:
+    if not isinstance(element, str):
+        return element
+    text = shown(element)
+    is_quoted = text != element and text[:1] == text[-1:] and text[:1] in ("'", '"')
+    return text[1:-1] if is_quoted else text
+
+
+def _no_backslashes(line: Line, case: Case) -> Line:
+    """Write backslashes that escape nothing as characters that stand for them."""
+    if line.base not in TEXTS:
+        return line
+    code, hash_, comment = line.rest.partition("#")
+    code = re.sub(r"\\(?![\"'])", lambda found: hidden(found[0], "\\"), code)
+    return replace(line, rest=f"{code}{hash_}{comment}")
+
+
+def _shown_texts(facts: Facts, case: Case) -> Facts:
+    facts = mend_constants(lambda each: {**each, "value": shown(each["value"])})(facts, case)
+    back = mend_members("fields", lambda each: {**each, "default": shown(each["default"])})
+    return back(facts, case)
+
+
+# Numbers that IDL has, for those that it has no words for.
+_INFINITE, _NO_NUMBER = "1.25e300", "1.75e300"
+
+
+def _plain_floats(line: Line, case: Case) -> Line:
+    """Write what is no finite number as one that stands for it."""
+    if line.base not in FLOATS:
+        return line
+
+    def word(match: re.Match[str]) -> str:
+        number = float_of(match[0])
+        if number is None or math.isfinite(number):
+            return match[0]
+        sign = "-" if match[0].startswith("-") else ""
+        return sign + (_NO_NUMBER if math.isnan(number) else _INFINITE)
+
+    code, hash_, comment = line.rest.partition("#")
+    return replace(line, rest=f"{re.sub(r'[^][, ]+', word, code)}{hash_}{comment}")
+
+
+def _float_back(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_float_back(each) for each in value]
+    if not isinstance(value, float):
+        return value
+    stand_ins = {float(_INFINITE): math.inf, float(_NO_NUMBER): math.nan}
+    return math.copysign(stand_ins.get(abs(value), abs(value)), value)
+
+
+def _floats_back(facts: Facts, case: Case) -> Facts:
+    facts = mend_constants(lambda each: {**each, "value": _float_back(each["value"])})(facts, case)
+    back = mend_members("fields", lambda each: {**each, "default": _float_back(each["default"])})
+    return back(facts, case)
+
+
+def _without_blanks(comment: str) -> str:
+    lines = [line.rstrip() for line in comment.split("\n")]
+    kept: list[str] = []
+    for is_empty, group in groupby(lines, key=lambda line: line == ""):
+        kept += [""] if is_empty else group
+    return "\n".join(kept).strip("\n")
+
+
+def _comments(facts: Facts, case: Case) -> Facts:
+    messages = facts.get("structure", {})
+    mended = {
+        name: {**message, "comment": _without_blanks(message.get("comment", ""))}
+        for name, message in messages.items()
+    }
+    return {**facts, "structure": mended}
+
+
+def _entry(key: str, oracles: str, text: str, **more: Any) -> Known:
+    return Known(key=key, oracles=frozenset(oracles.split()), text=text, **more)
+
+
+ROS: tuple[Known, ...] = (
+    _entry(
+        "ros1-indented-texts",
+        "genmsg",
+        "genmsg takes an indented string constant for one called 'string X'.",
+        rewrite=by_lines(_no_indent),
+        is_mistake=True,
+    ),
+    _entry(
+        "ascii-only",
+        "genmsg rosidl_adapter rosidl_parser",
+        "Names and numbers are written in ASCII.",
+        rewrite=_ascii_lines,
+        is_mistake=True,
+    ),
+    _entry(
+        "ros1-constant-names",
+        "genmsg",
+        "genmsg takes anything for the name of a constant.",
+        rewrite=_legal_constant_names,
+        is_mistake=True,
+    ),
+    _entry(
+        "ros1-bool-literals",
+        "genmsg",
+        "genmsg takes any literal of Python for a truth value.",
+        rewrite=by_lines(_plain_bools),
+        is_mistake=True,
+    ),
+    _entry(
+        "ros1-64-bit-limits",
+        "genmsg",
+        "genmsg compares with rounded limits, and takes one more than 64 bits hold.",
+        rewrite=by_lines(_within_64_bits),
+        is_mistake=True,
+    ),
+    _entry(
+        "ros1-empty-arrays",
+        "genmsg",
+        "genmsg takes arrays of no elements.",
+        rewrite=by_lines(_arrays_of_one),
+        is_mistake=True,
+    ),
+    _entry(
+        "sizes-of-32-bits",
+        "genmsg rosidl_adapter rosidl_parser",
+        "Every wire format counts elements in 32 bits, and so do we.",
+        rewrite=_sizes,
+        is_mistake=True,
+    ),
+    _entry(
+        "ros2-escaped-quotes",
+        "rosidl_adapter rosidl_parser",
+        "rosidl_adapter loses count of escaped quotes in a list of strings.",
+        rewrite=by_lines(_no_escaped_quotes),
+        theirs=mend_members("fields", _unquoted_default),
+    ),
+    _entry(
+        "ros2-backslashes",
+        "rosidl_parser",
+        "rosidl_adapter copies backslashes into IDL, where rosidl_parser takes them for escapes.",
+        rewrite=by_lines(_no_backslashes),
+        theirs=_shown_texts,
+    ),
+    _entry(
+        "ros2-infinite-numbers",
+        "rosidl_parser",
+        "rosidl_adapter writes inf and nan into IDL, where they are names.",
+        rewrite=by_lines(_plain_floats),
+        theirs=_floats_back,
+    ),
+    _entry(
+        "ros2-comment-blanks",
+        "rosidl_adapter",
+        "Blanks at the end of a comment's lines, and empty lines, do not count for us.",
+        theirs=_comments,
+    ),
+)
+"""What is known of genmsg and of rosidl."""

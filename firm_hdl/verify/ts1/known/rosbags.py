@@ -1,0 +1,275 @@
+"""rosbags reads ``.msg`` in a language of its own: what it refuses or takes otherwise than ROS.
+
+What it takes although ROS refuses it is in `firm_hdl.verify.ts1.known.lenient`.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+from firm_hdl.model import (
+    Array,
+    Constant,
+    Field,
+    FieldType,
+    Interface,
+    Message,
+    Sequence,
+    Text,
+)
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.facts import Facts
+from firm_hdl.verify.ts1.known.rule import Known, Line, by_lines, mend_constants, mend_members
+from firm_hdl.verify.ts1.known.texts import (
+    FLOATS,
+    INTEGERS,
+    TEXTS,
+    float_of,
+    hidden,
+    integer_of,
+    original,
+    renamed,
+    shown,
+)
+
+__all__ = ["ROSBAGS"]
+
+_ROSBAGS = frozenset({"rosbags"})
+
+
+def _line_ends(case: Case) -> str:
+    return case.text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+# wstring.
+
+
+def _narrow_lines(line: Line, case: Case) -> Line:
+    return replace(line, type=line.type[1:]) if line.base == "wstring" else line
+
+
+def _narrow(interface: Interface) -> Interface:
+    assert isinstance(interface, Message)
+    made: dict[str, Message] = {}
+
+    def kind_of(kind: FieldType) -> Any:
+        match kind:
+            case Text():
+                return replace(kind, wide=False)
+            case Array() | Sequence():
+                return replace(kind, element=kind_of(kind.element))
+            case Message():
+                return message_of(kind)
+            case _:
+                return kind
+
+    def message_of(message: Message) -> Message:
+        if message.name not in made:
+            made[message.name] = replace(
+                message,
+                fields=tuple(_typed(each, kind_of(each.type)) for each in message.fields),
+                constants=tuple(_typed(each, kind_of(each.type)) for each in message.constants),
+            )
+        return made[message.name]
+
+    return message_of(interface)
+
+
+def _typed(item: Any, kind: Any) -> Any:
+    assert isinstance(item, Field | Constant)
+    return replace(item, type=kind)
+
+
+# Names of constants: in ROS 1 they are any names.
+
+_UPPER = re.compile(r"[A-Z](?:_?[A-Z0-9]+)*")
+_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+
+
+def _upper_lines(line: Line, case: Case) -> Line:
+    is_legal = line.equals and _NAME.fullmatch(line.name)
+    if not is_legal or _UPPER.fullmatch(line.name):
+        return line
+    return replace(line, name=renamed(line.name))
+
+
+def _rename_back(constant: dict[str, Any]) -> dict[str, Any]:
+    return {**constant, "name": original(constant["name"])}
+
+
+# A name of a field that rosbags gives itself, to messages without any.
+
+_PLACEHOLDER, _STAND_IN = "structure_needs_at_least_one_member", "structure_has_one_more_member"
+
+
+def _plain_placeholders(line: Line, case: Case) -> Line:
+    is_one = line.name == _PLACEHOLDER and not line.equals
+    return replace(line, name=_STAND_IN) if is_one else line
+
+
+def _placeholders_back(facts: Facts, case: Case) -> Facts:
+    def back(field: dict[str, Any]) -> dict[str, Any]:
+        return {**field, "name": _PLACEHOLDER} if field["name"] == _STAND_IN else field
+
+    facts = mend_members("fields", back)(facts, case)
+    # It is that of another name.
+    is_named = _PLACEHOLDER in (case.text if case.before is None else case.before)
+    return {name: fact for name, fact in facts.items() if name != "hash" or not is_named}
+
+
+# Texts: it looks for numbers in them, for quotes, and never for what ends them.
+
+
+def _text_of(line: Line, case: Case) -> str | None:
+    """Return the text that a line gives, as ROS reads it; `None` if ROS refuses it."""
+    if case.dialect == "ros1":
+        return line.rest.strip()
+    value = line.value
+    quote = value[:1]
+    if quote not in ("'", '"') or not value.endswith(quote):
+        return value
+    inner = value[1:-1]
+    if re.search(rf"(?<!\\){quote}", inner):
+        return None
+    return inner.replace(f"\\{quote}", quote)
+
+
+def _quoted_lines(line: Line, case: Case) -> Line:
+    is_field = not line.equals and case.dialect == "ros2" and line.value and "[" not in line.type
+    if line.base not in TEXTS or not (line.equals or is_field):
+        return line
+    text = _text_of(line, case)
+    if text is None:
+        return line
+    quoted = f'"{hidden(text, _SIGNS)}"'
+    return replace(line, rest=quoted if line.equals else f" {quoted}")
+
+
+_SIGNS = "\"'\\"
+
+
+def _show_text(constant: dict[str, Any]) -> dict[str, Any]:
+    return {**constant, "value": shown(constant["value"])}
+
+
+# Numbers.
+
+
+def _whole_bool(constant: dict[str, Any]) -> dict[str, Any]:
+    value = constant["value"]
+    is_number = constant["type"] == "bool" and type(value) is int
+    return {**constant, "value": bool(value)} if is_number else constant
+
+
+def _decimal_lines(line: Line, case: Case) -> Line:
+    """Write integers without leading zeros and underscores, and without bases that ROS 1 lacks."""
+    if "[" in line.type or line.base not in INTEGERS or "x" in line.value.lower():
+        return line
+    number = integer_of(line.value, case.dialect)
+    return line if number is None else line.with_value(str(number))
+
+
+_FRACTION = re.compile(
+    r"[+-]?\d+\.\d*(?:e[+-]?\d+)?|\.\d+(?:e[+-]?\d+)?|[+-]?\d+e[+-]?\d+", re.IGNORECASE
+)
+
+
+def _fraction_lines(line: Line, case: Case) -> Line:
+    """Write floating-point numbers with digits and a point, or an exponent."""
+    if "[" in line.type or line.base not in FLOATS or _FRACTION.fullmatch(line.value):
+        return line
+    number = float_of(line.value)
+    return line if number is None else line.with_value(repr(number))
+
+
+def _float_constant(constant: dict[str, Any]) -> dict[str, Any]:
+    # Infinities and what is no number have no other form.
+    number = float_of(constant["value"]) if isinstance(constant["value"], str) else None
+    if constant["type"] not in FLOATS or number is None:
+        return constant
+    return {**constant, "value": number}
+
+
+# Types.
+
+
+def _own_types(line: Line, case: Case) -> Line:
+    """Write out the package of what is no special type to ROS."""
+    is_special = line.base in ("time", "duration", "Header")
+    if case.dialect == "ros1":
+        is_special = line.base == "Header" and line.type != "Header"
+    return replace(line, type=f"{case.package}/{line.type}") if is_special else line
+
+
+def _uint8_lines(line: Line, case: Case) -> Line:
+    return replace(line, type=f"uint8{line.type[4:]}") if line.base == "char" else line
+
+
+def _entry(key: str, text: str, **more: Any) -> Known:
+    return Known(key=key, oracles=_ROSBAGS, text=text, **more)
+
+
+ROSBAGS: tuple[Known, ...] = (
+    _entry(
+        "rosbags-crlf",
+        "rosbags refuses lines that end in CR LF.",
+        rewrite=_line_ends,
+    ),
+    _entry(
+        "rosbags-wstring",
+        "rosbags does not know wstring.",
+        dialect="ros2",
+        rewrite=by_lines(_narrow_lines),
+        ours=_narrow,
+    ),
+    _entry(
+        "rosbags-special-types",
+        "rosbags takes time, duration and Header for builtin types where ROS does not.",
+        rewrite=by_lines(_own_types),
+    ),
+    _entry(
+        "rosbags-constant-names",
+        "rosbags takes constants with lower-case letters for fields, or refuses them.",
+        dialect="ros1",
+        rewrite=by_lines(_upper_lines),
+        theirs=mend_constants(_rename_back),
+    ),
+    _entry(
+        "rosbags-placeholders",
+        "rosbags takes a field of this name for the one that messages without fields get.",
+        rewrite=by_lines(_plain_placeholders),
+        theirs=_placeholders_back,
+    ),
+    _entry(
+        "rosbags-texts",
+        "rosbags takes texts without quotes for numbers, and knows neither escapes nor comments.",
+        rewrite=by_lines(_quoted_lines),
+        theirs=mend_constants(_show_text),
+    ),
+    _entry(
+        "rosbags-constant-bool",
+        "rosbags keeps a bool constant that is written as a number as a number.",
+        theirs=mend_constants(_whole_bool),
+    ),
+    _entry(
+        "rosbags-integers",
+        "rosbags reads 010 as 8, and does not know 1_000 and 0o17.",
+        rewrite=by_lines(_decimal_lines),
+    ),
+    _entry(
+        "rosbags-floats",
+        "rosbags takes floating-point numbers for such only if they have digits and a point.",
+        rewrite=by_lines(_fraction_lines),
+        theirs=mend_constants(_float_constant),
+    ),
+    _entry(
+        "rosbags-char-hash",
+        "rosbags hashes char of a .msg as a character, and rosidl as a uint8.",
+        dialect="ros2",
+        rewrite=by_lines(_uint8_lines),
+        alike={"char": "uint8"},
+    ),
+)
+"""What it refuses or reads otherwise."""

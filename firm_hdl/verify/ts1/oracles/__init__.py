@@ -1,0 +1,22 @@
+"""All oracles, and those that are here."""
+
+from __future__ import annotations
+
+from firm_hdl.verify.ts1.oracles.debian import NEWER, Genmsg, RosidlAdapter, RosidlParser
+from firm_hdl.verify.ts1.oracles.oracle import Oracle
+from firm_hdl.verify.ts1.oracles.ros2_oracle import Ros2Proto
+from firm_hdl.verify.ts1.oracles.rosbags_oracle import Rosbags
+
+__all__ = ["ORACLES"]
+
+_ALL: tuple[type[Oracle], ...] = (
+    Genmsg,
+    RosidlAdapter,
+    RosidlParser,
+    *NEWER,
+    Rosbags,
+    Ros2Proto,
+)
+
+ORACLES: dict[str, type[Oracle]] = {oracle.name: oracle for oracle in _ALL}
+"""Every oracle by name, in the order of reports."""

@@ -1,0 +1,147 @@
+"""ROS's own readers, which run in processes of their own: see `worker_script`.
+
+Debian has genmsg and the rosidl of humble. Newer releases of rosidl are PyPI's, and each has
+oracles of its own, whose names end in its version.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache, cached_property
+from pathlib import Path
+from typing import Any, ClassVar
+
+from firm_hdl.frontend import DISTROS
+from firm_hdl.verify.ros2_wheels import RELEASES, Release
+from firm_hdl.verify.ros_python.worker import ROS_PYTHON, Worker
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.facts import Facts
+from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle, Refused
+
+__all__ = ["NEWER", "Genmsg", "RosidlAdapter", "RosidlParser"]
+
+
+class _Worked(Oracle):
+    """An oracle that a worker answers for."""
+
+    family: ClassVar[str]
+    judge_name: ClassVar[str]
+    """What the worker calls it."""
+    release: ClassVar[Release | None] = None
+    """Whose environment it is in; `None`: the system's."""
+
+    @cached_property
+    def _worker(self) -> Worker:
+        return _shared_worker(self.family, self.universe.folder, self.release)
+
+    def missing(self) -> str | None:
+        why = self._worker.missing
+        if self.release is None or why is None:
+            return why
+        return f"{why} {self.release.how}"
+
+    def version(self) -> str:
+        return self._worker.versions.get(self.judge_name, "")
+
+    def judge(self, cases: Sequence[Case]) -> Iterator[Answer]:
+        for case in cases:
+            yield _answer(self._worker.ask(self._request(case)))
+
+    def _request(self, case: Case) -> dict[str, Any]:
+        return {
+            "oracle": self.judge_name,
+            "package": case.package,
+            "kind": case.kind,
+            "name": case.name,
+            "file": case.file,
+            "text": case.text if case.is_changed else None,
+            "has_events": DISTROS[self.universe.distro].has_events,
+        }
+
+    def cpu_seconds(self) -> float:
+        return self._worker.cpu_seconds
+
+    def close(self) -> None:
+        if "_worker" in self.__dict__:
+            self._worker.close()
+
+
+@cache
+def _shared_worker(family: str, folder: str, release: Release | None) -> Worker:
+    # Oracles of one family ask about the same texts, which it then reads once.
+    python = ROS_PYTHON if release is None else str(release.python)
+    return Worker(family, folder, modules=Path(__file__).parent, python=python)
+
+
+def _answer(answer: dict[str, Any]) -> Answer:
+    if "facts" in answer:
+        return Accepted(answer["facts"])
+    if "refused" in answer:
+        return Refused(str(answer["refused"]))
+    if "failed" in answer:
+        return NotJudged(str(answer["failed"]))
+    raise ValueError(f"the process that was asked answered {answer!r}")
+
+
+class Genmsg(_Worked):
+    """genmsg and rosmsg: structure, ``rosmsg show`` and md5sum of ROS 1.
+
+    An action is expanded by the rule of actionlib before genmsg reads its messages.
+    """
+
+    name = judge_name = "genmsg"
+    family = "genmsg"
+    languages: ClassVar = {"ros1": frozenset({"msg", "srv", "action"})}
+
+
+class RosidlAdapter(_Worked):
+    """rosidl_adapter: what ``.msg``, ``.srv`` and ``.action`` of ROS 2 declare, comments included.
+
+    A definition that it cannot write out as IDL is refused, as in a build.
+    """
+
+    name = judge_name = "rosidl_adapter"
+    family = "rosidl"
+    languages: ClassVar = {"ros2": frozenset({"msg", "srv", "action"})}
+
+
+class RosidlParser(_Worked):
+    """rosidl_parser: what IDL declares. Other definitions go through rosidl_adapter before.
+
+    From iron on with event messages of services, and the type hashes of all of it, which
+    rosidl_generator_type_description computes.
+    """
+
+    name = judge_name = "rosidl_parser"
+    family = "rosidl"
+    languages: ClassVar = {"ros2": frozenset({"msg", "srv", "action", "idl"})}
+
+    def judge(self, cases: Sequence[Case]) -> Iterator[Answer]:
+        for case, answer in zip(cases, super().judge(cases), strict=True):
+            if case.language == "idl" and isinstance(answer, Accepted):
+                _name_as_file(answer.facts, case)
+            yield answer
+
+    def alike(self, case: Case) -> Mapping[str, str]:
+        # There is no char in the IDL that rosidl_adapter writes.
+        return {} if case.language == "idl" else {"char": "uint8"}
+
+
+def _newer() -> Iterator[type[Oracle]]:
+    for release in RELEASES:
+        for base in (RosidlAdapter, RosidlParser):
+            name = f"{base.name}-{release.rosidl}"
+            members = {"__doc__": base.__doc__, "name": name, "release": release}
+            yield type(f"{base.__name__}_{release.name}", (base,), members)
+
+
+NEWER: tuple[type[Oracle], ...] = tuple(_newer())
+"""Oracles of the releases that PyPI has, oldest first."""
+
+
+def _name_as_file(facts: Facts, case: Case) -> None:
+    """Give a message of IDL the name of its file, which its modules may contradict."""
+    names = list(facts["structure"])
+    if len(names) == 1:
+        facts["names"] = names
+        facts["structure"] = {case.full_name: facts["structure"][names[0]]}

@@ -1,0 +1,172 @@
+"""rosbags as an oracle: it reads ``.msg``, and computes type hashes.
+
+It is right about bytes, but reads definitions in its own way; what it is known to refuse or to
+take otherwise is in `firm_hdl.verify.ts1.known`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache
+from importlib import metadata
+from typing import Any, ClassVar
+
+from rosbags.interfaces import Nodetype
+from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
+
+from firm_hdl.model import Dialect
+from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.facts import Facts
+from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle, Refused
+
+__all__ = ["Rosbags"]
+
+# It gives the builtin types of ROS 1 the names that they have in ROS 2.
+_TIMES = {"builtin_interfaces/msg/Time": "time", "builtin_interfaces/msg/Duration": "duration"}
+_OWN_TIME = re.compile(r"(?m)^[ \t]*builtin_interfaces/(?:Time|Duration)\b")
+
+
+class Rosbags(Oracle):
+    """rosbags: structure of messages, and in ROS 2 their hashes."""
+
+    name = "rosbags"
+    languages: ClassVar = {"ros1": frozenset({"msg"}), "ros2": frozenset({"msg"})}
+    judges_changes = False
+    changes_needs = True
+
+    _last: tuple[tuple[str, list[str]], Answer] | None = None
+
+    def missing(self) -> str | None:
+        return None
+
+    def version(self) -> str:
+        return metadata.version("rosbags")
+
+    def judge(self, cases: Sequence[Case]) -> Iterator[Answer]:
+        for case in cases:
+            yield self.judge_changed(case, lambda case: case)
+
+    def judge_changed(self, case: Case, change: Callable[[Case], Case]) -> Answer:
+        try:
+            return self._judge(case, change)
+        except RecursionError:
+            return NotJudged("it is nested too deeply for rosbags")
+        except _UnreadableError as error:
+            return NotJudged(str(error))
+        # Its parser raises whatever its assertions and its code for hashes do.
+        except Exception as error:
+            why = " ".join(str(error).split())[-300:]
+            is_meant = isinstance(error, TypesysError)
+            return Refused(why if is_meant else f"{type(error).__name__} {why}")
+
+    def _judge(self, case: Case, change: Callable[[Case], Case]) -> Answer:
+        found: dict[str, Any] = {}
+        texts: list[str] = []
+        missing = self._read(case, found, lambda case: _noted(change(case), texts))
+        if missing is not None:
+            return Refused(f"{missing} is not there")
+        if self._last is not None and self._last[0] == (case.full_name, texts):
+            # Asked again, with a change that changes nothing.
+            return self._last[1]
+        answer = self._answer(case, found)
+        self._last = (case.full_name, texts), answer
+        return answer
+
+    def _answer(self, case: Case, found: dict[str, Any]) -> Answer:
+        full = f"{case.package}/msg/{case.name}"
+        if _contains_itself(full, found):
+            return Refused(f"{full} contains itself")
+        constants, fields = found[full]
+        facts: Facts = {"structure": {case.full_name: _message(constants, fields, case.dialect)}}
+        if case.dialect == "ros2":
+            store = get_typestore(Stores.EMPTY)
+            # Its code for a class has constants in it, which may be no Python; hashes have none.
+            store.register({name: ([], fields) for name, (_, fields) in found.items()})
+            facts["hash"] = {case.full_name: store.hash_rihs01(full)}
+        return Accepted(facts)
+
+    def _read(
+        self, root: Case, found: dict[str, Any], change: Callable[[Case], Case]
+    ) -> str | None:
+        """Read a definition and what it needs; return the name of a type that is nowhere."""
+        pending = [root]
+        while pending:
+            case = change(pending.pop())
+            if case.dialect == "ros1" and _OWN_TIME.search(case.text):
+                raise _UnreadableError("rosbags takes builtin_interfaces/Time for time of ROS 1")
+            full = f"{case.package}/msg/{case.name}"
+            found[full] = _parsed(case.text, full)
+            for need in _needs(found[full][1]):
+                if need in found or (case.dialect == "ros1" and need in _TIMES):
+                    continue
+                needed = self.universe.message_case(*need.split("/msg/"))
+                if needed is None:
+                    return need
+                if needed.language != "msg":
+                    raise _UnreadableError(f"it needs {need}, which is written in IDL")
+                pending.append(needed)
+        return None
+
+
+@lru_cache(maxsize=1024)
+def _parsed(text: str, full: str) -> Any:
+    # Headers are in most messages, and most texts are asked about again.
+    return get_types_from_msg(text, full)[full]
+
+
+def _noted(case: Case, texts: list[str]) -> Case:
+    texts.append(case.text)
+    return case
+
+
+class _UnreadableError(Exception):
+    """Nothing is wrong with the definition, but rosbags cannot read it."""
+
+
+def _contains_itself(full: str, found: dict[str, Any]) -> bool:
+    """Whether a message needs itself, or one that needs itself."""
+    done: set[str] = set()
+    path: dict[str, None] = {}
+
+    def visit(name: str) -> bool:
+        if name in path:
+            return True
+        if name in done or name not in found:
+            return False
+        path[name] = None
+        if any(visit(need) for need in _needs(found[name][1])):
+            return True
+        del path[name]
+        done.add(name)
+        return False
+
+    return visit(full)
+
+
+def _needs(fields: Any) -> Iterator[str]:
+    for _, (kind, detail) in fields:
+        element, name = (kind, detail) if kind in (Nodetype.NAME, Nodetype.BASE) else detail[0]
+        if element == Nodetype.NAME:
+            yield str(name)
+
+
+def _message(constants: Any, fields: Any, dialect: Dialect) -> Facts:
+    return {
+        "fields": [{"name": name, "type": _type(kind, dialect)} for name, kind in fields],
+        "constants": [{"name": name, "type": kind, "value": v} for name, kind, v in constants],
+    }
+
+
+def _type(description: Any, dialect: Dialect) -> str:
+    kind, detail = description
+    if kind == Nodetype.BASE:
+        name, bound = detail
+        return f"{name}<={bound}" if bound else str(name)
+    if kind == Nodetype.NAME:
+        name = str(detail)
+        return _TIMES.get(name, name.replace("/msg/", "/")) if dialect == "ros1" else name
+    element, count = detail
+    if kind == Nodetype.ARRAY:
+        return f"{_type(element, dialect)}[{count}]"
+    return f"{_type(element, dialect)}[{f'<={count}' if count else ''}]"

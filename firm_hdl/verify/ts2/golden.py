@@ -1,0 +1,168 @@
+"""Golden plans: what converters are known to do, kept in files and compared by meaning (TS2).
+
+A folder has a plan in YAML for each chosen type, below the name of its distribution:
+``lyrical/sensor_msgs_msg_Imu_cdr_8.yaml``. The file says itself which type, wire and bus it is of.
+Checking never writes; a change is accepted by an explicit command, and then reviewed where the
+folder is kept, in version control.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.export.build import BuildError, plan_of
+from firm_hdl.files import read_file
+from firm_hdl.frontend import DISTROS, Library, open_library
+from firm_hdl.model import Message
+from firm_hdl.names.identifiers import identifier
+from firm_hdl.plan import Plan, check, from_yaml, to_yaml
+from firm_hdl.plan.compare import Change, compare
+from firm_hdl.verify.results.verdict import Failed, Passed, Verdict
+from firm_hdl.wire import lay_out
+
+__all__ = ["Checked", "Golden", "add", "check_golden", "read_golden", "summarise"]
+
+
+_MOST_BYTES = 1 << 26
+"""No golden plan is larger."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Golden:
+    """One file.
+
+    Attributes
+    ----------
+    path : Path
+    distro : str
+        Name of the folder that it is in.
+    plan : Plan
+        What it says.
+    text : str
+    """
+
+    path: Path
+    distro: str
+    plan: Plan
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Checked:
+    """What became of a golden plan.
+
+    Attributes
+    ----------
+    text : str
+        Today's plan; empty if there is none.
+    changes : tuple of Change
+        From the golden plan to today's.
+    problems : tuple of str
+        Why there is no plan, or which invariants it breaks.
+    """
+
+    golden: Golden
+    text: str
+    changes: tuple[Change, ...]
+    problems: tuple[str, ...]
+
+    @property
+    def verdict(self) -> Verdict:
+        """Passed if nothing is to be looked at."""
+        wrong = (*self.problems, *map(str, self.changes))
+        return Failed(wrong) if wrong else Passed(1)
+
+
+def read_golden(folder: str | os.PathLike[str]) -> list[Golden]:
+    """Read all golden plans of a folder, sorted by path.
+
+    Raises
+    ------
+    ValueError
+        If a file is not a plan, or its folder is not named like a distribution.
+    """
+    found = []
+    for path in sorted(Path(folder).glob("*/*.yaml")):
+        distro = path.parent.name
+        if distro not in DISTROS:
+            raise ValueError(f"'{path}' is not below a distribution's name: {', '.join(DISTROS)}")
+        data = read_file(path, _MOST_BYTES)
+        try:
+            text = data.decode("utf-8")
+        except UnicodeDecodeError:
+            raise ValueError(f"'{path}' is not UTF-8 text") from None
+        try:
+            plan = from_yaml(text)
+        except ValueError as error:
+            raise ValueError(f"'{path}': {error}") from None
+        except (TypeError, KeyError, AttributeError, IndexError, AssertionError, RecursionError):
+            raise ValueError(f"'{path}' is no plan") from None
+        found.append(Golden(path=path, distro=distro, plan=plan, text=text))
+    return found
+
+
+def check_golden(
+    goldens: Iterable[Golden],
+    paths: Sequence[str | os.PathLike[str]] = (),
+    bags: Sequence[str | os.PathLike[str]] = (),
+) -> list[Checked]:
+    """Plan each type again, and compare; every plan is checked for its invariants, too.
+
+    Parameters
+    ----------
+    paths, bags
+        As for `open_library`; each plan is of its own distribution.
+    """
+    libraries: dict[str, Library] = {}
+    results = []
+    for golden in goldens:
+        if golden.distro not in libraries:
+            libraries[golden.distro] = open_library(golden.distro, paths, bags)
+        results.append(_check(golden, libraries[golden.distro]))
+    return results
+
+
+def _check(golden: Golden, library: Library) -> Checked:
+    given = golden.plan
+    try:
+        message = library.message(given.message)
+        plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
+    except (DefinitionError, BuildError) as error:
+        return Checked(golden=golden, text="", changes=(), problems=(str(error),))
+    text = to_yaml(plan)
+    return Checked(
+        golden=golden,
+        text=text,
+        changes=tuple(compare(golden.text, text)),
+        problems=tuple(check(plan, lay_out(message, plan.wire))),
+    )
+
+
+def add(folder: str | os.PathLike[str], distro: str, message: Message, plan: Plan) -> Path:
+    """Write a plan into a folder of golden plans, and return its file."""
+    name = f"{identifier(message.name)}_{plan.wire}_{plan.bus_bytes}.yaml"
+    path = Path(folder) / distro / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(to_yaml(plan), encoding="utf-8", newline="\n")
+    return path
+
+
+def summarise(results: Iterable[Checked]) -> dict[str, list[str]]:
+    """Group what differs by its kind, so that one cause in many types is seen as one.
+
+    Returns
+    -------
+    dict of str to list of str
+        Names of the types that each kind of change touches, the most frequent kind first.
+    """
+    touched: dict[str, dict[str, None]] = defaultdict(dict)
+    for result in results:
+        for change in result.changes:
+            touched[change.kind].setdefault(result.golden.plan.message)
+    kinds = sorted(touched, key=lambda kind: (-len(touched[kind]), kind))
+    return {kind: list(touched[kind]) for kind in kinds}

@@ -1,0 +1,135 @@
+"""What came out against what should have: each first difference as a line of text.
+
+`names` are those of the messages, in order, so that a line says which of them it is about; without
+names it says numbers alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from firm_hdl.plan import Payload, Plan
+from firm_hdl.sim.record import Seen
+from firm_hdl.verify.references.oracle import Transfers
+
+__all__ = [
+    "Expected",
+    "packet_differences",
+    "run_differences",
+    "transfer_differences",
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Expected:
+    """What a run of both converters has to show.
+
+    Attributes
+    ----------
+    packets : sequence of bytes
+        Which come out. Those whose status of the serializer is not ``OK`` are marked.
+    transfers : sequence of mapping
+        Payloads by path of the leaf, a mapping for each message.
+    statuses, sent_statuses : sequence of str
+        Of the deserializer and of the serializer.
+    """
+
+    packets: Sequence[bytes]
+    transfers: Sequence[Transfers]
+    statuses: Sequence[str]
+    sent_statuses: Sequence[str]
+
+
+def run_differences(
+    where: str, plan: Plan, seen: Seen, wanted: Expected, names: Sequence[str] = ()
+) -> Iterator[str]:
+    """Say what is the first that differs of packets, of each leaf, of statuses and of marks."""
+    yield from packet_differences(where, seen.packets, wanted.packets, names)
+    yield from transfer_differences(where, plan, seen.transfers, wanted.transfers, names)
+    for what, statuses, right in (
+        ("status", seen.statuses, wanted.statuses),
+        ("sent_status", seen.sent_statuses, wanted.sent_statuses),
+    ):
+        got = [status.name for status in statuses]
+        yield from _status_differences(f"{where}: {what}", got, right, names)
+    marked = [status != "OK" for status in wanted.sent_statuses]
+    if seen.marked != marked:
+        yield f"{where}: packet_error is {seen.marked} instead of {marked}"
+
+
+def _status_differences(
+    what: str, got: Sequence[str], wanted: Sequence[str], names: Sequence[str] = ()
+) -> Iterator[str]:
+    """Say which status is the first that differs, if one does."""
+    for number, (one, other) in enumerate(zip(got, wanted, strict=False)):
+        if one != other:
+            yield f"{what} of packet {number} is {one} instead of {other}{_name(names, number)}"
+            return
+    if len(got) != len(wanted):
+        yield f"{what}: {len(got)} instead of {len(wanted)}"
+
+
+def packet_differences(
+    where: str, got: Sequence[bytes], wanted: Sequence[bytes], names: Sequence[str] = ()
+) -> Iterator[str]:
+    """Say which packet is the first that differs, if one does, and where."""
+    for number, (one, other) in enumerate(zip(got, wanted, strict=False)):
+        if one != other:
+            pairs = enumerate(zip(one, other, strict=False))
+            at = next((n for n, (a, b) in pairs if a != b), min(len(one), len(other)))
+            yield (
+                f"{where}: packet {number} of {len(wanted)} differs at byte {at}: "
+                f"{one.hex()} instead of {other.hex()}{_name(names, number)}"
+            )
+            return
+    if len(got) != len(wanted):
+        yield f"{where}: {len(got)} packets instead of {len(wanted)}"
+
+
+def transfer_differences(
+    where: str,
+    plan: Plan,
+    got: Mapping[int, Sequence[Payload]],
+    wanted: Sequence[Transfers],
+    names: Sequence[str] = (),
+) -> Iterator[str]:
+    """Say which transfer is the first that differs of each leaf.
+
+    Parameters
+    ----------
+    got : mapping of int to sequence
+        Payloads by index of the leaf, over all messages.
+    wanted : sequence of mapping
+        Payloads by path of the leaf, a mapping for each message.
+    """
+    joined: dict[tuple[str, ...], list[Payload]] = {}
+    for each in wanted:
+        for path, payloads in each.items():
+            joined.setdefault(path, []).extend(payloads)
+    for number, leaf in enumerate(plan.leaves):
+        mine, right = list(got.get(number, [])), joined.pop(leaf.path, [])
+        if mine == right:
+            continue
+        pairs = enumerate(zip(mine, right, strict=False))
+        at = next((n for n, (a, b) in pairs if a != b), min(len(mine), len(right)))
+        yield (
+            f"{where}: leaf {leaf}, transfer {at} of {len(right)}: "
+            f"{mine[at : at + 1]} instead of {right[at : at + 1]}"
+            f"{_name(names, _message_of(leaf.path, at, wanted))}"
+        )
+    if joined:
+        yield f"{where}: no leaves {', '.join('.'.join(path) for path in joined)}"
+
+
+def _name(names: Sequence[str], number: int) -> str:
+    return f" ({names[number]})" if number < len(names) else ""
+
+
+def _message_of(path: tuple[str, ...], transfer: int, messages: Sequence[Transfers]) -> int:
+    """Return which of some messages a transfer of a leaf belongs to."""
+    for number, message in enumerate(messages):
+        transfer -= len(message.get(path, ()))
+        if transfer < 0:
+            return number
+    return len(messages)

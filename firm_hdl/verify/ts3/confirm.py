@@ -1,0 +1,114 @@
+"""Reference libraries of TS3: who else has to write the bytes that rosbags writes for a case.
+
+Cases, and what their leaves transfer, come from rosbags. Every other library that is here is given
+the same value and has to write the same packet, so that a mistake of rosbags alone does not pass.
+Known divergences (docs/divergences.md) are told by their keys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from firm_hdl.model import Message
+from firm_hdl.verify.cases.make import Case
+from firm_hdl.verify.clients.known import known_writing
+from firm_hdl.verify.references.choice import WRITERS, references_here
+from firm_hdl.verify.references.client import (
+    ClientDiedError,
+    Refusal,
+    UnsupportedError,
+    each_answered,
+)
+from firm_hdl.verify.references.clients import client
+from firm_hdl.verify.references.values import Plain, from_objects
+from firm_hdl.wire import Wire
+
+__all__ = ["Confirmation", "confirm"]
+
+MOST_BYTES = 1 << 18
+"""Of all packets of a type that are written again; the first one always is."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Confirmation:
+    """What other libraries make of the cases of a type.
+
+    Attributes
+    ----------
+    by : tuple of str
+        Those that were given the cases and answered, in the same way or not.
+    failures : tuple of str
+        What they write in another way, and nobody knows why.
+    known : tuple of str
+        Keys of what explains the other differences.
+    unable : dict of str to str
+        Those that have no such wire or type, and why.
+    """
+
+    by: tuple[str, ...]
+    failures: tuple[str, ...] = ()
+    known: tuple[str, ...] = ()
+    unable: Mapping[str, str] = field(default_factory=dict)
+
+
+def confirm(
+    message: Message, wire: Wire, cases: Sequence[Case], wanted: Sequence[str] | None = None
+) -> Confirmation:
+    """Have cases written by other libraries.
+
+    Parameters
+    ----------
+    wanted : sequence of str or None
+        `None`: all that are here.
+    """
+    here = references_here(wanted)
+    unable = {name: f"{name} has no wire '{wire}'" for name in here if wire not in WRITERS[name]}
+    names = [name for name in here if name not in unable]
+    some = _some(cases)
+    values = [from_objects(message, case.value) for case in some] if names else []
+    by: list[str] = []
+    failures: list[str] = []
+    known: dict[str, None] = {}
+    for name in names:
+        try:
+            found, keys = _differences(message, wire, some, values, name)
+        except ClientDiedError as error:
+            failures.append(f"{name} broke down: {error}")
+            continue
+        except UnsupportedError as error:
+            unable[name] = str(error) or f"{name} has no such type"
+            continue
+        by.append(name)
+        failures += found
+        known.update(dict.fromkeys(keys))
+    return Confirmation(by=tuple(by), failures=tuple(failures), known=tuple(known), unable=unable)
+
+
+def _some(cases: Sequence[Case]) -> list[Case]:
+    found: list[Case] = []
+    size = 0
+    for case in cases:
+        size += len(case.packet)
+        if not found or size <= MOST_BYTES:
+            found.append(case)
+    return found
+
+
+def _differences(
+    message: Message, wire: Wire, cases: Sequence[Case], values: Sequence[Plain], name: str
+) -> tuple[list[str], list[str]]:
+    """Return differences that nobody knows, and keys of those that are known."""
+    codec = client(name).open(message, wire)
+    found: list[str] = []
+    known: list[str] = []
+    answers = each_answered(name, values, codec.encode_all(values))
+    for case, value, answer in zip(cases, values, answers, strict=True):
+        if answer == case.packet:
+            continue
+        if keys := known_writing(message, wire, value, name, "rosbags", codec):
+            known += keys
+            continue
+        said = f"refuses: {answer}" if isinstance(answer, Refusal) else f"writes {answer.hex()}"
+        found.append(f"{case.what}: {name} {said}, rosbags writes {case.packet.hex()}")
+    return found, known

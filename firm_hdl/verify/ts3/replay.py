@@ -1,0 +1,332 @@
+"""Replay: the messages of a recording through deserializer, no-op accelerator and serializer.
+
+Each message is sent as it was recorded. What its leaves must transfer is what rosbags decodes from
+it, and what must come out is what rosbags writes for that, which is the recorded packet itself
+unless that was written in some other way that the format allows. docs/interface.md says what
+packets get that do not fit; for these, hardware and golden model must agree.
+"""
+
+from __future__ import annotations
+
+import struct
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import Library
+from firm_hdl.model import Message
+from firm_hdl.plan import Payload, Plan, build_plan
+from firm_hdl.plan.interpret import Decoded, decode, encode
+from firm_hdl.verify.cases.damage import stalls_for
+from firm_hdl.verify.cases.effort import LARGE_STRIDE, MAX_MESSAGE_BYTES, MOST_WORK, work_of
+from firm_hdl.verify.cases.figures import figures
+from firm_hdl.verify.cases.make import Case
+from firm_hdl.verify.references.oracle import Transfers
+from firm_hdl.verify.references.user_oracle import Judge
+from firm_hdl.verify.results.verdict import NotJudgedError
+from firm_hdl.verify.systems.libraries import library_of
+from firm_hdl.verify.ts3.acceptance import Acceptance, measured
+from firm_hdl.verify.ts3.options import Options, Result
+from firm_hdl.verify.ts3.recording import RecordedMessage, Selection, Topic, select, topics_of
+from firm_hdl.wire import lay_out
+
+__all__ = ["MOST_MESSAGES", "replay"]
+
+MOST_MESSAGES = 100
+"""Most messages of a type, if nobody says otherwise."""
+
+REPRESENTATIONS = {
+    0: "big-endian CDR",
+    2: "a big-endian parameter list",
+    3: "a parameter list",
+    6: "big-endian XCDR2",
+    7: "XCDR2",
+    8: "big-endian delimited XCDR2",
+    9: "delimited XCDR2",
+    10: "a big-endian parameter list of XCDR2",
+    11: "a parameter list of XCDR2",
+}
+"""What the second byte of a CDR packet says; OMG DDS-XTypes 1.3, clause 7.6.2.1.2."""
+
+
+def replay(distro: str, name: str, options: Options) -> Result:
+    """Replay the messages of a type. Nothing is raised: what goes wrong is in the result.
+
+    Parameters
+    ----------
+    distro : str
+        By whose rules the definitions in the recordings are read.
+    name : str
+        ``package/Type`` or ``package/msg/Type``.
+    options : Options
+        With recordings.
+    """
+    return measured(distro, name, options, _replay)
+
+
+def _recorded_message(library: Library, topic: Topic) -> Message | None:
+    """Return the type of a topic; `None` if its definition cannot be used."""
+    try:
+        return library.message(topic.type)
+    except DefinitionError:
+        return None
+
+
+def _replay(message: Message, judge: Judge, options: Options, result: Result) -> None:
+    began = time.perf_counter()
+    topics, others = _topics(message, library_of(result.distro, (), options.bags), options.bags)
+    selection = _select(message, topics, options)
+    longest = max(len(each.data) for each in selection.messages)
+    run = Acceptance(message, message.wire, options, result, _room(longest))
+    with_bag = len(options.bags) > 1
+    judged = [_judge(run.plan, judge, each, with_bag) for each in selection.messages]
+    cases = [each.case for each in judged]
+    result.cases = len(cases)
+    result.metrics = figures(message, run.plan, [case.packet for case in cases])
+    result.failures += [each.finding for each in judged if each.finding]
+    parts = [*_counts(selection, options), *others, *_kinds(judged)]
+    result.note = "; ".join([*parts, *([judge.note] if judge.note else [])])
+    result.setup_seconds = time.perf_counter() - began
+    run.golden(cases, ())
+    if not options.simulated:
+        return
+    run.good(cases, None)
+    if options.stalled:
+        some = cases[::LARGE_STRIDE] if run.is_large(cases) else cases
+        run.good(some, stalls_for(f"{options.seed}/{judge.name}"))
+    run.crosscheck()
+
+
+def _room(longest: int) -> int:
+    """Return the longest message that converters are to take: a power of two.
+
+    So recordings of the same robot mostly have the same circuits.
+    """
+    return max(MAX_MESSAGE_BYTES, 1 << max(0, longest - 1).bit_length())
+
+
+def _topics(
+    message: Message, library: Library, bags: Sequence[str]
+) -> tuple[list[Topic], list[str]]:
+    """Return the topics of a type, and which are left out because their definition differs."""
+    mine = [
+        topic
+        for bag in bags
+        for topic in topics_of(bag)
+        if (found := _recorded_message(library, topic)) is not None and found.name == message.name
+    ]
+    digest = next((topic.digest for topic in mine if topic.digest), "")
+    others = [topic for topic in mine if topic.digest not in ("", digest)]
+    return [topic for topic in mine if topic not in others], [
+        f"{topic.name} left out: its definition is another one ({topic.digest})" for topic in others
+    ]
+
+
+def _select(message: Message, topics: Sequence[Topic], options: Options) -> Selection:
+    """Select messages, or say why there are none."""
+    most_bytes = None
+    if options.most_cases is None:
+        plan = build_plan(
+            lay_out(message, message.wire),
+            bus_bytes=options.bus_bytes,
+            max_message_bytes=MAX_MESSAGE_BYTES,
+        )
+        most_bytes = MOST_WORK // work_of(plan, plan.bus_bytes) * plan.bus_bytes
+    selection = select(
+        topics,
+        most=options.most_cases or MOST_MESSAGES,
+        longest=options.longest,
+        most_bytes=most_bytes,
+    )
+    if not selection.total:
+        raise NotJudgedError("no messages of it were recorded")
+    if not selection.messages:
+        raise NotJudgedError(
+            f"all of its {selection.total} messages have more than {options.longest} bytes; "
+            "--max-message-bytes N takes longer ones"
+        )
+    return selection
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Judged:
+    """A message with what is to become of it.
+
+    Attributes
+    ----------
+    case : Case
+    kind : str
+        In which way it is not as rosbags would have written it; empty if it is.
+    finding : str
+        What is wrong with the message itself; empty if nothing is.
+    """
+
+    case: Case
+    kind: str = ""
+    finding: str = ""
+
+
+def _judge(plan: Plan, judge: Judge, message: RecordedMessage, with_bag: bool) -> _Judged:
+    what = f"{message.bag}: {message}" if with_bag else str(message)
+    packet, decoded = message.data, decode(plan, message.data)
+    by_golden = Case(
+        what=what,
+        value=None,
+        packet=encode(plan, decoded.streams)[0],
+        transfers=_by_path(plan, decoded.streams),
+        given=packet,
+        status=decoded.status,
+    )
+    if decoded.status == "ENCAPSULATION" and packet[:2] != b"\0\1":
+        return _Judged(case=by_golden, kind=_representation(packet))
+    try:
+        answer, transfers = _ask(plan, judge, packet)
+    # What rosbags raises for what it cannot read has no common base.
+    except Exception as error:
+        return _refused(plan, judge, by_golden, decoded, error)
+    if decoded.status != "OK":
+        return _Judged(case=by_golden, finding=_misfit(by_golden, "rosbags reads it"))
+    if _kept(plan, decoded.streams) != decoded.streams:
+        kind = "with a signalling NaN, which Python does not keep"
+        return _tamed(plan, judge, by_golden, decoded, kind, "rosbags reads it otherwise")
+    case = Case(what=what, value=None, packet=answer, transfers=transfers, given=packet)
+    return _Judged(case=case, kind=_difference(packet, answer, plan.header_bytes))
+
+
+def _ask(plan: Plan, judge: Judge, packet: bytes) -> tuple[bytes, Transfers]:
+    """Return the packet that rosbags writes for another one, and what leaves transfer."""
+    value = judge.oracle.read(packet, judge.name, plan.wire)
+    _make_bools_plain(value)
+    return (
+        judge.oracle.write(value, judge.name, plan.wire),
+        judge.oracle.transfers(value, judge.name, plan.wire, plan.bus_bytes),
+    )
+
+
+def _make_bools_plain(value: Any) -> None:
+    """Make every item of arrays of bools 0 or 1: numpy keeps the byte that was read."""
+    for field in fields(value):
+        member = getattr(value, field.name)
+        if isinstance(member, np.ndarray) and member.dtype == np.bool_:
+            object.__setattr__(value, field.name, member.view(np.uint8) != 0)
+        for each in member if isinstance(member, list) else [member]:
+            if is_dataclass(each):
+                _make_bools_plain(each)
+
+
+def _refused(plan: Plan, judge: Judge, case: Case, decoded: Decoded, error: Exception) -> _Judged:
+    """Judge a packet that rosbags does not read."""
+    said = str(error).strip().splitlines() or [type(error).__name__]
+    text = f"rosbags says: {said[0]}"
+    if decoded.status != "OK":
+        return _Judged(case=case, finding=_misfit(case, text))
+    is_text = isinstance(error.__cause__, UnicodeDecodeError)
+    kind = (
+        "with text that is not UTF-8, which rosbags read with other letters in its place"
+        if is_text
+        else f"that rosbags reads only as a serializer writes them ({said[0]})"
+    )
+    return _tamed(plan, judge, case, decoded, kind, text)
+
+
+def _tamed(plan: Plan, judge: Judge, case: Case, decoded: Decoded, kind: str, text: str) -> _Judged:
+    """Judge a packet by another one, in which rosbags can read what is in the way."""
+    streams = _ascii(plan, _kept(plan, decoded.streams))
+    packet = encode(plan, streams)[0]
+    try:
+        is_same = _ask(plan, judge, packet) == (packet, _by_path(plan, streams))
+    except Exception:
+        is_same = False
+    if is_same:
+        return _Judged(case=case, kind=kind)
+    return _Judged(case=case, finding=_misfit(case, text))
+
+
+def _misfit(case: Case, text: str) -> str:
+    return (
+        f"{case.what}: its {len(case.sent)} bytes do not fit the definition: status {case.status}; "
+        f"{text}"
+    )
+
+
+def _by_path(plan: Plan, streams: Mapping[int, Sequence[Payload]]) -> Transfers:
+    return {plan.leaves[leaf].path: list(payloads) for leaf, payloads in streams.items()}
+
+
+def _kept(plan: Plan, streams: Mapping[int, Sequence[Payload]]) -> dict[int, list[Payload]]:
+    """Return transfers as Python would have them: a float of its is not any 32 bits."""
+    kept: dict[int, list[Payload]] = {}
+    for number, payloads in streams.items():
+        leaf = plan.leaves[number]
+        is_float = leaf.kind == "scalar" and leaf.type in ("float32", "float64")
+        kept[number] = [
+            _through_float(each, leaf.item_bytes) if is_float and isinstance(each, int) else each
+            for each in payloads
+        ]
+    return kept
+
+
+def _through_float(bits: int, size: int) -> int:
+    code = "<f" if size == 4 else "<d"
+    (value,) = struct.unpack(code, bits.to_bytes(size, "little"))
+    return int.from_bytes(struct.pack(code, value), "little")
+
+
+def _ascii(plan: Plan, streams: Mapping[int, Sequence[Payload]]) -> dict[int, list[Payload]]:
+    """Return transfers without the highest bits of bytes, so that all text is ASCII."""
+    return {
+        number: [
+            (tuple(item & 0x7F for item in each[0]), each[1])
+            if not isinstance(each, int)
+            and plan.leaves[number].item_bytes == 1
+            and not plan.leaves[number].signed
+            else each
+            for each in payloads
+        ]
+        for number, payloads in streams.items()
+    }
+
+
+def _representation(packet: bytes) -> str:
+    known = REPRESENTATIONS.get(packet[1]) if len(packet) > 1 and packet[0] == 0 else None
+    name = known or f"the representation {packet[:2].hex() or 'of an empty packet'}"
+    return f"in {name}, which get the status ENCAPSULATION"
+
+
+def _difference(packet: bytes, answer: bytes, header_bytes: int) -> str:
+    """Say in which ways a packet that means the same is not as rosbags writes it."""
+    found = []
+    if packet[:header_bytes] != answer[:header_bytes]:
+        found.append("option bits")
+    if len(packet) > len(answer):
+        found.append("bytes behind the message")
+    body, other = packet[header_bytes : len(answer)], answer[header_bytes:]
+    if body != other:
+        found.append("padding that is not zero, or a bool that is neither 0 nor 1")
+    return f"with {', '.join(found)}" if found else ""
+
+
+def _counts(selection: Selection, options: Options) -> list[str]:
+    """Say how many messages were replayed, and what was left out and why."""
+    topics = "1 topic" if selection.topics == 1 else f"{selection.topics} topics"
+    found = [f"{len(selection.messages)} of {selection.total} messages of {topics} replayed"]
+    if selection.sparse:
+        found.append("more would take long, --cases N takes N")
+    if selection.too_long:
+        found.append(
+            f"{len(selection.too_long)} left out, of more than {options.longest} bytes (up to "
+            f"{max(selection.too_long)}): --max-message-bytes N takes longer ones"
+        )
+    return found
+
+
+def _kinds(judged: Sequence[_Judged]) -> list[str]:
+    """Count what was not written as rosbags does, and name the first of each kind."""
+    counts = Counter(each.kind for each in judged if each.kind)
+    first = {each.kind: each.case.what for each in reversed(judged)}
+    return [f"{count} {kind} (first: {first[kind]})" for kind, count in counts.items()]

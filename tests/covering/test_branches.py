@@ -1,0 +1,57 @@
+"""Which branches code takes."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from firm_hdl import load_message
+from firm_hdl.covering.branches import branches, traced
+from firm_hdl.plan import build_plan
+from firm_hdl.wire import lay_out
+
+HERE = Path(__file__).parent
+
+
+def choose(flag):
+    if flag:
+        return 1
+    return 2
+
+
+def test_each_way_is_a_branch_of_its_own():
+    yes = traced(lambda: choose(True), [HERE])
+    no = traced(lambda: choose(False), [HERE])
+    assert any("choose" in branch for branch in yes - no)
+    assert any("choose" in branch for branch in no - yes)
+    assert yes & no
+
+
+def test_other_folders_are_not_looked_at():
+    assert traced(lambda: choose(True), [HERE.parent / "verify"]) == frozenset()
+
+
+def test_whoever_traces_already_goes_on_when_it_is_done():
+    def nothing(frame, event, argument):
+        return None
+
+    before = sys.gettrace()
+    sys.settrace(nothing)
+    try:
+        traced(lambda: choose(True), [HERE])
+        after = sys.gettrace()
+    finally:
+        sys.settrace(before)
+    assert after is nothing
+
+
+def test_types_differ_by_what_the_generator_does_for_them():
+    found = {}
+    for name in ("std_msgs/msg/Bool", "std_msgs/msg/String"):
+        message = load_message(name)
+        found[name] = branches(message, build_plan(lay_out(message)))
+    string, boolean = found["std_msgs/msg/String"], found["std_msgs/msg/Bool"]
+    assert any(branch.startswith("gateware/") for branch in string - boolean)
+    assert boolean == branches(
+        load_message("std_msgs/msg/Bool"), build_plan(lay_out(load_message("std_msgs/msg/Bool")))
+    )

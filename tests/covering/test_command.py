@@ -1,0 +1,94 @@
+"""``firm-hdl cover``, as users call it."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.cli import main
+from firm_hdl.covering.command import read_chosen
+
+NAMES = ["geometry_msgs/msg/Point", "geometry_msgs/msg/Vector3", "std_msgs/msg/Bool"]
+
+
+def test_types_and_what_they_add_are_printed(capsys):
+    assert main(["cover", *NAMES]) == 0
+    out, err = capsys.readouterr()
+    assert [line.partition(":")[0] for line in out.splitlines()] == [NAMES[2], NAMES[0]]
+    assert "definition: field bool" in out and "grammar: ros2 field: BOOL_TYPE FIELD_NAME" in out
+    assert "branch: " not in out
+    assert err.startswith("2 of 3 types have 100 % of the ")
+    assert err.endswith("; 2 different circuits\n")
+
+
+def test_branches_are_counted_if_asked_for(capsys):
+    assert main(["cover", "--branches", "std_msgs/msg/Bool"]) == 0
+    out, err = capsys.readouterr()
+    assert "branch: plan/build.py " in out and "branch: gateware/deserializer.py " in out
+    assert ", branch " in err
+
+
+def test_what_is_written_can_be_checked(tmp_path, capsys):
+    path = tmp_path / "new" / "chosen.txt"
+    assert main(["cover", *NAMES, "--out", str(path)]) == 0
+    assert read_chosen(path) == [NAMES[0], NAMES[2]]
+    capsys.readouterr()
+    assert main(["cover", *NAMES, "--check", str(path)]) == 0
+    out, err = capsys.readouterr()
+    assert out == "" and err.startswith("2 of 3 types have 100 % of the ")
+
+
+def test_what_is_missing_is_named_with_a_type_that_has_it(tmp_path, capsys):
+    path = tmp_path / "chosen.txt"
+    path.write_text(f"# One.\n\n{NAMES[0]}\n")
+    assert main(["cover", *NAMES, "--check", str(path)]) == 1
+    out, err = capsys.readouterr()
+    assert "missing: definition: field bool (in std_msgs/msg/Bool)\n" in out
+    assert "float64" not in out
+    assert "1 of 3 types have " in err and "100 %" not in err
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("# nothing\n", "error: '{path}' names no types"),
+        ("x/msg/Y\n", "error: '{path}' names x/msg/Y, not among the types"),
+        (None, "error: '{path}': No such file or directory"),
+    ],
+)
+def test_a_wrong_file_is_explained(tmp_path, capsys, text, said):
+    path = tmp_path / "chosen.txt"
+    if text is not None:
+        path.write_text(text)
+    assert main(["cover", *NAMES, "--check", str(path)]) == 1
+    assert capsys.readouterr().err == said.format(path=path) + "\n"
+
+
+def test_out_and_check_exclude_each_other(capsys):
+    with pytest.raises(SystemExit) as stopped:
+        main(["cover", "--out", "a", "--check", "b"])
+    assert stopped.value.code == 2
+    assert "not allowed with argument" in capsys.readouterr().err
+
+
+def test_a_type_that_cannot_be_used_does_not_keep_the_others_out(tmp_path, capsys):
+    folder = tmp_path / "own_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Good.msg").write_text("wstring<=3[4] text\n")
+    (folder / "Bad.msg").write_text("int32 a\nint32 a\n")
+    (folder / "Large.msg").write_text("uint8[20000000] a\n")
+    assert main(["cover", "--path", str(tmp_path)]) == 0
+    out, err = capsys.readouterr()
+    assert "own_msgs/msg/Good: " in out and "own_msgs/msg/Bad" not in out
+    assert "left out: own_msgs/msg/Bad: " in err and "left out: own_msgs/msg/Large: " in err
+    # Who names it has to know.
+    assert main(["cover", "--path", str(tmp_path), "own_msgs/msg/Bad"]) == 1
+    assert main(["cover", "--path", str(tmp_path), "own_msgs/msg/Large"]) == 1
+
+
+def test_folders_are_chosen_from_with_services_and_without_the_distribution(tmp_path, capsys):
+    for kind, text in (("msg", "uint8 a\n"), ("srv", "---\nstring b\n")):
+        (tmp_path / "p" / kind).mkdir(parents=True)
+        (tmp_path / "p" / kind / f"T.{kind}").write_text(text)
+    assert main(["cover", "--path", str(tmp_path), "--out", str(tmp_path / "chosen.txt")]) == 0
+    assert all(name.startswith("p/srv/T_") for name in read_chosen(tmp_path / "chosen.txt"))
+    assert " of 4 types have 100 % " in capsys.readouterr().err

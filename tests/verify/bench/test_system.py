@@ -1,0 +1,165 @@
+"""Generated benches of many types, run in GHDL and compared with rosbags."""
+
+from __future__ import annotations
+
+import pytest
+
+import firm_hdl.verify.bench.system as benches
+import firm_hdl.verify.references.choice as references
+from firm_hdl.cli import main
+from firm_hdl.export.vhdl.bench import RUN_SCRIPT
+from firm_hdl.frontend import Library
+from firm_hdl.verify.bench.system import Benches, BenchRun, run_bench
+from firm_hdl.verify.references import client
+from firm_hdl.verify.results.file import read_results
+from firm_hdl.verify.results.verdict import Failed, NotJudged
+from firm_hdl.verify.systems.system import Recorder
+from firm_hdl.verify.systems.tasks import collect_tasks
+from tests.tools import need
+from tests.verify.judged import assert_passed
+from tests.verify.samples import own_package
+
+HEADER = "std_msgs/msg/Header"
+
+# Those of tests/export/vhdl/test_bench.py have no loops and no arrays but of floats.
+SAMPLE = [
+    # Two levels of loops over strings.
+    ("lyrical", "diagnostic_msgs/msg/DiagnosticArray", 8),
+    # Sequences of every kind, `bool` and `byte` among them.
+    ("lyrical", "rcl_interfaces/msg/ParameterValue", 8),
+    # Runs of a constant length in a loop, and structures in another.
+    ("noetic", "shape_msgs/Mesh", 8),
+    # A leaf without bytes among others.
+    ("noetic", "nav_msgs/GetMapActionGoal", 8),
+    # Bounds, and strings of one character a lane.
+    ("lyrical", "shape_msgs/msg/SolidPrimitive", 2),
+]
+
+
+@pytest.mark.parametrize(("distro", "name", "bus_bytes"), SAMPLE)
+def test_bench_passes_with_the_bytes_and_transfers_of_rosbags(ghdl, distro, name, bus_bytes):
+    result = run_bench(distro, name, BenchRun(bus_bytes=bus_bytes, ghdl=ghdl))
+    assert assert_passed(result) == result.packets >= 3
+    assert result.transfers >= result.packets
+
+
+@pytest.mark.parametrize("name", ["own_msgs/msg/Deep", "own_msgs/srv/Ask_Response"])
+def test_types_of_ones_own_pass_as_well(ghdl, tmp_path, name):
+    run = BenchRun(paths=(str(own_package(tmp_path)),), ghdl=ghdl)
+    result = run_bench("lyrical", name, run)
+    assert assert_passed(result) == result.packets
+
+
+def wide(folder, ghdl):
+    """Run the bench of a type with wide text."""
+    own_package(folder)
+    (folder / "own_msgs" / "msg" / "Wide.msg").write_text("wstring[] text\nuint8 x\n")
+    return run_bench("lyrical", "own_msgs/msg/Wide", BenchRun(paths=(str(folder),), ghdl=ghdl))
+
+
+def test_wide_text_is_not_judged_unless_somebody_has_it(ghdl, tmp_path, monkeypatch):
+    monkeypatch.setattr(references, "references_here", lambda wanted=None: ())
+    result = wide(tmp_path, ghdl)
+    assert result.verdict == NotJudged("rosbags has no wstring, which own_msgs/msg/Wide.text is")
+
+
+def test_wide_text_is_confirmed(ghdl, tmp_path, monkeypatch):
+    if (missing := client("fastcdr").missing()) is not None:
+        need(f"fastcdr ({missing})", None)
+    result = wide(tmp_path, ghdl)
+    assert assert_passed(result) == result.packets >= 3
+    assert result.transfers > result.packets
+    codec = client("fastcdr").open(Library("lyrical").message("std_msgs/msg/Bool"), "cdr")
+    monkeypatch.setattr(type(codec), "encode_all", lambda self, values: [b"\0"] * len(values))
+    (failure,) = wide(tmp_path, ghdl).verdict.failures
+    assert "fastcdr writes 00, rosbags writes 00010000" in failure
+
+
+FALSIFY = "trap 'sed -i s/00/01/ results.txt' EXIT"
+
+
+def change(monkeypatch, file: str, before: str, after: str) -> None:
+    """Have the first `before` in one of the written files changed."""
+    build = benches.build
+
+    def built(names, folder, **options):
+        done = build(names, folder, **options)
+        paths = list(done[0].folder.rglob(f"*{file}"))
+        assert len(paths) == 1
+        text = paths[0].read_text()
+        assert before in text
+        paths[0].write_text(text.replace(before, after, 1))
+        return done
+
+    monkeypatch.setattr(benches, "build", built)
+
+
+@pytest.mark.parametrize(
+    ("file", "before", "after", "said"),
+    [
+        # A warning of GHDL; an error of it; a bench that fails; bytes, and transfers, that differ.
+        ("8_tb.vhd", "\nbegin\n", "\n  signal unused : bit;\nbegin\n", "unused"),
+        ("_deserializer.vhd", "architecture", "architektur", "_deserializer.vhd:"),
+        ("_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ", "FAIL packet 0"),
+        (RUN_SCRIPT, 'exec "$ghdl"', f'{FALSIFY}\n"$ghdl"', "packets that came out: number"),
+        ("8_tb.vhd", "stamp.sec.data)", "stamp.nanosec.data)", "transfers of stamp.sec: number 1"),
+        (RUN_SCRIPT, 'exec "$ghdl"', 'echo nothing; exit 0\nexec "$ghdl"', "nothing"),
+    ],
+)
+def test_what_is_wrong_is_found(ghdl, monkeypatch, file, before, after, said):
+    change(monkeypatch, file, before, after)
+    result = run_bench("lyrical", HEADER, BenchRun(ghdl=ghdl))
+    (failure,) = result.verdict.failures
+    assert said in failure
+    assert not result.packets
+
+
+def test_bench_of_the_record_view_is_run_as_well(ghdl, monkeypatch):
+    run = BenchRun(ghdl=ghdl)
+    alone = run_bench("lyrical", HEADER, run)
+    both = run_bench("lyrical", "geometry_msgs/msg/Vector3", run)
+    assert assert_passed(alone) and assert_passed(both) == both.packets
+    # Three leaves, in the first bench; each packet is sent in both.
+    assert 2 * both.transfers == 3 * both.packets
+    change(monkeypatch, "8_serializer_record.vhd", "<= to_slv(msg", "<= not to_slv(msg")
+    (failure,) = run_bench("lyrical", "geometry_msgs/msg/Vector3", run).verdict.failures
+    assert "FAIL packet 0" in failure
+
+
+def test_table_and_status_say_what_failed_and_how_to_repeat(ghdl, monkeypatch, capsys):
+    tasks = collect_tasks(["lyrical"], ["std_msgs/msg/Bool"])
+    (found,) = Benches(tasks, jobs=1).run(Recorder())
+    assert_passed(found)
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert rows[0][:4] == ["8-byte", "bus", "types", "pass"]
+    assert rows[1][:5] == ["lyrical", "1", "1", "0", "0"]
+    change(monkeypatch, "_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ")
+    (found,) = Benches(tasks, wire="ros1", widths=[4], jobs=1).run(Recorder())
+    assert isinstance(found.verdict, Failed)
+    said = capsys.readouterr().out
+    assert "FAIL std_msgs/msg/Bool (lyrical)\n" in said
+    again = "firm-hdl verify --systems bench --distro lyrical --wire ros1 --bus-bytes 4"
+    assert f"again: {again} std_msgs/msg/Bool\n" in said
+
+
+def test_results_are_kept_and_not_found_out_again(ghdl, tmp_path, monkeypatch, capsys):
+    file = tmp_path / "r.jsonl"
+    names = ["std_msgs/msg/Bool", "std_msgs/msg/Empty"]
+    call = ["verify", "--systems", "bench", "--distro", "lyrical", "--jobs", "1", *names]
+    call += ["--results", str(file)]
+    assert main(call) == 0
+    first = read_results(file)
+    tests = [record.test for record in first.records.values()]
+    assert sorted(test.type for test in tests) == names
+    assert {(t.distro, t.same, t.wire, t.bus_bytes) for t in tests} == {
+        ("lyrical", ("lyrical",), "cdr", 8)
+    }
+    assert all(record.packets and record.seconds.simulation for record in first.records.values())
+    lines = file.read_text().splitlines(keepends=True)
+    (last,) = [line for line in lines if "std_msgs/msg/Empty" in line and '"record"' in line]
+    file.write_text("".join(line for line in lines if line != last))
+    change(monkeypatch, "_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ")
+    assert main(call) == 1
+    verdicts = {r.test.type: r.verdict.name for r in read_results(file).records.values()}
+    assert verdicts == dict(zip(names, ("passed", "failed"), strict=True))
+    assert "1 of 2 types" in capsys.readouterr().out

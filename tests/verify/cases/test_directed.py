@@ -1,0 +1,83 @@
+"""Cases that reach every decision of a plan."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.frontend import Library
+from firm_hdl.plan import build_plan, decode
+from firm_hdl.verify.cases.directed import bare_packets, coverage, more_cases
+from firm_hdl.verify.cases.make import make_cases
+from firm_hdl.verify.references.oracle import distro_oracle
+from firm_hdl.wire import lay_out
+
+ORACLE = distro_oracle("lyrical")
+LIBRARY = Library("lyrical")
+
+
+def plan(name, bus_bytes=8):
+    layout = lay_out(LIBRARY.message(name))
+    return build_plan(layout, bus_bytes=bus_bytes, max_message_bytes=1 << 16)
+
+
+def cases_of(name, made, most=None):
+    return list(make_cases(ORACLE, name, wire="cdr", bus_bytes=made.bus_bytes, most=most))
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 8])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "sensor_msgs/msg/JointState",
+        "nav_msgs/msg/Trajectory",
+        "rcl_interfaces/msg/ParameterEvent",
+        "visualization_msgs/msg/InteractiveMarkerUpdate",
+    ],
+)
+def test_every_decision_is_taken(name, bus_bytes):
+    made = plan(name, bus_bytes)
+    cases = cases_of(name, made)
+    cases += more_cases(ORACLE, name, made, cases)
+    bare = bare_packets(made, cases)
+    found = coverage(made, [case.packet for case in cases] + [packet for _, packet in bare])
+    assert found.missing == []
+    assert str(found) == f"{len(found.possible)} of {len(found.possible)}"
+
+
+def test_missing_decisions_are_named():
+    name = "sensor_msgs/msg/JointState"
+    made = plan(name)
+    cases = cases_of(name, made, most=1)
+    some = coverage(made, [case.packet for case in cases])
+    assert some.missing
+    more = more_cases(ORACLE, name, made, cases)
+    assert more
+    better = coverage(made, [case.packet for case in cases + more])
+    # Nothing but what bare strings take.
+    assert len(better.missing) < len(some.missing)
+    assert {edge.way for edge in better.missing} <= {"next", "loop 0 again"}
+
+
+def test_more_cases_are_the_same_for_the_same_seed():
+    name = "nav_msgs/msg/Trajectory"
+    made = plan(name)
+    cases = cases_of(name, made, most=1)
+    again = [more_cases(ORACLE, name, made, cases, seed=3) for _ in range(2)]
+    assert [c.packet for c in again[0]] == [c.packet for c in again[1]] != []
+
+
+def test_bare_strings_mean_the_same():
+    name = "diagnostic_msgs/msg/DiagnosticStatus"
+    made = plan(name)
+    bare = bare_packets(made, cases_of(name, made))
+    assert bare
+    for case, packet in bare:
+        assert len(packet) < len(case.packet)
+        decoded = decode(made, packet)
+        assert decoded.status == "OK"
+        assert decoded.streams == decode(made, case.packet).streams
+
+
+def test_types_without_strings_have_no_bare_packets():
+    made = plan("geometry_msgs/msg/Polygon")
+    assert bare_packets(made, cases_of("geometry_msgs/msg/Polygon", made)) == []

@@ -1,0 +1,106 @@
+"""How much of a type is simulated, and what is said of the rest."""
+
+from __future__ import annotations
+
+import pytest
+
+import firm_hdl.verify.cases.effort as effort
+import firm_hdl.verify.ts3.acceptance as acceptance
+from firm_hdl.frontend import Library
+from firm_hdl.plan import Edge, build_plan
+from firm_hdl.verify import Options, accept
+from firm_hdl.verify.cases.make import Case
+from firm_hdl.verify.results.verdict import NotJudged
+from firm_hdl.wire import lay_out
+from tests.verify.judged import assert_passed
+
+HEADER = "std_msgs/msg/Header"
+
+
+@pytest.fixture(scope="module")
+def plan():
+    return build_plan(lay_out(Library("lyrical").message(HEADER), "cdr"), bus_bytes=8)
+
+
+def some_edges(*numbers):
+    return frozenset(Edge(number, "body") for number in numbers)
+
+
+def test_everything_if_it_is_not_much(plan):
+    assert effort.chosen(plan, [bytes(8)] * 5, [some_edges(1)] * 5) == [0, 1, 2, 3, 4]
+
+
+def test_what_takes_most_for_its_size(plan):
+    packets = [bytes(8000), bytes(80), bytes(8), bytes(16)]
+    taken = [some_edges(1, 2, 3), some_edges(1, 2), some_edges(1), some_edges(3)]
+    work = effort.work_of(plan, 24)
+    # The second takes something new, and may cost more; the first takes nothing that is.
+    assert effort.chosen(plan, packets, taken, most=work) == [2, 3]
+    assert effort.chosen(plan, packets, taken, most=2 * work) == [1, 2, 3]
+
+
+def test_what_takes_nothing_new_has_no_more_than_what_is_left(plan):
+    packets, taken = [bytes(8), bytes(8), bytes(8)], [some_edges(1)] * 3
+    work = effort.work_of(plan, 8)
+    assert effort.chosen(plan, packets, taken, most=2 * work) == [0, 1]
+
+
+def test_one_in_any_case(plan):
+    assert effort.chosen(plan, [bytes(80), bytes(800)], [some_edges(1)] * 2, most=0) == [0]
+
+
+def test_types_are_simulated_in_part(monkeypatch):
+    whole = accept("lyrical", HEADER)
+    monkeypatch.setattr(
+        acceptance,
+        "chosen",
+        lambda plan, *given: effort.chosen(plan, *given, most=effort.work_of(plan, 8)),
+    )
+    part = accept("lyrical", HEADER)
+    assert assert_passed(part) and 0 < part.cycles < whole.cycles
+    assert part.cases == whole.cases
+    # What was not simulated is not covered, although the golden model saw it.
+    assert part.coverage.taken < whole.coverage.taken == whole.coverage.possible
+    assert f"of {whole.cases + 1} packets" in part.note and not whole.note
+    # Who says how many cases gets as many.
+    assert not accept("lyrical", HEADER, Options(most_cases=3)).note
+
+
+def test_without_the_largest(plan):
+    cases = [Case(what="", value=None, packet=bytes(8 * n), transfers={}) for n in (3, 1, 2, 9)]
+    assert effort.within(plan, cases, effort.work_of(plan, 48)) == cases[:3]
+    assert effort.within(plan, cases, effort.work_of(plan, 40)) == cases[1:3]
+    assert effort.within(plan, cases, 0) == []
+
+
+def test_what_is_too_large_for_more_is_not_stalled(monkeypatch):
+    whole = accept("lyrical", HEADER)
+    monkeypatch.setattr(acceptance, "LARGE_WORK", 1)
+    once = accept("lyrical", HEADER)
+    assert assert_passed(once) and once.note == "neither stalled nor damaged"
+    assert once.cycles == whole.cycles and once.packets < whole.packets / 2
+
+
+@pytest.fixture
+def large(tmp_path):
+    folder = tmp_path / "large_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Image.msg").write_text("uint8[3000] pixels\nuint8 last\n")
+    (folder / "Cloud.msg").write_text("uint8[6000000] points\nuint8 last\n")
+    return Options(paths=(str(tmp_path),))
+
+
+def test_long_messages_are_simulated(large, monkeypatch):
+    monkeypatch.setattr(effort, "MOST_CASE_BYTES", 1)
+    monkeypatch.setattr(effort, "MAX_MESSAGE_BYTES", 2000)
+    result = accept("lyrical", "large_msgs/msg/Image", large)
+    assert assert_passed(result) == 2 * result.cases == 2
+    assert result.beats > 3000 // 8
+
+
+def test_what_is_too_large_is_named(large):
+    result = accept("lyrical", "large_msgs/msg/Cloud", large)
+    assert not result.packets
+    assert result.verdict == NotJudged(
+        "too large to simulate: its smallest message has 6000005 bytes, and its circuits 2 streams"
+    )

@@ -1,0 +1,300 @@
+"""A contest with libraries of our own making: what is counted, and what it comes to."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+from firm_hdl.verify.clients.finding import Finding, Known, changed
+from firm_hdl.verify.clients.judge import Contest, Trial
+from firm_hdl.verify.clients.shrink import shrunk
+from firm_hdl.verify.references import Client, Codec, Refusal
+from firm_hdl.verify.references.client import (
+    BatchCodec,
+    ClientDiedError,
+    UnsupportedError,
+    each_answered,
+)
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
+
+
+class Bytes(Codec):
+    """Packets of one byte after a header: its only field."""
+
+    def __init__(self, most=255):
+        self.most = most
+
+    def encode(self, value):
+        if value["a"] > self.most:
+            raise Refusal("too large")
+        return b"\0\1\0\0" + bytes([value["a"]])
+
+    def decode(self, packet):
+        if len(packet) != 5 or packet[4] > self.most:
+            raise Refusal("no packet")
+        return {"a": packet[4]}
+
+
+class Wrong(Bytes):
+    def decode(self, packet):
+        found = super().decode(packet)
+        return {"a": found["a"] + 1} if found["a"] > 2 else found
+
+
+class Made(Client):
+    wires = frozenset({"cdr"})
+
+    def __init__(self, name, codec, wires=None):
+        self.name, self.codec = name, codec
+        self.wires = self.wires if wires is None else frozenset(wires)
+
+    def missing(self):
+        return None
+
+    def version(self):
+        return "0"
+
+    def open(self, message, wire):
+        if isinstance(self.codec, Exception):
+            raise self.codec
+        return self.codec
+
+
+@pytest.fixture
+def message(make_message):
+    return make_message("uint8 a\n")
+
+
+def contest(codec, right=None):
+    return Contest(Made("mine", codec), Made("right", right or Bytes()), "cdr")
+
+
+VALUES = [{"a": 1}, {"a": 7}, {"a": 200}]
+
+
+def test_what_the_reference_refuses_is_compared_and_is_no_answer(message):
+    # Both refuse one of the values: nothing is read from it.
+    trial = contest(Bytes(), Bytes(most=100)).judge(message, VALUES[:2])
+    assert (trial.findings, trial.unknown) == ([], 0)
+    all_answers = trial.answers
+    trial = contest(Bytes(most=100), Bytes(most=100)).judge(message, VALUES)
+    assert trial.unknown == 0
+    # It was asked to write the third as well, and said no.
+    assert trial.answers == all_answers
+    none = contest(Bytes(most=0), Bytes(most=0)).judge(message, VALUES)
+    assert none.answers == 0 and none.comparisons == len(VALUES)
+    assert none.verdict == NotJudged("right had no answer to anything")
+
+
+def test_each_value_is_written_and_read(message):
+    trial = contest(Bytes()).judge(message, VALUES)
+    assert 2 * len(VALUES) <= trial.answers < trial.comparisons
+    assert trial.verdict == Passed(trial.comparisons)
+    assert (trial.library, trial.reference, trial.type) == ("mine", "right", "p/msg/A")
+    more = contest(Bytes()).judge(message, [*VALUES, {"a": 3}])
+    assert more.answers == trial.answers + 2
+
+
+def test_every_difference_is_counted_and_the_first_of_each_kind_kept(message):
+    trial = contest(Wrong()).judge(message, VALUES)
+    assert trial.unknown >= 2
+    (finding,) = (each for each in trial.findings if each.what == "decode")
+    assert (finding.value, finding.packet) == ({"a": 7}, b"\0\1\0\0\7")
+    assert (finding.expected, finding.got) == ({"a": 7}, {"a": 8})
+    assert (finding.library, finding.reference, finding.wire) == ("mine", "right", "cdr")
+    assert len({each.what for each in trial.findings}) == len(trial.findings)
+    assert "decode differs from right" in trial.verdict.failures
+
+
+def test_one_thing_can_be_asked_again(message):
+    made = contest(Wrong())
+    found = made.again(message, "decode", {"a": 9})
+    assert (found.what, found.got) == ("decode", {"a": 10})
+    assert made.again(message, "decode", {"a": 2}) is None
+    assert made.again(message, "encode", {"a": 9}) is None
+    # What the reference cannot write, nobody reads.
+    refusing = contest(Wrong(), Bytes(most=5))
+    assert refusing.again(message, "decode", {"a": 9}) is None
+    assert refusing.again(message, "encode", {"a": 9}).expected == Refusal("too large")
+    # An odd packet is made of the plain one, and of no other.
+    assert made.again(message, "bare-string", {"a": 9}) is None
+
+
+def test_what_cannot_be_opened_is_not_judged_or_failed(message):
+    unsupported = contest(UnsupportedError("no such type"))
+    assert unsupported.judge(message, VALUES).verdict == NotJudged("no such type")
+    assert unsupported.again(message, "encode", VALUES[0]) is None
+    assert contest(UnsupportedError()).judge(message, VALUES).verdict == NotJudged(
+        "the type is not supported"
+    )
+    died = contest(ClientDiedError("it died")).judge(message, VALUES)
+    assert died.verdict == Failed(("it died",))
+    for ours, theirs, name in ((("ros1",), None, "mine"), (None, ("ros1",), "right")):
+        both = Contest(Made("mine", Bytes(), ours), Made("right", Bytes(), theirs), "cdr")
+        assert both.judge(message, VALUES).verdict == NotJudged(f"{name} does not speak cdr")
+
+
+def trial(**more):
+    return Trial(library="mine", reference="right", type="p/A", **more)
+
+
+def test_what_a_trial_comes_to():
+    assert trial(comparisons=3, answers=1).verdict == Passed(3)
+    known = trial(comparisons=3, answers=1, known=Counter({"b": 1, "a": 2}))
+    assert known.verdict == KnownDifference(("a", "b"), 3)
+    assert trial(answers=1, unknown=2).verdict == Failed(("2 differences",))
+    obstacle = NotJudged("x")
+    assert trial(answers=1, obstacle=obstacle).verdict == obstacle
+    # A difference that was found before it broke down is one.
+    assert trial(unknown=1, obstacle=obstacle).verdict == Failed(("1 differences",))
+    assert Trial(library="x", reference="", type="y").verdict == NotJudged(
+        "the reference had no answer to anything"
+    )
+
+
+class Batch(BatchCodec):
+    def encode_all(self, values):
+        return [b"x" if value else Refusal("no") for value in values]
+
+    def decode_all(self, packets):
+        return [len(packet) or Refusal("empty") for packet in packets]
+
+
+def test_codecs_answer_one_by_one_and_all_at_once():
+    batch = Batch()
+    assert batch.encode(1) == b"x" and batch.decode(b"abc") == 3
+    with pytest.raises(Refusal, match="no"):
+        batch.encode(0)
+    with pytest.raises(Refusal, match="empty"):
+        batch.decode(b"")
+    plain = Bytes(most=3)
+    assert plain.encode_all([{"a": 4}, {"a": 3}]) == [Refusal("too large"), b"\0\1\0\0\3"]
+    assert plain.decode_all([b"", b"\0\1\0\0\2"]) == [Refusal("no packet"), {"a": 2}]
+
+
+@pytest.mark.parametrize("count", [0, 1, 3])
+def test_as_many_answers_as_questions(count):
+    with pytest.raises(ClientDiedError, match=f"^it gave {count} answers to 2 questions$"):
+        each_answered("it", [1, 2], [0] * count)
+    assert each_answered("it", [1, 2], ["a", "b"]) == ["a", "b"]
+
+
+def finding_of(message, **more):
+    known = {
+        "library": "mine",
+        "reference": "right",
+        "wire": "cdr",
+        "what": "odd",
+        "message": message,
+        "value": {"a": 1},
+        "packet": b"",
+        "expected": 1,
+        "got": 2,
+    }
+    return Finding(**{**known, **more})
+
+
+NO = Refusal("no")
+
+
+@pytest.mark.parametrize("answer", ["takes", "refuses", None])
+@pytest.mark.parametrize("is_mine", [True, False])
+def test_a_known_difference_explains_its_own_answer_alone(message, answer, is_mine):
+    entry = Known(
+        key="k",
+        libraries=("mine",) if is_mine else ("right",),
+        wires="cdr",
+        text="",
+        whats=("odd", "other"),
+        answer=answer,
+    )
+    explained = {
+        (own, other)
+        for own in (1, NO)
+        for other in (2, NO)
+        if entry.explains_answer(
+            finding_of(message, got=own, expected=other)
+            if is_mine
+            else finding_of(message, got=other, expected=own)
+        )
+    }
+    assert explained == {{"takes": (1, NO), "refuses": (NO, 2), None: (1, 2)}[answer]}
+
+
+def test_a_known_difference_is_about_its_libraries_wires_and_oddities(message):
+    entry = Known(key="k", libraries=("mine", "yours"), wires="cdr", text="", whats=("odd",))
+    assert entry.is_about(finding_of(message)) == "mine"
+    assert entry.is_about(finding_of(message, library="x", reference="yours")) == "yours"
+    assert entry.is_about(finding_of(message, library="x")) is None
+    assert entry.is_about(finding_of(message, wire="ros1")) is None
+    both = Known(key="k", libraries=("mine",), wires="ros1 cdr", text="", whats=("odd",))
+    assert both.is_about(finding_of(message, wire="ros1")) == "mine"
+    assert entry.explains_answer(finding_of(message))
+    assert not entry.explains_answer(finding_of(message, what="other"))
+    assert not entry.explains_answer(finding_of(message, library="x"))
+
+
+def test_changes_reach_every_text_and_number(make_message):
+    message = make_message("uint8 a\nstring s\nB[2] b\nB[] l\nint8[] i\n", B="int8 x\nstring t\n")
+    inner = {"x": 1, "t": b"u"}
+    value = {"a": 1, "s": b"s", "b": [inner, inner], "l": [inner], "i": [3, 4]}
+    inner = {"x": [1], "t": [b"u"]}
+    assert changed(message, value, lambda kind, each: [each]) == {
+        "a": [1],
+        "s": [b"s"],
+        "b": [inner, inner],
+        "l": [inner],
+        "i": [[3], [4]],
+    }
+
+
+def smallest(message, value, shows):
+    """Shrink what shows a difference, by a function of the value."""
+
+    def again(type_, what, given):
+        assert what == "decode"
+        try:
+            is_shown = shows(given)
+        except (KeyError, IndexError, TypeError):
+            return None
+        return finding_of(type_, what=what, value=given) if is_shown else None
+
+    found = shrunk(finding_of(message, what="decode", value=value), again)
+    return found.message, found.value
+
+
+def test_what_does_not_matter_is_taken_away(make_message):
+    names = [f"f{n}" for n in range(9)]
+    message = make_message("".join(f"uint8 {name}\n" for name in names))
+    kind, value = smallest(message, dict.fromkeys(names, 9), lambda v: v["f2"] and v["f7"])
+    assert value == {"f2": 9, "f7": 9} and [f.name for f in kind.fields] == ["f2", "f7"]
+
+
+def test_lists_and_texts_get_as_short_as_they_can(make_message):
+    message = make_message("uint8[] l\nstring s\nuint16[6] a\nuint8 z\n")
+    value = {"l": [1, 2, 7, 4], "s": b"abcd", "a": [1, 2, 3, 4, 5, 6], "z": 5}
+    assert smallest(message, value, lambda v: 7 in v["l"])[1] == {"l": [7]}
+    assert smallest(message, value, lambda v: len(v["s"]) >= 2)[1] == {"s": b"xx"}
+    assert smallest(message, value, lambda v: b"d" in v["s"])[1] == {"s": b"d"}
+    kind, found = smallest(message, value, lambda v: 5 in v["a"])
+    assert found == {"a": [5]} and str(kind.fields[0].type) == "uint16[1]"
+    assert smallest(message, value, lambda v: v["z"] >= 0)[1] == {"z": 0}
+
+
+def test_nested_messages_get_smaller_too(make_message):
+    message = make_message("B b\nB[] l\nuint8 z\n", B="uint8 x\nuint8 y\nstring t\n")
+    inner = {"x": 1, "y": 2, "t": b"abc"}
+    value = {"b": inner, "l": [inner, {**inner, "y": 9}], "z": 1}
+    # Where a nested one alone shows it, that is all there is.
+    kind, found = smallest(message, value, lambda v: v["y"] == 9)
+    assert found == {"y": 9} and [f.name for f in kind.fields] == ["y"]
+    kind, found = smallest(message, value, lambda v: v["b"]["x"] and v["z"])
+    assert found == {"b": {"x": 1}, "z": 1}
+    kind, found = smallest(message, value, lambda v: v["l"][-1]["y"] == 9)
+    assert found == {"l": [{"y": 9}]}
+
+
+def test_without_time_nothing_is_taken_away(message):
+    finding = finding_of(message, value={"a": 9})
+    assert shrunk(finding, lambda *given: finding_of(message), seconds=-1) is finding

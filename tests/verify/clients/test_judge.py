@@ -1,0 +1,162 @@
+"""Libraries that are broken on purpose are found, and made small."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.verify.clients.judge import Contest
+from firm_hdl.verify.clients.odd import ODDITIES, odd_packet, odd_packets
+from firm_hdl.verify.clients.shrink import shrunk
+from firm_hdl.verify.references import Client, Codec, Refusal
+from firm_hdl.verify.references.objects import full_text
+from firm_hdl.verify.results.verdict import Failed, NotJudged
+from tests.verify.judged import assert_known, assert_passed
+
+TEXT = "uint8 a\nfloat64 b\nuint16 c\nuint16 d\nstring s\nB[] list\nbool t\n"
+NESTED = "int8 x\nint64 y\n"
+VALUES = [
+    {"a": 1, "b": 2, "c": 3, "d": 4, "s": b"ab", "list": [{"x": 1, "y": 2}], "t": True},
+    {"a": 0, "b": 0, "c": 7, "d": 7, "s": b"", "list": [], "t": False},
+]
+
+
+class Twin(Client):
+    """rosbags with something wrong."""
+
+    name = "twin"
+    wires = frozenset({"cdr"})
+
+    def __init__(self, right, fault):
+        self.right, self.fault = right, fault
+
+    def missing(self):
+        return None
+
+    def version(self):
+        return "0"
+
+    def open(self, message, wire):
+        return self.fault(self.right.open(message, wire))
+
+
+class Same(Codec):
+    """Nothing wrong."""
+
+    def __init__(self, right):
+        self.right = right
+
+    def encode(self, value):
+        return self.right.encode(value)
+
+    def decode(self, packet):
+        return self.right.decode(packet)
+
+
+class Unaligned(Same):
+    """Leaves out all padding: what it writes is too short, where there is any."""
+
+    def encode(self, value):
+        packet = super().encode(value)
+        return packet.replace(b"\1\0\0\0\0\0\0\0\2", b"\1\2")
+
+
+class Swaps(Same):
+    """Reads two neighbours in the wrong order."""
+
+    def decode(self, packet):
+        value = super().decode(packet)
+        if "c" in value and "d" in value:
+            value["c"], value["d"] = value["d"], value["c"]
+        return value
+
+
+class Careless(Same):
+    """Takes a packet that is cut."""
+
+    def decode(self, packet):
+        try:
+            return super().decode(packet)
+        except Refusal:
+            return super().decode(packet + b"\0" * (-len(packet) % 4 or 1))
+
+
+@pytest.fixture
+def contest(library_here):
+    """Make a contest of a broken library with rosbags, which is right."""
+    right = library_here("rosbags")
+    return lambda fault: Contest(Twin(right, fault), right, "cdr")
+
+
+@pytest.fixture
+def message(make_message):
+    return make_message(TEXT, B=NESTED)
+
+
+def test_nothing_is_found_where_nothing_is_wrong(contest, message):
+    trial = contest(Same).judge(message, VALUES)
+    assert assert_passed(trial) == trial.comparisons > 30
+
+
+@pytest.mark.parametrize(
+    ("fault", "what", "text"),
+    [
+        (Unaligned, "encode", "uint8 a\nfloat64 b\n"),
+        (Swaps, "decode", "uint16 c\nuint16 d\n"),
+        (Careless, "cut-1", "bool t\n"),
+    ],
+)
+def test_faults_are_found_and_made_small(contest, message, fault, what, text):
+    made = contest(fault)
+    trial = made.judge(message, VALUES)
+    assert isinstance(trial.verdict, Failed)
+    finding = next(each for each in trial.findings if each.what == what)
+    small = shrunk(finding, made.again)
+    assert small.expected != small.got
+    lines = len(full_text(small.message).splitlines())
+    assert lines <= len(text.splitlines()), full_text(small.message)
+    if fault is Swaps:
+        assert full_text(small.message) == text
+        assert sorted(small.value.values())[0] == 0
+
+
+def test_a_type_that_a_library_has_not_is_not_judged(library_here, make_message):
+    both = Contest(library_here("cyclonedds"), library_here("rosbags"), "cdr")
+    trial = both.judge(make_message("wstring w\n"), [])
+    assert trial.verdict == NotJudged("cyclonedds has no wstring")
+    wide = both.judge(make_message("uint8[<=65536] w\n"), [])
+    assert wide.verdict == NotJudged("cyclonedds has no bound of 65536 elements")
+    trial = both.judge(make_message("uint8[<=65535] w\n"), [{"w": [1]}])
+    assert_known(trial, "cyclonedds-cut", "rosbags-trailing")
+    # Nobody was asked for anything.
+    none = both.judge(make_message("uint8[<=65535] w\n"), [])
+    assert none.verdict == NotJudged("rosbags had no answer to anything")
+    other = Contest(library_here("cyclonedds"), library_here("rosbags"), "ros1")
+    trial = other.judge(make_message("int8 w\n"), [])
+    assert trial.verdict == NotJudged("cyclonedds does not speak ros1")
+
+
+def test_odd_packets_are_odd_as_they_say(make_message):
+    message = make_message("uint8 a\nuint32 n\nstring<=2 s\nstring e\nbool t\nuint8[<=1] l\n")
+    value = {"a": 1, "n": 2, "s": b"xy", "e": b"", "t": True, "l": [5]}
+    plain = "00010000 01000000 02000000 03000000 78790000 01000000 00 01 0000 01000000 05"
+    packets = {o.name: packet.hex() for o, _, packet in odd_packets(message, "cdr", [value])}
+    assert sorted(packets) == sorted(n for n, o in ODDITIES.items() if "cdr" in o.wires)
+    right = bytes.fromhex(plain)
+    assert bytes.fromhex(packets["pad-3"]) == right + bytes(3)
+    assert bytes.fromhex(packets["cut-1"]) == right[:-1]
+    assert packets["cut-header"] == "0001"
+    assert bytes.fromhex(packets["bool-2"]) == right[:25] + b"\2" + right[26:]
+    assert bytes.fromhex(packets["bare-string"]) == right[:20] + bytes(4) + bytes.fromhex(
+        "01 000000 01000000 05"
+    )
+    assert packets["big-endian"].startswith("0000000001000000000000020000000378790000")
+    assert packets["dirty-padding"].startswith("0001000001ffffff")
+    assert packets["options"].startswith("00010003")
+    assert packets["bound-items"].endswith("020000000500")
+    assert "04000000787978" in packets["bound-text"]
+
+
+def test_what_has_no_place_is_not_made(make_message):
+    message = make_message("uint8 a\n")
+    for name in ("bare-string", "no-nul", "bool-2", "bound-items", "dirty-padding", "long-text"):
+        assert odd_packet(message, "cdr", {"a": 1}, ODDITIES[name]) is None

@@ -1,0 +1,184 @@
+"""Each client library's codec against bytes that are known; and what becomes of what is missing."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import pytest
+import yaml
+
+from firm_hdl.frontend import Library
+from firm_hdl.model import PRIMITIVES, Field, Message
+from firm_hdl.verify.references import CLIENTS, Refusal, UnsupportedError, client
+from firm_hdl.verify.references.fastcdr import FastCdr
+from firm_hdl.verify.references.genpy import Genpy
+from firm_hdl.verify.references.values import bits_of
+from tests.verify.references.plain import plain
+
+TEXT = "string s\nfloat64[2] d\nB[] b\nuint16 from\nbool t\n"
+VALUE = {
+    "s": "é".encode(),
+    "d": [bits_of(1.0, 8), 1 << 63],
+    "b": [{"x": -1, "y": [1, 2]}],
+    "from": 0x1234,
+    "t": True,
+}
+PACKETS = {
+    "ros1": "02000000c3a9 000000000000f03f 0000000000000080 01000000 ff 02000000 0102 3412 01",
+    "cdr": "00010000 03000000c3a900 00 000000000000f03f 0000000000000080 01000000 ff 000000 "
+    "02000000 0102 3412 01",
+}
+SPOKEN = [(name, wire) for name, kind in CLIENTS.items() for wire in sorted(kind.wires)]
+
+
+def packet_of(wire):
+    return bytes.fromhex(PACKETS[wire])
+
+
+@pytest.fixture
+def message_of(make_message):
+    def get(wire):
+        # Every ROS 1 type has an int8, and its `char` is another one.
+        return make_message(
+            TEXT, "noetic" if wire == "ros1" else "lyrical", B="int8 x\nuint8[] y\n"
+        )
+
+    return get
+
+
+@pytest.mark.parametrize(("name", "wire"), SPOKEN)
+def test_value_becomes_the_known_bytes_and_back(library_here, message_of, name, wire):
+    library = library_here(name)
+    assert library.version()
+    codec = library.open(message_of(wire), wire)
+    packet = packet_of(wire)
+    assert codec.encode(VALUE) == packet
+    assert codec.decode(packet) == VALUE
+    # Many at a time, with one among them that is refused.
+    cut = packet[: len(packet) // 2]
+    assert codec.encode_all([VALUE, VALUE]) == [packet] * 2
+    first, second, third = codec.decode_all([packet, cut, packet])
+    assert first == third == VALUE
+    assert isinstance(second, Refusal) and str(second)
+    with pytest.raises(Refusal):
+        codec.decode(cut)
+
+
+@pytest.mark.parametrize(("name", "wire"), SPOKEN)
+def test_messages_without_fields(library_here, make_message, name, wire):
+    distro = "noetic" if wire == "ros1" else "lyrical"
+    codec = library_here(name).open(make_message("B[2] b\nB one\n", distro, B=""), wire)
+    packet = b"" if wire == "ros1" else bytes.fromhex("00010000000000")
+    value = {"b": [{}, {}], "one": {}}
+    assert codec.encode(value) == packet
+    assert codec.decode(packet) == value
+
+
+@pytest.mark.parametrize("name", ["fastcdr", "fastcdr-2.2", "fastcdr-2.3", "firm-hdl"])
+def test_wide_text(library_here, make_message, name):
+    codec = library_here(name).open(make_message("uint8 a\nwstring w\n"), "cdr")
+    value = {"a": 1, "w": [0xD83D, 0xDE00]}
+    packet = bytes.fromhex("0001000001000000020000003dd8000000de0000")
+    assert codec.encode(value) == packet
+    assert codec.decode(packet) == value
+
+
+@pytest.mark.parametrize("name", ["rosbags", "cyclonedds", "mcap-ros2"])
+def test_who_has_no_wide_text_says_so(library_here, make_message, name):
+    with pytest.raises(UnsupportedError, match=r"wstring"):
+        library_here(name).open(make_message("wstring w\n"), "cdr")
+
+
+@pytest.mark.parametrize("release", ["fastcdr", "fastcdr-2.2", "fastcdr-2.3"])
+def test_fast_cdr_writes_and_reads_what_ros_2_wrote(library_here, release):
+    corpus = os.environ.get("FIRM_HDL_CORPUS")
+    if not corpus:
+        assert not os.environ.get("CI")
+        pytest.skip("FIRM_HDL_CORPUS is not set: no reference bytes")
+    folder = Path(corpus).parent / "cdr_reference"
+    rows = [line.split("\t") for line in (folder / "bytes.tsv").read_text().splitlines()]
+    packets = {(name, order): bytes.fromhex(text) for name, order, text in rows}
+    cases = yaml.safe_load((folder / "cases.yaml").read_text())
+    assert len(cases) >= 23
+    library = Library("humble", [folder])
+    for name, case in cases.items():
+        message = library.message(case["message"])
+        value = plain(message, case["values"])
+        codec = library_here(release).open(message, "cdr")
+        if name == "str_nul" and release == "fastcdr-2.3":
+            with pytest.raises(Refusal):
+                codec.encode(value)
+        else:
+            assert codec.encode(value) == packets[name, "LE"], name
+        if name == "str_nul":
+            value = {"s": b"a"}
+        for order in ("LE", "BE"):
+            assert codec.decode(packets[name, order]) == value, (name, order)
+
+
+def test_packages_that_are_not_installed_are_missing(monkeypatch):
+    def not_found(name):
+        raise ImportError(name)
+
+    monkeypatch.setattr("importlib.import_module", not_found)
+    said = "cyclonedds is not installed (python3 -m pip install 'firm-hdl[clients]')"
+    assert client("cyclonedds").missing() == said
+
+
+@pytest.mark.parametrize(
+    ("compiler", "said"),
+    [("/nowhere/c++", "there is no C++ compiler"), ("true", "headers are not installed")],
+)
+def test_without_compiler_or_library_fast_cdr_is_missing(monkeypatch, compiler, said):
+    monkeypatch.setenv("CXX", compiler)
+    why = FastCdr().missing()
+    assert said in why and "apt install g++ libfastcdr-dev" in why
+
+
+def test_without_its_python_genpy_is_missing(monkeypatch):
+    monkeypatch.setattr("firm_hdl.verify.ros_python.worker.ROS_PYTHON", "/nowhere/python3")
+    why = Genpy().missing()
+    assert "/nowhere/python3 cannot be run" in why and "python3-genpy" in why
+
+
+def test_a_forked_process_has_libraries_of_its_own(library_here):
+    library_here("fastcdr")
+    with ProcessPoolExecutor(1, mp_context=get_context("fork")) as pool:
+        assert pool.submit(_written).result() == b"\0\1\0\0\7"
+        assert pool.submit(_program).result() != _program()
+
+
+def _codec():
+    uint8 = PRIMITIVES["ros2"]["uint8"]
+    message = Message(name="p/msg/A", dialect="ros2", fields=(Field(name="a", type=uint8),))
+    return client("fastcdr").open(message, "cdr")
+
+
+def _written():
+    return _codec().encode({"a": 7})
+
+
+def _program():
+    return _codec()._program._process.pid
+
+
+@pytest.mark.parametrize("name", ["fastcdr", "genpy"])
+def test_a_process_that_dies_is_replaced(make_message, library_here, name):
+    library_here(name)
+    wire = "cdr" if name == "fastcdr" else "ros1"
+    library = CLIENTS[name]()
+    try:
+        assert library.missing() is None
+        message = make_message("uint8 a\n", "noetic" if wire == "ros1" else "lyrical")
+        codec = library.open(message, wire)
+        far = library._program if name == "fastcdr" else library._worker
+        far._process.kill()
+        with pytest.raises(UnsupportedError):
+            codec.decode(codec.encode({"a": 1}))
+        codec = library.open(message, wire)
+        assert codec.decode(codec.encode({"a": 1})) == {"a": 1}
+    finally:
+        library.close()

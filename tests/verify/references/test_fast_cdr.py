@@ -1,0 +1,126 @@
+"""Every release of Fast CDR on bytes that are known, and what the releases do otherwise.
+
+What they have to write stands in ``tests/plan/test_wire_facts.py``, too, where it is our plans that
+have to write it: so it holds where no Fast CDR is installed.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.model import IDL_PRIMITIVES, Field, Message, Sequence, Text, idl_primitives
+from firm_hdl.verify.clients.run import SutOptions, judge_type
+from firm_hdl.verify.references import CLIENTS, Refusal, UnsupportedError
+from firm_hdl.verify.references.client import ClientDiedError
+from firm_hdl.verify.references.fastcdr import FastCdr
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, Passed
+from tests.frontend.workspace import make_files
+from tests.plan.test_wire_facts import FACTS, WIDE, data
+from tests.strategies import make
+from tests.verify.references.plain import plain
+
+RELEASES = ("fastcdr", "fastcdr-2.2", "fastcdr-2.3")
+CDR_FACTS = {name: fact for name, fact in FACTS.items() if fact[0] == "ros2"}
+
+
+def test_these_are_all_releases():
+    assert [name for name, kind in CLIENTS.items() if issubclass(kind, FastCdr)] == [*RELEASES]
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_facts_of_the_wire_are_those_of_fast_cdr(library_here, release):
+    library = library_here(release)
+    assert len(CDR_FACTS) > 15
+    for name, (dialect, fields, value, text) in CDR_FACTS.items():
+        message = make(dialect, fields)
+        codec = library.open(message, "cdr")
+        given = plain(message, value)
+        assert codec.encode(given).hex() == data(text).hex(), name
+        assert codec.decode(data(text)) == given, name
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_wide_characters_have_the_size_of_the_release(library_here, release):
+    library = library_here(release)
+    own = 4 if release == "fastcdr" else 2
+    message, value, packet = WIDE[own]
+    codec = library.open(message, "cdr")
+    assert codec.encode(value) == packet
+    assert codec.decode(packet) == value
+    with pytest.raises(UnsupportedError, match=f"wide characters of {own} bytes, not {6 - own}"):
+        library.open(WIDE[6 - own][0], "cdr")
+
+
+@pytest.mark.parametrize(
+    ("release", "narrow", "wide"),
+    [
+        ("fastcdr", "00010000 02000000 6100", "00010000 01000000 61000000"),
+        ("fastcdr-2.2", "00010000 02000000 6100", "00010000 03000000 61000000 00000000 62000000"),
+        ("fastcdr-2.3", None, "00010000 03000000 61000000 00000000 62000000"),
+    ],
+)
+def test_a_nul_inside_a_text_is_the_affair_of_the_release(library_here, release, narrow, wide):
+    def written(kind, value):
+        message = Message(name="p/msg/T", dialect="ros2", fields=(Field(name="t", type=kind),))
+        return library_here(release).open(message, "cdr").encode({"t": value})
+
+    assert written(Text(wide=True), [0x61, 0, 0x62]) == data(wide)
+    if narrow is not None:
+        assert written(Text(), b"a\0b") == data(narrow)
+        return
+    with pytest.raises(Refusal, match="null characters"):
+        written(Text(), b"a\0b")
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_a_unit_of_wide_text_that_is_too_large(library_here, release):
+    message = make("ros2", {"w": "wstring"})
+    codec = library_here(release).open(message, "cdr")
+    packet = data("00010000 01000000 61000100")
+    if release == "fastcdr":
+        # It goes through a wchar_t of 32 bits, and is cut to 16 behind it.
+        assert codec.decode(packet) == {"w": [0x61]}
+        return
+    with pytest.raises(Refusal, match="more than 16 bits"):
+        codec.decode(packet)
+
+
+WIDE_IDL = "module p { module msg { struct W { octet a; wchar b; }; }; };"
+
+
+@pytest.mark.parametrize(("distro", "judge"), [("humble", "fastcdr"), ("kilted", "fastcdr-2.3")])
+def test_who_has_a_type_judges_it(library_here, tmp_path, distro, judge):
+    for name in RELEASES:
+        library_here(name)
+    root = make_files(tmp_path, {"p/msg/W.idl": WIDE_IDL})
+    options = SutOptions(
+        libraries=("firm-hdl",), here=(*RELEASES, "rosbags"), most_cases=2, paths=(str(root),)
+    )
+    (trial,) = judge_type(distro, "p/msg/W", options)
+    assert trial.reference == judge and isinstance(trial.verdict, Passed | KnownDifference)
+
+
+def test_a_judge_that_dies_is_not_replaced(library_here, make_message, monkeypatch):
+    def dies(self, message, wire):
+        raise ClientDiedError("it died")
+
+    library_here("fastcdr")
+    monkeypatch.setattr(CLIENTS["fastcdr"], "open", dies)
+    options = SutOptions(libraries=("firm-hdl",), here=("fastcdr", "rosbags"), most_cases=1)
+    (trial,) = judge_type("lyrical", "std_msgs/msg/Bool", options)
+    assert trial.reference == "fastcdr" and trial.verdict == Failed(("it died",))
+
+
+def test_a_release_that_is_not_installed_is_missing(monkeypatch, tmp_path):
+    monkeypatch.setenv("FIRM_HDL_ROS2_WHEELS", str(tmp_path))
+    for name in RELEASES[1:]:
+        why = CLIENTS[name]().missing()
+        number = name.partition("-")[2]
+        assert f"Fast CDR {number} is not installed (make oracles-ros2" in why
+
+
+def test_wide_characters_of_the_facts_are_those_of_the_model():
+    for size, (message, _, _) in WIDE.items():
+        kinds = [item.type for item in message.fields]
+        assert kinds[0] == idl_primitives(size)["wchar"] and kinds[1] == IDL_PRIMITIVES["byte"]
+        assert isinstance(kinds[2], Sequence) and kinds[2].bound

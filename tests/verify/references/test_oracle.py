@@ -1,0 +1,109 @@
+"""The oracle's walk, against transfers written by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from firm_hdl.verify.references.oracle import DISTRO_STORES, Oracle, distro_oracle
+
+INNER = "string name\nuint16[] numbers\n"
+OUTER = """
+int8 a
+byte b
+float32 f
+bool[3] flags
+test_msgs/Inner[2] pair
+test_msgs/Inner[] more
+"""
+
+
+@pytest.fixture(scope="module")
+def oracle():
+    store = get_typestore(Stores.EMPTY)
+    store.register(get_types_from_msg(INNER, "test_msgs/msg/Inner"))
+    store.register(get_types_from_msg(OUTER, "test_msgs/msg/Outer"))
+    return Oracle(store, "ros2")
+
+
+def test_every_kind_of_field_transfers_as_the_interface_says(oracle):
+    inner, outer = (oracle.store.types[f"test_msgs/msg/{name}"] for name in ("Inner", "Outer"))
+    numbers = [((1, 65535), False), ((3, 4), False), ((5, 0), True)]
+    first = inner(name="é", numbers=np.array([1, 65535, 3, 4, 5], dtype=np.uint16))
+    empty = inner(name="", numbers=np.array([], dtype=np.uint16))
+    flags = np.array([True, False, True])
+    value = outer(a=-1, b=-2, f=-0.0, flags=flags, pair=[first, empty], more=[first])
+    assert oracle.transfers(value, "test_msgs/msg/Outer", "cdr", 4) == {
+        ("a",): [-1],
+        ("b",): [254],
+        ("f",): [0x80000000],
+        ("flags", "items"): [((1, 0, 1, 0), True)],
+        ("pair", "item", "name", "length"): [2, 0],
+        ("pair", "item", "name", "items"): [((0xC3, 0xA9, 0, 0), True)],
+        ("pair", "item", "numbers", "length"): [5, 0],
+        ("pair", "item", "numbers", "items"): numbers,
+        ("more", "length"): [1],
+        ("more", "item", "name", "length"): [2],
+        ("more", "item", "name", "items"): [((0xC3, 0xA9, 0, 0), True)],
+        ("more", "item", "numbers", "length"): [5],
+        ("more", "item", "numbers", "items"): numbers,
+    }
+
+
+@pytest.mark.parametrize(("dialect", "right"), [("ros1", -2), ("ros2", 254)])
+def test_byte_has_a_sign_in_ros1_alone(dialect, right):
+    store = get_typestore(Stores.EMPTY)
+    store.register(get_types_from_msg("byte b\nbyte[] more\nuint8 u\n", "test_msgs/msg/Bytes"))
+    more = np.array([254], dtype=np.uint8)
+    value = store.types["test_msgs/msg/Bytes"](b=-2, more=more, u=254)
+    found = Oracle(store, dialect).transfers(value, "test_msgs/msg/Bytes", "ros1", 1)
+    assert (found[("b",)], found[("u",)]) == ([right], [254])
+    assert found[("more", "items")] == [((right,), True)]
+
+
+def test_items_wider_than_the_bus_have_one_lane(oracle):
+    inner = oracle.store.types["test_msgs/msg/Inner"]
+    value = inner(name="", numbers=np.array([7, 8], dtype=np.uint16))
+    found = oracle.transfers(value, "test_msgs/msg/Inner", "cdr", 1)
+    assert found["numbers", "items"] == [((7,), False), ((8,), True)]
+
+
+def test_times_of_ros1_have_their_own_names_and_signs():
+    oracle = distro_oracle("noetic")
+    time = oracle.store.types["builtin_interfaces/msg/Time"](sec=-1, nanosec=0xFFFFFFFF)
+    duration = oracle.store.types["builtin_interfaces/msg/Duration"](sec=-1, nanosec=0xFFFFFFFF)
+    for name, value, sign in (("Time", time, 1), ("Duration", duration, -1)):
+        outer = oracle.store.types[f"std_msgs/msg/{name}"](data=value)
+        high = 0xFFFFFFFF if sign > 0 else -1
+        found = oracle.transfers(outer, f"std_msgs/msg/{name}", "ros1", 8)
+        assert found == {("data", "secs"): [high], ("data", "nsecs"): [high]}
+
+
+@pytest.mark.parametrize(
+    ("distro", "wire", "path", "payload"),
+    [
+        ("noetic", "ros1", ("trigger",), 1),
+        ("humble", "cdr", ("structure_needs_at_least_one_member",), 0),
+    ],
+)
+def test_empty_messages_transfer_once(distro, wire, path, payload):
+    oracle = distro_oracle(distro)
+    name = "std_msgs/msg/Empty"
+    value = oracle.read(b"" if wire == "ros1" else b"\0\1\0\0\0", name, wire)
+    assert oracle.transfers(value, name, wire, 8) == {path: [payload]}
+
+
+def test_structures_tell_types_apart():
+    humble, jazzy = distro_oracle("humble"), distro_oracle("jazzy")
+    same, other = "sensor_msgs/msg/Imu", "sensor_msgs/msg/Range"
+    assert humble.structure(same) == jazzy.structure(same)
+    assert humble.structure(other) != jazzy.structure(other)
+    assert set(DISTRO_STORES) == {
+        "noetic", "foxy", "humble", "iron", "jazzy", "kilted", "lyrical"
+    }  # fmt: skip
+
+
+def test_builtin_times_of_ros1_are_no_types_of_their_own():
+    assert "builtin_interfaces/msg/Time" not in distro_oracle("noetic").names()
+    assert "builtin_interfaces/msg/Time" in distro_oracle("humble").names()

@@ -1,0 +1,270 @@
+"""Results on the disk: nothing is lost or made up, and no run goes on with another's file."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.verify.results.file import ResultsError, ResultsWriter, done, read_results
+from firm_hdl.verify.results.records import Record
+from firm_hdl.verify.results.verdict import Failed
+from tests.verify.report.samples import a_record, a_test
+
+HEADER, BOOL = a_test(), a_test("std_msgs/msg/Bool")
+OPTIONS = {"seed": 0, "paths": []}
+
+
+def written(path, *records, options=OPTIONS, planned=(HEADER, BOOL)):
+    with ResultsWriter(path, options=options, planned=planned, session={"Python": "3"}) as writer:
+        for record in records:
+            writer.add(record)
+    return path
+
+
+def test_records_are_read_as_they_were_written(tmp_path):
+    failed = a_record(BOOL, verdict=Failed(("a\nb", "ü")), same_as="x", note="y")
+    path = written(tmp_path / "new" / "r.jsonl", a_record(), failed)
+    found = read_results(path)
+    assert found.options == OPTIONS and found.planned == (HEADER, BOOL) and not found.missing
+    assert found.records == {HEADER.key: a_record(), BOOL.key: failed}
+    assert found.sessions == ({"Python": "3"},)
+    assert done(path, [HEADER.key, "other"]) == {HEADER.key}
+    assert done(tmp_path / "none", [HEADER.key]) == set()
+
+
+def test_last_of_two_records_of_a_test_counts(tmp_path):
+    path = written(tmp_path / "r.jsonl", a_record(), a_record(verdict=Failed(("later",))))
+    assert read_results(path).records[HEADER.key].verdict == Failed(("later",))
+    again = written(tmp_path / "again.jsonl", a_record(verdict=Failed(("first",))), a_record())
+    assert read_results(again).records == {HEADER.key: a_record()}
+
+
+def test_keys_tell_all_that_matters_apart():
+    others = [
+        a_test("std_msgs/msg/Bool"),
+        a_test(system="ts2"),
+        a_test(simulator="ghdl"),
+        a_test(distro="humble"),
+        a_test(wire="ros1"),
+        a_test(bus_bytes=4),
+        a_test(options="seed=1"),
+    ]
+    assert len({test.key for test in [HEADER, *others]}) == 8
+    assert HEADER.key == "ts3 python lyrical std_msgs/msg/Header cdr/8 seed=0"
+    assert a_test(same=("lyrical",)).key == HEADER.key
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"verdict": None}, r"^What became of a test must be a verdict, not None$"),
+        ({"verdict": "passed"}, r"^What became of a test must be a verdict, not 'passed'$"),
+    ],
+)
+def test_records_without_a_verdict_are_refused(more, said):
+    with pytest.raises(ValueError, match=said):
+        a_record(**more)
+
+
+def test_missing_records_are_named(tmp_path):
+    assert read_results(written(tmp_path / "r", a_record())).missing == (BOOL,)
+
+
+@pytest.mark.parametrize("cut", [1, 2, 20, -1])
+def test_torn_last_line_is_dropped_and_replaced(tmp_path, cut):
+    path = written(tmp_path / "r", a_record())
+    whole = path.read_bytes()
+    line = json.dumps({"record": a_record(BOOL).as_json()}).encode()
+    path.write_bytes(whole + line[:cut])
+    assert list(read_results(path).records) == [HEADER.key]
+    written(path, a_record(BOOL))
+    found = read_results(path)
+    assert list(found.records) == [HEADER.key, BOOL.key] and len(found.sessions) == 2
+
+
+def test_torn_first_line_is_no_run_yet(tmp_path):
+    path = written(tmp_path / "r")
+    path.write_bytes(path.read_bytes()[:30])
+    assert read_results(path).planned == ()
+    assert read_results(written(path, a_record())).missing == (BOOL,)
+
+
+def test_damage_elsewhere_is_an_error_that_names_the_line(tmp_path):
+    path = written(tmp_path / "r", a_record(), a_record(BOOL))
+    lines = path.read_bytes().splitlines(keepends=True)
+    path.write_bytes(b"".join([*lines[:2], b'{"record": {"status": "pass"}}\n', *lines[3:]]))
+    with pytest.raises(ResultsError, match=r"^'.*', line 3: Test must be an object, not NoneType$"):
+        read_results(path)
+
+
+@pytest.mark.parametrize(
+    "content", [b"hello", b"hello\n", b"{}\n", b'{"format": "other"}\n', b"[]\n"]
+)
+def test_other_files_are_refused_and_left_alone(tmp_path, content):
+    path = tmp_path / "mine"
+    path.write_bytes(content)
+    with pytest.raises(ResultsError, match=r"^'.*' has no results of firm-hdl verify$"):
+        written(path)
+    assert path.read_bytes() == content
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"options": {"seed": 1, "paths": []}}, "seed was 0, and is 1"),
+        ({"options": {"paths": []}}, "seed was 0, and is not given"),
+        ({"planned": (HEADER,)}, f"1 test is only in it, such as '{BOOL.key}'"),
+        (
+            {"planned": (HEADER, BOOL, a_test("a/msg/B"), a_test("a/msg/C"))},
+            f"2 tests are not in it, such as '{a_test('a/msg/B').key}'",
+        ),
+    ],
+)
+def test_other_runs_are_refused(tmp_path, change, said):
+    path = written(tmp_path / "r", a_record())
+    before = path.read_bytes()
+    with pytest.raises(ResultsError) as caught:
+        written(path, **change)
+    assert str(caught.value) == (
+        f"'{path}' is of another run: {said}; name another file, or remove it"
+    )
+    assert path.read_bytes() == before
+
+
+def test_file_has_one_writer_at_a_time(tmp_path):
+    path = tmp_path / "r"
+    with (
+        ResultsWriter(path, options=OPTIONS, planned=[HEADER]),
+        pytest.raises(ResultsError, match=r"^'.*' is being written by another run$"),
+    ):
+        ResultsWriter(path, options=OPTIONS, planned=[HEADER])
+
+
+def test_times_are_no_part_of_what_is_compared():
+    one = a_record()
+    assert one.without_times == replace(one, cpu_seconds=9.0).without_times
+    assert one.without_times != replace(one, cycles=9).without_times
+
+
+FAKE = """
+import sys, time
+from tests.verify.report.samples import a_record, a_test
+from firm_hdl.jobs.executors import run_each
+from firm_hdl.verify.results.file import ResultsWriter
+from firm_hdl.verify.results.verdict import Failed, Passed
+
+def work(number):
+    time.sleep(0.01)
+    verdict = Failed(("it is odd",)) if number % 7 == 3 else Passed(1)
+    return a_record(a_test(f"p/msg/T{number}"), verdict=verdict, cycles=number)
+
+if __name__ == "__main__":
+    tests = {number: a_test(f"p/msg/T{number}") for number in range(100)}
+    with ResultsWriter(sys.argv[1], options={}, planned=list(tests.values())) as writer:
+        missing = {test.key for test in writer.missing()}
+        left = [(n, (n,)) for n, test in tests.items() if test.key in missing]
+        print("ready", flush=True)
+        for _, record in run_each(work, left, jobs=2):
+            writer.add(record)
+"""
+
+
+def outcomes(path: Path) -> dict[str, Record]:
+    return {key: record.without_times for key, record in read_results(path).records.items()}
+
+
+def ended(processes: set[int]) -> bool:
+    return not any(Path(f"/proc/{process}").exists() for process in processes)
+
+
+def test_run_that_was_killed_goes_on_and_ends_the_same(tmp_path):
+    script = tmp_path / "fake.py"
+    script.write_text(FAKE)
+    root = Path(__file__).parents[3]
+    command = [sys.executable, str(script)]
+    environment = {**os.environ, "PYTHONPATH": str(root)}
+    subprocess.run([*command, str(tmp_path / "whole")], env=environment, check=True)
+    seed = random.randrange(1 << 32)
+    print(f"seed {seed}")
+    rng = random.Random(seed)
+    path = tmp_path / "killed"
+    kills = counts = 0
+    while True:
+        process = subprocess.Popen(
+            [*command, str(path)], env=environment, stdout=subprocess.PIPE, text=True
+        )
+        assert process.stdout is not None
+        process.stdout.readline()
+        if kills < 3:
+            time.sleep(rng.uniform(0, 0.4))
+            process.send_signal(signal.SIGKILL)
+            kills += 1
+        done_well = process.wait() == 0
+        process.stdout.close()
+        assert len(outcomes(path)) >= counts, "results were lost"
+        counts = len(outcomes(path))
+        if done_well:
+            break
+    assert outcomes(path) == outcomes(tmp_path / "whole") and counts == 100
+
+
+def test_workers_end_with_a_run_that_was_killed(tmp_path):
+    script = tmp_path / "fake.py"
+    script.write_text(
+        FAKE.replace(
+            "time.sleep(0.01)", "time.sleep(0.2); print('pid', os.getpid(), flush=True)"
+        ).replace("import sys", "import os, sys")
+    )
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
+    process = subprocess.Popen(
+        [sys.executable, str(script), str(tmp_path / "r")],
+        env=environment,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    workers = set()
+    while len(workers) < 2:
+        word, _, number = process.stdout.readline().partition(" ")
+        workers |= {int(number)} if word == "pid" else set()
+    process.kill()
+    process.wait()
+    process.stdout.close()
+    for _ in range(100):
+        if ended(workers):
+            return
+        time.sleep(0.1)
+    raise AssertionError(f"workers {workers} are still there")
+
+
+@pytest.mark.parametrize(
+    ("line", "reason"),
+    [
+        # In Python's words a list's indices must be integers; nobody wrote that for readers.
+        ("[]", "it is damaged"),
+        ("{}", "it is damaged"),
+        ("3", "it is damaged"),
+        ("{", "it is damaged"),
+        ('{"record": {"test": {"age": 3}}}', "it is damaged"),
+        ('{"record": {"test": {"system": "x"}}}', "it is damaged"),
+        ('{"record": []}', "A record must be an object, not list"),
+        ('{"record": {"test": 3}}', "Test must be an object, not int"),
+    ],
+)
+def test_a_line_that_is_none_is_named_with_the_reason(tmp_path, line, reason):
+    path = written(tmp_path / "r.jsonl", a_record())
+    with path.open("a") as file:
+        file.write(f"{line}\n")
+    number = len(path.read_text().splitlines())
+    with pytest.raises(ResultsError) as error:
+        read_results(path)
+    assert str(error.value) == f"'{path}', line {number}: {reason}"

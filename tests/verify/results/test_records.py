@@ -1,0 +1,198 @@
+"""Records: what of a test is kept, in which form, and what one test says of another."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.verify.results.records import (
+    MOST_CHARACTERS,
+    MOST_FAILURES,
+    OracleVerdict,
+    PlanCoverage,
+    Record,
+    Seconds,
+    clipped_verdict,
+)
+from firm_hdl.verify.results.records import Test as Tested
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
+
+
+def clipped(failures):
+    return clipped_verdict(Failed(tuple(failures))).failures
+
+
+WHOLE = Tested(
+    system="ts3",
+    distro="iron",
+    type="p/msg/A",
+    same=("iron", "jazzy"),
+    simulator="python",
+    wire="cdr",
+    bus_bytes=8,
+    options="seed=1",
+)
+
+
+@pytest.mark.parametrize("count", [1, 2, MOST_FAILURES - 1, MOST_FAILURES])
+def test_as_many_failures_as_a_record_keeps_are_kept(count):
+    failures = [f"failure {number}" for number in range(count)]
+    assert clipped(failures) == tuple(failures)
+
+
+@pytest.mark.parametrize("more", [1, 2, 30])
+def test_of_more_failures_the_first_are_kept_and_the_others_counted(more):
+    failures = [f"failure {number}" for number in range(MOST_FAILURES + more)]
+    assert clipped(failures) == (*failures[:MOST_FAILURES], f"and {more} more")
+
+
+def test_long_failures_are_cut_and_say_how_long_they_were():
+    fits, long = "x" * MOST_CHARACTERS, "y" * (MOST_CHARACTERS + 1)
+    start = "y" * MOST_CHARACTERS
+    said = f"{start}... ({MOST_CHARACTERS + 1} characters)"
+    assert clipped([fits, long, "z"]) == (fits, said, "z")
+    assert clipped_verdict(Failed((long, "z"))) == Failed((said, "z"))
+    assert clipped_verdict(NotJudged(long)) == NotJudged(said)
+
+
+@pytest.mark.parametrize(
+    "verdict", [Passed(3), KnownDifference(("k", "l"), 2), NotJudged("x"), Failed(("a", "b"))]
+)
+def test_short_verdicts_are_kept_as_they_are(verdict):
+    assert clipped_verdict(verdict) == verdict
+
+
+def test_the_time_of_a_test_is_that_of_its_stages():
+    assert Seconds(generation=1, simulation=2.5, testing=4).total == 7.5
+    assert Seconds().total == 0
+
+
+def test_what_people_read_a_test_by():
+    assert WHOLE.title == "p/msg/A (iron, jazzy), ts3, 8-byte bus"
+    assert WHOLE.key == "ts3 python iron p/msg/A cdr/8 seed=1"
+    assert (WHOLE.package, WHOLE.distros) == ("p", ("iron", "jazzy"))
+    bare = Tested(system="ts1", distro="iron", type="p/srv/S")
+    assert bare.title == "p/srv/S (iron), ts1"
+    assert (bare.key, bare.distros) == ("ts1 iron p/srv/S", ("iron",))
+    assert Tested(system="ts2", distro="iron", type="p/A", wire="cdr").key == "ts2 iron p/A cdr"
+
+
+RECORD = Record(
+    test=WHOLE,
+    verdict=KnownDifference(("k", "l"), 3),
+    note="note",
+    seconds=Seconds(generation=1.0000004, simulation=2.0, testing=3.5),
+    cpu_seconds=0.1234567,
+    cases=1,
+    packets=2,
+    cycles=3,
+    beats=4,
+    coverage=PlanCoverage(taken=0, possible=2, missing=("m", "n")),
+    metrics={"fields": 3.0, "none": 0.0},
+    shape="shape",
+    same_as="other",
+    verdicts=(
+        OracleVerdict(oracle="one", verdict=Passed(2), is_refused=True),
+        OracleVerdict(oracle="two", verdict=Failed(("f", "g"))),
+    ),
+    written_by=("a", "b"),
+    command="command",
+    waveform_command="waveform",
+)
+
+
+def test_a_record_says_in_json_all_that_it_has():
+    assert RECORD.as_json() == {
+        "test": {
+            "system": "ts3",
+            "distro": "iron",
+            "type": "p/msg/A",
+            "same": ("iron", "jazzy"),
+            "simulator": "python",
+            "wire": "cdr",
+            "bus_bytes": 8,
+            "options": "seed=1",
+        },
+        "verdict": {"verdict": "known difference", "keys": ["k", "l"], "cases": 3},
+        "note": "note",
+        "seconds": {"generation": 1.0, "simulation": 2.0, "testing": 3.5},
+        "cpu_seconds": 0.123457,
+        "cases": 1,
+        "packets": 2,
+        "cycles": 3,
+        "beats": 4,
+        # That none was taken is said, too.
+        "coverage": {"taken": 0, "possible": 2, "missing": ("m", "n")},
+        "metrics": {"fields": 3.0},
+        "shape": "shape",
+        "same_as": "other",
+        "verdicts": [
+            {"oracle": "one", "verdict": "passed", "cases": 2, "is_refused": True},
+            {"oracle": "two", "verdict": "failed", "failures": ["f", "g"]},
+        ],
+        "written_by": ("a", "b"),
+        "command": "command",
+        "waveform_command": "waveform",
+    }
+
+
+def test_a_bare_record_says_in_json_its_test_and_its_verdict():
+    bare = Record(test=Tested(system="ts2", distro="iron", type="p/A"), verdict=Passed(1))
+    given = {
+        "test": {"system": "ts2", "distro": "iron", "type": "p/A"},
+        "verdict": {"verdict": "passed", "cases": 1},
+    }
+    assert bare.as_json() == given
+    assert Record.from_json(given) == bare
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["note", "seconds", "cpu_seconds", "cases", "coverage", "metrics", "verdicts", "written_by"],
+)
+def test_each_part_of_a_record_is_read_back(name):
+    given = RECORD.as_json()
+    found = Record.from_json(given)
+    expected = {"seconds": Seconds(generation=1.0, simulation=2.0, testing=3.5)}
+    expected |= {"cpu_seconds": 0.123457, "metrics": {"fields": 3.0}}
+    assert getattr(found, name) == expected.get(name, getattr(RECORD, name))
+    without = Record.from_json({n: value for n, value in given.items() if n != name})
+    assert getattr(without, name) == getattr(Record(test=WHOLE, verdict=Passed(1)), name)
+
+
+def test_times_alone_are_left_out():
+    assert RECORD.without_times.seconds == Seconds()
+    assert RECORD.without_times.cpu_seconds == 0
+    assert RECORD.without_times.cases == 1 and RECORD.without_times.metrics == RECORD.metrics
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ([], "A record must be an object, not list"),
+        ({}, "Test must be an object, not NoneType"),
+        ({"test": {"system": "x", "size": 1, "age": 2}}, "Test has no age, size"),
+    ],
+)
+def test_what_is_no_record_is_refused(given, said):
+    with pytest.raises(ValueError) as error:
+        Record.from_json(given)
+    assert str(error.value) == said
+
+
+def test_parts_of_a_record_are_refused_by_name():
+    whole = {
+        "test": {"system": "ts2", "distro": "iron", "type": "p/A"},
+        "verdict": {"verdict": "passed", "cases": 1},
+    }
+    for part, said in {
+        "seconds": "Seconds must be an object, not int",
+        "coverage": "PlanCoverage must be an object, not int",
+        "test": "Test must be an object, not int",
+    }.items():
+        with pytest.raises(ValueError) as error:
+            Record.from_json({**whole, part: 3})
+        assert str(error.value) == said
+    with pytest.raises(ValueError, match="What an oracle says must be an object, not int"):
+        Record.from_json({**whole, "verdicts": [3]})
+    with pytest.raises(ValueError, match="Test: "):
+        Record.from_json({**whole, "test": {"system": "ts2"}})

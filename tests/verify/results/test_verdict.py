@@ -1,0 +1,88 @@
+"""Each verdict carries what makes it believable."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from firm_hdl.verify.results.verdict import (
+    Failed,
+    KnownDifference,
+    NotJudged,
+    Passed,
+    verdict_from_json,
+    verdict_to_json,
+    worst,
+)
+
+EACH = [
+    Passed(3),
+    Failed(("status is LENGTH",)),
+    NotJudged("rosbags has no wstring"),
+    KnownDifference(("rosbags-octal",), 1),
+]
+
+
+@pytest.mark.parametrize("cases", [0, -1, True, 1.0])
+@pytest.mark.parametrize("make", [Passed, lambda cases: KnownDifference(("key",), cases)])
+def test_nothing_judged_is_no_pass(make, cases):
+    with pytest.raises(ValueError, match="at least 1 case"):
+        make(cases)
+
+
+def test_a_failure_without_a_text_is_a_failure():
+    assert Failed(("", "  \n", "why")).failures == (
+        "failed without saying why",
+        "failed without saying why",
+        "why",
+    )
+    with pytest.raises(ValueError, match="at least one text"):
+        Failed(())
+
+
+def test_a_missing_judgement_has_a_reason():
+    with pytest.raises(ValueError, match="must have a reason"):
+        NotJudged(" ")
+
+
+@pytest.mark.parametrize("keys", [(), ("",), ("key", " ")])
+def test_a_known_difference_has_a_key(keys):
+    with pytest.raises(ValueError, match="must have the key"):
+        KnownDifference(keys, 1)
+
+
+@pytest.mark.parametrize("verdict", EACH, ids=lambda each: each.name)
+def test_json_reads_back(verdict):
+    assert verdict_from_json(json.loads(json.dumps(verdict_to_json(verdict)))) == verdict
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        None,
+        [],
+        {},
+        {"verdict": "pass"},
+        {"verdict": "passed"},
+        {"verdict": "passed", "cases": 0},
+        {"verdict": "passed", "cases": 1, "more": 1},
+        {"verdict": "failed", "failures": []},
+        {"verdict": "failed", "failures": [1]},
+        {"verdict": "not judged"},
+        {"verdict": "not judged", "reason": 1},
+        {"verdict": "known difference", "keys": ["key"]},
+    ],
+)
+def test_other_json_is_refused(given):
+    with pytest.raises(ValueError, match=r"verdict|at least"):
+        verdict_from_json(given)
+
+
+def test_worst():
+    passed, failed, not_judged, known = EACH
+    assert worst([passed, known]) is known
+    assert worst([known, not_judged, passed]) is not_judged
+    assert worst([not_judged, failed, passed]) is failed
+    assert worst([passed]) is passed
+    assert worst([]) == NotJudged("there was nothing")

@@ -1,0 +1,222 @@
+# amaranth: UnusedElaboratable=no
+"""Exported VHDL in GHDL is the Python simulation, cycle by cycle; a changed line is found."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import firm_hdl.verify.simulators.ghdl as exported
+import firm_hdl.verify.ts3.acceptance as acceptance
+from firm_hdl import Serializer, load_message
+from firm_hdl.export.top import Top
+from firm_hdl.jobs.processes import ToolError
+from firm_hdl.jobs.programs import ProgramMissingError, find_ghdl
+from firm_hdl.sim import Harness, Stalls
+from firm_hdl.verify import Options, Result, accept
+from firm_hdl.verify.simulators import Ghdl, TextSimulator
+from firm_hdl.verify.simulators.crosscheck import first_difference
+from firm_hdl.verify.simulators.semantics import traffic
+from firm_hdl.verify.simulators.trace import Trace
+from tests.verify.judged import assert_passed
+from tests.verify.samples import SAMPLE, own_package
+
+HEADER = "std_msgs/msg/Header"
+
+
+def accepted(distro: str, name: str, bus_bytes: int = 8, **options) -> Result:
+    chosen = {"most_cases": 3, "simulator": "ghdl", **options}
+    return accept(distro, name, Options(bus_bytes=bus_bytes, **chosen))
+
+
+@pytest.mark.parametrize(("distro", "name", "bus_bytes"), SAMPLE)
+def test_vhdl_does_in_each_cycle_what_the_simulation_does(ghdl, distro, name, bus_bytes):
+    result = accepted(distro, name, bus_bytes)
+    assert_passed(result)
+    found = result.comparison
+    assert found is not None
+    # Each of the four runs begins with the state before its first clock edge.
+    assert found.cycles == result.simulated_cycles + 4
+    assert (found.packets, found.statuses) == (result.packets, 2 * result.packets)
+    assert found.transfers >= result.packets
+
+
+def replay_marked(other: TextSimulator, folder: Path) -> None:
+    """Replay a serializer that marks packets, which no loopback does."""
+    message = load_message("std_msgs/msg/String")
+
+    def make() -> Serializer:
+        return Serializer(message, bus_bytes=2, max_message_bytes=99)
+
+    tx = make()
+    trace = Trace((tx,), message.name)
+    harness = Harness(None, tx, message=message, probes=trace.probes)
+    items = {
+        "right": [((97, 98), False), ((99, 0), True)],
+        "early": [((97, 98), True), ((99, 0), True)],
+        "never": [((97, 98), False), ((99, 0), False)],
+    }
+    order = ["right", "early", "right", "never", "right"]
+    trace.start("marked")
+    seen = harness.run(
+        transfers={0: [3] * len(order), 1: [each for name in order for each in items[name]]},
+        messages=len(order),
+        stalls={"packets_out": Stalls.bits("011"), "status": Stalls.bits("001")},
+        observe=trace.observe,
+    )
+    assert seen.marked == [name != "right" for name in order]
+    rows = [row.rstrip() for row in other.replay(trace, lambda: [Top(make())], folder)]
+    assert first_difference(trace, rows) is None
+    (run,) = traffic(trace, rows)
+    assert (run.packets, run.marked) == (seen.packets, seen.marked)
+    assert run.sent_statuses == [f"{status.value:08b}" for status in seen.statuses]
+
+
+def test_marked_packets_are_marked_in_vhdl(ghdl, tmp_path):
+    replay_marked(Ghdl(), tmp_path)
+
+
+@pytest.mark.parametrize("of_verilog", ["iverilog"], indirect=True)
+def test_marked_packets_are_marked_in_verilog(of_verilog, tmp_path):
+    replay_marked(of_verilog, tmp_path)
+
+
+OWN_TYPES = [
+    ("own_msgs/msg/Deep", 8),
+    ("own_msgs/msg/Runs", 4),
+    ("own_msgs/srv/Ask_Request", 8),
+    ("own_msgs/srv/Ask_Response", 8),
+]
+
+
+@pytest.mark.parametrize(("name", "bus_bytes"), OWN_TYPES)
+def test_types_of_ones_own_do_as_well(ghdl, tmp_path, name, bus_bytes):
+    paths = (str(own_package(tmp_path)),)
+    result = accepted("lyrical", name, bus_bytes, paths=paths)
+    assert assert_passed(result) and result.note == ""
+    assert result.comparison is not None and result.comparison.packets == result.packets > 0
+
+
+def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
+    """Have one line of one file of the VHDL changed, the first where `pattern` is found."""
+    convert = exported.convert
+
+    def converted(top, **options):
+        vhdl = convert(top, **options)
+        for name, before in vhdl.files.items():
+            if name.endswith(file):
+                after, count = re.subn(pattern, text, before, count=1)
+                assert count == 1 and after != before
+                assert after.count("\n") == before.count("\n")
+                vhdl.files[name] = after
+        return vhdl
+
+    monkeypatch.setattr(exported, "convert", converted)
+
+
+@pytest.mark.parametrize(
+    ("file", "pattern", "text", "said"),
+    [
+        # A condition, an operator, a limit that costs nothing but cycles; what registers hold
+        # initially, and after a reset.
+        ("deserializer_flat_core.vhd", r"(?<=if )mismatch = '1'", "mismatch = '0'", "instead of"),
+        ("serializer_flat_core_packer.vhd", r"(?<=rest )\+", "-", "of the serializer is"),
+        ("deserializer_flat_core_window.vhd", r"(?<=fill < )2", "1", "s_axis_tready of the des"),
+        (
+            "_deserializer_flat_core.vhd",
+            r"(stamp_sec_payload_q +: .*):= \(others => '0'\)",
+            r"\1:= (0 => '1', others => '0')",
+            "hardware, cycle 0: stamp_sec_data of the deserializer is 0x1 instead of 0x0",
+        ),
+        (
+            "_deserializer_flat_core.vhd",
+            r"message_stamp_sec_payload_q( +)<= \(others => '0'\);",
+            r"message_stamp_sec_payload_q\1<= (0 => '1', others => '0');",
+            "cycle 0: stamp_sec_data of the deserializer is 0x1 instead of 0x0",
+        ),
+        # An output that means nothing while nothing is offered.
+        (
+            "_deserializer_flat.vhd",
+            r"(stamp_nanosec_data +<= )(.*);",
+            r"\1not \2;",
+            "stamp_nanosec_data of the deserializer is 0xffffffff instead of 0x0",
+        ),
+        # What is undefined is a difference, too.
+        (
+            "_serializer_flat.vhd",
+            r"(m_axis_status_tdata +<= ).*;",
+            r"\1(others => 'X');",
+            "m_axis_status_tdata of the serializer is 'XXXXXXXX' instead of 0x0",
+        ),
+    ],
+)
+def test_a_changed_line_is_found(ghdl, monkeypatch, file, pattern, text, said):
+    change_line(monkeypatch, file, pattern, text)
+    result = accepted("lyrical", HEADER)
+    assert any(said in failure for failure in result.failures), result.failures
+    # It is the VHDL that is blamed, and nothing else.
+    assert all(failure.startswith("GHDL") for failure in result.failures)
+
+
+def test_vhdl_that_ghdl_refuses_is_a_failure(ghdl, monkeypatch):
+    change_line(monkeypatch, "_serializer_flat.vhd", "architecture rtl", "architecture of")
+    result = accepted("lyrical", HEADER)
+    assert len(result.failures) == 1
+    assert re.match(r"GHDL: std_msgs_msg_header_cdr_8_serializer_flat\.vhd:\d+", result.failures[0])
+
+
+def test_cycles_that_are_missing_are_found(monkeypatch):
+    monkeypatch.setattr(acceptance, "simulator", lambda name: Short())
+    result = accepted("lyrical", "std_msgs/msg/Bool")
+    cycles = result.simulated_cycles + 4
+    assert result.failures[0] == f"short: {cycles - 9} cycles instead of {cycles}"
+    assert "packets differ" in result.failures[1]
+
+
+class Short:
+    """Repeats what it should find, and forgets the end."""
+
+    title = "short"
+
+    def replay(self, trace, tops, folder):
+        return trace.expected[:-9]
+
+
+class Breaks:
+    """Does not run."""
+
+    title = "broken"
+
+    def replay(self, trace, tops, folder):
+        raise ToolError("out of order")
+
+
+def test_simulator_that_fails_is_a_failure(monkeypatch):
+    monkeypatch.setattr(acceptance, "simulator", lambda name: Breaks())
+    assert accepted("lyrical", "std_msgs/msg/Bool").failures == ["broken: out of order"]
+
+
+def test_what_a_hanging_circuit_did_is_compared_as_well(ghdl, monkeypatch):
+    class Deaf(acceptance.Harness):
+        def run(self, **options):
+            return super().run(**{**options, "limit": 20})
+
+    monkeypatch.setattr(acceptance, "Harness", Deaf)
+    result = accepted("lyrical", HEADER)
+    assert result.failures and all("DeadlineError" in failure for failure in result.failures)
+    assert result.comparison is not None and result.comparison.cycles > 60
+
+
+def test_missing_ghdl_says_how_to_get_it(monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("GHDL", raising=False)
+    with pytest.raises(
+        ProgramMissingError,
+        match=r"^GHDL is not installed \(Debian, Ubuntu: apt install ghdl-mcode\)$",
+    ):
+        Ghdl()
+    monkeypatch.setenv("GHDL", "ghdl-nowhere")
+    with pytest.raises(ProgramMissingError, match=r"^GHDL is 'ghdl-nowhere' in the environment"):
+        find_ghdl()

@@ -1,0 +1,331 @@
+"""Exported Verilog is the Python simulation, cycle by cycle; a changed line is found."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from firm_hdl import Deserializer, Serializer, load_message
+from firm_hdl.export.build import build
+from firm_hdl.export.top import Top
+from firm_hdl.jobs.processes import ToolError, run_tool
+from firm_hdl.jobs.programs import ProgramMissingError
+from firm_hdl.verify import Options, Result, accept
+from firm_hdl.verify.simulators import Icarus, TextSimulator, Verilator, verilator, verilog
+from firm_hdl.verify.simulators.trace import Trace
+from firm_hdl.verify.simulators.verilog import write_inputs
+from tests.verify.judged import assert_passed
+
+HEADER = "std_msgs/msg/Header"
+BOOL = "std_msgs/msg/Bool"
+NAMES = {Icarus: "iverilog", Verilator: "verilator"}
+
+
+def accepted(
+    simulator: TextSimulator, distro: str, name: str, bus_bytes: int = 8, **more
+) -> Result:
+    chosen = {"most_cases": 3, "simulator": NAMES[type(simulator)], **more}
+    return accept(distro, name, Options(bus_bytes=bus_bytes, **chosen))
+
+
+WIDE = ("lyrical", "service_msgs/msg/ServiceEventInfo", 16)
+
+
+@pytest.mark.parametrize(
+    ("of_verilog", "sample"),
+    [
+        # Ports of all widths, among them some of more than 64 bits.
+        ("iverilog", WIDE),
+        # A bus of one byte; no bytes at all, and a leaf that only triggers.
+        ("iverilog", ("noetic", "std_msgs/Header", 1)),
+        ("iverilog", ("noetic", "bond/Constants", 8)),
+    ],
+    indirect=["of_verilog"],
+)
+def test_verilog_does_in_each_cycle_what_the_simulation_does(of_verilog, sample):
+    result = accepted(of_verilog, *sample)
+    assert_passed(result)
+    found = result.comparison
+    assert found is not None
+    # Each of the four runs begins with the state before its first clock edge.
+    assert found.cycles == result.simulated_cycles + 4
+    assert (found.packets, found.statuses) == (result.packets, 2 * result.packets)
+    assert found.transfers >= result.packets
+
+
+EVERY_STANDARD = ("2005", "2005-sv", "2009", "2012")
+
+
+@pytest.fixture
+def standards(of_verilog, monkeypatch) -> list[str]:
+    """Languages in which Icarus Verilog was run; the last one is that with a difference."""
+    done: list[str] = []
+    traces: list[Trace] = []
+
+    def run_all(self, files, standard, folder):
+        for each in EVERY_STANDARD:
+            done.append(each)
+            rows = run_one(self, files, each, folder)
+            if [row.rstrip() for row in rows] != traces[-1].expected:
+                break
+        return rows
+
+    def replayed(self, trace, tops, folder):
+        traces.append(trace)
+        return replay(self, trace, tops, folder)
+
+    run_one, replay = Icarus.run, Icarus.replay
+    monkeypatch.setattr(Icarus, "run", run_all)
+    monkeypatch.setattr(Icarus, "replay", replayed)
+    return done
+
+
+TYPES = (
+    "geometry_msgs/msg/Twist",
+    "sensor_msgs/msg/LaserScan",
+    "sensor_msgs/msg/PointCloud2",
+    "diagnostic_msgs/msg/DiagnosticArray",
+)
+
+
+@pytest.mark.parametrize("of_verilog", ["iverilog"], indirect=True)
+@pytest.mark.parametrize("name", TYPES)
+def test_verilog_is_the_same_in_every_language(of_verilog, standards, name):
+    result = accepted(of_verilog, "lyrical", name, most_cases=2)
+    assert_passed(result)
+    assert standards == list(EVERY_STANDARD)
+    assert result.comparison is not None
+    assert result.comparison.cycles == result.simulated_cycles + 4
+
+
+# A process that waits for a change of what it reads: a register's initial value is one in Verilog,
+# and none in SystemVerilog.
+WAITING = r"reg [7:0] waiting; always @* waiting = \2; assign \1 = waiting;"
+
+
+@pytest.mark.parametrize("of_verilog", ["iverilog"], indirect=True)
+def test_process_that_waits_for_its_first_change_is_found(of_verilog, standards, monkeypatch):
+    change_line(monkeypatch, "_deserializer", r"assign (m_axis_status_tdata) = (.*);", WAITING)
+    result = accepted(of_verilog, "lyrical", HEADER)
+    assert "m_axis_status_tdata of the deserializer is 'XXXXXXXX'" in result.failures[0]
+    assert standards[-1] == "2005-sv"
+
+
+EVERY_LANGUAGE = ("1364-2001", "1364-2005", "1800-2005", "1800-2009", "1800-2012", "1800-2017")
+# C++ takes its time: `make verify-languages` has the four types.
+IN_VERILATOR = [("lyrical", name, 8) for name in TYPES]
+IN_VERILATOR = IN_VERILATOR if os.environ.get("FIRM_HDL_EVERY_LANGUAGE") else [WIDE]
+
+
+def model(folder: Path) -> dict[str, str]:
+    """Read what Verilator has made, without comments, which have names of folders."""
+    made = [path for path in folder.glob("Vreplay*") if path.suffix in (".h", ".cpp")]
+    return {path.name: re.sub(r"(?m)^//.*", "", path.read_text()) for path in made}
+
+
+def make_models(of_verilog: Verilator, files: list[str], folder: Path) -> Iterator[dict[str, str]]:
+    """Have Verilator read files in each language."""
+    for each in EVERY_LANGUAGE:
+        options = ["--Mdir", each, "--default-language", each]
+        run_tool([of_verilog.path, *verilator.VERILATE, *options, *files], folder)
+        yield model(folder / each)
+
+
+@pytest.mark.parametrize("of_verilog", ["verilator"], indirect=True)
+@pytest.mark.parametrize("sample", IN_VERILATOR, ids=lambda sample: sample[1])
+def test_verilator_makes_the_same_of_every_language(of_verilog, monkeypatch, sample):
+    made = []
+    replay = Verilator.replay
+
+    def replayed(self, trace, tops, folder):
+        rows = replay(self, trace, tops, folder)
+        files = [path.name for path in folder.glob("*.v")]
+        made.extend([model(folder / verilator.MODELS), *make_models(self, files, folder)])
+        return rows
+
+    monkeypatch.setattr(Verilator, "replay", replayed)
+    result = accepted(of_verilog, *sample)
+    assert_passed(result)
+    found = result.comparison
+    assert found is not None
+    assert found.cycles == result.simulated_cycles + 4
+    assert (found.packets, found.statuses) == (result.packets, 2 * result.packets)
+    # What ran is what each language makes.
+    ran, *others = made
+    assert len(ran) > 3 and len(others) == len(EVERY_LANGUAGE)
+    assert all(other == ran for other in others)
+
+
+@pytest.mark.parametrize("of_verilog", ["verilator"], indirect=True)
+def test_what_verilator_makes_is_another_of_another_text(of_verilog, tmp_path):
+    text = "module replay(input [1:0] a, output reg [1:0] z); {} z = a{}; endmodule\n"
+    for name, process, more in (
+        ("one", "always @*", ""),
+        ("two", "always @*", "+ 1"),
+        ("new", "always_comb", ""),
+    ):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "replay.v").write_text(text.format(process, more))
+    one, two = (
+        list(make_models(of_verilog, ["replay.v"], tmp_path / name)) for name in ("one", "two")
+    )
+    assert all(each == one[0] for each in one) and not any(each == one[0] for each in two)
+    with pytest.raises(ToolError, match="always_comb"):
+        next(make_models(of_verilog, ["replay.v"], tmp_path / "new"))
+
+
+def test_text_is_that_of_build(tmp_path):
+    message = load_message(BOOL, distro="lyrical")
+    cores = [Deserializer(message), Serializer(message)]
+    files = write_inputs(Trace(cores, BOOL), [Top(core) for core in cores], tmp_path)
+    (built,) = build([BOOL], tmp_path / "out", distro="lyrical")
+    for file in files:
+        text = (built.folder / file).read_text()
+        without_header = re.sub(r"\A(//.*\n)+", "", text)
+        assert without_header == (tmp_path / file).read_text() != text
+    assert len(files) == 2
+
+
+def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
+    """Have one line of one file of the Verilog changed, the first where `pattern` is found."""
+    to_verilog = verilog.to_verilog
+
+    def changed(top, *, module, header):
+        before = to_verilog(top, module=module, header=header)
+        if not module.endswith(f"{file}_verilog"):
+            return before
+        after, count = re.subn(pattern, text, before, count=1)
+        assert count == 1 and after != before
+        assert after.count("\n") == before.count("\n")
+        return after
+
+    monkeypatch.setattr(verilog, "to_verilog", changed)
+
+
+INITIAL = r"(?<=reg \[31:0\] message__stamp__sec__payload) = 32'd0"
+STATUS = r"(?<=assign m_axis_status_tdata = )\{.*\}"
+
+CHANGES = {
+    # A condition, an operator, a limit that costs nothing but cycles.
+    "condition": ("_deserializer", r"(?<== )mismatch \?", "~ mismatch ?", "instead of"),
+    "operator": ("_serializer", r"(?<=level )-", "+", "of the serializer is"),
+    "limit": ("_deserializer", r"(?<=fill < )2'h2", "2'h1", "s_axis_tready of the deserializer"),
+    # What registers hold initially, and after a reset.
+    "initial value": (
+        "_deserializer",
+        INITIAL,
+        " = 32'd1",
+        "hardware, cycle 0: stamp_sec_data of the deserializer is 0x1 instead of 0x0",
+    ),
+    "no initial value": (
+        "_deserializer",
+        INITIAL,
+        "",
+        f"hardware, cycle 0: stamp_sec_data of the deserializer is '{'X' * 32}' instead of 0x0",
+    ),
+    "no reset": (
+        "_deserializer",
+        r"(?<== )rst(?= \? 32'd0 :)",
+        "1'h0",
+        "cycle 0: frame_id_length_data of the deserializer is",
+    ),
+    # An output that means nothing while nothing is offered.
+    "payload": (
+        "_deserializer",
+        r"(?<=reg \[64:0\] message__frame_id__items__payload = 65'h)0+",
+        "0ffffffffffffffff",
+        "cycle 0: frame_id_items_data of the deserializer is 0xffffffffffffffff instead of 0x0",
+    ),
+    # What is undefined, or not driven, is a difference, too.
+    "constant": ("_serializer", STATUS, "{ 5'h10, status__payload }", "is 0x80 instead of 0x0"),
+    "undefined": ("_serializer", STATUS, "8'hxx", "m_axis_status_tdata of the serializer is 'XXXX"),
+    "undefined bytes": (
+        "_serializer",
+        r"(?<=assign m_axis_tdata = ).*;",
+        "64'hx;",
+        "hardware: packets differ: number 0",
+    ),
+}
+# What a simulator without undefined values has to do something for.
+UNDEFINED = ("no initial value", "undefined")
+
+
+@pytest.mark.parametrize(
+    ("of_verilog", "change"),
+    [*(("iverilog", each) for each in CHANGES), *(("verilator", each) for each in UNDEFINED)],
+    indirect=["of_verilog"],
+)
+def test_a_changed_line_is_found(of_verilog, monkeypatch, change):
+    *where, said = CHANGES[change]
+    change_line(monkeypatch, *where)
+    result = accepted(of_verilog, "lyrical", HEADER)
+    assert any(said in failure for failure in result.failures), result.failures
+    # It is the Verilog that is blamed, and nothing else.
+    assert all(failure.startswith(of_verilog.title) for failure in result.failures)
+
+
+@pytest.mark.parametrize("of_verilog", ["iverilog", "verilator"], indirect=True)
+def test_verilog_that_is_refused_is_a_failure(of_verilog, monkeypatch):
+    change_line(monkeypatch, "_serializer", "endmodule", "endmodul")
+    (failure,) = accepted(of_verilog, "lyrical", BOOL).failures
+    assert failure.startswith(f"{of_verilog.title}: ")
+    assert re.search(r"std_msgs_msg_Bool_cdr_8_serializer_verilog\.v:\d+", failure)
+
+
+@pytest.mark.parametrize("of_verilog", ["iverilog", "verilator"], indirect=True)
+def test_row_that_the_bench_cannot_read_is_a_failure(of_verilog, monkeypatch):
+    start = Trace.start
+
+    def started(self, name):
+        start(self, name)
+        self.stimuli.append("0 999 1")
+
+    monkeypatch.setattr(Trace, "start", started)
+    (failure,) = accepted(of_verilog, "lyrical", BOOL).failures
+    assert failure.startswith(f"{of_verilog.title}: no input 999")
+
+
+@pytest.mark.parametrize(
+    ("kind", "variable", "said"),
+    [
+        (
+            Icarus,
+            "IVERILOG",
+            r"Icarus Verilog is not installed \(Debian, Ubuntu: apt install iverilog\)",
+        ),
+        (
+            Verilator,
+            "VERILATOR",
+            r"Verilator is not installed \(Debian, Ubuntu: apt install verilator g\+\+\)",
+        ),
+    ],
+)
+def test_missing_simulator_says_how_to_get_it(monkeypatch, tmp_path, kind, variable, said):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv(variable, raising=False)
+    with pytest.raises(ProgramMissingError, match=f"^{said}$"):
+        kind()
+    monkeypatch.setenv(variable, "nowhere")
+    said = f"^{kind.title} is 'nowhere' in the environment, and no such command$"
+    with pytest.raises(ProgramMissingError, match=said):
+        kind()
+
+
+def test_missing_companions_are_named(monkeypatch, tmp_path):
+    for name in ("iverilog", "verilator"):
+        (tmp_path / name).write_text("#!/bin/sh\n")
+        (tmp_path / name).chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    for variable in ("IVERILOG", "VERILATOR", "CXX"):
+        monkeypatch.delenv(variable, raising=False)
+    with pytest.raises(ProgramMissingError, match=r"^Icarus Verilog has no command vvp beside"):
+        Icarus()
+    with pytest.raises(ProgramMissingError, match=r"needs a C\+\+ compiler.*apt install g\+\+"):
+        Verilator()
+    monkeypatch.setenv("CXX", "nowhere -O0")
+    with pytest.raises(ProgramMissingError, match=r"^CXX is 'nowhere' in the environment"):
+        Verilator()

@@ -1,0 +1,238 @@
+# amaranth: UnusedElaboratable=no
+"""Traces: rows as their form is defined, and what is read from them again."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from firm_hdl import Deserializer, Serializer, load_message
+from firm_hdl.gateware.signatures import Status
+from firm_hdl.sim import DeadlineError, Stalls
+from firm_hdl.sim.harness import Harness
+from firm_hdl.verify.simulators.crosscheck import first_difference
+from firm_hdl.verify.simulators.semantics import traffic
+from firm_hdl.verify.simulators.trace import Trace, read_row
+
+PACKETS = [bytes((0, 1, 0, 0, value)) for value in (1, 0, 1)]
+
+
+@pytest.fixture(scope="module")
+def recorded():
+    """A trace of two runs with a `Bool` on a bus of two bytes, and what the first has shown."""
+    message = load_message("std_msgs/msg/Bool")
+    options = {"bus_bytes": 2, "max_message_bytes": 99}
+    rx, tx = Deserializer(message, **options), Serializer(message, **options)
+    trace = Trace((rx, tx), message.name)
+    harness = Harness(rx, tx, message=message, probes=trace.probes)
+    seen = []
+    for name, stalls in (("plain", None), ("stalled", {"packets_in": Stalls.bits("01")})):
+        trace.start(name)
+        seen.append(harness.run(packets=PACKETS, stalls=stalls, observe=trace.observe))
+    return trace, seen
+
+
+def rows_of(trace: Trace, name: str) -> list[str]:
+    number = [run for run, _ in trace.runs].index(name)
+    starts = [*(first for _, first in trace.runs), len(trace.expected)]
+    return trace.expected[starts[number] : starts[number + 1]]
+
+
+def test_pins_are_numbered_over_both_devices_and_the_reset_is_the_first_input(recorded):
+    trace, _ = recorded
+    assert [device.name for device in trace.devices] == [
+        "std_msgs_msg_bool_cdr_2_deserializer_flat",
+        "std_msgs_msg_bool_cdr_2_serializer_flat",
+    ]
+    assert [pin.number for pin in trace.inputs] == list(range(1, len(trace.inputs) + 1))
+    assert [pin.number for pin in trace.outputs] == list(range(len(trace.outputs)))
+    names = [(pin.device, pin.port.name) for pin in trace.inputs]
+    assert names[:4] == [(0, f"s_axis_{name}") for name in ("tdata", "tkeep", "tlast", "tvalid")]
+    assert names[-1] == (1, "m_axis_status_tready")
+
+
+def test_rows_have_what_changed_and_resets_stand_between_runs(recorded):
+    trace, _ = recorded
+    first = dict(read_row(trace.stimuli[0].removeprefix("1 ")))
+    # The reset is released, and everything is told once.
+    assert first == {0: "1"} | {pin.number: "0" * pin.port.width for pin in trace.inputs}
+    assert set(dict(read_row(trace.expected[0]))) == {pin.number for pin in trace.outputs}
+    # The first beat has two bytes and is not the last. How many are kept does not count there.
+    beats = [dict(read_row(row.partition(" ")[2])) for row in trace.stimuli[1:9]]
+    assert (beats[0][1], beats[0][4]) == ("0000000100000000", "1")
+    assert {beat[2] for beat in beats if 2 in beat} > {"11"}
+    # The last one's second byte is not there, and no zero.
+    last = next(beat for beat in beats if beat.get(3) == "1")
+    assert last[1].endswith("00000001") and last[1] != "0000000000000001"
+    at = trace.stimuli.index("0 0 0")
+    assert at == trace.runs[1][1]
+    assert trace.stimuli[at + 1] == "0"
+    assert trace.stimuli[at + 2].startswith("1 0 1 ")
+    assert len(trace.stimuli) == len(trace.expected) + 2
+    assert trace.run_of(at - 1) == ("plain", at - 1)
+    assert trace.run_of(at + 3) == ("stalled", 3)
+
+
+@pytest.mark.parametrize("limit", range(6, 12))
+def test_packet_that_a_reset_has_cut_is_no_part_of_the_next(limit):
+    message = load_message("std_msgs/msg/Bool")
+    options = {"bus_bytes": 2, "max_message_bytes": 99}
+    rx, tx = Deserializer(message, **options), Serializer(message, **options)
+    trace = Trace((rx, tx), message.name)
+    harness = Harness(rx, tx, message=message, probes=trace.probes)
+    trace.start("stopped")
+    with pytest.raises(DeadlineError):
+        harness.run(packets=PACKETS, limit=limit, observe=trace.observe)
+    trace.start("whole")
+    seen = harness.run(packets=PACKETS, observe=trace.observe)
+    stopped, whole = traffic(trace, trace.expected)
+    assert len(stopped.packets) < len(PACKETS)
+    assert whole.difference(seen) is None and whole.packets == PACKETS
+
+
+def test_every_bit_that_changes_is_told_and_no_other():
+    message = load_message("std_msgs/msg/Bool")
+    options = {"bus_bytes": 1, "max_message_bytes": 99}
+    trace = Trace((Deserializer(message, **options), Serializer(message, **options)), message.name)
+    trace.start("bits")
+    nothing = [0] * len(trace.probes)
+    trace.observe(nothing)
+    told = set()
+    for index, probe in enumerate(trace.probes):
+        for bit in range(len(probe)):
+            trace.observe([*nothing[:index], 1 << bit, *nothing[index + 1 :]])
+            rows = (trace.stimuli[-1].partition(" ")[2], trace.expected[-1])
+            changes = [(side, *each) for side, row in enumerate(rows) for each in read_row(row)]
+            ((side, number, bits),) = changes
+            assert bits.count("1") == 1
+            told.add((side, number, bits))
+            trace.observe(nothing)
+    # Each bit of each port once.
+    assert len(told) == sum(pin.port.width for pin in [*trace.inputs, *trace.outputs])
+
+
+def test_traffic_is_what_the_simulation_showed(recorded):
+    trace, seen = recorded
+    runs = traffic(trace, trace.expected)
+    assert [run.name for run in runs] == ["plain", "stalled"]
+    for run, right in zip(runs, seen, strict=True):
+        assert run.packets == PACKETS
+        assert run.transfers == {0: ["1", "0", "1"]}
+        assert run.difference(right) is None
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"packets": PACKETS[:2]}, "packets differ: number 2 of 2 is "),
+        ({"marked": [False, True, False]}, "tuser differ: number 1 of 3 is [False] instead of "),
+        ({"statuses": [Status.OK] * 2}, "statuses of the deserializer differ: number 2 of 2"),
+        ({"sent_statuses": [Status.ITEMS] * 3}, "statuses of the serializer differ: number 0"),
+        ({"sent_statuses": [Status.OK] * 2}, "statuses of the serializer differ: number 2 of 2"),
+        ({"marked": [False] * 2}, "tuser differ: number 2 of 2 is [False] instead of []"),
+        ({"transfers": {0: [1, 1, 1]}}, "transfers of data differ: number 1 of 3 is [0] instead "),
+        # More there than here, and fewer.
+        (
+            {"transfers": {0: [1, 0]}},
+            "transfers of data differ: number 2 of 2 is [1] instead of []",
+        ),
+        ({"transfers": {}}, "transfers of data differ: number 0 of 0 is [1] instead of []"),
+        ({"transfers": {0: [1, 0, 1, 1]}}, "transfers of data differ: number 3 of 4 is [] instead"),
+    ],
+)
+def test_other_traffic_is_told(recorded, change, said):
+    trace, seen = recorded
+    found = traffic(trace, trace.expected)[0].difference(replace(seen[0], **change))
+    assert found is not None and found.startswith(said)
+
+
+def doctored(trace, direction, name, change):
+    """Return the rows with each value of a port changed."""
+    (pin,) = [
+        pin
+        for pin in trace.outputs
+        if (trace.devices[pin.device].direction, pin.port.name) == (direction, name)
+    ]
+    return [
+        " ".join(
+            f"{number} {change(bits) if number == pin.number else bits}"
+            for number, bits in read_row(row)
+        )
+        for row in trace.expected
+    ]
+
+
+FLIP = str.maketrans("01", "10")
+
+
+@pytest.mark.parametrize(
+    ("direction", "name", "change", "said"),
+    [
+        # A lane more, a hole, a bit, what is undefined; no end, and no pause.
+        ("serializer", "m_axis_tkeep", lambda bits: "11", "packets differ: number 0 of 3"),
+        ("serializer", "m_axis_tkeep", lambda bits: "10", "packets differ: number 0 of 3"),
+        ("serializer", "m_axis_tkeep", lambda bits: bits.replace("01", "10"), "packets differ: n"),
+        ("serializer", "m_axis_tdata", lambda bits: bits[:-1] + "1", "packets differ: number 0"),
+        ("serializer", "m_axis_tdata", lambda bits: bits[:-1] + "X", "packets differ: number 0"),
+        ("serializer", "m_axis_tlast", lambda bits: "0", "packets differ: number 0 of 3 is []"),
+        ("serializer", "m_axis_tvalid", lambda bits: "1", "packets differ: number 0 of 3"),
+        ("serializer", "m_axis_tuser", lambda bits: "1", "tuser differ: number 0 of 3"),
+        ("serializer", "m_axis_status_tdata", lambda bits: bits[:-1] + "1", "statuses of the ser"),
+        ("serializer", "m_axis_status_tvalid", lambda bits: "1", "statuses of the serializer"),
+        ("serializer", "m_axis_status_tvalid", lambda bits: "U", "statuses of the serializer"),
+        ("deserializer", "m_axis_status_tdata", lambda bits: bits[:-1] + "U", "statuses of the de"),
+        ("deserializer", "m_axis_status_tvalid", lambda bits: "1", "statuses of the deserializer"),
+        ("deserializer", "data_data", lambda bits: bits.translate(FLIP), "transfers of data diff"),
+        ("deserializer", "data_data", lambda bits: "X", "transfers of data differ: some are un"),
+        ("deserializer", "data_valid", lambda bits: "0", "transfers of data differ: number 0 of"),
+    ],
+)
+def test_traffic_is_what_the_ports_showed(recorded, direction, name, change, said):
+    trace, seen = recorded
+    rows = doctored(trace, direction, name, change)
+    for run, right in zip(traffic(trace, rows), seen, strict=True):
+        found = run.difference(right)
+        assert found is not None and found.startswith(said)
+    assert first_difference(trace, rows) is not None
+
+
+@pytest.mark.parametrize("fewer", [1, 9, 40])
+def test_rows_that_are_missing_or_too_many_are_told(recorded, fewer):
+    trace, _ = recorded
+    rows = trace.expected
+    count = len(rows)
+    assert first_difference(trace, rows[:-fewer]) == f"{count - fewer} cycles instead of {count}"
+    assert first_difference(trace, [*rows, *[""] * fewer]) == (
+        f"{count + fewer} cycles instead of {count}"
+    )
+
+
+def test_first_difference_names_run_cycle_port_and_both_values(recorded):
+    trace, _ = recorded
+    assert first_difference(trace, trace.expected) is None
+    assert rows_of(trace, "plain") + rows_of(trace, "stalled") == trace.expected
+    tdata = next(p for p in trace.outputs if p.port.name == "m_axis_tdata")
+    ready = next(p for p in trace.outputs if p.port.name == "s_axis_tready")
+    at = trace.runs[1][1] + 5
+    rows = list(trace.expected)
+    # Only the first of two differences is told, and a value lasts until it changes.
+    rows[at] = f"{rows[at]} {tdata.number} 1111000011110000".strip()
+    rows[at + 2] += f" {ready.number} U"
+    told = first_difference(trace, rows)
+    assert told is not None
+    assert told.startswith("stalled, cycle 5: m_axis_tdata of the serializer is 0xf0f0 instead of ")
+    rows = list(trace.expected)
+    rows[at] = f"{rows[at]} {ready.number} U".strip()
+    assert "s_axis_tready of the deserializer is 'U' instead of '" in str(
+        first_difference(trace, rows)
+    )
+
+
+def test_a_value_that_is_told_twice_is_no_difference(recorded):
+    trace, _ = recorded
+    rows = list(trace.expected)
+    number, bits = next(iter(read_row(rows[0])))
+    assert not any(number == other for other, _ in read_row(rows[1]))
+    rows[1] = f"{rows[1]} {number} {bits}".strip()
+    assert first_difference(trace, rows) is None

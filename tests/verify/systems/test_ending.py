@@ -1,0 +1,181 @@
+"""What was not judged is no pass: the exit status, and what is printed at the end of a run."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+import firm_hdl.verify.ts3.acceptance as acceptance
+from firm_hdl.cli import main
+from firm_hdl.verify.references.user_oracle import judge_of
+from firm_hdl.verify.results.file import read_results
+from firm_hdl.verify.results.records import settled
+from firm_hdl.verify.results.verdict import (
+    Failed,
+    KnownDifference,
+    NotJudged,
+    NotJudgedError,
+    Passed,
+)
+from firm_hdl.verify.systems.ending import concluded, is_well
+from firm_hdl.verify.systems.system import Judged
+from tests.frontend.workspace import make_files
+from tests.verify.report.samples import a_record, a_test
+
+PASSED, KNOWN = Passed(3), KnownDifference(("a-key",), 1)
+FAILED, SILENT = Failed(("no",)), NotJudged("nobody knows")
+FEW = ["--jobs", "1", "--cases", "1", "--no-stalls", "--no-broken", "--distro", "lyrical"]
+
+
+def found(*verdicts):
+    return [Judged(what=f"p/msg/T{n} (lyrical), ts3", verdict=v) for n, v in enumerate(verdicts)]
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "of_all", "named"),
+    [
+        ([PASSED], True, True),
+        ([PASSED, KNOWN], True, True),
+        ([PASSED, SILENT], True, False),
+        ([KNOWN, SILENT], True, False),
+        ([PASSED, FAILED], False, False),
+        ([SILENT], False, False),
+        ([SILENT, SILENT], False, False),
+        ([], False, False),
+    ],
+)
+def test_success_needs_a_judgement_and_of_what_is_named_each(verdicts, of_all, named):
+    assert is_well(found(*verdicts), is_named=False) is of_all
+    assert is_well(found(*verdicts), is_named=True) is named
+
+
+def test_end_lists_what_was_not_judged_by_name_and_reason():
+    lines = ["not judged: p/msg/T1 (lyrical), ts3: nobody knows"]
+    some = found(PASSED, SILENT)
+    assert concluded(some, is_named=False) == [*lines, "1 of 2 tests was not judged"]
+    assert concluded(some, is_named=True) == [
+        *lines,
+        "1 of 2 tests was not judged, although named: this is no pass",
+    ]
+    assert concluded(found(SILENT, SILENT), is_named=False)[2:] == [
+        "nothing was judged: this is no pass"
+    ]
+    assert concluded([], is_named=False) == ["nothing was judged: this is no pass"]
+    assert concluded(found(PASSED, KNOWN, FAILED), is_named=True) == []
+
+
+@pytest.fixture
+def nobody_knows_wide(monkeypatch):
+    """Have rosbags not judge the type `Wide`."""
+
+    def judge(message, *arguments, **options):
+        if message.name.endswith("Wide"):
+            raise NotJudgedError("it is wide")
+        return judge_of(message, *arguments, **options)
+
+    monkeypatch.setattr(acceptance, "judge_of", judge)
+
+
+@pytest.fixture
+def source(tmp_path):
+    return str(make_files(tmp_path / "src", {f"p/msg/{n}.msg": "int8 x\n" for n in ("A", "Wide")}))
+
+
+LINE = "not judged: p/msg/Wide (lyrical), ts3, 8-byte bus: it is wide\n"
+
+
+def test_named_type_that_is_not_judged_is_no_success(source, nobody_knows_wide, capsys):
+    call = ["verify", *FEW, "--path", source]
+    assert main([*call, "p/A", "p/Wide"]) == 1
+    said = capsys.readouterr().out
+    assert LINE + "1 of 2 tests was not judged, although named: this is no pass\n" in said
+    assert main([*call, "p/A"]) == 0
+    assert "not judged" not in capsys.readouterr().out
+
+
+def test_of_all_types_those_that_are_not_judged_are_listed(
+    source, nobody_knows_wide, tmp_path, capsys
+):
+    call = ["verify", *FEW, "--path", source, "--all", "--no-share-circuits"]
+    call += ["--results", str(tmp_path / "r.jsonl")]
+    # Found out, and read from the file.
+    for _ in range(2):
+        assert main(call) == 0
+        assert capsys.readouterr().out.endswith(LINE + "1 of 2 tests was not judged\n")
+
+
+def test_all_types_of_which_none_is_judged_are_no_success(monkeypatch, source, capsys):
+    def nobody(*arguments, **options):
+        raise NotJudgedError("nobody is here")
+
+    monkeypatch.setattr(acceptance, "judge_of", nobody)
+    assert main(["verify", *FEW, "--path", source, "--all"]) == 1
+    assert capsys.readouterr().out.endswith("nothing was judged: this is no pass\n")
+    # As the issue has it.
+    assert main(["verify", "--jobs", "1", "geometry_msgs/msg/Twist"]) == 1
+    assert "2 of 2 types not judged" in capsys.readouterr().out
+
+
+def test_type_with_the_circuit_of_one_that_is_not_judged_is_not_judged(
+    source, monkeypatch, tmp_path, capsys
+):
+    def judge(message, *arguments, **options):
+        if message.name.endswith("A"):
+            raise NotJudgedError("it is A")
+        return judge_of(message, *arguments, **options)
+
+    monkeypatch.setattr(acceptance, "judge_of", judge)
+    path = tmp_path / "r.jsonl"
+    assert main(["verify", *FEW, "--path", source, "--all", "--results", str(path)]) == 1
+    assert capsys.readouterr().out.endswith("nothing was judged: this is no pass\n")
+    records = read_results(path).records
+    (twin,) = [record for record in records.values() if record.same_as]
+    assert isinstance(twin.verdict, Passed)
+    assert settled(twin, records) == NotJudged(
+        f"has the circuit of '{twin.same_as}', which was not judged"
+    )
+
+
+@pytest.mark.parametrize(
+    ("other", "verdict"),
+    [
+        (a_record(shape="aa"), Passed),
+        (a_record(shape="aa", verdict=KNOWN), Passed),
+        (a_record(shape="bb"), Failed),
+        (a_record(shape="aa", verdict=FAILED), Failed),
+        (a_record(shape="aa", verdict=SILENT), NotJudged),
+        (None, NotJudged),
+    ],
+)
+def test_record_that_rests_on_another_is_worth_what_that_is(other, verdict):
+    twin = a_record(a_test("a/msg/Twin"), same_as=a_test().key, shape="aa")
+    records = {} if other is None else {other.test.key: other}
+    assert isinstance(settled(twin, records), verdict)
+    for own in (FAILED, SILENT):
+        assert settled(replace(twin, verdict=own), records) == own
+
+
+@pytest.mark.parametrize("system", ["ts1", "ts2"])
+def test_named_definition_that_nobody_reads_is_no_success(tmp_path, capsys, system):
+    text = "module p { module msg { struct A { long double a; }; }; };"
+    path = str(make_files(tmp_path, {"p/msg/A.idl": text, "p/msg/B.msg": "int8 x\n"}))
+    call = ["verify", *FEW, "--systems", system, "--oracle", "rosbags", "--path", path]
+    assert main([*call, "p/A", "p/B"]) == 1
+    bus = ", 8-byte bus" if system == "ts2" else ""
+    said = capsys.readouterr().out
+    assert f"not judged: p/msg/A (lyrical), {system}{bus}: " in said
+    assert "1 of 2 tests was not judged, although named: this is no pass\n" in said
+    assert main([*call, "--all"]) == 0
+    assert capsys.readouterr().out.endswith("1 of 2 tests was not judged\n")
+
+
+def test_golden_plans_of_no_type_that_was_named_are_no_success(tmp_path, capsys):
+    golden = str(tmp_path / "golden")
+    assert main(["golden", "add", "--distro", "lyrical", golden, "std_msgs/msg/Int8"]) == 0
+    call = ["verify", *FEW, "--systems", "ts2", "--golden", golden]
+    assert main([*call, "std_msgs/msg/Int8"]) == 0
+    capsys.readouterr()
+    assert main([*call, "std_msgs/msg/Bool"]) == 1
+    why = "none of them is of a type that was asked for"
+    assert f"not judged: golden plans of {golden}: {why}\n" in capsys.readouterr().out

@@ -1,0 +1,80 @@
+"""TS2: the plans of types are sound and, where golden ones are kept, unchanged."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from firm_hdl import load_message
+from firm_hdl.cli import main
+from firm_hdl.export.build import plan_of
+from firm_hdl.plan import to_yaml
+from firm_hdl.verify.results.verdict import Failed
+from firm_hdl.verify.ts2 import system as ts2
+from firm_hdl.verify.ts2.system import check_plan
+from tests.verify.judged import assert_passed
+
+GOLDEN = Path(__file__).parents[1] / "golden"
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 8, 64])
+def test_plans_of_real_types_are_sound(bus_bytes):
+    for name in ("sensor_msgs/msg/Imu", "rcl_interfaces/msg/ParameterEvent", "std_msgs/msg/Empty"):
+        found = check_plan(load_message(name), None, bus_bytes)
+        assert assert_passed(found) == 1
+        assert found.metrics["steps"] > 0
+
+
+def test_a_plan_that_breaks_an_invariant_is_found(monkeypatch):
+    def misaligned(*arguments):
+        plan = plan_of(*arguments)
+        return replace(plan, steps=tuple(replace(step, align=1) for step in plan.steps))
+
+    monkeypatch.setattr(ts2, "plan_of", misaligned)
+    (problem, *_) = check_plan(load_message("sensor_msgs/msg/JointState"), None, 8).verdict.failures
+    assert "bytes of padding in front" in problem
+
+
+def test_a_printed_form_that_loses_something_is_found(monkeypatch):
+    monkeypatch.setattr(ts2, "to_yaml", lambda plan: to_yaml(replace(plan, message="x/y")))
+    found = check_plan(load_message("std_msgs/msg/Int8"), None, 8)
+    assert found.verdict == Failed(("the plan in YAML, read back, is another one",))
+
+
+def test_types_are_planned_for_either_wire():
+    assert_passed(check_plan(load_message("sensor_msgs/msg/Imu"), "ros1", 8))
+    assert_passed(check_plan(load_message("sensor_msgs/Imu", distro="noetic"), "cdr", 8))
+
+
+@pytest.mark.snapshot
+def test_the_command_counts_types_and_compares_golden_plans(capsys):
+    arguments = ["verify", "--systems", "ts2", "--distro", "lyrical", "--golden", str(GOLDEN)]
+    assert main([*arguments, "sensor_msgs/msg/Imu", "sensor_msgs/msg/Joy"]) == 0
+    assert capsys.readouterr().out == (
+        "lyrical     2 of    2 plans are sound (8-byte bus)\n"
+        "2 different circuits\n"
+        "golden plans: 1 compared, 0 differ\n"
+    )
+
+
+@pytest.mark.snapshot
+def test_a_golden_plan_that_differs_fails_the_run(tmp_path, capsys):
+    path = tmp_path / "lyrical" / "imu.yaml"
+    path.parent.mkdir()
+    text = (GOLDEN / "lyrical" / "sensor_msgs_msg_Imu_cdr_8.yaml").read_text()
+    path.write_text(text.replace("align: 8", "align: 4"))
+    arguments = ["verify", "--systems", "ts2", "--distro", "lyrical", "--golden", str(tmp_path)]
+    assert main([*arguments, "sensor_msgs/msg/Imu"]) == 1
+    out = capsys.readouterr().out
+    assert "steps[orientation.x].align: 4 -> 8" in out
+    assert out.endswith("golden plans: 1 compared, 1 differ\n")
+
+
+def test_a_folder_that_has_no_plans_is_an_error(tmp_path, capsys):
+    (tmp_path / "mars").mkdir()
+    (tmp_path / "mars" / "x.yaml").write_text("")
+    arguments = ["verify", "--systems", "ts2", "--golden", str(tmp_path), "std_msgs/msg/Int8"]
+    assert main(arguments) == 1
+    assert "is not below a distribution's name" in capsys.readouterr().err

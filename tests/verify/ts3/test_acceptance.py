@@ -1,0 +1,272 @@
+"""Acceptance: passes on what is right, and a twin that must fail for each thing it checks."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+
+import pytest
+from amaranth.hdl import Module, Signal
+from amaranth.lib import wiring
+
+import firm_hdl.verify.ts3.acceptance as acceptance
+from firm_hdl.frontend import load_message
+from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.gateware.signatures import Status
+from firm_hdl.plan import build_plan, decode
+from firm_hdl.verify import Options, accept, collect_tasks, run_tasks
+from firm_hdl.verify.__main__ import main
+from firm_hdl.verify.cases.damage import DAMAGES, broken_packets
+from firm_hdl.verify.cases.make import Case
+from firm_hdl.wire import lay_out
+from tests.verify.judged import NAN_KEY, TIME_KEY, assert_passed
+
+HEADER = "std_msgs/msg/Header"
+
+
+# Wider buses have more cases, and so values that libraries write in different ways.
+KNOWN = {("sensor_msgs/Joy", 16): (NAN_KEY, TIME_KEY)}
+
+
+@pytest.mark.parametrize("bus_bytes", [8, 16])
+@pytest.mark.parametrize(
+    ("distro", "name"),
+    [
+        ("humble", HEADER),
+        ("humble", "std_msgs/msg/Empty"),
+        ("humble", "geometry_msgs/msg/Twist"),
+        ("lyrical", "diagnostic_msgs/msg/DiagnosticArray"),
+        ("noetic", "std_msgs/Header"),
+        ("noetic", "std_msgs/Empty"),
+        ("noetic", "sensor_msgs/Joy"),
+    ],
+)
+def test_types_pass(distro, name, bus_bytes):
+    result = accept(distro, name, Options(bus_bytes=bus_bytes))
+    known = KNOWN.get((name, bus_bytes), ())
+    assert assert_passed(result, known) >= 2 * result.cases > 0
+    assert result.packets > 2 * result.cases and result.cycles >= result.beats
+
+
+class Mirror(wiring.Component):
+    """A converter with the ports of another, to put faults in between."""
+
+    def __init__(self, inner):
+        self.inner, self.plan, self.tree = inner, inner.plan, inner.tree
+        super().__init__(inner.signature)
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.inner = self.inner
+        for name, member in self.signature.members.items():
+            if member.is_port:
+                m.d.comb += getattr(self, name).eq(getattr(self.inner, name))
+            elif member.flow == wiring.In:
+                wiring.connect(m, wiring.flipped(getattr(self, name)), getattr(self.inner, name))
+            else:
+                wiring.connect(m, getattr(self.inner, name), wiring.flipped(getattr(self, name)))
+        self.fault(m)
+        return m
+
+    def fault(self, m):
+        """Add the fault."""
+
+
+class BadByte(Mirror):
+    """Turns a bit of what would be padding or text in most packets."""
+
+    def fault(self, m):
+        bit = self.packets.payload.data[7][0]
+        m.d.comb += bit.eq(self.inner.packets.payload.data[7][0] ^ self.packets.payload.last)
+
+
+class BadLeaf(Mirror):
+    """Turns a bit of a leaf on the way out, and nothing on the wire."""
+
+    def fault(self, m):
+        port, inner = self.message.stamp.nanosec, self.inner.message.stamp.nanosec
+        m.d.comb += port.payload.eq(inner.payload ^ 1)
+
+
+class BadStatus(Mirror):
+    """Always OK."""
+
+    def fault(self, m):
+        m.d.comb += self.status.payload.eq(0)
+
+
+class Marks(Mirror):
+    """Marks every packet."""
+
+    def fault(self, m):
+        m.d.comb += self.packet_error.eq(self.packets.payload.last)
+
+
+class MarksAll(Mirror):
+    """Marks every beat."""
+
+    def fault(self, m):
+        m.d.comb += self.packet_error.eq(1)
+
+
+class Sticks(Mirror):
+    """Takes twenty beats and no more."""
+
+    def fault(self, m):
+        count = Signal(8)
+        go = count < 20
+        m.d.sync += count.eq(count + (self.packets.valid & self.packets.ready))
+        m.d.comb += self.inner.packets.valid.eq(self.packets.valid & go)
+        m.d.comb += self.packets.ready.eq(self.inner.packets.ready & go)
+
+
+@pytest.mark.parametrize(
+    ("which", "fault", "said"),
+    [
+        ("Serializer", BadByte, "hardware: packet "),
+        ("Deserializer", BadLeaf, "hardware: leaf stamp.nanosec, transfer 0 of "),
+        ("Deserializer", BadStatus, " is OK instead of "),
+        ("Serializer", Marks, "hardware: packet_error is [True"),
+        ("Serializer", MarksAll, "hardware: AssertionError: packet_error is high in cycle "),
+        ("Deserializer", Sticks, "hardware, Stalls("),
+        ("Deserializer", Sticks, "hardware: DeadlineError: No transfer in "),
+    ],
+)
+def test_faults_in_hardware_are_found(monkeypatch, which, fault, said):
+    original = {"Serializer": Serializer, "Deserializer": Deserializer}[which]
+    made = lambda message, **options: fault(original(message, **options))  # noqa: E731
+    monkeypatch.setattr(acceptance, which, made)
+    result = accept("humble", HEADER)
+    assert any(said in failure for failure in result.failures), result.failures
+
+
+RUNS = ("hardware: ", "hardware, Stalls(", "hardware, broken packets, Stalls(")
+
+
+@pytest.mark.parametrize("number", range(len(RUNS)))
+def test_all_that_a_run_shows_is_judged(monkeypatch, number):
+    """In one of the runs, everything that is seen differs a little: the least that there is."""
+    runs = []
+
+    class Doctored(acceptance.Harness):
+        def run(self, **options):
+            seen = super().run(**options)
+            runs.append(options)
+            if len(runs) == number + 1:
+                seen.packets[-1] += b"\0"
+                seen.transfers[0][-1] ^= 1
+                seen.statuses.append(Status.OK)
+                seen.sent_statuses[-1] = Status.ITEMS
+                seen.marked[-1] = True
+            return seen
+
+    monkeypatch.setattr(acceptance, "Harness", Doctored)
+    result = accept("humble", "std_msgs/msg/UInt8", Options(most_cases=2))
+    assert len(runs) == len(RUNS)
+    where = RUNS[number]
+    assert all(failure.startswith(where) for failure in result.failures)
+    for what in ("packet ", "leaf data", "status: ", "sent_status of packet ", "packet_error is "):
+        assert sum(f": {what}" in failure for failure in result.failures) == 1, what
+    assert len(result.failures) == 5
+
+
+def test_broken_packets_are_of_every_kind():
+    plan = build_plan(lay_out(load_message("std_msgs/msg/Header")))
+    packet = bytes.fromhex("00010000 01000000 02000000 05000000 61626364 00")
+    cases = [Case(what="", value=None, packet=packet, transfers={})] * len(DAMAGES)
+    found = {}
+    for seed in range(40):
+        for each in broken_packets(plan, cases, random.Random(seed)):
+            found[each] = decode(plan, each).status
+    assert set(found.values()) == {
+        "OK",
+        "TRUNCATED",
+        "TRAILING",
+        "LENGTH",
+        "ENCAPSULATION",
+        "STRING",
+    }
+    sizes = {len(each) - len(packet) for each in found}
+    # One byte, and a whole beat or more, both ways; and changes that leave the size as it was.
+    assert {-1, 0, 3, 4} <= sizes and min(sizes) < -8 and max(sizes) > 11
+    changed = [each for each in found if len(each) == len(packet)]
+    assert {sum(a != b for a, b in zip(each, packet, strict=True)) for each in changed} > {
+        0,
+        1,
+        2,
+        6,
+    }
+
+
+def test_fault_in_the_golden_model_is_found(monkeypatch):
+    original = acceptance.decode
+
+    def decode(plan, packet):
+        decoded = original(plan, packet)
+        return replace(decoded, transfers=decoded.transfers[:-1])
+
+    monkeypatch.setattr(acceptance, "decode", decode)
+    result = accept("humble", HEADER, Options(broken=False, stalled=False))
+    assert any(f.startswith("golden model, case 0 of") for f in result.failures)
+    assert not any(f.startswith("hardware") for f in result.failures)
+
+
+@pytest.mark.parametrize(
+    ("which", "change", "said"),
+    [
+        ("decode", lambda found: replace(found, status="TRUNCATED"), "status TRUNCATED"),
+        ("encode", lambda found: (found[0], "ITEMS"), "status ITEMS when encoding"),
+        ("encode", lambda found: (found[0], "LENGTH"), "status LENGTH when encoding"),
+        ("encode", lambda found: (found[0] + b"\0", found[1]), "packet 0 of 1 differs at byte 5: "),
+    ],
+)
+def test_each_answer_of_the_golden_model_is_judged(monkeypatch, which, change, said):
+    original = getattr(acceptance, which)
+    monkeypatch.setattr(acceptance, which, lambda *given: change(original(*given)))
+    result = accept("humble", "std_msgs/msg/UInt8", Options(simulated=False))
+    assert result.failures
+    for failure in result.failures:
+        assert failure.startswith("golden model, case ") and f": {said}" in failure
+
+
+def test_unknown_types_fail_and_say_how_to_repeat():
+    result = accept("humble", "no_msgs/msg/Such", Options(bus_bytes=4, seed=3, stalled=False))
+    assert len(result.failures) == 1
+    assert result.command == (
+        "firm-hdl verify --distro humble --bus-bytes 4 --seed 3 --no-stalls no_msgs/msg/Such"
+    )
+
+
+def test_same_types_are_run_once():
+    tasks = collect_tasks(["humble", "jazzy"], ["sensor_msgs/Imu", "sensor_msgs/msg/Range"])
+    assert sorted((task.name, task.distro, task.same) for task in tasks) == [
+        ("sensor_msgs/msg/Imu", "jazzy", ("humble", "jazzy")),
+        ("sensor_msgs/msg/Range", "humble", ("humble",)),
+        ("sensor_msgs/msg/Range", "jazzy", ("jazzy",)),
+    ]
+
+
+def test_unknown_names_are_refused():
+    with pytest.raises(ValueError, match=r"^No distribution has no_msgs/msg/Such$"):
+        collect_tasks(["humble"], ["no_msgs/Such"])
+
+
+def test_processes_give_the_results_of_one():
+    tasks = collect_tasks(["humble"], [HEADER, "std_msgs/Bool"])
+    options = Options(most_cases=2)
+    one = {task.name: result.simulated_cycles for task, result in run_tasks(tasks, options, 1)}
+    two = {task.name: result.simulated_cycles for task, result in run_tasks(tasks, options, 2)}
+    assert one == two and len(one) == 2
+
+
+def test_command_reports_and_exits(capsys, monkeypatch):
+    arguments = ["--distro", "humble", "--jobs", "1", "--cases", "2", "std_msgs/Bool"]
+    assert main(arguments) == 0
+    assert "humble      1 of    1 types pass (8-byte bus)" in capsys.readouterr().out
+    monkeypatch.setattr(acceptance, "Serializer", lambda *a, **o: Marks(Serializer(*a, **o)))
+    assert main(arguments) == 1
+    said = capsys.readouterr().out
+    assert "FAIL std_msgs/msg/Bool (humble)" in said
+    assert "again: firm-hdl verify --distro humble --bus-bytes 8 --seed 0" in said
+    assert main(["--distro", "humble", "no_msgs/Such"]) == 1
+    assert capsys.readouterr().err == "error: No distribution has no_msgs/msg/Such\n"

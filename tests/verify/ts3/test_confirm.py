@@ -1,0 +1,158 @@
+"""Other libraries write the cases of TS3, too: who confirms what, and what a wrong one is worth."""
+
+from __future__ import annotations
+
+import pytest
+
+import firm_hdl.verify.ts3.confirm as references
+from firm_hdl.cli import main
+from firm_hdl.frontend import Library
+from firm_hdl.verify import Options, accept, distro_oracle, make_cases
+from firm_hdl.verify.references import CLIENTS, Refusal, client
+from firm_hdl.verify.references.choice import WRITERS, find_references, references_here
+from firm_hdl.verify.references.client import UnsupportedError
+from firm_hdl.verify.results.verdict import NotJudged
+from firm_hdl.verify.ts3.confirm import confirm
+from tests.tools import need
+from tests.verify.judged import NAN_KEY, assert_passed
+
+FAST_CDR = ("fastcdr", "fastcdr-2.2", "fastcdr-2.3")
+CDR = (*FAST_CDR, "cyclonedds")
+SMALL = Options(most_cases=4, stalled=False, broken=False)
+
+
+@pytest.fixture(autouse=True)
+def all_here():
+    """Need all references, in CI at least."""
+    for name in WRITERS:
+        if client(name).missing() is not None:
+            need(f"{name} ({client(name).missing()})", None)
+
+
+def cases_of(distro, name):
+    wire = "ros1" if distro == "noetic" else "cdr"
+    return list(make_cases(distro_oracle(distro), name, wire=wire, most=8))
+
+
+@pytest.mark.parametrize(
+    ("distro", "name", "by"),
+    [
+        ("noetic", "sensor_msgs/msg/Imu", ("genpy",)),
+        # With NaN that a Python float does not keep.
+        ("lyrical", "sensor_msgs/msg/Joy", CDR),
+        ("lyrical", "rcl_interfaces/msg/ParameterValue", CDR),
+    ],
+)
+def test_others_write_what_rosbags_writes(distro, name, by):
+    message = Library(distro).message(name)
+    found = confirm(message, message.wire, cases_of(distro, name))
+    assert (found.by, found.failures) == (by, ())
+
+
+@pytest.mark.parametrize("answer", [b"\0\1\0\0\7", Refusal("no")])
+def test_a_library_that_disagrees_is_a_failure_with_both_names(monkeypatch, answer):
+    codec = client("fastcdr").open(Library("lyrical").message("std_msgs/msg/Bool"), "cdr")
+    monkeypatch.setattr(type(codec), "encode_all", lambda self, values: [answer] * len(values))
+    result = accept("lyrical", "std_msgs/msg/Bool", SMALL)
+    assert len(result.failures) == 4 * len(FAST_CDR)
+    assert all("fastcdr" in text and "rosbags writes 00010000" in text for text in result.failures)
+
+
+def test_result_says_who_took_part():
+    result = accept("lyrical", "std_msgs/msg/Bool", SMALL)
+    assert_passed(result)
+    assert result.written_by == CDR
+    none = accept("lyrical", "std_msgs/msg/Bool", Options(most_cases=2, references=()))
+    assert none.written_by == ()
+    assert none.command.endswith(" --reference none std_msgs/msg/Bool")
+
+
+def test_known_divergence_of_a_reference_is_told_by_its_key():
+    """`Joy` has NaN among its cases that Cyclone's Python turns into others."""
+    options = Options(simulated=False, references=("cyclonedds",))
+    result = accept("lyrical", "sensor_msgs/msg/Joy", options)
+    assert assert_passed(result, (NAN_KEY,)) > 6
+    assert result.written_by == ("cyclonedds",)
+
+
+def test_known_divergence_hides_no_other(monkeypatch):
+    codec = client("cyclonedds").open(Library("lyrical").message("sensor_msgs/msg/Joy"), "cdr")
+    right = type(codec).encode_all
+
+    def without_the_last_byte(self, values):
+        return [answer[:-1] for answer in right(self, values)]
+
+    monkeypatch.setattr(type(codec), "encode_all", without_the_last_byte)
+    options = Options(simulated=False, references=("cyclonedds",))
+    result = accept("lyrical", "sensor_msgs/msg/Joy", options)
+    assert len(result.failures) > 6
+    assert all("cyclonedds writes" in text for text in result.failures)
+
+
+def test_named_reference_that_cannot_confirm_is_no_pass(capsys):
+    arguments = ["verify", "--distro", "lyrical", "--jobs", "1", "--cases", "2"]
+    assert main([*arguments, "--reference", "genpy", "std_msgs/msg/Bool"]) == 1
+    shown = capsys.readouterr().out
+    assert "not judged: std_msgs/msg/Bool (lyrical), ts3, 8-byte bus: " in shown
+    assert "genpy has no wire 'cdr'" in shown and "genpy 1 types" not in shown
+
+
+def test_named_reference_without_the_type_is_no_pass(monkeypatch):
+    def unable(message, wire):
+        raise UnsupportedError("fastcdr has no such type")
+
+    monkeypatch.setattr(client("fastcdr"), "open", unable)
+    options = Options(most_cases=1, references=("fastcdr", "cyclonedds"))
+    result = accept("lyrical", "std_msgs/msg/Bool", options)
+    assert result.verdict == NotJudged("fastcdr has no such type")
+    assert result.written_by == ("cyclonedds",)
+    assert_passed(accept("lyrical", "std_msgs/msg/Bool", Options(most_cases=1)))
+
+
+def test_nobody_wrote_what_was_not_judged(capsys, make_wide):
+    arguments = ["verify", "--distro", "lyrical", "--jobs", "1", "--path", str(make_wide)]
+    assert main([*arguments, "--reference", "none", "p/msg/Wide"]) == 1
+    shown = capsys.readouterr().out
+    assert "not judged" in shown and "rosbags 1 types" not in shown
+
+
+def test_wide_text_is_judged_if_somebody_has_it(tmp_path, make_wide):
+    options = Options(most_cases=6, paths=(str(make_wide),))
+    result = accept("lyrical", "p/msg/Wide", options)
+    assert_passed(result)
+    assert result.written_by == FAST_CDR and result.cases == 6
+    alone = accept("lyrical", "p/msg/Wide", Options(paths=(str(make_wide),), references=()))
+    assert alone.verdict == NotJudged("rosbags has no wstring, which p/msg/Wide.a is")
+
+
+def test_wide_text_needs_that_word(monkeypatch, make_wide):
+    monkeypatch.setattr(references, "references_here", lambda wanted=None: ("fastcdr",))
+    monkeypatch.setattr(references, "WRITERS", {"fastcdr": ("ros1",)})
+    result = accept("lyrical", "p/msg/Wide", Options(most_cases=1, paths=(str(make_wide),)))
+    assert "fastcdr could not write wide text, which rosbags has not" in result.failures
+
+
+@pytest.fixture
+def make_wide(tmp_path):
+    (tmp_path / "p" / "msg").mkdir(parents=True)
+    (tmp_path / "p" / "msg" / "Wide.msg").write_text(
+        "wstring a\nwstring<=3[] b\nuint8 c\nwstring[2] d\nfloat64 e\n"
+    )
+    return tmp_path
+
+
+def test_command_names_who_took_part(capsys):
+    arguments = ["verify", "--distro", "lyrical", "--jobs", "1", "--cases", "2"]
+    assert main([*arguments, "--reference", "fastcdr", "std_msgs/msg/Bool"]) == 0
+    assert "\nwire bytes: rosbags 1 types, fastcdr 1 types\n" in capsys.readouterr().out
+
+
+def test_what_is_missing_is_said_or_an_error(capsys, monkeypatch):
+    monkeypatch.setattr(CLIENTS["cyclonedds"], "missing", lambda self: "cyclonedds is not there")
+    assert references_here() == ("genpy", *FAST_CDR)
+    assert find_references(None, ["cdr"]) == [
+        "cyclonedds does not confirm bytes: cyclonedds is not there"
+    ]
+    assert find_references(None, ["ros1"]) == []
+    assert main(["verify", "--all", "--distro", "lyrical", "--reference", "cyclonedds"]) == 1
+    assert capsys.readouterr().err == "error: cyclonedds is not there\n"

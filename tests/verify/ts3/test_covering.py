@@ -1,0 +1,87 @@
+"""TS3 in full depth, on few types that have every feature of all; `make verify` takes all.
+
+The types are in ``covering/``. After a change that asks for others: ``make cover``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.covering.branches import branches
+from firm_hdl.covering.choose import all_features, cost
+from firm_hdl.covering.command import read_chosen
+from firm_hdl.export.build import plan_of
+from firm_hdl.frontend import Library
+from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
+from firm_hdl.verify import Options, accept
+from tests.verify.judged import NAN_KEY, assert_passed
+
+FOLDER = Path(__file__).parents[1] / "covering"
+DISTROS = ("lyrical", "noetic")
+KEPT = {distro: read_chosen(FOLDER / f"{distro}.txt") for distro in DISTROS}
+# The generator's branches of all types take a minute: `make cover` looks at them.
+STRIDE = 20
+# All cases of these take as long as those of all others together: `make verify` has them.
+LARGE = ("InteractiveMarker", "InteractiveMarkerControl")
+MOST_CASES = 4
+KNOWN = {("lyrical", "sensor_msgs/msg/Joy"): (NAN_KEY,)}
+
+
+@pytest.mark.parametrize(
+    ("distro", "name"), [(distro, name) for distro in DISTROS for name in KEPT[distro]]
+)
+def test_a_covering_type_passes_with_all_cases(distro, name):
+    most = MOST_CASES if name.rpartition("/")[2] in LARGE else None
+    result = accept(distro, name, Options(bus_bytes=8, most_cases=most))
+    known = KNOWN.get((distro, name), ())
+    assert assert_passed(result, known) >= result.cases > 0
+
+
+def planned(library, name):
+    message = library.message(name)
+    return message, plan_of(message, None, 8, DEFAULT_MAX_MESSAGE_BYTES)
+
+
+def missing(distro, kept):
+    """Features of a distribution that none of some of its types has."""
+    library = Library(distro)
+    found = {name: all_features(library, *planned(library, name)) for name in library.names()}
+    return set().union(*found.values()) - set().union(*(found[name] for name in kept))
+
+
+@pytest.mark.snapshot
+@pytest.mark.parametrize("distro", DISTROS)
+def test_the_kept_types_have_every_feature(distro):
+    assert missing(distro, KEPT[distro]) == set(), "choose again: make cover"
+
+
+@pytest.mark.parametrize("distro", DISTROS)
+def test_a_type_that_is_left_out_is_missed(distro):
+    name = "rcl_interfaces/msg/ParameterValue" if distro == "lyrical" else "sensor_msgs/Joy"
+    left = missing(distro, [each for each in KEPT[distro] if each != name])
+    families = {feature.partition(":")[0] for feature in left}
+    assert {"definition", "plan"} <= families
+
+
+def not_taken(library, wanted, kept):
+    """Branches that none of some types takes, the small ones first, until nothing is left."""
+    left = set(wanted)
+    plans = sorted((planned(library, name) for name in kept), key=lambda both: cost(both[1]))
+    for message, plan in plans:
+        if not left:
+            break
+        left -= branches(message, plan)
+    return left
+
+
+@pytest.mark.parametrize("distro", DISTROS)
+def test_other_types_take_no_branch_that_the_kept_do_not(distro):
+    library = Library(distro)
+    others = library.names()[::STRIDE]
+    taken = set().union(*(branches(*planned(library, name)) for name in others))
+    assert len(taken) > 1000
+    assert not_taken(library, taken, KEPT[distro]) == set(), "choose again: make cover"
+    # Few of them do not suffice, so that the comparison can fail.
+    assert not_taken(library, taken, KEPT[distro][-8:-5])

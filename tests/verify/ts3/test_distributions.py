@@ -1,0 +1,54 @@
+"""Every type of every distribution, a few cases each; `make verify` runs them all."""
+
+from __future__ import annotations
+
+import pytest
+
+import firm_hdl.verify.ts3.acceptance as acceptance
+from firm_hdl.verify import Options, accept, collect_tasks
+from firm_hdl.verify.results.verdict import NotJudgedError
+from tests.verify.judged import assert_passed
+
+TASKS = list(collect_tasks((), ()))
+WIDTHS = (8, 4)
+OTHER_WIDTHS = (1, 2, 16, 32, 64)
+LARGEST = 12
+"""The first ones have so many leaves that they would take as long as a hundred others."""
+SAMPLE = range(LARGEST, len(TASKS), 9)
+
+
+@pytest.mark.parametrize("index", range(len(TASKS)), ids=[task.name for task in TASKS])
+def test_every_type_passes(index):
+    task = TASKS[index]
+    options = Options(
+        bus_bytes=WIDTHS[index % len(WIDTHS)],
+        most_cases=1 if index < LARGEST else 3,
+        stalled=index >= LARGEST and index % 4 < 2,
+        broken=False,
+    )
+    result = accept(task.same[-1], task.name, options)
+    assert_passed(result)
+
+
+@pytest.mark.parametrize("index", SAMPLE, ids=lambda index: TASKS[index].name)
+def test_a_sample_passes_on_other_buses(index):
+    task = TASKS[index]
+    width = OTHER_WIDTHS[SAMPLE.index(index) % len(OTHER_WIDTHS)]
+    result = accept(task.same[-1], task.name, Options(bus_bytes=width, most_cases=3))
+    assert_passed(result)
+
+
+@pytest.mark.parametrize("test", [test_every_type_passes, test_a_sample_passes_on_other_buses])
+def test_these_tests_fail_where_nobody_judges(test, monkeypatch):
+    def nobody(message, *arguments, **options):
+        raise NotJudgedError(f"{message.name} is not judged")
+
+    monkeypatch.setattr(acceptance, "judge_of", nobody)
+    with pytest.raises(AssertionError, match="is not judged"):
+        test(SAMPLE[0])
+
+
+def test_these_tests_fail_where_there_is_no_case(monkeypatch):
+    monkeypatch.setattr(acceptance.Acceptance, "cases", lambda run, oracle, name: [])
+    with pytest.raises(AssertionError):
+        test_every_type_passes(9)

@@ -1,0 +1,42 @@
+"""Random definitions on both wires and all bus widths: the checks of acceptance, in hardware."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import HealthCheck, Phase, assume, given, settings
+from hypothesis import strategies as st
+
+from firm_hdl.plan import build_plan
+from firm_hdl.verify import Options, Oracle, Result, accept_message
+from firm_hdl.verify.cases.effort import work_of
+from firm_hdl.wire import lay_out
+from tests.strategies import BUS_WIDTHS, definitions
+from tests.verify.judged import NAN_KEY, TIME_KEY, assert_passed
+
+MOST_WORK = 5_000
+"""Beats times leaves of the smallest packet: one example in a hundred takes minutes otherwise."""
+
+
+@pytest.mark.parametrize("wire", ["ros1", "cdr"])
+# Shrinking would simulate for many minutes; the message of a failure says how to repeat it.
+@settings(
+    max_examples=15,
+    deadline=None,
+    phases=[Phase.explicit, Phase.reuse, Phase.generate],
+    suppress_health_check=list(HealthCheck),
+)
+@given(
+    definition=definitions(),
+    bus_bytes=st.sampled_from(BUS_WIDTHS),
+    seed=st.integers(0, 1 << 16),
+)
+def test_random_types_pass(wire, definition, bus_bytes, seed):
+    message = definition.message
+    layout = lay_out(message, wire)
+    assume(work_of(build_plan(layout, bus_bytes=bus_bytes), layout.min_bytes) <= MOST_WORK)
+    options = Options(bus_bytes=bus_bytes, wire=wire, seed=seed, most_cases=8)
+    result = Result(distro="", name=message.name)
+    oracle = Oracle(definition.store(), message.dialect)
+    accept_message(message, oracle, definition.rosbags_name, options, result)
+    assert set(result.known) <= {NAN_KEY, TIME_KEY}
+    assert_passed(result, result.known)

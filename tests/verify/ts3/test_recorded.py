@@ -1,0 +1,204 @@
+"""TS3 with results on the disk: recorded as it was, resumed after a kill, reported."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import firm_hdl.verify.ts3.acceptance as acceptance
+from firm_hdl.cli import main
+from firm_hdl.verify import Options, accept, collect_tasks
+from firm_hdl.verify.results.file import read_results
+from firm_hdl.verify.ts3.recorded import record_of, same_circuits, test_of
+from tests.verify.judged import assert_passed
+
+TYPES = ["std_msgs/msg/Bool", "std_msgs/msg/Header", "std_msgs/msg/String", "std_msgs/msg/Char"]
+FAST = ["--jobs", "1", "--cases", "3", "--distro", "humble"]
+
+
+def verify(*arguments):
+    return main(["verify", *FAST, *arguments])
+
+
+def outcomes(path):
+    return {key: record.without_times for key, record in read_results(path).records.items()}
+
+
+def task_of(name):
+    (task,) = collect_tasks(["humble"], [name])
+    return task
+
+
+def test_records_say_what_was_found():
+    task, options = task_of("std_msgs/msg/Header"), Options()
+    record = record_of(task, accept("humble", task.name, options), options)
+    assert assert_passed(record) >= 2 * record.cases
+    assert record.test.key == "ts3 python humble std_msgs/msg/Header cdr/8 seed=0"
+    assert record.cases and record.packets > record.cases and record.cycles > record.beats > 0
+    assert record.written_by[0] == "rosbags"
+    assert record.coverage.taken == record.coverage.possible > 0 and not record.coverage.missing
+    assert min(record.seconds.generation, record.seconds.simulation, record.seconds.testing) > 0
+    assert record.cpu_seconds > 0 and len(record.shape) == 16
+    assert record.metrics["leaves"] == 3 and record.metrics["steps"] > 0
+    assert record.command == "firm-hdl verify --distro humble --bus-bytes 8 --seed 0 " + task.name
+    assert record.waveform_command == record.command.replace(
+        task.name, f"--vcd waveforms {task.name}"
+    )
+
+
+def test_decisions_that_few_cases_do_not_take_are_named():
+    task, options = task_of("sensor_msgs/msg/JointState"), Options(most_cases=1, stalled=False)
+    record = record_of(task, accept("humble", task.name, options), options)
+    assert record.coverage.taken < record.coverage.possible
+    assert len(record.coverage.missing) == record.coverage.possible - record.coverage.taken
+    assert any("padding" in each for each in record.coverage.missing)
+    assert test_of(task, options).options == "seed=0,cases=1,no-stalls"
+
+
+def test_wrong_answer_to_a_bare_string_is_found(monkeypatch):
+    right = acceptance.bare_packets
+
+    def wrong(plan, cases):
+        # The packet of one case, expected to come out as another.
+        return [(cases[-1], packet) for _, packet in right(plan, cases)]
+
+    monkeypatch.setattr(acceptance, "bare_packets", wrong)
+    result = accept("humble", "std_msgs/msg/String", Options(stalled=False, broken=False, seed=2))
+    assert any(failure.startswith("hardware: packet ") for failure in result.failures)
+
+
+def test_failures_are_recorded_and_not_run_again(tmp_path, monkeypatch, capsys):
+    path = tmp_path / "r.jsonl"
+    decode = acceptance.decode
+    monkeypatch.setattr(acceptance, "decode", lambda plan, packet: decode(plan, packet + bytes(99)))
+    assert verify("--results", str(path), "std_msgs/Bool") == 1
+    monkeypatch.undo()
+    (record,) = read_results(path).records.values()
+    assert "golden model" in record.verdict.failures[0]
+    capsys.readouterr()
+    # All is well now, and the file still says what it said.
+    assert verify("--results", str(path), "std_msgs/Bool") == 1
+    said = capsys.readouterr().out
+    assert f"1 of 1 types have a result in {path}" in said and "0 of    1 types pass" in said
+
+
+def test_results_of_another_run_are_refused(tmp_path, capsys):
+    path = tmp_path / "r.jsonl"
+    assert verify("--results", str(path), "std_msgs/Bool") == 0
+    assert verify("--results", str(path), "--seed", "1", "std_msgs/Bool") == 1
+    said = capsys.readouterr().err
+    assert said.startswith(f"error: '{path}' is of another run: seed was 0, and is 1; ")
+    assert "Traceback" not in said
+
+
+def test_results_of_other_code_are_refused(tmp_path, capsys, monkeypatch):
+    path = tmp_path / "r.jsonl"
+    assert verify("--results", str(path), "std_msgs/Bool") == 0
+    monkeypatch.setattr("firm_hdl.verify.command.code_digest", lambda: "other")
+    assert verify("--results", str(path), "std_msgs/Bool") == 1
+    assert re.search(r'code was "[0-9a-f]{12}", and is "other"', capsys.readouterr().err)
+
+
+def test_report_is_written_with_the_results(tmp_path, capsys):
+    path, report = tmp_path / "r.jsonl", tmp_path / "r.json"
+    assert verify("--results", str(path), "--report", str(report), "std_msgs/Bool") == 0
+    assert json.loads(report.read_text())["counts"]["passed"] == 1
+    assert f"wrote   {report}" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--report", "r.html"], "--report needs --results"),
+        (["--executor", "x"], "executor must be 'processes' or 'dask://HOST:PORT', not 'x'"),
+    ],
+)
+def test_wrong_calls_are_refused(arguments, said, capsys):
+    with pytest.raises(SystemExit) as caught:
+        verify(*arguments, "std_msgs/Bool")
+    assert caught.value.code == 2 and said in capsys.readouterr().err
+
+
+def test_waveforms_are_written(tmp_path):
+    folder = tmp_path / "waves"
+    assert verify("--vcd", str(folder), "std_msgs/Bool") == 0
+    names = sorted(path.name for path in folder.iterdir())
+    assert names == [f"std_msgs_msg_Bool_cdr_8_run{number}.vcd" for number in (1, 2, 3)]
+    assert "packets" in (folder / names[0]).read_text()
+
+
+# Both are a sequence of what has the same figures.
+TWINS = ["geometry_msgs/msg/Point", "geometry_msgs/msg/Vector3"]
+
+
+def test_same_circuits_are_found():
+    tasks = collect_tasks(["humble"], [*TWINS, "std_msgs/msg/Bool"])
+    assert [(a.name, b.name) for a, b in same_circuits(tasks, Options()).items()] == [
+        (TWINS[1], TWINS[0])
+    ]
+
+
+def test_same_circuits_are_simulated_once(tmp_path, capsys):
+    path = tmp_path / "r.jsonl"
+    assert verify("--results", str(path), "--share-circuits", *TWINS) == 0
+    said = capsys.readouterr().out
+    assert "1 of 2 types have the circuit of another, which was simulated" in said
+    one, two = (
+        next(r for r in read_results(path).records.values() if r.test.type == name)
+        for name in TWINS
+    )
+    assert one.cycles and not one.same_as
+    # The golden model was compared with the oracle for each.
+    assert not two.cycles and two.cases and two.same_as == one.test.key and two.shape == one.shape
+
+
+@pytest.mark.parametrize(
+    ("arguments", "simulated"),
+    [(["--all"], 1), (["--all", "--no-share-circuits"], 2), (["p/msg/A", "p/msg/B"], 2)],
+)
+def test_all_types_share_circuits_and_those_with_a_name_do_not(tmp_path, arguments, simulated):
+    (tmp_path / "p" / "msg").mkdir(parents=True)
+    for name in "AB":
+        (tmp_path / "p" / "msg" / f"{name}.msg").write_text(f"uint8 {name.lower()}\n")
+    path = tmp_path / "r.jsonl"
+    assert verify("--path", str(tmp_path), "--results", str(path), *arguments) == 0
+    records = read_results(path).records.values()
+    assert sum(record.cycles > 0 for record in records) == simulated
+    assert sum(bool(record.same_as) for record in records) == 2 - simulated
+
+
+def test_circuit_that_fails_fails_all_that_have_it(tmp_path, monkeypatch, capsys):
+    path = tmp_path / "r.jsonl"
+    good = acceptance.Acceptance.good
+    monkeypatch.setattr(
+        acceptance.Acceptance, "good", lambda run, *a: (good(run, *a), run.fail("hardware: no"))
+    )
+    assert verify("--results", str(path), "--share-circuits", *TWINS) == 1
+    assert "humble      0 of    2 types pass" in capsys.readouterr().out
+
+
+def test_command_that_was_killed_goes_on_and_ends_the_same(tmp_path):
+    whole, killed = tmp_path / "whole", tmp_path / "killed"
+    assert verify("--results", str(whole), *TYPES) == 0
+    root = str(Path(__file__).parents[3])
+    call = "import sys; from firm_hdl.cli import main; sys.exit(main())"
+    command = [sys.executable, "-c", call, "verify", *FAST, "--results", str(killed), *TYPES]
+    process = subprocess.Popen(
+        command, env={**os.environ, "PYTHONPATH": root}, stdout=subprocess.DEVNULL
+    )
+    while process.poll() is None:
+        if killed.exists() and killed.read_bytes().count(b'{"record"') >= 2:
+            process.send_signal(signal.SIGKILL)
+        time.sleep(0.01)
+    before = outcomes(killed)
+    assert process.wait() == -signal.SIGKILL and 2 <= len(before) < len(TYPES)
+    assert verify("--results", str(killed), *TYPES) == 0
+    assert outcomes(killed) == outcomes(whole) and len(outcomes(whole)) == len(TYPES)

@@ -1,0 +1,121 @@
+"""Which messages of a recording are selected, and that their bytes are the recorded ones."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.verify import Options
+from firm_hdl.verify.ts3.recording import Selection, select, topics_of
+from firm_hdl.verify.ts3.replay import replay
+from tests.tools import need
+from tests.verify.judged import assert_passed
+from tests.verify.robot import FORMATS, robot, write
+
+STRING = "std_msgs/msg/String"
+EVERYTHING = 1 << 30
+
+
+def chosen(selection: Selection) -> list[tuple[str, int]]:
+    return [(each.topic, each.number) for each in selection.messages]
+
+
+def counted(path: Path, sizes: dict[str, list[int]]) -> Path:
+    """Record messages of some sizes on topics, one after the other on each."""
+    messages = [
+        (topic, STRING, number * 100 + index, bytes([number]) * size)
+        for index, (topic, each) in enumerate(sizes.items())
+        for number, size in enumerate(each)
+    ]
+    return write(path, "mcap", sorted(messages, key=lambda each: each[2]))
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_bytes_are_those_that_were_recorded(tmp_path: Path, form: str) -> None:
+    messages = robot(form)
+    bag = str(write(tmp_path / "run", form, messages))
+    name = "my_msgs/msg/Wheels"
+    topics = [topic for topic in topics_of(bag) if topic.type == name]
+    found = select(topics, most=100, longest=EVERYTHING)
+    want = [each for each in messages if each[1] == name]
+    assert [(m.topic, name, m.nanoseconds, m.data) for m in found.messages] == want
+    assert [m.number for m in found.messages] == [*range(6)]
+    assert (found.total, found.topics, found.too_long, found.sparse) == (6, 1, (), False)
+
+
+def test_messages_are_spread_evenly_over_the_recording(tmp_path: Path) -> None:
+    topics = topics_of(str(counted(tmp_path / "run", {"/a": [5] * 101})))
+    assert [n for _, n in chosen(select(topics, most=5, longest=9))] == [0, 25, 50, 75, 100]
+    assert [n for _, n in chosen(select(topics, most=1, longest=9))] == [0]
+    assert len(chosen(select(topics, most=500, longest=9))) == 101
+
+
+def test_short_topics_leave_their_share_to_others(tmp_path: Path) -> None:
+    topics = topics_of(str(counted(tmp_path / "run", {"/a": [5] * 50, "/b": [5], "/c": [5] * 50})))
+    found = chosen(select(topics, most=11, longest=9))
+    assert [sum(t == topic for t, _ in found) for topic in ("/a", "/b", "/c")] == [5, 1, 5]
+
+
+def test_long_messages_are_known_before_any_is_selected(tmp_path: Path) -> None:
+    topics = topics_of(str(counted(tmp_path / "run", {"/a": [9, 1, 9, 2, 12]})))
+    found = select(topics, most=10, longest=5)
+    assert (chosen(found), found.too_long, found.total) == ([("/a", 1), ("/a", 3)], (9, 9, 12), 5)
+    nothing = select(topics, most=10, longest=0)
+    assert (chosen(nothing), len(nothing.too_long)) == ([], 5)
+
+
+def test_all_together_have_so_many_bytes_at_most(tmp_path: Path) -> None:
+    topics = topics_of(str(counted(tmp_path / "run", {"/a": [100] * 50})))
+    found = select(topics, most=50, longest=EVERYTHING, most_bytes=1000)
+    assert [n for _, n in chosen(found)] == [0, 5, 10, 16, 21, 27, 32, 38, 43, 49]
+    assert found.sparse
+    assert not select(topics, most=10, longest=EVERYTHING, most_bytes=1000).sparse
+    sizes = topics_of(str(counted(tmp_path / "other", {"/a": [300, 200, 400]})))
+    one = select(sizes, most=3, longest=EVERYTHING, most_bytes=100)
+    assert chosen(one) == [("/a", 1)] and one.sparse
+
+
+def test_recordings_without_messages_have_none(tmp_path: Path) -> None:
+    topics = topics_of(str(write(tmp_path / "run", "db3", [], [("/a", STRING)])))
+    found = select(topics, most=3, longest=EVERYTHING)
+    assert (found.messages, found.total) == ((), 0)
+
+
+def test_file_that_is_cut_is_refused(tmp_path: Path) -> None:
+    bag = write(tmp_path / "run", "bag", robot("bag"))
+    topics = topics_of(str(bag))
+    data = bag.read_bytes()
+    # Where the index says that the messages are is something else.
+    at = data.index(b"tick ")
+    bag.write_bytes(data[:100] + b"\xff" * (at - 100) + data[at:])
+    with pytest.raises(DefinitionError, match="cannot be read as a recording: "):
+        select(topics, most=100, longest=EVERYTHING)
+
+
+def test_file_of_another_library_is_replayed(tmp_path: Path) -> None:
+    need("mcap-ros2-support", "here" if find_spec("mcap_ros2") else None)
+    from mcap_ros2.writer import Writer
+
+    text = (
+        "std_msgs/Header header\nfloat64[] values\nstring<=5 name\n"
+        + "=" * 80
+        + "\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
+        + "=" * 80
+        + "\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
+    )
+    with (tmp_path / "own.mcap").open("wb") as file:
+        writer = Writer(file)
+        schema = writer.register_msgdef("own_msgs/msg/Values", text)
+        for number in range(7):
+            header = {"stamp": {"sec": -number, "nanosec": 5}, "frame_id": "f" * number}
+            values = {"header": header, "values": [0.5] * number, "name": "abc"[: number % 4]}
+            writer.write_message("/values", schema, values, log_time=number)
+        writer.finish()
+    result = replay(
+        "lyrical", "own_msgs/msg/Values", Options(bags=(str(tmp_path / "own.mcap"),), stalled=False)
+    )
+    assert_passed(result)
+    assert result.note.startswith("7 of 7 messages of 1 topic replayed")

@@ -1,0 +1,382 @@
+"""Replay: recordings pass as they are, and what is wrong with one, or with us, is found."""
+
+from __future__ import annotations
+
+import json
+import struct
+
+import pytest
+
+import firm_hdl.verify.ts3.acceptance as acceptance
+import firm_hdl.verify.ts3.replay as replay_module
+from firm_hdl.cli import main
+from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.verify import Options
+from firm_hdl.verify.references.oracle import Oracle
+from firm_hdl.verify.results.verdict import NotJudged
+from firm_hdl.verify.ts3.replay import replay
+from tests.frontend.recordings import make_old_db3
+from tests.verify.judged import assert_passed
+from tests.verify.robot import FORMATS, robot, write
+from tests.verify.ts3.test_acceptance import BadByte, BadLeaf
+
+STRING = "std_msgs/msg/String"
+TEXT = bytes.fromhex("00010000 04000000 61626300")
+
+
+def run(capsys, *arguments):
+    """Run the command in this process; return its status and what it printed."""
+    status = main(["verify", "--jobs", "1", *map(str, arguments)])
+    return status, capsys.readouterr()
+
+
+def strings(tmp_path, *packets, name=STRING, topic="/text", form="mcap"):
+    """Record packets of a type."""
+    messages = [(topic, name, 10**9 + number, data) for number, data in enumerate(packets)]
+    return write(tmp_path / "run", form, messages)
+
+
+def replayed(bag, name=STRING, distro="lyrical", **options):
+    return replay(distro, name, Options(bags=(str(bag),), **options))
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_recordings_pass(capsys, tmp_path, form):
+    messages = robot(form, 4)
+    # What is compressed is read by rosbags; one circuit is enough to see that it is read at all.
+    only = [] if form in ("bag", "mcap") else ["std_msgs/String"]
+    bag = write(tmp_path / "run", form, messages, [("/never", "std_msgs/msg/Bool")])
+    status, said = run(capsys, "--bag", bag, *only)
+    assert status == 0 and said.err == ""
+    ros1 = form.startswith("bag")
+    distro, infix = ("noetic", "") if ros1 else ("lyrical", "msg/")
+    assert f"note: std_msgs/{infix}String ({distro}): 4 of 4 messages of 1 topic replayed\n" in (
+        said.out
+    )
+    assert f"{distro:8} {1 if only else 4:4} of {1 if only else 4:4} types pass" in said.out
+    if not only:
+        scans = f"note: sensor_msgs/{infix}LaserScan ({distro}): 6 of 6 messages of 2 topics"
+        assert scans in said.out
+        silent = f"std_msgs/{infix}Bool ({distro}), ts3, 8-byte bus"
+        assert f"not judged: {silent}: no messages of it" in said.out
+
+
+def test_every_packet_is_sent_twice_and_its_decisions_are_counted(tmp_path):
+    bag = write(tmp_path / "run", "mcap", robot("mcap"))
+    result = replayed(bag, "my_msgs/msg/Wheels")
+    assert_passed(result)
+    assert (result.cases, result.packets) == (6, 12)
+    assert result.coverage is not None and len(result.coverage.taken) > 0
+    assert result.beats == sum(-(-len(each[3]) // 8) for each in robot("mcap") if "/wheels" in each)
+
+
+def test_exported_vhdl_replays_recordings(ghdl, capsys, tmp_path):
+    bag = write(tmp_path / "run", "mcap", robot("mcap", 3))
+    status, said = run(capsys, "--bag", bag, "--simulator", "ghdl", STRING)
+    assert status == 0
+    assert "ghdl: 1 of 1 types the same in every cycle; " in said.out
+
+
+class Deaf(BadLeaf):
+    """Turns a bit of the text."""
+
+    def fault(self, m):
+        port, inner = self.message.data.items, self.inner.message.data.items
+        m.d.comb += port.payload.data[0].eq(inner.payload.data[0] ^ 1)
+
+
+@pytest.mark.parametrize(
+    ("which", "fault", "said"),
+    [
+        ("Serializer", BadByte, "hardware: packet 0 of 2 differs at byte 15: "),
+        ("Deserializer", Deaf, "hardware: leaf data.items, transfer 0 of 2: "),
+    ],
+)
+def test_faults_in_hardware_are_found(capsys, monkeypatch, tmp_path, which, fault, said):
+    original = {"Serializer": Serializer, "Deserializer": Deserializer}[which]
+    made = lambda message, **options: fault(original(message, **options))  # noqa: E731
+    monkeypatch.setattr(acceptance, which, made)
+    whole = TEXT[:4] + b"\x08\0\0\0abcdefg\0"
+    bag = strings(tmp_path, whole, whole)
+    status, printed = run(capsys, "--bag", bag, "--cases", "5")
+    assert status == 1
+    assert f"FAIL {STRING} (lyrical)\n" in printed.out
+    (line,) = [each for each in printed.out.splitlines() if said in each and "Stalls" not in each]
+    assert line.endswith("(/text message 0 at 1.000000000)")
+    assert (
+        f"again: firm-hdl verify --distro lyrical --bag {bag} --bus-bytes 8 --seed 0 --cases 5 "
+        f"{STRING}\n"
+    ) in printed.out
+
+
+def test_oracle_that_reads_another_byte_disagrees(monkeypatch, tmp_path):
+    original = Oracle.read
+
+    def read(self, packet, name, wire):
+        return original(self, packet.replace(b"b", b"B"), name, wire)
+
+    monkeypatch.setattr(Oracle, "read", read)
+    result = replayed(strings(tmp_path, TEXT))
+    # Both models of ours, and the circuit, say what is in the packet.
+    assert any(each.startswith("golden model, /text message 0") for each in result.failures)
+    assert any(each.startswith("hardware: leaf data.items") for each in result.failures)
+    # rosbags' own rewriting would have been another packet, too.
+    assert any(each.startswith("hardware: packet 0 of 1 differs") for each in result.failures)
+
+
+def test_what_rosbags_cannot_read_is_judged_by_what_it_can(monkeypatch, tmp_path):
+    latin = TEXT[:9] + b"\xff" + TEXT[10:]
+    bag = strings(tmp_path, latin)
+    assert replayed(bag).failures == []
+    original = Oracle.read
+
+    def read(self, packet, name, wire):
+        return original(self, packet.replace(b"c\0", b"C\0"), name, wire)
+
+    # Beside the text that is not UTF-8, rosbags reads another letter.
+    monkeypatch.setattr(Oracle, "read", read)
+    (failure,) = replayed(bag).failures
+    assert "its 12 bytes do not fit the definition: status OK; rosbags says: " in failure
+
+
+@pytest.mark.parametrize(
+    ("packet", "kind"),
+    [
+        (TEXT[:3] + b"\2" + TEXT[4:], "with option bits"),
+        (TEXT + b"xyz", "with bytes behind the message"),
+        (TEXT[:2] + b"\0\3" + TEXT[4:] + b"\0\0\0", "with option bits, bytes behind the message"),
+        (b"\0\0\0\0\0\0\0\4abc\0", "in big-endian CDR, which get the status ENCAPSULATION"),
+        (b"\0\3" + TEXT[2:], "in a parameter list, which get the status ENCAPSULATION"),
+        (b"\1\1" + TEXT[2:], "in the representation 0101, which get the status ENCAPSULATION"),
+        (TEXT[:9] + b"\xff" + TEXT[10:], "with text that is not UTF-8, which rosbags read"),
+        (bytes.fromhex("00010000 00000000"), "that rosbags reads only as a serializer writes them"),
+    ],
+)
+def test_other_forms_are_counted_and_named(tmp_path, packet, kind):
+    result = replayed(strings(tmp_path, TEXT, packet, TEXT, packet))
+    assert_passed(result)
+    count, _, text = result.note.partition("; ")
+    assert count == "4 of 4 messages of 1 topic replayed"
+    assert text.startswith(f"2 {kind}")
+    assert text.endswith("(first: /text message 1 at 1.000000001)")
+
+
+def test_padding_and_bools_may_be_anything(tmp_path):
+    packet = next(each for each in robot("mcap")[::-1] if each[1] == "my_msgs/msg/Wheels")[3]
+    assert packet[-1] == 0
+    bools = packet[:-1] + b"\7"
+    # In front of the first speed, behind the 7 bytes of "wheels\0".
+    at = packet.index(b"wheels\0") + 7
+    padding = packet[:at] + b"\7" + packet[at + 1 :]
+    bag = strings(tmp_path, packet, bools, padding, name="my_msgs/msg/Wheels")
+    result = replayed(bag, "my_msgs/msg/Wheels")
+    assert_passed(result)
+    assert "; 2 with padding that is not zero, or a bool that is neither 0 nor 1 " in result.note
+
+
+def test_floats_that_python_does_not_keep_pass(tmp_path):
+    packets = [b"\0\1\0\0" + struct.pack("<I", bits) for bits in (0x7F800001, 0x7FC00001, 1)]
+    bag = strings(tmp_path, *packets, name="std_msgs/msg/Float32")
+    result = replayed(bag, "std_msgs/msg/Float32")
+    assert_passed(result)
+    # Which Pythons keep them is their business.
+    assert "signalling" in result.note or result.note == "3 of 3 messages of 1 topic replayed"
+
+
+@pytest.mark.parametrize(
+    ("form", "packet", "said"),
+    [
+        ("mcap", TEXT[:-2], "its 10 bytes do not fit the definition: status TRUNCATED; rosbags "),
+        ("mcap", TEXT + b"\0" * 4, "its 16 bytes do not fit the definition: status TRAILING; "),
+        ("mcap", TEXT[:-1] + b"d", "its 12 bytes do not fit the definition: status STRING; "),
+        ("mcap", b"", "its 0 bytes do not fit the definition: status TRUNCATED; rosbags says: "),
+        ("bag", TEXT[4:-2], "its 6 bytes do not fit the definition: status TRUNCATED; "),
+        ("bag", b"\0\0\0\0\0", "its 5 bytes do not fit the definition: status TRAILING; "),
+    ],
+)
+def test_message_that_does_not_fit_is_named(capsys, tmp_path, form, packet, said):
+    good = TEXT if form == "mcap" else b"\3\0\0\0abc"
+    status, printed = run(capsys, "--bag", strings(tmp_path, good, packet, good, form=form))
+    assert status == 1
+    # That one, and no other: the circuit reports it, and goes on with the next.
+    assert printed.out.count("    /text message ") == 1
+    assert f"    /text message 1 at 1.000000001: {said}" in printed.out
+    assert "hardware" not in printed.out
+
+
+def test_bound_that_is_exceeded_is_named_though_rosbags_reads_it(tmp_path):
+    name = "my_msgs/msg/Wheels"
+    (packet,) = [each[3] for each in robot("mcap", 1) if each[1] == name]
+    long = _with_mode(packet, b"too long a mode")
+    result = replayed(strings(tmp_path, packet, long, name=name), name)
+    (failure,) = result.failures
+    assert failure.startswith("/text message 1 at 1.000000001: ")
+    assert failure.endswith("do not fit the definition: status LENGTH; rosbags reads it")
+
+
+def _with_mode(packet, mode):
+    """Put a longer text in place of the one of the first message, which has one character."""
+    at = packet.index(b"\3\0\0\0" + "ä".encode() + b"\0")
+    body = packet[:at] + struct.pack("<I", len(mode) + 1) + mode + b"\0"
+    return body + b"\0" * (-len(body) % 4) + b"\0\0\0\0"
+
+
+def test_converter_that_always_says_ok_is_found(monkeypatch, tmp_path):
+    original = replay_module.decode
+
+    def decode(plan, packet):
+        decoded = original(plan, packet)
+        return type(decoded)(
+            transfers=decoded.transfers, status="OK", steps=decoded.steps, edges=decoded.edges
+        )
+
+    # The judge believes that all is well, and circuit and golden model do not.
+    monkeypatch.setattr(replay_module, "decode", decode)
+    result = replayed(strings(tmp_path, TEXT, TEXT[:-2]))
+    assert any("status TRUNCATED" in each for each in result.failures)
+
+
+def test_results_are_kept_with_the_recording(capsys, tmp_path):
+    bag = strings(tmp_path, TEXT)
+    kept = ["--results", tmp_path / "r.jsonl", "--report", tmp_path / "r.md"]
+    assert run(capsys, "--bag", bag, *kept)[0] == 0
+    record = json.loads((tmp_path / "r.jsonl").read_text().splitlines()[-1])["record"]
+    assert f"bag={bag}" in record["test"]["options"]
+    assert record["note"] == "1 of 1 messages of 1 topic replayed"
+    assert record["command"].startswith(f"firm-hdl verify --distro lyrical --bag {bag} ")
+    assert STRING in (tmp_path / "r.md").read_text()
+    status, said = run(capsys, "--bag", bag, "--cases", "3", *kept)
+    assert status == 1 and "is of another run: " in said.err
+
+
+def test_several_recordings_are_replayed_together(capsys, tmp_path):
+    one = write(tmp_path / "one", "mcap", [("/a", STRING, 1, TEXT)])
+    two = write(tmp_path / "two", "db3", [("/a", STRING, 1, TEXT), ("/b", STRING, 2, TEXT[:-1])])
+    status, said = run(capsys, "--bag", one, "--bag", two)
+    assert status == 1
+    assert "3 of 3 messages of 3 topics replayed" in said.out
+    assert f"    {two}: /b message 0 at 0.000000002: its 11 bytes do not fit" in said.out
+
+
+def test_topics_with_another_definition_are_left_out(monkeypatch, tmp_path):
+    messages = [("/a", STRING, 1, TEXT), ("/b", STRING, 2, b"other")]
+    bag = write(tmp_path / "run", "mcap", messages)
+    original = replay_module.topics_of
+
+    def topics_of(path):
+        a, b = original(path)
+        return [a, type(b)(bag=b.bag, name=b.name, type=b.type, digest="RIHS01_other")]
+
+    monkeypatch.setattr(replay_module, "topics_of", topics_of)
+    result = replayed(bag)
+    assert_passed(result)
+    assert result.note == (
+        "1 of 1 messages of 1 topic replayed; /b left out: its definition is another one "
+        "(RIHS01_other)"
+    )
+
+
+def test_long_messages_are_left_out_and_counted(tmp_path):
+    long = TEXT[:4] + struct.pack("<I", 201) + b"x" * 200 + b"\0"
+    bag = strings(tmp_path, TEXT, long, TEXT)
+    assert replayed(bag, longest=100).note == (
+        "2 of 3 messages of 1 topic replayed; 1 left out, of more than 100 bytes (up to 209): "
+        "--max-message-bytes N takes longer ones"
+    )
+    result = replayed(strings_again(tmp_path, long), longest=100)
+    assert result.verdict == NotJudged(
+        "all of its 1 messages have more than 100 bytes; --max-message-bytes N takes longer ones"
+    )
+
+
+def strings_again(tmp_path, *packets):
+    (tmp_path / "again").mkdir()
+    return strings(tmp_path / "again", *packets)
+
+
+def test_converters_have_room_for_the_longest_message(monkeypatch, tmp_path):
+    def packet(size):
+        return TEXT[:4] + struct.pack("<I", size - 8) + b"x" * (size - 9) + b"\0"
+
+    bag = strings(tmp_path, packet(512), packet(100))
+    # 64 KiB otherwise, which takes long to simulate.
+    monkeypatch.setattr(replay_module, "MAX_MESSAGE_BYTES", 64)
+    assert_passed(replayed(bag))
+    monkeypatch.setattr(replay_module, "_room", lambda longest: longest - 1)
+    assert any("status LENGTH" in failure for failure in replayed(bag).failures)
+
+
+def test_more_than_simulates_in_a_minute_is_left_out_unless_asked_for(monkeypatch, tmp_path):
+    bag = strings(tmp_path, *[TEXT] * 20)
+    # Few leaves count as 8, so that is 7 beats: 56 bytes.
+    monkeypatch.setattr(replay_module, "MOST_WORK", 60)
+    assert replayed(bag).note == (
+        "4 of 20 messages of 1 topic replayed; more would take long, --cases N takes N"
+    )
+    assert replayed(bag, most_cases=20).note == "20 of 20 messages of 1 topic replayed"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--path", "."], "argument --bag: not allowed with argument --path"),
+        (["--systems", "ts2,ts3"], "--bag is of ts3 alone"),
+        (["--sut", "rosbags"], "--bag is for firm-hdl's own converters, not for --sut"),
+        (["--share-circuits"], "--bag replays the messages of each type: not with"),
+        (["--distro", "humble", "--distro", "iron"], "--bag takes one --distro"),
+        (["--all", STRING], "name types, or all of them with --all"),
+        (["--max-message-bytes", "0"], "must be from 1 to 2147483647, not 0"),
+    ],
+)
+def test_wrong_calls_are_refused(capsys, arguments, said):
+    with pytest.raises(SystemExit) as left:
+        main(["verify", "--bag", "none.bag", *arguments])
+    assert left.value.code == 2
+    assert said in capsys.readouterr().err
+
+
+def test_longest_message_is_of_recordings(capsys):
+    with pytest.raises(SystemExit) as left:
+        main(["verify", STRING, "--max-message-bytes", "5"])
+    assert left.value.code == 2
+    assert "--max-message-bytes needs --bag" in capsys.readouterr().err
+
+
+def test_what_cannot_be_replayed_is_an_error(capsys, tmp_path):
+    bag = strings(tmp_path, TEXT)
+    missing = tmp_path / "none.bag"
+    assert run(capsys, "--bag", missing)[1].err == f"error: '{missing}' does not exist\n"
+    old = make_old_db3(tmp_path / "old.db3", [STRING])
+    status, said = run(capsys, "--bag", old)
+    assert status == 1 and said.out == ""
+    assert said.err.startswith(f"error: '{old}' carries no definitions of its types")
+    status, said = run(capsys, "--bag", bag, "std_msgs/Bool")
+    assert status == 1 and said.err.startswith("error: type 'Bool' is not defined in package")
+    status, said = run(capsys, "--bag", bag, "--wire", "ros1")
+    assert status == 1 and said.err == f"error: '{bag}' has messages of cdr, not of ros1\n"
+    status, said = run(capsys, "--bag", bag, "--distro", "noetic")
+    assert status == 1 and "is a recording of ROS 2, and noetic is ROS 1" in said.err
+
+
+def test_type_that_only_others_use_has_no_messages(capsys, tmp_path):
+    bag = write(tmp_path / "run", "mcap", robot("mcap", 1))
+    status, said = run(capsys, "--bag", bag, "my_msgs/Wheel")
+    assert (status, said.out) == (1, "")
+    assert said.err == (
+        "error: There is no topic of my_msgs/msg/Wheel, only of geometry_msgs/msg/Twist, "
+        "my_msgs/msg/Wheels, sensor_msgs/msg/LaserScan, std_msgs/msg/String\n"
+    )
+
+
+def test_recording_that_is_damaged_fails_its_types(capsys, tmp_path):
+    (file,) = strings(tmp_path, *[TEXT] * 50, form="db3").glob("*.db3")
+    alone = tmp_path / "alone.db3"
+    alone.write_bytes(file.read_bytes())
+    assert run(capsys, "--bag", alone)[0] == 0
+    data = bytearray(file.read_bytes())
+    at = data.index(TEXT)
+    data[at - 40 :] = b"\xff" * (len(data) - at + 40)
+    alone.write_bytes(data)
+    status, said = run(capsys, "--bag", alone)
+    assert status == 1
+    assert "cannot be read as a recording: " in said.out + said.err

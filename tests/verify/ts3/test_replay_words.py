@@ -1,0 +1,207 @@
+"""What is said of recorded messages, and which packets stand for others."""
+
+from __future__ import annotations
+
+import struct
+from types import SimpleNamespace
+
+import pytest
+
+from firm_hdl import load_message
+from firm_hdl.plan import build_plan
+from firm_hdl.plan.interpret import decode
+from firm_hdl.verify.cases.effort import MAX_MESSAGE_BYTES
+from firm_hdl.verify.cases.make import Case
+from firm_hdl.verify.ts3 import replay
+from firm_hdl.verify.ts3.options import Options
+from firm_hdl.verify.ts3.recording import Selection
+from firm_hdl.wire import lay_out
+
+
+def case(what, given=b"", status="OK"):
+    return Case(what=what, value=None, packet=b"", transfers={}, given=given, status=status)
+
+
+PACKET = b"\0\1\0\0\1\0\0\0"
+
+
+@pytest.mark.parametrize(
+    ("packet", "words"),
+    [
+        (PACKET, ""),
+        (b"\0\1\0\3\1\0\0\0", "with option bits"),
+        (PACKET + b"\0", "with bytes behind the message"),
+        (b"\0\1\0\0\1\0\0\2", "with padding that is not zero, or a bool that is neither 0 nor 1"),
+        (
+            b"\0\1\0\3\1\0\0\2\0",
+            "with option bits, bytes behind the message, padding that is not zero, or a bool that "
+            "is neither 0 nor 1",
+        ),
+        # Padding at the end that is not there.
+        (PACKET[:-1], "with padding that is not zero, or a bool that is neither 0 nor 1"),
+    ],
+)
+def test_differences_of_packets_that_mean_the_same(packet, words):
+    assert replay._difference(packet, PACKET, 4) == words
+
+
+@pytest.mark.parametrize(
+    ("packet", "name"),
+    [
+        (b"", "the representation of an empty packet"),
+        (b"\0", "the representation 00"),
+        (b"\0\0\0\0", "big-endian CDR"),
+        (b"\0\2", "a big-endian parameter list"),
+        (b"\0\3\0\0", "a parameter list"),
+        (b"\0\6", "big-endian XCDR2"),
+        (b"\0\7", "XCDR2"),
+        (b"\0\x08", "big-endian delimited XCDR2"),
+        (b"\0\x09", "delimited XCDR2"),
+        (b"\0\x0a", "a big-endian parameter list of XCDR2"),
+        (b"\0\x0b", "a parameter list of XCDR2"),
+        (b"\0\4\0", "the representation 0004"),
+        (b"\1\0\0", "the representation 0100"),
+        (b"\1\7", "the representation 0107"),
+    ],
+)
+def test_representations_have_names(packet, name):
+    assert replay._representation(packet) == f"in {name}, which get the status ENCAPSULATION"
+
+
+def selection(count, total, **more):
+    known = {"topics": 1, "too_long": (), "sparse": False}
+    return Selection(messages=(None,) * count, total=total, **{**known, **more})
+
+
+@pytest.mark.parametrize(
+    ("found", "words"),
+    [
+        (selection(2, 3), ["2 of 3 messages of 1 topic replayed"]),
+        (selection(1, 1, topics=2), ["1 of 1 messages of 2 topics replayed"]),
+        (
+            selection(2, 9, sparse=True),
+            ["2 of 9 messages of 1 topic replayed", "more would take long, --cases N takes N"],
+        ),
+        (
+            selection(2, 5, too_long=(70, 90, 80)),
+            [
+                "2 of 5 messages of 1 topic replayed",
+                "3 left out, of more than 64 bytes (up to 90): --max-message-bytes N takes longer "
+                "ones",
+            ],
+        ),
+    ],
+)
+def test_messages_are_counted(found, words):
+    assert replay._counts(found, Options(longest=64)) == words
+
+
+def test_kinds_are_counted_with_the_first_of_each():
+    judged = [
+        replay._Judged(case=case(what), kind=kind)
+        for what, kind in (("a", ""), ("b", "x"), ("c", "y"), ("d", "x"), ("e", ""))
+    ]
+    assert replay._kinds(judged) == ["2 x (first: b)", "1 y (first: c)"]
+    assert replay._kinds(judged[:1]) == []
+
+
+def test_what_does_not_fit_is_told_with_its_size_and_status():
+    said = replay._misfit(case("message 3", given=b"12345", status="TRUNCATED"), "why")
+    assert said == ("message 3: its 5 bytes do not fit the definition: status TRUNCATED; why")
+
+
+@pytest.mark.parametrize(
+    ("longest", "room"),
+    [
+        (0, MAX_MESSAGE_BYTES),
+        (MAX_MESSAGE_BYTES, MAX_MESSAGE_BYTES),
+        (MAX_MESSAGE_BYTES + 1, 2 * MAX_MESSAGE_BYTES),
+        (2 * MAX_MESSAGE_BYTES, 2 * MAX_MESSAGE_BYTES),
+        (5 * MAX_MESSAGE_BYTES, 8 * MAX_MESSAGE_BYTES),
+    ],
+)
+def test_room_is_a_power_of_two(longest, room):
+    assert replay._room(longest) == room
+
+
+def plan_of(name):
+    message = load_message(name, distro="lyrical")
+    return build_plan(lay_out(message, message.wire), bus_bytes=8, max_message_bytes=1 << 12)
+
+
+def test_bytes_of_texts_lose_their_highest_bit_and_signed_ones_do_not():
+    text = plan_of("std_msgs/msg/String")
+    streams = decode(text, b"\0\1\0\0\4\0\0\0\xe9\x41\xff\0").streams
+    (leaf,) = (number for number, each in enumerate(text.leaves) if each.kind == "items")
+    found = replay._ascii(text, streams)
+    before = [item for items, _ in streams[leaf] for item in items]
+    after = [item for items, _ in found[leaf] for item in items]
+    assert before[:3] == [0xE9, 0x41, 0xFF] and after[:3] == [0x69, 0x41, 0x7F]
+    assert [last for _, last in found[leaf]] == [last for _, last in streams[leaf]]
+    assert {n: v for n, v in found.items() if n != leaf} == {
+        n: v for n, v in streams.items() if n != leaf
+    }
+    wide = plan_of("std_msgs/msg/UInt32")
+    streams = decode(wide, b"\0\1\0\0\xff\xff\xff\xff").streams
+    assert replay._ascii(wide, streams) == streams
+    signed = plan_of("std_msgs/msg/Int8")
+    streams = decode(signed, b"\0\1\0\0\xff").streams
+    assert replay._ascii(signed, streams) == streams
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "signalling"),
+    [
+        ("std_msgs/msg/Float64", "<Q", 0x7FF0000000000001),
+        ("std_msgs/msg/UInt64", "<Q", 0x7FF0000000000001),
+        ("std_msgs/msg/UInt32", "<I", 0x7F800001),
+    ],
+)
+def test_what_python_keeps(name, code, signalling):
+    plan = plan_of(name)
+    for bits in (0, 1, signalling):
+        streams = decode(plan, b"\0\1\0\0" + struct.pack(code, bits)).streams
+        kept = replay._kept(plan, streams)
+        # Doubles pass as they are, and so do integers.
+        assert kept == {number: list(each) for number, each in streams.items()}
+
+
+def test_a_signalling_single_becomes_a_quiet_one():
+    plan = plan_of("std_msgs/msg/Float32")
+    for bits, kept in ((0x7F800001, 0x7FC00001), (0x7FC00000, 0x7FC00000), (0x3F800000,) * 2):
+        streams = decode(plan, b"\0\1\0\0" + struct.pack("<I", bits)).streams
+        assert list(replay._kept(plan, streams).values()) == [[kept]]
+
+
+def test_topics_of_another_definition_are_named(monkeypatch):
+    def topic(name, digest, type_="p/A"):
+        return SimpleNamespace(name=name, digest=digest, type=type_)
+
+    topics = {
+        "one": [topic("/a", ""), topic("/b", "x"), topic("/z", "x", "p/B")],
+        "two": [topic("/c", "y"), topic("/d", "x"), topic("/bad", "x", "")],
+    }
+    monkeypatch.setattr(replay, "topics_of", topics.__getitem__)
+    monkeypatch.setattr(
+        replay,
+        "_recorded_message",
+        lambda library, each: SimpleNamespace(name=each.type) if each.type else None,
+    )
+    found, left = replay._topics(SimpleNamespace(name="p/A"), None, ["one", "two"])
+    assert [each.name for each in found] == ["/a", "/b", "/d"]
+    assert left == ["/c left out: its definition is another one (y)"]
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (ValueError(" first\nsecond"), "first"),
+        (KeyError(3), "3"),
+        (OverflowError(), "OverflowError"),
+    ],
+)
+def test_what_rosbags_raises_is_told_in_a_line(error, said):
+    here = case("message 3", given=b"12345", status="TRUNCATED")
+    found = replay._refused(None, None, here, SimpleNamespace(status="TRUNCATED"), error)
+    assert found.finding == replay._misfit(here, f"rosbags says: {said.strip()}")
+    assert (found.case, found.kind) == (here, "")
