@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from amaranth.hdl import Const, Module, Mux, Signal, Value
 
-from firm_hdl.plan import RUN_COUNTER, Exits, Jump, Plan, Step
+from firm_hdl.plan import RUN_COUNTER, BeginLoop, Exits, Jump, Plan, RunStep, Step, Take
 
 __all__ = ["Control"]
 
@@ -60,16 +60,10 @@ class Control:
 
     def __init__(self, plan: Plan, *, count_bits: int | None = None):
         self.plan = plan
-        begins = [step.begin for step in plan.steps if step.begin is not None]
-        limits = [max(begin.limit, begin.count or 0) + begin.terminated for begin in begins]
-        jumps = [plan.start]
-        for step in plan.steps:
-            jumps += [step.exits.default, *(jump for _, jump in step.exits.repeats)]
-            if step.begin is not None and step.begin.body is not None:
-                jumps.append(step.begin.body)
-        limits += [count for jump in jumps for _, count in jump.enter]
+        limits = [plan.most(step.begin) for step in plan.steps if step.begin is not None]
+        limits += [count for jump in plan.jumps() for _, count in jump.enter]
         bits = max(limits, default=1).bit_length()
-        if count_bits is not None and any(begin.length is not None for begin in begins):
+        if count_bits is not None and plan.counted:
             bits = max(bits, count_bits)
         self.bits = bits
         # At least one bit: Yosys writes a signal of none as one of two.
@@ -94,8 +88,7 @@ class Control:
         self.has_items = Signal()
         self.last_items = Signal()
         self.lane_used = Signal(bus)
-        gaps = (step.begin.gap if step.begin else 0 for step in plan.steps)
-        most = max(step.bytes + gap for step, gap in zip(plan.steps, gaps, strict=True))
+        most = max(step.bytes + step.gap for step in plan.steps)
         self.base = Signal(range(most + 1))
         self.done = Signal()
         self.ends = Signal()
@@ -128,17 +121,17 @@ class Control:
         """Add the decisions of a step, inside the case that selects it."""
         m.d.comb += self.base.eq(step.bytes)
         begin = step.begin
-        if step.run is not None:
-            self._run(m, step.run, step.head, self.run_left)
+        if isinstance(step, RunStep):
+            self._run(m, step.take, self.run_left)
             m.d.comb += [self.done.eq(self.final), self.allowed.eq(1)]
         elif begin is None:
             m.d.comb += self.done.eq(1)
         else:
-            if begin.gap:
-                m.d.comb += self.base.eq(step.bytes + Mux(self.count.any(), begin.gap, 0))
+            if step.gap:
+                m.d.comb += self.base.eq(step.bytes + Mux(self.count.any(), step.gap, 0))
             m.d.comb += self.done.eq(~self.some)
-            if begin.run is not None and begin.head:
-                self._run(m, begin.run, begin.head, self.count)
+            if step.take is not None:
+                self._run(m, step.take, self.count)
                 m.d.comb += [self.allowed.eq(self.some), self.done.eq(~self.some | self.final)]
         # Where to go, and with what alignment; the counters follow when the step completes.
         with m.If(self.done):
@@ -146,16 +139,15 @@ class Control:
         if begin is not None and begin.body is not None:
             with m.Else():
                 self._goto(m, begin.body)
-        elif step.run is not None:
+        elif isinstance(step, RunStep):
             with m.Else():
                 m.d.comb += self.next_step.eq(self.step)
 
     def add_counters(self, m: Module, step: Step) -> None:
         """Add the changes of counters when the step completes, inside its case."""
         begin = step.begin
-        if step.run is not None:
-            lanes = self.plan.leaves[self.plan.runs[step.run].items].lanes
-            m.d.sync += self.run_left.eq(self.run_left - lanes)
+        if isinstance(step, RunStep):
+            m.d.sync += self.run_left.eq(self.run_left - self._lanes(step.run))
         with m.If(self.done):
             waiting = Const(1)
             for level, jump in step.exits.repeats:
@@ -170,25 +162,25 @@ class Control:
                     self._enter(m, self.plan.start)
         if begin is not None and begin.body is not None:
             with m.Else():
-                if begin.run is None:
-                    assert begin.level is not None
+                if isinstance(begin, BeginLoop):
                     m.d.sync += self.levels[begin.level].eq(self.count)
                 elif begin.head:
-                    lanes = self.plan.leaves[self.plan.runs[begin.run].items].lanes
-                    m.d.sync += self.run_left.eq(self.count - lanes)
+                    m.d.sync += self.run_left.eq(self.count - self._lanes(begin.run))
                 else:
                     m.d.sync += self.run_left.eq(self.count)
                 self._enter(m, begin.body)
 
-    def _run(self, m: Module, run: int, head: int, left: Value) -> None:
-        info = self.plan.runs[run]
-        unit = self.plan.leaves[info.items].item_bytes
+    def _lanes(self, run: int) -> int:
+        return self.plan.leaves[self.plan.runs[run].items].lanes
+
+    def _run(self, m: Module, take: Take, left: Value) -> None:
+        unit = self.plan.item_bytes(take.run)
         m.d.comb += [
             self.running.eq(1),
             self.left.eq(left),
-            self.most_items.eq(head // unit),
+            self.most_items.eq(take.head // unit),
             self.unit_log2.eq(unit.bit_length() - 1),
-            self.terminated.eq(info.terminated),
+            self.terminated.eq(self.plan.runs[take.run].terminated),
         ]
 
     def _enter(self, m: Module, jump: Jump) -> None:

@@ -18,7 +18,18 @@ from firm_hdl.gateware.signatures import (
 from firm_hdl.gateware.slots import Slots
 from firm_hdl.gateware.window import Window
 from firm_hdl.model import Message
-from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Fixed, Pad, Part, Plan, Step, build_plan
+from firm_hdl.plan import (
+    DEFAULT_MAX_MESSAGE_BYTES,
+    BeginArray,
+    CountedBegin,
+    Fixed,
+    Pad,
+    Part,
+    Plan,
+    Step,
+    Take,
+    build_plan,
+)
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["Deserializer"]
@@ -167,10 +178,10 @@ class _Circuit:
                 slot += 1
             else:
                 self._carry(part)
-        if step.begin is not None and step.begin.count is not None:
+        if isinstance(step.begin, BeginArray):
             m.d.comb += [self.control.count.eq(step.begin.count), self.control.some.eq(1)]
-        if step.takes_items:
-            self._run(step, slot)
+        if step.take is not None:
+            self._run(step.take, slot)
         self.control.add_step(m, step)
 
     def _check(self, item: Fixed) -> None:
@@ -261,8 +272,9 @@ class _Circuit:
         """Judge a length; return what its leaf transfers, and set what the step counts."""
         m = self.module
         begin = step.begin
-        assert begin is not None
-        over = wire_length > begin.limit + begin.terminated
+        assert isinstance(begin, CountedBegin)
+        has_nul = self.plan.has_nul(begin)
+        over = wire_length > self.plan.most(begin)
         some = Signal()
         m.d.comb += [
             some.eq(good & ~over & wire_length.any()),
@@ -270,17 +282,12 @@ class _Circuit:
             self.control.count.eq(wire_length),
             self.control.some.eq(some),
         ]
-        return Mux(some, wire_length - 1 if begin.terminated else wire_length, 0)
+        return Mux(some, wire_length - 1 if has_nul else wire_length, 0)
 
-    def _run(self, step: Step, slot: int) -> None:
+    def _run(self, take: Take, slot: int) -> None:
         m = self.module
         control = self.control
-        run, at = step.run, 0
-        if run is None:
-            assert step.begin is not None
-            run, at = step.begin.run, step.bytes + step.begin.gap
-        assert run is not None
-        info = self.plan.runs[run]
+        info, at = self.plan.runs[take.run], take.at
         leaf, interface = self.plan.leaves[info.items], self.streams[info.items]
         m.d.comb += self.slots.able[slot].eq(
             self.promised & (~control.has_items | self.free(interface))
@@ -414,4 +421,4 @@ class _Circuit:
 
 def _slots(step: Step) -> int:
     """Return how many leaves a step writes."""
-    return sum(part.completes for part in step.parts) + step.takes_items
+    return sum(part.completes for part in step.parts) + (step.take is not None)

@@ -18,7 +18,17 @@ from firm_hdl.gateware.signatures import (
 )
 from firm_hdl.gateware.slots import Slots
 from firm_hdl.model import Message
-from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Fixed, Part, Plan, Step, build_plan
+from firm_hdl.plan import (
+    DEFAULT_MAX_MESSAGE_BYTES,
+    BeginArray,
+    CountedBegin,
+    Fixed,
+    Part,
+    Plan,
+    Step,
+    Take,
+    build_plan,
+)
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["Serializer"]
@@ -98,7 +108,8 @@ class _Circuit:
         m.submodules.packer = self.packer = Packer(self.plan)
         # Lengths are 32 bits, and a terminator may come on top.
         self.control = Control(self.plan, count_bits=33)
-        self.slots = Slots(max(len(step.parts) + step.takes_items for step in self.plan.steps))
+        steps = self.plan.steps
+        self.slots = Slots(max(len(step.parts) + (step.take is not None) for step in steps))
         self.error = Signal(Status)
         self.raised = Signal(Status)
         self.writable = Signal()
@@ -143,12 +154,12 @@ class _Circuit:
                 self.write(item.at, Const(int.from_bytes(item.data, "little"), 8 * item.bytes))
                 if not step.parts:
                     self.module.d.comb += self.leads.eq(1)
-        if step.begin is not None and step.begin.count is not None:
+        if isinstance(step.begin, BeginArray):
             self.module.d.comb += [self.control.count.eq(step.begin.count), self.control.some.eq(1)]
         # The first slot's error counts, so it is the last to be assigned.
         slots = len(step.parts)
-        if step.takes_items:
-            self._run(step, slots)
+        if step.take is not None:
+            self._run(step.take, slots)
         for slot, part in reversed(list(enumerate(step.parts))):
             self._part(part, slot, step)
         self.control.add_step(self.module, step)
@@ -194,9 +205,9 @@ class _Circuit:
 
     def _length(self, length: Value, slot: int, step: Step) -> Value:
         m, begin = self.module, step.begin
-        assert begin is not None
+        assert isinstance(begin, CountedBegin)
         count = Signal(33)
-        m.d.comb += count.eq(length + begin.terminated)
+        m.d.comb += count.eq(length + self.plan.has_nul(begin))
         # Once taken, the length is gone from its stream while the step may still wait for items.
         m.d.comb += [
             self.control.count.eq(Mux(self.slots.served[slot], self.held_count, count)),
@@ -208,14 +219,9 @@ class _Circuit:
                 m.d.comb += self.raised.eq(Status.LENGTH)
         return count[:32]
 
-    def _run(self, step: Step, slot: int) -> None:
+    def _run(self, take: Take, slot: int) -> None:
         m, control = self.module, self.control
-        run, at = step.run, 0
-        if run is None:
-            assert step.begin is not None
-            run, at = step.begin.run, step.bytes + step.begin.gap
-        assert run is not None
-        info = self.plan.runs[run]
+        info, at = self.plan.runs[take.run], take.at
         interface = self.streams[info.items]
         size = self.plan.leaves[info.items].item_bytes
         go = self.slots.go[slot] & control.has_items

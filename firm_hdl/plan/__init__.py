@@ -1,6 +1,6 @@
 """The plan of a converter: what it does in each cycle, decided before there is any circuit."""
 
-from firm_hdl.plan.build import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, build_plan, check_bus_bytes
+from firm_hdl.plan.build import build_plan
 from firm_hdl.plan.check import check
 from firm_hdl.plan.interpret import (
     Decoded,
@@ -16,17 +16,25 @@ from firm_hdl.plan.interpret import (
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
+    BeginArray,
+    BeginLoop,
+    BeginRun,
+    CountedBegin,
     Exits,
     Fixed,
     Jump,
     Leaf,
+    MapStep,
     Pad,
     Part,
     Plan,
     Run,
+    RunStep,
     Slice,
     Step,
+    Take,
 )
+from firm_hdl.plan.limits import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, check_bus_bytes
 from firm_hdl.plan.yaml import from_yaml, to_yaml
 
 __all__ = [
@@ -34,6 +42,10 @@ __all__ = [
     "DEFAULT_MAX_MESSAGE_BYTES",
     "RUN_COUNTER",
     "Begin",
+    "BeginArray",
+    "BeginLoop",
+    "BeginRun",
+    "CountedBegin",
     "DecodeStatus",
     "Decoded",
     "Edge",
@@ -42,13 +54,16 @@ __all__ = [
     "Fixed",
     "Jump",
     "Leaf",
+    "MapStep",
     "Pad",
     "Part",
     "Payload",
     "Plan",
     "Run",
+    "RunStep",
     "Slice",
     "Step",
+    "Take",
     "Transfer",
     "Visit",
     "build_plan",

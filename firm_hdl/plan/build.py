@@ -15,61 +15,34 @@ from firm_hdl.plan.cut import cut, split
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
+    BeginArray,
+    BeginLoop,
+    BeginRun,
     Exits,
     Fixed,
     Jump,
     Leaf,
     LeafKind,
+    MapStep,
     Pad,
     Part,
     Plan,
     Run,
+    RunStep,
     Slice,
     Step,
+)
+from firm_hdl.plan.limits import (
+    DEFAULT_MAX_MESSAGE_BYTES,
+    check_bus_bytes,
+    check_max_message_bytes,
 )
 from firm_hdl.wire import Layout, Node, Path, Scalar, Trigger, walk
 from firm_hdl.wire import Loop as LoopNode
 from firm_hdl.wire import Run as RunNode
 from firm_hdl.wire.layout import LENGTH, OCTET, Gap
 
-__all__ = ["BUS_BYTES", "DEFAULT_MAX_MESSAGE_BYTES", "build_plan", "check_bus_bytes"]
-
-BUS_BYTES = (1, 2, 4, 8, 16, 32, 64)
-DEFAULT_MAX_MESSAGE_BYTES = 1 << 24
-
-
-def check_bus_bytes(bus_bytes: int) -> None:
-    """Check the width of a bus of packets.
-
-    Raises
-    ------
-    TypeError
-        If it is no integer.
-    ValueError
-        If it is none of `BUS_BYTES`.
-    """
-    if not isinstance(bus_bytes, int) or isinstance(bus_bytes, bool):
-        raise TypeError(f"Bus width must be an integer, not {bus_bytes!r}")
-    if bus_bytes not in BUS_BYTES:
-        raise ValueError(
-            f"Bus width must be one of {', '.join(map(str, BUS_BYTES))} bytes, not {bus_bytes!r}"
-        )
-
-
-def _check_limit(layout: Layout, max_message_bytes: int) -> None:
-    # To Python, a truth value is an integer, too.
-    if not isinstance(max_message_bytes, int) or isinstance(max_message_bytes, bool):
-        raise TypeError(f"Maximum message size must be an integer, not {max_message_bytes!r}")
-    if layout.min_bytes >= 1 << 32:
-        raise ValueError(
-            f"Each message has at least {layout.min_bytes} bytes, and at most {(1 << 32) - 1} are "
-            "possible"
-        )
-    if not layout.min_bytes <= max_message_bytes < 1 << 32:
-        raise ValueError(
-            f"Maximum message size must be from {layout.min_bytes} bytes, the least that a "
-            f"{layout.message.name} has, to {(1 << 32) - 1}, not {max_message_bytes!r}"
-        )
+__all__ = ["build_plan"]
 
 
 def build_plan(
@@ -102,7 +75,7 @@ def build_plan(
         If a parameter is out of range, or no message of the type fits `max_message_bytes`.
     """
     check_bus_bytes(bus_bytes)
-    _check_limit(layout, max_message_bytes)
+    check_max_message_bytes(layout, max_message_bytes)
     if not isinstance(window_words, int) or isinstance(window_words, bool):
         raise TypeError(f"Window must have an integer number of words, not {window_words!r}")
     if window_words not in (1, 2):
@@ -140,6 +113,14 @@ class _Mark:
     count: int = 0
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Count:
+    """A number of elements that a length says: the leaf, and the largest legal value."""
+
+    length: int
+    limit: int
+
+
 @dataclass(slots=True)
 class _Builder:
     layout: Layout
@@ -165,7 +146,7 @@ class _Builder:
             self.segment.append(Fixed(at=len(rules.encapsulation), data=options, check=False))
         self.nodes(self.layout.nodes)
         self.flush()
-        places = [place for place, item in enumerate(self.program) if isinstance(item, Step)]
+        places = [place for place, item in enumerate(self.program) if not isinstance(item, _Mark)]
         self.numbers = {place: index for index, place in enumerate(places)}
         return self.link()
 
@@ -227,20 +208,12 @@ class _Builder:
         length = self.leaf(node.path, "length", LENGTH)
         self.value(length, LENGTH.bytes)
         items = self.leaf(node.path, "items", node.item, self.lanes(node.item))
-        begin = Begin(
-            length=length,
-            count=None,
-            limit=self.limit(node.bound, node.item.bytes, int(node.terminated)),
-            terminated=node.terminated,
-            level=None,
-            run=None,
-            body=None,
-        )
+        limit = self.limit(node.bound, node.item.bytes, int(node.terminated))
         if node.item.bytes > self.bus_bytes:
-            self.item_loop(node, items, begin)
+            self.item_loop(node, items, _Count(length=length, limit=limit))
         else:
-            self.runs.append(Run(items=items, terminated=node.terminated))
-            self.run(node, replace(begin, run=len(self.runs) - 1))
+            run = self.new_run(items, terminated=node.terminated)
+            self.run(node, BeginRun(length=length, limit=limit, run=run, body=None))
 
     def array(self, node: RunNode) -> None:
         assert node.count is not None
@@ -252,29 +225,22 @@ class _Builder:
             self.value(items, node.count * size, last=True)
             return
         if size > self.bus_bytes:
-            self.item_loop(node, items, None)
+            self.item_loop(node, items, node.count)
             return
         self.gap(node.item_gap)
-        self.runs.append(Run(items=items, last=not tail))
-        count = full * self.lanes(node.item)
-        self.run(
-            replace(node, item_gap=Gap(align=1, bytes=0)),
-            Begin(
-                length=None,
-                count=count,
-                limit=count,
-                terminated=False,
-                level=None,
-                run=len(self.runs) - 1,
-                body=None,
-            ),
-        )
+        run = self.new_run(items, last=not tail)
+        begin = BeginArray(count=full * self.lanes(node.item), run=run, body=None)
+        self.run(replace(node, item_gap=Gap(align=1, bytes=0)), begin)
         if tail:
             self.value(items, tail * size, last=True)
 
-    def item_loop(self, node: RunNode, items: int, begin: Begin | None) -> None:
+    def new_run(self, items: int, *, terminated: bool = False, last: bool = True) -> int:
+        self.runs.append(Run(items=items, terminated=terminated, last=last))
+        return len(self.runs) - 1
+
+    def item_loop(self, node: RunNode, items: int, count: int | _Count) -> None:
         """Plan items wider than the bus: a loop over single items, some steps each."""
-        level = self.enter_loop(begin, node.count)
+        level = self.enter_loop(count)
         # Padding is in front of the first item only, but then it is there for all: items keep their
         # own alignment. The gap of the layout was found for the first one, so it cannot be static.
         if node.item_gap.bytes is None or node.item_gap.bytes:
@@ -283,36 +249,28 @@ class _Builder:
         self.leave_loop()
 
     def loop(self, node: LoopNode) -> None:
-        begin = None
-        if node.count is None:
+        if node.count is not None:
+            self.enter_loop(node.count)
+        else:
             assert node.gap is not None
             self.gap(node.gap)
             length = self.leaf(node.path, "length", LENGTH)
             self.value(length, LENGTH.bytes)
             limit = self.limit(node.bound, node.min_body_bytes)
-            begin = Begin(
-                length=length,
-                count=None,
-                limit=limit,
-                terminated=False,
-                level=None,
-                run=None,
-                body=None,
-            )
-        self.enter_loop(begin, node.count)
+            self.enter_loop(_Count(length=length, limit=limit))
         self.nodes(node.body)
         self.leave_loop()
 
-    def enter_loop(self, begin: Begin | None, count: int | None) -> int:
+    def enter_loop(self, count: int | _Count) -> int:
         level = self.depth
         self.depth += 1
         self.levels = max(self.levels, self.depth)
-        if begin is None:
-            assert count is not None
+        if isinstance(count, int):
             self.flush()
             self.program.append(_Mark(kind="enter", counter=level, count=count))
         else:
-            self.flush(replace(begin, level=level))
+            length, limit = count.length, count.limit
+            self.flush(BeginLoop(length=length, limit=limit, level=level, body=_END))
         self.program.append(_Mark(kind="loop", counter=level))
         return level
 
@@ -323,12 +281,11 @@ class _Builder:
 
     # Segments to steps.
 
-    def run(self, node: RunNode, begin: Begin) -> None:
+    def run(self, node: RunNode, begin: BeginRun | BeginArray) -> None:
         """End the segment with the start of a run, and add the run's body if it may need one."""
-        at_once = self.bus_bytes + (1 if begin.terminated else 0)
-        body = Step(run=begin.run, head=min(at_once, self.window_bytes), exits=_NOWHERE)
-        if begin.length is None and not self.segment:
-            assert begin.count is not None
+        at_once = self.bus_bytes + (1 if self.runs[begin.run].terminated else 0)
+        body = RunStep(run=begin.run, head=min(at_once, self.window_bytes), exits=_NOWHERE)
+        if isinstance(begin, BeginArray) and not self.segment:
             self.flush()
             self.program.append(_Mark(kind="enter", counter=RUN_COUNTER, count=begin.count))
             self.program.append(replace(body, align=self.take_align()))
@@ -339,8 +296,7 @@ class _Builder:
         if gap is None or head < self.bus_bytes:
             head = 0
         self.flush(replace(begin, gap=gap or 0, head=head))
-        all_in_head = begin.count is not None and begin.count * node.item.bytes <= head
-        if not all_in_head:
+        if not (isinstance(begin, BeginArray) and begin.count * node.item.bytes <= head):
             self.program.append(replace(body, align=node.item_gap.align if gap is None else 1))
 
     def take_align(self) -> int:
@@ -352,7 +308,7 @@ class _Builder:
         if not self.segment:
             assert begin is None
             return
-        heads = begin is not None and begin.head > 0
+        heads = begin is not None and not isinstance(begin, BeginLoop) and begin.head > 0
         bus = self.bus_bytes
         if not self.program and not heads:
             # From the start of the packet, cuts at bus words need no shifter.
@@ -366,7 +322,7 @@ class _Builder:
         steps = split(self.segment, sizes)
         for index, slices in enumerate(steps):
             self.program.append(
-                Step(
+                MapStep(
                     align=align if index == 0 else 1,
                     bytes=sizes[index],
                     slices=slices,
@@ -383,7 +339,7 @@ class _Builder:
         enter: list[tuple[int | str, int]] = []
         while place < len(self.program):
             item = self.program[place]
-            if isinstance(item, Step):
+            if not isinstance(item, _Mark):
                 break
             assert item.kind != "end"
             if item.kind == "enter":
@@ -396,7 +352,7 @@ class _Builder:
         repeats: list[tuple[int, Jump]] = []
         while place < len(self.program):
             item = self.program[place]
-            if isinstance(item, Step) or item.kind != "end":
+            if not isinstance(item, _Mark) or item.kind != "end":
                 break
             assert isinstance(item.counter, int)
             repeats.append((item.counter, self.jump_to(bodies[place])))
@@ -409,19 +365,20 @@ class _Builder:
         for place, item in enumerate(self.program):
             if isinstance(item, _Mark):
                 continue
-            begin = item.begin
             after = place + 1
-            if begin is not None:
-                if begin.run is not None:
-                    # The body of a run, if any, is the next step.
-                    follower = self.program[after] if after < len(self.program) else None
-                    if isinstance(follower, Step) and follower.run == begin.run:
-                        begin = replace(begin, body=self.jump_to(after))
-                        after += 1
-                else:
+            if item.begin is not None:
+                begin = item.begin
+                if isinstance(begin, BeginLoop):
                     begin = replace(begin, body=self.jump_to(after))
                     after = ends[after] + 1
-            steps.append(replace(item, begin=begin, exits=self.exits_at(after, bodies)))
+                elif after < len(self.program):
+                    # The body of a run, if any, is the next step.
+                    follower = self.program[after]
+                    if isinstance(follower, RunStep) and follower.run == begin.run:
+                        begin = replace(begin, body=self.jump_to(after))
+                        after += 1
+                item = replace(item, begin=begin)
+            steps.append(replace(item, exits=self.exits_at(after, bodies)))
         return tuple(steps)
 
     def loop_places(self) -> tuple[dict[int, int], dict[int, int]]:
@@ -439,4 +396,5 @@ class _Builder:
         return bodies, ends
 
 
-_NOWHERE = Exits(default=Jump(step=None))
+_END = Jump(step=None)
+_NOWHERE = Exits(default=_END)

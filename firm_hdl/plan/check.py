@@ -11,9 +11,25 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from firm_hdl.model import PRIMITIVE_OF
-from firm_hdl.plan.build import BUS_BYTES
 from firm_hdl.plan.conform import against_layout
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, Fixed, Jump, Leaf, Pad, Part, Plan, Slice, Step
+from firm_hdl.plan.ir import (
+    RUN_COUNTER,
+    Begin,
+    BeginArray,
+    BeginLoop,
+    BeginRun,
+    CountedBegin,
+    Fixed,
+    Jump,
+    Leaf,
+    MapStep,
+    Pad,
+    Part,
+    Plan,
+    RunStep,
+    Slice,
+)
+from firm_hdl.plan.limits import BUS_BYTES
 from firm_hdl.plan.offsets import Span, check_offsets, loop_spans
 from firm_hdl.wire import RULES, Layout
 
@@ -79,7 +95,7 @@ def _steps(plan: Plan) -> Iterator[str]:
     if not plan.steps:
         yield "there are no steps"
     for index, step in enumerate(plan.steps):
-        problems = _body(plan, step) if step.run is not None else _static(plan, step)
+        problems = _body(plan, step) if isinstance(step, RunStep) else _map(plan, step)
         yield from (f"step {index}: {problem}" for problem in problems)
         if step.align not in (1, 2, 4, 8):
             yield f"step {index}: alignment to {step.align}"
@@ -97,10 +113,8 @@ def _header(plan: Plan) -> Iterator[str]:
         yield f"the header is not that of {plan.wire}"
 
 
-def _body(plan: Plan, step: Step) -> Iterator[str]:
-    if step.bytes or step.slices or step.begin is not None:
-        yield "the body of a run has bytes or a start of its own"
-    if step.run is None or step.run not in range(len(plan.runs)):
+def _body(plan: Plan, step: RunStep) -> Iterator[str]:
+    if step.run not in range(len(plan.runs)):
         yield f"there is no run {step.run}"
     else:
         yield from _head(plan, step.run, step.head)
@@ -113,7 +127,7 @@ def _head(plan: Plan, run: int, head: int) -> Iterator[str]:
         yield f"{head} bytes of {leaf} a cycle do not suit words of {word}"
 
 
-def _static(plan: Plan, step: Step) -> Iterator[str]:
+def _map(plan: Plan, step: MapStep) -> Iterator[str]:
     wrong = [problem for item in step.slices for problem in _slice(plan, item)]
     if wrong:
         yield from wrong
@@ -125,8 +139,6 @@ def _static(plan: Plan, step: Step) -> Iterator[str]:
         at = item.at + item.bytes
     if at != step.bytes:
         yield f"the map has {at} bytes, the step {step.bytes}"
-    if step.head:
-        yield "a head, but no run"
     if step.most_bytes > 2 * plan.bus_bytes:
         yield f"{step.most_bytes} bytes in one cycle"
     for part in step.parts[:-1]:
@@ -137,7 +149,7 @@ def _static(plan: Plan, step: Step) -> Iterator[str]:
             yield f"{plan.leaves[item.leaf]} goes on behind something else"
     lengths = [part.leaf for part in step.parts if plan.leaves[part.leaf].kind == "length"]
     done = [part.leaf for part in step.parts if part.completes and part.leaf in lengths]
-    counted = [] if step.begin is None or step.begin.length is None else [step.begin.length]
+    counted = [step.begin.length] if isinstance(step.begin, CountedBegin) else []
     if done != counted or (done and step.slices[-1] is not step.parts[-1]):
         yield "a length must be complete just where it starts something"
     if step.begin is not None:
@@ -165,34 +177,28 @@ def _slice(plan: Plan, item: Slice) -> Iterator[str]:
 
 
 def _begin(plan: Plan, begin: Begin) -> Iterator[str]:
-    if (begin.length is None) == (begin.count is None):
-        yield "one of a length and a constant must count"
-    if (begin.level is None) == (begin.run is None):
-        yield "one of a loop and a run must be started"
-        return
-    if begin.limit < 0 or (begin.count is not None and not 1 <= begin.count == begin.limit):
+    if isinstance(begin, BeginArray):
+        if begin.count < 1:
+            yield f"a constant count of {begin.count}"
+    elif begin.limit < 0:
         yield f"a count has the limit {begin.limit}"
-    if begin.body is None and begin.run is None:
-        yield "a loop has no body"
-    if begin.run is None:
-        if begin.terminated or begin.gap or begin.head:
-            yield "a loop has no NUL, gap or head"
-    elif begin.run not in range(len(plan.runs)):
-        yield f"there is no run {begin.run}"
-    else:
-        yield from _begin_run(plan, begin, begin.run)
+    if not isinstance(begin, BeginLoop):
+        if begin.run not in range(len(plan.runs)):
+            yield f"there is no run {begin.run}"
+        else:
+            yield from _begin_run(plan, begin)
 
 
-def _begin_run(plan: Plan, begin: Begin, run: int) -> Iterator[str]:
-    terminated = plan.runs[run].terminated
-    item_bytes = plan.leaves[plan.runs[run].items].item_bytes
-    if begin.terminated != terminated or (terminated and begin.length is None):
-        yield "the length and the run do not agree about a NUL"
+def _begin_run(plan: Plan, begin: BeginRun | BeginArray) -> Iterator[str]:
+    item_bytes = plan.item_bytes(begin.run)
+    if isinstance(begin, BeginArray) and plan.has_nul(begin):
+        yield "a constant run counts a NUL"
     if begin.head:
-        yield from _head(plan, run, begin.head)
+        yield from _head(plan, begin.run, begin.head)
     if not 0 <= begin.gap < max(8, item_bytes):
         yield f"a gap of {begin.gap} bytes"
-    most = begin.limit * item_bytes + (1 if terminated else 0)
+    has_nul = plan.has_nul(begin)
+    most = (plan.most(begin) - has_nul) * item_bytes + has_nul
     if begin.body is None and most > begin.head:
         yield f"a run of {most} bytes needs a body"
 
@@ -209,10 +215,10 @@ def _transfers(plan: Plan) -> Iterator[str]:
             order.append(part.leaf)
             if part.completes:
                 parts.setdefault(part.leaf, []).append(part)
-        run = step.run if step.begin is None else step.begin.run
-        if run is not None:
-            order.append(plan.runs[run].items)
-            runs.setdefault(plan.runs[run].items, set()).add(run)
+        owner = step if isinstance(step, RunStep) else step.begin
+        if isinstance(owner, RunStep | BeginRun | BeginArray):
+            order.append(plan.runs[owner.run].items)
+            runs.setdefault(plan.runs[owner.run].items, set()).add(owner.run)
     for now, leaf in zip([-1, *order], order, strict=False):
         if leaf not in (now, now + 1):
             yield f"leaf {plan.leaves[leaf]} is out of order"
@@ -307,23 +313,28 @@ class _Walk:
 
     def step(self, index: int, spans: dict[Span, int]) -> None:
         step, state, who = self.plan.steps[index], self.states[index], f"step {index}"
-        if self.loaded[index] not in ((None,) if step.run is None else ("constant", step.run)):
+        loads = ("constant", step.run) if isinstance(step, RunStep) else (None,)
+        if self.loaded[index] not in loads:
             self.problems.append(f"{who}: the counter of the run is not loaded, or in vain")
-        constant = step.run is not None and self.loaded[index] == "constant"
-        if constant and self.plan.runs[step.run or 0].terminated:
+        if (
+            isinstance(step, RunStep)
+            and self.loaded[index] == "constant"
+            and self.plan.runs[step.run].terminated
+        ):
             self.problems.append(f"{who}: a constant run counts a NUL")
         for part in step.parts:
             if part.last_level is not None and part.last_level != len(state) - 1:
                 self.problems.append(f"{who}: loop {part.last_level} is not the innermost")
         after = index + 1
         begin = step.begin
-        if begin is not None and begin.body is not None:
-            inner = state if begin.level is None else (*state, after)
-            if begin.level is not None and begin.level != len(state):
+        if isinstance(begin, BeginLoop):
+            if begin.level != len(state):
                 self.problems.append(f"{who}: loop {begin.level} inside {len(state)} loops")
-            self.jump(begin.body, inner, after, f"{who}, body", begin.run)
-            last = after if begin.level is None else spans.get((len(state), after), after)
-            after = last + 1
+            self.jump(begin.body, (*state, after), after, f"{who}, body", None)
+            after = spans.get((len(state), after), after) + 1
+        elif begin is not None and begin.body is not None:
+            self.jump(begin.body, state, after, f"{who}, body", begin.run)
+            after += 1
         for level, jump in step.exits.repeats:
             if level != len(state) - 1:
                 self.problems.append(f"{who}: loop {level} ends inside {len(state)} loops")

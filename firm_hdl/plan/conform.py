@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, Plan
-from firm_hdl.plan.offsets import jumps
+from firm_hdl.plan.ir import RUN_COUNTER, BeginArray, Plan, RunStep
 from firm_hdl.wire import Layout, Loop, Run, Scalar, Trigger, walk
 
 __all__ = ["against_layout"]
@@ -45,8 +44,7 @@ class _Judge:
         self.counts: list[int] = []
         self.problems: list[str] = []
         self.totals = _totals(plan)
-        begins = [step.begin for step in plan.steps if step.begin is not None]
-        self.begins: dict[int, Begin] = {b.length: b for b in begins if b.length is not None}
+        self.begins = plan.counted
 
     def counted(self, node: Run | Loop, bound: int | None, *, terminated: bool) -> None:
         name = ".".join(node.path)
@@ -56,7 +54,7 @@ class _Judge:
             self.problems.append(f"{name} has no length")
         elif bound is not None and begin.limit > bound:
             self.problems.append(f"{name} may have more than {bound} elements")
-        elif begin.terminated != terminated:
+        elif self.plan.has_nul(begin) != terminated:
             self.problems.append(f"{name} has the NUL wrong")
 
     def run(self, node: Run) -> None:
@@ -76,7 +74,7 @@ def _loop_counts(plan: Plan) -> list[int]:
     """Return the counts of all loops of constant count, in wire order, outer ones first."""
     counts = {
         (jump.step, counter): count
-        for jump in jumps(plan)
+        for jump in plan.jumps()
         for counter, count in jump.enter
         if isinstance(counter, int) and jump.step is not None
     }
@@ -92,13 +90,13 @@ def _totals(plan: Plan) -> dict[int, int]:
             if part.completes and plan.leaves[part.leaf].kind == "items":
                 count = part.size // plan.leaves[part.leaf].item_bytes
                 totals[part.leaf] = totals.get(part.leaf, 0) + count
-        if step.begin is not None and step.begin.run is not None and step.begin.count is not None:
+        if isinstance(step.begin, BeginArray):
             runs[step.begin.run] = step.begin.count
-    for jump in jumps(plan):
-        run = None if jump.step is None else plan.steps[jump.step].run
+    for jump in plan.jumps():
+        target = None if jump.step is None else plan.steps[jump.step]
         for counter, count in jump.enter:
-            if counter == RUN_COUNTER and run is not None:
-                runs[run] = count
+            if counter == RUN_COUNTER and isinstance(target, RunStep):
+                runs[target.run] = count
     for run, count in runs.items():
         totals[plan.runs[run].items] = totals.get(plan.runs[run].items, 0) + count
     return totals

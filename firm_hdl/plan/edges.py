@@ -9,8 +9,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from firm_hdl.plan.interpret import Edge
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, Plan, Step
-from firm_hdl.plan.offsets import jumps, paddings
+from firm_hdl.plan.ir import (
+    RUN_COUNTER,
+    Begin,
+    BeginArray,
+    BeginLoop,
+    BeginRun,
+    Plan,
+    RunStep,
+    Step,
+)
+from firm_hdl.plan.offsets import paddings
 
 __all__ = ["edges"]
 
@@ -38,10 +47,11 @@ def _ways(
 ) -> Iterator[str]:
     if step.align != 1:
         yield from (f"padding {count}" for count in padding)
-    if step.run is not None:
-        size = plan.leaves[plan.runs[step.run].items].item_bytes
-        if most.get((RUN_COUNTER, index), 0) * size > step.head:
-            yield "again"
+    if (
+        isinstance(step, RunStep)
+        and most.get((RUN_COUNTER, index), 0) * plan.item_bytes(step.run) > step.head
+    ):
+        yield "again"
     begin = step.begin
     if begin is not None and begin.body is not None and _goes_on(plan, begin):
         yield "body"
@@ -61,45 +71,31 @@ def _most(plan: Plan) -> Counts:
         if step is not None:
             most[counter, step] = max(count, most.get((counter, step), 0))
 
-    for jump in jumps(plan):
+    for jump in plan.jumps():
         for counter, count in jump.enter:
             note(counter, jump.step, count)
     for step in plan.steps:
         begin = step.begin
         if begin is not None and begin.body is not None:
-            if begin.level is not None:
+            if isinstance(begin, BeginLoop):
                 note(begin.level, begin.body.step, begin.limit)
             else:
-                left = _items(begin) - _head_items(plan, begin)
+                left = plan.most(begin) - _head_items(plan, begin)
                 note(RUN_COUNTER, begin.body.step, left)
     return most
 
 
-def _items(begin: Begin) -> int:
-    """Return the most items on the wire, a NUL included."""
-    return begin.limit + (1 if begin.terminated else 0)
-
-
-def _head_items(plan: Plan, begin: Begin) -> int:
+def _head_items(plan: Plan, begin: BeginRun | BeginArray) -> int:
     """Return how many items a step takes of a run that it does not finish."""
-    if begin.run is None or not begin.head:
-        return 0
-    return plan.leaves[plan.runs[begin.run].items].lanes
+    return plan.leaves[plan.runs[begin.run].items].lanes if begin.head else 0
 
 
 def _goes_on(plan: Plan, begin: Begin) -> bool:
-    if begin.run is None:
+    if isinstance(begin, BeginLoop):
         return begin.limit > 0
-    size = plan.leaves[plan.runs[begin.run].items].item_bytes
-    return _items(begin) * size > begin.head
+    return plan.most(begin) * plan.item_bytes(begin.run) > begin.head
 
 
 def _may_be_done(plan: Plan, begin: Begin) -> bool:
     """Return whether a step that starts something may be its end, too."""
-    if begin.length is not None:
-        return True
-    assert begin.count is not None
-    if begin.run is None:
-        return False
-    size = plan.leaves[plan.runs[begin.run].items].item_bytes
-    return begin.count * size <= begin.head
+    return not isinstance(begin, BeginArray) or not _goes_on(plan, begin)

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from firm_hdl.plan.ir import RUN_COUNTER, Exits, Jump, Plan
+from firm_hdl.plan.ir import RUN_COUNTER, BeginArray, Exits, Jump, Plan, RunStep
+from firm_hdl.wire import residues as rs
 
 __all__ = ["Geometry", "geometry"]
 
@@ -44,16 +45,16 @@ def geometry(plan: Plan) -> Geometry:
     """Compute the geometry of a plan."""
     starts = _starts(plan)
     bus = plan.bus_bytes
-    offsets = {position % bus for residues in starts for position in _members(residues)}
+    offsets = {position % bus for residues in starts for position in rs.members(residues)}
     granule = bus
     while any(offset % granule for offset in offsets):
         granule //= 2
     reach = 1
     for step, residues in zip(plan.steps, starts, strict=True):
-        for position in _members(residues):
+        for position in rs.members(residues):
             reach = max(reach, -(-(position % bus + step.most_bytes) // bus))
     word = max((1, *(step.most_bytes for step in plan.steps)))
-    gaps = (step.bytes + step.begin.gap for step in plan.steps if step.begin is not None)
+    gaps = (step.bytes + step.gap for step in plan.steps if step.begin is not None)
     return Geometry(
         word_bytes=word,
         skip_bytes=max((word, *gaps)),
@@ -61,10 +62,6 @@ def geometry(plan: Plan) -> Geometry:
         reach_beats=reach,
         aligns=any(step.align > 1 for step in plan.steps),
     )
-
-
-def _members(residues: int) -> Iterator[int]:
-    return (r for r in range(residues.bit_length()) if residues >> r & 1)
 
 
 def _starts(plan: Plan) -> list[int]:
@@ -86,69 +83,54 @@ def _starts(plan: Plan) -> list[int]:
 class _Flow:
     def __init__(self, plan: Plan):
         self.plan = plan
-        self.modulus = max(8, plan.bus_bytes)
-        self.all = (1 << self.modulus) - 1
-        jumps = [plan.start]
-        for step in plan.steps:
-            jumps.extend((step.exits.default, *(jump for _, jump in step.exits.repeats)))
-            if step.begin is not None and step.begin.body is not None:
-                jumps.append(step.begin.body)
+        self.modulus = max(rs.MODULUS, plan.bus_bytes)
         entered = {
-            jump.step for jump in jumps if any(counter == RUN_COUNTER for counter, _ in jump.enter)
+            jump.step
+            for jump in plan.jumps()
+            if any(counter == RUN_COUNTER for counter, _ in jump.enter)
         }
+        bodies = (plan.steps[index] for index in entered if index is not None)
+        begins = (step.begin for step in plan.steps)
         # Runs of constant count are cut to whole bus words by the planner.
-        self.constant_runs = {plan.steps[index].run for index in entered if index is not None} | {
-            step.begin.run
-            for step in plan.steps
-            if step.begin is not None and step.begin.run is not None and step.begin.length is None
+        self.constant_runs = {
+            *(body.run for body in bodies if isinstance(body, RunStep)),
+            *(begin.run for begin in begins if isinstance(begin, BeginArray)),
         }
 
     def advance(self, residues: int, count: int) -> int:
-        count %= self.modulus
-        return (residues << count | residues >> (self.modulus - count)) & self.all
+        return rs.advance(residues, count, self.modulus)
 
     def aligned(self, residues: int, align: int) -> int:
-        if align == 1:
-            return residues
-        result = 0
-        for position in _members(residues):
-            pad = -(position - self.plan.header_bytes) % align
-            result |= self.advance(1 << position, pad)
-        return result
+        """Align positions in the packet, which count from the start of its header."""
+        header = self.plan.header_bytes
+        behind = self.advance(residues, -header)
+        return self.advance(rs.aligned(behind, align, self.modulus), header)
 
     def run_end(self, residues: int, run: int) -> int:
         """Return where the last bytes of a run may end that are taken from one of `residues`."""
         if run in self.constant_runs:
             return self.advance(residues, self.plan.bus_bytes)
-        info = self.plan.runs[run]
-        unit = self.plan.leaves[info.items].item_bytes
-        result = residues
-        for n in range(1, self.modulus // unit):
-            result |= self.advance(residues, n * unit)
-        return result
+        return rs.spread(residues, self.plan.item_bytes(run), self.modulus)
 
     def successors(self, index: int, residues: int) -> Iterator[tuple[Jump, int]]:
         step = self.plan.steps[index]
         bus = self.plan.bus_bytes
-        after = self.advance(residues, step.bytes)
-        if step.run is not None:
+        if isinstance(step, RunStep):
             start = residues | self.advance(residues, bus)
             # The body repeats itself without going through an exit.
             yield from self.exits(step.exits, self.run_end(start, step.run))
             yield Jump(step=index), start
             return
+        after = self.advance(residues, step.bytes)
         begin = step.begin
         if begin is None:
             yield from self.exits(step.exits, after)
             return
-        first = self.advance(after, begin.gap)
-        if begin.run is not None and begin.head:
-            ends = self.run_end(first, begin.run)
+        first = self.advance(after, step.gap)
+        ends = 0 if isinstance(begin, BeginArray) else after
+        if step.take is not None:
+            ends |= self.run_end(first, step.take.run)
             first = self.advance(first, bus)
-        else:
-            ends = 0
-        if begin.length is not None:
-            ends |= after
         if ends:
             yield from self.exits(step.exits, ends)
         if begin.body is not None:

@@ -13,7 +13,23 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple, TypeAlias
 
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, Exits, Fixed, Jump, Leaf, Pad, Part, Plan, Run
+from firm_hdl.plan.ir import (
+    RUN_COUNTER,
+    BeginArray,
+    BeginLoop,
+    CountedBegin,
+    Exits,
+    Fixed,
+    Jump,
+    Leaf,
+    MapStep,
+    Pad,
+    Part,
+    Plan,
+    Run,
+    RunStep,
+    Take,
+)
 
 __all__ = [
     "DecodeStatus",
@@ -162,12 +178,11 @@ class _Machine(ABC):
     length: int = 0
     visits: list[Visit] = field(default_factory=list)
     edges: set[Edge] = field(default_factory=set)
-    # Each length's Begin; its first bytes may be some steps before it.
-    begins: dict[int, Begin] = field(init=False)
+    # What each length counts; its first bytes may be some steps before that starts.
+    begins: dict[int, CountedBegin] = field(init=False)
 
     def __post_init__(self) -> None:
-        starts = (step.begin for step in self.plan.steps)
-        self.begins = {b.length: b for b in starts if b is not None and b.length is not None}
+        self.begins = self.plan.counted
 
     @property
     @abstractmethod
@@ -220,15 +235,15 @@ class _Machine(ABC):
                     self.fixed(item)
                 case Part():
                     self.part(item)
-        if step.run is not None:
+        if isinstance(step, RunStep):
             while self.counters[RUN_COUNTER]:
                 start = self.offset
-                self.take(self.plan.runs[step.run], step.head)
+                self.take(step.take)
                 self.visits.append(Visit(index, self.offset - start))
                 if self.counters[RUN_COUNTER]:
                     self.edges.add(Edge(index, "again"))
             return self.leave(index, step.exits)
-        body = None if step.begin is None else self.begin(step.begin)
+        body = self.begin(step)
         self.visits.append(Visit(index, self.offset - start))
         if body is None:
             return self.leave(index, step.exits)
@@ -244,32 +259,33 @@ class _Machine(ABC):
         self.edges.add(Edge(index, "next"))
         return self.enter(exits.default)
 
-    def begin(self, begin: Begin) -> Jump | None:
+    def begin(self, step: MapStep) -> Jump | None:
         """Start what a count counts, and return where it goes on, if it does."""
-        count = self.length if begin.length is not None else begin.count
-        assert count is not None
+        begin = step.begin
+        if begin is None:
+            return None
+        count = begin.count if isinstance(begin, BeginArray) else self.length
         if not count:
             return None
-        if begin.level is not None:
+        if isinstance(begin, BeginLoop):
             self.counters[begin.level] = count
-            return self.target(begin)
-        assert begin.run is not None
+            return begin.body
         self.counters[RUN_COUNTER] = count
         self.skip(begin.gap)
-        if begin.head:
-            self.take(self.plan.runs[begin.run], begin.head)
-        return self.target(begin) if self.counters[RUN_COUNTER] else None
-
-    def target(self, begin: Begin) -> Jump:
+        if step.take is not None:
+            self.take(step.take)
+        if not self.counters[RUN_COUNTER]:
+            return None
         if begin.body is None:
-            raise ValueError("The plan starts something that needs a body but has none")
+            raise ValueError("The plan starts a run that needs a body but has none")
         return begin.body
 
-    def take(self, run: Run, limit: int) -> None:
-        """Do one cycle of a run: its rest if that has at most `limit` bytes, else all lanes."""
+    def take(self, take: Take) -> None:
+        """Do one cycle of a run: its rest if that fits in the head, else all lanes."""
+        run = self.plan.runs[take.run]
         leaf = self.plan.leaves[run.items]
         left = self.counters[RUN_COUNTER]
-        finish = left * leaf.item_bytes <= limit
+        finish = left * leaf.item_bytes <= take.head
         count = left if finish else leaf.lanes
         after = left - count
         self.counters[RUN_COUNTER] = after
@@ -336,9 +352,9 @@ class _Reader(_Machine):
                 payload = self.count(self.begins[part.leaf], payload)
         self.transfers.append(Transfer(part.leaf, payload))
 
-    def count(self, begin: Begin, wire: int) -> int:
+    def count(self, begin: CountedBegin, wire: int) -> int:
         """Return what a length transfers as, and remember what it means on the wire."""
-        length = wire - 1 if begin.terminated and wire else wire
+        length = wire - 1 if self.plan.has_nul(begin) and wire else wire
         if length > begin.limit:
             # A length is read whole or is 0, so there was no error before.
             self.status = "LENGTH"
@@ -403,7 +419,8 @@ class _Writer(_Machine):
             begin = self.begins[index]
             if payload > begin.limit:
                 self.fail("LENGTH")
-            payload += 1 if begin.terminated and (payload or not self.bare_strings) else 0
+            has_nul = self.plan.has_nul(begin) and (payload or not self.bare_strings)
+            payload += 1 if has_nul else 0
             self.length = payload
         return _bytes(leaf, payload)
 

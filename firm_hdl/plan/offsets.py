@@ -7,14 +7,26 @@ of n bytes stands at a multiple of n, and there is no more padding than that tak
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, Fixed, Jump, Leaf, Pad, Part, Plan, Step
+from firm_hdl.plan.ir import (
+    RUN_COUNTER,
+    BeginArray,
+    BeginLoop,
+    BeginRun,
+    Fixed,
+    Leaf,
+    Pad,
+    Part,
+    Plan,
+    RunStep,
+    Step,
+)
 from firm_hdl.wire import RULES
 
-__all__ = ["Span", "check_offsets", "jumps", "loop_spans", "paddings"]
+__all__ = ["Span", "check_offsets", "loop_spans", "paddings"]
 
 Span: TypeAlias = "tuple[int, int]"
 """Level and first step of a loop."""
@@ -56,16 +68,6 @@ def paddings(plan: Plan) -> dict[int, frozenset[int]]:
     return {index: frozenset(found) for index, found in walk.skipped.items()}
 
 
-def jumps(plan: Plan) -> Iterator[Jump]:
-    """Yield every jump of a plan."""
-    yield plan.start
-    for step in plan.steps:
-        yield step.exits.default
-        yield from (jump for _, jump in step.exits.repeats)
-        if step.begin is not None and step.begin.body is not None:
-            yield step.begin.body
-
-
 @dataclass(slots=True)
 class _Walk:
     plan: Plan
@@ -84,7 +86,7 @@ class _Walk:
     def __post_init__(self) -> None:
         self.spans = loop_spans(self.plan)
         self.max_align = RULES[self.plan.wire].max_align
-        for jump in jumps(self.plan):
+        for jump in self.plan.jumps():
             for counter, count in jump.enter:
                 if jump.step is not None:
                     self.counts[counter, jump.step] = count
@@ -158,16 +160,16 @@ class _Walk:
             self.natural(index, step)
             self.pad(index, places)
             places = {((r + -r % step.align) % 8, 0) for r, _ in places}
-        if step.run is not None:
+        if isinstance(step, RunStep):
             return self.constant_run(index, step.run, places), index + 1
         for item in step.slices:
             places = {self.slice(index, item, place) for place in places}
         begin = step.begin
         if begin is None:
             return places, index + 1
-        if begin.level is not None or begin.length is not None:
+        if not isinstance(begin, BeginArray):
             self.settle(places, f"step {index}")
-        if begin.level is not None:
+        if isinstance(begin, BeginLoop):
             end = self.spans.get((depth, index + 1), index + 1)
             most = begin.limit if self.limited else None
             return self.any_number(index + 1, end, depth + 1, places, most), end + 1
@@ -179,7 +181,7 @@ class _Walk:
 
     def natural(self, index: int, step: Step) -> None:
         """Check that a step aligns to just what it starts with."""
-        if step.run is not None:
+        if isinstance(step, RunStep):
             leaf = self.plan.leaves[self.plan.runs[step.run].items]
         else:
             first = step.slices[0] if step.slices else None
@@ -211,8 +213,9 @@ class _Walk:
                 f"not {-residue % align}, at offset {residue} modulo 8"
             )
 
-    def begin_run(self, index: int, begin: Begin, places: set[Place]) -> set[Place]:
-        assert begin.run is not None
+    def begin_run(
+        self, index: int, begin: BeginRun | BeginArray, places: set[Place]
+    ) -> set[Place]:
         leaf = self.plan.leaves[self.plan.runs[begin.run].items]
         size = leaf.item_bytes
         body_align = 1
@@ -224,7 +227,7 @@ class _Walk:
                 self.pad(index + 1, places)
                 if begin.gap or begin.head:
                     self.say(f"step {index}: {leaf} starts here and in an aligned step, too")
-        result: set[Place] = set() if begin.count is not None else set(places)
+        result: set[Place] = set() if isinstance(begin, BeginArray) else set(places)
         for residue, pad in places:
             if body_align == 1:
                 self.expect(index, leaf, residue, pad + begin.gap)
@@ -234,11 +237,11 @@ class _Walk:
             result |= {((start + count * size) % 8, 0) for count in self.run_counts(begin)}
         return result
 
-    def run_counts(self, begin: Begin) -> Sequence[int]:
+    def run_counts(self, begin: BeginRun | BeginArray) -> Sequence[int]:
         """Return the counts of a run that is not empty, as far as they make a difference."""
-        if begin.count is not None:
+        if isinstance(begin, BeginArray):
             return [begin.count]
-        most = begin.limit + begin.terminated if self.limited else 8
+        most = self.plan.most(begin) if self.limited else 8
         return range(1, min(most, 8) + 1)
 
     def constant_run(self, index: int, run: int, places: set[Place]) -> set[Place]:

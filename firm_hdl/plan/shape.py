@@ -9,7 +9,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, Fixed, Jump, Pad, Part, Plan, Step
+from firm_hdl.plan.ir import (
+    RUN_COUNTER,
+    Begin,
+    BeginArray,
+    BeginLoop,
+    Fixed,
+    Jump,
+    Pad,
+    Part,
+    Plan,
+    RunStep,
+    Step,
+)
 
 __all__ = ["constructs", "shape"]
 
@@ -40,7 +52,7 @@ def constructs(plan: Plan) -> frozenset[str]:
 
 def _step(plan: Plan, step: Step) -> Iterator[str]:
     yield f"align {step.align}"
-    if step.run is not None:
+    if isinstance(step, RunStep):
         yield f"body of a run, head {step.head - plan.bus_bytes:+}"
     for item in step.slices:
         match item:
@@ -51,7 +63,7 @@ def _step(plan: Plan, step: Step) -> Iterator[str]:
             case Part():
                 yield _part(plan, item)
     if step.begin is not None:
-        yield _begin(step.begin)
+        yield _begin(plan, step.begin)
         if step.begin.body is not None:
             yield from _jump("body", step.begin.body)
     yield f"{min(len(step.exits.repeats), 3)} loops may repeat"
@@ -70,10 +82,12 @@ def _part(plan: Plan, part: Part) -> str:
     return f"{which} of {leaf.kind}, {leaf.item_bytes} bytes each{end}"
 
 
-def _begin(begin: Begin) -> str:
-    words = ["loop" if begin.run is None else "run"]
-    words.append("counted by a constant" if begin.length is None else "counted by a length")
-    words += ["NUL"] if begin.terminated else []
+def _begin(plan: Plan, begin: Begin) -> str:
+    if isinstance(begin, BeginLoop):
+        return "begin loop, counted by a length"
+    constant = isinstance(begin, BeginArray)
+    words = ["run", "counted by a constant" if constant else "counted by a length"]
+    words += ["NUL"] if plan.has_nul(begin) else []
     words += [f"gap of {begin.gap}"] if begin.gap else []
     words += ["head"] if begin.head else []
     words += [] if begin.body is not None else ["no body"]

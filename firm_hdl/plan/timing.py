@@ -115,11 +115,7 @@ def _cost(plan: Plan, elements: int, items: int, most: int | None = None) -> Cos
         raise _TooLongError
 
     runs = {leaf.path[:-1] for leaf in plan.leaves if leaf.kind == "items"}
-    limits = {
-        step.begin.length: step.begin.limit
-        for step in plan.steps
-        if step.begin is not None and step.begin.length is not None
-    }
+    limits = {leaf: begin.limit for leaf, begin in plan.counted.items()}
     streams: dict[int, Iterable[Payload]] = {}
     for index, leaf in enumerate(plan.leaves):
         payload: Payload = 0

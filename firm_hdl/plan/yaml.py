@@ -14,6 +14,9 @@ from firm_hdl.model import PRIMITIVE_OF
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
+    BeginArray,
+    BeginLoop,
+    BeginRun,
     Exits,
     Fixed,
     Jump,
@@ -22,10 +25,10 @@ from firm_hdl.plan.ir import (
     Part,
     Plan,
     Run,
+    RunStep,
     Slice,
     Step,
 )
-from firm_hdl.plan.offsets import jumps
 from firm_hdl.plan.yaml_reader import from_yaml
 
 __all__ = ["from_yaml", "to_yaml"]
@@ -94,7 +97,7 @@ class _Printer:
         if step.bytes != sum(item.bytes for item in step.slices):
             yield f"bytes: {step.bytes}"
         yield from self.slices(step.slices)
-        if step.run is not None:
+        if isinstance(step, RunStep):
             yield f"run: {self.paths[self.plan.runs[step.run].items]}, up to {_bytes(step.head)}"
         if step.begin is not None:
             yield from _short("begin", self.begin(step.begin, step.bytes))
@@ -141,21 +144,21 @@ class _Printer:
 
     def begin(self, begin: Begin, at: int) -> dict[str, str]:
         entries: dict[str, str] = {}
-        if begin.run is not None:
-            entries["run"] = _plain(self.paths[self.plan.runs[begin.run].items])
-        if begin.level is not None:
-            entries["loop"] = str(begin.level)
-        if begin.length is not None:
-            entries["count"] = _plain(self.paths[begin.length])
-        if begin.count is not None:
-            entries["constant"] = str(begin.count)
-        entries["limit"] = str(begin.limit)
-        if begin.terminated:
+        match begin:
+            case BeginLoop(level=level):
+                entries["loop"] = str(level)
+            case BeginRun(run=run) | BeginArray(run=run):
+                entries["run"] = _plain(self.paths[self.plan.runs[run].items])
+        match begin:
+            case BeginLoop(length=length, limit=limit) | BeginRun(length=length, limit=limit):
+                entries |= {"count": _plain(self.paths[length]), "limit": str(limit)}
+            case BeginArray(count=count):
+                entries |= {"constant": str(count), "limit": str(count)}
+        if self.plan.has_nul(begin):
             entries["terminated"] = "true"
-        if begin.gap:
-            entries["gap"] = str(begin.gap)
-        if begin.head:
-            entries["head"] = _range(at + begin.gap, begin.head)
+        if not isinstance(begin, BeginLoop):
+            entries |= {"gap": str(begin.gap)} if begin.gap else {}
+            entries |= {"head": _range(at + begin.gap, begin.head)} if begin.head else {}
         if begin.body is not None:
             entries["body"] = _jump(begin.body)
         return entries
@@ -235,15 +238,13 @@ def _notes(plan: Plan) -> list[str]:
 def _loops(plan: Plan) -> dict[tuple[int, int], tuple[int, str]]:
     """Return, by level and first step of each loop, its last step and what counts it."""
     names: dict[tuple[int, int], str] = {}
-    for jump in jumps(plan):
+    for jump in plan.jumps():
         for counter, count in jump.enter:
             if isinstance(counter, int) and jump.step is not None:
                 names[counter, jump.step] = f"{count} times"
     for step in plan.steps:
         begin = step.begin
-        if begin is None or begin.level is None or begin.body is None or begin.length is None:
-            continue
-        if begin.body.step is not None:
+        if isinstance(begin, BeginLoop) and begin.body.step is not None:
             names[begin.level, begin.body.step] = str(plan.leaves[begin.length])
     loops: dict[tuple[int, int], tuple[int, str]] = {}
     # A loop whose last step starts a run has an exit there and another behind the run.
@@ -263,9 +264,9 @@ def _places(plan: Plan) -> list[str]:
     while jump.step is not None and jump.step not in repeated:
         step = plan.steps[jump.step]
         size = step.bytes
-        if step.run is not None:
+        if isinstance(step, RunStep):
             entered = dict(jump.enter).get(RUN_COUNTER)
-            size = run_bytes if entered is None else entered * _run_item_bytes(plan, step.run)
+            size = run_bytes if entered is None else entered * plan.item_bytes(step.run)
         if step.align != 1 or places[jump.step]:
             break
         noun = "byte" if size == 1 else "bytes"
@@ -274,10 +275,10 @@ def _places(plan: Plan) -> list[str]:
         begin, jump = step.begin, step.exits.default
         if begin is None:
             continue
-        if begin.run is None or begin.count is None:
+        if not isinstance(begin, BeginArray):
             break
         at += begin.gap
-        run_bytes = begin.count * _run_item_bytes(plan, begin.run)
+        run_bytes = begin.count * plan.item_bytes(begin.run)
         if begin.body is None:
             at += run_bytes
             continue
@@ -285,6 +286,3 @@ def _places(plan: Plan) -> list[str]:
         at, run_bytes, jump = at + in_head, run_bytes - in_head, begin.body
     return places
 
-
-def _run_item_bytes(plan: Plan, run: int) -> int:
-    return plan.leaves[plan.runs[run].items].item_bytes

@@ -16,14 +16,19 @@ from firm_hdl.model import PRIMITIVE_OF
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
+    BeginArray,
+    BeginLoop,
+    BeginRun,
     Exits,
     Fixed,
     Jump,
     Leaf,
+    MapStep,
     Pad,
     Part,
     Plan,
     Run,
+    RunStep,
     Slice,
     Step,
 )
@@ -200,7 +205,8 @@ class _Reader:
         return tuple(steps)
 
     def step(self, entries: Entries, node: yaml.Node) -> Step:
-        align = _take(entries, "align", _number)
+        given = _take(entries, "align", _number)
+        align = 1 if given is None else given
         size = _take(entries, "bytes", _number)
         run = _take(entries, "run", lambda each, _: self.body(each))
         begin = _take(entries, "begin", lambda each, _: each)
@@ -208,14 +214,16 @@ class _Reader:
         if exits is None:
             raise _error(node, "the step has no 'next'")
         slices = [item for key, each in entries.items() for item in self.slices(key, each)]
+        if run is not None:
+            if begin is not None or slices or size:
+                raise _error(node, "the body of a run has bytes or a start of its own")
+            return RunStep(align=align, run=run[0], head=run[1], exits=exits)
         total = sum(item.bytes for item in slices) if size is None else size
-        return Step(
-            align=1 if align is None else align,
+        return MapStep(
+            align=align,
             bytes=total,
             slices=tuple(slices),
             begin=None if begin is None else self.begin(begin, total),
-            run=None if run is None else run[0],
-            head=0 if run is None else run[1],
             exits=exits,
         )
 
@@ -241,26 +249,38 @@ class _Reader:
     def begin(self, node: yaml.Node, at: int) -> Begin:
         entries = _entries(node, "begin")
         run = _take(entries, "run", lambda each, _: self.path(self.run_indices, each))
+        level = _take(entries, "loop", _number)
         length = _take(entries, "count", lambda each, _: self.path(self.indices, each))
+        count = _take(entries, "constant", _number)
         limit = _take(entries, "limit", _number)
+        body = _take(entries, "body", self.jump)
         if limit is None:
             raise _error(node, "begin has no 'limit'")
+        if (length is None) == (count is None):
+            raise _error(node, "begin has one of 'count' and 'constant'")
+        if (run is None) == (level is None):
+            raise _error(node, "begin has one of 'run' and 'loop'")
+        if run is None:
+            self.nothing_left(entries, "begin")
+            if length is None or body is None or level is None:
+                raise _error(node, "begin of a loop needs 'count' and 'body'")
+            return BeginLoop(length=length, limit=limit, level=level, body=body)
+        terminated = _take(entries, "terminated", _text) == "true"
+        if terminated != self.runs[run].terminated:
+            raise _error(node, "begin and the run do not agree about a NUL")
         gap = _take(entries, "gap", _number) or 0
-        head = entries.pop("head", None)
-        result = Begin(
-            length=length,
-            count=_take(entries, "constant", _number),
-            limit=limit,
-            terminated=_take(entries, "terminated", _text) == "true",
-            level=_take(entries, "loop", _number),
-            run=run,
-            gap=gap,
-            head=0 if head is None else self.head(head, at + gap),
-            body=_take(entries, "body", self.jump),
-        )
+        head = _take(entries, "head", lambda each, _: self.head(each, at + gap)) or 0
+        self.nothing_left(entries, "begin")
+        if count is None:
+            assert length is not None
+            return BeginRun(length=length, limit=limit, run=run, gap=gap, head=head, body=body)
+        if limit != count:
+            raise _error(node, f"a constant count of {count} has the limit {limit}")
+        return BeginArray(count=count, run=run, gap=gap, head=head, body=body)
+
+    def nothing_left(self, entries: Entries, what: str) -> None:
         for key, value in entries.items():
-            raise _error(value, f"begin has no {key!r}")
-        return result
+            raise _error(value, f"{what} has no {key!r}")
 
     def path(self, table: dict[str, int], node: yaml.Node) -> int:
         return self.index(table, _text(node, "a path"), node)

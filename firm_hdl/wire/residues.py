@@ -1,12 +1,13 @@
-"""Sets of residues modulo 8: all that is known, before a packet comes, of where a field may start.
+"""Sets of residues: all that is known, before a packet comes, of where a field may start.
 
-A set is an 8-bit mask, bit r for offsets that are r modulo 8. Eight is enough because no primitive
-aligns to more. Every operation distributes over union, so a set's image is the union of its
-members'.
+A set is a mask, bit r for offsets that are r modulo 8. Eight is enough because no primitive aligns
+to more; a plan's places in a bus word take a larger power of two. Every operation distributes over
+union, so a set's image is the union of its members'.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 
 __all__ = [
@@ -25,27 +26,27 @@ MODULUS = 8
 ALL = (1 << MODULUS) - 1
 
 
-def single(offset: int) -> int:
+def single(offset: int, modulus: int = MODULUS) -> int:
     """Return the set of one known offset."""
-    return 1 << (offset % MODULUS)
+    return 1 << (offset % modulus)
 
 
 def members(residues: int) -> Iterator[int]:
     """Yield the residues of a set in ascending order."""
-    return (r for r in range(MODULUS) if residues >> r & 1)
+    return (r for r in range(residues.bit_length()) if residues >> r & 1)
 
 
-def advance(residues: int, count: int) -> int:
+def advance(residues: int, count: int, modulus: int = MODULUS) -> int:
     """Return where offsets are after `count` bytes."""
-    count %= MODULUS
-    return (residues << count | residues >> (MODULUS - count)) & ALL
+    count %= modulus
+    return (residues << count | residues >> (modulus - count)) & ((1 << modulus) - 1)
 
 
-def aligned(residues: int, align: int) -> int:
+def aligned(residues: int, align: int, modulus: int = MODULUS) -> int:
     """Return where offsets are after padding to a multiple of `align` bytes."""
     result = 0
     for r in members(residues):
-        result |= single(r + -r % align)
+        result |= single(r + -r % align, modulus)
     return result
 
 
@@ -55,11 +56,11 @@ def pad_of(residues: int, align: int) -> int | None:
     return pads.pop() if len(pads) == 1 else None
 
 
-def spread(residues: int, unit_bytes: int) -> int:
+def spread(residues: int, unit_bytes: int, modulus: int = MODULUS) -> int:
     """Return where offsets are after any number of units, zero included."""
     result = residues
-    for n in range(1, MODULUS):
-        result |= advance(residues, n * unit_bytes)
+    for n in range(1, modulus // math.gcd(unit_bytes, modulus)):
+        result |= advance(residues, n * unit_bytes, modulus)
     return result
 
 

@@ -32,8 +32,7 @@ class Reference:
         self.cdr = plan.wire == "cdr"
         self.packet = packet
         self.lanes = {str(leaf): leaf.lanes for leaf in plan.leaves}
-        begins = [step.begin for step in plan.steps if step.begin is not None]
-        self.limits = {str(plan.leaves[b.length]): b.limit for b in begins if b.length is not None}
+        self.limits = {str(plan.leaves[n]): begin.limit for n, begin in plan.counted.items()}
         self.position = 0
         self.status = "OK"
         self.transfers: list[tuple[str, Payload]] = []

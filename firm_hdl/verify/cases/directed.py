@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from firm_hdl.plan import Edge, Plan, decode, encode
+from firm_hdl.plan import BeginRun, Edge, Plan, decode, encode
 from firm_hdl.plan.edges import edges
 from firm_hdl.verify.cases.make import Case, make_cases
 from firm_hdl.verify.references.oracle import Oracle
@@ -129,8 +129,8 @@ def _bare_edges(plan: Plan) -> frozenset[Edge]:
     return frozenset(
         edge
         for edge in edges(plan)
-        if (begin := plan.steps[edge.step].begin) is not None
-        and begin.terminated
+        if isinstance(begin := plan.steps[edge.step].begin, BeginRun)
+        and plan.has_nul(begin)
         and not begin.head
         and edge.way != "body"
         and not edge.way.startswith("padding")

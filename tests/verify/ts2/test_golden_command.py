@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from firm_hdl.cli import main
@@ -25,15 +27,15 @@ def test_unchanged_plans_pass(folder, capsys):
 def test_a_change_fails_until_it_is_accepted(folder, capsys):
     paths = sorted((folder / "lyrical").iterdir())
     for path in paths:
-        path.write_text(path.read_text().replace("terminated: true", "terminated: false"))
+        path.write_text(re.sub(r"limit: 1677\d+", "limit: 9", path.read_text()))
     before = [path.read_text() for path in paths]
     assert main(["golden", "check", str(folder)]) == 1
     assert capsys.readouterr().out == (
         f"{paths[0]}: sensor_msgs/msg/Imu\n"
-        "    steps[header.stamp.nanosec].begin.terminated: False -> True\n"
+        "    steps[header.stamp.nanosec].begin.limit: 9 -> 16776903\n"
         f"{paths[1]}: std_msgs/msg/String\n"
-        "    steps[data.length].begin.terminated: False -> True\n"
-        "   2 types: steps[*].begin.terminated\n"
+        "    steps[data.length].begin.limit: 9 -> 16777207\n"
+        "   2 types: steps[*].begin.limit\n"
         "2 golden plans, 2 differ\n"
     )
     assert [path.read_text() for path in paths] == before

@@ -1,0 +1,133 @@
+"""Leaves of a message, and the bytes of a step that belong to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from firm_hdl.model import PRIMITIVE_OF, Primitive
+
+__all__ = ["Fixed", "Leaf", "LeafKind", "Pad", "Part", "Run", "Slice"]
+
+LeafKind: TypeAlias = Literal["scalar", "length", "items", "trigger"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Leaf:
+    """One stream of the message side.
+
+    Attributes
+    ----------
+    path : tuple of str
+        ROS names from the message down; the last one is ``length``, ``items`` or ``trigger`` where
+        `kind` says so.
+    kind : "scalar", "length", "items" or "trigger"
+    type : str
+        ROS name of the primitive (``uint32`` for a length, ``bool`` for a trigger).
+    signed : bool
+        Whether the stream's shape is signed.
+    lanes : int
+        Items per transfer; 1 unless `kind` is "items".
+    """
+
+    path: tuple[str, ...]
+    kind: LeafKind
+    type: str
+    signed: bool
+    lanes: int = 1
+
+    def __str__(self) -> str:
+        return ".".join(self.path)
+
+    @property
+    def primitive(self) -> Primitive:
+        """The primitive that `type` names; of `byte` and `char`, that with the sign."""
+        # Only a plan that is wrong has the other sign, and the check of plans says so.
+        found = PRIMITIVE_OF.get((self.type, self.signed))
+        return found or PRIMITIVE_OF[self.type, not self.signed]
+
+    @property
+    def item_bytes(self) -> int:
+        """Bytes of one item on the wire."""
+        return 0 if self.kind == "trigger" else self.primitive.bytes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pad:
+    """Alignment bytes: zero when written, ignored when read."""
+
+    at: int
+    bytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fixed:
+    """Bytes that are the same in every packet: compared when read (`check`) or ignored."""
+
+    at: int
+    data: bytes
+    check: bool
+
+    @property
+    def bytes(self) -> int:
+        """Size in bytes."""
+        return len(self.data)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """Bytes of one transfer of a leaf; the transfer is done with its last byte.
+
+    Attributes
+    ----------
+    at : int
+        Where the part starts in its step.
+    bytes : int
+        Size of the part; 0 for a trigger.
+    leaf : int
+        Index into `Plan.leaves`.
+    first : int
+        Index of the part's first byte in the transfer.
+    size : int
+        Bytes of the whole transfer.
+    last : bool
+        For items: whether this transfer ends its array whatever the counters say.
+    last_level : int or None
+        For items: the loop counter that says so.
+    """
+
+    at: int
+    bytes: int
+    leaf: int
+    first: int
+    size: int
+    last: bool = False
+    last_level: int | None = None
+
+    @property
+    def completes(self) -> bool:
+        """Whether the part holds the last byte of its transfer."""
+        return self.first + self.bytes == self.size
+
+
+Slice: TypeAlias = "Pad | Fixed | Part"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Run:
+    """Items in a row, a bus word per transfer. Takes what `Plan.runs` has at its index.
+
+    Attributes
+    ----------
+    items : int
+        Index of the leaf.
+    terminated : bool
+        Whether a NUL follows on the wire, counted there.
+    last : bool
+        Whether the last transfer of the run is the last of its leaf (false if a tail of a fixed
+        array follows as a part).
+    """
+
+    items: int
+    terminated: bool = False
+    last: bool = True

@@ -1,0 +1,81 @@
+"""The whole plan of a converter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from firm_hdl.plan.ir.leaves import Leaf, Run
+from firm_hdl.plan.ir.steps import Begin, BeginArray, BeginLoop, CountedBegin, Jump, Step
+
+__all__ = ["Plan"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plan:
+    """A converter of one message type, for one wire and one bus width.
+
+    Attributes
+    ----------
+    message : str
+        Full name of the type.
+    wire : "ros1" or "cdr"
+    bus_bytes : int
+        1, 2, 4, 8, 16, 32 or 64.
+    max_message_bytes : int
+        Longest packet, header included, that lengths may promise.
+    header_bytes : int
+        Bytes of the encapsulation header; alignment counts from behind it.
+    slack_bytes : int
+        Most bytes that may follow the message in its packet.
+    leaves : tuple of Leaf
+        In wire order.
+    runs : tuple of Run
+    levels : int
+        Number of loop counters.
+    start : Jump
+        Where each packet starts.
+    steps : tuple of Step
+    """
+
+    message: str
+    wire: Literal["ros1", "cdr"]
+    bus_bytes: int
+    max_message_bytes: int
+    header_bytes: int
+    slack_bytes: int
+    leaves: tuple[Leaf, ...]
+    runs: tuple[Run, ...]
+    levels: int
+    start: Jump
+    steps: tuple[Step, ...]
+
+    def jumps(self) -> Iterator[Jump]:
+        """Yield every jump of the plan."""
+        yield self.start
+        for step in self.steps:
+            yield step.exits.default
+            yield from (jump for _, jump in step.exits.repeats)
+            if step.begin is not None and step.begin.body is not None:
+                yield step.begin.body
+
+    @property
+    def counted(self) -> dict[int, CountedBegin]:
+        """What each length counts, by the leaf of the length."""
+        begins = (step.begin for step in self.steps)
+        return {b.length: b for b in begins if isinstance(b, CountedBegin)}
+
+    def has_nul(self, begin: Begin) -> bool:
+        """Tell whether a count includes a NUL on the wire, which the leaf's length does not."""
+        return not isinstance(begin, BeginLoop) and self.runs[begin.run].terminated
+
+    def most(self, begin: Begin) -> int:
+        """Give the largest legal count on the wire, a NUL included."""
+        if isinstance(begin, BeginArray):
+            return begin.count
+        return begin.limit + self.has_nul(begin)
+
+    def item_bytes(self, run: int) -> int:
+        """Give the bytes of one item of a run."""
+        return self.leaves[self.runs[run].items].item_bytes
