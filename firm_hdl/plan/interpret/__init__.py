@@ -1,0 +1,23 @@
+"""A plan run in plain Python: the golden model of the gateware.
+
+Both directions follow the plan's steps (slices, starts, runs, exits, dynamic alignment) and never
+look at the layout, so a plan that is wrong gives wrong results here. What happens is exact to
+the primitive and does not depend on the bus width: a packet's first error is the first one in wire
+order, whatever cycle the hardware sees it in (docs/interface.md, "Status").
+"""
+
+from firm_hdl.plan.interpret.decode import Decoded, DecodeStatus, Transfer, decode
+from firm_hdl.plan.interpret.encode import EncodeStatus, encode
+from firm_hdl.plan.interpret.machine import Edge, Payload, Visit
+
+__all__ = [
+    "DecodeStatus",
+    "Decoded",
+    "Edge",
+    "EncodeStatus",
+    "Payload",
+    "Transfer",
+    "Visit",
+    "decode",
+    "encode",
+]

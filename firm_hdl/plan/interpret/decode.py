@@ -1,0 +1,167 @@
+"""From a packet to transfers, as a deserializer does it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, NamedTuple, TypeAlias
+
+from firm_hdl.plan.interpret.machine import Edge, Machine, Payload, Visit
+from firm_hdl.plan.ir import (
+    CountedBegin,
+    Fixed,
+    Leaf,
+    Part,
+    Plan,
+    Run,
+)
+
+__all__ = ["DecodeStatus", "Decoded", "Transfer", "decode"]
+
+DecodeStatus: TypeAlias = Literal[
+    "OK", "TRUNCATED", "TRAILING", "LENGTH", "ENCAPSULATION", "STRING"
+]
+
+
+class Transfer(NamedTuple):
+    """One transfer of a leaf.
+
+    Attributes
+    ----------
+    leaf : int
+        Index into `Plan.leaves`.
+    payload : int or (tuple of int, bool)
+        For items: all lanes (those past the end 0), and `last`. For the others a number: floats as
+        their bits, a `bool` as 0 or 1, a trigger as 1.
+    """
+
+    leaf: int
+    payload: Payload
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Decoded:
+    """What a packet decodes to.
+
+    Attributes
+    ----------
+    transfers : tuple of Transfer
+        In wire order, the order in which leaves become valid.
+    status : str
+        The packet's first error, or ``OK``.
+    steps : tuple of Visit
+        The cycles that were run, in order.
+    edges : frozenset of Edge
+        The decisions that were taken.
+    """
+
+    transfers: tuple[Transfer, ...]
+    status: DecodeStatus
+    steps: tuple[Visit, ...]
+    edges: frozenset[Edge]
+
+    @property
+    def streams(self) -> dict[int, list[Payload]]:
+        """The payloads of each leaf that had any, as :func:`encode` takes them."""
+        result: dict[int, list[Payload]] = {}
+        for leaf, payload in self.transfers:
+            result.setdefault(leaf, []).append(payload)
+        return result
+
+
+def decode(plan: Plan, packet: bytes) -> Decoded:
+    """Decode a packet as the deserializer of a plan does."""
+    reader = _Reader(plan=plan, packet=bytes(packet))
+    reader.go()
+    if reader.status == "OK" and len(packet) - reader.position > plan.slack_bytes:
+        reader.status = "TRAILING"
+    return Decoded(
+        transfers=tuple(reader.transfers),
+        status=reader.status,
+        steps=tuple(reader.visits),
+        edges=frozenset(reader.edges),
+    )
+
+
+@dataclass(slots=True, kw_only=True)
+class _Reader(Machine):
+    packet: bytes
+    position: int = 0
+    status: DecodeStatus = "OK"
+    transfers: list[Transfer] = field(default_factory=list)
+    # What was read of the transfer under way.
+    partial: bytes = b""
+
+    @property
+    def offset(self) -> int:
+        return self.position
+
+    def skip(self, count: int) -> None:
+        # Missing padding is no error by itself; what it is in front of will be missing, too.
+        self.position += count
+
+    def read(self, count: int) -> bytes:
+        """Return the next bytes, or those that are there; none after an error."""
+        start = self.position
+        self.position += count
+        if self.status != "OK":
+            return b""
+        if self.position > len(self.packet):
+            self.status = "TRUNCATED"
+        return self.packet[start : self.position]
+
+    def fixed(self, item: Fixed) -> None:
+        for expected in item.data:
+            got = self.read(1)
+            if got and item.check and got[0] != expected:
+                self.status = "ENCAPSULATION"
+
+    def part(self, part: Part) -> None:
+        if part.first == 0:
+            self.partial = b""
+        self.partial += self.read(part.bytes)
+        if not part.completes:
+            return
+        leaf = self.plan.leaves[part.leaf]
+        if leaf.kind == "trigger":
+            payload: Payload = 1
+        elif leaf.kind == "items":
+            values = _numbers(leaf, self.partial, part.size // leaf.item_bytes)
+            payload = (values, self.is_last(part))
+        else:
+            (payload,) = _numbers(leaf, self.partial, 1)
+            if part.leaf in self.begins:
+                payload = self.count(self.begins[part.leaf], payload)
+        self.transfers.append(Transfer(part.leaf, payload))
+
+    def count(self, begin: CountedBegin, wire: int) -> int:
+        """Return what a length transfers as, and remember what it means on the wire."""
+        length = wire - 1 if self.plan.has_nul(begin) and wire else wire
+        if length > begin.limit:
+            # A length is read whole or is 0, so there was no error before.
+            self.status = "LENGTH"
+            wire = length = 0
+        self.length = wire
+        return length
+
+    def items(self, run: Run, count: int, last: bool) -> None:
+        leaf = self.plan.leaves[run.items]
+        values = _numbers(leaf, self.read(count * leaf.item_bytes), count)
+        self.transfers.append(Transfer(run.items, (values, last)))
+
+    def terminator(self) -> None:
+        if self.read(1) not in (b"", b"\0"):
+            self.status = "STRING"
+
+
+def _numbers(leaf: Leaf, data: bytes, count: int) -> tuple[int, ...]:
+    """Return a payload's lanes: `count` numbers, 0 for those not wholly in `data`, then 0."""
+    size = leaf.item_bytes
+    there = min(count, len(data) // size)
+    if leaf.type == "bool":
+        values = [int(byte != 0) for byte in data[:there]]
+    elif size == 1 and not leaf.signed:
+        values = list(data[:there])
+    else:
+        pieces = (data[i * size : (i + 1) * size] for i in range(there))
+        values = [int.from_bytes(piece, "little", signed=leaf.signed) for piece in pieces]
+    return (*values, *([0] * (leaf.lanes - there)))
