@@ -10,6 +10,7 @@ import ast
 import itertools
 from collections.abc import Iterator
 
+from tests.mutation.harmless import is_plain_bool
 from tests.mutation.index import Index
 from tests.mutation.mutants import Change
 from tests.mutation.source import Source
@@ -169,7 +170,7 @@ def unwrapped(source: Source, _: Index) -> Iterator[Change]:
         elif isinstance(node.func, ast.Name) and len(node.args) == 1:
             if node.func.id in ("sorted", "reversed"):
                 yield source.change("unwrapped", node, f"list({source.of(node.args[0])})")
-            elif node.func.id in ("abs", "int", "bool"):
+            elif node.func.id in ("abs", "int", "bool") and not is_plain_bool(source, node):
                 yield source.change("unwrapped", node, source.atom(node.args[0]))
 
 

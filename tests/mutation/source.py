@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from tests.mutation.mutants import Change
 
-__all__ = ["Source"]
+__all__ = ["Functions", "Source"]
 
 # Code that no test runs, or that does nothing where the program is right.
 LEFT_OUT = (ast.Assert, ast.JoinedStr)

@@ -7,6 +7,7 @@ import itertools
 import re
 from collections.abc import Iterator
 
+from tests.mutation.harmless import are_independent
 from tests.mutation.index import Index
 from tests.mutation.mutants import Change
 from tests.mutation.order_rules import blocks, hardware_branch
@@ -174,14 +175,13 @@ def swapped_calls(source: Source, _: Index) -> Iterator[Change]:
     """Do the second of two steps first."""
     for block in blocks(source):
         for one, two in itertools.pairwise(block):
-            if all(
-                isinstance(each, ast.Expr) and isinstance(each.value, ast.Call)
-                for each in (one, two)
-            ):
+            calls = [each.value for each in (one, two) if isinstance(each, ast.Expr)]
+            calls = [each for each in calls if isinstance(each, ast.Call)]
+            same = source.of(one) == source.of(two)
+            if len(calls) == 2 and not same and not are_independent(source, *calls):
                 (start, one_end), (two_start, end) = source.span(one), source.span(two)
-                if source.of(one) != source.of(two):
-                    new = source.of(two) + source.text[one_end:two_start] + source.of(one)
-                    yield source.change("swapped calls", (start, end), new)
+                new = source.of(two) + source.text[one_end:two_start] + source.of(one)
+                yield source.change("swapped calls", (start, end), new)
 
 
 RULES = (

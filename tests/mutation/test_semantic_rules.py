@@ -28,6 +28,11 @@ MATCH = (
 KINDS = "match a:\n    case A(k=1):\n        x()\n    case A(k=2):\n        y()"
 REGISTER = "a = Signal(8)\nb = Signal()\nm.d.sync += a.eq(1)\nm.d.comb += b.eq(a)"
 
+COMMAND = (
+    "def f(a: ArgumentParser):\n    _add_b(a)\n    _add_c(a)\n"
+    "def _add_b(a):\n    a.add_argument('b')\ndef _add_c(a):\n    a.add_argument('-d')"
+)
+
 
 @pytest.mark.parametrize(
     ("rule", "text", "changed"),
@@ -110,6 +115,28 @@ REGISTER = "a = Signal(8)\nb = Signal()\nm.d.sync += a.eq(1)\nm.d.comb += b.eq(a
         ("constant return", "def f() -> A | None:\n    return a", 1),
         ("constant return", "def f() -> A:\n    return a", []),
         ("swapped calls", "a()\nb()", ["b()\na()"]),
+        # Two collections, of which none knows of the other; and where one does, or might.
+        ("swapped calls", "a.append(b)\nc.add(d)", []),
+        ("swapped calls", "a.setdefault(b, []).append(c)\nd.pop()", []),
+        ("swapped calls", "self.a.append(b.join(c))\nself.d.clear()", []),
+        ("swapped calls", "a.append(b)\na.append(c)", 1),
+        ("swapped calls", "a.append(b)\nc.append(a)", 1),
+        ("swapped calls", "a.append(b.d)\nb.d.clear()", 1),
+        ("swapped calls", "a.append(b())\nc.append(d())", 1),
+        ("swapped calls", "a.append(b)\nc.write(d)", 1),
+        ("swapped calls", "f(a).append(b)\nc.append(d)", 1),
+        # Declarations of a command line, of which one has a dash; and where both may have none.
+        ("swapped calls", "a.add_argument('b')\na.add_argument('--c')", []),
+        ("swapped calls", "a.add_argument('b')\na.set_defaults(c=d)", []),
+        ("swapped calls", "a.add_argument('b')\na.add_argument('c')", 1),
+        ("swapped calls", COMMAND, []),
+        ("swapped calls", COMMAND.replace("'-d'", "'d'"), 1),
+        ("swapped calls", COMMAND.replace("ArgumentParser", "Recorder"), 1),
+        ("unwrapped", "y = int(a < b)", []),
+        ("unwrapped", "y = int(a), bool(b)", 2),
+        ("unwrapped", "def f() -> bool:\n    return bool(a)", []),
+        ("unwrapped", "def f() -> bool:\n    return bool(a) == b", 1),
+        ("unwrapped", "def f() -> object:\n    return bool(a)", 1),
         ("wrong neighbour", "def f(a: int, b: int, c: str):\n    return a", 1),
         ("wrong neighbour", "class K(Enum):\n    A = 1\n    B = 2\n\ny = K.A", 1),
         ("wrong neighbour", "a = Signal(8)\nb = Signal(8)", []),
