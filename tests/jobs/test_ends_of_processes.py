@@ -1,0 +1,265 @@
+"""Each way in which a process ends, or is ended: who is killed, who is waited for, who is told."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.jobs import processes
+from firm_hdl.jobs.processes import (
+    ToolError,
+    cpu_seconds,
+    hang_up,
+    in_processes,
+    made_by,
+    run_tool,
+    unwound_when_terminated,
+)
+
+
+def started(*command, **options):
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    return subprocess.Popen(command, **pipes, **options)
+
+
+def test_who_ends_when_nobody_speaks_to_him_is_not_killed():
+    process = started("cat")
+    hang_up(process, 30)
+    assert process.returncode == 0
+    assert process.stdin.closed and process.stdout.closed
+
+
+def test_who_does_not_end_is_killed():
+    process = started("sleep", "60")
+    began = time.monotonic()
+    hang_up(process, 0.01)
+    assert process.returncode == -signal.SIGKILL
+    assert time.monotonic() - began < 30
+
+
+def test_who_is_dead_already_is_no_error():
+    process = started("true")
+    process.wait()
+    process.stdin.write(b"still to be said")
+    hang_up(process)
+    assert process.returncode == 0
+
+
+def test_a_tool_that_says_nothing_says_so():
+    assert str(ToolError(" what \n")) == "what"
+    assert str(ToolError(" \n")) == "it failed without a word"
+
+
+def test_a_tool_has_made_what_is_there(tmp_path):
+    file = tmp_path / "out.v"
+    with pytest.raises(
+        ToolError, match=r"^yosys ended without an error, and has not written out\.v$"
+    ):
+        made_by("yosys", file)
+    file.touch()
+    assert made_by("yosys", file) == file
+
+
+def test_a_tool_hears_nothing_and_may_say_any_bytes(tmp_path):
+    assert run_tool(["cat"], tmp_path) == ""
+    assert run_tool(["printf", r"\377"], tmp_path) == "\ufffd"
+    environment = {"A_NAME": "b"}
+    said = run_tool(["sh", "-c", "echo $A_NAME $HOME"], tmp_path, environment=environment)
+    assert said == f"b {os.environ.get('HOME', '')}\n"
+    assert "A_NAME" not in os.environ
+    # Nobody is left to be killed.
+    assert processes._running == set()
+
+
+def test_a_tool_that_is_not_there_is_an_error_of_the_system(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        run_tool([str(tmp_path / "none")], tmp_path)
+    assert processes._running == set()
+
+
+def test_whoever_is_stopped_while_a_tool_runs_stops_the_tool(tmp_path, monkeypatch):
+    made = []
+    real = subprocess.Popen
+
+    class Interrupted(real):
+        def communicate(self, *_, **__):
+            made.append(self)
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(processes.subprocess, "Popen", Interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        run_tool(["sleep", "60"], tmp_path)
+    assert made[0].returncode == -signal.SIGKILL
+    assert processes._running == set()
+
+
+def test_time_of_children_counts():
+    before = cpu_seconds()
+    burn = "import time\nwhile time.process_time() < 0.2: pass"
+    subprocess.run([sys.executable, "-S", "-c", burn], check=True)
+    assert cpu_seconds() - before >= 0.2
+    before = cpu_seconds()
+    while cpu_seconds() - before < 0.01:
+        pass
+    before = cpu_seconds()
+    time.sleep(0.1)
+    assert cpu_seconds() - before < 0.1
+
+
+def test_tasks_of_one_process_run_here_in_their_order():
+    here = []
+    tasks = [("b", (2,)), ("a", (1,))]
+
+    def work(number):
+        here.append((os.getpid(), number))
+        return -number
+
+    results = in_processes(work, tasks, 1)
+    assert next(results) == ("b", -2)
+    assert here == [(os.getpid(), 2)]
+    assert list(results) == [("a", -1)]
+
+
+def fails(number):
+    raise ValueError(number)
+
+
+def test_errors_of_a_task_are_told_with_their_name():
+    ((key, error),) = in_processes(fails, [("a", (7,))], 2)
+    assert (key, str(error)) == ("a", "ValueError: 7")
+
+
+def test_terminated_processes_put_things_in_order():
+    before = signal.getsignal(signal.SIGTERM)
+    tidied = []
+    with pytest.raises(SystemExit) as caught, unwound_when_terminated():
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        finally:
+            tidied.append(True)
+    assert caught.value.code == 128 + signal.SIGTERM
+    assert tidied == [True]
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_threads_leave_signals_alone():
+    before = signal.getsignal(signal.SIGTERM)
+    seen = []
+
+    def run():
+        with unwound_when_terminated():
+            seen.append(signal.getsignal(signal.SIGTERM))
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    thread.join()
+    assert seen == [before]
+
+
+def test_a_worker_waits_for_its_parents_word(monkeypatch):
+    handlers, threads = {}, []
+
+    class Thread:
+        def __init__(self, **options):
+            threads.append(options)
+
+        def start(self):
+            threads.append("started")
+
+    monkeypatch.setattr(processes.signal, "signal", handlers.__setitem__)
+    monkeypatch.setattr(processes.threading, "Thread", Thread)
+    monkeypatch.setattr(tempfile, "tempdir", None)
+    processes._prepare("/folder", 7)
+    assert tempfile.gettempdir() == "/folder"
+    assert handlers == {signal.SIGINT: signal.SIG_IGN, signal.SIGTERM: processes._stop}
+    watch = {"target": processes._end_with, "args": (7, "/folder"), "daemon": True}
+    assert threads == [watch, "started"]
+
+
+class Left(BaseException):
+    """A process has ended."""
+
+
+@pytest.fixture
+def ends(monkeypatch):
+    """Let the end of this process be an exception, with its status."""
+
+    def leave(status):
+        raise Left(status)
+
+    monkeypatch.setattr(processes.os, "_exit", leave)
+    tools = [subprocess.Popen(["sleep", "60"], start_new_session=True) for _ in range(2)]
+    monkeypatch.setattr(processes, "_running", {*tools})
+    yield tools
+    for tool in tools:
+        tool.kill()
+        tool.wait()
+
+
+def test_a_stopped_worker_takes_its_tools_along(ends):
+    with pytest.raises(Left, match=r"^143$"):
+        processes._stop(signal.SIGTERM, None)
+    assert [tool.wait(30) for tool in ends] == [-signal.SIGKILL] * 2
+
+
+@pytest.mark.parametrize("adopted", [True, False])
+def test_an_orphan_ends_with_its_tools_and_files(ends, monkeypatch, tmp_path, adopted):
+    """Whether it hears of it by another parent, or because the parent is not there."""
+    folder = tmp_path / "own"
+    (folder / "deep").mkdir(parents=True)
+    parents = iter([5, 5, 5, 1]) if adopted else iter([5] * 9)
+    alive = iter([True, True] if adopted else [True, True, False])
+    waited = []
+    monkeypatch.setattr(processes.os, "getppid", lambda: next(parents))
+    monkeypatch.setattr(processes, "_is_there", lambda process: process == 4 and next(alive))
+    monkeypatch.setattr(processes.time, "sleep", waited.append)
+    with pytest.raises(Left, match=r"^137$"):
+        processes._end_with(4, str(folder))
+    assert waited == [1, 1]
+    assert [tool.wait(30) for tool in ends] == [-signal.SIGKILL] * 2
+    assert not folder.exists()
+
+
+def test_who_is_there_is_asked_of_the_system():
+    process = started("sleep", "60")
+    assert processes._is_there(process.pid) and processes._is_there(os.getpid())
+    hang_up(process)
+    assert not processes._is_there(process.pid)
+
+
+def test_who_has_ended_is_not_killed_again(monkeypatch):
+    """Its number may be somebody else's."""
+    process = started("true")
+    process.wait()
+    killed = []
+    monkeypatch.setattr(processes.os, "killpg", lambda *who: killed.append(who))
+    processes._kill(process)
+    assert killed == []
+    hang_up(process)
+
+
+def test_who_ends_while_he_is_killed_is_no_error(monkeypatch):
+    def gone(*_):
+        raise ProcessLookupError
+
+    process = started("sleep", "60")
+    monkeypatch.setattr(processes.os, "killpg", gone)
+    processes._kill(process)
+    monkeypatch.undo()
+    hang_up(process)
+
+
+def test_temporary_files_of_workers_go_with_their_pool(tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    ((_, made),) = in_processes(tempfile.mkdtemp, [("a", ())], 2)
+    assert Path(made).parent.parent == tmp_path
+    assert Path(made).parent.name.startswith("firm-hdl-")
+    assert list(tmp_path.iterdir()) == []
