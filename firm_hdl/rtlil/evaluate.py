@@ -5,7 +5,7 @@ The rules of widths are those of Yosys (`kernel/calc.cc`), as in `vhdl_cells`.
 
 from __future__ import annotations
 
-from firm_hdl.rtlil.ir import Bits, Cell, Spec, cut, join, spec_width
+from firm_hdl.rtlil.ir import Bits, Cell, Spec, bits_of, cut, join, spec_width
 
 __all__ = ["constant", "evaluate", "extended"]
 
@@ -16,10 +16,10 @@ _SHIFTS = ("$shl", "$shr", "$sshr", "$shift")
 
 def constant(spec: Spec, *, signed: bool = False) -> int | None:
     """Give the number that a value is, if all of it is constant."""
-    if not all(isinstance(chunk, Bits) for chunk in spec):
+    text = bits_of(spec)
+    if text is None:
         return None
-    bits = "".join(c.text for c in reversed(spec) if isinstance(c, Bits))
-    bits = "".join("1" if bit == "1" else "0" for bit in bits)
+    bits = "".join("1" if bit == "1" else "0" for bit in text)
     return int(bits or "0", 2) - ((signed and bits[:1] == "1") << len(bits))
 
 

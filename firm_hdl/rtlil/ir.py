@@ -26,6 +26,7 @@ __all__ = [
     "Switch",
     "Value",
     "Wire",
+    "bits_of",
     "cut",
     "join",
     "spec_width",
@@ -63,6 +64,16 @@ Value: TypeAlias = int | float | str | Bits
 def spec_width(spec: Spec) -> int:
     """Count the bits of a signal specification."""
     return sum(chunk.width for chunk in spec)
+
+
+def bits_of(spec: Spec) -> str | None:
+    """Give the bits of a constant, the most significant first; of anything else, nothing."""
+    text = ""
+    for chunk in spec:
+        if not isinstance(chunk, Bits):
+            return None
+        text = chunk.text + text
+    return text
 
 
 def cut(spec: Spec, low: int, width: int) -> Spec:

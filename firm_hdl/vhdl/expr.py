@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from firm_hdl.rtlil.evaluate import constant
-from firm_hdl.rtlil.ir import Bits, Cell, Chunk, Slice, Spec, spec_width
+from firm_hdl.rtlil.ir import Bits, Cell, Chunk, Slice, Spec, bits_of, spec_width
 from firm_hdl.vhdl.cells import Cells
 from firm_hdl.vhdl.text import Text, atom, bit_literal, call, chain, infix, literal
 from firm_hdl.vhdl.uses import trim
@@ -132,8 +132,8 @@ class Values:
             width = max(natural, 1)
         if width < natural:
             return self.unsigned(trim(spec, width), target=target)
-        if all(isinstance(chunk, Bits) for chunk in spec):
-            bits = "".join(c.text for c in reversed(spec) if isinstance(c, Bits))
+        bits = bits_of(spec)
+        if bits is not None:
             return _constant(bits.rjust(width, "0"), target=target)
         used, rest = spec, 0
         if isinstance(spec[-1], Bits) and "1" not in spec[-1].text and len(spec) > 1:
@@ -152,8 +152,8 @@ class Values:
         natural = spec_width(spec)
         if not signed or natural == 0 or width <= natural:
             return self.unsigned(spec, width)
-        if all(isinstance(chunk, Bits) for chunk in spec):
-            bits = "".join(c.text for c in reversed(spec) if isinstance(c, Bits))
+        bits = bits_of(spec)
+        if bits is not None:
             return _constant(bits.rjust(width, bits[0]), target=False)
         if natural == 1:
             return call("repeat_bit", self.logic(spec), width)

@@ -94,8 +94,8 @@ class Graph:
         """
         if cell.kind in self._modules:
             return self._modules[cell.kind].wires[port].direction == "output"
-        spec = cell.ports[port]
-        return len(spec) == 1 and isinstance(spec[0], Slice) and spec[0].bare
+        whole = _only(cell.ports[port])
+        return whole is not None and whole.bare
 
     # What follows runs once, in the order of the constructor.
 
@@ -111,13 +111,13 @@ class Graph:
         guards: set[str] = set()
         cells: list[Cell] = []
         for cell in self.cells:
-            source = cell.ports["B"][0] if cell.kind == "$mux" and cell.ports["B"] else None
-            test = cell.ports["S"][0] if cell.kind == "$mux" and cell.ports["S"] else None
+            source = _only(cell.ports["B"]) if cell.kind == "$mux" else None
+            test = _only(cell.ports["S"]) if cell.kind == "$mux" else None
             if (
-                isinstance(source, Slice)
+                source is not None
                 and source.bare
                 and source.wire in divisions
-                and isinstance(test, Slice)
+                and test is not None
                 and test.wire in tests
                 and tests[test.wire].ports["A"] == divisions[source.wire].ports["B"]
             ):
@@ -166,14 +166,13 @@ class Graph:
         cut = min((i for i in (name.find("."), name.find("[")) if i > 0), default=0)
         if cut and name[:cut] in self.module.wires:
             return True
-        base, mark, number = name.rpartition("$")
-        return bool(
-            mark
-            and number.isdecimal()
-            and len(value) == 1
-            and isinstance(value[0], Slice)
-            and value[0].wire == base
-            and value[0].width == self.width[base]
+        base, _, number = name.rpartition("$")
+        source = _only(value)
+        return (
+            number.isdecimal()
+            and source is not None
+            and source.wire == base
+            and source.width == self.width[base]
         )
 
     def _cell_uses(self) -> Iterator[Use]:
@@ -223,11 +222,10 @@ class Graph:
         for connections in (self.drives, self.watches):
             kept: list[tuple[Spec, Spec]] = []
             for target, value in connections:
-                to, source = target[0], value[0]
+                to, source = target[0], _only(value)
                 if (
                     isinstance(to, Slice)
-                    and isinstance(source, Slice)
-                    and len(value) == 1
+                    and source is not None
                     and source.wire.startswith("$")
                     and source.wire not in self.name_of
                     and to.bare
@@ -254,11 +252,9 @@ class Graph:
                 continue
             register = output(cell)
             self.register_of[register] = cell
-            data = cell.ports["D"]
-            chunk = data[0]
+            chunk = _only(cell.ports["D"])
             if (
-                isinstance(chunk, Slice)
-                and len(data) == 1
+                chunk is not None
                 and chunk.wire in by_target
                 and chunk.wire.startswith("$")
                 and chunk.wire not in self.name_of
@@ -356,6 +352,11 @@ def _in_order(candidates: dict[str, Cell]) -> Iterator[str]:
                         and chunk.wire in candidates
                         and chunk.wire not in done
                     )
+
+
+def _only(spec: Spec) -> Slice | None:
+    """Return the part of a wire that a value is, if it is nothing besides."""
+    return spec[0] if len(spec) == 1 and isinstance(spec[0], Slice) else None
 
 
 def _is_real(cell: Cell) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from firm_hdl.rtlil.ir import Bits, Cell, Memory, Slice, Spec, cut, spec_width
+from firm_hdl.rtlil.ir import Bits, Cell, Memory, Slice, Spec, bits_of, cut, spec_width
 from firm_hdl.vhdl.expr import Declared, Values
 from firm_hdl.vhdl.text import Text, atom, bit_literal, chain, infix, literal
 from firm_hdl.vhdl.uses import enable_runs, int_parameter
@@ -86,7 +86,7 @@ class MemoryText:
     def _words(self) -> list[str]:
         width, words = self._memory.width, []
         for cell in self._contents:
-            bits = "".join(c.text for c in reversed(cell.ports["DATA"]) if isinstance(c, Bits))
+            bits = bits_of(cell.ports["DATA"]) or ""
             words = [bits[end - width : end] for end in range(len(bits), 0, -width)]
         return words
 

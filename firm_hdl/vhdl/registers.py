@@ -7,7 +7,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from firm_hdl.rtlil.ir import Assign, Bits, Cell, Slice, Spec, Statement, Switch, spec_width
+from firm_hdl.rtlil.ir import (
+    Assign,
+    Bits,
+    Cell,
+    Slice,
+    Spec,
+    Statement,
+    Switch,
+    bits_of,
+    spec_width,
+)
 from firm_hdl.vhdl.declare import Names, initial_value
 from firm_hdl.vhdl.expr import Values
 from firm_hdl.vhdl.graph import Graph
@@ -117,11 +127,9 @@ class Registers:
             not isinstance(inner, Assign)
             or not isinstance(init, Bits)
             or spec_width(inner.target) != init.width
-            or not all(isinstance(part, Bits) for part in inner.value)
         ):
             return ()
-        given = "".join(part.text for part in reversed(inner.value) if isinstance(part, Bits))
-        return statement.selector if given == init.text else ()
+        return statement.selector if bits_of(inner.value) == init.text else ()
 
     def processes(self) -> Iterator[Iterator[str]]:
         """Yield one block for each process."""

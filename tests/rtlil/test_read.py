@@ -15,6 +15,7 @@ from firm_hdl.rtlil.ir import (
     Process,
     Slice,
     Switch,
+    bits_of,
     cut,
     join,
     spec_width,
@@ -105,3 +106,10 @@ def test_cuts_and_joins() -> None:
         Slice("a", 0, 3),
         Bits("01"),
     )
+
+
+def test_constants_are_bits_and_nothing_else_is() -> None:
+    assert bits_of((Bits("01"), Bits("1x"))) == "1x01"
+    assert bits_of(()) == ""
+    for other in ((Slice("a", 0, 1), Bits("1")), (Bits("1"), Slice("a", 0, 1))):
+        assert bits_of(other) is None
