@@ -38,19 +38,19 @@ MAY_IMPORT = {
     "export": {"firm_hdl", "errors", "files", "names", "vhdl", "model", "frontend", "wire", "plan"},
 }
 MAY_IMPORT["export"] |= {"gateware"}
+MAY_IMPORT["arguments"] = {"frontend", "plan"}
 MAY_IMPORT["covering"] = {
-    *("errors", "files", "model", "frontend", "wire", "plan", "gateware", "export"),
+    *("arguments", "errors", "files", "model", "frontend", "wire", "plan", "gateware", "export"),
 }
 MAY_IMPORT["verify"] = {
     *MAY_IMPORT["export"],
-    *("export", "identity", "jobs", "metrics", "sim", "terminal"),
+    *("arguments", "export", "identity", "jobs", "metrics", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
-    *("firm_hdl", "errors", "jobs", "names", "rtlil", "terminal", "vhdl"),
+    *("firm_hdl", "arguments", "errors", "jobs", "names", "rtlil", "terminal", "vhdl"),
     *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
-MAY_IMPORT["commands"] = {*MAY_IMPORT["verify"], "verify", "covering", "equivalence"}
-MAY_IMPORT["cli"] = {"firm_hdl", "errors", "terminal", "commands"}
+MAY_IMPORT["cli"] = {*MAY_IMPORT["verify"], "verify", "covering", "equivalence"}
 # The package's own face.
 MAY_IMPORT["firm_hdl"] = {"errors", "frontend", "gateware"}
 
@@ -164,7 +164,7 @@ def test_violations_are_found(tmp_path: Path) -> None:
         "wire/cdr.py": '"""Doc."""\nfrom firm_hdl import frontend\n__all__ = []\n',
         "sim/a.py": '"""Doc."""\ndef f():\n    from firm_hdl.export.build import build\n',
         "sim/b.py": '__all__ = ["a", *b]\n',
-        "cli.py": '"""Doc."""\nfrom firm_hdl.verify import accept\n__all__ = []\n' + "\n" * 450,
+        "terminal.py": '"""Doc."""\nimport firm_hdl.verify\n__all__ = []\n' + "\n" * 450,
         "utils.py": '"""Doc."""\n__all__ = []\n',
         "plan/a.py": '"""Doc."""\n__all__ = []\ndef long():\n' + "    pass\n" * 60,
         "plan/b.py": '"""Doc."""\n__all__ = []\ndef long():\n' + "    pass\n" * 59,
@@ -186,8 +186,6 @@ def test_violations_are_found(tmp_path: Path) -> None:
         (tmp_path / name).write_text(text)
     assert list(problems(tmp_path)) == [
         "__init__.py: firm_hdl imports export",
-        "cli.py: more than 450 lines",
-        "cli.py: cli imports verify",
         "gateware/__main__.py: gateware imports firm_hdl",
         "model.py: model imports wire",
         "plan/a.py: long has more than 60 lines",
@@ -195,6 +193,8 @@ def test_violations_are_found(tmp_path: Path) -> None:
         "sim/a.py: sim imports export",
         "sim/b.py: no docstring",
         "sim/b.py: no literal __all__",
+        "terminal.py: more than 450 lines",
+        "terminal.py: terminal imports verify",
         "utils.py: a part of the package that the architecture does not know",
         "verify/more.py: a part of the package that the architecture does not know",
         "verify/report/a.py: report imports ts3",

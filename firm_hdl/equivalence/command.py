@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from tqdm import tqdm
 
+from firm_hdl.arguments import add_jobs, add_types_or_all, positive
 from firm_hdl.equivalence.converters import Attempt, Task, both, run_tasks
 from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT
 from firm_hdl.equivalence.tools import MissingToolError, ToolError, find_tools
@@ -20,19 +21,15 @@ __all__ = ["add_prove_arguments", "run_proofs", "run_prove"]
 
 def add_prove_arguments(command: argparse.ArgumentParser) -> None:
     """Add what is this command's own."""
-    command.add_argument("types", nargs="*", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
-    command.add_argument("--all", action="store_true", help="all types that there are")
-    command.add_argument(
-        "--jobs", type=_positive, metavar="N", help="processes; default: one per processor"
-    )
+    add_types_or_all(command, "all types that there are")
+    add_jobs(command)
     command.add_argument(
         "--timeout",
-        type=_positive,
+        type=positive,
         default=int(DEFAULT_TIMEOUT),
         metavar="SECONDS",
         help="for each of two solvers; default: %(default)s",
     )
-    command.set_defaults(usage_error=command.error)
 
 
 def run_prove(given: argparse.Namespace) -> int:
@@ -130,8 +127,3 @@ def _summary(results: Sequence[tuple[Task, Attempt]]) -> str:
         )
     return text
 
-
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"must be a positive number, not {text!r}")
-    return int(text)

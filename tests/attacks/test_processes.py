@@ -65,7 +65,7 @@ def test_streams_that_are_closed_or_full_are_no_traceback(arguments, shell):
     assert done.returncode in (0, 1)
 
 
-@pytest.mark.parametrize("module", ["firm_hdl.terminal", "firm_hdl.commands", "rosbags"])
+@pytest.mark.parametrize("module", ["firm_hdl.terminal", "firm_hdl.cli.table", "rosbags"])
 def test_interrupt_while_it_starts_is_no_traceback(module):
     # As if somebody pressed Ctrl-C while a module is being imported.
     hook = (

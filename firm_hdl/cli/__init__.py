@@ -107,7 +107,7 @@ class _Version(argparse.Action):
 
 def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     """Make a parser that knows all commands, and the arguments of the one that is called."""
-    from firm_hdl.commands import COMMANDS
+    from firm_hdl.cli.table import COMMANDS
 
     parser = argparse.ArgumentParser(
         prog="firm-hdl",
@@ -122,5 +122,5 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
         text = command.help
         sub = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
         if name == called:
-            command.add(sub)
+            command.add(name, sub)
     return parser

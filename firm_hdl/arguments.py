@@ -1,0 +1,142 @@
+"""Arguments that several commands take, each defined once.
+
+The parser of a command is made before anything else of it, so nothing heavy is imported here.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
+
+__all__ = [
+    "add_depends",
+    "add_jobs",
+    "add_options",
+    "add_origins",
+    "add_path",
+    "add_types_or_all",
+    "add_wire",
+    "number_between",
+    "positive",
+]
+
+
+def positive(text: str) -> int:
+    """Read a number that is at least 1, for `argparse`."""
+    return number_between(text, 1, None)
+
+
+def number_between(text: str, least: int, most: int | None) -> int:
+    """Read a number between limits, both included, for `argparse`.
+
+    Parameters
+    ----------
+    text : str
+        In decimal, or with a prefix such as ``0x``.
+
+    Raises
+    ------
+    argparse.ArgumentTypeError
+        If it is no number or none of these.
+    """
+    try:
+        number = int(text, 0)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+    if number < least or (most is not None and number > most):
+        limits = f"at least {least}" if most is None else f"from {least} to {most}"
+        raise argparse.ArgumentTypeError(f"must be {limits}, not {number}")
+    return number
+
+
+def add_types_or_all(
+    command: argparse.ArgumentParser,
+    which: str = "all types; with --path, all in those folders; with --bag, all in the recordings",
+) -> None:
+    """Add names of types, and ``--all`` instead."""
+    command.add_argument("types", nargs="*", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
+    command.add_argument("--all", action="store_true", help=which)
+    command.set_defaults(usage_error=command.error)
+
+
+def add_origins(command: argparse.ArgumentParser) -> None:
+    """Add where definitions come from. Without ``--distro``, a recording says which it is."""
+    command.add_argument(
+        "--distro",
+        choices=list(DISTROS),
+        help=f"default: {DEFAULT_DISTRO}, or that of the recording",
+    )
+    origins = command.add_mutually_exclusive_group()
+    add_path(origins)
+    origins.add_argument(
+        "--bag",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="recording (.bag, .mcap, .db3) whose types are used, and no others; repeatable",
+    )
+    add_depends(command)
+
+
+def add_path(command: argparse._ActionsContainer) -> None:
+    """Add ``--path``."""
+    command.add_argument(
+        "--path",
+        action="append",
+        default=[],
+        metavar="DIR",
+        help="folder with ROS packages, searched before the distribution's types; repeatable",
+    )
+
+
+def add_depends(command: argparse._ActionsContainer) -> None:
+    """Add ``--depends``."""
+    command.add_argument(
+        "--depends",
+        action="append",
+        default=[],
+        metavar="DIR",
+        help="folder with ROS packages that others need, searched behind --path; no part of --all; "
+        "repeatable",
+    )
+
+
+def add_wire(command: argparse._ActionsContainer) -> None:
+    """Add ``--wire``."""
+    command.add_argument(
+        "--wire", choices=["ros1", "cdr"], help="wire format; default: the distribution's own"
+    )
+
+
+def add_jobs(command: argparse._ActionsContainer) -> None:
+    """Add ``--jobs``."""
+    command.add_argument(
+        "--jobs", type=positive, metavar="N", help="processes; default: one per processor"
+    )
+
+
+def add_options(command: argparse._ActionsContainer) -> None:
+    """Add what a converter is made for: wire format, bus width, longest message."""
+    from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES
+
+    add_wire(command)
+    command.add_argument(
+        "--bus-bytes",
+        type=int,
+        choices=BUS_BYTES,
+        default=8,
+        metavar="N",
+        help=f"bytes per beat: {', '.join(map(str, BUS_BYTES))}; default: %(default)s",
+    )
+    command.add_argument(
+        "--max-message-bytes",
+        type=_message_bytes,
+        default=DEFAULT_MAX_MESSAGE_BYTES,
+        metavar="N",
+        help="longest message to accept; default: %(default)s",
+    )
+
+
+def _message_bytes(text: str) -> int:
+    return number_between(text, 1, (1 << 32) - 1)

@@ -1,0 +1,125 @@
+"""The commands that turn definitions into converters: ``build``, ``plan`` and ``info``."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from typing import TYPE_CHECKING
+
+from firm_hdl.arguments import add_options
+from firm_hdl.cli.types import library_of
+
+if TYPE_CHECKING:
+    from firm_hdl.export.build import Built
+    from firm_hdl.model import Message
+    from firm_hdl.plan import Plan
+
+__all__ = ["add_build", "add_info", "add_plan"]
+
+
+def add_build(command: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``firm-hdl build``."""
+    from firm_hdl.export.vhdl.backend import PORTS
+
+    _add_types(command)
+    add_options(command)
+    _add_window(command)
+    command.add_argument("--out", default="vhdl_out", help="folder to write to (%(default)s)")
+    command.add_argument(
+        "--ports",
+        choices=PORTS,
+        default="records",
+        help="whether the VHDL has records, or plain vectors only; default: %(default)s",
+    )
+    command.add_argument("--force", action="store_true", help="write even what is current")
+    command.set_defaults(run=_build)
+
+
+def _build(given: argparse.Namespace) -> None:
+    from firm_hdl.export.build import build
+
+    def packets_of(message: Message, plan: Plan) -> list[bytes]:
+        # This imports NumPy and rosbags, which a build that is refused need not wait for.
+        from firm_hdl.verify.cases.stimuli import stimuli
+
+        return stimuli(message, plan)
+
+    def report(built: Built) -> None:
+        state = "current" if built.was_current else "wrote"
+        print(f"{state:8}{built.folder}{os.sep}", flush=True)
+        for old, new in sorted(built.renamed.items()):
+            print(f"        your own {old} there is {new} now", flush=True)
+
+    done = build(
+        given.types,
+        given.out,
+        library=library_of(given),
+        wire=given.wire,
+        bus_bytes=given.bus_bytes,
+        max_message_bytes=given.max_message_bytes,
+        window_words=given.window_words,
+        ports=given.ports,
+        force=given.force,
+        stimuli=packets_of,
+        report=report,
+    )
+    for built in done:
+        print(built.description)
+
+
+def add_plan(command: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``firm-hdl plan``."""
+    command.add_argument("type", metavar="TYPE")
+    add_options(command)
+    _add_window(command)
+    command.set_defaults(run=_plan)
+
+
+def _plan(given: argparse.Namespace) -> None:
+    from firm_hdl.export.build import load_all
+    from firm_hdl.plan import to_yaml
+
+    for index, message in enumerate(load_all(library_of(given), [given.type])):
+        plan = _planned(message, given)
+        print("---\n" * bool(index) + to_yaml(plan), end="")
+
+
+def add_info(command: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``firm-hdl info``."""
+    _add_types(command)
+    add_options(command)
+    _add_window(command)
+    command.set_defaults(run=_info)
+
+
+def _info(given: argparse.Namespace) -> None:
+    from firm_hdl.export.build import load_all
+    from firm_hdl.plan.timing import describe, timing
+
+    for message in load_all(library_of(given), given.types):
+        plan = _planned(message, given)
+        print(describe(message.name, plan, timing(plan)))
+
+
+def _planned(message: Message, given: argparse.Namespace) -> Plan:
+    from firm_hdl.export.build import plan_of
+
+    return plan_of(
+        message, given.wire, given.bus_bytes, given.max_message_bytes, given.window_words
+    )
+
+
+def _add_types(command: argparse.ArgumentParser) -> None:
+    command.add_argument("types", nargs="+", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
+
+
+def _add_window(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--window-words",
+        type=int,
+        choices=(1, 2),
+        default=1,
+        metavar="N",
+        help="bus words that are converted in one cycle: 1, or 2 for many short fields at a lower "
+        "clock rate; default: %(default)s",
+    )

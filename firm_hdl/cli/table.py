@@ -1,0 +1,71 @@
+"""What ``firm-hdl`` can do: each command, and where its arguments and its work are defined.
+
+A command's module is imported when the command is called, and imports what its work needs when the
+work starts.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+from importlib import import_module
+
+__all__ = ["COMMANDS", "Command"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Command:
+    """A command.
+
+    Attributes
+    ----------
+    help : str
+        What it does, in a line.
+    module : str
+        Name of the module of `firm_hdl.cli` that has its function ``add_NAME``, which adds the
+        arguments and sets ``run``.
+    has_origins : bool
+        Whether it takes ``--distro``, ``--path``, ``--bag`` and ``--depends`` as most commands do.
+    """
+
+    help: str
+    module: str
+    has_origins: bool = True
+
+    def add(self, name: str, parser: argparse.ArgumentParser) -> None:
+        """Add the command's arguments to its parser."""
+        from firm_hdl.arguments import add_origins
+
+        if self.has_origins:
+            add_origins(parser)
+        getattr(import_module(f"firm_hdl.cli.{self.module}"), f"add_{name}")(parser)
+
+
+COMMANDS: dict[str, Command] = {
+    "build": Command(help="write the converters of message types", module="building"),
+    "list": Command(help="list all messages, services and actions", module="reading"),
+    "show": Command(help="print a type as ROS's own tools do", module="reading"),
+    "plan": Command(help="print what converters do in each cycle, as YAML", module="building"),
+    "info": Command(help="say how many cycles and which clock types need", module="building"),
+    "verify": Command(
+        help="test converters against real ROS parts", module="testing", has_origins=False
+    ),
+    "report": Command(
+        help="write a report of results of verify, as HTML, Markdown or JSON",
+        module="testing",
+        has_origins=False,
+    ),
+    "prove": Command(
+        help="prove that the VHDL is the circuit that Amaranth elaborated", module="testing"
+    ),
+    "golden": Command(help="compare plans with golden ones, by meaning", module="testing"),
+    "cover": Command(help="choose few types that have all features", module="testing"),
+    "md5": Command(help="print the md5 sums of ROS 1 types", module="reading"),
+    "hash": Command(help="print the type hashes (RIHS01) of ROS 2 types", module="reading"),
+    "proto": Command(help="print an example of a type as ROS's own tools do", module="reading"),
+    "metrics": Command(
+        help="print figures of message types: depth, leaves, sizes, alignment, features",
+        module="reading",
+    ),
+}
+"""By name, in the order in which ``--help`` lists them."""
