@@ -184,7 +184,7 @@ def test_a_worker_waits_for_its_parents_word(monkeypatch):
     assert threads == [watch, "started"]
 
 
-class Left(BaseException):
+class LeftError(BaseException):
     """A process has ended."""
 
 
@@ -193,7 +193,7 @@ def ends(monkeypatch):
     """Let the end of this process be an exception, with its status."""
 
     def leave(status):
-        raise Left(status)
+        raise LeftError(status)
 
     monkeypatch.setattr(processes.os, "_exit", leave)
     tools = [subprocess.Popen(["sleep", "60"], start_new_session=True) for _ in range(2)]
@@ -205,7 +205,7 @@ def ends(monkeypatch):
 
 
 def test_a_stopped_worker_takes_its_tools_along(ends):
-    with pytest.raises(Left, match=r"^143$"):
+    with pytest.raises(LeftError, match=r"^143$"):
         processes._stop(signal.SIGTERM, None)
     assert [tool.wait(30) for tool in ends] == [-signal.SIGKILL] * 2
 
@@ -221,7 +221,7 @@ def test_an_orphan_ends_with_its_tools_and_files(ends, monkeypatch, tmp_path, ad
     monkeypatch.setattr(processes.os, "getppid", lambda: next(parents))
     monkeypatch.setattr(processes, "_is_there", lambda process: process == 4 and next(alive))
     monkeypatch.setattr(processes.time, "sleep", waited.append)
-    with pytest.raises(Left, match=r"^137$"):
+    with pytest.raises(LeftError, match=r"^137$"):
         processes._end_with(4, str(folder))
     assert waited == [1, 1]
     assert [tool.wait(30) for tool in ends] == [-signal.SIGKILL] * 2

@@ -15,7 +15,7 @@ LOST = r"^the executor was lost; results so far are kept$"
 TWICE = "the process that ran it died, and died again"
 
 
-class Dead(Exception):
+class DeadError(Exception):
     """What a cluster says of a task whose worker died."""
 
 
@@ -85,7 +85,7 @@ def cluster(monkeypatch):
                 raise told.busy
             return told.busy
 
-    fake = SimpleNamespace(Client=Client, KilledWorker=Dead)
+    fake = SimpleNamespace(Client=Client, KilledWorker=DeadError)
     monkeypatch.setattr(executors.importlib, "import_module", {"distributed": fake}.__getitem__)
     told.run = lambda tasks, **how: run_each(square, tasks, executor="dask://here:1", **how)
     return told
@@ -131,8 +131,8 @@ def test_errors_of_tasks_are_results(cluster):
 
 
 def test_tasks_of_a_dead_worker_run_again_each_alone(cluster):
-    dying = Pool({(2,): Dead(), (3,): Dead()})
-    alone = [Pool(), Pool({(3,): Dead()})]
+    dying = Pool({(2,): DeadError(), (3,): DeadError()})
+    alone = [Pool(), Pool({(3,): DeadError()})]
     cluster.pools = [dying, *alone]
     found = dict(cluster.run(tasks(1, 2, 3, 4, 5), jobs=3))
     assert [pool.given for pool in alone] == [[(2,)], [(3,)]]
@@ -150,7 +150,7 @@ def test_a_pool_that_breaks_takes_no_more_and_another_one_goes_on(cluster):
 
 
 def test_a_task_whose_own_pool_takes_nothing_is_blamed(cluster):
-    cluster.pools = [Pool({(1,): Dead()}), Pool(breaks_at=0)]
+    cluster.pools = [Pool({(1,): DeadError()}), Pool(breaks_at=0)]
     assert [(key, str(error)) for key, error in cluster.run(tasks(1))] == [("task 1", TWICE)]
 
 
