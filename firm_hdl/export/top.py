@@ -16,6 +16,7 @@ from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.gateware.limits import MAX_CELL_BITS
 from firm_hdl.gateware.signatures import leaf_shape
 from firm_hdl.names.identifiers import flat_names
 from firm_hdl.plan import Leaf, Plan
@@ -25,8 +26,8 @@ __all__ = ["DIRECTIONS", "MAX_INPUT_BITS", "Direction", "Port", "Top", "leaf_nam
 Direction: TypeAlias = Literal["deserializer", "serializer"]
 DIRECTIONS: tuple[Direction, ...] = ("deserializer", "serializer")
 
-MAX_INPUT_BITS = 65_535
-"""Amaranth 0.5 makes one cell of all inputs of a design, and no cell wider than this."""
+MAX_INPUT_BITS = MAX_CELL_BITS
+"""Amaranth makes one cell of all inputs of a design."""
 
 # What no leaf may be called: its ports are its name and ``_data``, ``_last`` and so on.
 _RESERVED = ("s_axis", "m_axis", "m_axis_status")

@@ -1,7 +1,8 @@
 """Converters as Amaranth components."""
 
 from firm_hdl.gateware.deserializer import Deserializer
-from firm_hdl.gateware.record import RecordReader, RecordWriter, record_layout
+from firm_hdl.gateware.record import RecordReader, RecordWriter
+from firm_hdl.gateware.record_layout import record_layout
 from firm_hdl.gateware.serializer import Serializer
 from firm_hdl.gateware.signatures import MessageSignature, PacketSignature, Status, StatusSignature
 

@@ -9,11 +9,11 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware.control import Control
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.gateware.signatures import (
+    MessageSignature,
     PacketSignature,
     Status,
     StatusSignature,
     leaf_streams,
-    plan_signature,
 )
 from firm_hdl.gateware.slots import Slots
 from firm_hdl.gateware.window import Window
@@ -93,7 +93,7 @@ class Deserializer(wiring.Component):
         super().__init__(
             {
                 "packets": In(PacketSignature(bus_bytes)),
-                "message": Out(plan_signature(self.plan, self.tree)),
+                "message": Out(MessageSignature.of_plan(message, self.plan, self.tree)),
                 "status": Out(StatusSignature),
             }
         )

@@ -10,11 +10,11 @@ from firm_hdl.gateware.control import Control
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.gateware.packer import Packer
 from firm_hdl.gateware.signatures import (
+    MessageSignature,
     PacketSignature,
     Status,
     StatusSignature,
     leaf_streams,
-    plan_signature,
 )
 from firm_hdl.gateware.slots import Slots
 from firm_hdl.model import Message
@@ -85,7 +85,7 @@ class Serializer(wiring.Component):
         self.tree = member_tree(leaf.path for leaf in self.plan.leaves)
         super().__init__(
             {
-                "message": In(plan_signature(self.plan, self.tree)),
+                "message": In(MessageSignature.of_plan(message, self.plan, self.tree)),
                 "packets": Out(PacketSignature(bus_bytes)),
                 "packet_error": Out(1),
                 "status": Out(StatusSignature),

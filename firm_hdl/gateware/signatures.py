@@ -29,7 +29,6 @@ __all__ = [
     "leaf_shape",
     "leaf_streams",
     "packet_layout",
-    "plan_signature",
     "signature_of",
 ]
 
@@ -118,10 +117,10 @@ def leaf_shape(leaf: Leaf) -> Shape | data.StructLayout:
     return shape
 
 
-def MessageSignature(
-    message: Message, bus_bytes: int, wire: Wire | None = None
-) -> wiring.Signature:
-    """Return the signature of a message, one stream per leaf, seen from where it comes from.
+class MessageSignature(wiring.Signature):
+    """A message as one stream per leaf, seen from where it comes from.
+
+    Two signatures are equal if their message, bus width and wire format are.
 
     Parameters
     ----------
@@ -130,14 +129,43 @@ def MessageSignature(
         Width of the packets on the other side of the converter; it decides the lanes of `items`.
     wire : "ros1", "cdr" or None
         Decides what an empty message is; `None`: the wire of the message's own dialect.
+
+    Attributes
+    ----------
+    message : Message
+    bus_bytes : int
+    wire : "ros1" or "cdr"
     """
-    plan = build_plan(lay_out(message, wire), bus_bytes=bus_bytes, max_message_bytes=(1 << 32) - 1)
-    return plan_signature(plan, member_tree(leaf.path for leaf in plan.leaves))
 
+    def __init__(self, message: Message, bus_bytes: int = 8, wire: Wire | None = None):
+        longest = (1 << 32) - 1
+        plan = build_plan(lay_out(message, wire), bus_bytes=bus_bytes, max_message_bytes=longest)
+        self._init(message, plan, member_tree(leaf.path for leaf in plan.leaves))
 
-def plan_signature(plan: Plan, tree: MemberTree) -> wiring.Signature:
-    """Return the signature of a plan's message side, with the names of `tree`."""
-    return signature_of(plan.leaves, tree)
+    @classmethod
+    def of_plan(cls, message: Message, plan: Plan, tree: MemberTree) -> MessageSignature:
+        """Make the signature of a message whose plan and names of members are known."""
+        signature = cls.__new__(cls)
+        signature._init(message, plan, tree)
+        return signature
+
+    def _init(self, message: Message, plan: Plan, tree: MemberTree) -> None:
+        self.message, self.bus_bytes, self.wire = message, plan.bus_bytes, plan.wire
+        super().__init__(_members(plan.leaves, tree))
+
+    def __eq__(self, other: object) -> bool:
+        # A flipped one is of another class, and has the other direction.
+        return isinstance(other, MessageSignature) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    @property
+    def _key(self) -> tuple[Message, int, str]:
+        return self.message, self.bus_bytes, self.wire
+
+    def __repr__(self) -> str:
+        return f"MessageSignature({self.message}, bus_bytes={self.bus_bytes}, wire={self.wire!r})"
 
 
 def signature_of(leaves: Sequence[Leaf], tree: MemberTree) -> wiring.Signature:

@@ -8,7 +8,7 @@ of that: each attribute is an equation over the node and its children).
 
 from firm_hdl.model.closure import closure
 from firm_hdl.model.interfaces import Action, Interface, Service
-from firm_hdl.model.message import Constant, Field, Message
+from firm_hdl.model.message import Constant, Field, Message, is_fixed_size
 from firm_hdl.model.types import (
     EMPTY_MEMBER,
     IDL_PRIMITIVES,
@@ -46,4 +46,5 @@ __all__ = [
     "closure",
     "element_of",
     "idl_primitives",
+    "is_fixed_size",
 ]

@@ -13,12 +13,13 @@ from firm_hdl.model.types import (
     Dialect,
     FieldType,
     Primitive,
+    Sequence,
     Text,
     Value,
     element_of,
 )
 
-__all__ = ["Constant", "Field", "Message"]
+__all__ = ["Constant", "Field", "Message", "is_fixed_size"]
 
 _LENGTH = re.compile(r"\[(0\d{1,18})\]\s*\Z")
 
@@ -169,19 +170,7 @@ class Message:
     def is_fixed_size(self) -> bool:
         """Whether every value of the message has the same number of bytes on a given wire."""
         self._settle("is_fixed_size")
-
-        def fixed(kind: FieldType) -> bool:
-            match kind:
-                case Primitive():
-                    return True
-                case Message():
-                    return kind.is_fixed_size
-                case Array():
-                    return fixed(kind.element)
-                case _:
-                    return False
-
-        return all(fixed(item.type) for item in self.fields)
+        return all(is_fixed_size(item.type) for item in self.fields)
 
     def _settle(self, attribute: str) -> None:
         """Evaluate an attribute of all messages below, deepest first.
@@ -194,3 +183,14 @@ class Message:
             pending += missing
             if not missing:
                 getattr(pending.pop(), attribute)
+
+
+def is_fixed_size(kind: FieldType) -> bool:
+    """Whether every value of a type has the same number of bytes on a given wire."""
+    match element_of(kind):
+        case Message() as message:
+            return message.is_fixed_size and not isinstance(kind, Sequence)
+        case Primitive():
+            return not isinstance(kind, Sequence)
+        case Text():
+            return False

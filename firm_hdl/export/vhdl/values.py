@@ -14,7 +14,7 @@ from firm_hdl.export.vhdl.constants import origin, quoted
 from firm_hdl.export.vhdl.records import record_elements
 from firm_hdl.export.vhdl.tree import Node, Package, Tree
 from firm_hdl.export.vhdl.types import PRIMITIVE_BITS, data_type, primitive_name
-from firm_hdl.gateware.record import MAX_RECORD_BITS
+from firm_hdl.gateware.limits import MAX_CELL_BITS
 from firm_hdl.model import Array, Field, Message
 from firm_hdl.plan import Plan
 
@@ -103,7 +103,7 @@ def _value_type(package: Package, plan: Plan, made: Mapping[str, ValueType]) -> 
     first = 0
     for node in package.node.children:
         member = _member(node, plan, made, package.name, first)
-        if member is None or (first := first + member.bits) > MAX_RECORD_BITS:
+        if member is None or (first := first + member.bits) > MAX_CELL_BITS:
             return None
         members.append(member)
     return ValueType(

@@ -1,0 +1,202 @@
+"""Which fields of a message are in its record view, and where each transfer of a leaf goes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from amaranth.hdl import Shape
+from amaranth.lib import data
+
+from firm_hdl.gateware.limits import MAX_CELL_BITS
+from firm_hdl.gateware.signatures import leaf_shape
+from firm_hdl.model import (
+    Array,
+    FieldType,
+    Message,
+    Primitive,
+    Sequence,
+    Text,
+    is_fixed_size,
+)
+from firm_hdl.plan import Leaf, Plan, build_plan
+from firm_hdl.wire import Wire, lay_out
+
+__all__ = ["Record", "Transfer", "record_layout"]
+
+Path: TypeAlias = "tuple[str, ...]"
+"""ROS names from the message down."""
+
+Place: TypeAlias = "tuple[str | int, ...]"
+"""Keys of a layout from the record down: names of fields, indexes of arrays."""
+
+Shapes: TypeAlias = "Shape | data.StructLayout | data.ArrayLayout"
+
+Transfer: TypeAlias = "list[Place]"
+"""Where the values of one transfer go: one place, or for items those of all lanes in use."""
+
+
+def record_layout(
+    message: Message, *, wire: Wire | None = None, fields: Iterable[str] | None = None
+) -> data.StructLayout:
+    """Return the payload of a record view.
+
+    Parameters
+    ----------
+    message : Message
+    wire : "ros1", "cdr" or None
+        `None`: the wire of the message's dialect.
+    fields : iterable of str, or None
+        Dotted names of what to include (``"header.stamp"``); `None`: everything of fixed size that
+        is not inside a sequence.
+
+    Raises
+    ------
+    ValueError
+        If a name is not that of a field of fixed size, nothing is left, or the record has more than
+        65,535 bits.
+    """
+    return Record(message, build_plan(lay_out(message, wire)), fields).layout
+
+
+class Record:
+    """What of a message is in the record.
+
+    Parameters
+    ----------
+    message, fields
+        As for :func:`record_layout`, errors included.
+    plan : Plan
+        Of the message.
+
+    Attributes
+    ----------
+    layout : StructLayout
+    transfers : dict of path to list of Transfer
+        The transfers of each leaf in the record, in the order in which they come.
+    """
+
+    def __init__(self, message: Message, plan: Plan, fields: Iterable[str] | None):
+        self.transfers: dict[Path, list[Transfer]] = {}
+        self._message = message
+        self._leaves = {leaf.path: leaf for leaf in plan.leaves}
+        self._choice = _Choice.of(fields)
+        members = self._chosen(message, ())
+        if self._choice.unknown:
+            names = ", ".join(repr(".".join(name)) for name in sorted(self._choice.unknown))
+            raise ValueError(f"Message {message.name} has no field of fixed size {names}")
+        if not members:
+            raise ValueError(f"Message {message.name} has no field of fixed size for a record")
+        self.layout = data.StructLayout(members)
+        self._check_width("record", self.layout.size)
+
+    def bits_of(self, transfer: Transfer) -> slice:
+        """Return which bits of the record a transfer has: items of an array are neighbours."""
+        ends = [_bits_at(self.layout, place) for place in (transfer[0], transfer[-1])]
+        return slice(ends[0].start, ends[1].stop)
+
+    def _chosen(self, message: Message, path: Path) -> dict[str, Shapes]:
+        """Return the members of a message that are in the record, and of messages in it."""
+        members: dict[str, Shapes] = {}
+        for item in message.fields:
+            name = (*path, item.name)
+            if self._choice.takes(name, item.type):
+                self._check_width(".".join(name), _bits(item.type))
+                members[item.name] = self._value(item.type, name, name)
+            elif isinstance(item.type, Message) and (nested := self._chosen(item.type, name)):
+                members[item.name] = data.StructLayout(nested)
+        return members
+
+    def _check_width(self, what: str, bits: int) -> None:
+        if bits > MAX_CELL_BITS:
+            raise ValueError(
+                f"Record of {self._message.name} is too wide: {what} has {bits} bits, and Amaranth "
+                f"elaborates at most {MAX_CELL_BITS}"
+            )
+
+    def _value(self, kind: FieldType, path: Path, place: Place) -> Shapes:
+        """Note where the transfers of a value go; return its shape."""
+        match kind:
+            case Primitive():
+                return self._scalar(path, place)
+            case Message(fields=()):
+                # On a wire where it has bytes there is one octet, and else one trigger.
+                (name,) = (leaf[-1] for leaf in self._leaves if leaf[:-1] == path)
+                return data.StructLayout({name: self._scalar((*path, name), (*place, name))})
+            case Message(fields=fields):
+                return data.StructLayout(
+                    {
+                        item.name: self._value(item.type, (*path, item.name), (*place, item.name))
+                        for item in fields
+                    }
+                )
+            case Array(element=Primitive(), count=count):
+                return self._items(self._leaves[(*path, "items")], place, count)
+            case Array(element=element, count=count):
+                shapes = [
+                    self._value(element, (*path, "item"), (*place, index)) for index in range(count)
+                ]
+                return data.ArrayLayout(shapes[0], count)
+        raise AssertionError(kind)
+
+    def _scalar(self, path: Path, place: Place) -> Shapes:
+        self.transfers.setdefault(path, []).append([place])
+        return leaf_shape(self._leaves[path])
+
+    def _items(self, leaf: Leaf, place: Place, count: int) -> data.ArrayLayout:
+        for first in range(0, count, leaf.lanes):
+            places = [(*place, index) for index in range(first, min(first + leaf.lanes, count))]
+            self.transfers.setdefault(leaf.path, []).append(places)
+        return data.ArrayLayout(leaf_shape(leaf)["data"].shape.elem_shape, count)
+
+
+@dataclass(slots=True)
+class _Choice:
+    """The fields that a user wants, by their paths; `None`: all of fixed size."""
+
+    wanted: list[Path] | None
+    # Those that were not met.
+    unknown: set[Path] = field(default_factory=set)
+
+    @classmethod
+    def of(cls, fields: Iterable[str] | None) -> _Choice:
+        if isinstance(fields, str):
+            raise TypeError(f"Fields must be a list of names, not the text {fields!r}")
+        if fields is None:
+            return cls(None)
+        wanted = [tuple(name.split(".")) for name in fields]
+        return cls(wanted, set(wanted))
+
+    def takes(self, path: Path, kind: FieldType) -> bool:
+        """Tell whether a field is in the record with all that is in it."""
+        if not is_fixed_size(kind):
+            return False
+        if self.wanted is None:
+            return True
+        name = next((name for name in self.wanted if path[: len(name)] == name), None)
+        if name is not None:
+            self.unknown.discard(name)
+        return name is not None
+
+
+def _bits(kind: FieldType) -> int:
+    match kind:
+        case Primitive():
+            return 1 if kind.kind == "bool" else 8 * kind.bytes
+        case Message():
+            return sum(_bits(item.type) for item in kind.fields)
+        case Array():
+            return kind.count * _bits(kind.element)
+        case Text() | Sequence():
+            return 0
+
+
+def _bits_at(layout: Shapes, place: Place) -> slice:
+    """Return which bits of a record a value has."""
+    bit = 0
+    for key in place:
+        assert isinstance(layout, data.Layout)
+        member = layout[key]
+        bit, layout = bit + member.offset, member.shape
+    return slice(bit, bit + Shape.cast(layout).width)
