@@ -154,8 +154,8 @@ class MessageSignature(wiring.Signature):
         super().__init__(_members(plan.leaves, tree))
 
     def __eq__(self, other: object) -> bool:
-        # A flipped one is of another class, and has the other direction.
-        return isinstance(other, MessageSignature) and self._key == other._key
+        # To `isinstance`, a flipped signature is of the class that it flips.
+        return type(other) is MessageSignature and self._key == other._key
 
     def __hash__(self) -> int:
         return hash(self._key)
