@@ -70,10 +70,12 @@ VERIFY_MAY_IMPORT = {
     "bench": {"cases", "references", "results", "systems", "ts3"},
     "report": {"results"},
 }
-VERIFY_MAY_IMPORT["command"] = {
-    *("bench", "clients", "references", "report", "results"),
-    *("simulators", "systems", "ts1", "ts2", "ts3"),
+VERIFY_MAY_IMPORT["request"] = {"systems", "ts3"}
+VERIFY_MAY_IMPORT["run"] = {
+    *("bench", "clients", "references", "report", "request", "results"),
+    *("systems", "ts1", "ts2", "ts3"),
 }
+VERIFY_MAY_IMPORT["command"] = {"references", "request", "run", "simulators", "ts1", "ts3"}
 VERIFY_MAY_IMPORT["__main__"] = {"command"}
 # Its own face.
 VERIFY_MAY_IMPORT["verify"] = {"cases", "references", "systems", "ts3"}

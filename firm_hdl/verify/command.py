@@ -1,239 +1,126 @@
-"""``firm-hdl verify``: the test systems, behind one set of arguments.
-
-A test system is a line in :data:`SYSTEMS`: a function that makes it of the arguments. What each of
-them finds out goes to one file of results, which says first what all of them are to test.
-"""
+"""The arguments of ``firm-hdl verify``."""
 
 from __future__ import annotations
 
 import argparse
-import sys
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from collections.abc import Sequence
 
-from firm_hdl.errors import Diagnostic
-from firm_hdl.export.build import BuildError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
-from firm_hdl.frontend.search import workspace_folders
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, check_executor
-from firm_hdl.jobs.processes import unwound_when_terminated
-from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.plan import BUS_BYTES
-from firm_hdl.verify.bench.system import Benches
-from firm_hdl.verify.clients.arguments import (
-    add_sut_arguments,
-    check_sut,
-    references_of,
-    sut_options,
-)
-from firm_hdl.verify.clients.command import run_sut
-from firm_hdl.verify.references.client import ClientMissingError
-from firm_hdl.verify.report.command import write_report
-from firm_hdl.verify.results.environment import code_digest, environment, inputs_digest
-from firm_hdl.verify.results.file import ResultsError, ResultsWriter
+from firm_hdl.verify.references import CLIENTS
+from firm_hdl.verify.references.choice import NO_REFERENCE, WRITERS
+from firm_hdl.verify.request import Request
+from firm_hdl.verify.run import SYSTEMS, run_request
 from firm_hdl.verify.simulators import SIMULATORS
-from firm_hdl.verify.systems.ending import concluded, is_well
-from firm_hdl.verify.systems.system import Judged, Recorder, System
-from firm_hdl.verify.systems.tasks import Task, UnknownTypeError, collect_own, collect_tasks
-from firm_hdl.verify.ts1 import ORACLES, Ts1, selections_of
-from firm_hdl.verify.ts2.system import Ts2, Ts2Options
-from firm_hdl.verify.ts3.options import LONGEST, Options
-from firm_hdl.verify.ts3.replay_command import (
-    add_replay_arguments,
-    check_replay,
-    collect_recorded,
-)
-from firm_hdl.verify.ts3.system import How, Ts3
+from firm_hdl.verify.ts1 import ORACLES
+from firm_hdl.verify.ts3.options import LONGEST
+from firm_hdl.verify.ts3.replay import MOST_MESSAGES
 
-__all__ = ["SYSTEMS", "add_verify_arguments", "run_verify"]
+__all__ = ["add_verify_arguments", "run_verify"]
+
+# What a library under test is never asked, and what it is by default.
+_OTHERS: dict[str, object] = {
+    "bag": [],
+    "bus_bytes": None,
+    "executor": PROCESSES,
+    "golden": None,
+    "mutations": 0,
+    "oracle": [],
+    "reference": [],
+    "report": None,
+    "results": None,
+    "share_circuits": None,
+    "simulator": "python",
+    "systems": ("ts3",),
+    "vcd": None,
+}
 
 
 def run_verify(given: argparse.Namespace) -> int:
-    """Run the test systems that were asked for; return the exit status.
+    """Run what is asked for; return the exit status.
 
     Raises
     ------
     DefinitionError
-        If a definition that is named cannot be used. Of all types, those that can are tested, and
-        then the others are printed.
+        See :func:`firm_hdl.verify.run.run_request`.
     """
-    check_replay(given)
-    check_sut(given)
-    if bool(given.types) == given.all:
+    return run_request(_request(given))
+
+
+def _request(given: argparse.Namespace) -> Request:
+    """Check arguments, and return what they ask for."""
+    _check_replay(given)
+    _check_libraries(given)
+    # Without a type, all that a recording has are meant.
+    is_all = given.all or (bool(given.bag) and not given.types)
+    if bool(given.types) == is_all:
         given.refuse("name types, or all of them with --all")
     if given.report is not None and given.results is None:
         given.refuse("--report needs --results")
     if given.depends and not given.path:
         given.refuse("--depends needs --path")
-    given.path = [*given.path, *given.depends]
-    given.problems = {}
-    given.tasks = None
-    try:
-        _search_workspace(given)
-        with unwound_when_terminated():
-            if given.sut:
-                found = run_sut(_tasks(given), sut_options(given), given.jobs)
-            else:
-                found = _run_systems(given)
-        # Changed texts are nobody's by name.
-        is_named = not given.all and not given.mutations
-        for line in concluded(found, is_named=is_named):
-            print(line)
-        if given.report is not None:
-            write_report([given.results], given.report)
-            print(f"wrote   {given.report}")
-    except (
-        BuildError,
-        ClientMissingError,
-        ExecutorError,
-        ResultsError,
-        ProgramMissingError,
-        UnknownTypeError,
-    ) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
-    for problem in given.problems:
-        print(problem, file=sys.stderr)
-    return 0 if is_well(found, is_named=is_named) and not given.problems else 1
-
-
-def _search_workspace(given: argparse.Namespace) -> None:
-    """Have types that no distribution has looked up in the active workspace, as if by ``--path``.
-
-    TS1 alone does so anyway.
-    """
-    if not given.types or given.path or given.bag or (given.systems == ["ts1"] and not given.sut):
-        return
-    try:
-        _tasks(given)
-    except UnknownTypeError:
-        packages = {name.partition("/")[0] for name in given.types}
-        distros = given.distro or [DEFAULT_DISTRO]
-        given.path = [f for distro in distros for f in workspace_folders(distro, packages)]
-        if not given.path:
-            # Some of the types may be there.
-            given.tasks = collect_tasks(given.distro or (), given.types, problems=given.problems)
-
-
-def _run_systems(given: argparse.Namespace) -> list[Judged]:
-    """Run the test systems; return what came of all tests."""
-    with ExitStack() as stack:
-        systems = [SYSTEMS[name](given) for name in given.systems]
-        for system in systems:
-            stack.enter_context(system)
-        writer = None
-        if given.results is not None:
-            writer = stack.enter_context(_writer(given, systems))
-        # Each of them, whatever comes of the first.
-        return [each for system in systems for each in system.run(Recorder(writer))]
-
-
-def _writer(given: argparse.Namespace, systems: Sequence[System]) -> ResultsWriter:
-    """Open the file of results, new or to be continued."""
-    options = {
-        "systems": [system.name for system in systems],
-        "bus_bytes": _widths(given),
-        "wire": given.wire,
-        "paths": list(given.path),
-        "code": code_digest(),
-        "inputs": inputs_digest([*given.path, *given.bag, *filter(None, [given.golden])]),
-    }
-    for system in systems:
-        options |= system.options
-    more = {"executor": given.executor}
-    if given.problems:
-        # They are no tests of TS2 and of what follows, and nobody is to think that all is well.
-        more["definitions that are refused"] = f"{len(given.problems)}: {min(given.problems)}"
-    return ResultsWriter(
-        given.results,
-        options=options,
-        planned=[test for system in systems for test in system.tests],
-        session=environment(**more),
-    )
-
-
-def _ts3(given: argparse.Namespace) -> System:
-    options = [
-        Options(
-            bus_bytes=bus_bytes,
-            wire=given.wire,
-            seed=given.seed,
-            stalled=given.stalls,
-            broken=given.broken,
-            most_cases=given.cases,
-            simulator=given.simulator,
-            paths=tuple(given.path),
-            bags=tuple(given.bag),
-            longest=given.max_message_bytes or LONGEST,
-            references=references_of(given),
-            vcd=given.vcd,
-        )
-        for bus_bytes in _widths(given)
-    ]
-    # Of a type that is named, people want to see a run, and of a recording its own messages.
-    shares = given.all and not given.bag if given.share_circuits is None else given.share_circuits
-    how = How(jobs=given.jobs, executor=given.executor, share_circuits=shares)
-    return Ts3(_tasks(given), options, how)
-
-
-def _bench(given: argparse.Namespace) -> System:
-    return Benches(
-        _tasks(given),
-        paths=given.path,
+    references = None
+    if given.reference:
+        references = tuple(name for name in dict.fromkeys(given.reference) if name != NO_REFERENCE)
+    return Request(
+        types=tuple(given.types),
+        distros=tuple(given.distro or ()),
+        paths=(*given.path, *given.depends),
+        depends=tuple(given.depends),
+        systems=tuple(given.systems),
+        libraries=tuple(dict.fromkeys(given.sut)),
         wire=given.wire,
-        widths=_widths(given),
+        widths=tuple(dict.fromkeys(given.bus_bytes or [8])),
+        seed=given.seed,
         jobs=given.jobs,
-    )
-
-
-def _ts1(given: argparse.Namespace) -> System:
-    selections = selections_of(
-        given.distro, given.path, given.types, mutations=given.mutations, seed=given.seed
-    )
-    return Ts1(selections, given.oracle, given.jobs)
-
-
-def _ts2(given: argparse.Namespace) -> System:
-    options = Ts2Options(
-        paths=tuple(given.path),
-        wire=given.wire,
-        widths=tuple(_widths(given)),
+        executor=given.executor,
+        oracles=tuple(given.oracle),
+        mutations=given.mutations,
         golden=given.golden,
+        simulator=given.simulator,
+        most_cases=given.cases,
+        stalled=given.stalls,
+        broken=given.broken,
+        references=references,
+        vcd=given.vcd,
+        bags=tuple(given.bag),
+        longest=given.max_message_bytes or LONGEST,
+        share_circuits=given.share_circuits,
+        results=given.results,
+        report=given.report,
     )
-    return Ts2(_tasks(given), options, jobs=given.jobs, executor=given.executor)
 
 
-SYSTEMS: dict[str, Callable[[argparse.Namespace], System]] = {
-    "ts1": _ts1,
-    "ts2": _ts2,
-    "ts3": _ts3,
-    "bench": _bench,
-}
-"""By the name that ``--systems`` takes."""
-
-
-def _widths(given: argparse.Namespace) -> list[int]:
-    return list(dict.fromkeys(given.bus_bytes or [8]))
-
-
-def _tasks(given: argparse.Namespace) -> list[Task]:
-    # The same for all test systems, and slow for thousands of types.
-    if given.tasks is None:
-        given.tasks = _collected(given)
-    tasks: list[Task] = given.tasks
-    return tasks
-
-
-def _collected(given: argparse.Namespace) -> list[Task]:
-    if given.bag:
-        return collect_recorded(given)
+def _check_replay(given: argparse.Namespace) -> None:
+    """Refuse what recordings cannot be combined with."""
+    if not given.bag:
+        if given.max_message_bytes is not None:
+            given.refuse("--max-message-bytes needs --bag")
+        return
     if given.path:
-        # A type that is wrong does not keep the others from being tested.
-        problems: dict[str, Diagnostic] = given.problems
-        distros = given.distro or [DEFAULT_DISTRO]
-        own = [path for path in given.path if path not in given.depends]
-        return collect_own(distros, given.types, given.path, own=own, problems=problems)
-    return collect_tasks(given.distro or (), given.types)
+        given.refuse("argument --bag: not allowed with argument --path")
+    if set(given.systems) != {"ts3"}:
+        given.refuse("--bag is of ts3 alone")
+    if given.sut:
+        given.refuse("--bag is for firm-hdl's own converters, not for --sut")
+    if given.share_circuits:
+        given.refuse("--bag replays the messages of each type: not with --share-circuits")
+    if len(given.distro or ()) > 1:
+        given.refuse("--bag takes one --distro")
+
+
+def _check_libraries(given: argparse.Namespace) -> None:
+    """Refuse what libraries, as references or under test, cannot be combined with."""
+    if NO_REFERENCE in given.reference and len(given.reference) > 1:
+        given.refuse(f"--reference {NO_REFERENCE} goes with no other")
+    if not given.sut:
+        return
+    for name, default in _OTHERS.items():
+        if getattr(given, name) != default:
+            given.refuse(f"--{name.replace('_', '-')} does not go with --sut")
+    if not (given.stalls and given.broken):
+        given.refuse("--no-stalls and --no-broken do not go with --sut")
 
 
 def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
@@ -268,7 +155,7 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--systems",
         type=_systems,
-        default=["ts3"],
+        default=("ts3",),
         metavar="NAME,...",
         help=f"test systems: {', '.join(SYSTEMS)}; default: ts3",
     )
@@ -290,8 +177,8 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
     ts2.add_argument("--golden", metavar="DIR", help="compare with the golden plans there, too")
     ts3 = parser.add_argument_group("options of ts3")
     _add_cases(ts3)
-    add_replay_arguments(parser.add_argument_group("options of ts3 with recordings"))
-    add_sut_arguments(parser.add_argument_group("client libraries"), ts3)
+    _add_replay(parser.add_argument_group("options of ts3 with recordings"))
+    _add_libraries(parser.add_argument_group("client libraries"), ts3)
     _add_results(parser.add_argument_group("results"))
 
 
@@ -340,6 +227,45 @@ def _add_cases(group: argparse._ArgumentGroup) -> None:
     group.add_argument("--vcd", metavar="DIR", help="write the waveform of each run there")
 
 
+def _add_replay(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--bag",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="replay the messages of a recording (.bag, .mcap, .db3), with its definitions and no "
+        f"others, {MOST_MESSAGES} of each type at most (--cases N: N of each); without TYPE, all "
+        "types that it has topics of; repeatable",
+    )
+    group.add_argument(
+        "--max-message-bytes",
+        type=_size,
+        metavar="N",
+        help=f"leave out longer messages of recordings; default: {LONGEST}",
+    )
+
+
+def _add_libraries(group: argparse._ArgumentGroup, ts3: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--sut",
+        action="append",
+        default=[],
+        choices=list(CLIENTS),
+        metavar="NAME",
+        help="compare a client library with ROS's own serializer, instead of running test systems: "
+        f"{', '.join(CLIENTS)}; repeatable",
+    )
+    ts3.add_argument(
+        "--reference",
+        action="append",
+        default=[],
+        choices=[*WRITERS, NO_REFERENCE],
+        metavar="NAME",
+        help="library that has to write the same bytes as rosbags: "
+        f"{', '.join(WRITERS)}, or {NO_REFERENCE}; repeatable; default: all that are here",
+    )
+
+
 def _add_results(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--results",
@@ -385,4 +311,14 @@ def _positive(text: str) -> int:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
     if number < 1:
         raise argparse.ArgumentTypeError(f"must be at least 1, not {number}")
+    return number
+
+
+def _size(text: str) -> int:
+    try:
+        number = int(text, 0)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+    if not 1 <= number < 1 << 31:
+        raise argparse.ArgumentTypeError(f"must be from 1 to {(1 << 31) - 1}, not {number}")
     return number

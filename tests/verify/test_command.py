@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import pytest
 
-import firm_hdl.verify.command as command
+import firm_hdl.verify.run as run
 from firm_hdl.cli import main
 from firm_hdl.verify.__main__ import main as alias
 from firm_hdl.verify.results.verdict import Failed, Passed
@@ -144,7 +144,7 @@ def test_every_system_runs_whatever_comes_of_the_first(monkeypatch):
 
     made = {name: Fake(name, name != "ts1") for name in ("ts1", "ts3")}
     systems = {name: lambda given, name=name: made[name] for name in made}
-    monkeypatch.setattr(command, "SYSTEMS", systems)
+    monkeypatch.setattr(run, "SYSTEMS", systems)
     assert main(["verify", "--all", "--systems", "ts1,ts3"]) == 1
     assert main(["verify", "--all", "--systems", "ts3"]) == 0
     # The module is the same, and takes all types by itself.
@@ -156,7 +156,7 @@ def test_interruption_has_a_status_of_its_own(monkeypatch, capsys):
     def interrupted(given):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(command, "SYSTEMS", {"ts3": interrupted})
+    monkeypatch.setattr(run, "SYSTEMS", {"ts3": interrupted})
     assert main(["verify", "--all"]) == 130
     assert alias([]) == 130
     assert capsys.readouterr().err == "interrupted\n" * 2

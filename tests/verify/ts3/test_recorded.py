@@ -102,7 +102,7 @@ def test_results_of_another_run_are_refused(tmp_path, capsys):
 def test_results_of_other_code_are_refused(tmp_path, capsys, monkeypatch):
     path = tmp_path / "r.jsonl"
     assert verify("--results", str(path), "std_msgs/Bool") == 0
-    monkeypatch.setattr("firm_hdl.verify.command.code_digest", lambda: "other")
+    monkeypatch.setattr("firm_hdl.verify.run.code_digest", lambda: "other")
     assert verify("--results", str(path), "std_msgs/Bool") == 1
     assert re.search(r'code was "[0-9a-f]{12}", and is "other"', capsys.readouterr().err)
 

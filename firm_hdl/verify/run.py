@@ -1,0 +1,186 @@
+"""A run of ``firm-hdl verify``: test systems, or client libraries under test.
+
+A test system is a line in :data:`SYSTEMS`: a function that makes it of what is asked for. What each
+of them finds out goes to one file of results, which says first what all of them are to test.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+
+from firm_hdl.export.build import BuildError
+from firm_hdl.jobs.executors import ExecutorError
+from firm_hdl.jobs.processes import unwound_when_terminated
+from firm_hdl.jobs.programs import ProgramMissingError
+from firm_hdl.verify.bench.system import Benches
+from firm_hdl.verify.clients.command import run_sut
+from firm_hdl.verify.clients.run import SutOptions
+from firm_hdl.verify.references.client import ClientMissingError
+from firm_hdl.verify.report.command import write_report
+from firm_hdl.verify.request import Request, Workload
+from firm_hdl.verify.results.environment import code_digest, environment, inputs_digest
+from firm_hdl.verify.results.file import ResultsError, ResultsWriter
+from firm_hdl.verify.systems.ending import concluded, is_well
+from firm_hdl.verify.systems.system import Judged, Recorder, System
+from firm_hdl.verify.systems.tasks import UnknownTypeError
+from firm_hdl.verify.ts1 import Ts1, selections_of
+from firm_hdl.verify.ts2.system import Ts2, Ts2Options
+from firm_hdl.verify.ts3.options import Options
+from firm_hdl.verify.ts3.system import How, Ts3
+
+__all__ = ["SYSTEMS", "run_request"]
+
+
+def run_request(request: Request) -> int:
+    """Do what is asked for; print what came of it, and return the exit status.
+
+    Raises
+    ------
+    DefinitionError
+        If a definition that is named cannot be used. Of all types, those that can are tested, and
+        then the others are printed.
+    """
+    try:
+        work = Workload(request)
+        with unwound_when_terminated():
+            found = _run_clients(work) if request.libraries else _run_systems(work)
+        for line in concluded(found, is_named=request.is_named):
+            print(line)
+        if request.report is not None and request.results is not None:
+            write_report([request.results], request.report)
+            print(f"wrote   {request.report}")
+    except (
+        BuildError,
+        ClientMissingError,
+        ExecutorError,
+        ResultsError,
+        ProgramMissingError,
+        UnknownTypeError,
+    ) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    for problem in work.problems:
+        print(problem, file=sys.stderr)
+    return 0 if is_well(found, is_named=request.is_named) and not work.problems else 1
+
+
+def _run_clients(work: Workload) -> list[Judged]:
+    """Judge client libraries; return what came of it."""
+    request = work.request
+    options = SutOptions(
+        libraries=request.libraries,
+        wire=request.wire,
+        seed=request.seed,
+        most_cases=request.most_cases,
+        paths=request.paths,
+        names_wires=bool(request.distros or request.wire),
+    )
+    return run_sut(work.tasks, options, request.jobs)
+
+
+def _run_systems(work: Workload) -> list[Judged]:
+    """Run the test systems; return what came of all tests."""
+    with ExitStack() as stack:
+        systems = [SYSTEMS[name](work) for name in work.request.systems]
+        for system in systems:
+            stack.enter_context(system)
+        writer = None
+        if work.request.results is not None:
+            writer = stack.enter_context(_writer(work, work.request.results, systems))
+        # Each of them, whatever comes of the first.
+        return [each for system in systems for each in system.run(Recorder(writer))]
+
+
+def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWriter:
+    """Open the file of results, new or to be continued."""
+    request = work.request
+    read = [*request.paths, *request.bags, *filter(None, [request.golden])]
+    options = {
+        "systems": [system.name for system in systems],
+        "bus_bytes": list(request.widths),
+        "wire": request.wire,
+        "paths": list(request.paths),
+        "code": code_digest(),
+        "inputs": inputs_digest(read),
+    }
+    for system in systems:
+        options |= system.options
+    more = {"executor": request.executor}
+    if problems := work.problems:
+        # They are no tests of TS2 and of what follows, and nobody is to think that all is well.
+        more["definitions that are refused"] = f"{len(problems)}: {min(problems)}"
+    return ResultsWriter(
+        path,
+        options=options,
+        planned=[test for system in systems for test in system.tests],
+        session=environment(**more),
+    )
+
+
+def _ts1(work: Workload) -> System:
+    request = work.request
+    selections = selections_of(
+        request.distros,
+        request.paths,
+        request.types,
+        mutations=request.mutations,
+        seed=request.seed,
+    )
+    return Ts1(selections, request.oracles, request.jobs)
+
+
+def _ts2(work: Workload) -> System:
+    request = work.request
+    options = Ts2Options(
+        paths=request.paths, wire=request.wire, widths=request.widths, golden=request.golden
+    )
+    return Ts2(work.tasks, options, jobs=request.jobs, executor=request.executor)
+
+
+def _ts3(work: Workload) -> System:
+    request = work.request
+    options = [
+        Options(
+            bus_bytes=bus_bytes,
+            wire=request.wire,
+            seed=request.seed,
+            stalled=request.stalled,
+            broken=request.broken,
+            most_cases=request.most_cases,
+            simulator=request.simulator,
+            paths=request.paths,
+            bags=request.bags,
+            longest=request.longest,
+            references=request.references,
+            vcd=request.vcd,
+        )
+        for bus_bytes in request.widths
+    ]
+    shares = request.share_circuits
+    if shares is None:
+        # Of a type that is named, people want to see a run, and of a recording its own messages.
+        shares = not request.types and not request.bags
+    how = How(jobs=request.jobs, executor=request.executor, share_circuits=shares)
+    return Ts3(work.tasks, options, how)
+
+
+def _bench(work: Workload) -> System:
+    request = work.request
+    return Benches(
+        work.tasks,
+        paths=request.paths,
+        wire=request.wire,
+        widths=request.widths,
+        jobs=request.jobs,
+    )
+
+
+SYSTEMS: dict[str, Callable[[Workload], System]] = {
+    "ts1": _ts1,
+    "ts2": _ts2,
+    "ts3": _ts3,
+    "bench": _bench,
+}
+"""By the name that ``--systems`` takes."""
