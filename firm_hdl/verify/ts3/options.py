@@ -146,6 +146,10 @@ class Result:
     known: tuple[str, ...] = ()
     comparison: Comparison | None = None
 
+    def say(self, what: str) -> None:
+        """Add to the note."""
+        self.note = "; ".join(filter(None, [self.note, what]))
+
     @property
     def verdict(self) -> Verdict:
         """What all of this comes to; cases are packets that were judged."""

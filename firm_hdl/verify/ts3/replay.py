@@ -33,6 +33,7 @@ from firm_hdl.verify.systems.libraries import library_of
 from firm_hdl.verify.ts3.acceptance import Acceptance, measured
 from firm_hdl.verify.ts3.options import Options, Result
 from firm_hdl.verify.ts3.recording import RecordedMessage, Selection, Topic, select, topics_of
+from firm_hdl.verify.ts3.selection import is_large
 from firm_hdl.wire import lay_out
 
 __all__ = ["MOST_MESSAGES", "replay"]
@@ -97,9 +98,9 @@ def _replay(message: Message, judge: Judge, options: Options, result: Result) ->
         return
     run.good(cases, None)
     if options.stalled:
-        some = cases[::LARGE_STRIDE] if run.is_large(cases) else cases
+        some = cases[::LARGE_STRIDE] if is_large(run.plan, cases) else cases
         run.good(some, stalls_for(f"{options.seed}/{judge.name}"))
-    run.crosscheck()
+    run.circuit.crosscheck()
 
 
 def _room(longest: int) -> int:

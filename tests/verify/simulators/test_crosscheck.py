@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import firm_hdl.verify.simulators.ghdl as exported
-import firm_hdl.verify.ts3.acceptance as acceptance
+import firm_hdl.verify.ts3.circuit as circuit
 from firm_hdl import Serializer, load_message
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import ToolError
@@ -168,7 +168,7 @@ def test_vhdl_that_ghdl_refuses_is_a_failure(ghdl, monkeypatch):
 
 
 def test_cycles_that_are_missing_are_found(monkeypatch):
-    monkeypatch.setattr(acceptance, "simulator", lambda name: Short())
+    monkeypatch.setattr(circuit, "simulator", lambda name: Short())
     result = accepted("lyrical", "std_msgs/msg/Bool")
     cycles = result.simulated_cycles + 4
     assert result.failures[0] == f"short: {cycles - 9} cycles instead of {cycles}"
@@ -194,16 +194,16 @@ class Breaks:
 
 
 def test_simulator_that_fails_is_a_failure(monkeypatch):
-    monkeypatch.setattr(acceptance, "simulator", lambda name: Breaks())
+    monkeypatch.setattr(circuit, "simulator", lambda name: Breaks())
     assert accepted("lyrical", "std_msgs/msg/Bool").failures == ["broken: out of order"]
 
 
 def test_what_a_hanging_circuit_did_is_compared_as_well(ghdl, monkeypatch):
-    class Deaf(acceptance.Harness):
+    class Deaf(circuit.Harness):
         def run(self, **options):
             return super().run(**{**options, "limit": 20})
 
-    monkeypatch.setattr(acceptance, "Harness", Deaf)
+    monkeypatch.setattr(circuit, "Harness", Deaf)
     result = accepted("lyrical", HEADER)
     assert result.failures and all("DeadlineError" in failure for failure in result.failures)
     assert result.comparison is not None and result.comparison.cycles > 60

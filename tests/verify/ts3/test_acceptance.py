@@ -9,7 +9,8 @@ import pytest
 from amaranth.hdl import Module, Signal
 from amaranth.lib import wiring
 
-import firm_hdl.verify.ts3.acceptance as acceptance
+import firm_hdl.verify.ts3.checks as checks
+import firm_hdl.verify.ts3.circuit as circuit
 from firm_hdl.frontend import load_message
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.signatures import Status
@@ -135,7 +136,7 @@ class Sticks(Mirror):
 def test_faults_in_hardware_are_found(monkeypatch, which, fault, said):
     original = {"Serializer": Serializer, "Deserializer": Deserializer}[which]
     made = lambda message, **options: fault(original(message, **options))  # noqa: E731
-    monkeypatch.setattr(acceptance, which, made)
+    monkeypatch.setattr(circuit, which, made)
     result = accept("humble", HEADER)
     assert any(said in failure for failure in result.failures), result.failures
 
@@ -148,7 +149,7 @@ def test_all_that_a_run_shows_is_judged(monkeypatch, number):
     """In one of the runs, everything that is seen differs a little: the least that there is."""
     runs = []
 
-    class Doctored(acceptance.Harness):
+    class Doctored(circuit.Harness):
         def run(self, **options):
             seen = super().run(**options)
             runs.append(options)
@@ -160,7 +161,7 @@ def test_all_that_a_run_shows_is_judged(monkeypatch, number):
                 seen.marked[-1] = True
             return seen
 
-    monkeypatch.setattr(acceptance, "Harness", Doctored)
+    monkeypatch.setattr(circuit, "Harness", Doctored)
     result = accept("humble", "std_msgs/msg/UInt8", Options(most_cases=2))
     assert len(runs) == len(RUNS)
     where = RUNS[number]
@@ -199,13 +200,13 @@ def test_broken_packets_are_of_every_kind():
 
 
 def test_fault_in_the_golden_model_is_found(monkeypatch):
-    original = acceptance.decode
+    original = checks.decode
 
     def decode(plan, packet):
         decoded = original(plan, packet)
         return replace(decoded, transfers=decoded.transfers[:-1])
 
-    monkeypatch.setattr(acceptance, "decode", decode)
+    monkeypatch.setattr(checks, "decode", decode)
     result = accept("humble", HEADER, Options(broken=False, stalled=False))
     assert any(f.startswith("golden model, case 0 of") for f in result.failures)
     assert not any(f.startswith("hardware") for f in result.failures)
@@ -221,8 +222,8 @@ def test_fault_in_the_golden_model_is_found(monkeypatch):
     ],
 )
 def test_each_answer_of_the_golden_model_is_judged(monkeypatch, which, change, said):
-    original = getattr(acceptance, which)
-    monkeypatch.setattr(acceptance, which, lambda *given: change(original(*given)))
+    original = getattr(checks, which)
+    monkeypatch.setattr(checks, which, lambda *given: change(original(*given)))
     result = accept("humble", "std_msgs/msg/UInt8", Options(simulated=False))
     assert result.failures
     for failure in result.failures:
@@ -263,7 +264,7 @@ def test_command_reports_and_exits(capsys, monkeypatch):
     arguments = ["--distro", "humble", "--jobs", "1", "--cases", "2", "std_msgs/Bool"]
     assert main(arguments) == 0
     assert "humble      1 of    1 types pass (8-byte bus)" in capsys.readouterr().out
-    monkeypatch.setattr(acceptance, "Serializer", lambda *a, **o: Marks(Serializer(*a, **o)))
+    monkeypatch.setattr(circuit, "Serializer", lambda *a, **o: Marks(Serializer(*a, **o)))
     assert main(arguments) == 1
     said = capsys.readouterr().out
     assert "FAIL std_msgs/msg/Bool (humble)" in said

@@ -7,7 +7,7 @@ import struct
 
 import pytest
 
-import firm_hdl.verify.ts3.acceptance as acceptance
+import firm_hdl.verify.ts3.circuit as circuit
 import firm_hdl.verify.ts3.replay as replay_module
 from firm_hdl.cli import main
 from firm_hdl.gateware import Deserializer, Serializer
@@ -95,7 +95,7 @@ class Deaf(BadLeaf):
 def test_faults_in_hardware_are_found(capsys, monkeypatch, tmp_path, which, fault, said):
     original = {"Serializer": Serializer, "Deserializer": Deserializer}[which]
     made = lambda message, **options: fault(original(message, **options))  # noqa: E731
-    monkeypatch.setattr(acceptance, which, made)
+    monkeypatch.setattr(circuit, which, made)
     whole = TEXT[:4] + b"\x08\0\0\0abcdefg\0"
     bag = strings(tmp_path, whole, whole)
     status, printed = run(capsys, "--bag", bag, "--cases", "5")

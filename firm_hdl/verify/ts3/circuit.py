@@ -1,0 +1,129 @@
+"""The converters of a type in simulators."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Sequence
+
+from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.model import Message
+from firm_hdl.names.identifiers import identifier
+from firm_hdl.plan import Plan
+from firm_hdl.sim.bench import DeadlineError
+from firm_hdl.sim.harness import Harness
+from firm_hdl.sim.record import Seen
+from firm_hdl.sim.stalls import Stalls
+from firm_hdl.verify.results.verdict import NotJudged
+from firm_hdl.verify.simulators import simulator
+from firm_hdl.verify.simulators.crosscheck import Crosscheck
+from firm_hdl.verify.ts3.options import Options, Result
+
+__all__ = ["Circuit"]
+
+FULL_CYCLES = 60
+"""After so many cycles in which nothing leaves, converters are full of any packets."""
+
+
+class Circuit:
+    """Both converters of a type in a loop, simulated in Python, and what is replayed elsewhere.
+
+    Parameters
+    ----------
+    message : Message
+    plan : Plan
+        The type's; its wire, bus and limit are what the converters are made for.
+    options : Options
+    result : Result
+        Takes failures, and what was simulated and how long it took.
+
+    Raises
+    ------
+    NotJudgedError
+        If the converters are too large to be exported, and a simulator of exported text is asked
+        for.
+    """
+
+    def __init__(self, message: Message, plan: Plan, options: Options, result: Result):
+        self._message, self._plan, self._options, self._result = message, plan, options, result
+        self._runs = 0
+        rx, tx = self._converters()
+        other = simulator(options.simulator)
+        self._cross = (
+            None if other is None else Crosscheck(other, (rx, tx), self._converters, message.name)
+        )
+        probes = () if self._cross is None else self._cross.trace.probes
+        self._harness = Harness(rx, tx, message=message, gated=options.stalled, probes=probes)
+
+    def _converters(self) -> tuple[Deserializer, Serializer]:
+        wire, width, most = self._plan.wire, self._plan.bus_bytes, self._plan.max_message_bytes
+        return (
+            Deserializer(self._message, wire=wire, bus_bytes=width, max_message_bytes=most),
+            Serializer(self._message, wire=wire, bus_bytes=width, max_message_bytes=most),
+        )
+
+    def send(self, where: str, packets: Sequence[bytes], stalls: Stalls | None) -> Seen | None:
+        """Send packets; return what came out, or `None` if the run failed.
+
+        Parameters
+        ----------
+        where : str
+            What the run is called in failures.
+        """
+        observe = None if self._cross is None else self._cross.start(where)
+        began = time.perf_counter()
+        try:
+            seen = self._harness.run(
+                packets=packets, stalls=stalls, observe=observe, vcd=self._waveform()
+            )
+        except AssertionError as error:
+            self._result.failures.append(f"{where}: {type(error).__name__}: {error}")
+            return None
+        finally:
+            self._result.simulation_seconds += time.perf_counter() - began
+        self._result.packets += len(packets)
+        self._result.simulated_cycles += self._harness.bench.cycles
+        if self._cross is not None:
+            self._cross.done(seen)
+        return seen
+
+    def interrupt(self, packets: Sequence[bytes]) -> None:
+        """Fill the circuits and stop, for another simulator to meet that with a reset."""
+        if self._cross is None:
+            return
+        blocked = Stalls.bits("0" * (2 * FULL_CYCLES) + "1")
+        stalls = dict.fromkeys(("packets_out", "status", "sent_status"), blocked)
+        where = "hardware, nothing taken"
+        observe = self._cross.start(where)
+        try:
+            self._harness.run(packets=packets, stalls=stalls, limit=FULL_CYCLES, observe=observe)
+        except DeadlineError:
+            # As it is meant to end.
+            pass
+        except AssertionError as error:
+            self._result.failures.append(f"{where}: {type(error).__name__}: {error}")
+        self._result.simulated_cycles += self._harness.bench.cycles
+
+    def crosscheck(self) -> None:
+        """Compare everything that was sent with another simulator, if there is one."""
+        if self._cross is None:
+            return
+        began = time.perf_counter()
+        self._result.comparison = found = self._cross.compare()
+        self._result.simulation_seconds += time.perf_counter() - began
+        title = self._cross.simulator.title
+        # The simulator was asked for, so its silence is one of the failures.
+        silent = isinstance(found.verdict, NotJudged)
+        self._result.failures += [
+            f"{title}: {detail}" if silent else detail for detail in found.verdict.details
+        ]
+
+    def _waveform(self) -> str | None:
+        """Return the file for the waveform of the next run, if it is to have one."""
+        if self._options.vcd is None:
+            return None
+        self._runs += 1
+        os.makedirs(self._options.vcd, exist_ok=True)
+        plan = self._plan
+        base = identifier(f"{self._message.name}_{plan.wire}_{plan.bus_bytes}")
+        return os.path.join(self._options.vcd, f"{base}_run{self._runs}.vcd")
