@@ -10,7 +10,6 @@ view.
 from __future__ import annotations
 
 import json
-import shlex
 import tempfile
 import time
 from collections import Counter
@@ -40,13 +39,14 @@ from firm_hdl.verify.references.user_oracle import check_wire, judge_of
 from firm_hdl.verify.references.wide_oracle import WideOracle
 from firm_hdl.verify.results.records import Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Passed, Verdict
+from firm_hdl.verify.systems.again import command_again
 from firm_hdl.verify.systems.libraries import library_of
 from firm_hdl.verify.systems.system import Judged, Recorder, System, judged, wire_of
 from firm_hdl.verify.systems.tasks import Task
 from firm_hdl.verify.ts3.confirm import confirm
 from firm_hdl.wire import Wire
 
-__all__ = ["BenchResult", "BenchRun", "Benches", "run_bench"]
+__all__ = ["BenchRun", "Benches", "run_bench"]
 
 WARNINGS = ("--warn-error", "--warn-unused", "--warn-body", "--warn-default-binding")
 
@@ -72,10 +72,14 @@ class BenchRun:
 
     def command(self, distro: str, name: str) -> str:
         """Return the command that runs one type again."""
-        parts = [f"firm-hdl verify --systems bench --distro {distro}"]
-        parts += [f"--path {shlex.quote(path)}" for path in self.paths]
-        parts += [f"--wire {self.wire}"] if self.wire else []
-        return " ".join([*parts, f"--bus-bytes {self.bus_bytes}", name])
+        return command_again(
+            name,
+            systems="bench",
+            distro=distro,
+            path=self.paths,
+            wire=self.wire,
+            bus_bytes=self.bus_bytes,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -289,10 +293,7 @@ class Benches(System):
     def _run(self, run: BenchRun, recorder: Recorder) -> list[Judged]:
         """Run the benches with one bus."""
         began = time.perf_counter()
-        found = ((work, recorder.known(_test(run, *work))) for work in self._work)
-        records = {work: record for work, record in found if record is not None}
-        for line in recorder.said(len(records), len(self._work), "types"):
-            print(line)
+        records = recorder.resume({work: _test(run, *work) for work in self._work}, "types")
         left = [work for work in self._work if work not in records]
         total, known = len(self._work), len(records)
         label = f"{run.bus_bytes}-byte bus"

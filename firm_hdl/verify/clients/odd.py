@@ -18,7 +18,6 @@ from firm_hdl.wire import Wire
 
 __all__ = [
     "ODDITIES",
-    "Oddity",
     "odd_packet",
     "odd_packets",
     "odd_value",
@@ -29,6 +28,9 @@ __all__ = [
 
 MOST_PACKET_BYTES = 1 << 12
 """Longer packets are not made odd."""
+
+MOST_OF_A_KIND = 2
+"""Of a type, so many packets and so many values of each kind are made odd."""
 
 MOST_BOUND = 64
 """Higher bounds are not exceeded."""
@@ -104,7 +106,7 @@ _TAILS: dict[str, Callable[[bytes], bytes]] = {
 
 
 def odd_packets(
-    message: Message, wire: Wire, values: Sequence[Plain], *, each: int = 2
+    message: Message, wire: Wire, values: Sequence[Plain]
 ) -> Iterator[tuple[Oddity, Plain, bytes]]:
     """Yield odd packets of a type, of each kind at most so many; and the values they come from."""
     for oddity in ODDITIES.values():
@@ -116,7 +118,7 @@ def odd_packets(
             if packet is not None:
                 yield oddity, value, packet
                 found += 1
-            if found == each:
+            if found == MOST_OF_A_KIND:
                 break
 
 
@@ -137,13 +139,11 @@ def odd_packet(message: Message, wire: Wire, value: Plain, oddity: Oddity) -> by
 _VALUE_ODDITIES = ("nul-inside", "not-utf8", "bound-text", "bound-items")
 
 
-def odd_values(
-    message: Message, values: Sequence[Plain], *, each: int = 2
-) -> Iterator[tuple[str, Plain]]:
+def odd_values(message: Message, values: Sequence[Plain]) -> Iterator[tuple[str, Plain]]:
     """Yield values that are odd, of each kind at most so many: what does a library write?"""
     for odd in _VALUE_ODDITIES:
         changed = (odd_value(message, value, odd) for value in values)
-        for value in [value for value in changed if value is not None][:each]:
+        for value in [value for value in changed if value is not None][:MOST_OF_A_KIND]:
             yield odd, value
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
@@ -18,6 +17,7 @@ from firm_hdl.verify.references.clients import REFERENCES, client
 from firm_hdl.verify.references.user_oracle import judge_of
 from firm_hdl.verify.references.values import Plain, from_objects
 from firm_hdl.verify.results.verdict import NotJudged, NotJudgedError
+from firm_hdl.verify.systems.again import command_again
 from firm_hdl.verify.systems.libraries import library_of
 from firm_hdl.verify.systems.tasks import Task
 from firm_hdl.wire import Wire, lay_out
@@ -59,13 +59,15 @@ class SutOptions:
 
     def command(self, distro: str, name: str, library: str) -> str:
         """Return the command that judges one library on one type again."""
-        parts = ["firm-hdl", "verify", "--sut", library, "--distro", distro]
-        for path in self.paths:
-            parts += ["--path", path]
-        parts += ["--wire", self.wire] if self.wire else []
-        parts += ["--seed", str(self.seed)] if self.seed else []
-        parts += [] if self.most_cases is None else ["--cases", str(self.most_cases)]
-        return shlex.join([*parts, name])
+        return command_again(
+            name,
+            sut=library,
+            distro=distro,
+            path=self.paths,
+            wire=self.wire,
+            seed=self.seed or None,
+            cases=self.most_cases,
+        )
 
 
 def reference_of(library: str, wire: Wire, here: Sequence[str]) -> str | None:

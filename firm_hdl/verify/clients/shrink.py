@@ -6,11 +6,11 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from firm_hdl.model import Array, Field, FieldType, Message, Primitive, Text
+from firm_hdl.model import Array, Field, FieldType, Message, Primitive, Text, closure
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.references.objects import full_text
-from firm_hdl.verify.references.values import Plain, messages_of, packed
+from firm_hdl.verify.references.values import Plain, packed
 
 __all__ = ["shrunk"]
 
@@ -68,7 +68,7 @@ def _smaller(message: Message, value: Plain) -> Iterator[tuple[Message, Plain]]:
         for kind, inner in _smaller_field(item.type, value[item.name]):
             changed = [replace(f, type=kind) if f is item else f for f in fields]
             yield replace(message, fields=tuple(changed)), {**value, item.name: inner}
-    for nested in messages_of(message)[:-1]:
+    for nested in closure([message])[:-1]:
         for item in nested.fields if nested.package else ():
             yield _without(message, value, nested, item)
 

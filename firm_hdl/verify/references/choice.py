@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from firm_hdl.model import Message
+from firm_hdl.model import Message, closure
 from firm_hdl.verify.references.client import ClientMissingError
 from firm_hdl.verify.references.clients import client, close_clients
 from firm_hdl.verify.references.fastcdr import NEWER
-from firm_hdl.verify.references.values import messages_of
 from firm_hdl.verify.references.wide_oracle import stand_ins
 from firm_hdl.wire import Wire
 
@@ -44,7 +43,7 @@ def references_here(wanted: Sequence[str] | None = None) -> tuple[str, ...]:
 def may_stand_in(message: Message, wanted: Sequence[str] | None = None) -> bool:
     """Whether a type has wide text, and somebody is here who knows how it is written."""
     names = [name for name in WIDE_REFERENCES if wanted is None or name in wanted]
-    return bool(stand_ins(messages_of(message))) and bool(references_here(names))
+    return bool(stand_ins(closure([message]))) and bool(references_here(names))
 
 
 def find_references(wanted: Sequence[str] | None, wires: Sequence[str]) -> list[str]:

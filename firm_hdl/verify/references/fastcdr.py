@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from firm_hdl.jobs.processes import ToolError, hang_up, made_by, run_tool
-from firm_hdl.model import Array, FieldType, Message, Primitive, Text
+from firm_hdl.model import Array, FieldType, Message, Primitive, Text, closure
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.references.client import (
     BatchCodec,
@@ -30,7 +30,7 @@ from firm_hdl.verify.references.client import (
     Refusal,
     UnsupportedError,
 )
-from firm_hdl.verify.references.values import Plain, messages_of, packed, unpacked
+from firm_hdl.verify.references.values import Plain, packed, unpacked
 from firm_hdl.verify.ros2_wheels import RELEASES, Release
 from firm_hdl.wire import Wire
 
@@ -123,14 +123,14 @@ NEWER = tuple(_newer())
 
 
 def _wchar_sizes(message: Message) -> set[int]:
-    kinds = [item.type for each in messages_of(message) for item in each.fields]
+    kinds = [item.type for each in closure([message]) for item in each.fields]
     inner = [kind.element if isinstance(kind, Array | SequenceType) else kind for kind in kinds]
     return {kind.bytes for kind in inner if isinstance(kind, Primitive) and kind.name == "wchar"}
 
 
 def _described(message: Message) -> str:
     """Describe a type as the program wants it."""
-    kinds = messages_of(message)
+    kinds = closure([message])
     lines = {kind.name: number for number, kind in enumerate(kinds)}
 
     def word(kind: FieldType) -> str:

@@ -7,7 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar
 
-from firm_hdl.model import Array, FieldType, Message
+from firm_hdl.model import Array, FieldType, Message, closure, element_of
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.references.client import (
     BatchCodec,
@@ -18,7 +18,7 @@ from firm_hdl.verify.references.client import (
     UnsupportedError,
 )
 from firm_hdl.verify.references.objects import full_text
-from firm_hdl.verify.references.values import Plain, from_json, messages_of, to_json
+from firm_hdl.verify.references.values import Plain, from_json, to_json
 from firm_hdl.verify.ros_python import worker
 from firm_hdl.wire import Wire
 
@@ -32,13 +32,13 @@ def field_table(message: Message) -> dict[str, list[tuple[str, bool, str]]]:
             (item.name, isinstance(item.type, Array | SequenceType), _base(item.type))
             for item in kind.fields
         ]
-        for kind in messages_of(message)
+        for kind in closure([message])
         if kind.package
     }
 
 
 def _base(kind: FieldType) -> str:
-    inner = kind.element if isinstance(kind, Array | SequenceType) else kind
+    inner = element_of(kind)
     return inner.name if isinstance(inner, Message) else str(inner)
 
 

@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text
+from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text, closure
 from firm_hdl.verify.references.client import Client, Codec, Refusal, UnsupportedError
 from firm_hdl.verify.references.genpy import field_table
 from firm_hdl.verify.references.genpy_objects import Objects
@@ -26,7 +26,7 @@ from firm_hdl.verify.references.objects import (
     refuse_wide,
 )
 from firm_hdl.verify.references.user_oracle import oracle_name, resolved_oracle
-from firm_hdl.verify.references.values import Plain, messages_of
+from firm_hdl.verify.references.values import Plain
 from firm_hdl.verify.results.verdict import NotJudgedError
 from firm_hdl.wire import Wire
 
@@ -83,7 +83,7 @@ class _RosbagsCodec(ObjectCodec):
         self._oracle = resolved_oracle(message)
         self._wire = wire
         self._name = oracle_name(message)
-        names = {kind.name: oracle_name(kind) for kind in messages_of(message)}
+        names = {kind.name: oracle_name(kind) for kind in closure([message])}
         self._classes: dict[str, Any] = {
             name: self._oracle.store.types[other] for name, other in names.items()
         }
@@ -95,7 +95,7 @@ class _RosbagsCodec(ObjectCodec):
                     strict=False,
                 )
             )
-            for kind in messages_of(message)
+            for kind in closure([message])
         }
 
     def write(self, value: Any) -> bytes:
@@ -158,7 +158,7 @@ class _CycloneCodec(ObjectCodec):
         self._idl: Any = importlib.import_module("cyclonedds.idl")
         self._types: Any = importlib.import_module("cyclonedds.idl.types")
         self._classes: dict[str, Any] = {}
-        for kind in messages_of(message):
+        for kind in closure([message]):
             self._classes[kind.name] = self._class(kind)
 
     def _class(self, kind: Message) -> Any:

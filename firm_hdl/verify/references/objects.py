@@ -10,9 +10,9 @@ from abc import abstractmethod
 from dataclasses import replace
 from typing import Any
 
-from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text
+from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text, closure
 from firm_hdl.verify.references.client import Codec, Refusal, UnsupportedError
-from firm_hdl.verify.references.values import Plain, as_float, bits_of, messages_of
+from firm_hdl.verify.references.values import Plain, as_float, bits_of
 
 __all__ = [
     "ObjectCodec",
@@ -155,7 +155,7 @@ def plainly_named(message: Message) -> Message:
             case _:
                 return kind
 
-    for number, kind in enumerate(messages_of(message)):
+    for number, kind in enumerate(closure([message])):
         fields = tuple(replace(item, type=renamed(item.type)) for item in kind.fields)
         head, _, base = kind.name.rpartition("/")
         plain = base if "_" not in base else f"T{number}{base.replace('_', '')}"
@@ -167,7 +167,7 @@ def full_text(message: Message) -> str:
     """Write the definitions of a type and of all that it is made of, as recordings have them."""
     # genpy wants an empty line where there are no fields.
     parts = [definition_text(message) or "\n"]
-    for kind in messages_of(message)[:-1]:
+    for kind in closure([message])[:-1]:
         if kind.package:
             parts.append(f"MSG: {_spelled(kind)}\n" + (definition_text(kind) or "\n"))
     return ("=" * 80 + "\n").join(parts)
@@ -180,9 +180,9 @@ def refuse_wide(message: Message, library: str) -> None:
     ------
     UnsupportedError
     """
-    for kind in messages_of(message):
+    for kind in closure([message]):
         for item in kind.fields:
-            inner = item.type.element if isinstance(item.type, Array | Sequence) else item.type
+            inner = item.element_type
             if isinstance(inner, Text) and inner.wide:
                 raise UnsupportedError(f"{library} has no wstring")
             if isinstance(inner, Primitive) and inner.name == "wchar":

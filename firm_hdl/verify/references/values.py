@@ -35,7 +35,6 @@ __all__ = [
     "from_json",
     "from_objects",
     "is_nan",
-    "messages_of",
     "packed",
     "shown",
     "to_json",
@@ -51,20 +50,6 @@ _CODES = {(1, False): "B", (2, False): "H", (4, False): "I", (8, False): "Q"}
 _CODES |= {(size, True): code.lower() for (size, _), code in _CODES.items()}
 # rosbags calls the members of ROS 1 time and duration as ROS 2 does.
 _ALIASES = {"secs": "sec", "nsecs": "nanosec"}
-
-
-def messages_of(message: Message) -> list[Message]:
-    """List all message types that a type is made of, each after those that it needs."""
-    found: dict[str, Message] = {}
-    pending: list[tuple[Message, bool]] = [(message, False)]
-    while pending:
-        kind, is_done = pending.pop()
-        if is_done:
-            found[kind.name] = kind
-        elif kind.name not in found:
-            pending.append((kind, True))
-            pending += [(child, False) for child in reversed(kind.children)]
-    return list(found.values())
 
 
 def bits_of(number: float, size: int) -> int:

@@ -42,7 +42,7 @@ def stand_ins(messages: Iterable[Message]) -> dict[str, str]:
     found: dict[str, str] = {}
     for message in messages:
         for item in message.fields:
-            kind = item.type.element if isinstance(item.type, Array | Sequence) else item.type
+            kind = item.element_type
             if isinstance(kind, Text) and kind.wide:
                 bound = "" if kind.bound is None else f"<={kind.bound}"
                 found[f"{_PACKAGE}/msg/{_base_name(kind)}"] = f"uint32[{bound}] {WIDE_MEMBER}\n"

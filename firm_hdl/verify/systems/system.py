@@ -70,11 +70,18 @@ class Recorder:
         if self._writer is not None and records:
             self._writer.add(*records)
 
-    def said(self, known: int, total: int, what: str) -> list[str]:
-        """Say how many results there are already; nothing if there are none."""
-        if self._writer is None or not known:
-            return []
-        return [f"{known} of {total} {what} have a result in {self._writer.path}"]
+    def resume(self, tests: Mapping[K, Test], what: str) -> dict[K, Record]:
+        """Return what an earlier session found out, by the keys of `tests`; print how much it is.
+
+        Parameters
+        ----------
+        what : str
+            The tests, in the plural.
+        """
+        found = {key: record for key, test in tests.items() if (record := self.known(test))}
+        if self._writer is not None and found:
+            print(f"{len(found)} of {len(tests)} {what} have a result in {self._writer.path}")
+        return found
 
 
 class System(ABC):

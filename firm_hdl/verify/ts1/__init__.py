@@ -6,8 +6,8 @@ in plain data, and differences that are meant to be are known by name.
 
 from __future__ import annotations
 
-from firm_hdl.verify.ts1.command import Ts1, run_ts1
+from firm_hdl.verify.ts1.command import Ts1
 from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.run import Selection, Tally, Ts1Run, selections_of
 
-__all__ = ["ORACLES", "Selection", "Tally", "Ts1", "Ts1Run", "run_ts1", "selections_of"]
+__all__ = ["ORACLES", "Selection", "Tally", "Ts1", "Ts1Run", "selections_of"]

@@ -23,7 +23,7 @@ from firm_hdl.verify.systems.system import Judged, Recorder, System
 from firm_hdl.verify.ts1.judge import Judgement, Outcome
 from firm_hdl.verify.ts1.run import Selection, Tally, Ts1Run
 
-__all__ = ["Ts1", "run_ts1"]
+__all__ = ["Ts1"]
 
 _MOST_DETAILS = 8
 
@@ -97,10 +97,7 @@ class Ts1(System):
         selection = run.selection
         numbers = run.numbers
         what = "mutation" if selection.mutations else "definition"
-        found = ((number, recorder.known(self._test(run, number))) for number in numbers)
-        known = {number: record for number, record in found if record is not None}
-        for line in recorder.said(len(known), run.total, f"{what}s"):
-            print(line)
+        known = recorder.resume({n: self._test(run, n) for n in numbers}, f"{what}s")
         tally = run.tally((number, record.verdicts) for number, record in known.items())
         verdicts = {number: record.verdict for number, record in known.items()}
         left = [number for number in numbers if number not in known]
@@ -185,26 +182,6 @@ def _verdict(language: str, said: Sequence[OracleVerdict]) -> Verdict:
         return Passed(cases)
     reasons = details.get(NotJudged) or [f"no oracle that was asked reads .{language} files"]
     return NotJudged("; ".join(reasons))
-
-
-def run_ts1(selection: Selection, oracles: Sequence[str] = (), jobs: int | None = None) -> int:
-    """Judge definitions, and print what came of it.
-
-    Returns
-    -------
-    int
-        How many definitions differ, plus one for each oracle that was asked for by name and is not
-        here.
-
-    Raises
-    ------
-    DefinitionError
-        As `Ts1Run` does.
-    """
-    system = Ts1([selection], oracles, jobs)
-    with Ts1Run(selection, oracles, jobs) as run:
-        found = system.judge(run, Recorder())
-    return sum(isinstance(each.verdict, Failed) for each in found)
 
 
 def _difference(selection: Selection, outcome: Outcome, number: int | None) -> str:

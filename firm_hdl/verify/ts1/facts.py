@@ -32,6 +32,9 @@ __all__ = ["Difference", "Facts", "count_facts", "differences", "structure"]
 
 Facts: TypeAlias = "dict[str, Any]"
 
+MOST_CHARACTERS = 300
+"""Of what a reader says, so many are shown."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Difference:
@@ -110,9 +113,9 @@ def _same(ours: Any, theirs: Any) -> bool:
     return type(ours) is type(theirs) and repr(ours) == repr(theirs)
 
 
-def _show(value: Any, most: int = 300) -> str:
+def _show(value: Any) -> str:
     text = repr(value)
-    return text if len(text) <= most else f"{text[:most]}..."
+    return text if len(text) <= MOST_CHARACTERS else f"{text[:MOST_CHARACTERS]}..."
 
 
 def _message(message: Message, alike: Mapping[str, str]) -> dict[str, Any]:

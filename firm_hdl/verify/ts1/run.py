@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import shlex
 import tempfile
 from collections import Counter
 from collections.abc import Generator, Iterable, Sequence
@@ -17,6 +16,7 @@ from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.verify.results.records import OracleVerdict
 from firm_hdl.verify.results.verdict import Failed
+from firm_hdl.verify.systems.again import command_again
 from firm_hdl.verify.systems.system import run_shares, shares_of
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1.case import Case
@@ -60,15 +60,16 @@ class Selection:
 
     def command(self, case: Case, number: int | None = None, oracles: Sequence[str] = ()) -> str:
         """Write the command that judges one definition, or one mutation, again."""
-        words = ["firm-hdl", "verify", "--systems", "ts1", "--distro", self.distro]
-        for path in self.paths:
-            words += ["--path", path]
-        for name in oracles:
-            words += ["--oracle", name]
-        if number is None:
-            return shlex.join([*words, case.spelled_name])
-        words += ["--mutations", "1", "--seed", str(number)]
-        return shlex.join([*words, *(self.types or ("--all",))])
+        names = [case.spelled_name] if number is None else self.types or ["--all"]
+        return command_again(
+            *names,
+            systems="ts1",
+            distro=self.distro,
+            path=self.paths,
+            oracle=tuple(oracles),
+            mutations=None if number is None else 1,
+            seed=number,
+        )
 
 
 def selections_of(

@@ -7,7 +7,6 @@ given, those of the types that were asked for must mean the same as today's.
 
 from __future__ import annotations
 
-import shlex
 import time
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -27,6 +26,7 @@ from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, check, from_yaml, to_yaml
 from firm_hdl.verify.cases.figures import digest, figures
 from firm_hdl.verify.results.records import Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed, Verdict
+from firm_hdl.verify.systems.again import command_again
 from firm_hdl.verify.systems.libraries import library_of
 from firm_hdl.verify.systems.system import (
     Judged,
@@ -41,7 +41,7 @@ from firm_hdl.verify.systems.tasks import Task
 from firm_hdl.verify.ts2.golden import Checked, Golden, check_golden, read_golden
 from firm_hdl.wire import Wire, lay_out, refusals
 
-__all__ = ["Invariants", "Ts2", "Ts2Options", "check_plan"]
+__all__ = ["Ts2", "Ts2Options", "check_plan"]
 
 YAML_STEPS = 2000
 """Longer plans are not printed and read back: it takes a second per some thousand steps."""
@@ -120,14 +120,19 @@ class Ts2Options:
     widths: tuple[int, ...] = (8,)
     golden: str | None = None
 
-    def command(self, distro: str, name: str, bus_bytes: int | None, golden: str = "") -> str:
+    def command(
+        self, distro: str, name: str, *, bus_bytes: int | None = None, golden: str | None = None
+    ) -> str:
         """Return the command that checks one type again."""
-        parts = [f"firm-hdl verify --systems ts2 --distro {distro}"]
-        parts += [f"--path {shlex.quote(path)}" for path in self.paths]
-        parts += [f"--wire {self.wire}"] if self.wire else []
-        parts += [f"--bus-bytes {bus_bytes}"] if bus_bytes else []
-        parts += [f"--golden {shlex.quote(golden)}"] if golden else []
-        return " ".join([*parts, name])
+        return command_again(
+            name,
+            systems="ts2",
+            distro=distro,
+            path=self.paths,
+            wire=self.wire,
+            bus_bytes=bus_bytes,
+            golden=golden,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,13 +189,7 @@ class Ts2(System):
         """Check all plans, and compare golden ones."""
         # Before the first plan is made.
         goldens = self._goldens
-        records: dict[_Item, Record] = {}
-        for item in self._items:
-            record = recorder.known(self._test(item))
-            if record is not None:
-                records[item] = record
-        for line in recorder.said(len(records), len(self._items), "plans"):
-            print(line)
+        records = recorder.resume({item: self._test(item) for item in self._items}, "plans")
         self._check(records, recorder)
         self._count(records)
         found = judged(records.values())
@@ -255,7 +254,9 @@ class Ts2(System):
             cpu_seconds=found.cpu_seconds,
             metrics=found.metrics,
             shape=found.shape,
-            command=self._how.command(item.task.distro, item.task.name, item.bus_bytes),
+            command=self._how.command(
+                item.task.distro, item.task.name, bus_bytes=item.bus_bytes
+            ),
         )
 
     @cached_property
@@ -303,7 +304,7 @@ class Ts2(System):
         return Record(
             test=test,
             verdict=clipped_verdict(result.verdict),
-            command=self._how.command(test.distro, test.type, None, golden=self._how.golden or ""),
+            command=self._how.command(test.distro, test.type, golden=self._how.golden),
         )
 
 

@@ -24,7 +24,7 @@ from firm_hdl.verify.references.clients import client
 from firm_hdl.verify.references.values import Plain, from_objects
 from firm_hdl.wire import Wire
 
-__all__ = ["Confirmation", "confirm"]
+__all__ = ["confirm"]
 
 MOST_BYTES = 1 << 18
 """Of all packets of a type that are written again; the first one always is."""

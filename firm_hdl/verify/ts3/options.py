@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import shlex
 from dataclasses import dataclass, field
 
 from firm_hdl.verify.cases.directed import Coverage
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 from firm_hdl.verify.simulators.crosscheck import Comparison
+from firm_hdl.verify.systems.again import command_again
 
 __all__ = ["LONGEST", "Options", "Result"]
 
@@ -62,22 +62,23 @@ class Options:
 
     def command(self, distro: str, name: str) -> str:
         """Return the command that runs one type again."""
-        parts = ["firm-hdl verify", f"--distro {distro}"]
-        parts += [f"--path {shlex.quote(path)}" for path in self.paths]
-        parts += [f"--bag {shlex.quote(bag)}" for bag in self.bags]
-        if self.longest != LONGEST:
-            parts.append(f"--max-message-bytes {self.longest}")
-        parts += [] if self.simulator == "python" else [f"--simulator {self.simulator}"]
-        parts += [f"--bus-bytes {self.bus_bytes}"]
-        parts += [f"--wire {self.wire}"] if self.wire else []
-        parts += [f"--seed {self.seed}"]
-        parts += [] if self.stalled else ["--no-stalls"]
-        parts += [] if self.broken else ["--no-broken"]
-        parts += [] if self.most_cases is None else [f"--cases {self.most_cases}"]
-        if self.references is not None:
-            parts += [f"--reference {name}" for name in self.references or ("none",)]
-        parts += [] if self.vcd is None else [f"--vcd {shlex.quote(self.vcd)}"]
-        return " ".join([*parts, name])
+        references = self.references
+        return command_again(
+            name,
+            distro=distro,
+            path=self.paths,
+            bag=self.bags,
+            max_message_bytes=None if self.longest == LONGEST else self.longest,
+            simulator=None if self.simulator == "python" else self.simulator,
+            bus_bytes=self.bus_bytes,
+            wire=self.wire,
+            seed=self.seed,
+            no_stalls=not self.stalled,
+            no_broken=not self.broken,
+            cases=self.most_cases,
+            reference=("none",) if references == () else references,
+            vcd=self.vcd,
+        )
 
 
 @dataclass(slots=True, kw_only=True)

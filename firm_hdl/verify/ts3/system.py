@@ -113,16 +113,13 @@ class Ts3(System):
     def _run(self, options: Options, recorder: Recorder) -> list[Judged]:
         """Run all tasks with one set of options."""
         tasks, how = self._tasks, self._how
-        records = {task: recorder.known(test_of(task, options)) for task in tasks}
-        left = [task for task, record in records.items() if record is None]
-        known = len(tasks) - len(left)
-        for line in recorder.said(known, len(tasks), "types"):
-            print(line)
+        records = recorder.resume({task: test_of(task, options) for task in tasks}, "types")
+        left = [task for task in tasks if task not in records]
         same = same_circuits(tasks, options) if how.share_circuits else {}
         results: list[Result] = []
         notes: Counter[str] = Counter()
         label = f"{options.bus_bytes}-byte bus"
-        bar = tqdm(total=len(tasks), initial=known, unit="type", desc=label, disable=None)
+        bar = tqdm(total=len(tasks), initial=len(records), unit="type", desc=label, disable=None)
         run = run_tasks(left, options, how.jobs, executor=how.executor, golden_only=same)
         with bar, closing(run):
             for task, result in run:
@@ -139,10 +136,10 @@ class Ts3(System):
                 bar.update()
         if not options.bags:
             _repeat(notes)
-        known_all = {task: record for task, record in records.items() if record is not None}
-        _count(known_all, options)
+        records = {task: records[task] for task in tasks}
+        _count(records, options)
         _summarize([result for result in results if result.simulated_cycles], options)
-        return judged(known_all.values())
+        return judged(records.values())
 
 
 def _said(task: Task, result: Result, *, is_new: bool) -> Iterator[str]:

@@ -15,8 +15,9 @@ from firm_hdl.frontend import DISTROS
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.records import OracleVerdict
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.systems.system import Recorder
 from firm_hdl.verify.systems.tasks import UnknownTypeError
-from firm_hdl.verify.ts1 import ORACLES, Selection, Ts1Run, run_ts1, selections_of
+from firm_hdl.verify.ts1 import ORACLES, Selection, Ts1, Ts1Run, selections_of
 from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.judge import Outcome
@@ -37,6 +38,14 @@ FILES = {
 @pytest.fixture
 def source(tmp_path):
     return str(make_files(tmp_path, FILES) / "src")
+
+
+def run_ts1(selection, oracles):
+    """Judge definitions as the command does; return how many things failed."""
+    system = Ts1([selection], oracles, 1)
+    with Ts1Run(selection, oracles, 1) as run:
+        found = system.judge(run, Recorder())
+    return sum(isinstance(each.verdict, Failed) for each in found)
 
 
 def judged(selection, oracles=(), jobs=1):
@@ -88,7 +97,7 @@ def test_processes_give_what_one_gives(source):
 
 
 def test_the_report_names_oracles_verdicts_and_types(source, capsys):
-    assert run_ts1(Selection(distro="noetic", paths=(source,)), ["rosbags"], 1) == 0
+    assert run_ts1(Selection(distro="noetic", paths=(source,)), ["rosbags"]) == 0
     out = capsys.readouterr().out
     assert "p/A  rosbags  agrees\n" in out
     assert "p/Bad  rosbags  agrees: both refuse\n" in out
@@ -117,7 +126,7 @@ def test_a_difference_is_told_with_the_command_that_repeats_it(source, capsys, m
 def test_an_oracle_that_is_asked_for_and_not_here_fails(source, capsys, monkeypatch):
     monkeypatch.setenv("PATH", "/nowhere")
     selection = Selection(distro="lyrical", paths=(source,), types=("q/B",))
-    assert run_ts1(selection, ["ros2"], 1) == 1
+    assert run_ts1(selection, ["ros2"]) == 1
     assert "is not here: there is no command 'ros2'" in capsys.readouterr().out
 
 
@@ -234,14 +243,14 @@ def test_mutations_are_repeatable_and_told_by_number(source, capsys, monkeypatch
     )
     monkeypatch.setattr(ORACLES["genmsg"], "missing", lambda self: None)
     selection = Selection(distro="noetic", paths=(source,), types=("q/B",), mutations=30, seed=7)
-    assert run_ts1(selection, ["genmsg"], 1) > 0
+    assert run_ts1(selection, ["genmsg"]) > 0
     said = capsys.readouterr()
     text = said.out + said.err
     blocks = re.findall(r"DIFFERS .*\n((?:    .*\n)+)", text)
     numbers = [int(re.search(r"--mutations 1 --seed (\d+) q/B", block)[1]) for block in blocks]
     assert all(7 <= number < 37 for number in numbers) and len(set(numbers)) == len(numbers)
     one = Selection(**{**_fields(selection), "mutations": 1, "seed": numbers[0]})
-    assert run_ts1(one, ["genmsg"], 1) == 1
+    assert run_ts1(one, ["genmsg"]) == 1
     said = capsys.readouterr()
     assert blocks[0] in said.out + said.err
 
