@@ -21,7 +21,9 @@ __all__ = [
     "shown_packages",
     "shown_tests",
     "shown_trends",
+    "slowest_suite",
     "sources",
+    "trends_by_suite",
 ]
 
 SECTIONS = {
@@ -181,6 +183,20 @@ def shown_trends(trends: Iterable[Trend], most: int) -> list[Trend]:
     ]
     found.sort(key=lambda trend: -abs(trend.correlation.spearman))
     return found[:most]
+
+
+def trends_by_suite(summary: Summary) -> dict[str, list[Trend]]:
+    """Return the trends of each suite."""
+    found: dict[str, list[Trend]] = {}
+    for trend in summary.trends:
+        found.setdefault(trend.suite, []).append(trend)
+    return found
+
+
+def slowest_suite(summary: Summary) -> str:
+    """Name the suite with trends that takes most time: people ask about it."""
+    spent = {curve.suite: curve.seconds.total for curve in summary.curves if curve.seconds}
+    return max(trends_by_suite(summary), key=lambda suite: spent.get(suite, 0))
 
 
 def caption_of_fit(trend: Trend) -> str:

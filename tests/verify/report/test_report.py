@@ -10,7 +10,7 @@ from html.parser import HTMLParser
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.verify.report import FORMATS, count, outcomes_of, summarise
+from firm_hdl.verify.report import FORMATS, count, outcomes_of, summarise, tables
 from firm_hdl.verify.report import html as page_writer
 from firm_hdl.verify.report import summary as summary_of
 from firm_hdl.verify.report.outcomes import failures_of
@@ -330,8 +330,8 @@ def test_who_wrote_the_packets_is_counted():
 
 
 def test_long_reports_are_cut_and_say_so(monkeypatch):
-    for name, most in (("MOST_ROWS", 20), ("MOST_ARTICLES", 2)):
-        monkeypatch.setattr(page_writer, name, most)
+    for module, name, most in ((tables, "MOST_ROWS", 20), (page_writer, "MOST_ARTICLES", 2)):
+        monkeypatch.setattr(module, name, most)
     failed = [
         replace(FAILED, test=a_test(f"z{n}_msgs/msg/F{n}"), verdict=Failed((f"it is {n}",)))
         for n in range(4)
