@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-import firm_hdl.verify.bench.system as benches
+import firm_hdl.verify.bench.run as benches
 import firm_hdl.verify.references.choice as references
 from firm_hdl.cli import main
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT
 from firm_hdl.frontend import Library
-from firm_hdl.verify.bench.system import Benches, BenchRun, run_bench
+from firm_hdl.verify.bench.run import BenchRun, run_bench
+from firm_hdl.verify.bench.system import Benches
 from firm_hdl.verify.references import client
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.verdict import Failed, NotJudged

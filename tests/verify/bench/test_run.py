@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.bench.system import _check_transfers, _compare
+from firm_hdl.verify.bench.run import _check_transfers, _compare
 from firm_hdl.verify.cases.make import Case
 from firm_hdl.wire import lay_out
 from tests.strategies import make
