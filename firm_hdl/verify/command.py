@@ -5,6 +5,15 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
+from firm_hdl.arguments import (
+    add_depends,
+    add_jobs,
+    add_path,
+    add_types_or_all,
+    add_wire,
+    number_between,
+    positive,
+)
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, check_executor
 from firm_hdl.plan import BUS_BYTES
@@ -55,11 +64,11 @@ def _request(given: argparse.Namespace) -> Request:
     # Without a type, all that a recording has are meant.
     is_all = given.all or (bool(given.bag) and not given.types)
     if bool(given.types) == is_all:
-        given.refuse("name types, or all of them with --all")
+        given.usage_error("name types, or all of them with --all")
     if given.report is not None and given.results is None:
-        given.refuse("--report needs --results")
+        given.usage_error("--report needs --results")
     if given.depends and not given.path:
-        given.refuse("--depends needs --path")
+        given.usage_error("--depends needs --path")
     references = None
     if given.reference:
         references = tuple(name for name in dict.fromkeys(given.reference) if name != NO_REFERENCE)
@@ -96,41 +105,37 @@ def _check_replay(given: argparse.Namespace) -> None:
     """Refuse what recordings cannot be combined with."""
     if not given.bag:
         if given.max_message_bytes is not None:
-            given.refuse("--max-message-bytes needs --bag")
+            given.usage_error("--max-message-bytes needs --bag")
         return
     if given.path:
-        given.refuse("argument --bag: not allowed with argument --path")
+        given.usage_error("argument --bag: not allowed with argument --path")
     if set(given.systems) != {"ts3"}:
-        given.refuse("--bag is of ts3 alone")
+        given.usage_error("--bag is of ts3 alone")
     if given.sut:
-        given.refuse("--bag is for firm-hdl's own converters, not for --sut")
+        given.usage_error("--bag is for firm-hdl's own converters, not for --sut")
     if given.share_circuits:
-        given.refuse("--bag replays the messages of each type: not with --share-circuits")
+        given.usage_error("--bag replays the messages of each type: not with --share-circuits")
     if len(given.distro or ()) > 1:
-        given.refuse("--bag takes one --distro")
+        given.usage_error("--bag takes one --distro")
 
 
 def _check_libraries(given: argparse.Namespace) -> None:
     """Refuse what libraries, as references or under test, cannot be combined with."""
     if NO_REFERENCE in given.reference and len(given.reference) > 1:
-        given.refuse(f"--reference {NO_REFERENCE} goes with no other")
+        given.usage_error(f"--reference {NO_REFERENCE} goes with no other")
     if not given.sut:
         return
     for name, default in _OTHERS.items():
         if getattr(given, name) != default:
-            given.refuse(f"--{name.replace('_', '-')} does not go with --sut")
+            given.usage_error(f"--{name.replace('_', '-')} does not go with --sut")
     if not (given.stalls and given.broken):
-        given.refuse("--no-stalls and --no-broken do not go with --sut")
+        given.usage_error("--no-stalls and --no-broken do not go with --sut")
 
 
 def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command, all but how it is called."""
-    parser.set_defaults(refuse=parser.error)
-    parser.add_argument("types", nargs="*", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
-    parser.add_argument(
-        "--all",
-        action="store_true",
-        help="all types; with --path, all in those folders; with --bag, all that have topics",
+    add_types_or_all(
+        parser, "all types; with --path, all in those folders; with --bag, all that have topics"
     )
     parser.add_argument(
         "--distro",
@@ -138,20 +143,8 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
         choices=list(DISTROS),
         help=f"repeatable; default: all that have the type, or {DEFAULT_DISTRO} with --path",
     )
-    parser.add_argument(
-        "--path",
-        action="append",
-        default=[],
-        metavar="DIR",
-        help="folder with ROS packages, searched before the distribution's types; repeatable",
-    )
-    parser.add_argument(
-        "--depends",
-        action="append",
-        default=[],
-        metavar="DIR",
-        help="folder with ROS packages that those of --path need; no part of --all; repeatable",
-    )
+    add_path(parser)
+    add_depends(parser)
     parser.add_argument(
         "--systems",
         type=_systems,
@@ -159,7 +152,7 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME,...",
         help=f"test systems: {', '.join(SYSTEMS)}; default: ts3",
     )
-    parser.add_argument("--wire", choices=["ros1", "cdr"], help="default: the distribution's own")
+    add_wire(parser)
     parser.add_argument(
         "--bus-bytes",
         type=int,
@@ -169,9 +162,7 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"bytes per beat: {', '.join(map(str, BUS_BYTES))}; repeatable; default: 8",
     )
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="default: %(default)s")
-    parser.add_argument(
-        "--jobs", type=_positive, metavar="N", help="processes; default: one per processor"
-    )
+    add_jobs(parser)
     _add_ts1(parser.add_argument_group("options of ts1"))
     ts2 = parser.add_argument_group("options of ts2")
     ts2.add_argument("--golden", metavar="DIR", help="compare with the golden plans there, too")
@@ -192,7 +183,7 @@ def _add_ts1(group: argparse._ArgumentGroup) -> None:
     )
     group.add_argument(
         "--mutations",
-        type=_positive,
+        type=positive,
         default=0,
         metavar="N",
         help="judge N texts with small mistakes, made from the types' own, instead of these",
@@ -209,7 +200,7 @@ def _add_cases(group: argparse._ArgumentGroup) -> None:
     )
     group.add_argument(
         "--cases",
-        type=_positive,
+        type=positive,
         metavar="N",
         help="most cases per type; default: all, of recordings some",
     )
@@ -304,21 +295,5 @@ def _systems(text: str) -> Sequence[str]:
     return names
 
 
-def _positive(text: str) -> int:
-    try:
-        number = int(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"must be at least 1, not {number}")
-    return number
-
-
 def _size(text: str) -> int:
-    try:
-        number = int(text, 0)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
-    if not 1 <= number < 1 << 31:
-        raise argparse.ArgumentTypeError(f"must be from 1 to {(1 << 31) - 1}, not {number}")
-    return number
+    return number_between(text, 1, (1 << 31) - 1)
