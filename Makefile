@@ -104,7 +104,7 @@ fuzz: $(VENV)/.installed-dev ## a million damaged definitions through the front 
 	$(BIN)/python -m tests.fuzz_frontend --jobs $(JOBS) $(FUZZ_ARGS)
 
 mutate: $(VENV)/.installed-dev tools ## faults in the program, and which tests notice (hours); MUTATE_ARGS='--count 24'
-	$(BIN)/python -m tests.mutation --first --jobs $(JOBS) --each 1 --most 90 $(MUTATE_ARGS)
+	$(BIN)/python -m tools.mutation --first --jobs $(JOBS) --each 1 --most 90 $(MUTATE_ARGS)
 
 bench: $(VENV)/.installed ## cycles per beat of long and short messages, on several bus widths
 	$(BIN)/python examples/bench.py

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.mutation.coverage_map import SHARED, CoverageMap, Part, Test
-from tests.mutation.grammar_rules import changes as grammar_changes
-from tests.mutation.mutants import Change, identify
-from tests.mutation.selection import BATCH_SECONDS, batches, changed_lines, judges
-from tests.mutation.systems import REST, SYSTEMS, mirrors, system_of, test_files
+from tools.mutation.coverage_map import SHARED, CoverageMap, Part, Test
+from tools.mutation.grammar_rules import changes as grammar_changes
+from tools.mutation.mutants import Change, identify
+from tools.mutation.selection import BATCH_SECONDS, batches, changed_lines, judges
+from tools.mutation.systems import REST, SYSTEMS, mirrors, system_of, test_files
 
 ROOT = Path(__file__).parents[2]
 PATH = "firm_hdl/wire/layout.py"

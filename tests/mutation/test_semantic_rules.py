@@ -6,9 +6,9 @@ import textwrap
 
 import pytest
 
-from tests.mutation.index import index_of
-from tests.mutation.python_rules import is_fault
-from tests.mutation.semantic_rules import changes
+from tools.mutation.index import index_of
+from tools.mutation.python_rules import is_fault
+from tools.mutation.semantic_rules import changes
 
 
 def faults(text, rule, index=None):

@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from tests.mutation.__main__ import main
-from tests.mutation.explained import Explanation, explain, read_explanations
-from tests.mutation.map_store import moved
-from tests.mutation.mutants import identify
-from tests.mutation.python_rules import changes
-from tests.mutation.report import markdown
-from tests.mutation.results import Record, append, read
-from tests.mutation.targets import TARGETS, all_mutants, files, sample
-from tests.mutation.workshop import Run
+from tools.mutation.__main__ import main
+from tools.mutation.explained import Explanation, explain, read_explanations
+from tools.mutation.map_store import moved
+from tools.mutation.mutants import identify
+from tools.mutation.python_rules import changes
+from tools.mutation.report import markdown
+from tools.mutation.results import Record, append, read
+from tools.mutation.targets import TARGETS, all_mutants, files, sample
+from tools.mutation.workshop import Run
 
 ROOT = Path(__file__).parents[2]
 MODULE = """
@@ -127,7 +127,7 @@ def toy(tmp_path):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
     shutil.copytree(
-        Path(__file__).parent, root / "tests/mutation", ignore=shutil.ignore_patterns("__pycache__")
+        ROOT / "tools", root / "tools", ignore=shutil.ignore_patterns("__pycache__")
     )
     return root
 

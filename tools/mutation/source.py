@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from tests.mutation.mutants import Change
+from tools.mutation.mutants import Change
 
 __all__ = ["Functions", "Source"]
 

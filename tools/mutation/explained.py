@@ -8,7 +8,7 @@ from pathlib import Path
 
 import yaml
 
-from tests.mutation.results import Record
+from tools.mutation.results import Record
 
 __all__ = ["FILE", "KINDS", "Explanation", "explain", "read_explanations"]
 

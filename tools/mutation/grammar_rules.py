@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from lark import Lark
 from lark.exceptions import LarkError
 
-from tests.mutation.mutants import Change
+from tools.mutation.mutants import Change
 
 __all__ = ["changes", "is_fault"]
 

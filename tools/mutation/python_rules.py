@@ -12,8 +12,8 @@ import tokenize
 from collections.abc import Iterator
 from types import CodeType
 
-from tests.mutation.harmless import durations
-from tests.mutation.mutants import Change
+from tools.mutation.harmless import durations
+from tools.mutation.mutants import Change
 
 __all__ = ["changes", "is_fault", "same_code"]
 

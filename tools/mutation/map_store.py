@@ -24,10 +24,10 @@ from typing import Any
 
 from coverage import CoverageData
 
-from tests.mutation import trace
-from tests.mutation.coverage_map import SHARED, CoverageMap, Part, Test
-from tests.mutation.systems import test_files
-from tests.mutation.workshop import Workshop
+from tools.mutation import trace
+from tools.mutation.coverage_map import SHARED, CoverageMap, Part, Test
+from tools.mutation.systems import test_files
+from tools.mutation.workshop import Workshop
 
 __all__ = ["BrokenTreeError", "moved", "read_map", "tree_digest"]
 
@@ -214,7 +214,7 @@ def _trace(workshop: Workshop, name: str, each: float | None) -> Part:
         trace.EACH: str(each or ""),
         "COVERAGE_CORE": "ctrace",
     }
-    options = ["-p", "tests.mutation.trace", name]
+    options = ["-p", "tools.mutation.trace", name]
     failed: Counter[str] = Counter()
     opaque: list[Test] = []
     while True:

@@ -10,10 +10,10 @@ import ast
 import itertools
 from collections.abc import Iterator
 
-from tests.mutation.harmless import is_plain_bool
-from tests.mutation.index import Index
-from tests.mutation.mutants import Change
-from tests.mutation.source import Source
+from tools.mutation.harmless import is_plain_bool
+from tools.mutation.index import Index
+from tools.mutation.mutants import Change
+from tools.mutation.source import Source
 
 __all__ = ["RULES"]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import ast
 import re
 
-from tests.mutation.source import Functions, Source
+from tools.mutation.source import Functions, Source
 
 __all__ = ["are_independent", "durations", "is_plain_bool"]
 

@@ -12,9 +12,9 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePosixPath
 
-from tests.mutation.coverage_map import CoverageMap, Test
-from tests.mutation.mutants import Mutant
-from tests.mutation.systems import mirrored, mirrors
+from tools.mutation.coverage_map import CoverageMap, Test
+from tools.mutation.mutants import Mutant
+from tools.mutation.systems import mirrored, mirrors
 
 __all__ = ["BATCH_SECONDS", "FOREIGN", "batches", "changed_lines", "judges"]
 

@@ -1,4 +1,4 @@
-"""``python -m tests.mutation``: inject faults one at a time, and report what notices them."""
+"""``python -m tools.mutation``: inject faults one at a time, and report what notices them."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from queue import Queue
 from random import randrange
 from threading import Lock
 
-from tests.mutation.explained import read_explanations
-from tests.mutation.judge import Judge
-from tests.mutation.map_store import BrokenTreeError, read_map, tree_digest
-from tests.mutation.mutants import Mutant
-from tests.mutation.report import markdown
-from tests.mutation.results import Record, append, read
-from tests.mutation.systems import test_files
-from tests.mutation.targets import TARGETS, all_mutants, sample
-from tests.mutation.workshop import Workshop, copy_tree
+from tools.mutation.explained import read_explanations
+from tools.mutation.judge import Judge
+from tools.mutation.map_store import BrokenTreeError, read_map, tree_digest
+from tools.mutation.mutants import Mutant
+from tools.mutation.report import markdown
+from tools.mutation.results import Record, append, read
+from tools.mutation.systems import test_files
+from tools.mutation.targets import TARGETS, all_mutants, sample
+from tools.mutation.workshop import Workshop, copy_tree
 
 ROOT = Path(__file__).parents[2]
 
@@ -67,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tools.mutation", description=__doc__)
     add = parser.add_argument
     add("--count", type=int, default=200, help="faults to inject (default %(default)s)")
     add("--seed", type=int, help="chooses them; without it, others each time")

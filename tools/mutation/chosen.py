@@ -1,6 +1,6 @@
 """A plugin of pytest: only the tests of a list, in its order.
 
-``-p tests.mutation.chosen``, with the name of a file in the environment. Which test runs at the
+``-p tools.mutation.chosen``, with the name of a file in the environment. Which test runs at the
 moment is written to another file, for whoever has to stop it.
 """
 

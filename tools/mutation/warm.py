@@ -1,6 +1,6 @@
 """Runs pytest again and again without loading other people's packages each time.
 
-``python -m tests.mutation.warm``, in the folder whose tests it shall run, reads one job per line
+``python -m tools.mutation.warm``, in the folder whose tests it shall run, reads one job per line
 from standard input and answers each with a line. Every job is a fork of its own, so that none sees
 modules of another; this process never loads `firm_hdl`.
 """

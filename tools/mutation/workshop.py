@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from tests.mutation.chosen import CHOSEN, RUNNING
-from tests.mutation.mutants import Mutant
+from tools.mutation.chosen import CHOSEN, RUNNING
+from tools.mutation.mutants import Mutant
 
 __all__ = ["Run", "Workshop", "copy_tree"]
 
@@ -80,7 +80,7 @@ class Workshop:
         }
         environment.pop("PYTEST_ADDOPTS", None)
         self._server = subprocess.Popen(
-            [sys.executable, "-m", "tests.mutation.warm"],
+            [sys.executable, "-m", "tools.mutation.warm"],
             cwd=root,
             env=environment,
             stdin=subprocess.PIPE,
@@ -128,7 +128,7 @@ class Workshop:
         files = dict.fromkeys(name.partition("::")[0] for name in names)
         environment = {CHOSEN: str(chosen), RUNNING: str(running)}
         run = self.run(
-            ["-p", "tests.mutation.chosen", *files], cpu_seconds, environment, seconds=seconds
+            ["-p", "tools.mutation.chosen", *files], cpu_seconds, environment, seconds=seconds
         )
         # The whole name of the test that failed: what pytest prints may be cut at a ` - ` in it.
         last = running.read_text()

@@ -1,6 +1,6 @@
 """A plugin of pytest: which lines each test runs, in all processes that it starts, and its time.
 
-``-p tests.mutation.trace``, with the name of a folder in the environment. Each test is a context
+``-p tools.mutation.trace``, with the name of a folder in the environment. Each test is a context
 of coverage, named by its number. What runs for several tests, and only once, is marked: imports
 have no context, and cached functions and fixtures of a wider scope have one with a ``+`` before
 the number of the test that happened to need them first.
@@ -26,7 +26,7 @@ from typing import Any
 import coverage
 import pytest
 
-from tests.mutation.chosen import take_time
+from tools.mutation.chosen import take_time
 
 __all__ = ["CONTEXT", "EACH", "FOLDER", "SETTINGS"]
 

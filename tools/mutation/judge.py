@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from tests.mutation.coverage_map import CoverageMap, Test
-from tests.mutation.mutants import Mutant
-from tests.mutation.results import LOADING, Record
-from tests.mutation.selection import FOREIGN, batches, judges
-from tests.mutation.systems import REST, SNAPSHOT, SYSTEMS, system_of
-from tests.mutation.workshop import Run, Workshop
+from tools.mutation.coverage_map import CoverageMap, Test
+from tools.mutation.mutants import Mutant
+from tools.mutation.results import LOADING, Record
+from tools.mutation.selection import FOREIGN, batches, judges
+from tools.mutation.systems import REST, SNAPSHOT, SYSTEMS, system_of
+from tools.mutation.workshop import Run, Workshop
 
 __all__ = ["Judge"]
 

@@ -8,9 +8,9 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tests.mutation.mutants import Mutant
-from tests.mutation.systems import SNAPSHOT
-from tests.mutation.workshop import Run
+from tools.mutation.mutants import Mutant
+from tools.mutation.systems import SNAPSHOT
+from tools.mutation.workshop import Run
 
 __all__ = ["LOADING", "Record", "append", "read"]
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from tests.mutation import clause_rules, neighbour_rules, order_rules, state_rules
-from tests.mutation.index import Index, index_of
-from tests.mutation.mutants import Change
-from tests.mutation.source import Source
+from tools.mutation import clause_rules, neighbour_rules, order_rules, state_rules
+from tools.mutation.index import Index, index_of
+from tools.mutation.mutants import Change
+from tools.mutation.source import Source
 
 __all__ = ["changes"]
 

@@ -7,11 +7,11 @@ import itertools
 import re
 from collections.abc import Iterator
 
-from tests.mutation.harmless import are_independent
-from tests.mutation.index import Index
-from tests.mutation.mutants import Change
-from tests.mutation.order_rules import blocks, hardware_branch
-from tests.mutation.source import Source
+from tools.mutation.harmless import are_independent
+from tools.mutation.index import Index
+from tools.mutation.mutants import Change
+from tools.mutation.order_rules import blocks, hardware_branch
+from tools.mutation.source import Source
 
 __all__ = ["RULES"]
 

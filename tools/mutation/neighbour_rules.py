@@ -9,9 +9,9 @@ import ast
 from collections import defaultdict
 from collections.abc import Iterator
 
-from tests.mutation.index import Index
-from tests.mutation.mutants import Change
-from tests.mutation.source import Source
+from tools.mutation.index import Index
+from tools.mutation.mutants import Change
+from tools.mutation.source import Source
 
 __all__ = ["RULES"]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from tests.mutation.explained import Explanation, explain
-from tests.mutation.results import Record
-from tests.mutation.systems import REST, SYSTEMS
-from tests.mutation.targets import TARGETS
+from tools.mutation.explained import Explanation, explain
+from tools.mutation.results import Record
+from tools.mutation.systems import REST, SYSTEMS
+from tools.mutation.targets import TARGETS
 
 __all__ = ["markdown"]
 
