@@ -6,8 +6,10 @@ The parser of a command is made before anything else of it, so nothing heavy is 
 from __future__ import annotations
 
 import argparse
+from typing import get_args
 
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
+from firm_hdl.model import Wire
 
 __all__ = [
     "add_depends",
@@ -105,7 +107,7 @@ def add_depends(command: argparse._ActionsContainer) -> None:
 def add_wire(command: argparse._ActionsContainer) -> None:
     """Add ``--wire``."""
     command.add_argument(
-        "--wire", choices=["ros1", "cdr"], help="wire format; default: the distribution's own"
+        "--wire", choices=get_args(Wire), help="wire format; default: the distribution's own"
     )
 
 

@@ -38,7 +38,7 @@ MAY_IMPORT = {
     "export": {"firm_hdl", "errors", "files", "names", "vhdl", "model", "frontend", "wire", "plan"},
 }
 MAY_IMPORT["export"] |= {"gateware"}
-MAY_IMPORT["arguments"] = {"frontend", "plan"}
+MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {
     *("arguments", "errors", "files", "model", "frontend", "wire", "plan", "gateware", "export"),
 }

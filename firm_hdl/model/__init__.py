@@ -21,6 +21,7 @@ from firm_hdl.model.types import (
     Sequence,
     Text,
     Value,
+    Wire,
     element_of,
     idl_primitives,
 )
@@ -43,6 +44,7 @@ __all__ = [
     "Service",
     "Text",
     "Value",
+    "Wire",
     "closure",
     "element_of",
     "idl_primitives",

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
 
 from firm_hdl.errors import Span
 from firm_hdl.model.types import (
@@ -16,6 +15,7 @@ from firm_hdl.model.types import (
     Sequence,
     Text,
     Value,
+    Wire,
     element_of,
 )
 
@@ -133,7 +133,7 @@ class Message:
         return self.name.rpartition("/")[2]
 
     @property
-    def wire(self) -> Literal["ros1", "cdr"]:
+    def wire(self) -> Wire:
         """Wire format that the dialect's own middleware uses."""
         return "ros1" if self.dialect == "ros1" else "cdr"
 

@@ -20,12 +20,16 @@ __all__ = [
     "Sequence",
     "Text",
     "Value",
+    "Wire",
     "element_of",
     "idl_primitives",
 ]
 
 Dialect: TypeAlias = Literal["ros1", "ros2"]
 """Whose rules a definition follows: ROS 1 (genmsg) or ROS 2 (rosidl)."""
+
+Wire: TypeAlias = Literal["ros1", "cdr"]
+"""Names of the wire formats; :mod:`firm_hdl.wire` has their rules."""
 
 Value: TypeAlias = "bool | int | float | str | bytes | tuple[Value, ...]"
 """A constant's or a default's value."""

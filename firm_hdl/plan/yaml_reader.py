@@ -32,6 +32,7 @@ from firm_hdl.plan.ir import (
     Slice,
     Step,
 )
+from firm_hdl.wire import RULES
 
 __all__ = ["from_yaml"]
 
@@ -125,9 +126,11 @@ class _Reader:
         for key in entries:
             if key not in KEYS:
                 raise _error(entries[key], f"a plan has no {key!r}")
-        wire = _text(entries["wire"], "wire")
-        if wire not in ("ros1", "cdr"):
-            raise _error(entries["wire"], f"wire must be 'ros1' or 'cdr', not {wire!r}")
+        name = _text(entries["wire"], "wire")
+        wire = next((wire for wire in RULES if wire == name), None)
+        if wire is None:
+            wires = " or ".join(map(repr, RULES))
+            raise _error(entries["wire"], f"wire must be {wires}, not {name!r}")
         leaves = _entries(entries["leaves"], "leaves")
         self.leaves = tuple(self.leaf(path, value) for path, value in leaves.items())
         self.indices = {path: index for index, path in enumerate(leaves)}
@@ -137,7 +140,7 @@ class _Reader:
         numbers = {key: _number(entries[key], key) for key in NUMBERS}
         return Plan(
             message=_text(entries["message"], "message"),
-            wire="ros1" if wire == "ros1" else "cdr",
+            wire=wire,
             leaves=self.leaves,
             runs=self.runs,
             start=self.jump(entries["start"], "start"),

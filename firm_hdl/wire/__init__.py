@@ -1,8 +1,9 @@
 """Wire formats: from a message model to its layout."""
 
+from firm_hdl.model import Wire
 from firm_hdl.wire.cdr import CDR
+from firm_hdl.wire.formats import RULES
 from firm_hdl.wire.layout import (
-    RULES,
     Gap,
     Layout,
     Loop,
@@ -16,7 +17,7 @@ from firm_hdl.wire.layout import (
 )
 from firm_hdl.wire.refusals import MAX_LEAVES, MAX_LEVELS, refusals
 from firm_hdl.wire.ros1 import ROS1
-from firm_hdl.wire.rules import Wire, WireRules
+from firm_hdl.wire.rules import WireRules
 
 __all__ = [
     "CDR",

@@ -12,18 +12,25 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.model import PRIMITIVES, Array, Field, FieldType, Message, Primitive, Sequence, Text
+from firm_hdl.model import (
+    PRIMITIVES,
+    Array,
+    Field,
+    FieldType,
+    Message,
+    Primitive,
+    Sequence,
+    Text,
+    Wire,
+)
 from firm_hdl.wire import residues as rs
-from firm_hdl.wire.cdr import CDR
+from firm_hdl.wire.formats import RULES
 from firm_hdl.wire.refusals import refusals
-from firm_hdl.wire.ros1 import ROS1
-from firm_hdl.wire.rules import Wire, WireRules
+from firm_hdl.wire.rules import WireRules
 
 __all__ = ["Gap", "Layout", "Loop", "Node", "Path", "Run", "Scalar", "Trigger", "lay_out", "walk"]
 
 Path: TypeAlias = "tuple[str, ...]"
-RULES: dict[Wire, WireRules] = {"ros1": ROS1, "cdr": CDR}
-"""The rules of each wire format, by its name."""
 LENGTH = PRIMITIVES["ros2"]["uint32"]
 OCTET = PRIMITIVES["ros2"]["uint8"]
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
-__all__ = ["Wire", "WireRules"]
+from firm_hdl.model import Wire
 
-Wire = Literal["ros1", "cdr"]
+__all__ = ["WireRules"]
+
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

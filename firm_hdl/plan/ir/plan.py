@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
 
+from firm_hdl.model import Wire
 from firm_hdl.plan.ir.leaves import Leaf, Run
 from firm_hdl.plan.ir.steps import Begin, BeginArray, BeginLoop, CountedBegin, Jump, Step
 
@@ -40,7 +40,7 @@ class Plan:
     """
 
     message: str
-    wire: Literal["ros1", "cdr"]
+    wire: Wire
     bus_bytes: int
     max_message_bytes: int
     header_bytes: int
