@@ -14,7 +14,7 @@ from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged
 from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.known import KNOWN
-from firm_hdl.verify.ts1.known.texts import hidden, original, renamed, shown
+from firm_hdl.verify.ts1.known.texts import hidden, renamed, renamed_back, shown
 from tests.verify.judged import assert_known, assert_passed
 from tests.verify.ts1.examples import EXAMPLES, drop_last, refuse
 
@@ -224,4 +224,5 @@ def test_entries_are_for_some_oracles_releases_and_languages(court):
 def test_what_stands_for_something_can_be_put_back(text):
     assert shown(hidden(text, "\"'\\")) == text
     assert shown([hidden(text, "a"), 1]) == [text, 1]
-    assert original(renamed(text or "x")) == (text or "x")
+    name = {"name": text or "x"}
+    assert renamed_back({"name": renamed(name["name"])}) == name

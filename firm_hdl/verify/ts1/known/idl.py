@@ -8,34 +8,15 @@ from typing import Any
 
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.facts import Facts
+from firm_hdl.verify.ts1.known.idl_text import blanked, changed, entry, in_code, modules_of
 from firm_hdl.verify.ts1.known.rule import Known
 from firm_hdl.verify.ts1.known.texts import renamed
 
 __all__ = ["IDL"]
 
-# Texts and comments, which nothing here is about.
-_QUIET = re.compile(r'("(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/)', re.DOTALL)
-
-
-def _in_code(text: str, pattern: str, change: Any) -> str:
-    """Replace a pattern outside of texts and comments."""
-    parts = _QUIET.split(text)
-    return "".join(
-        part if index % 2 else re.sub(pattern, change, part) for index, part in enumerate(parts)
-    )
-
-
-def _code(text: str) -> str:
-    return _QUIET.sub(" ", text)
-
-
 # Names.
 
 _PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
-
-
-def _modules_of(text: str) -> set[str]:
-    return set(re.findall(r"\bmodule\s+(\w+)", _code(text)))
 
 
 def _named_as_file(facts: Facts, case: Case) -> Facts:
@@ -44,7 +25,7 @@ def _named_as_file(facts: Facts, case: Case) -> Facts:
         return _parts_named_as_file(facts, case)
     (name,) = facts["names"]
     *modules, base = name.split("/")
-    is_written = set(modules) <= _modules_of(case.text)
+    is_written = set(modules) <= modules_of(blanked(case.text))
     return {**facts, "names": [f"{case.package}/{case.kind}/{base}"]} if is_written else facts
 
 
@@ -56,7 +37,7 @@ def _parts_named_as_file(facts: Facts, case: Case) -> Facts:
     if len(scopes) != 1 or scopes == {own} or len(messages) == 1:
         return facts
     (scope,) = scopes
-    if not set(scope.split("/")) <= _modules_of(case.text):
+    if not set(scope.split("/")) <= modules_of(blanked(case.text)):
         return facts
 
     def named(name: str) -> str:
@@ -75,13 +56,13 @@ def _parts_named_as_file(facts: Facts, case: Case) -> Facts:
 
 def _called_as_file(case: Case) -> str:
     """Call what a file declares as the file is called."""
-    found = re.findall(r"\bstruct\s+(\w+)", _code(case.text))
+    found = re.findall(r"\bstruct\s+(\w+)", blanked(case.text))
     bases = {re.sub(rf"_(?:{'|'.join(_PARTS)})$", "", name) for name in found}
     if len(bases) != 1 or case.name in found:
         return case.text
     (base,) = bases
     ends = rf"(?=(?:_(?:{'|'.join(_PARTS)}))?(?:_Constants)?\b)"
-    return _in_code(case.text, rf"\b{base}{ends}", case.name)
+    return in_code(case.text, rf"\b{base}{ends}", case.name)
 
 
 # Constants.
@@ -91,13 +72,13 @@ _DECLARED = re.compile(r"\bconst\s+[\w :<>,]*?\b(\w+)\s*=\s*([^;]*);")
 
 def _bounds_by_value(case: Case) -> str:
     """Write the value of a constant that bounds a wstring in place of its name."""
-    values = dict(_DECLARED.findall(_code(case.text)))
+    values = dict(_DECLARED.findall(blanked(case.text)))
 
     def bound(match: re.Match[str]) -> str:
         value = values.get(match[2].rpartition("::")[2], "").strip()
         return f"{match[1]}{value}" if value.isdecimal() else match[0]
 
-    return _in_code(case.text, r"(\bwstring\s*<\s*)([A-Za-z_][\w:]*)", bound)
+    return in_code(case.text, r"(\bwstring\s*<\s*)([A-Za-z_][\w:]*)", bound)
 
 
 def _floats(facts: Facts, case: Case) -> Facts:
@@ -149,7 +130,7 @@ _NAMES = re.compile(
 def _declared_once(case: Case) -> str:
     """Give what is declared again in the same braces another name."""
     # As long as the text, so that places in it are those in the text.
-    code = _QUIET.sub(lambda match: " " * len(match[0]), case.text)
+    code = blanked(case.text)
     code = re.sub(r"<[^<>;{}]*>", lambda match: " " * len(match[0]), code)
     changes: list[tuple[int, int, str]] = []
     for begin, end in _scopes(code):
@@ -163,17 +144,14 @@ def _declared_once(case: Case) -> str:
             if name in seen:
                 changes.append((*match.span(which), f"{renamed(name)}{len(changes)}"))
             seen.add(name)
-    text = case.text
-    for start, end, name in reversed(changes):
-        text = text[:start] + name + text[end:]
-    return text
+    return changed(case.text, changes)
 
 
 # What rosidl_parser does not look at.
 
 
 def _positive_lengths(case: Case) -> str:
-    return _in_code(case.text, r"(\[\s*)-\s*\d+(?=\s*\])", r"\g<1>1")
+    return in_code(case.text, r"(\[\s*)-\s*\d+(?=\s*\])", r"\g<1>1")
 
 
 _SCOPED = r"(?<![\w:])(?:\w+\s*::\s*)+\w+(?=\s+\w+\s*(?:[;,]|\[))"
@@ -191,8 +169,8 @@ def _types_of_ros(case: Case) -> str:
     def element(match: re.Match[str]) -> str:
         return match[1] + kind(match[2])
 
-    text = _in_code(case.text, _SCOPED, lambda match: kind(match[0]))
-    return _in_code(text, _SCOPED_ELEMENT, element)
+    text = in_code(case.text, _SCOPED, lambda match: kind(match[0]))
+    return in_code(text, _SCOPED_ELEMENT, element)
 
 
 _TYPES = "octet|boolean|float|double|w?char|w?string|unsigned|short|long|u?int(?:8|16|32|64)"
@@ -204,7 +182,7 @@ _GLUED = (
 
 def _words_apart(case: Case) -> str:
     """Write a blank behind a type that a name, or a part of its own name, follows at once."""
-    return _in_code(case.text, _GLUED, lambda m: f"{m[1] or m[3] or ''}{m[2] or m[4]} ")
+    return in_code(case.text, _GLUED, lambda m: f"{m[1] or m[3] or ''}{m[2] or m[4]} ")
 
 
 # What we refuse by name.
@@ -213,12 +191,12 @@ _UNSUPPORTED = r"@(?:optional|mutable)\b(?:\s*\([^()]*\))?|@extensibility\s*\(\s
 
 
 def _without_unsupported(case: Case) -> str:
-    return _in_code(case.text, _UNSUPPORTED, "")
+    return in_code(case.text, _UNSUPPORTED, "")
 
 
 def _has_lists_of_lists(case: Case) -> bool:
     """Whether a list of a type that is a list itself, by a typedef, is declared."""
-    code = _code(case.text)
+    code = blanked(case.text)
     lists = set(re.findall(r"\btypedef\s+sequence\s*<[^;]*>\s*(\w+)\s*;", code))
     arrays = set(re.findall(r"\btypedef\s+[^;]*?\b(\w+)\s*\[[^;\]]*\]\s*;", code))
     named = "|".join(map(re.escape, sorted(lists | arrays)))
@@ -226,68 +204,64 @@ def _has_lists_of_lists(case: Case) -> bool:
     return bool(named) and re.search(pattern, code) is not None
 
 
-def _entry(key: str, text: str, **more: Any) -> Known:
-    return Known(key=key, oracles=frozenset({"rosidl_parser"}), text=text, language="idl", **more)
-
-
 IDL: tuple[Known, ...] = (
-    _entry(
+    entry(
         "idl-names",
         "A type in IDL is called by its package and its file, whatever its modules say.",
         theirs=_named_as_file,
     ),
-    _entry(
+    entry(
         "idl-file-names",
         "A file in IDL must declare what it is called; rosidl_parser does not see file names.",
         rewrite=_called_as_file,
         is_mistake=True,
     ),
-    _entry(
+    entry(
         "idl-bounds-by-name",
         "rosidl_parser keeps the name of a constant that bounds a wstring; we have its value.",
         rewrite=_bounds_by_value,
     ),
-    _entry(
+    entry(
         "idl-whole-numbers",
         "rosidl_parser keeps an integer that is given for a floating-point number an integer.",
         theirs=_floats,
     ),
-    _entry(
+    entry(
         "idl-long-double-hash",
         "rosidl_generator_type_description raises KeyError for a long double; we have a hash.",
         theirs=_without_long_double_hash,
     ),
-    _entry(
+    entry(
         "idl-twice",
         "rosidl_parser takes constants and members that are declared twice, which C++ does not.",
         rewrite=_declared_once,
         is_mistake=True,
     ),
-    _entry(
+    entry(
         "idl-lengths",
         "rosidl_parser takes arrays of negative lengths.",
         rewrite=_positive_lengths,
         is_mistake=True,
     ),
-    _entry(
+    entry(
         "idl-words",
         "rosidl_parser takes words that run together.",
         rewrite=_words_apart,
         is_mistake=True,
     ),
-    _entry(
+    entry(
         "idl-type-scopes",
         "rosidl_parser takes types that are not written package::msg::Name.",
         rewrite=_types_of_ros,
         is_mistake=True,
     ),
-    _entry(
+    entry(
         "idl-unsupported",
         "Annotations that change the bytes on the wire are refused; rosidl_parser ignores them.",
         rewrite=_without_unsupported,
         is_mistake=True,
     ),
-    _entry(
+    entry(
         "idl-lists-of-lists",
         "Lists of lists by typedefs are refused; rosidl_parser takes some, and nothing behind it.",
         spoils=_has_lists_of_lists,

@@ -14,7 +14,15 @@ from typing import Any
 
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.facts import Facts
-from firm_hdl.verify.ts1.known.idl_values import DECLARED, TYPEDEF, blanked, integer_of
+from firm_hdl.verify.ts1.known.idl_text import (
+    DECLARED,
+    TYPEDEF,
+    blanked,
+    changed,
+    entry,
+    modules_of,
+)
+from firm_hdl.verify.ts1.known.idl_values import integer_of, integers_of
 from firm_hdl.verify.ts1.known.rule import Known, mend_members
 
 __all__ = ["IDL_FIT"]
@@ -54,7 +62,7 @@ def _without_includes(case: Case) -> str:
     values: dict[str, int] = {}
     kinds: dict[str, str] = {}
     for code in map(blanked, case.included):
-        values.update(_values(code))
+        values.update(integers_of(code))
         for kind, name, size in TYPEDEF.findall(code):
             if not size:
                 kinds[name] = kinds.get(kind.rpartition("::")[2], kind)
@@ -71,21 +79,10 @@ def _without_includes(case: Case) -> str:
         is_type = match[1] in kinds and behind not in tuple(";=,[")
         return kinds[match[1]] if is_type else match[0]
 
-    text = case.text
-    for match in reversed([*re.finditer(r"(?:::)?\b(?:\w+::)*(\w+)\b", code)]):
-        text = text[: match.start()] + meaning(match) + text[match.end() :]
-    return text if case.included else case.text
-
-
-def _values(code: str) -> dict[str, int]:
-    """Work out the integers that a text declares."""
-    names: dict[str, int] = {}
-    modules = set(re.findall(r"\bmodule\s+(\w+)", code))
-    for _, name, expression in DECLARED.findall(code):
-        value = integer_of(expression, names, modules)
-        if value is not None:
-            names[name] = value
-    return names
+    if not case.included:
+        return case.text
+    words = re.finditer(r"(?:::)?\b(?:\w+::)*(\w+)\b", code)
+    return changed(case.text, [(*match.span(), meaning(match)) for match in words])
 
 
 # Values that do not fit.
@@ -104,8 +101,8 @@ class _Names:
         texts = [blanked(text) for text in (*case.included, case.text)]
         code = "\n".join(texts)
         return cls(
-            integers={name: each for text in texts for name, each in _values(text).items()},
-            modules=set(re.findall(r"\bmodule\s+(\w+)", code)),
+            integers={name: each for text in texts for name, each in integers_of(text).items()},
+            modules=modules_of(code),
             declared={name for _, name, _ in DECLARED.findall(code)},
         )
 
@@ -207,7 +204,7 @@ def _fitting_values(case: Case) -> str:
     for member, defaults in _members(case):
         if not all(_is_default(member, each.text, kinds, names) for each in defaults):
             changes += [(each.start, each.end, "") for each in defaults]
-    return _changed(case.text, changes)
+    return changed(case.text, changes)
 
 
 def _is_default(
@@ -228,13 +225,7 @@ def _is_default(
 def _one_default(case: Case) -> str:
     """Leave all defaults of a member out but the first."""
     further = [each for _, defaults in _members(case) for each in defaults[1:]]
-    return _changed(case.text, [(each.start, each.end, "") for each in further])
-
-
-def _changed(text: str, changes: list[tuple[int, int, str]]) -> str:
-    for start, end, new in sorted(changes, reverse=True):
-        text = text[:start] + new + text[end:]
-    return text
+    return changed(case.text, [(each.start, each.end, "") for each in further])
 
 
 def _lists_of_one(case: Case) -> str:
@@ -245,7 +236,7 @@ def _lists_of_one(case: Case) -> str:
         for each in defaults
         if (match := re.fullmatch(r'"\(\s*([-+\w.]+)\s*\)"', each.text))
     ]
-    return _changed(case.text, changes)
+    return changed(case.text, changes)
 
 
 # A bound that two share.
@@ -270,35 +261,30 @@ def _own_bounds(facts: Facts, case: Case) -> Facts:
     return {name: fact for name, fact in mended.items() if name != "hash"}
 
 
-def _entry(key: str, text: str, **more: Any) -> Known:
-    more = {"language": "idl", **more}
-    return Known(key=key, oracles=frozenset({"rosidl_parser"}), text=text, **more)
-
-
 IDL_FIT: tuple[Known, ...] = (
-    _entry(
+    entry(
         "idl-includes",
         "rosidl_parser does not look at included files.",
         rewrite=_without_includes,
     ),
-    _entry(
+    entry(
         "idl-defaults",
         "rosidl_parser takes several defaults of a member.",
         rewrite=_one_default,
         is_mistake=True,
     ),
-    _entry(
+    entry(
         "idl-values",
         "rosidl_parser takes values that are none of their types.",
         rewrite=_fitting_values,
         is_mistake=True,
     ),
-    _entry(
+    entry(
         "idl-lists-of-one",
         "Generators fail at a list that is written (1); rosidl_adapter writes (1, ).",
         rewrite=_lists_of_one,
     ),
-    _entry(
+    entry(
         "ros2-wstring-sequences",
         "rosidl_parser takes the bound of the texts in a sequence of wstring for the sequence's.",
         language=None,

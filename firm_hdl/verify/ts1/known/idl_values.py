@@ -10,22 +10,20 @@ import ast
 import operator
 import re
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from firm_hdl.verify.ts1.case import Case
-from firm_hdl.verify.ts1.facts import Facts
-from firm_hdl.verify.ts1.known.rule import Known, mend_constants
-from firm_hdl.verify.ts1.known.texts import original, renamed
+from firm_hdl.verify.ts1.known.idl_text import (
+    DECLARED,
+    TYPEDEF,
+    blanked,
+    changed,
+    entry,
+    modules_of,
+)
+from firm_hdl.verify.ts1.known.rule import Known, mend_constants, whole_bool
+from firm_hdl.verify.ts1.known.texts import renamed, renamed_back
 
-__all__ = ["DECLARED", "IDL_VALUES", "TYPEDEF", "blanked", "integer_of"]
-
-_QUIET = re.compile(r'("(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/)', re.DOTALL)
-
-
-def blanked(text: str) -> str:
-    """Return a text of the same length with blanks for its texts and comments."""
-    return _QUIET.sub(lambda match: " " * len(match[0]), text)
-
+__all__ = ["IDL_VALUES", "integer_of", "integers_of"]
 
 # Expressions.
 
@@ -94,7 +92,6 @@ def _worked_out(node: ast.expr, names: Mapping[str, int]) -> int:
     return found
 
 
-DECLARED = re.compile(r"\bconst\s+([\w :]+?)\s+(\w+)\s*=\s*([^;]*?)\s*;")
 _PLACES = re.compile(
     r"(?P<const>\bconst\s+[\w :]+?\s+\w+\s*=\s*)(?P<a>[^;]*?)(?=\s*;)"
     r"|(?P<size>\[\s*)(?P<b>[^\]]*?)(?=\s*\])"
@@ -104,16 +101,22 @@ _PLACES = re.compile(
 )
 
 
-def _literals(case: Case) -> str:
-    """Write the value of each integer expression in its place."""
-    code = blanked(case.text)
+def integers_of(code: str) -> dict[str, int]:
+    """Work out the integers that a text declares."""
     names: dict[str, int] = {}
-    modules = set(re.findall(r"\bmodule\s+(\w+)", code))
+    modules = modules_of(code)
     for _, name, expression in DECLARED.findall(code):
         value = integer_of(expression, names, modules)
         if value is not None:
             names[name] = value
-    pieces, end = [], 0
+    return names
+
+
+def _literals(case: Case) -> str:
+    """Write the value of each integer expression in its place."""
+    code = blanked(case.text)
+    names, modules = integers_of(code), modules_of(code)
+    changes: list[tuple[int, int, str]] = []
     for match in _PLACES.finditer(code):
         which = next(name for name in "abcde" if match[name] is not None)
         expression = match[which]
@@ -123,21 +126,11 @@ def _literals(case: Case) -> str:
             continue
         value = integer_of(expression, names, modules)
         if value is not None:
-            start = match.start(which)
-            pieces += [case.text[end:start], str(value)]
-            end = match.end(which)
-    return "".join([*pieces, case.text[end:]])
-
-
-def _truth_values(constant: dict[str, Any]) -> dict[str, Any]:
-    is_number = constant["type"] == "bool" and type(constant["value"]) is int
-    return {**constant, "value": bool(constant["value"])} if is_number else constant
+            changes.append((*match.span(which), str(value)))
+    return changed(case.text, changes)
 
 
 # Typedefs.
-
-TYPEDEF = re.compile(r"\btypedef\s+([^;{}]*?)\s*\b(\w+)\s*((?:\[[^\]]*\])?)\s*;")
-
 
 def _paths(code: str) -> list[str]:
     """List the full names that typedefs declare."""
@@ -172,10 +165,7 @@ def _plain_typedefs(case: Case) -> str:
         )
         if is_one and not any(a <= match.start() < b for a, b, _ in changes):
             changes.append((*match.span(), match[1]))
-    text = case.text
-    for start, end, new in sorted(changes, reverse=True):
-        text = text[:start] + new + text[end:]
-    return text
+    return changed(case.text, changes)
 
 
 # Constants of services.
@@ -193,58 +183,47 @@ def _own_constants(case: Case) -> str:
             if match[2] in seen:
                 changes.append((*match.span(2), renamed(match[2])))
         seen |= mine
-    text = case.text
-    for start, end, new in reversed(changes):
-        text = text[:start] + new + text[end:]
-    return text
+    return changed(case.text, changes)
 
 
 def _long_names(case: Case) -> str:
     """Call a long int32, where the name behind it begins like the second word of a type."""
     code = blanked(case.text)
-    text = case.text
     pattern = r"\b(unsigned\s+)?long(?=\s+(?:long|double)\w+\s*[;,\[])"
-    for match in reversed([*re.finditer(pattern, code)]):
-        if re.search(r"\blong\s+$", code[: match.start()]) is None:
-            word = "uint32" if match[1] else "int32"
-            text = text[: match.start()] + word + text[match.end() :]
-    return text
-
-
-def _names_back(facts: Facts, case: Case) -> Facts:
-    return mend_constants(lambda each: {**each, "name": original(each["name"])})(facts, case)
-
-
-def _entry(key: str, text: str, **more: Any) -> Known:
-    return Known(key=key, oracles=frozenset({"rosidl_parser"}), text=text, language="idl", **more)
+    changes = [
+        (*match.span(), "uint32" if match[1] else "int32")
+        for match in re.finditer(pattern, code)
+        if re.search(r"\blong\s+$", code[: match.start()]) is None
+    ]
+    return changed(case.text, changes)
 
 
 IDL_VALUES: tuple[Known, ...] = (
-    _entry(
+    entry(
         "idl-typedefs",
         "rosidl_parser does not know typedefs of typedefs, and typedefs with their scopes.",
         rewrite=_plain_typedefs,
     ),
-    _entry(
+    entry(
         "idl-expressions",
         "rosidl_parser knows decimal numbers and no expressions, names of constants or characters.",
         rewrite=_literals,
     ),
-    _entry(
+    entry(
         "idl-booleans",
         "rosidl_parser keeps a boolean constant that is written as a number a number.",
-        theirs=mend_constants(_truth_values),
+        theirs=mend_constants(whole_bool),
     ),
-    _entry(
+    entry(
         "idl-long-names",
         "rosidl_parser reads 'long longitude' as a long long called itude.",
         rewrite=_long_names,
     ),
-    _entry(
+    entry(
         "idl-service-constants",
         "rosidl_parser gives the request what request and response both declare, twice.",
         rewrite=_own_constants,
-        theirs=_names_back,
+        theirs=mend_constants(renamed_back),
     ),
 )
 """What is known of rosidl_parser and values in IDL."""

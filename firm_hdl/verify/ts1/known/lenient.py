@@ -113,7 +113,7 @@ def _fitting_values(line: Line, case: Case) -> Line:
         return line.with_value(legal.get(line.type, "0.0" if line.type in FLOATS else "0"))
     if case.dialect == "ros1" or not line.value or _fits(line, case):
         return line
-    return replace(line, rest=line.rest[line.rest.find("#") :] if "#" in line.rest else "")
+    return line.without_value()
 
 
 # Forms of types.
@@ -129,10 +129,8 @@ def _legal_sizes(line: Line, case: Case) -> Line:
 
 def _own_forms(line: Line, case: Case) -> Line:
     """Take away bounds and defaults, which ROS 1 does not have."""
-    kind = re.sub(r"<=\d+", "", line.type)
-    is_field = not line.equals
-    comment = line.rest[line.rest.find("#") :] if "#" in line.rest else ""
-    return replace(line, type=kind, rest=comment if is_field and line.value else line.rest)
+    plain = replace(line, type=re.sub(r"<=\d+", "", line.type))
+    return plain.without_value() if line.value and not line.equals else plain
 
 
 def _plain_blanks(line: Line, case: Case) -> Line:

@@ -12,7 +12,14 @@ from typing import Any
 
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.facts import Facts
-from firm_hdl.verify.ts1.known.rule import Known, Line, by_lines, mend_constants, mend_members
+from firm_hdl.verify.ts1.known.rule import (
+    Known,
+    Line,
+    by_lines,
+    each_line,
+    mend_members,
+    mend_values,
+)
 from firm_hdl.verify.ts1.known.texts import FLOATS, TEXTS, float_of, hidden, renamed, shown
 
 __all__ = ["ROS"]
@@ -25,15 +32,14 @@ _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 def _legal_constant_names(case: Case) -> str:
     # The name may have blanks in it, so that it is no `Line`.
-    pieces = re.split(r"(\r\n|\r|\n)", case.text)
-    for index in range(0, len(pieces), 2):
-        match = _CONSTANT.fullmatch(pieces[index])
-        if match is None or "=" not in pieces[index].partition("#")[0]:
-            continue
+    def legal(line: str) -> str:
+        match = _CONSTANT.fullmatch(line)
+        if match is None or "=" not in line.partition("#")[0] or _NAME.fullmatch(match[4]):
+            return line
         indent, kind, gap, name, rest = match.groups()
-        if not _NAME.fullmatch(name):
-            pieces[index] = f"{indent}{kind}{gap}{renamed(name)}{rest}"
-    return "".join(pieces)
+        return f"{indent}{kind}{gap}{renamed(name)}{rest}"
+
+    return each_line(case.text, legal)
 
 
 def _plain_bools(line: Line, case: Case) -> Line:
@@ -89,15 +95,14 @@ def _ascii_lines(case: Case) -> str:
     if case.language == "idl":
         parts = re.split(r'("(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/)', case.text, flags=re.DOTALL)
         return "".join(part if index % 2 else _ascii(part) for index, part in enumerate(parts))
-    pieces = re.split(r"(\r\n|\r|\n)", case.text)
-    for index in range(0, len(pieces), 2):
-        code, hash_, comment = pieces[index].partition("#")
-        if code.split(maxsplit=1)[:1] not in (["string"], ["wstring"]):
-            pieces[index] = f"{_ascii(code)}{hash_}{comment}"
-        elif "=" in pieces[index]:
-            name, equals, value = pieces[index].partition("=")
-            pieces[index] = f"{_ascii(name)}{equals}{value}"
-    return "".join(pieces)
+
+    def line(text: str) -> str:
+        is_text = text.partition("#")[0].split(maxsplit=1)[:1] in (["string"], ["wstring"])
+        code, sign, rest = text.partition("=" if is_text else "#")
+        # A line of text has a comment only behind its value, which is not looked at.
+        return f"{_ascii(code)}{sign}{rest}" if sign or not is_text else text
+
+    return each_line(case.text, line)
 
 
 _LARGEST = 2**32 - 1
@@ -129,8 +134,7 @@ def _no_escaped_quotes(line: Line, case: Case) -> Line:
     def element(match: re.Match[str]) -> str:
         return re.sub(r"\\([\"'])", lambda found: hidden(found[1], found[1]), match[0])
 
-    code, hash_, comment = line.rest.partition("#")
-    return replace(line, rest=f"{_QUOTED.sub(element, code)}{hash_}{comment}")
+    return line.with_code(lambda code: _QUOTED.sub(element, code))
 
 
 _QUOTED = re.compile(r"""\"(?:[^"\\]|\\.)*\"|'(?:[^'\\]|\\.)*'""")
@@ -156,15 +160,9 @@ def _no_backslashes(line: Line, case: Case) -> Line:
     """Write backslashes that escape nothing as characters that stand for them."""
     if line.base not in TEXTS:
         return line
-    code, hash_, comment = line.rest.partition("#")
-    code = re.sub(r"\\(?![\"'])", lambda found: hidden(found[0], "\\"), code)
-    return replace(line, rest=f"{code}{hash_}{comment}")
-
-
-def _shown_texts(facts: Facts, case: Case) -> Facts:
-    facts = mend_constants(lambda each: {**each, "value": shown(each["value"])})(facts, case)
-    back = mend_members("fields", lambda each: {**each, "default": shown(each["default"])})
-    return back(facts, case)
+    return line.with_code(
+        lambda code: re.sub(r"\\(?![\"'])", lambda found: hidden(found[0], "\\"), code)
+    )
 
 
 # Numbers that IDL has, for those that it has no words for.
@@ -183,8 +181,7 @@ def _plain_floats(line: Line, case: Case) -> Line:
         sign = "-" if match[0].startswith("-") else ""
         return sign + (_NO_NUMBER if math.isnan(number) else _INFINITE)
 
-    code, hash_, comment = line.rest.partition("#")
-    return replace(line, rest=f"{re.sub(r'[^][, ]+', word, code)}{hash_}{comment}")
+    return line.with_code(lambda code: re.sub(r"[^][, ]+", word, code))
 
 
 def _float_back(value: Any) -> Any:
@@ -194,12 +191,6 @@ def _float_back(value: Any) -> Any:
         return value
     stand_ins = {float(_INFINITE): math.inf, float(_NO_NUMBER): math.nan}
     return math.copysign(stand_ins.get(abs(value), abs(value)), value)
-
-
-def _floats_back(facts: Facts, case: Case) -> Facts:
-    facts = mend_constants(lambda each: {**each, "value": _float_back(each["value"])})(facts, case)
-    back = mend_members("fields", lambda each: {**each, "default": _float_back(each["default"])})
-    return back(facts, case)
 
 
 def _without_blanks(comment: str) -> str:
@@ -285,14 +276,14 @@ ROS: tuple[Known, ...] = (
         "rosidl_parser",
         "rosidl_adapter copies backslashes into IDL, where rosidl_parser takes them for escapes.",
         rewrite=by_lines(_no_backslashes),
-        theirs=_shown_texts,
+        theirs=mend_values(shown),
     ),
     _entry(
         "ros2-infinite-numbers",
         "rosidl_parser",
         "rosidl_adapter writes inf and nan into IDL, where they are names.",
         rewrite=by_lines(_plain_floats),
-        theirs=_floats_back,
+        theirs=mend_values(_float_back),
     ),
     _entry(
         "ros2-comment-blanks",

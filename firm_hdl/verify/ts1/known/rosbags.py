@@ -21,7 +21,14 @@ from firm_hdl.model import (
 )
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.facts import Facts
-from firm_hdl.verify.ts1.known.rule import Known, Line, by_lines, mend_constants, mend_members
+from firm_hdl.verify.ts1.known.rule import (
+    Known,
+    Line,
+    by_lines,
+    mend_constants,
+    mend_members,
+    whole_bool,
+)
 from firm_hdl.verify.ts1.known.texts import (
     FLOATS,
     INTEGERS,
@@ -29,8 +36,8 @@ from firm_hdl.verify.ts1.known.texts import (
     float_of,
     hidden,
     integer_of,
-    original,
     renamed,
+    renamed_back,
     shown,
 )
 
@@ -95,10 +102,6 @@ def _upper_lines(line: Line, case: Case) -> Line:
     return replace(line, name=renamed(line.name))
 
 
-def _rename_back(constant: dict[str, Any]) -> dict[str, Any]:
-    return {**constant, "name": original(constant["name"])}
-
-
 # A name of a field that rosbags gives itself, to messages without any.
 
 _PLACEHOLDER, _STAND_IN = "structure_needs_at_least_one_member", "structure_has_one_more_member"
@@ -155,12 +158,6 @@ def _show_text(constant: dict[str, Any]) -> dict[str, Any]:
 
 
 # Numbers.
-
-
-def _whole_bool(constant: dict[str, Any]) -> dict[str, Any]:
-    value = constant["value"]
-    is_number = constant["type"] == "bool" and type(value) is int
-    return {**constant, "value": bool(value)} if is_number else constant
 
 
 def _decimal_lines(line: Line, case: Case) -> Line:
@@ -234,7 +231,7 @@ ROSBAGS: tuple[Known, ...] = (
         "rosbags takes constants with lower-case letters for fields, or refuses them.",
         dialect="ros1",
         rewrite=by_lines(_upper_lines),
-        theirs=mend_constants(_rename_back),
+        theirs=mend_constants(renamed_back),
     ),
     _entry(
         "rosbags-placeholders",
@@ -251,7 +248,7 @@ ROSBAGS: tuple[Known, ...] = (
     _entry(
         "rosbags-constant-bool",
         "rosbags keeps a bool constant that is written as a number as a number.",
-        theirs=mend_constants(_whole_bool),
+        theirs=mend_constants(whole_bool),
     ),
     _entry(
         "rosbags-integers",

@@ -21,8 +21,11 @@ __all__ = [
     "Known",
     "Line",
     "by_lines",
+    "each_line",
     "mend_constants",
     "mend_members",
+    "mend_values",
+    "whole_bool",
 ]
 
 _Rewrite: TypeAlias = "Callable[[Case], str]"
@@ -130,6 +133,15 @@ class Line:
         before = "" if self.equals else " "
         return replace(self, rest=f"{before}{value}{blank}{hash_}{comment}".rstrip(" "))
 
+    def with_code(self, change: Callable[[str], str]) -> Line:
+        """Give the line with what follows changed, but for the comment."""
+        code, hash_, comment = self.rest.partition("#")
+        return replace(self, rest=f"{change(code)}{hash_}{comment}")
+
+    def without_value(self) -> Line:
+        """Give the line without a default, and the same comment."""
+        return replace(self, rest=self.rest[self.rest.find("#") :] if "#" in self.rest else "")
+
     def __str__(self) -> str:
         return f"{self.indent}{self.type}{self.gap}{self.name}{self.equals}{self.rest}"
 
@@ -145,15 +157,23 @@ def by_lines(change: Callable[[Line, Case], Line]) -> _Rewrite:
     """Make a rewriting of one that knows lines of ``.msg``, ``.srv`` and ``.action`` files."""
 
     def rewrite(case: Case) -> str:
-        pieces = re.split(r"(\r\n|\r|\n)", case.text)
-        for index in range(0, len(pieces), 2):
-            match = _LINE.fullmatch(pieces[index])
-            if match is not None:
-                parts = {name: part or "" for name, part in match.groupdict().items()}
-                pieces[index] = str(change(Line(**parts), case))
-        return "".join(pieces)
+        def line(text: str) -> str:
+            match = _LINE.fullmatch(text)
+            if match is None:
+                return text
+            parts = {name: part or "" for name, part in match.groupdict().items()}
+            return str(change(Line(**parts), case))
+
+        return each_line(case.text, line)
 
     return rewrite
+
+
+def each_line(text: str, change: Callable[[str], str]) -> str:
+    """Change each line of a text, and leave what ends it."""
+    pieces = re.split(r"(\r\n|\r|\n)", text)
+    pieces[::2] = map(change, pieces[::2])
+    return "".join(pieces)
 
 
 def mend_members(
@@ -179,3 +199,17 @@ def mend_constants(
 ) -> Callable[[Facts, Case], Facts]:
     """Make a mending of facts of one that knows a constant."""
     return mend_members("constants", change)
+
+
+def mend_values(change: Callable[[Any], Any]) -> Callable[[Facts, Case], Facts]:
+    """Make a mending of facts of one that knows the value of a constant, or a default."""
+    constants = mend_constants(lambda each: {**each, "value": change(each["value"])})
+    defaults = mend_members("fields", lambda each: {**each, "default": change(each["default"])})
+    return lambda facts, case: defaults(constants(facts, case), case)
+
+
+def whole_bool(constant: dict[str, Any]) -> dict[str, Any]:
+    """Give a truth value that is written as a number as such."""
+    value = constant["value"]
+    is_number = constant["type"] == "bool" and type(value) is int
+    return {**constant, "value": bool(value)} if is_number else constant

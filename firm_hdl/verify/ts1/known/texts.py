@@ -20,8 +20,8 @@ __all__ = [
     "hidden",
     "integer_of",
     "limits",
-    "original",
     "renamed",
+    "renamed_back",
     "shown",
 ]
 
@@ -56,10 +56,10 @@ def renamed(name: str) -> str:
     return f"RENAMED{name.encode().hex().upper()}"
 
 
-def original(name: str) -> str:
-    """Return the name that `renamed` was given; of any other name, that."""
-    found = _RENAMED.fullmatch(name)
-    return name if found is None else bytes.fromhex(found[1]).decode()
+def renamed_back(item: dict[str, Any]) -> dict[str, Any]:
+    """Give a constant the name back that `renamed` was given."""
+    found = _RENAMED.fullmatch(item["name"])
+    return item if found is None else {**item, "name": bytes.fromhex(found[1]).decode()}
 
 
 def limits(kind: str, dialect: Dialect) -> tuple[int, int]:
