@@ -61,7 +61,7 @@ class Miter:
     unmatched: tuple[str, ...]
     registers: int
 
-    def netlist(self, *, values: bool = False) -> dict[str, Any]:
+    def netlist(self, *, values: bool) -> dict[str, Any]:
         """Write the circuit as Yosys reads JSON.
 
         The inputs are called ``in0`` and so on; claim n is bit n of the output ``differs``.
@@ -94,9 +94,9 @@ class Miter:
         return {"creator": "firm-hdl", "modules": {"miter": module}}
 
     def _all_bits(self) -> Iterator[Bits]:
+        # Whatever a cell reads is one of these.
         yield from self.inputs.values()
         for cell in self.cells:
-            yield from cell.inputs.values()
             yield from cell.outputs.values()
 
 

@@ -23,7 +23,7 @@ _DIVISIONS = frozenset("$div $mod $divfloor $modfloor".split())
 _REFUSED = frozenset("$tribuf $anyseq $anyconst $allseq $allconst $initstate".split())
 
 
-def read_rtlil(text: str, tools: Tools, folder: Path, timeout: float | None = None) -> Circuit:
+def read_rtlil(text: str, tools: Tools, folder: Path, timeout: float | None) -> Circuit:
     """Read a design.
 
     Parameters

@@ -57,7 +57,7 @@ class Tools:
         """Run GHDL in a folder; give what it printed."""
         return _run([*self.ghdl, *arguments], folder, "GHDL", timeout)
 
-    def run_yosys(self, folder: Path, script: str, timeout: float | None = None) -> None:
+    def run_yosys(self, folder: Path, script: str, timeout: float | None) -> None:
         """Run commands of Yosys in a folder.
 
         Yosys built for WebAssembly sees a `/tmp` of its own, so files are named relative to the

@@ -70,8 +70,8 @@ def open_library(
 
 def all_names(
     distro: str | None,
-    paths: Iterable[str | os.PathLike[str]] = (),
-    bags: Iterable[str | os.PathLike[str]] = (),
+    paths: Iterable[str | os.PathLike[str]],
+    bags: Iterable[str | os.PathLike[str]],
 ) -> list[str]:
     """List what is meant by all types: those of the folders or recordings, or else all there are.
 

@@ -154,9 +154,9 @@ class Window(wiring.Component):
         )
         m.d.comb += [
             Value.cast(self.data).eq(
-                self._shifted(m, Cat(b.data for b in beats), offset, 8)[: 8 * word]
+                self._shifted(m, Cat(b.data for b in beats), offset, 8, name="shifted")[: 8 * word]
             ),
-            self.have.eq(self._shifted(m, keep, offset, 1)),
+            self.have.eq(self._shifted(m, keep, offset, 1, name="shifted")),
             self.ended.eq(Cat(ends).any()),
             # An offset past the end of the last beat means padding that is not there.
             self.held.eq(valid[0] & (inside | beats[0].last)),
@@ -166,7 +166,7 @@ class Window(wiring.Component):
         m.d.comb += self.first_bytes.eq(Mux(inside, sum(unread[1:bus], unread[0]), 0))
 
     def _shifted(
-        self, m: Module, now: Value, offset: Signal, unit_bits: int, name: str = "shifted"
+        self, m: Module, now: Value, offset: Signal, unit_bits: int, *, name: str
     ) -> Value:
         """Return a value shifted down by the offset, in bytes of `unit_bits` bits."""
         for bit in reversed(range(self.plan.bus_bytes.bit_length() - 1)):

@@ -67,7 +67,7 @@ def hash_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defin
 
 
 def proto_texts(
-    library: Library, names: Iterable[str], *, quotes: bool = True
+    library: Library, names: Iterable[str], *, quotes: bool
 ) -> tuple[dict[str, str], DefinitionError | None]:
     """Give the texts of `proto` for types, each with the line end behind it.
 

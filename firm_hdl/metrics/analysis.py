@@ -83,7 +83,7 @@ class Metrics:
     shifting: int | None
     features: tuple[str, ...]
     definition_bytes: int
-    unsized: str = ""
+    unsized: str
 
 
 def metrics_of(message: Message, wire: Wire | None = None) -> Metrics:

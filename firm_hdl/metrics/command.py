@@ -21,9 +21,9 @@ def metrics_text(
     library: Library,
     names: Iterable[str] | None,
     form: str,
-    wire: Wire | None = None,
+    wire: Wire | None,
     *,
-    bar: bool = False,
+    bar: bool,
 ) -> tuple[str, DefinitionError | None]:
     """Write down the figures of types; those of a service or an action are of its messages.
 

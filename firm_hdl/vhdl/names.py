@@ -73,7 +73,7 @@ class Scope:
         Identifiers that are taken already.
     """
 
-    def __init__(self, reserved: Iterable[str] = ()) -> None:
+    def __init__(self, reserved: Iterable[str]) -> None:
         self._taken = {name.lower() for name in reserved}
 
     def give(self, wanted: str) -> str:

@@ -47,7 +47,7 @@ class _Piece:
     first: int
     bytes: int
     starts: bool
-    left_out: int = 0
+    left_out: int
 
 
 def to_svg(layout: Layout, title: str) -> str:

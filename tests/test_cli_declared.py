@@ -1,0 +1,194 @@
+"""What each command takes: every argument, what stands for it where it is not given, every limit.
+
+The table repeats by hand what the documentation promises. An option that is missing here is news.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+import pytest
+
+from firm_hdl.cli import _parser, main
+from firm_hdl.cli.table import COMMANDS
+
+ORIGINS = {"distro": None, "path": [], "bag": [], "depends": []}
+PLAN = {"wire": None, "bus_bytes": 8, "max_message_bytes": 16 << 20}
+# Of each command: words that it cannot do without, and what is taken besides.
+TAKEN = {
+    "build": (
+        ["a/B"],
+        {**ORIGINS, **PLAN, "types": ["a/B"], "window_words": 1, "out": "vhdl_out"}
+        | {"ports": "records", "force": False},
+    ),
+    "list": ([], ORIGINS),
+    "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
+    "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B", "window_words": 1}),
+    "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"], "window_words": 1}),
+    "md5": ([], {**ORIGINS, "types": [], "all": False}),
+    "hash": ([], {**ORIGINS, "types": [], "all": False}),
+    "proto": ([], {**ORIGINS, "types": [], "all": False, "no_quotes": False}),
+    "metrics": ([], {**ORIGINS, "types": [], "all": False, "format": "table", "wire": None}),
+    "verify": (
+        [],
+        {"types": [], "all": False, "distro": None, "path": [], "depends": [], "bag": []}
+        | {"systems": ["ts3"], "wire": None, "bus_bytes": None, "seed": 0, "jobs": None}
+        | {"oracle": [], "mutations": 0, "golden": None, "simulator": "python", "cases": None}
+        | {"stalls": True, "broken": True, "share_circuits": None, "vcd": None}
+        | {"max_message_bytes": None, "sut": [], "reference": [], "results": None}
+        | {"report": None, "executor": "processes"},
+    ),
+    "report": (
+        ["r.jsonl"],
+        {"results": ["r.jsonl"], "out": None, "format": None, "title": "Verification of firm-hdl"},
+    ),
+    "prove": (
+        [],
+        {**ORIGINS, **PLAN, "types": [], "all": False, "jobs": None, "timeout": 300},
+    ),
+    "golden": (
+        ["check", "plans"],
+        {**ORIGINS, **PLAN, "do": "check", "folder": "plans", "types": []},
+    ),
+    "cover": (
+        [],
+        {**ORIGINS, **PLAN, "types": [], "branches": False, "out": None, "check": None},
+    ),
+}
+NOT_SAID = ("run", "refuse", "usage_error", "version")
+
+
+def taken(*words):
+    given = vars(_parser(words).parse_args(words))
+    assert callable(given["run"])
+    return {name: value for name, value in given.items() if name not in NOT_SAID}
+
+
+def refused(*words):
+    with pytest.raises(SystemExit) as caught:
+        _parser(words).parse_args(words)
+    return caught.value.code == 2
+
+
+def test_every_command_is_here():
+    assert {*TAKEN} == {*COMMANDS}
+
+
+@pytest.mark.parametrize("command", TAKEN)
+def test_what_is_not_said_is_taken_for_granted(command):
+    words, expected = TAKEN[command]
+    assert taken(command, *words) == expected
+
+
+@pytest.mark.parametrize("command", [name for name, (words, _) in TAKEN.items() if words])
+def test_what_must_be_said_must_be(command, capsys):
+    assert refused(command, *TAKEN[command][0][:-1])
+    assert "required" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["list", "show", "plan"])
+def test_nobody_takes_one_word_too_many(command, capsys):
+    assert refused(command, *TAKEN[command][0], "more")
+
+
+def having(option):
+    return [name for name, (_, expected) in TAKEN.items() if option in expected]
+
+
+def words_of(command, *more):
+    return [command, *TAKEN[command][0], *more]
+
+
+@pytest.mark.parametrize("option", ["path", "bag", "depends"])
+def test_origins_add_up(option):
+    for command in having(option):
+        given = taken(*words_of(command, f"--{option}", "x", f"--{option}", "y"))
+        assert given[option] == ["x", "y"]
+
+
+def test_folders_exclude_recordings(capsys):
+    for command in having("bag"):
+        if command != "verify":
+            assert refused(*words_of(command, "--path", "x", "--bag", "y"))
+    assert refused("cover", "--out", "x", "--check", "y")
+
+
+@pytest.mark.parametrize(
+    ("option", "good", "bad"),
+    [
+        ("wire", ["ros1", "cdr"], ["ROS1", ""]),
+        ("distro", "noetic foxy humble iron jazzy kilted lyrical".split(), ["melodic", "rolling"]),
+        ("bus_bytes", ["1", "2", "4", "8", "16", "32", "64"], ["0", "3", "128", "-8"]),
+        ("window_words", ["1", "2"], ["0", "3"]),
+        ("max_message_bytes", ["1", str((1 << 32) - 1)], ["0", str(1 << 32), "-1", "", "1.5"]),
+        ("jobs", ["1", "1000"], ["0", "-1", "x"]),
+        ("timeout", ["1", "9999999"], ["0", "-1"]),
+        ("cases", ["1", "1000000"], ["0", "-1"]),
+        ("ports", ["records", "flat"], ["vectors"]),
+        ("format", [], ["xml"]),
+        ("simulator", ["python", "ghdl", "iverilog", "verilator"], ["vcs"]),
+        ("executor", ["processes", "dask://a:1"], ["threads", "dask://a"]),
+        ("systems", ["ts1", "ts1,ts2,ts3"], ["ts9", ""]),
+        ("seed", ["0", "12345"], ["x"]),
+    ],
+)
+def test_limits_are_what_they_are_called(option, good, bad, capsys):
+    commands = having(option)
+    if option == "max_message_bytes":
+        commands.remove("verify")
+    assert commands
+    for command in commands:
+        for text in good:
+            given = taken(*words_of(command, f"--{option.replace('_', '-')}", text))[option]
+            given = given[-1] if isinstance(given, list) and option != "systems" else given
+            expected = text.split(",") if option == "systems" else text
+            assert given == (int(text) if text.isdecimal() else expected)
+        for text in bad:
+            assert refused(*words_of(command, f"--{option.replace('_', '-')}={text}"))
+
+
+def test_messages_of_a_recording_have_a_limit_of_their_own(capsys):
+    for number in (1, (1 << 31) - 1):
+        assert taken("verify", "--max-message-bytes", str(number))["max_message_bytes"] == number
+    for number in (0, 1 << 31):
+        assert refused("verify", "--max-message-bytes", str(number))
+
+
+@pytest.mark.parametrize(
+    ("words", "name", "value"),
+    [
+        (["md5", "--all"], "all", True),
+        (["proto", "--no-quotes"], "no_quotes", True),
+        (["build", "a/B", "--force"], "force", True),
+        (["cover", "--branches"], "branches", True),
+        (["metrics", "--format", "json"], "format", "json"),
+        (["metrics", "--format", "csv"], "format", "csv"),
+        (["report", "a", "b", "--format", "md"], "results", ["a", "b"]),
+        (["verify", "--no-stalls"], "stalls", False),
+        (["verify", "--no-broken"], "broken", False),
+        (["verify", "--share-circuits"], "share_circuits", True),
+        (["verify", "--no-share-circuits"], "share_circuits", False),
+        (["verify", "--bus-bytes", "4", "--bus-bytes", "8"], "bus_bytes", [4, 8]),
+        (["verify", "--distro", "noetic", "--distro", "foxy"], "distro", ["noetic", "foxy"]),
+        (["verify", "--mutations", "7"], "mutations", 7),
+        (["golden", "add", "plans", "a/B", "c/D"], "types", ["a/B", "c/D"]),
+        (["plan", "a/B", "--max-message-bytes", "0x10"], "max_message_bytes", 16),
+    ],
+)
+def test_what_is_said_is_taken(words, name, value):
+    assert taken(*words)[name] == value
+
+
+def test_help_says_which_types_all_are(capsys):
+    which = "all types; with --path, all in those folders; with --bag, all in the recordings"
+    for command in ("md5", "hash", "proto"):
+        with pytest.raises(SystemExit):
+            main([command, "--help"])
+        assert which in " ".join(capsys.readouterr().out.split())
+
+
+def test_commands_that_are_not_called_are_not_loaded():
+    parser = _parser(["--version", "list", "show"])
+    (group,) = [each for each in parser._actions if isinstance(each, argparse._SubParsersAction)]
+    known = {name: len(sub._actions) > 1 for name, sub in group.choices.items()}
+    assert [name for name, is_known in known.items() if is_known] == ["list"]
