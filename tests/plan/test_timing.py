@@ -62,6 +62,21 @@ def test_shortest_and_hardest_packets(fields, bus_bytes, shortest, hardest):
     assert (figures.shortest, figures.hardest) == (shortest, hardest)
 
 
+@pytest.mark.parametrize(
+    ("fields", "bus_bytes", "hardest"),
+    [
+        # No text at all in one element: its NUL is a cycle of its own.
+        ({"t": (TEXT, "[]")}, 2, cost(13, 7, 7)),
+        # Items that fill a word and one more, or just a word, so that the next field starts anew.
+        ({"t": (TEXT, "[]"), "a": "uint8", "b": "uint16[]"}, 2, cost(24, 12, 13)),
+        ({"s": "string", "a": "uint8[]", "b": "uint8"}, 2, cost(20, 10, 11)),
+        ({"a": "uint8[]", "b": "uint16", "c": "float64[]"}, 4, cost(60, 15, 16)),
+    ],
+)
+def test_lengths_around_the_bus_width_are_tried(fields, bus_bytes, hardest):
+    assert timing(plan_of(fields, bus_bytes, "ros2")).hardest == hardest
+
+
 def test_packets_with_too_many_transfers_are_left_out(monkeypatch):
     fields = {"d": "uint64[3]", "t": (TEXT, "[]")}
     # 3 transfers, a length, and two for each element.
