@@ -1,0 +1,243 @@
+"""A bench told exactly: in which cycle what is offered, taken, seen, and given up.
+
+The design is a register in a stream: what comes in in one cycle goes out in the next one.
+"""
+
+from __future__ import annotations
+
+import pytest
+from amaranth.hdl import Cat, Module, Signal
+from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.sim import DeadlineError, StreamRuleError
+from firm_hdl.sim.bench import WORD_BITS, Bench, Job
+from firm_hdl.sim.stalls import Stalls
+from tests.sim.components import Relay
+
+
+class Run:
+    """A run of relays side by side, and what was taken from each, by cycle."""
+
+    def __init__(self, given, *, shapes=8, expected=None, fault="", **options):
+        relays = [Relay(shapes, fault) for _ in given]
+        top = Module()
+        top.submodules += relays
+        self.taken = {f"o{n}": [] for n in range(len(given))}
+        known = {name: options.pop(name) for name in ("probes", "payloads") if name in options}
+        if "probes" in known:
+            known["probes"] = known["probes"](relays)
+        if "payloads" in known:
+            known["payloads"] = known["payloads"](relays)
+        bench = Bench(
+            top,
+            sources={f"i{n}": relay.i for n, relay in enumerate(relays)},
+            sinks={f"o{n}": relay.o for n, relay in enumerate(relays)},
+            **known,
+        )
+        self.bench = bench
+        wanted = sum(map(len, given)) if expected is None else expected
+        self.job = Job(
+            sources={f"i{n}": each for n, each in enumerate(given)},
+            takes={
+                name: lambda cycle, bits, name=name: self.taken[name].append((cycle, bits))
+                for name in self.taken
+            },
+            finished=lambda: sum(map(len, self.taken.values())) >= wanted,
+            outstanding=lambda: "something",
+            **options,
+        )
+
+    def go(self, **options):
+        return self.bench.run(self.job, **options)
+
+
+def test_what_comes_in_goes_out_in_the_next_cycle():
+    run = Run([[5, 6, 7]])
+    # 0, 1 and 2 in; 1, 2 and 3 out; four cycles of silence.
+    assert run.go() == 8
+    assert run.taken == {"o0": [(1, 5), (2, 6), (3, 7)]}
+
+
+@pytest.mark.parametrize("settle", [1, 2, 9])
+def test_so_much_silence_ends_a_run(settle):
+    assert Run([[5, 6, 7]], settle=settle).go() == 4 + settle
+
+
+def test_a_bench_runs_job_after_job_from_reset():
+    run = Run([[5]])
+    assert [run.go(), run.taken["o0"]] == [6, [(1, 5)]]
+    run.taken["o0"].clear()
+    assert [run.go(), run.taken["o0"]] == [6, [(1, 5)]]
+
+
+def test_nothing_to_do_is_over_after_the_silence():
+    run = Run([[]])
+    assert run.go() == 4 and run.taken == {"o0": []}
+
+
+@pytest.mark.parametrize(
+    ("stalls", "taken"),
+    [
+        # The register gives one away and takes one in the same cycle.
+        ({"o0": "10"}, [(2, 1), (4, 2), (6, 3)]),
+        ({"o0": "001"}, [(2, 1), (5, 2), (8, 3)]),
+        ({"i0": "001"}, [(3, 1), (6, 2), (9, 3)]),
+        ({"i0": "01", "o0": "011"}, [(2, 1), (4, 2), (7, 3)]),
+    ],
+)
+def test_stalled_streams_wait_for_just_those_cycles(stalls, taken):
+    run = Run([[1, 2, 3]], stalls={name: Stalls.bits(bits) for name, bits in stalls.items()})
+    run.go()
+    assert run.taken["o0"] == taken
+
+
+def test_streams_do_not_wait_for_each_other():
+    run = Run([[1, 2], [], [3]], stalls={"o0": Stalls.bits("0001")})
+    run.go()
+    assert run.taken == {"o0": [(3, 1), (7, 2)], "o1": [], "o2": [(1, 3)]}
+
+
+@pytest.mark.parametrize("bits", [WORD_BITS // 4, WORD_BITS // 2, WORD_BITS - 3, WORD_BITS, 400])
+def test_wide_payloads_arrive_whole(bits):
+    """However they are spread over the words that the bench drives."""
+    ones = (1 << bits) - 1
+    given = [[ones, 0, 1, ones - 1], [1 << (bits - 1), ones], [0, ones // 3]]
+    run = Run(given, shapes=bits)
+    run.go()
+    got = [[value for _, value in each] for each in run.taken.values()]
+    assert got == given
+
+
+def test_deadline_is_the_most_cycles_without_a_transfer():
+    # Nothing moves in the cycles 2 to 6.
+    stalls = {"i0": Stalls.bits("10000001")}
+    run = Run([[1, 2]], stalls=stalls, deadline=1000)
+    run.go()
+    assert run.taken["o0"] == [(1, 1), (8, 2)]
+    silent = Run([[1]], expected=2, deadline=5)
+    said = (
+        "No transfer in 6 cycles up to cycle 7; outstanding: something; "
+        "offered and not taken: nothing"
+    )
+    with pytest.raises(DeadlineError) as caught:
+        silent.go()
+    assert str(caught.value) == said
+    assert silent.bench.cycles == 8
+
+
+def test_the_longest_stall_of_any_stream_is_added_to_the_deadline():
+    for longest, cycles in ((0, 6), (3, 9), (4, 10)):
+        stalls = {"o0": Stalls.bits("1" + "0" * longest)}
+        with pytest.raises(DeadlineError, match=f"^No transfer in {cycles} cycles"):
+            Run([[1], [2]], expected=3, deadline=5, stalls=stalls).go()
+
+
+def test_who_offers_is_named_when_time_is_over():
+    run = Run([list(range(9)), [1]], fault="block", expected=99, deadline=20)
+    with pytest.raises(DeadlineError, match=r"offered and not taken: i0$"):
+        run.go()
+    assert [value for _, value in run.taken["o0"]] == [0, 1, 2, 3]
+
+
+def test_silence_that_ends_a_run_in_time_is_no_missed_deadline():
+    assert Run([[1]], deadline=3, settle=4).go() == 6
+
+
+@pytest.mark.parametrize(("limit", "ends"), [(8, True), (7, False)])
+def test_limit_is_the_most_cycles_of_a_run(limit, ends):
+    run = Run([[5, 6, 7]], limit=limit)
+    if ends:
+        assert run.go() == 8
+    else:
+        with pytest.raises(DeadlineError, match=r"^No end after 7 cycles; outstanding: something$"):
+            run.go()
+
+
+def test_silence_begins_anew_while_something_is_offered():
+    """What a sink has not taken yet is no silence, even if nothing more is expected."""
+    run = Run([[1, 2]], expected=1, stalls={"o0": Stalls.bits("0100000000")}, settle=4)
+    # Taken in cycles 1 and 11, and four more cycles.
+    assert run.go() == 16
+    assert run.taken["o0"] == [(1, 1), (11, 2)]
+
+
+@pytest.mark.parametrize(("fault", "rule"), [("drop", "1"), ("change", "2")])
+def test_rules_are_watched_at_sinks(fault, rule):
+    run = Run([[4, 4]], fault=fault, stalls={"o0": Stalls.bits("00001")})
+    with pytest.raises(StreamRuleError, match=f"[Rr]ule {rule}"):
+        run.go()
+
+
+def test_probes_are_seen_in_each_cycle_and_before_the_first():
+    seen = []
+    run = Run(
+        [[5, 6]],
+        observe=seen.append,
+        probes=lambda relays: [relays[0].o.payload, Cat(relays[0].o.valid, relays[0].i.valid)],
+    )
+    cycles = run.go()
+    assert len(seen) == cycles + 1
+    assert seen[:5] == [[0, 0], [0, 2], [5, 3], [6, 1], [6, 0]]
+
+
+def test_payloads_may_be_more_than_the_payload():
+    def payloads(relays):
+        return {"o0": Cat(relays[0].o.payload, relays[0].i.valid)}
+
+    run = Run([[5, 6]], payloads=payloads)
+    run.go()
+    assert run.taken["o0"] == [(1, 5 + 256), (2, 6)]
+
+
+class Tapped(wiring.Component):
+    """A stream through a register that a gate may hold up on its way."""
+
+    def __init__(self):
+        super().__init__({"i": In(stream.Signature(8)), "o": Out(stream.Signature(8))})
+        self.between = stream.Signature(8).create()
+        self.gates = Signal(1)
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.relay = relay = Relay(8)
+        m.d.comb += [
+            relay.i.payload.eq(self.i.payload),
+            relay.i.valid.eq(self.i.valid),
+            self.i.ready.eq(relay.i.ready),
+            self.o.payload.eq(relay.o.payload),
+            self.o.valid.eq(relay.o.valid & self.gates),
+            relay.o.ready.eq(self.o.ready & self.gates),
+            self.between.payload.eq(relay.o.payload),
+            self.between.valid.eq(relay.o.valid & self.gates),
+            self.between.ready.eq(self.o.ready & self.gates),
+        ]
+        return m
+
+
+@pytest.mark.parametrize(
+    ("stalls", "times"),
+    [({}, [1, 2, 3]), ({"tap": "001"}, [2, 5, 8]), ({"tap": "100", "o": "01"}, [3, 7, 9])],
+)
+def test_taps_are_watched_and_held_up_by_their_gates(stalls, times):
+    design = Tapped()
+    bench = Bench(
+        design,
+        sources={"i": design.i},
+        sinks={"o": design.o},
+        taps={"tap": design.between},
+        gates=design.gates,
+    )
+    taken = {"o": [], "tap": []}
+    takes = {
+        name: lambda cycle, bits, name=name: taken[name].append((cycle, bits)) for name in taken
+    }
+    job = Job(
+        sources={"i": [7, 8, 9]},
+        takes=takes,
+        finished=lambda: len(taken["o"]) == 3,
+        outstanding=lambda: "",
+        stalls={name: Stalls.bits(bits) for name, bits in stalls.items()},
+    )
+    bench.run(job)
+    assert taken["o"] == taken["tap"] == list(zip(times, [7, 8, 9], strict=True))
