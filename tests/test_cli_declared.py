@@ -61,7 +61,11 @@ NOT_SAID = ("run", "refuse", "usage_error", "version")
 def taken(*words):
     given = vars(_parser(words).parse_args(words))
     assert callable(given["run"])
-    return {name: value for name, value in given.items() if name not in NOT_SAID}
+    return {
+        name: list(value) if isinstance(value, tuple) else value
+        for name, value in given.items()
+        if name not in NOT_SAID
+    }
 
 
 def refused(*words):
