@@ -56,6 +56,7 @@ MAY_IMPORT["firm_hdl"] = {"errors", "frontend", "gateware"}
 
 # The same for the parts of `firm_hdl.verify`.
 VERIFY_MAY_IMPORT = {
+    "choices": set[str](),
     "results": set[str](),
     "ros2_wheels": set[str](),
     "ros_python": set[str](),
@@ -66,16 +67,18 @@ VERIFY_MAY_IMPORT = {
     "clients": {"cases", "references", "results", "systems"},
     "ts1": {"results", "ros2_wheels", "ros_python", "systems"},
     "ts2": {"cases", "results", "systems"},
-    "ts3": {"cases", "clients", "references", "results", "simulators", "systems"},
+    "ts3": {
+        *("cases", "choices", "clients", "references", "results", "simulators", "systems"),
+    },
     "bench": {"cases", "references", "results", "systems", "ts3"},
     "report": {"results"},
 }
-VERIFY_MAY_IMPORT["request"] = {"systems", "ts3"}
+VERIFY_MAY_IMPORT["request"] = {"choices", "systems", "ts3"}
 VERIFY_MAY_IMPORT["run"] = {
     *("bench", "clients", "references", "report", "request", "results"),
     *("systems", "ts1", "ts2", "ts3"),
 }
-VERIFY_MAY_IMPORT["command"] = {"references", "request", "run", "simulators", "ts1", "ts3"}
+VERIFY_MAY_IMPORT["command"] = {"choices", "request", "run", "systems"}
 VERIFY_MAY_IMPORT["__main__"] = {"command"}
 # Its own face.
 VERIFY_MAY_IMPORT["verify"] = {"cases", "references", "systems", "ts3"}

@@ -5,12 +5,16 @@
 
 from __future__ import annotations
 
-from firm_hdl.verify.cases.make import Case, make_cases
-from firm_hdl.verify.references.oracle import Oracle, distro_oracle
-from firm_hdl.verify.systems.tasks import Task, collect_tasks
-from firm_hdl.verify.ts3.acceptance import accept, accept_message
-from firm_hdl.verify.ts3.options import Options, Result
-from firm_hdl.verify.ts3.runner import run_tasks
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from firm_hdl.verify.cases.make import Case, make_cases
+    from firm_hdl.verify.references.oracle import Oracle, distro_oracle
+    from firm_hdl.verify.systems.tasks import Task, collect_tasks
+    from firm_hdl.verify.ts3.acceptance import accept, accept_message
+    from firm_hdl.verify.ts3.options import Options, Result
+    from firm_hdl.verify.ts3.runner import run_tasks
 
 __all__ = [
     "Case",
@@ -25,3 +29,24 @@ __all__ = [
     "make_cases",
     "run_tasks",
 ]
+
+# NumPy, Amaranth and simulators take seconds to import, and a wrong argument needs none of them.
+_HOME = {
+    "Case": "cases.make",
+    "Options": "ts3.options",
+    "Oracle": "references.oracle",
+    "Result": "ts3.options",
+    "Task": "systems.tasks",
+    "accept": "ts3.acceptance",
+    "accept_message": "ts3.acceptance",
+    "collect_tasks": "systems.tasks",
+    "distro_oracle": "references.oracle",
+    "make_cases": "cases.make",
+    "run_tasks": "ts3.runner",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"firm_hdl.verify.{_HOME[name]}"), name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 
 from firm_hdl.arguments import (
@@ -17,14 +18,18 @@ from firm_hdl.arguments import (
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, check_executor
 from firm_hdl.plan import BUS_BYTES
-from firm_hdl.verify.references import CLIENTS
-from firm_hdl.verify.references.choice import NO_REFERENCE, WRITERS
-from firm_hdl.verify.request import Request
-from firm_hdl.verify.run import SYSTEMS, run_request
-from firm_hdl.verify.simulators import SIMULATORS
-from firm_hdl.verify.ts1 import ORACLES
-from firm_hdl.verify.ts3.options import LONGEST
-from firm_hdl.verify.ts3.replay import MOST_MESSAGES
+from firm_hdl.verify.choices import (
+    CLIENT_NAMES,
+    LONGEST,
+    MOST_MESSAGES,
+    NO_REFERENCE,
+    ORACLE_NAMES,
+    SIMULATOR_NAMES,
+    SYSTEM_NAMES,
+    WRITER_NAMES,
+)
+from firm_hdl.verify.request import Request, Workload
+from firm_hdl.verify.systems.tasks import UnknownTypeError
 
 __all__ = ["add_verify_arguments", "run_verify"]
 
@@ -52,9 +57,21 @@ def run_verify(given: argparse.Namespace) -> int:
     Raises
     ------
     DefinitionError
-        See :func:`firm_hdl.verify.run.run_request`.
+        If a definition that is named cannot be used. Of all types, those that can are tested, and
+        then the others are printed.
     """
-    return run_request(_request(given))
+    request = _request(given)
+    try:
+        work = Workload(request)
+        if request.types and not request.is_ts1_alone:
+            # A type that cannot be used is told before simulators and oracles are imported.
+            _ = work.tasks
+    except UnknownTypeError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    from firm_hdl.verify.run import run_workload
+
+    return run_workload(work)
 
 
 def _request(given: argparse.Namespace) -> Request:
@@ -150,7 +167,7 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
         type=_systems,
         default=("ts3",),
         metavar="NAME,...",
-        help=f"test systems: {', '.join(SYSTEMS)}; default: ts3",
+        help=f"test systems: {', '.join(SYSTEM_NAMES)}; default: ts3",
     )
     add_wire(parser)
     parser.add_argument(
@@ -178,7 +195,7 @@ def _add_ts1(group: argparse._ArgumentGroup) -> None:
         "--oracle",
         action="append",
         default=[],
-        choices=list(ORACLES),
+        choices=ORACLE_NAMES,
         help="whom to ask; repeatable; default: all that are here",
     )
     group.add_argument(
@@ -193,7 +210,7 @@ def _add_ts1(group: argparse._ArgumentGroup) -> None:
 def _add_cases(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--simulator",
-        choices=["python", *SIMULATORS],
+        choices=["python", *SIMULATOR_NAMES],
         default="python",
         help="replay everything as well: the exported VHDL in ghdl, or the Verilog in iverilog or "
         "verilator; default: %(default)s",
@@ -241,19 +258,19 @@ def _add_libraries(group: argparse._ArgumentGroup, ts3: argparse._ArgumentGroup)
         "--sut",
         action="append",
         default=[],
-        choices=list(CLIENTS),
+        choices=CLIENT_NAMES,
         metavar="NAME",
         help="compare a client library with ROS's own serializer, instead of running test systems: "
-        f"{', '.join(CLIENTS)}; repeatable",
+        f"{', '.join(CLIENT_NAMES)}; repeatable",
     )
     ts3.add_argument(
         "--reference",
         action="append",
         default=[],
-        choices=[*WRITERS, NO_REFERENCE],
+        choices=[*WRITER_NAMES, NO_REFERENCE],
         metavar="NAME",
         help="library that has to write the same bytes as rosbags: "
-        f"{', '.join(WRITERS)}, or {NO_REFERENCE}; repeatable; default: all that are here",
+        f"{', '.join(WRITER_NAMES)}, or {NO_REFERENCE}; repeatable; default: all that are here",
     )
 
 
@@ -288,9 +305,9 @@ def _executor(text: str) -> str:
 def _systems(text: str) -> Sequence[str]:
     names = list(dict.fromkeys(text.split(",")))
     for name in names:
-        if name not in SYSTEMS:
+        if name not in SYSTEM_NAMES:
             raise argparse.ArgumentTypeError(
-                f"no test system {name!r}; there are {', '.join(SYSTEMS)}"
+                f"no test system {name!r}; there are {', '.join(SYSTEM_NAMES)}"
             )
     return names
 

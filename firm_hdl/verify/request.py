@@ -10,9 +10,8 @@ from firm_hdl.errors import Diagnostic
 from firm_hdl.frontend import DEFAULT_DISTRO
 from firm_hdl.frontend.search import workspace_folders
 from firm_hdl.jobs.executors import PROCESSES
+from firm_hdl.verify.choices import LONGEST
 from firm_hdl.verify.systems.tasks import Task, UnknownTypeError, collect_own, collect_tasks
-from firm_hdl.verify.ts3.options import LONGEST
-from firm_hdl.verify.ts3.recorded_tasks import collect_recorded
 from firm_hdl.wire import Wire
 
 __all__ = ["Request", "Workload"]
@@ -90,6 +89,11 @@ class Request:
     report: str | None = None
 
     @property
+    def is_ts1_alone(self) -> bool:
+        """Whether TS1 alone is to run, which looks types up by itself."""
+        return self.systems == ("ts1",) and not self.libraries
+
+    @property
     def is_named(self) -> bool:
         """Whether what is tested was asked for by name: changed texts are nobody's by name."""
         return bool(self.types) and not self.mutations
@@ -112,8 +116,7 @@ class Workload:
     def __init__(self, request: Request):
         self.request = request
         self.problems: dict[str, Diagnostic] = {}
-        is_ts1 = request.systems == ("ts1",) and not request.libraries
-        if request.types and not (request.paths or request.bags or is_ts1):
+        if request.types and not (request.paths or request.bags or request.is_ts1_alone):
             self._search_workspace()
 
     @cached_property
@@ -129,6 +132,8 @@ class Workload:
         """
         request = self.request
         if request.bags:
+            from firm_hdl.verify.ts3.recorded_tasks import collect_recorded
+
             return collect_recorded(
                 next(iter(request.distros), None),
                 request.types,

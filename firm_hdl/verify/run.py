@@ -19,7 +19,7 @@ from firm_hdl.verify.clients.command import run_sut
 from firm_hdl.verify.clients.run import SutOptions
 from firm_hdl.verify.references.client import ClientMissingError
 from firm_hdl.verify.report.command import write_report
-from firm_hdl.verify.request import Request, Workload
+from firm_hdl.verify.request import Workload
 from firm_hdl.verify.results.environment import code_digest, environment, inputs_digest
 from firm_hdl.verify.results.file import ResultsError, ResultsWriter
 from firm_hdl.verify.systems.ending import concluded, is_well
@@ -30,10 +30,10 @@ from firm_hdl.verify.ts2.system import Ts2, Ts2Options
 from firm_hdl.verify.ts3.options import Options
 from firm_hdl.verify.ts3.system import How, Ts3
 
-__all__ = ["SYSTEMS", "run_request"]
+__all__ = ["SYSTEMS", "run_workload"]
 
 
-def run_request(request: Request) -> int:
+def run_workload(work: Workload) -> int:
     """Do what is asked for; print what came of it, and return the exit status.
 
     Raises
@@ -42,8 +42,8 @@ def run_request(request: Request) -> int:
         If a definition that is named cannot be used. Of all types, those that can are tested, and
         then the others are printed.
     """
+    request = work.request
     try:
-        work = Workload(request)
         with unwound_when_terminated():
             found = _run_clients(work) if request.libraries else _run_systems(work)
         for line in concluded(found, is_named=request.is_named):

@@ -12,7 +12,6 @@ from firm_hdl.verify.references.wide_oracle import stand_ins
 from firm_hdl.wire import Wire
 
 __all__ = [
-    "NO_REFERENCE",
     "WIDE_REFERENCES",
     "WRITERS",
     "find_references",
@@ -27,8 +26,6 @@ WRITERS: dict[str, tuple[Wire, ...]] = {
     "cyclonedds": ("cdr",),
 }
 """Libraries that may confirm what rosbags writes, and on which wires."""
-
-NO_REFERENCE = "none"
 
 WIDE_REFERENCES = ("fastcdr", *(kind.name for kind in NEWER))
 """Who has wide text, which rosbags has not: one of them is enough."""

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message, closure
-from firm_hdl.verify.references.oracle import DISTRO_STORES, distro_oracle
 from firm_hdl.verify.systems.libraries import library_of
 from firm_hdl.wire import refusals
 
@@ -62,6 +61,9 @@ def collect_tasks(
     UnknownTypeError
         If no distribution has a type of a name.
     """
+    # rosbags' types and NumPy come along, which a user's own definitions need not wait for.
+    from firm_hdl.verify.references.oracle import DISTRO_STORES, distro_oracle
+
     wanted = {_full(name) for name in names}
     found: dict[tuple[str, str], list[str]] = defaultdict(list)
     weights: dict[tuple[str, str], int] = {}

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from firm_hdl.verify.cases.directed import Coverage
+from firm_hdl.verify.choices import LONGEST
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 from firm_hdl.verify.simulators.crosscheck import Comparison
 from firm_hdl.verify.systems.again import command_again
 
-__all__ = ["LONGEST", "Options", "Result"]
-
-LONGEST = 1 << 18
-"""Longest recorded message to replay, if nobody says otherwise: it takes a minute or so."""
+__all__ = ["Options", "Result"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,11 +10,12 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.verify.cases.effort import message_limit
 from firm_hdl.verify.cases.figures import digest
+from firm_hdl.verify.choices import LONGEST
 from firm_hdl.verify.results.records import PlanCoverage, Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.systems.libraries import library_of
 from firm_hdl.verify.systems.system import wire_of
 from firm_hdl.verify.systems.tasks import Task
-from firm_hdl.verify.ts3.options import LONGEST, Options, Result
+from firm_hdl.verify.ts3.options import Options, Result
 from firm_hdl.wire import lay_out
 
 __all__ = ["record_of", "same_circuits", "test_of"]

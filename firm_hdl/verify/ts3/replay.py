@@ -26,6 +26,7 @@ from firm_hdl.verify.cases.damage import stalls_for
 from firm_hdl.verify.cases.effort import LARGE_STRIDE, MAX_MESSAGE_BYTES, MOST_WORK, work_of
 from firm_hdl.verify.cases.figures import figures
 from firm_hdl.verify.cases.make import Case
+from firm_hdl.verify.choices import MOST_MESSAGES
 from firm_hdl.verify.references.oracle import Transfers
 from firm_hdl.verify.references.user_oracle import Judge
 from firm_hdl.verify.results.verdict import NotJudgedError
@@ -36,10 +37,7 @@ from firm_hdl.verify.ts3.recording import RecordedMessage, Selection, Topic, sel
 from firm_hdl.verify.ts3.selection import is_large
 from firm_hdl.wire import lay_out
 
-__all__ = ["MOST_MESSAGES", "replay"]
-
-MOST_MESSAGES = 100
-"""Most messages of a type, if nobody says otherwise."""
+__all__ = ["replay"]
 
 REPRESENTATIONS = {
     0: "big-endian CDR",

@@ -1,0 +1,48 @@
+"""Names that arguments take are those of the things themselves."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+from firm_hdl.verify import choices
+from firm_hdl.verify.references import CLIENTS
+from firm_hdl.verify.references.choice import WRITERS
+from firm_hdl.verify.run import SYSTEMS
+from firm_hdl.verify.simulators import SIMULATORS
+from firm_hdl.verify.ts1 import ORACLES
+
+
+def test_each_name_is_that_of_something():
+    assert tuple(SYSTEMS) == choices.SYSTEM_NAMES
+    assert tuple(ORACLES) == choices.ORACLE_NAMES
+    assert tuple(SIMULATORS) == choices.SIMULATOR_NAMES
+    assert tuple(CLIENTS) == choices.CLIENT_NAMES
+    assert tuple(WRITERS) == choices.WRITER_NAMES
+
+
+def test_a_type_that_no_wire_can_carry_is_refused_before_much_is_imported(tmp_path):
+    package = tmp_path / "p"
+    (package / "msg").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>p</name></package>")
+    for level in range(4):
+        element = f"L{level + 1}" if level < 3 else "uint8"
+        text = "".join(f"{element} f{n}\n" for n in range(100))
+        (package / "msg" / f"L{level}.msg").write_text(text)
+    script = (
+        "import sys\nfrom firm_hdl.cli import main\n"
+        "status = main(sys.argv[1:])\n"
+        "print(status, *sorted({'amaranth', 'numpy', 'jinja2'} & set(sys.modules)))\n"
+    )
+    for command in ("build", "info", "verify", "verify --systems ts1,ts2,ts3,bench"):
+        done = subprocess.run(
+            [sys.executable, "-c", script, *command.split(), "--path", str(tmp_path), "p/L0"],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert "p/msg/L0 has 100000000 fields" in done.stderr, command
+        loaded = done.stdout.split()
+        # The back ends need Amaranth, and a build makes them known before it reads definitions.
+        assert loaded in (["1"], ["1", "amaranth"]), command
