@@ -158,8 +158,8 @@ def moved(masks: Mapping[str, int], before: str, after: str) -> dict[str, int]:
     Who ran one of the lines that others have replaced runs all of those; who ran a line runs what
     was put behind it.
     """
-    lines = [text.splitlines() for text in (before, after)]
-    steps = difflib.SequenceMatcher(None, *lines, autojunk=False).get_opcodes()
+    matcher = difflib.SequenceMatcher(None, before.splitlines(), after.splitlines(), autojunk=False)
+    steps = matcher.get_opcodes()
     result: dict[str, int] = {}
     for owner, mask in masks.items():
         found = 0

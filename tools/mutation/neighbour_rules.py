@@ -105,7 +105,8 @@ def default_used(source: Source, index: Index) -> Iterator[Change]:
         called = function.id if isinstance(function, ast.Name) else called
         known = index.parameters(called)
         for keyword in node.keywords:
-            if keyword.arg in known and known[keyword.arg].has_default:
+            name = keyword.arg
+            if name is not None and name in known and known[name].has_default:
                 yield from _without(source, node, keyword)
         if node.args and not node.keywords and not isinstance(node.args[-1], ast.Starred):
             plain = index.positional(called)

@@ -27,12 +27,12 @@ def swapped_branches(source: Source, _: Index) -> Iterator[Change]:
             if isinstance(other, ast.If) and source.of(other).startswith("elif"):
                 yield from _swap_arms(source, (node.test, node.body), (other.test, other.body))
         elif isinstance(node, ast.Match):
-            for one, two in zip(node.cases, node.cases[1:], strict=False):
-                if not _disjoint_cases(one, two):
+            for first, second in itertools.pairwise(node.cases):
+                if not _disjoint_cases(first, second):
                     yield _swap(
                         source,
-                        _span(source, one.pattern, one.body),
-                        _span(source, two.pattern, two.body),
+                        _span(source, first.pattern, first.body),
+                        _span(source, second.pattern, second.body),
                     )
     for block in blocks(source):
         for one, two in itertools.pairwise(block):

@@ -211,8 +211,9 @@ class _Finder(ast.NodeVisitor):
         for op, right in zip(node.ops, node.comparators, strict=True):
             old, others = COMPARISONS[type(op)]
             at = self._token(old, self._end(left), self._start(right))
-            for new in others if at else []:
-                self._note("comparison", *at, new)
+            if at is not None:
+                for new in others:
+                    self._note("comparison", *at, new)
             left = right
         self.generic_visit(node)
 

@@ -175,8 +175,11 @@ def swapped_calls(source: Source, _: Index) -> Iterator[Change]:
     """Do the second of two steps first."""
     for block in blocks(source):
         for one, two in itertools.pairwise(block):
-            calls = [each.value for each in (one, two) if isinstance(each, ast.Expr)]
-            calls = [each for each in calls if isinstance(each, ast.Call)]
+            calls = [
+                each.value
+                for each in (one, two)
+                if isinstance(each, ast.Expr) and isinstance(each.value, ast.Call)
+            ]
             same = source.of(one) == source.of(two)
             if len(calls) == 2 and not same and not are_independent(source, *calls):
                 (start, one_end), (two_start, end) = source.span(one), source.span(two)
