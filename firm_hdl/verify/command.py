@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
 
 from firm_hdl.arguments import (
     add_depends,
@@ -302,8 +301,8 @@ def _executor(text: str) -> str:
         raise argparse.ArgumentTypeError(str(error)) from None
 
 
-def _systems(text: str) -> Sequence[str]:
-    names = list(dict.fromkeys(text.split(",")))
+def _systems(text: str) -> tuple[str, ...]:
+    names = tuple(dict.fromkeys(text.split(",")))
     for name in names:
         if name not in SYSTEM_NAMES:
             raise argparse.ArgumentTypeError(

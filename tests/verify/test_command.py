@@ -12,6 +12,7 @@ import pytest
 import firm_hdl.verify.run as run
 from firm_hdl.cli import main
 from firm_hdl.verify.__main__ import main as alias
+from firm_hdl.verify.request import Request
 from firm_hdl.verify.results.verdict import Failed, Passed
 from firm_hdl.verify.systems.system import Judged, System
 from tests.verify.samples import own_package
@@ -150,6 +151,16 @@ def test_every_system_runs_whatever_comes_of_the_first(monkeypatch):
     # The module is the same, and takes all types by itself.
     assert alias(["--systems", "ts3"]) == 0
     assert ran == ["ts1", "ts3", "ts3", "ts3"]
+
+
+def test_what_is_asked_for_by_default_may_be_named_beside_client_libraries(monkeypatch):
+    asked = []
+    monkeypatch.setattr(run, "run_workload", lambda work: asked.append(work.request) or 0)
+    words = ["verify", "--all", "--sut", "rosbags"]
+    assert main(words) == 0
+    named = ["--systems", "ts3", "--simulator", "python", "--executor", "processes"]
+    assert main([*words, *named]) == 0
+    assert asked == [Request(libraries=("rosbags",))] * 2
 
 
 def test_interruption_has_a_status_of_its_own(monkeypatch, capsys):
