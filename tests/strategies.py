@@ -15,7 +15,7 @@ import numpy as np
 from hypothesis import strategies as st
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from firm_hdl.model import PRIMITIVES, Array, Field, Message, Primitive, Sequence, Text
+from firm_hdl.model import PRIMITIVES, Array, Field, Message, Primitive, Sequence, String
 
 __all__ = [
     "BUS_WIDTHS",
@@ -122,7 +122,7 @@ def _parse(dialect: Any, kind: Any) -> Any:
         assert found is not None
         name, bound, suffix = found[1], found[2] and int(found[2]), found[3]
         text = name in ("string", "wstring")
-        element = Text(bound=bound, wide=name[0] == "w") if text else PRIMITIVES[dialect][name]
+        element = String(bound=bound, wide=name[0] == "w") if text else PRIMITIVES[dialect][name]
     if not suffix:
         return element
     inside = suffix[1:-1]
@@ -157,7 +157,7 @@ def _kind(draw: st.DrawFn, dialect: Any, depth: int, pool: list[Message], wide: 
     shape = draw(st.sampled_from(["one", "one", "one", "array", "sequence", "bounded"]))
     if shape == "one":
         return element
-    small = isinstance(element, Message | Text)
+    small = isinstance(element, Message | String)
     if shape == "array":
         count = draw(st.integers(1, 3) if small else SIZES.filter(bool))
         return Array(element=element, count=count)
@@ -176,7 +176,7 @@ def _element(draw: st.DrawFn, dialect: Any, depth: int, pool: list[Message], wid
         return draw(st.sampled_from(old))
     if what == "text":
         bound = draw(st.none() | st.integers(1, 20)) if dialect == "ros2" else None
-        return Text(bound=bound, wide=wide and draw(st.booleans()))
+        return String(bound=bound, wide=wide and draw(st.booleans()))
     return draw(st.sampled_from(sorted(PRIMITIVES[dialect].values(), key=lambda p: p.name)))
 
 
@@ -198,10 +198,10 @@ def _values(kind: Any) -> st.SearchStrategy[Any]:
             return st.integers(low, low + (1 << bits) - 1)
         case Message():
             return values(kind)
-        case Text(wide=True, bound=bound):
+        case String(wide=True, bound=bound):
             # Outside the plane of 16 bits, a character takes two units.
             return st.text(max_size=12 if bound is None else bound // 2)
-        case Text(bound=bound):
+        case String(bound=bound):
             return st.text(max_size=20 if bound is None else bound // 4)
         case Array(element=Primitive() as item, count=count):
             return _arrays(item, st.just(count))

@@ -16,7 +16,7 @@ from functools import cache
 from firm_hdl.covering.branches import branches
 from firm_hdl.frontend import Library
 from firm_hdl.frontend.productions import productions
-from firm_hdl.model import Array, Field, Message, Primitive, Sequence, Text
+from firm_hdl.model import Array, Field, Message, Primitive, Sequence, String
 from firm_hdl.plan import Plan
 from firm_hdl.plan.shape import constructs
 from firm_hdl.wire import Wire, lay_out
@@ -158,11 +158,11 @@ def _field(item: Field) -> Iterator[str]:
             yield f"field {_kind(kind)}"
 
 
-def _kind(kind: Primitive | Text | Message) -> str:
+def _kind(kind: Primitive | String | Message) -> str:
     match kind:
         case Primitive():
             return kind.name
-        case Text():
+        case String():
             bound = "" if kind.bound is None else "bounded "
             return f"{bound}{'wstring' if kind.wide else 'string'}"
         case _:

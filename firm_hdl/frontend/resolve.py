@@ -36,7 +36,7 @@ from firm_hdl.model import (
     Message,
     Primitive,
     Sequence,
-    Text,
+    String,
     Value,
     idl_primitives,
 )
@@ -259,7 +259,7 @@ class Resolver:
 
     def _constant(self, syntax: ConstantSyntax, primitives: _Primitives) -> Constant:
         kind = self._element(syntax.type, "", primitives)
-        assert isinstance(kind, Primitive | Text)
+        assert isinstance(kind, Primitive | String)
         return Constant(
             name=syntax.name.text,
             type=kind,
@@ -284,7 +284,7 @@ class Resolver:
 
     def _element(
         self, syntax: TypeSyntax, package: str, primitives: _Primitives
-    ) -> Primitive | Text | Message:
+    ) -> Primitive | String | Message:
         need = self._need(syntax, package)
         if need is not None:
             entry = self._entries[need]
@@ -292,7 +292,7 @@ class Resolver:
             return entry.message
         if syntax.name in ("string", "wstring"):
             bound = None if syntax.bound is None else syntax.bound.value
-            return Text(bound=bound, wide=syntax.name == "wstring")
+            return String(bound=bound, wide=syntax.name == "wstring")
         return _TIMES.get(syntax.name) or primitives[syntax.name]
 
     def _collect(self, entry: _Entry) -> list[Diagnostic]:

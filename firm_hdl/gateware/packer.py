@@ -13,12 +13,12 @@ from firm_hdl.plan.geometry import geometry
 __all__ = ["Packer", "word_layout"]
 
 
-def word_layout(word_bytes: int, skip_bytes: int) -> data.StructLayout:
+def word_layout(window_bytes: int, skip_bytes: int) -> data.StructLayout:
     """Return the payload of a stream of words.
 
     Members
     -------
-    data : ArrayLayout(8, word_bytes)
+    data : ArrayLayout(8, window_bytes)
         The first `count` lanes are the word; the others are 0.
     count : range(skip_bytes + 1)
         Lanes of the word, and zeros behind it.
@@ -31,7 +31,7 @@ def word_layout(word_bytes: int, skip_bytes: int) -> data.StructLayout:
     """
     return data.StructLayout(
         {
-            "data": data.ArrayLayout(8, word_bytes),
+            "data": data.ArrayLayout(8, window_bytes),
             "count": range(skip_bytes + 1),
             "align": 3,
             "last": 1,
@@ -53,7 +53,7 @@ class Packer(wiring.Component):
 
     Members
     -------
-    word : In(stream.Signature(word_layout(word_bytes, skip_bytes)))
+    word : In(stream.Signature(word_layout(window_bytes, skip_bytes)))
     packets : Out(PacketSignature(bus_bytes))
     error : Out(1)
         The packet of the beat on `packets` is marked; set with its last beat only.
@@ -62,7 +62,7 @@ class Packer(wiring.Component):
     def __init__(self, plan: Plan):
         self.plan = plan
         self.geometry = geometry(plan)
-        words = word_layout(self.geometry.word_bytes, self.geometry.skip_bytes)
+        words = word_layout(self.geometry.window_bytes, self.geometry.skip_bytes)
         super().__init__(
             {
                 "word": In(stream.Signature(words)),
@@ -73,13 +73,14 @@ class Packer(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        bus, word_bytes = self.plan.bus_bytes, self.geometry.word_bytes
+        bus, window_bytes = self.plan.bus_bytes, self.geometry.window_bytes
         # A packet may end in a step without bytes. Its last beat must then still be here.
         holds = any(not step.most_bytes for step in self.plan.steps)
         # Where words are not beats, one beat may wait while the next word comes, so that a short
         # word, or the start of the next packet, does not leave a hole in the stream.
-        most_kept = 0 if self.geometry.granule_bytes == bus >= word_bytes and not holds else bus
-        store = Signal(8 * max(bus, most_kept + word_bytes))
+        words_are_beats = self.geometry.start_alignment_bytes == bus >= window_bytes
+        most_kept = 0 if words_are_beats and not holds else bus
+        store = Signal(8 * max(bus, most_kept + window_bytes))
         level = Signal(range(most_kept + self.geometry.skip_bytes + 8 + bus))
         # Whether the packet has any bytes yet.
         inside = Signal()
@@ -159,7 +160,7 @@ class Packer(wiring.Component):
         """Return the word's bytes, moved up behind those that are kept."""
         now: Value = Value.cast(self.word.payload.data)
         for bit in range(most_kept.bit_length()):
-            if 1 << bit < self.geometry.granule_bytes:
+            if 1 << bit < self.geometry.start_alignment_bytes:
                 continue
             moved = Signal(len(now) + (8 << bit), name=f"moved_{1 << bit}")
             m.d.comb += moved.eq(Mux(rest[bit], now << (8 << bit), now))

@@ -17,7 +17,7 @@ from firm_hdl.model import (
     Message,
     Primitive,
     Sequence,
-    Text,
+    String,
     is_fixed_size,
 )
 from firm_hdl.plan import Leaf, Plan, build_plan
@@ -188,7 +188,7 @@ def _bits(kind: FieldType) -> int:
             return sum(_bits(item.type) for item in kind.fields)
         case Array():
             return kind.count * _bits(kind.element)
-        case Text() | Sequence():
+        case String() | Sequence():
             return 0
 
 

@@ -118,7 +118,7 @@ class _Circuit:
         self.leads = Signal()
         self.led = Signal()
         self.held_count = Signal(self.control.bits)
-        lanes = self.packer.geometry.word_bytes
+        lanes = self.packer.geometry.window_bytes
         self.lanes = [Signal(8, name=f"lane_{k}") for k in range(lanes)]
         self.next_lanes = [Signal(8, name=f"next_lane_{k}") for k in range(lanes)]
 

@@ -17,10 +17,10 @@ class Window(wiring.Component):
     """Show the next unread bytes of the packet at the head of a stream.
 
     Beats stay in the slots where they arrived. The slots that a step can touch are brought in order
-    and shifted by the offset of the next unread byte, in granules: a plan whose steps all start at
-    bus words has no shifter. There is at least one slot more than a step can touch, so that
-    `packets.ready` is a function of registers alone and the stream moves one beat per cycle.
-    Latency 1 cycle from `packets` to the window.
+    and shifted by the offset of the next unread byte, in multiples of the alignment that all steps
+    have: a plan whose steps all start at bus words has no shifter. There is at least one slot more
+    than a step can touch, so that `packets.ready` is a function of registers alone and the stream
+    moves one beat per cycle. Latency 1 cycle from `packets` to the window.
 
     A beat whose bytes are all read frees its slot, except the last one of a packet: that one is
     left to `finish` or `drop`, so the window never shows bytes of the next packet.
@@ -33,7 +33,7 @@ class Window(wiring.Component):
     Members
     -------
     packets : In(PacketSignature(bus_bytes))
-    data : Out(ArrayLayout(8, word_bytes))
+    data : Out(ArrayLayout(8, window_bytes))
         The next bytes, first one in lane 0. Bytes that are not there are not specified.
     have : Out
         Bit k: byte k is there. Reaches `slack_bytes + 1` bytes further than `data`.
@@ -58,13 +58,13 @@ class Window(wiring.Component):
     def __init__(self, plan: Plan):
         self.plan = plan
         self.geometry = geometry(plan)
-        bus, reach = plan.bus_bytes, self.geometry.reach_beats
-        word = self.geometry.word_bytes
+        bus, most_beats = plan.bus_bytes, self.geometry.window_beats
+        word = self.geometry.window_bytes
         super().__init__(
             {
                 "packets": In(PacketSignature(bus)),
                 "data": Out(data.ArrayLayout(8, word)),
-                "have": Out(max(reach * bus, word + plan.slack_bytes + 1)),
+                "have": Out(max(most_beats * bus, word + plan.slack_bytes + 1)),
                 "held": Out(1),
                 "ended": Out(1),
                 "first_bytes": Out(range(bus + 1)),
@@ -79,21 +79,21 @@ class Window(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        bus, reach = self.plan.bus_bytes, self.geometry.reach_beats
-        depth = 1 << reach.bit_length()
+        bus, most_beats = self.plan.bus_bytes, self.geometry.window_beats
+        depth = 1 << most_beats.bit_length()
         # A beat's bytes, which of them are there, and whether it is the last one.
         slot = data.StructLayout({"data": 8 * bus, "keep": bus, "last": 1})
         slots = [Signal(slot, name=f"slot_{i}") for i in range(depth)]
         first = Signal(range(depth))
         fill = Signal(range(depth + 1))
         offset = Signal(range(bus + self.geometry.skip_bytes + 8))
-        pops = Signal(range(reach + 1))
+        pops = Signal(range(most_beats + 1))
         self._write(m, slots, first, fill, pops)
 
         # Beats of this packet that may be read: those up to the first `last`.
-        beats = [Signal(slot, name=f"beat_{i}") for i in range(reach)]
-        valid = [Signal(name=f"valid_{i}") for i in range(reach)]
-        ends = [Signal(name=f"ends_{i}") for i in range(reach)]
+        beats = [Signal(slot, name=f"beat_{i}") for i in range(most_beats)]
+        valid = [Signal(name=f"valid_{i}") for i in range(most_beats)]
+        ends = [Signal(name=f"ends_{i}") for i in range(most_beats)]
         before: Value = Const(1)
         for i, beat in enumerate(beats):
             m.d.comb += [
@@ -111,7 +111,7 @@ class Window(wiring.Component):
             m.d.sync += offset.eq(0)
         with m.Elif(self.take):
             # Low bits that the plan proves to be zero are kept so, and cost nothing.
-            fixed = self.geometry.granule_bytes.bit_length() - 1
+            fixed = self.geometry.start_alignment_bytes.bit_length() - 1
             beats_over = past[low:] - pops
             m.d.sync += offset.eq(Cat(Const(0, fixed), past[fixed:low], beats_over))
         with m.Else():
@@ -145,7 +145,7 @@ class Window(wiring.Component):
         ends: list[Signal],
         offset: Signal,
     ) -> None:
-        bus, word = self.plan.bus_bytes, self.geometry.word_bytes
+        bus, word = self.plan.bus_bytes, self.geometry.window_bytes
         low = bus.bit_length() - 1
         inside = offset[low:] == 0
         keep = Cat(
@@ -170,7 +170,7 @@ class Window(wiring.Component):
     ) -> Value:
         """Return a value shifted down by the offset, in bytes of `unit_bits` bits."""
         for bit in reversed(range(self.plan.bus_bytes.bit_length() - 1)):
-            if 1 << bit < self.geometry.granule_bytes:
+            if 1 << bit < self.geometry.start_alignment_bytes:
                 break
             amount = unit_bits << bit
             shifted = Signal(len(now), name=f"{name}_{amount}")

@@ -23,7 +23,7 @@ from firm_hdl.model import (
     Message,
     Primitive,
     Sequence,
-    Text,
+    String,
     closure,
 )
 
@@ -120,7 +120,7 @@ class _Writer:
                 # It takes 0 for any number, a float included.
                 number = isinstance(element, Primitive) and element.kind == "float"
                 return self.sequence([self.value(_INTEGER if number else element, level)])
-            case Text():
+            case String():
                 return self.scalar("str", "")
             case Primitive(kind="bool"):
                 return self.scalar("bool", "false")

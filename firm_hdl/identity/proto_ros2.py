@@ -16,7 +16,7 @@ from typing import Any
 import yaml
 
 from firm_hdl.identity.proto_errors import TooLargeError
-from firm_hdl.model import Array, Field, Message, Primitive, Sequence, Text, Value, closure
+from firm_hdl.model import Array, Field, Message, Primitive, Sequence, String, Value, closure
 
 __all__ = ["ros2_proto"]
 
@@ -129,7 +129,7 @@ def _value(item: Field) -> Any:
 
 
 def _initial(kind: Any) -> Any:
-    if isinstance(kind, Text):
+    if isinstance(kind, String):
         return ""
     return _converted(0, kind)
 

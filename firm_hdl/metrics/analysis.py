@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.metrics.features import FEATURES, features_of
-from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text, closure
+from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, String, closure
 from firm_hdl.wire import RULES, Wire, WireRules, refusals
 from firm_hdl.wire import residues as rs
 
@@ -197,7 +197,7 @@ class Analyses:
         match kind:
             case Primitive():
                 return 1, 0
-            case Text():
+            case String():
                 return 0, 1
             case Message():
                 return self._types[kind].fixed, self._types[kind].dynamic
@@ -227,7 +227,7 @@ class Analyses:
             case Message():
                 sizes = self._types[kind].most if longest else self._types[kind].least
                 return None if sizes is None else sizes[start]
-            case Text(bound=bound, wide=wide):
+            case String(bound=bound, wide=wide):
                 if longest and bound is None:
                     return None
                 units = bound or 0 if longest else 0
@@ -289,7 +289,7 @@ class Analyses:
                 for residue in rs.members(at):
                     result |= self._types[kind].after[residue]
                 return result
-            case Text(wide=wide):
+            case String(wide=wide):
                 return rs.spread(self._past(_LENGTH_BYTES, at), 4 if wide else 1)
             case Array(element=element, count=count):
                 return rs.repeat(at, lambda now: self._after(element, now), count)[1]
@@ -329,7 +329,7 @@ class Analyses:
 
         for item in message.fields:
             kind, now = item.type, at
-            if isinstance(kind, Text | Sequence):
+            if isinstance(kind, String | Sequence):
                 place(_LENGTH_BYTES, now)
                 now = self._past(_LENGTH_BYTES, now)
             if isinstance(kind, Array | Sequence):
@@ -343,14 +343,14 @@ class Analyses:
                     parts.append((element, now))
                 case Primitive():
                     place(element.bytes, now)
-                case Text() if isinstance(kind, Array | Sequence):
+                case String() if isinstance(kind, Array | Sequence):
                     place(_LENGTH_BYTES, now)
             at = self._after(kind, at)
         if not message.fields and self._rules.empty_member is not None:
             place(1, at)
         return counts, parts
 
-    def _entry(self, element: Primitive | Text | Message, at: int, count: int | None) -> int:
+    def _entry(self, element: Primitive | String | Message, at: int, count: int | None) -> int:
         """Return where some element may start, padding in front of it not yet taken."""
         if isinstance(element, Primitive):
             return at  # The others follow without padding.

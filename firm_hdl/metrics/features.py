@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from firm_hdl.model import Array, Field, Message, Primitive, Sequence, Text, element_of
+from firm_hdl.model import Array, Field, Message, Primitive, Sequence, String, element_of
 
 __all__ = ["FEATURES", "features_of"]
 
@@ -52,7 +52,7 @@ def _features_of_field(item: Field, parts: Mapping[Message, frozenset[str]]) -> 
             of = "primitives"
             if not element.has_wire_format:
                 yield "long_doubles"
-        case Text(bound=bound, wide=wide):
+        case String(bound=bound, wide=wide):
             of = "strings"
             yield (
                 ("wstrings" if wide else "strings")

@@ -13,7 +13,7 @@ from firm_hdl.model.types import (
     FieldType,
     Primitive,
     Sequence,
-    Text,
+    String,
     Value,
     Wire,
     element_of,
@@ -48,7 +48,7 @@ class Field:
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
-    def element_type(self) -> Primitive | Text | Message:
+    def element_type(self) -> Primitive | String | Message:
         """The type, or that of the elements of an array or a sequence."""
         return element_of(self.type)
 
@@ -75,7 +75,7 @@ class Constant:
     """
 
     name: str
-    type: Primitive | Text
+    type: Primitive | String
     value: Value
     text: str = field(default="", compare=False)
     comment: str = field(default="", compare=False)
@@ -192,5 +192,5 @@ def is_fixed_size(kind: FieldType) -> bool:
             return message.is_fixed_size and not isinstance(kind, Sequence)
         case Primitive():
             return not isinstance(kind, Sequence)
-        case Text():
+        case String():
             return False

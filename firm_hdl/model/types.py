@@ -18,7 +18,7 @@ __all__ = [
     "FieldType",
     "Primitive",
     "Sequence",
-    "Text",
+    "String",
     "Value",
     "Wire",
     "element_of",
@@ -124,7 +124,7 @@ PRIMITIVE_OF: dict[tuple[str, bool], Primitive] = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Text:
+class String:
     """A string.
 
     Attributes
@@ -148,7 +148,7 @@ class Text:
 class Array:
     """A fixed number of elements, at least one."""
 
-    element: Primitive | Text | Message
+    element: Primitive | String | Message
     count: int
 
     def __str__(self) -> str:
@@ -159,20 +159,20 @@ class Array:
 class Sequence:
     """A number of elements that each message says anew; at most `bound`, unless that is `None`."""
 
-    element: Primitive | Text | Message
+    element: Primitive | String | Message
     bound: int | None = None
 
     def __str__(self) -> str:
         return f"{self.element}[{'' if self.bound is None else f'<={self.bound}'}]"
 
 
-FieldType: TypeAlias = "Primitive | Text | Array | Sequence | Message"
+FieldType: TypeAlias = "Primitive | String | Array | Sequence | Message"
 
 
 EMPTY_MEMBER = "structure_needs_at_least_one_member"
 """The `uint8` that rosidl gives to a message without fields. It stands in no definition."""
 
 
-def element_of(kind: FieldType) -> Primitive | Text | Message:
+def element_of(kind: FieldType) -> Primitive | String | Message:
     """Give the type of an array's or a sequence's elements, and any other type as it is."""
     return kind.element if isinstance(kind, Array | Sequence) else kind

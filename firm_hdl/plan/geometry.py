@@ -21,23 +21,23 @@ class Geometry:
 
     Attributes
     ----------
-    word_bytes : int
+    window_bytes : int
         Most bytes that a step takes in one cycle; at least 1.
     skip_bytes : int
         Most bytes that a step goes forward, padding of known size in front of a run included.
-    granule_bytes : int
+    start_alignment_bytes : int
         Every step starts at a multiple of this many bytes of a bus word; a power of two up to the
         bus width.
-    reach_beats : int
+    window_beats : int
         Most beats that the bytes of one step touch; at least 1.
     aligns : bool
         Whether any padding is computed in the circuit.
     """
 
-    word_bytes: int
+    window_bytes: int
     skip_bytes: int
-    granule_bytes: int
-    reach_beats: int
+    start_alignment_bytes: int
+    window_beats: int
     aligns: bool
 
 
@@ -46,20 +46,20 @@ def geometry(plan: Plan) -> Geometry:
     starts = _starts(plan)
     bus = plan.bus_bytes
     offsets = {position % bus for residues in starts for position in rs.members(residues)}
-    granule = bus
-    while any(offset % granule for offset in offsets):
-        granule //= 2
-    reach = 1
+    alignment = bus
+    while any(offset % alignment for offset in offsets):
+        alignment //= 2
+    beats = 1
     for step, residues in zip(plan.steps, starts, strict=True):
         for position in rs.members(residues):
-            reach = max(reach, -(-(position % bus + step.most_bytes) // bus))
-    word = max((1, *(step.most_bytes for step in plan.steps)))
+            beats = max(beats, -(-(position % bus + step.most_bytes) // bus))
+    window = max((1, *(step.most_bytes for step in plan.steps)))
     gaps = (step.bytes + step.gap for step in plan.steps if step.begin is not None)
     return Geometry(
-        word_bytes=word,
-        skip_bytes=max((word, *gaps)),
-        granule_bytes=granule,
-        reach_beats=reach,
+        window_bytes=window,
+        skip_bytes=max((window, *gaps)),
+        start_alignment_bytes=alignment,
+        window_beats=beats,
         aligns=any(step.align > 1 for step in plan.steps),
     )
 

@@ -86,8 +86,8 @@ def timing(plan: Plan) -> Timing:
     return Timing(
         bus_bytes=bus,
         steps=len(plan.steps),
-        window_bytes=sizes.word_bytes,
-        window_beats=sizes.reach_beats,
+        window_bytes=sizes.window_bytes,
+        window_beats=sizes.window_beats,
         shortest=shortest,
         hardest=hardest,
     )

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from operator import index
 from typing import Any
 
-from firm_hdl.model import Array, Field, FieldType, Message, Primitive, Sequence, Text
+from firm_hdl.model import Array, Field, FieldType, Message, Primitive, Sequence, String
 from firm_hdl.plan import Leaf, Payload, Plan
 from firm_hdl.wire import CDR, Path
 
@@ -138,7 +138,7 @@ class _Splitter(_Leaves):
                 self.streams[self.leaf(path)[0]].append(_bits(kind, value, where, either=either))
             case Message():
                 self.message(kind, value, path, where)
-            case Text():
+            case String():
                 items = _text_items(kind, value, where)
                 self.length(len(items), kind.bound, path, where)
                 self.items(items, path)
@@ -196,7 +196,7 @@ class _Joiner(_Leaves):
                 return _number(kind, self.number(self.leaf(path)[0]), self.exact)
             case Message():
                 return self.message(kind, path)
-            case Text():
+            case String():
                 return _text(kind, self.items(self.length(path), path), self.exact)
             case Array(element=element) | Sequence(element=element):
                 count = kind.count if isinstance(kind, Array) else self.length(path)
@@ -306,7 +306,7 @@ def _array_items(kind: Primitive, value: Any, where: str) -> list[int]:
     return [_bits(kind, each, f"{where}[{n}]") for n, each in enumerate(value)]
 
 
-def _text_items(kind: Text, value: Any, where: str) -> list[int]:
+def _text_items(kind: String, value: Any, where: str) -> list[int]:
     if not kind.wide and isinstance(value, str | bytes | bytearray):
         return list(value.encode() if isinstance(value, str) else value)
     if kind.wide and isinstance(value, str):
@@ -327,7 +327,7 @@ def _number(kind: Primitive, bits: int, exact: bool) -> int | float | bool:
     return value
 
 
-def _text(kind: Text, items: list[int], exact: bool) -> str | bytes | list[int]:
+def _text(kind: String, items: list[int], exact: bool) -> str | bytes | list[int]:
     if kind.wide:
         if exact or any(unit >> 16 for unit in items):
             return items

@@ -20,7 +20,7 @@ from firm_hdl.model import (
     Message,
     Primitive,
     Sequence,
-    Text,
+    String,
     Wire,
 )
 from firm_hdl.wire import residues as rs
@@ -209,7 +209,7 @@ class _Builder:
                 for item in kind.fields:
                     at = self.after(item.type, at)
                 return at
-            case Text(wide=wide):
+            case String(wide=wide):
                 return rs.spread(self.past(LENGTH, at), 4 if wide else 1)
             case Array(element=Primitive() as item, count=count):
                 return rs.advance(rs.aligned(at, self.align(item)), count * item.bytes)
@@ -248,14 +248,14 @@ class _Builder:
                 return (Scalar(path=path, gap=self.gap(kind, at), type=_number(kind)),)
             case Message():
                 return self.message(kind, path, at)[0]
-            case Text():
+            case String():
                 return (self.text(kind, path, at),)
             case Array(element=Primitive() as item) | Sequence(element=Primitive() as item):
                 return (self.run(kind, item, path, at),)
             case Array() | Sequence():
                 return (self.loop(kind, path, at),)
 
-    def text(self, kind: Text, path: Path, at: int) -> Run:
+    def text(self, kind: String, path: Path, at: int) -> Run:
         # wstring: each UTF-16 unit in four bytes, without a NUL, in today's ROS 2 middlewares.
         return Run(
             path=path,
@@ -312,6 +312,6 @@ class _Builder:
                 return sum(self.min_bytes(item.type) for item in kind.fields)
             case Array():
                 return kind.count * self.min_bytes(kind.element)
-            case Text() | Sequence():
+            case String() | Sequence():
                 # A CDR string of length 0 has no NUL.
                 return LENGTH.bytes

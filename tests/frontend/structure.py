@@ -6,7 +6,7 @@ from typing import Any
 
 from rosbags.interfaces import Nodetype
 
-from firm_hdl.model import Array, Message, Sequence, Text
+from firm_hdl.model import Array, Message, Sequence, String
 
 __all__ = ["field_descriptions"]
 
@@ -26,7 +26,7 @@ def _describe(kind: Any) -> Any:
     match kind:
         case Message():
             return Nodetype.NAME, _name(kind)
-        case Text():
+        case String():
             return Nodetype.BASE, ("wstring" if kind.wide else "string", kind.bound or 0)
         case Array():
             return Nodetype.ARRAY, (_describe(kind.element), kind.count)

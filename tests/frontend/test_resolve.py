@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library, interfaces
-from firm_hdl.model import PRIMITIVES, Array, Constant, Field, Message, Sequence, Text
+from firm_hdl.model import PRIMITIVES, Array, Constant, Field, Message, Sequence, String
 from tests.steps import calls_at_most
 from tests.strategies import definitions
 
@@ -44,8 +44,8 @@ def test_a_whole_message(tmp_path):
         name="p/msg/T",
         dialect="ros2",
         fields=(
-            Field(name="a", type=Sequence(element=Text(bound=3), bound=2), default=("x", "y")),
-            Field(name="b", type=Text(wide=True)),
+            Field(name="a", type=Sequence(element=String(bound=3), bound=2), default=("x", "y")),
+            Field(name="b", type=String(wide=True)),
             Field(name="c", type=Array(element=u, count=2)),
             Field(name="d", type=Sequence(element=u)),
             Field(name="e", type=float32, default=1.0),

@@ -15,7 +15,7 @@ from rosbags.typesys import get_typestore
 
 from firm_hdl.frontend import DISTROS, Library
 from firm_hdl.identity import TooLargeError, proto
-from firm_hdl.model import IDL_PRIMITIVES, Array, Field, Message, Sequence, Text
+from firm_hdl.model import IDL_PRIMITIVES, Array, Field, Message, Sequence, String
 
 from ..frontend.workspace import library, make_files
 
@@ -121,7 +121,7 @@ def test_parts_are_indented_and_arrays_written_out(tmp_path):
 
 
 def test_text_with_line_ends_keeps_its_indentation():
-    line = Field(name="s", type=Text(), default="one\ntwo\n\nthree")
+    line = Field(name="s", type=String(), default="one\ntwo\n\nthree")
     leaf = Message(name="p/msg/L", dialect="ros2", fields=(line,))
     top = Message(
         name="p/msg/T", dialect="ros2", fields=(Field(name="a", type=Array(element=leaf, count=1)),)

@@ -15,7 +15,7 @@ from rosbags.typesys.stores import Stores
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DISTROS, Library
 from firm_hdl.metrics import Analyses, metrics_of
-from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, Text
+from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, String
 from firm_hdl.wire import Loop, Run, Scalar, Trigger, lay_out, walk
 from tests.steps import calls_at_most
 
@@ -39,7 +39,7 @@ def of_layout(message, wire):
                 return False
             else:
                 kind = next(field.type for field in kind.fields if field.name == name)
-        return isinstance(kind, Text)
+        return isinstance(kind, String)
 
     for node in walk(lay_out(message, wire).nodes):
         counts["leaves"] += not isinstance(node, Loop)
@@ -207,7 +207,7 @@ def test_large_arrays_and_deep_nesting_cost_nothing():
     octet = PRIMITIVES["ros2"]["uint8"]
     inner = (
         Field(name="b", type=octet),
-        Field(name="t", type=Text(bound=2)),
+        Field(name="t", type=String(bound=2)),
         Field(name="d", type=PRIMITIVES["ros2"]["float64"]),
     )
     top = Message(name="p/msg/L", dialect="ros2", fields=inner)

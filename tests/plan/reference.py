@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from firm_hdl.model import PRIMITIVES, Array, Message, Primitive, Sequence, Text
+from firm_hdl.model import PRIMITIVES, Array, Message, Primitive, Sequence, String
 from firm_hdl.plan import Payload, Plan
 
 __all__ = ["Reference"]
@@ -92,7 +92,7 @@ class Reference:
                 self.scalar(kind, path)
             case Message():
                 self.message(kind, path)
-            case Text(wide=wide):
+            case String(wide=wide):
                 terminated = self.cdr and not wide
                 count, nul = self.length(path, terminated)
                 self.items(LENGTH if wide else OCTET, count, path, aligned=not wide)

@@ -16,7 +16,7 @@ def needs(fields, wire, bus_bytes, window_words=1):
 
 
 @pytest.mark.parametrize(
-    ("fields", "wire", "bus_bytes", "granule", "reach"),
+    ("fields", "wire", "bus_bytes", "alignment", "beats"),
     [
         # Steps are whole bus words.
         ({"a": "uint64"}, "ros1", 8, 8, 1),
@@ -33,9 +33,9 @@ def needs(fields, wire, bus_bytes, window_words=1):
         ({"a": "uint16[]", "b": "uint16"}, "cdr", 4, 2, 1),
     ],
 )
-def test_where_steps_start_and_how_far_they_reach(fields, wire, bus_bytes, granule, reach):
+def test_where_steps_start_and_how_far_they_reach(fields, wire, bus_bytes, alignment, beats):
     found = needs(fields, wire, bus_bytes)
-    assert (found.granule_bytes, found.reach_beats) == (granule, reach)
+    assert (found.start_alignment_bytes, found.window_beats) == (alignment, beats)
 
 
 def test_padding_that_is_computed():
@@ -47,14 +47,14 @@ def test_padding_that_is_computed():
 def test_bytes_that_a_step_takes_and_goes_forward():
     found = needs({"a": "uint64[]"}, "cdr", 8)
     # Encapsulation, length and four bytes of padding.
-    assert (found.word_bytes, found.skip_bytes) == (8, 12)
+    assert (found.window_bytes, found.skip_bytes) == (8, 12)
     found = needs({"a": "uint32[]"}, "ros1", 8, window_words=2)
     # The length and a bus word of items.
-    assert (found.word_bytes, found.skip_bytes) == (12, 12)
+    assert (found.window_bytes, found.skip_bytes) == (12, 12)
 
 
 def test_an_empty_run_ends_in_front_of_the_padding_of_items():
     # Only from there do later steps reach into a third beat.
     fields = {"a": "uint64[]", "b": "uint8", "c": "uint32[5]", "d": "uint32[]"}
-    assert needs(fields, "cdr", 8, window_words=2).reach_beats == 3
-    assert needs(fields, "cdr", 16, window_words=2).reach_beats == 3
+    assert needs(fields, "cdr", 8, window_words=2).window_beats == 3
+    assert needs(fields, "cdr", 16, window_words=2).window_beats == 3

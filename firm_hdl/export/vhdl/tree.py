@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 from firm_hdl.export.vhdl.bus import BUS_TYPES, bus_name
 from firm_hdl.export.vhdl.types import SHARED_TYPES, SHARED_WORDS, primitive_name
-from firm_hdl.model import Array, Field, FieldType, Message, Sequence, Text
+from firm_hdl.model import Array, Field, FieldType, Message, Sequence, String
 from firm_hdl.names.identifiers import first_free, identifier, scope_names
 from firm_hdl.plan import Leaf, Plan
 from firm_hdl.wire import Wire
@@ -196,12 +196,12 @@ class _Maker:
         if isinstance(kind, Message):
             package = self.package(kind, node)
             node.type, node.package = f"{package.base}_t", package.name
-        elif isinstance(kind, Text):
+        elif isinstance(kind, String):
             node.type = f"{_text(kind)}_stream_t"
         elif isinstance(element, Message):
             package = self.packages[element.name]
             node.type, node.package = f"{package.base}_{form}_t", package.name
-        elif isinstance(element, Text):
+        elif isinstance(element, String):
             node.type = f"{_text(element)}_{form}_stream_t"
         else:
             items = next(child for child in node.children if child.name == "items")
@@ -229,7 +229,7 @@ class _Maker:
         return found
 
 
-def _text(kind: Text) -> str:
+def _text(kind: String) -> str:
     return "wstring" if kind.wide else "string"
 
 

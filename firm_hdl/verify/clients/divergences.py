@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from firm_hdl.model import FieldType, Message, Primitive, Text
+from firm_hdl.model import FieldType, Message, Primitive, String
 from firm_hdl.verify.clients.finding import Change, Known
 from firm_hdl.verify.references.values import Plain, is_nan
 
@@ -57,13 +57,13 @@ def _canonical(kind: FieldType, value: Plain) -> Plain:
 
 
 def _cut(kind: FieldType, value: Plain) -> Plain:
-    if isinstance(kind, Text) and kind.wide:
+    if isinstance(kind, String) and kind.wide:
         return value[: value.index(0)] if 0 in value else value
-    return value.partition(b"\0")[0] if isinstance(kind, Text) else value
+    return value.partition(b"\0")[0] if isinstance(kind, String) else value
 
 
 def _replaced(kind: FieldType, value: Plain) -> Plain:
-    if isinstance(kind, Text) and not kind.wide:
+    if isinstance(kind, String) and not kind.wide:
         return value.decode("utf-8", "replace").encode()
     return value
 

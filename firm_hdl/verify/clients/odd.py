@@ -11,7 +11,7 @@ import struct
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from firm_hdl.model import Array, FieldType, Message, Primitive, Text
+from firm_hdl.model import Array, FieldType, Message, Primitive, String
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.references.values import Plain
 from firm_hdl.wire import Wire
@@ -170,7 +170,7 @@ def zero(kind: FieldType) -> Plain:
             return False
         case Primitive():
             return 0
-        case Text(wide=wide):
+        case String(wide=wide):
             return [] if wide else b""
         case Array():
             return [zero(kind.element)] * kind.count
@@ -218,10 +218,10 @@ class _Writer:
                 self.number(2 if self.here("bool-2") else value, 1)
             case Primitive():
                 self.number(value, kind.bytes)
-            case Text(wide=True):
+            case String(wide=True):
                 value = self.odd_items(kind.bound, value, 0x61, "bound-text")
                 self.items(None, value, lambda unit: self.number(unit, 4), 0)
-            case Text():
+            case String():
                 self.text(kind, value)
             case Array(element=element):
                 for each in value:
@@ -244,7 +244,7 @@ class _Writer:
             return [*values, *[more] * (bound + 1 - len(values))]
         return values
 
-    def odd_text(self, kind: Text, value: bytes) -> bytes:
+    def odd_text(self, kind: String, value: bytes) -> bytes:
         if self.here("not-utf8"):
             return b"\xc3("
         if self.here("nul-inside"):
@@ -262,9 +262,9 @@ class _Writer:
                 return {
                     item.name: self.changed(item.type, value[item.name]) for item in kind.fields
                 }
-            case Text(wide=False):
+            case String(wide=False):
                 return self.odd_text(kind, value)
-            case Text(bound=bound):
+            case String(bound=bound):
                 return self.odd_items(bound, value, 0x61, "bound-text")
             case SequenceType(element=element):
                 items = self.odd_items(kind.bound, value, zero(element))
@@ -274,7 +274,7 @@ class _Writer:
             case _:
                 return value
 
-    def text(self, kind: Text, value: bytes) -> None:
+    def text(self, kind: String, value: bytes) -> None:
         had_nul = self.is_done
         value = self.odd_text(kind, value)
         nul = b"\0" if self.wire == "cdr" else b""

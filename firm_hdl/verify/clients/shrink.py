@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from firm_hdl.model import Array, Field, FieldType, Message, Primitive, Text, closure
+from firm_hdl.model import Array, Field, FieldType, Message, Primitive, String, closure
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.references.objects import full_text
@@ -86,7 +86,7 @@ def _smaller_field(kind: FieldType, value: Plain) -> Iterator[tuple[FieldType, P
     match kind:
         case Primitive() if value:
             yield kind, type(value)(0)
-        case Text() | SequenceType() if value:
+        case String() | SequenceType() if value:
             yield kind, value[:0]
             yield kind, value[: len(value) // 2]
             yield kind, value[len(value) // 2 :]
@@ -97,7 +97,7 @@ def _smaller_field(kind: FieldType, value: Plain) -> Iterator[tuple[FieldType, P
             yield replace(kind, count=half), value[:half]
             yield replace(kind, count=kind.count - half), value[half:]
     match kind:
-        case Text(wide=False) if value.strip(b"x"):
+        case String(wide=False) if value.strip(b"x"):
             yield kind, b"x" * len(value)
         case Array(element=element) | SequenceType(element=element) if value:
             # One at a time: what all have at once, is not minimal.

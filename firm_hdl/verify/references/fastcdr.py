@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from firm_hdl.jobs.processes import ToolError, hang_up, made_by, run_tool
-from firm_hdl.model import Array, FieldType, Message, Primitive, Text, closure
+from firm_hdl.model import Array, FieldType, Message, Primitive, String, closure
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.references.client import (
     BatchCodec,
@@ -137,7 +137,7 @@ def _described(message: Message) -> str:
         match kind:
             case Message():
                 return f"m{lines[kind.name]}"
-            case Text(wide=wide):
+            case String(wide=wide):
                 return "w" if wide else "t"
             case Array():
                 return f"a{kind.count}:{word(kind.element)}"

@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text, closure
+from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, String, closure
 from firm_hdl.verify.references.client import Client, Codec, Refusal, UnsupportedError
 from firm_hdl.verify.references.genpy import field_table
 from firm_hdl.verify.references.genpy_objects import Objects
@@ -176,7 +176,7 @@ class _CycloneCodec(ObjectCodec):
         match kind:
             case Message():
                 return self._classes[kind.name]
-            case Text():
+            case String():
                 return str if kind.bound is None else self._types.bounded_str[kind.bound]
             case Primitive(kind="bool"):
                 return bool

@@ -10,7 +10,7 @@ from abc import abstractmethod
 from dataclasses import replace
 from typing import Any
 
-from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text, closure
+from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, String, closure
 from firm_hdl.verify.references.client import Codec, Refusal, UnsupportedError
 from firm_hdl.verify.references.values import Plain, as_float, bits_of
 
@@ -79,7 +79,7 @@ class ObjectCodec(Codec):
                     item.name: self._built(item.type, value[item.name]) for item in kind.fields
                 }
                 return self.made(kind, members)
-            case Text():
+            case String():
                 return value.decode("utf-8", "surrogateescape")
             case Primitive():
                 return _number(kind, value)
@@ -95,7 +95,7 @@ class ObjectCodec(Codec):
                     item.name: self._plain(item.type, self.member(value, kind, item.name))
                     for item in kind.fields
                 }
-            case Text():
+            case String():
                 return value.encode("utf-8", "surrogateescape")
             case Primitive():
                 return _plain_number(kind, value)
@@ -183,7 +183,7 @@ def refuse_wide(message: Message, library: str) -> None:
     for kind in closure([message]):
         for item in kind.fields:
             inner = item.element_type
-            if isinstance(inner, Text) and inner.wide:
+            if isinstance(inner, String) and inner.wide:
                 raise UnsupportedError(f"{library} has no wstring")
             if isinstance(inner, Primitive) and inner.name == "wchar":
                 raise UnsupportedError(f"{library} is not asked about wchar")

@@ -13,7 +13,7 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from firm_hdl import model
-from firm_hdl.model import IDL_PRIMITIVES, Message, Primitive, Text, element_of
+from firm_hdl.model import IDL_PRIMITIVES, Message, Primitive, String, element_of
 from firm_hdl.verify.references.oracle import FieldType, Oracle, distro_oracle
 from firm_hdl.verify.references.wide_oracle import (
     STAND_IN_NOTE,
@@ -99,7 +99,7 @@ def resolved_oracle(message: Message, *, stand_in: bool = False) -> Oracle:
 def _spelled(kind: model.FieldType) -> str:
     """Return a type as rosbags has it, whose ``char`` is that of ``.msg`` files: not signed."""
     inner = element_of(kind)
-    if isinstance(inner, Text) and inner.wide:
+    if isinstance(inner, String) and inner.wide:
         return stand_in_type(kind, inner)
     if isinstance(inner, Primitive) and (inner == IDL_PRIMITIVES["char"] or inner.name == "wchar"):
         integer = f"{'' if inner.signed else 'u'}int{8 * inner.bytes}"
@@ -137,7 +137,7 @@ def _refuse_wide(message: Message) -> None:
     for kind in _all_messages(message):
         for item in kind.fields:
             inner = item.element_type
-            if isinstance(inner, Text) and inner.wide:
+            if isinstance(inner, String) and inner.wide:
                 raise NotJudgedError(f"rosbags has no wstring, which {kind.name}.{item.name} is")
 
 

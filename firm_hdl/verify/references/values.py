@@ -25,7 +25,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Text
+from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, String
 from firm_hdl.verify.references.wide_oracle import WIDE_MEMBER, fit_units
 
 __all__ = [
@@ -85,9 +85,9 @@ def from_objects(kind: FieldType, value: Any) -> Plain:
                 item.name: from_objects(item.type, _member(value, item.name))
                 for item in kind.fields
             }
-        case Text(wide=False):
+        case String(wide=False):
             return value.encode("utf-8", "surrogateescape")
-        case Text():
+        case String():
             # A wide text is an object with the numbers of its units in it.
             return list(fit_units(getattr(value, WIDE_MEMBER)).tolist())
         case Primitive():
@@ -180,7 +180,7 @@ def _pack(kind: FieldType, value: Plain, parts: list[bytes]) -> None:
                 _pack(item.type, value[item.name], parts)
         case Primitive():
             parts.append(struct.pack("<" + _code(kind), value))
-        case Text(wide=wide):
+        case String(wide=wide):
             count = struct.pack("<I", len(value))
             parts.append(count + (struct.pack(f"<{len(value)}I", *value) if wide else value))
         case Array(element=element) | Sequence(element=element):
@@ -227,7 +227,7 @@ class _Reader:
                 return {item.name: self.read(item.type) for item in kind.fields}
             case Primitive():
                 return self.numbers(1, _code(kind), kind.bytes)[0]
-            case Text(wide=wide):
+            case String(wide=wide):
                 (count,) = self.numbers(1, "I", 4)
                 if wide:
                     return self.numbers(count, "I", 4)
@@ -271,7 +271,7 @@ def _shown(kind: FieldType, value: Plain) -> str:
         case Primitive(kind="float", bytes=size):
             text = repr(as_float(value, size))
             return f"{text} (0x{value:0{2 * size}x})" if is_nan(value, size) else text
-        case Text(wide=False):
+        case String(wide=False):
             return repr(value)[1:] if value.isascii() else repr(value)
         case _:
             return repr(value)

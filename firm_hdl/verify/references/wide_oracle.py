@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-from firm_hdl.model import Array, FieldType, Message, Sequence, Text
+from firm_hdl.model import Array, FieldType, Message, Sequence, String
 from firm_hdl.verify.references.oracle import Oracle, Transfers
 
 __all__ = ["STAND_IN_NOTE", "WIDE_MEMBER", "WideOracle", "fit_units", "stand_in_type", "stand_ins"]
@@ -25,7 +25,7 @@ STAND_IN_NOTE = "rosbags has no wstring, and was given a message of numbers in i
 _PACKAGE = "firm_hdl_wide"
 
 
-def stand_in_type(kind: FieldType, text: Text) -> str:
+def stand_in_type(kind: FieldType, text: String) -> str:
     """Return what stands for a wide text, or for an array or a sequence of such."""
     name = f"{_PACKAGE}/{_base_name(text)}"
     match kind:
@@ -43,13 +43,13 @@ def stand_ins(messages: Iterable[Message]) -> dict[str, str]:
     for message in messages:
         for item in message.fields:
             kind = item.element_type
-            if isinstance(kind, Text) and kind.wide:
+            if isinstance(kind, String) and kind.wide:
                 bound = "" if kind.bound is None else f"<={kind.bound}"
                 found[f"{_PACKAGE}/msg/{_base_name(kind)}"] = f"uint32[{bound}] {WIDE_MEMBER}\n"
     return found
 
 
-def _base_name(text: Text) -> str:
+def _base_name(text: String) -> str:
     return "Text" if text.bound is None else f"Text{text.bound}"
 
 

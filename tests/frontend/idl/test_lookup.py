@@ -10,7 +10,7 @@ import pytest
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
-from firm_hdl.model import Text
+from firm_hdl.model import String
 
 from ..workspace import make_files
 from .rosidl import read
@@ -225,7 +225,7 @@ def test_a_file_has_its_own_typedefs_before_those_that_it_includes(tmp_path):
     assert types(lib.message("q/msg/Base")) == {"v": "float64[2]", "o": "int32"}
     found = lib.message("p/msg/T")
     assert types(found) == {"v": "string<=5", "w": "string<=5[<=2]", "o": "int32"}
-    assert found.fields[0].type == Text(bound=5)
+    assert found.fields[0].type == String(bound=5)
 
 
 def test_typedefs_of_the_same_last_name_in_two_modules_need_one_meaning():

@@ -10,7 +10,7 @@ from firm_hdl.errors import DefinitionError, Source
 from firm_hdl.frontend import Library
 from firm_hdl.frontend.idl import read_idl
 from firm_hdl.frontend.syntax import ConstantSyntax, FieldSyntax
-from firm_hdl.model import IDL_PRIMITIVES, Array, Sequence, Text
+from firm_hdl.model import IDL_PRIMITIVES, Array, Sequence, String
 from tests.frontend.workspace import make_files
 from tests.steps import calls_at_most
 
@@ -73,7 +73,7 @@ def test_types_with_sizes(tmp_path):
         "h": "std_msgs/msg/Header[<=2]",
     }
     assert isinstance(found.fields[3].type, Sequence) and isinstance(found.fields[4].type, Array)
-    assert found.fields[1].type == Text(bound=2, wide=True)
+    assert found.fields[1].type == String(bound=2, wide=True)
 
 
 def test_typedefs_are_expanded_whatever_their_order(tmp_path):

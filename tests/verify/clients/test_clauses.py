@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, Text
+from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, String
 from firm_hdl.verify.clients.divergences import KNOWN
 from firm_hdl.verify.clients.finding import Finding, Known, changed
 from firm_hdl.verify.clients.judge import Contest, Trial
@@ -150,11 +150,11 @@ def test_that_both_refuse_a_tame_value_explains_nothing():
 
 
 def test_changes_reach_every_number_and_text():
-    inner = a_message(UINT8, Text(), name="p/msg/B")
+    inner = a_message(UINT8, String(), name="p/msg/B")
     time = Message(name="time", dialect="ros1", fields=a_message(UINT8).fields)
     message = a_message(
         UINT8, inner, Array(element=inner, count=2), Sequence(element=UINT8),
-        Sequence(element=Text()), UINT8, time,
+        Sequence(element=String()), UINT8, time,
     )  # fmt: skip
     b = {"f0": 1, "f1": b"x"}
     value = {
@@ -208,10 +208,10 @@ DURATION = Message(name="duration", dialect="ros1", fields=())
          {"secs": 0, "nsecs": 5}),
         ("rosbags-time-signs", "tame", DURATION, {"secs": 3, "nsecs": -1},
          {"secs": 3, "nsecs": 0x7FFFFFFF}),
-        ("fastcdr-cut-at-nul", "tame", Text(), b"ab\0c\0", b"ab"),
-        ("fastcdr-cut-at-nul", "tame", Text(), b"ab", b"ab"),
-        ("fastcdr-cut-at-nul", "tame", Text(wide=True), [1, 2, 0, 3, 0], [1, 2]),
-        ("fastcdr-cut-at-nul", "tame", Text(wide=True), [1, 2], [1, 2]),
+        ("fastcdr-cut-at-nul", "tame", String(), b"ab\0c\0", b"ab"),
+        ("fastcdr-cut-at-nul", "tame", String(), b"ab", b"ab"),
+        ("fastcdr-cut-at-nul", "tame", String(wide=True), [1, 2, 0, 3, 0], [1, 2]),
+        ("fastcdr-cut-at-nul", "tame", String(wide=True), [1, 2], [1, 2]),
         ("genpy-time-normalized", "same", TIME, {"secs": 1, "nsecs": 2_500_000_000},
          {"secs": 3, "nsecs": 500_000_000}),
         ("genpy-time-normalized", "same", TIME, {"secs": 1, "nsecs": 999_999_999},
@@ -220,8 +220,8 @@ DURATION = Message(name="duration", dialect="ros1", fields=())
          {"secs": 0, "nsecs": 0}),
         ("genpy-time-normalized", "same", DURATION, {"secs": -1, "nsecs": -1},
          {"secs": -2, "nsecs": 999_999_999}),
-        ("genpy-not-utf8", "same", Text(), b"a\xffb", "a\N{REPLACEMENT CHARACTER}b".encode()),
-        ("genpy-not-utf8", "same", Text(), "é".encode(), "é".encode()),
+        ("genpy-not-utf8", "same", String(), b"a\xffb", "a\N{REPLACEMENT CHARACTER}b".encode()),
+        ("genpy-not-utf8", "same", String(), "é".encode(), "é".encode()),
     ],
 )  # fmt: skip
 def test_a_change_takes_out_what_its_entry_is_about(key, how, kind, value, want):

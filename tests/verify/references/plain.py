@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from firm_hdl.model import FieldType, Message, Primitive, Text
+from firm_hdl.model import FieldType, Message, Primitive, String
 from firm_hdl.verify.references.values import Plain, bits_of
 
 __all__ = ["plain"]
@@ -15,10 +15,10 @@ def plain(kind: FieldType, value: Any) -> Plain:
     match kind:
         case Message():
             return {item.name: plain(item.type, value[item.name]) for item in kind.fields}
-        case Text(wide=True):
+        case String(wide=True):
             units = value.encode("utf-16-le")
             return [int.from_bytes(units[n : n + 2], "little") for n in range(0, len(units), 2)]
-        case Text():
+        case String():
             return value.encode()
         case Primitive():
             return bits_of(value, kind.bytes) if kind.kind == "float" else value

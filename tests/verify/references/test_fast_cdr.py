@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.model import IDL_PRIMITIVES, Field, Message, Sequence, Text, idl_primitives
+from firm_hdl.model import IDL_PRIMITIVES, Field, Message, Sequence, String, idl_primitives
 from firm_hdl.verify.clients.run import SutOptions, judge_type
 from firm_hdl.verify.references import CLIENTS, Refusal, UnsupportedError
 from firm_hdl.verify.references.client import ClientDiedError
@@ -64,12 +64,12 @@ def test_a_nul_inside_a_text_is_the_affair_of_the_release(library_here, release,
         message = Message(name="p/msg/T", dialect="ros2", fields=(Field(name="t", type=kind),))
         return library_here(release).open(message, "cdr").encode({"t": value})
 
-    assert written(Text(wide=True), [0x61, 0, 0x62]) == data(wide)
+    assert written(String(wide=True), [0x61, 0, 0x62]) == data(wide)
     if narrow is not None:
-        assert written(Text(), b"a\0b") == data(narrow)
+        assert written(String(), b"a\0b") == data(narrow)
         return
     with pytest.raises(Refusal, match="null characters"):
-        written(Text(), b"a\0b")
+        written(String(), b"a\0b")
 
 
 @pytest.mark.parametrize("release", RELEASES)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl.errors import DefinitionError, Diagnostic
-from firm_hdl.model import Primitive, Sequence, Text
+from firm_hdl.model import Primitive, Sequence, String
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.judge import compare, judge, judge_case
@@ -111,8 +111,8 @@ MISTAKES = {
     "a field is dropped": lambda m: replace(m, fields=m.fields[:-1]),
     "two fields are swapped": lambda m: replace(m, fields=m.fields[::-1]),
     "a field has another name": lambda m: _with(m, 0, name="nam"),
-    "a text has another bound": lambda m: _with(m, 0, type=Text(bound=9)),
-    "a text has no bound": lambda m: _with(m, 0, type=Text()),
+    "a text has another bound": lambda m: _with(m, 0, type=String(bound=9)),
+    "a text has no bound": lambda m: _with(m, 0, type=String()),
     "a sequence has another bound": lambda m: _with(m, 1, type=Sequence(element=_u16(m), bound=5)),
     "a sequence has a wider element": lambda m: _with(
         m, 1, type=Sequence(element=replace(_u16(m), name="uint32"), bound=4)

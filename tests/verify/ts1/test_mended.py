@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from firm_hdl.model import Array, Field, Message, Sequence, Text
+from firm_hdl.model import Array, Field, Message, Sequence, String
 from tests.verify.ts1.rewriting import BY_KEY, case_of, numbered, private
 
 
@@ -204,12 +204,12 @@ def test_parts_of_a_service_are_called_by_its_file():
 
 
 def test_wide_texts_are_narrow_to_rosbags_wherever_they_are():
-    inner = message_of("p/msg/I", field_of("x", Text(wide=True)))
+    inner = message_of("p/msg/I", field_of("x", String(wide=True)))
     kinds = {
-        "plain": Text(wide=True, bound=3),
-        "narrow": Text(),
-        "array": Array(element=Text(wide=True), count=2),
-        "list": Sequence(element=Text(wide=True), bound=4),
+        "plain": String(wide=True, bound=3),
+        "narrow": String(),
+        "array": Array(element=String(wide=True), count=2),
+        "list": Sequence(element=String(wide=True), bound=4),
         "inner": inner,
         "again": Array(element=inner, count=3),
     }
@@ -217,11 +217,11 @@ def test_wide_texts_are_narrow_to_rosbags_wherever_they_are():
     ours = BY_KEY["rosbags-wstring"].ours
     found = ours(message_of("p/msg/A", *fields))
     types = {each.name: each.type for each in found.fields}
-    assert types["plain"] == Text(bound=3)
-    assert types["narrow"] == Text()
-    assert types["array"] == Array(element=Text(), count=2)
-    assert types["list"] == Sequence(element=Text(), bound=4)
-    assert types["inner"].fields[0].type == Text()
+    assert types["plain"] == String(bound=3)
+    assert types["narrow"] == String()
+    assert types["array"] == Array(element=String(), count=2)
+    assert types["list"] == Sequence(element=String(), bound=4)
+    assert types["inner"].fields[0].type == String()
     # A message that is used twice stays one.
     assert types["again"] == Array(element=types["inner"], count=3)
     assert types["again"].element is types["inner"]

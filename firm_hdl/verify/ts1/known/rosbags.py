@@ -17,7 +17,7 @@ from firm_hdl.model import (
     Interface,
     Message,
     Sequence,
-    Text,
+    String,
 )
 from firm_hdl.verify.ts1.case import Case
 from firm_hdl.verify.ts1.facts import Facts
@@ -63,7 +63,7 @@ def _narrow(interface: Interface) -> Interface:
 
     def kind_of(kind: FieldType) -> Any:
         match kind:
-            case Text():
+            case String():
                 return replace(kind, wide=False)
             case Array() | Sequence():
                 return replace(kind, element=kind_of(kind.element))
