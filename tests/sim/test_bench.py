@@ -98,6 +98,12 @@ def test_streams_do_not_wait_for_each_other():
     assert run.taken == {"o0": [(3, 1), (7, 2)], "o1": [], "o2": [(1, 3)]}
 
 
+def test_who_is_stalled_keeps_nobody_else_from_offering():
+    run = Run([[1, 2], [3], [4]], stalls={"i0": Stalls.bits("0001"), "i1": Stalls.bits("01")})
+    run.go()
+    assert run.taken == {"o0": [(4, 1), (8, 2)], "o1": [(2, 3)], "o2": [(1, 4)]}
+
+
 @pytest.mark.parametrize("bits", [WORD_BITS // 4, WORD_BITS // 2, WORD_BITS - 3, WORD_BITS, 400])
 def test_wide_payloads_arrive_whole(bits):
     """However they are spread over the words that the bench drives."""

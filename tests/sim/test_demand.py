@@ -1,0 +1,115 @@
+"""What a message still calls for, leaf by leaf, and where one message ends and the next begins."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from firm_hdl.plan import build_plan
+from firm_hdl.sim.demand import Demand, demand_table, split_transfers
+from firm_hdl.sim.record import Seen
+from firm_hdl.sim.values import to_transfers
+from firm_hdl.wire import lay_out
+from tests.strategies import make
+
+POINT = make("ros1", {"x": "uint8", "tags": "uint16[]"}, "Point")
+FIELDS = {"a": "uint8", "s": "string", "f": "uint16[5]", "ps": (POINT, "[]"), "two": (POINT, "[2]")}
+MESSAGE = make("ros1", FIELDS)
+PLAN = build_plan(lay_out(MESSAGE), bus_bytes=4)
+TABLE = demand_table(PLAN, MESSAGE)
+NUMBER = {str(leaf): index for index, leaf in enumerate(PLAN.leaves)}
+
+
+def named(left):
+    return {str(PLAN.leaves[leaf]): count for leaf, count in left.items()}
+
+
+def taken(*steps):
+    demand = Demand(TABLE)
+    for name, payload in steps:
+        demand.take(NUMBER[name], payload)
+    return named(demand.left)
+
+
+START = {"a": 1, "s.length": 1, "f.items": 3, "ps.length": 1}
+TWO = {"two.item.x": 2, "two.item.tags.length": 2}
+
+
+def test_a_message_begins_with_what_every_message_has():
+    # Of the five items, two come at a time.
+    assert taken() == {**START, **TWO}
+
+
+@pytest.mark.parametrize(
+    ("steps", "changes"),
+    [
+        ([("a", 7)], {"a": 0}),
+        ([("f.items", ((1, 2), False))], {"f.items": 2}),
+        # Four characters at a time: none, just full, and one more.
+        ([("s.length", 0)], {"s.length": 0}),
+        ([("s.length", 4)], {"s.length": 0, "s.items": 1}),
+        ([("s.length", 5)], {"s.length": 0, "s.items": 2}),
+        ([("s.length", 5), ("s.items", ((0,) * 4, False))], {"s.length": 0, "s.items": 1}),
+        # Elements bring what is in them.
+        ([("ps.length", 0)], {"ps.length": 0}),
+        ([("ps.length", 3)], {"ps.length": 0, "ps.item.x": 3, "ps.item.tags.length": 3}),
+        (
+            [("ps.length", 3), ("ps.item.tags.length", 3), ("ps.item.tags.length", 1)],
+            {"ps.length": 0, "ps.item.x": 3, "ps.item.tags.length": 1, "ps.item.tags.items": 3},
+        ),
+        ([("two.item.x", 1)], {"two.item.x": 1}),
+    ],
+)
+def test_each_transfer_changes_what_is_left(steps, changes):
+    expected = {**START, **TWO, **changes}
+    assert taken(*steps) == {name: count for name, count in expected.items() if count}
+
+
+def message(number):
+    point = {"x": number, "tags": [number] * number}
+    return {
+        "a": number,
+        "s": "x" * number,
+        "f": [number, number + 1, number + 2, number + 3, number + 4],
+        "ps": [point] * number,
+        "two": [point, {"x": 9, "tags": []}],
+    }
+
+
+def test_transfers_are_cut_into_the_messages_that_they_make():
+    parts = [to_transfers(PLAN, MESSAGE, message(number)) for number in (3, 0, 5)]
+    joined = {
+        leaf: [each for part in parts for each in part.get(leaf, [])] for leaf in TABLE_LEAVES
+    }
+    messages, rest = split_transfers(TABLE, joined)
+    assert messages == [{n: each for n, each in part.items() if each} for part in parts]
+    # The next one calls for a message.
+    assert named(rest.left) == {**START, **TWO}
+
+
+TABLE_LEAVES = range(len(PLAN.leaves))
+
+
+def test_what_a_cut_message_lacks_is_told():
+    part = to_transfers(PLAN, MESSAGE, message(3))
+    assert part[NUMBER["a"]] == [3]
+    part[NUMBER["a"]] = []
+    part[NUMBER["ps.item.x"]].pop()
+    messages, rest = split_transfers(TABLE, part)
+    assert messages == [] and named(rest.left) == {"a": 1, "ps.item.x": 1}
+
+
+def test_records_of_two_runs_share_nothing():
+    one, other = Seen(), Seen()
+    for name in ("packets", "marked", "statuses", "sent_statuses", "transfers"):
+        assert getattr(one, name) is not getattr(other, name)
+
+
+@pytest.mark.parametrize("value", [True, np.bool_(True), 1])
+def test_a_truth_value_may_be_of_numpy(value):
+    kind = make("ros1", {"b": "bool"})
+    plan = build_plan(lay_out(kind), bus_bytes=4)
+    assert to_transfers(plan, kind, {"b": value}) == {0: [1]}
+    for wrong in (2, -1, 1.0, "1", None):
+        with pytest.raises(TypeError, match="must be a bool"):
+            to_transfers(plan, kind, {"b": wrong})
