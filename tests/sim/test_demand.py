@@ -87,9 +87,6 @@ def test_transfers_are_cut_into_the_messages_that_they_make():
     assert named(rest.left) == {**START, **TWO}
 
 
-TABLE_LEAVES = range(len(PLAN.leaves))
-
-
 def test_what_a_cut_message_lacks_is_told():
     part = to_transfers(PLAN, MESSAGE, message(3))
     assert part[NUMBER["a"]] == [3]
