@@ -78,9 +78,8 @@ def message(number):
 
 def test_transfers_are_cut_into_the_messages_that_they_make():
     parts = [to_transfers(PLAN, MESSAGE, message(number)) for number in (3, 0, 5)]
-    joined = {
-        leaf: [each for part in parts for each in part.get(leaf, [])] for leaf in TABLE_LEAVES
-    }
+    leaves = range(len(PLAN.leaves))
+    joined = {n: [each for part in parts for each in part.get(n, [])] for n in leaves}
     messages, rest = split_transfers(TABLE, joined)
     assert messages == [{n: each for n, each in part.items() if each} for part in parts]
     # The next one calls for a message.

@@ -83,7 +83,7 @@ class Scale:
         """Return round figures, a few of them."""
         if not self.is_log:
             step = _step(self.high - self.low)
-            count = round((self.high - self.low) / step)
+            count = math.floor((self.high - self.low) / step + 1e-9)
             return [self.low + step * index for index in range(count + 1)]
         decades = math.log10(self.high / self.low)
         digits: Sequence[int] = (1, 2, 5) if decades <= 2.1 else (1,)

@@ -1,0 +1,162 @@
+"""Figures by their elements: what is drawn where, of which class, with which words."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.verify.report.svg import Figure, Scale, number, seconds, spread
+from firm_hdl.verify.report.summary import summarise
+
+
+def drawn(method, *arguments, **options):
+    figure = Figure(200, 100, "A < B")
+    getattr(figure, method)(*arguments, **options)
+    return figure.parts
+
+
+def test_a_figure_says_what_it_is_and_how_large():
+    figure = Figure(200, 100, "A < B")
+    head = '<svg viewBox="0 0 200 100" role="img" aria-label="A &lt; B" style="max-width:200px">'
+    assert str(figure) == f"{head}</svg>"
+    figure.line(1, 2, 3, 4, "grid")
+    figure.line(5, 6, 7, 8, "axis")
+    lines = (
+        '<line x1="1" y1="2" x2="3" y2="4" class="grid"/>'
+        '<line x1="5" y1="6" x2="7" y2="8" class="axis"/>'
+    )
+    assert str(figure) == f"{head}{lines}</svg>"
+    assert Figure(1, 1, "").parts == []
+
+
+@pytest.mark.parametrize(
+    ("call", "part"),
+    [
+        (
+            ("text", 1, 2, "a<b"),
+            '<text x="1" y="2" class="tick" text-anchor="middle">a&lt;b</text>',
+        ),
+        (
+            ("text", 1, 2, "a", "label", "end"),
+            '<text x="1" y="2" class="label" text-anchor="end">a</text>',
+        ),
+        (("dot", 1, 2, "c1"), '<circle cx="1" cy="2" r="2.5" class="c1"></circle>'),
+        (
+            ("dot", 1, 2, "c1", "a<b", 4),
+            '<circle cx="1" cy="2" r="4" class="c1"><title>a&lt;b</title></circle>',
+        ),
+        (
+            ("box", 1, 2, 3, 4.25, "c2"),
+            '<rect x="1.0" y="2.0" width="3.0" height="4.2" class="c2"></rect>',
+        ),
+        (
+            ("box", 1, 2, 3, 4, "c2", "x"),
+            '<rect x="1.0" y="2.0" width="3.0" height="4.0" class="c2"><title>x</title></rect>',
+        ),
+        (("path", [(1, 2), (3, 4), (5, 6)], "c1"), '<path d="M1 2L3 4L5 6" class="c1"></path>'),
+        (
+            ("path", [(1, 2), (3, 4), (5, 6)], "c1", "x", True),
+            '<path d="M1 2H3V4H5V6" class="c1"><title>x</title></path>',
+        ),
+        (("path", [], "c1"), '<path d="" class="c1"></path>'),
+    ],
+)
+def test_each_shape_is_where_it_is_to_be(call, part):
+    assert drawn(*call) == [part]
+
+
+def test_a_horizontal_axis_has_a_grid_above_it():
+    parts = drawn("x_axis", Scale(0, 2, 10, 110), 50, "cycles", 5)
+    assert parts == [
+        '<line x1="10.0" y1="50" x2="10.0" y2="5" class="grid"/>',
+        '<text x="10.0" y="65" class="tick" text-anchor="middle">0</text>',
+        '<line x1="35.0" y1="50" x2="35.0" y2="5" class="grid"/>',
+        '<text x="35.0" y="65" class="tick" text-anchor="middle">0.5</text>',
+        '<line x1="60.0" y1="50" x2="60.0" y2="5" class="grid"/>',
+        '<text x="60.0" y="65" class="tick" text-anchor="middle">1</text>',
+        '<line x1="85.0" y1="50" x2="85.0" y2="5" class="grid"/>',
+        '<text x="85.0" y="65" class="tick" text-anchor="middle">1.5</text>',
+        '<line x1="110.0" y1="50" x2="110.0" y2="5" class="grid"/>',
+        '<text x="110.0" y="65" class="tick" text-anchor="middle">2</text>',
+        '<line x1="10" y1="50" x2="110" y2="50" class="axis"/>',
+        '<text x="60.0" y="83" class="label" text-anchor="middle">cycles</text>',
+    ]
+
+
+@pytest.mark.parametrize(("percent", "ends"), [(False, ("0", "1")), (True, ("0%", "100%"))])
+def test_a_vertical_axis_has_a_grid_beside_it(percent, ends):
+    parts = drawn("y_axis", Scale(0, 1, 90, 10), 40, "a<b", 190, percent)
+    assert parts[0] == '<line x1="40" y1="90.0" x2="190" y2="90.0" class="grid"/>'
+    assert parts[1] == f'<text x="34" y="94.0" class="tick" text-anchor="end">{ends[0]}</text>'
+    assert parts[-3] == '<line x1="40" y1="10.0" x2="190" y2="10.0" class="grid"/>'
+    assert parts[-2] == f'<text x="34" y="14.0" class="tick" text-anchor="end">{ends[1]}</text>'
+    assert parts[-1] == (
+        '<text x="14" y="50.0" class="label" text-anchor="middle" '
+        'transform="rotate(-90 14 50.0)">a&lt;b</text>'
+    )
+    # A line and a text for each of 0, 0.2 and so on, and the label.
+    assert len(parts) == 2 * 6 + 1
+
+
+@pytest.mark.parametrize(
+    ("values", "is_log", "ends", "ticks"),
+    [
+        ([0, 9], False, (0, 10), [0, 2, 4, 6, 8, 10]),
+        ([3, 4], False, (0, 4), [0, 1, 2, 3, 4]),
+        ([-3, 4], False, (-3, 4), [-3, -1, 1, 3]),
+        ([0], False, (0, 1), [0, 0.2, 0.4, 0.6, 0.8, 1]),
+        ([], False, (0, 1), [0, 0.2, 0.4, 0.6, 0.8, 1]),
+        ([1, 100], True, (1, 100), [1, 2, 5, 10, 20, 50, 100]),
+        ([3, 70], True, (2, 100), [2, 5, 10, 20, 50, 100]),
+        ([5, 5], True, (5, 50), [5, 10, 20, 50]),
+        ([1, 1000], True, (1, 1000), [1, 10, 100, 1000]),
+        ([1, 1e6], True, (1, 1e6), [10.0**n for n in range(7)]),
+        ([1, 1e7], True, (1, 1e7), [1, 1e2, 1e4, 1e6]),
+        ([0, -2, 1, 10], True, (1, 10), [1, 2, 5, 10]),
+    ],
+)
+def test_scales_end_at_round_figures_and_have_a_few_more(values, is_log, ends, ticks):
+    scale = Scale.of(values, 0, 100, is_log=is_log)
+    assert (scale.low, scale.high) == pytest.approx(ends)
+    assert scale.ticks() == pytest.approx(ticks)
+    assert (scale(scale.low), scale(scale.high)) == (0, 100)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (1e15, "1,000,000,000,000,000"),
+        (999.5, "1.0e+03"),
+        (999.4, "999"),
+        (1000.5, "1,000"),
+        (-0.5, "-0.5"),
+        (float("inf"), "-"),
+    ],
+)
+def test_numbers_have_three_digits_that_matter(value, text):
+    assert number(value) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (-1, "0 s"),
+        (0.000999, "999 µs"),
+        (0.001, "1 ms"),
+        (0.999, "999 ms"),
+        (1, "1 s"),
+        (120, "2 min 0 s"),
+        (7199, "119 min 59 s"),
+        (7200, "2 h 0 min"),
+    ],
+)
+def test_units_of_time_change_at_their_limits(value, text):
+    assert seconds(value) == text
+
+
+def test_neighbours_are_a_golden_section_apart():
+    assert [round(spread(n), 3) for n in range(4)] == [0, 0.618, 0.236, 0.854]
+
+
+def test_reports_are_of_firm_hdl_unless_they_are_called_otherwise():
+    assert summarise({}).title == "Verification of firm-hdl"
+    assert summarise({}, "Mine").title == "Mine"
