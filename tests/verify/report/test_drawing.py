@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.verify.report.svg import Figure, Scale, number, seconds, spread
 from firm_hdl.verify.report.summary import summarise
+from firm_hdl.verify.report.svg import Figure, Scale, number, seconds, spread
 
 
 def drawn(method, *arguments, **options):
