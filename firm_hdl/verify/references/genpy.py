@@ -50,9 +50,8 @@ class Genpy(Client):
 
     @cached_property
     def _worker(self) -> worker.Worker:
-        return worker.Worker(
-            "genpy", "", modules=Path(__file__).parent, python=worker.ROS_PYTHON
-        )
+        here = Path(__file__).parent
+        return worker.Worker("genpy", "", modules=here, python=worker.ROS_PYTHON)
 
     def missing(self) -> str | None:
         why = self._worker.missing
@@ -90,14 +89,12 @@ class _GenpyCodec(BatchCodec):
         self._opened[id(self._worker)] = self
 
     def _facts(self, request: dict[str, Any]) -> Any:
-        from firm_hdl.verify.ros_python.worker import DIED
-
         answer = self._worker.ask(request)
         if "facts" in answer:
             return answer["facts"]
         self._opened.pop(id(self._worker), None)
         said = answer.get("refused") or answer.get("failed")
-        if not said or said == DIED:
+        if not said or said == worker.DIED:
             raise ClientDiedError(f"genpy: {said or 'it answered nothing'}")
         raise UnsupportedError(f"genpy: {said}")
 
