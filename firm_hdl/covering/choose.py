@@ -20,7 +20,7 @@ from firm_hdl.model import Array, Field, Message, Primitive, Sequence, String
 from firm_hdl.plan import Plan
 from firm_hdl.plan.shape import constructs
 from firm_hdl.wire import Wire, lay_out
-from firm_hdl.wire.layout import Gap, Loop, Node, Run, Scalar, walk
+from firm_hdl.wire.layout import Gap, LoopNode, Node, RunNode, Scalar, walk
 
 __all__ = ["FAMILIES", "Chosen", "all_features", "choose", "cost", "features"]
 
@@ -116,14 +116,14 @@ def _node(node: Node) -> str:
     match node:
         case Scalar():
             return f"scalar of {node.type.bytes} bytes, {_gap(node.gap)}"
-        case Run() | Loop():
-            words = [f"run of {node.item.bytes} bytes" if isinstance(node, Run) else "loop"]
+        case RunNode() | LoopNode():
+            words = [f"run of {node.item.bytes} bytes" if isinstance(node, RunNode) else "loop"]
             words.append(
                 "of a constant length" if node.gap is None else f"length: {_gap(node.gap)}"
             )
-            words += [f"items: {_gap(node.item_gap)}"] if isinstance(node, Run) else []
+            words += [f"items: {_gap(node.item_gap)}"] if isinstance(node, RunNode) else []
             words += [] if node.bound is None else ["bounded"]
-            words += ["NUL"] if isinstance(node, Run) and node.terminated else []
+            words += ["NUL"] if isinstance(node, RunNode) and node.terminated else []
             return ", ".join(words)
         case _:
             return "trigger"

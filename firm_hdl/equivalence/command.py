@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from tqdm import tqdm
 
 from firm_hdl.arguments import add_jobs, add_types_or_all, positive
-from firm_hdl.equivalence.converters import Attempt, Task, both, run_tasks
+from firm_hdl.equivalence.converters import Attempt, ProofTask, both, run_tasks
 from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT
 from firm_hdl.equivalence.tools import MissingToolError, ToolError, find_tools
 from firm_hdl.export.build import load_all, plan_of
@@ -68,7 +68,7 @@ def run_prove(given: argparse.Namespace) -> int:
     return run_proofs(tasks, given.jobs, bar=given.all)
 
 
-def run_proofs(tasks: Sequence[Task], jobs: int | None, *, bar: bool) -> int:
+def run_proofs(tasks: Sequence[ProofTask], jobs: int | None, *, bar: bool) -> int:
     """Do tasks, and print what comes of each; return the exit status.
 
     Parameters
@@ -81,7 +81,7 @@ def run_proofs(tasks: Sequence[Task], jobs: int | None, *, bar: bool) -> int:
     except (MissingToolError, ToolError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
-    results: list[tuple[Task, Attempt]] = []
+    results: list[tuple[ProofTask, Attempt]] = []
     disable = None if bar else True
     with tqdm(total=len(tasks), unit="converter", desc="proofs", disable=disable) as progress:
         for task, attempt in run_tasks(tasks, 1 if len(tasks) == 1 else jobs):
@@ -97,7 +97,7 @@ def run_proofs(tasks: Sequence[Task], jobs: int | None, *, bar: bool) -> int:
     return 0 if 0 < proved == len(tasks) else 1
 
 
-def _line(task: Task, attempt: Attempt) -> str:
+def _line(task: ProofTask, attempt: Attempt) -> str:
     seconds = f"{attempt.proof.seconds:6.1f} s" if attempt.proof is not None else " " * 8
     wire = f", {task.wire}" if task.wire else ""
     what = f"{task.name} {task.direction} ({task.distro}{wire}, {task.bus_bytes} bytes)"
@@ -109,7 +109,7 @@ def _line(task: Task, attempt: Attempt) -> str:
     return "\n    ".join(line.strip() for line in lines)
 
 
-def _summary(results: Sequence[tuple[Task, Attempt]]) -> str:
+def _summary(results: Sequence[tuple[ProofTask, Attempt]]) -> str:
     counted = Counter(attempt.result for _, attempt in results)
     types = {(task.distro, task.name, task.wire) for task, _ in results}
     seconds = sorted(

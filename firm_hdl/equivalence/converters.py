@@ -21,11 +21,19 @@ from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
 from firm_hdl.vhdl.convert import Vhdl, convert
 from firm_hdl.wire import Wire
 
-__all__ = ["Attempt", "Task", "attempt", "both", "converter_vhdl", "prove_converter", "run_tasks"]
+__all__ = [
+    "Attempt",
+    "ProofTask",
+    "attempt",
+    "both",
+    "converter_vhdl",
+    "prove_converter",
+    "run_tasks",
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Task:
+class ProofTask:
     """One converter.
 
     Attributes
@@ -127,7 +135,7 @@ def prove_converter(
     return prove(rtlil, vhdl, timeout=timeout)
 
 
-def attempt(task: Task) -> Attempt:
+def attempt(task: ProofTask) -> Attempt:
     """Do a task, whatever comes."""
     try:
         message = open_library(task.distro, task.paths, task.bags).message(task.name)
@@ -145,7 +153,9 @@ def attempt(task: Task) -> Attempt:
         return Attempt(proof=None, problem=str(error))
 
 
-def run_tasks(tasks: Sequence[Task], jobs: int | None = None) -> Iterator[tuple[Task, Attempt]]:
+def run_tasks(
+    tasks: Sequence[ProofTask], jobs: int | None = None
+) -> Iterator[tuple[ProofTask, Attempt]]:
     """Run tasks in `jobs` processes (`None`: one per processor), and yield results as they come."""
     work = [(task, (task,)) for task in tasks]
     for task, result in in_processes(attempt, work, jobs):
@@ -155,9 +165,9 @@ def run_tasks(tasks: Sequence[Task], jobs: int | None = None) -> Iterator[tuple[
             yield task, result
 
 
-def both(name: str, **options: object) -> list[Task]:
+def both(name: str, **options: object) -> list[ProofTask]:
     """Give the tasks for both converters of a type."""
     return [
-        Task(name=name, direction=direction, **options)  # type: ignore[arg-type]
+        ProofTask(name=name, direction=direction, **options)  # type: ignore[arg-type]
         for direction in DIRECTIONS
     ]

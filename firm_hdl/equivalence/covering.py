@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from firm_hdl.covering.choose import choose, cost, features
-from firm_hdl.equivalence.converters import Task, both
+from firm_hdl.equivalence.converters import ProofTask, both
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
@@ -63,7 +63,7 @@ def write_definitions(folder: Path) -> None:
             (messages / f"{name}.msg").write_text(text, encoding="utf-8")
 
 
-def covering_tasks(folder: Path, *, bus_bytes: int = 8, timeout: float) -> list[Task]:
+def covering_tasks(folder: Path, *, bus_bytes: int = 8, timeout: float) -> list[ProofTask]:
     """List both converters of all types.
 
     Parameters
@@ -71,7 +71,7 @@ def covering_tasks(folder: Path, *, bus_bytes: int = 8, timeout: float) -> list[
     folder : Path
         Where `write_definitions` has written to.
     """
-    tasks: list[Task] = []
+    tasks: list[ProofTask] = []
     for distro in DISTROS:
         own = str(folder / distro)
         names = [*_chosen(distro, bus_bytes), *_KNOWN[distro]]

@@ -164,7 +164,7 @@ class _Maker:
     def run(self) -> Miter:
         self._match_ports()
         paired = self._match_registers()
-        self._inputs.update(self._lonely_registers(paired))
+        self._inputs.update(self._unpaired_registers(paired))
         claims = tuple(
             Claim(what=what, amaranth=self._named(left), vhdl=self._named(right))
             for what, left, right in self._claims
@@ -256,21 +256,21 @@ class _Maker:
                 self._differences.append(f"the asynchronous reset of {name} is another")
             self._claims.append((f"reset of {name}", (ours.reset,), (theirs.reset,)))
 
-    def _lonely_registers(self, paired: set[int]) -> dict[str, Bits]:
+    def _unpaired_registers(self, paired: set[int]) -> dict[str, Bits]:
         """Let registers without a partner have any value: what does not matter cannot differ."""
-        lonely: dict[str, Bits] = {}
+        unpaired: dict[str, Bits] = {}
         for side, circuit in (("Amaranth", self._amaranth), ("VHDL", self._vhdl)):
             rest = dict.fromkeys(bit for bit in circuit.flops if bit not in paired)
             for path, bits in circuit.signals.items():
                 mine = tuple(bit for bit in bits if isinstance(bit, int) and bit in rest)
                 if mine:
-                    lonely[f"register {'.'.join(path)} of the {side} alone"] = mine
+                    unpaired[f"register {'.'.join(path)} of the {side} alone"] = mine
                     for bit in mine:
                         del rest[bit]
             if rest:
-                lonely[f"registers without a name of the {side} alone"] = tuple(rest)
-        self._unmatched += lonely
-        return lonely
+                unpaired[f"registers without a name of the {side} alone"] = tuple(rest)
+        self._unmatched += unpaired
+        return unpaired
 
     def _named(self, bits: Bits) -> Bits:
         return tuple(self._root(bit) for bit in bits)

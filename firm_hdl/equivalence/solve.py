@@ -19,7 +19,7 @@ from firm_hdl.equivalence.circuit import ProofError
 from firm_hdl.equivalence.miter import Miter
 from firm_hdl.equivalence.tools import ToolError, Tools, TooSlowError, answer_of
 
-__all__ = ["Difference", "Verdict", "solve"]
+__all__ = ["Answer", "Difference", "solve"]
 
 # Equal cells of the two sides become one before they become gates. No part of this may see an
 # undefined value: there is none in a miter. `check` finds loops, whose value would be anything.
@@ -46,7 +46,7 @@ class Difference:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Verdict:
+class Answer:
     """What came of it.
 
     Attributes
@@ -63,7 +63,7 @@ class Verdict:
     open: tuple[str, ...] = ()
 
 
-def solve(miter: Miter, tools: Tools, folder: Path, timeout: float) -> Verdict:
+def solve(miter: Miter, tools: Tools, folder: Path, timeout: float) -> Answer:
     """Prove all claims of a miter, or find inputs for which one does not hold.
 
     Parameters
@@ -74,7 +74,7 @@ def solve(miter: Miter, tools: Tools, folder: Path, timeout: float) -> Verdict:
         Seconds for each of the two solvers.
     """
     if not miter.claims:
-        return Verdict(equal=True)
+        return Answer(equal=True)
     _write(folder / "miter.json", miter, values=False)
     try:
         tools.run_yosys(folder, f"{_GATES.format(name='miter')}; {_ABC}", timeout)
@@ -91,7 +91,7 @@ def solve(miter: Miter, tools: Tools, folder: Path, timeout: float) -> Verdict:
         verdict = _search(miter, part, tools, folder, timeout)
         if not verdict.equal:
             return verdict
-    return Verdict(equal=True)
+    return Answer(equal=True)
 
 
 def _write(path: Path, miter: Miter, *, values: bool) -> None:
@@ -107,7 +107,7 @@ def _left(path: Path, claims: int) -> list[int]:
     return [number for number, bit in enumerate(bits) if bit != "0"]
 
 
-def _search(miter: Miter, left: list[int], tools: Tools, folder: Path, timeout: float) -> Verdict:
+def _search(miter: Miter, left: list[int], tools: Tools, folder: Path, timeout: float) -> Answer:
     """Let the SAT solver look for a difference in what ABC has left over."""
     rest = Miter(
         differences=(),
@@ -123,13 +123,13 @@ def _search(miter: Miter, left: list[int], tools: Tools, folder: Path, timeout: 
     try:
         tools.run_yosys(folder, script, timeout * 2 + 60)
     except TooSlowError:
-        return Verdict(equal=None, open=names)
+        return Answer(equal=None, open=names)
     said = answer_of("Yosys", folder / "sat.txt")
     if "SAT proof finished - no model found: SUCCESS!" in said:
-        return Verdict(equal=True)
+        return Answer(equal=True)
     if "SAT proof finished - model found: FAIL!" not in said:
-        return Verdict(equal=None, open=names)
-    return Verdict(equal=False, difference=_model(rest, folder / "model.json"))
+        return Answer(equal=None, open=names)
+    return Answer(equal=False, difference=_model(rest, folder / "model.json"))
 
 
 def _model(miter: Miter, path: Path) -> Difference:

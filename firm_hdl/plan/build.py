@@ -37,9 +37,7 @@ from firm_hdl.plan.limits import (
     check_bus_bytes,
     check_max_message_bytes,
 )
-from firm_hdl.wire import Layout, Node, Path, Scalar, Trigger, walk
-from firm_hdl.wire import Loop as LoopNode
-from firm_hdl.wire import Run as RunNode
+from firm_hdl.wire import Layout, LoopNode, Node, Path, RunNode, Scalar, Trigger, walk
 from firm_hdl.wire.layout import LENGTH, OCTET, Gap
 
 __all__ = ["build_plan"]

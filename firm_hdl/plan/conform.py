@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from firm_hdl.plan.ir import RUN_COUNTER, BeginArray, Plan, RunStep
-from firm_hdl.wire import Layout, Loop, Run, Scalar, Trigger, walk
+from firm_hdl.wire import Layout, LoopNode, RunNode, Scalar, Trigger, walk
 
 __all__ = ["against_layout"]
 
@@ -24,11 +24,11 @@ def against_layout(plan: Plan, layout: Layout) -> list[str]:
                 judge.leaves.append((node.path, "scalar", node.type.name))
             case Trigger():
                 judge.leaves.append(((*node.path, "trigger"), "trigger", "bool"))
-            case Run():
+            case RunNode():
                 judge.run(node)
-            case Loop(count=None):
+            case LoopNode(count=None):
                 judge.counted(node, node.bound, terminated=False)
-            case Loop(count=int() as count):
+            case LoopNode(count=int() as count):
                 judge.counts.append(count)
     if judge.leaves != [(leaf.path, leaf.kind, leaf.type) for leaf in plan.leaves]:
         judge.problems.append("leaves are not those of the layout")
@@ -46,7 +46,7 @@ class _Judge:
         self.totals = _totals(plan)
         self.begins = plan.counted
 
-    def counted(self, node: Run | Loop, bound: int | None, *, terminated: bool) -> None:
+    def counted(self, node: RunNode | LoopNode, bound: int | None, *, terminated: bool) -> None:
         name = ".".join(node.path)
         begin = self.begins.get(len(self.leaves))
         self.leaves.append(((*node.path, "length"), "length", "uint32"))
@@ -57,7 +57,7 @@ class _Judge:
         elif self.plan.has_nul(begin) != terminated:
             self.problems.append(f"{name} has the NUL wrong")
 
-    def run(self, node: Run) -> None:
+    def run(self, node: RunNode) -> None:
         if node.count is None:
             self.counted(node, node.bound, terminated=node.terminated)
         else:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from firm_hdl.model import Message
 from firm_hdl.plan import Payload, Plan
-from firm_hdl.wire import Loop, Node, Path, Run, Scalar, Trigger, lay_out
+from firm_hdl.wire import LoopNode, Node, Path, RunNode, Scalar, Trigger, lay_out
 
 __all__ = ["Demand", "DemandTable", "demand_table", "split_transfers"]
 
@@ -91,17 +91,17 @@ def demand_table(plan: Plan, message: Message) -> DemandTable:
                     yield leaf(node.path), 1
                 case Trigger():
                     yield leaf(node.path, "trigger"), 1
-                case Run(count=None):
+                case RunNode(count=None):
                     number = leaf(node.path, "items")
                     items[leaf(node.path, "length")] = (number, plan.leaves[number].lanes)
                     yield leaf(node.path, "length"), 1
-                case Run(count=int(count)):
+                case RunNode(count=int(count)):
                     number = leaf(node.path, "items")
                     yield number, -(-count // plan.leaves[number].lanes)
-                case Loop(count=None):
+                case LoopNode(count=None):
                     below[leaf(node.path, "length")] = tuple(visit(node.body))
                     yield leaf(node.path, "length"), 1
-                case Loop(count=int(count)):
+                case LoopNode(count=int(count)):
                     yield from ((inner, each * count) for inner, each in visit(node.body))
 
     start = tuple(visit(lay_out(message, plan.wire).nodes))

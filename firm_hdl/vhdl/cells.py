@@ -11,7 +11,7 @@ from operator import eq, ge, gt, le, lt, ne
 from typing import TYPE_CHECKING
 
 from firm_hdl.rtlil.ir import Cell, Spec, spec_width
-from firm_hdl.vhdl.text import Text, atom, call, infix, literal, prefix
+from firm_hdl.vhdl.text import Expression, atom, call, infix, literal, prefix
 from firm_hdl.vhdl.uses import int_parameter, output, trim
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class Cells:
             return any(part is not None and self.is_condition(part) for part in inner)
         return False
 
-    def boolean(self, cell: Cell, *, inverted: bool = False) -> Text:
+    def boolean(self, cell: Cell, *, inverted: bool = False) -> Expression:
         """Write a result of one bit as a condition, or the opposite of it."""
         kind, ports = cell.kind, cell.ports
         if kind in COMPARISONS:
@@ -76,7 +76,7 @@ class Cells:
             return atom("true" if (text.text == "'1'") != inverted else "false")
         return infix("=", text, atom("'0'" if inverted else "'1'"))
 
-    def _condition(self, spec: Spec, *, inverted: bool) -> Text:
+    def _condition(self, spec: Spec, *, inverted: bool) -> Expression:
         cell = self._values.folded(spec)
         if cell is not None:
             return self.boolean(cell, inverted=inverted)
@@ -86,7 +86,7 @@ class Cells:
             return atom("false" if self._values.constant(spec) else "true")
         return infix("=", self._values.logic(spec), atom("'0'"))
 
-    def logic(self, cell: Cell) -> Text:
+    def logic(self, cell: Cell) -> Expression:
         """Write a result of one bit as `std_logic`."""
         kind, ports, values = cell.kind, cell.ports, self._values
         if kind in COMPARISONS:
@@ -110,14 +110,14 @@ class Cells:
             return operands[0]
         return call("lsb", self._vector(cell, 1))
 
-    def _low_bit(self, spec: Spec) -> Text:
+    def _low_bit(self, spec: Spec) -> Expression:
         return self._values.logic(trim(spec, 1)) if spec else atom("'0'")
 
-    def unsigned(self, cell: Cell) -> Text:
+    def unsigned(self, cell: Cell) -> Expression:
         """Write a result of more than one bit."""
         return self._vector(cell, self.width(cell))
 
-    def _vector(self, cell: Cell, width: int) -> Text:
+    def _vector(self, cell: Cell, width: int) -> Expression:
         kind, ports, values = cell.kind, cell.ports, self._values
         signed = int_parameter(cell, "A_SIGNED") == 1
         if kind in ("$add", "$sub"):
@@ -141,12 +141,12 @@ class Cells:
         # Comparisons and reductions have one bit; a wider result would be zeros above it.
         return call("resize", self.logic(cell), width)
 
-    def _bitwise(self, spec: Spec, width: int, signed: bool) -> Text:
+    def _bitwise(self, spec: Spec, width: int, signed: bool) -> Expression:
         if spec_width(spec) == width:
             return self._values.unsigned(spec, target=self._values.constant(spec) is not None)
         return self._values.extended(spec, width, signed=signed)
 
-    def _sum(self, cell: Cell, width: int, signed: bool) -> Text:
+    def _sum(self, cell: Cell, width: int, signed: bool) -> Expression:
         values = self._values
         operator = "+" if cell.kind == "$add" else "-"
         a, b = (trim(cell.ports[port], width) for port in "AB")
@@ -171,11 +171,11 @@ class Cells:
         # numeric_std extends the shorter operand by itself.
         return infix(operator, self._short(a), self._short(b))
 
-    def _short(self, spec: Spec) -> Text:
+    def _short(self, spec: Spec) -> Expression:
         """Write an operand that numeric_std may extend: VHDL-2008 adds single bits, too."""
         return self._values.logic(spec) if spec_width(spec) == 1 else self._values.unsigned(spec)
 
-    def _product(self, cell: Cell, width: int, signed: bool) -> Text:
+    def _product(self, cell: Cell, width: int, signed: bool) -> Expression:
         values = self._values
         a, b = (trim(cell.ports[port], width) for port in "AB")
         natural = max(spec_width(a), 1) + max(spec_width(b), 1)
@@ -190,7 +190,7 @@ class Cells:
             natural = 2 * width if signed else natural
         return product if width == natural else call("resize", product, width)
 
-    def _division(self, cell: Cell, width: int, signed: bool) -> Text:
+    def _division(self, cell: Cell, width: int, signed: bool) -> Expression:
         values = self._values
         a, b = cell.ports["A"], cell.ports["B"]
         function = "floor_div" if cell.kind == "$divfloor" else "floor_mod"
@@ -207,7 +207,7 @@ class Cells:
             natural = max(spec_width(a if function == "floor_div" else b), 1)
         return text if natural == width else call("resize", text, width)
 
-    def _shift(self, cell: Cell, width: int, signed: bool) -> Text:
+    def _shift(self, cell: Cell, width: int, signed: bool) -> Expression:
         values, a = self._values, cell.ports["A"]
         if cell.kind == "$shl":
             operand = values.extended(trim(a, width), width, signed=signed)
@@ -221,7 +221,7 @@ class Cells:
             shifted = call("shift_right", operand, distance)
         return shifted if whole == width else call("resize", shifted, width)
 
-    def _distance(self, spec: Spec, width: int) -> Text:
+    def _distance(self, spec: Spec, width: int) -> Expression:
         """Write a shift distance that any integer holds."""
         value = self._values.constant(spec)
         if value is not None:
@@ -231,7 +231,7 @@ class Cells:
         bits = width.bit_length()
         return call("to_integer", call("saturate", self._values.unsigned(spec), bits))
 
-    def _compare_bits(self, cell: Cell) -> Text | None:
+    def _compare_bits(self, cell: Cell) -> Expression | None:
         """Compare single bits for equality without a detour over `boolean`."""
         a, b = cell.ports["A"], cell.ports["B"]
         if cell.kind not in ("$eq", "$ne") or spec_width(a) != 1 or spec_width(b) != 1:
@@ -244,7 +244,7 @@ class Cells:
         text = infix("xor", self._values.logic(a), self._values.logic(b))
         return prefix("not", text) if cell.kind == "$eq" else text
 
-    def _compare(self, cell: Cell, *, inverted: bool = False) -> Text:
+    def _compare(self, cell: Cell, *, inverted: bool = False) -> Expression:
         values = self._values
         operator = COMPARISONS[cell.kind]
         if inverted:

@@ -47,7 +47,7 @@ class Names:
     ports: tuple[Port, ...]
     declared: dict[str, Declared]
     signals: dict[str, Declared]
-    watches: dict[str, Declared]
+    aliases: dict[str, Declared]
     memories: dict[str, str]
     labels: dict[str, str]
     scope: Scope
@@ -91,7 +91,7 @@ def declare(
             made_up[wire] = hints.get(wire, fallback)
         elif wire not in declared:
             named[wire] = owner
-    watched = [chunk.wire for (chunk, *_), _ in graph.watches if isinstance(chunk, Slice)]
+    watched = [chunk.wire for (chunk, *_), _ in graph.aliases if isinstance(chunk, Slice)]
     # A signal's own name goes before made-up ones.
     given = scope.give_all({**named, **{wire: wire for wire in watched}})
     given |= scope.give_all(made_up)
@@ -106,7 +106,7 @@ def declare(
         ports=tuple(ports),
         declared=declared,
         signals=signals,
-        watches={wire: Declared(name=given[wire], width=graph.width[wire]) for wire in watched},
+        aliases={wire: Declared(name=given[wire], width=graph.width[wire]) for wire in watched},
         memories=scope.give_all({name: name for name in graph.module.memories}),
         labels=scope.give_all({cell.name: cell.name for cell in instances}),
         scope=scope,

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from firm_hdl.rtlil.evaluate import constant
 from firm_hdl.rtlil.ir import Bits, Cell, Chunk, Slice, Spec, bits_of, spec_width
 from firm_hdl.vhdl.cells import Cells
-from firm_hdl.vhdl.text import Text, atom, bit_literal, call, chain, infix, literal
+from firm_hdl.vhdl.text import Expression, atom, bit_literal, call, chain, infix, literal
 from firm_hdl.vhdl.uses import trim
 
 __all__ = ["Declared", "Values"]
@@ -46,7 +46,7 @@ class Declared:
             return f"{self.name}({low})"
         return f"{self.name}({low + width - 1} downto {low})"
 
-    def accept(self, value: Text, width: int) -> str:
+    def accept(self, value: Expression, width: int) -> str:
         """Write a value as what may be assigned to `width` of its bits."""
         if not self.vector or width == 1 or value.operator == "literal":
             return value.text
@@ -100,7 +100,7 @@ class Values:
         """Tell signals that are `std_logic_vector` from those that are `unsigned`."""
         return isinstance(chunk, Slice) and self._declared[chunk.wire].vector
 
-    def logic(self, spec: Spec) -> Text:
+    def logic(self, spec: Spec) -> Expression:
         """Write one bit as `std_logic`."""
         (chunk,) = spec
         if isinstance(chunk, Bits):
@@ -108,7 +108,7 @@ class Values:
         cell = self._folded.get(chunk.wire)
         return self.cells.logic(cell) if cell is not None else atom(self.name(chunk))
 
-    def boolean(self, spec: Spec) -> Text:
+    def boolean(self, spec: Spec) -> Expression:
         """Write one bit as a condition."""
         (chunk,) = spec
         if isinstance(chunk, Bits):
@@ -118,7 +118,7 @@ class Values:
             return self.cells.boolean(cell)
         return infix("=", atom(self.name(chunk)), atom("'1'"))
 
-    def unsigned(self, spec: Spec, width: int | None = None, *, target: bool = False) -> Text:
+    def unsigned(self, spec: Spec, width: int | None = None, *, target: bool = False) -> Expression:
         """Write a value as `unsigned`, zero-extended or cut to `width` bits.
 
         Parameters
@@ -143,11 +143,11 @@ class Values:
             return call("resize", inner, width)
         return self._joined(spec, target)
 
-    def signed(self, spec: Spec) -> Text:
+    def signed(self, spec: Spec) -> Expression:
         """Write a value as `signed`."""
         return call("signed", self.unsigned(spec))
 
-    def extended(self, spec: Spec, width: int, *, signed: bool) -> Text:
+    def extended(self, spec: Spec, width: int, *, signed: bool) -> Expression:
         """Write a value as `unsigned` of `width` bits, extended according to its signedness."""
         natural = spec_width(spec)
         if not signed or natural == 0 or width <= natural:
@@ -159,7 +159,7 @@ class Values:
             return call("repeat_bit", self.logic(spec), width)
         return call("sign_extend", self.unsigned(spec), width)
 
-    def number(self, spec: Spec) -> Text:
+    def number(self, spec: Spec) -> Expression:
         """Write a value as a natural number, for an index or a distance."""
         value = self.constant(spec)
         if value is not None:
@@ -172,8 +172,8 @@ class Values:
         """Give the number that a value is, if it is a constant one."""
         return constant(spec, signed=signed)
 
-    def _joined(self, spec: Spec, target: bool) -> Text:
-        parts: list[Text] = []
+    def _joined(self, spec: Spec, target: bool) -> Expression:
+        parts: list[Expression] = []
         index = len(spec) - 1
         while index >= 0:
             used, text = self._sign_run(spec, index)
@@ -188,7 +188,7 @@ class Values:
         joined = chain("&", *parts)
         return joined if target else atom(f"unsigned'({joined.text})")
 
-    def _chunk(self, chunk: Chunk) -> Text:
+    def _chunk(self, chunk: Chunk) -> Expression:
         if isinstance(chunk, Bits):
             return atom(bit_literal(chunk.text) if chunk.width == 1 else literal(chunk.text))
         cell = self._folded.get(chunk.wire)
@@ -197,7 +197,7 @@ class Values:
         name = atom(self.name(chunk))
         return call("unsigned", name) if self.is_vector(chunk) and chunk.width > 1 else name
 
-    def _sign_run(self, spec: Spec, index: int) -> tuple[int, Text]:
+    def _sign_run(self, spec: Spec, index: int) -> tuple[int, Expression]:
         """Recognize a sign extension: top bits over and over, then what they are the top of."""
         used = _run_length(spec, index)
         below = index - used
@@ -215,7 +215,7 @@ class Values:
             return 0, atom("")
         return used + 1, call("sign_extend", self._chunk(chunk), chunk.width + used)
 
-    def _repeated(self, spec: Spec, index: int) -> tuple[int, Text]:
+    def _repeated(self, spec: Spec, index: int) -> tuple[int, Expression]:
         used = _run_length(spec, index)
         if used < 2 or spec[index].width != 1:
             return 0, atom("")
@@ -230,10 +230,10 @@ def _run_length(spec: Spec, index: int) -> int:
     return index - end
 
 
-def _constant(bits: str, *, target: bool) -> Text:
+def _constant(bits: str, *, target: bool) -> Expression:
     """Write a constant; nothing but its context tells the type of a literal."""
     if target:
-        return Text(literal(bits), "literal")
+        return Expression(literal(bits), "literal")
     if len(bits) > 8 and "1" not in bits:
         return call("to_unsigned", 0, len(bits))
     return atom(f"unsigned'({literal(bits)})")

@@ -60,7 +60,7 @@ class Graph:
             item for item in module.items if isinstance(item, Process) and _target(item) is not None
         ]
         self.drives: list[tuple[Spec, Spec]] = []
-        self.watches: list[tuple[Spec, Spec]] = []
+        self.aliases: list[tuple[Spec, Spec]] = []
         self.register_of: dict[str, Cell] = {}
         self.next_state: dict[str, Process] = {}
         self.name_of: dict[str, str] = {}
@@ -159,7 +159,7 @@ class Graph:
             if wire.direction is not None or wire.name in read:
                 self.drives.append((target, value))
             elif not self._is_echo(wire.name, value):
-                self.watches.append((target, value))
+                self.aliases.append((target, value))
 
     def _is_echo(self, name: str, value: Spec) -> bool:
         """Tell names that add nothing: fields of a signal, and a second copy of a name."""
@@ -205,7 +205,7 @@ class Graph:
         for process in self.processes:
             for use in statement_uses(process.body):
                 demand(use.spec)
-        for _, value in self.drives + self.watches:
+        for _, value in self.drives + self.aliases:
             demand(value)
         while pending:
             name = pending.pop()
@@ -219,7 +219,7 @@ class Graph:
         ]
 
     def _adopt_names(self) -> None:
-        for connections in (self.drives, self.watches):
+        for connections in (self.drives, self.aliases):
             kept: list[tuple[Spec, Spec]] = []
             for target, value in connections:
                 to, source = target[0], _only(value)
@@ -267,7 +267,7 @@ class Graph:
 
     def _all_specs(self) -> Iterator[Spec]:
         yield from (use.spec for use in self._cell_uses())
-        yield from (value for _, value in self.drives + self.watches)
+        yield from (value for _, value in self.drives + self.aliases)
 
     def _all_uses(self) -> Iterator[Use]:
         for cell in self.cells:
@@ -280,7 +280,7 @@ class Graph:
                 yield from statement_uses(process.body)
         for process in self.processes:
             yield from statement_uses(process.body)
-        for _, value in self.drives + self.watches:
+        for _, value in self.drives + self.aliases:
             yield Use(value, True)
 
     def _fold(self) -> None:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from firm_hdl.rtlil.ir import Bits, Cell, Memory, Slice, Spec, bits_of, cut, spec_width
 from firm_hdl.vhdl.expr import Declared, Values
-from firm_hdl.vhdl.text import Text, atom, bit_literal, chain, infix, literal
+from firm_hdl.vhdl.text import Expression, atom, bit_literal, chain, infix, literal
 from firm_hdl.vhdl.uses import enable_runs, int_parameter
 
 __all__ = ["MemoryText", "edge", "memory_id"]
@@ -113,7 +113,7 @@ class MemoryText:
             else:
                 yield self._direct_read(cell)
 
-    def _guard(self, address: Spec) -> Text | None:
+    def _guard(self, address: Spec) -> Expression | None:
         """Write the test that an address is one of a word, if there are others."""
         if self._memory.size >= 1 << spec_width(address):
             return None
@@ -192,7 +192,7 @@ class MemoryText:
     def _bypass(self, cell: Cell, write: Cell) -> Iterator[str]:
         target, values = self._target(cell), self._values
         here, there = cell.ports["ADDR"], write.ports["ADDR"]
-        same: list[Text] = []
+        same: list[Expression] = []
         if values.constant(here) is not None and values.constant(there) is not None:
             if values.constant(here) != values.constant(there):
                 return

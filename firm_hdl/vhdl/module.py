@@ -84,7 +84,7 @@ class ModuleWriter:
     def names(self) -> EntityNames:
         """Tell what everything is called."""
         names, graph = self._names, self._graph
-        signals = {wire: item.name for wire, item in (names.declared | names.watches).items()}
+        signals = {wire: item.name for wire, item in (names.declared | names.aliases).items()}
         signals.update(
             (owner, names.declared[wire].name)
             for wire, owner in graph.name_of.items()
@@ -165,7 +165,7 @@ class ModuleWriter:
         yield from _titled("Combinational signals.", self._signals(others))
         yield from _titled(
             "More names of values, for whoever looks at a simulation.",
-            self._signals(names.watches),
+            self._signals(names.aliases),
         )
         for memory in self._memories():
             yield ""
@@ -206,7 +206,7 @@ class ModuleWriter:
         """Hand attributes of signals, such as ``keep``, on to tools."""
         types: dict[str, str] = {}
         uses: list[str] = []
-        for wire, item in {**self._names.signals, **self._names.watches}.items():
+        for wire, item in {**self._names.signals, **self._names.aliases}.items():
             owner = self._graph.name_of.get(wire, wire)
             attributes: dict[str, Value] = {
                 **self._module.wires[wire].attributes,
@@ -254,7 +254,7 @@ class ModuleWriter:
         yield from self._registers.processes()
         yield self._body.connections(graph.drives)
         yield self._outputs()
-        yield self._body.connections(graph.watches)
+        yield self._body.connections(graph.aliases)
         for cell in graph.cells:
             if cell.kind in ("$check", "$print"):
                 yield message(cell, self._values, self._module.name)

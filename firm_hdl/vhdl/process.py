@@ -22,7 +22,7 @@ from firm_hdl.rtlil.ir import (
     spec_width,
 )
 from firm_hdl.vhdl.expr import Declared, Values
-from firm_hdl.vhdl.text import Text, atom, chain, infix, literal
+from firm_hdl.vhdl.text import Expression, atom, chain, infix, literal
 
 __all__ = ["Arm", "Statements", "flatten", "merged"]
 
@@ -37,7 +37,7 @@ Comment = Callable[[Spec, str], str]
 class Arm:
     """One arm of a chain: its condition (`None`: otherwise) and its statements."""
 
-    condition: Text | None
+    condition: Expression | None
     body: tuple[Statement, ...]
 
 
@@ -173,13 +173,13 @@ class Statements:
             yield from (f"  {line}" for line in lines)
             yield end
 
-    def value(self, spec: Spec, *, whole: bool = True) -> Text:
+    def value(self, spec: Spec, *, whole: bool = True) -> Expression:
         """Write what is assigned. `whole`: to a signal, not a part of one."""
         if spec_width(spec) == 1:
             return self._values.logic(spec)
         constant = self._values.constant(spec)
         if whole and constant == 0:
-            return Text("(others => '0')", "literal")
+            return Expression("(others => '0')", "literal")
         return self._values.unsigned(spec, target=True)
 
     def arms(self, switch: Switch) -> list[Arm]:
@@ -228,8 +228,8 @@ class Statements:
         opposite = "1" if switch.cases[0].patterns[0] == "0" else "0"
         return [Arm(self._test(switch.selector, opposite), body)]
 
-    def _test(self, selector: Spec, pattern: str) -> Text:
-        tests: list[Text] = []
+    def _test(self, selector: Spec, pattern: str) -> Expression:
+        tests: list[Expression] = []
         position = len(pattern)
         for chunk in selector:
             part = pattern[position - chunk.width : position]
@@ -238,7 +238,7 @@ class Statements:
                 tests.append(self._equal(cut((chunk,), low, len(bits)), bits))
         return chain("and", *tests) if tests else atom("true")
 
-    def _equal(self, spec: Spec, bits: str) -> Text:
+    def _equal(self, spec: Spec, bits: str) -> Expression:
         constant = self._values.constant(spec)
         if constant is not None:
             return atom("true" if constant == int(bits, 2) else "false")

@@ -7,7 +7,17 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["Text", "atom", "bit_literal", "call", "chain", "infix", "literal", "prefix", "wrap"]
+__all__ = [
+    "Expression",
+    "atom",
+    "bit_literal",
+    "call",
+    "chain",
+    "infix",
+    "literal",
+    "prefix",
+    "wrap",
+]
 
 COLUMNS = 100
 
@@ -23,7 +33,7 @@ _LEVELS = {
 _ATOM = 9
 
 
-class Text(NamedTuple):
+class Expression(NamedTuple):
     """An expression; `operator` is its outermost one, which decides who needs parentheses."""
 
     text: str
@@ -39,33 +49,35 @@ class Text(NamedTuple):
         return self.text if self.level >= level else f"({self.text})"
 
 
-def atom(text: str) -> Text:
+def atom(text: str) -> Expression:
     """Make an expression that never needs parentheses."""
-    return Text(text)
+    return Expression(text)
 
 
-def call(function: str, *arguments: Text | str | int) -> Text:
+def call(function: str, *arguments: Expression | str | int) -> Expression:
     """Call a function."""
-    parts = (part.text if isinstance(part, Text) else str(part) for part in arguments)
-    return Text(f"{function}({', '.join(parts)})")
+    parts = (part.text if isinstance(part, Expression) else str(part) for part in arguments)
+    return Expression(f"{function}({', '.join(parts)})")
 
 
-def prefix(operator: str, operand: Text) -> Text:
+def prefix(operator: str, operand: Expression) -> Expression:
     """Apply `not`, or a reduction such as `or`."""
-    return Text(f"{operator} {operand.inside(_ATOM)}", "not" if operator == "not" else "reduce")
+    return Expression(
+        f"{operator} {operand.inside(_ATOM)}", "not" if operator == "not" else "reduce"
+    )
 
 
-def infix(operator: str, left: Text, right: Text) -> Text:
+def infix(operator: str, left: Expression, right: Expression) -> Expression:
     """Apply a binary operator. Of a chain of one operator, the left part needs no parentheses."""
     level = _LEVELS[operator]
     if level == 1:
         # VHDL does not mix logical operators, nor `not` with a relation, without parentheses.
         return chain(operator, left, right)
     strict = level + (level == 2)
-    return Text(f"{left.inside(strict)} {operator} {right.inside(level + 1)}", operator)
+    return Expression(f"{left.inside(strict)} {operator} {right.inside(level + 1)}", operator)
 
 
-def chain(operator: str, *operands: Text) -> Text:
+def chain(operator: str, *operands: Expression) -> Expression:
     """Join any number of operands by an associative operator."""
     if len(operands) == 1:
         return operands[0]
@@ -73,7 +85,7 @@ def chain(operator: str, *operands: Text) -> Text:
     parts = (
         part.text if part.operator == operator else part.inside(level + 1) for part in operands
     )
-    return Text(f" {operator} ".join(parts), operator)
+    return Expression(f" {operator} ".join(parts), operator)
 
 
 def bit_literal(bits: str) -> str:

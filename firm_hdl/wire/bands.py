@@ -9,15 +9,15 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
-from firm_hdl.wire import Gap, Layout, Loop, Node, Run, Scalar, Trigger
+from firm_hdl.wire import Gap, Layout, LoopNode, Node, RunNode, Scalar, Trigger
 
-__all__ = ["Band", "Cell", "Grid", "Note", "bands"]
+__all__ = ["Band", "BandCell", "Grid", "Note", "bands"]
 
 Kind: TypeAlias = Literal["header", "padding", "length", "field"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Cell:
+class BandCell:
     """Bytes that belong together; `at` counts from the start of the grid."""
 
     at: int
@@ -42,7 +42,7 @@ class Grid:
 
     depth: int
     start: int | None
-    cells: list[Cell] = field(default_factory=list)
+    cells: list[BandCell] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,7 +88,7 @@ class _Drawing:
             self.bands.append(self.grid)
         cells = self.grid.cells
         at = cells[-1].at + cells[-1].bytes if cells else 0
-        cells.append(Cell(at=at, bytes=size, kind=kind, name=name, type=type_))
+        cells.append(BandCell(at=at, bytes=size, kind=kind, name=name, type=type_))
         if self.at is not None:
             self.at += size
 
@@ -112,12 +112,12 @@ class _Drawing:
                     self.cell("field", node.type.bytes, name, str(node.type))
                 case Trigger():
                     self.note("data", f"{name}: no bytes")
-                case Run():
+                case RunNode():
                     self.run(node, name)
-                case Loop():
+                case LoopNode():
                     self.loop(node, name, header)
 
-    def run(self, node: Run, name: str) -> None:
+    def run(self, node: RunNode, name: str) -> None:
         if node.count is not None:
             self.gap(node.item_gap)
             self.cell("field", node.count * node.item.bytes, name, f"{node.item}[{node.count}]")
@@ -131,12 +131,12 @@ class _Drawing:
             text += f", behind {node.item_gap.bytes} bytes of padding if there are any"
         self.note("data", text + (", and a NUL that length counts" if node.terminated else ""))
 
-    def length(self, node: Run | Loop, name: str) -> None:
+    def length(self, node: RunNode | LoopNode, name: str) -> None:
         if node.gap is not None:
             self.gap(node.gap)
             self.cell("length", 4, f"{name}.length", "uint32")
 
-    def loop(self, node: Loop, name: str, header: int) -> None:
+    def loop(self, node: LoopNode, name: str, header: int) -> None:
         self.length(node, name)
         most = "" if node.bound is None else f" (at most {node.bound})"
         times = f"length{most} times" if node.count is None else f"{node.count} times"

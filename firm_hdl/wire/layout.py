@@ -28,7 +28,18 @@ from firm_hdl.wire.formats import RULES
 from firm_hdl.wire.refusals import refusals
 from firm_hdl.wire.rules import WireRules
 
-__all__ = ["Gap", "Layout", "Loop", "Node", "Path", "Run", "Scalar", "Trigger", "lay_out", "walk"]
+__all__ = [
+    "Gap",
+    "Layout",
+    "LoopNode",
+    "Node",
+    "Path",
+    "RunNode",
+    "Scalar",
+    "Trigger",
+    "lay_out",
+    "walk",
+]
 
 Path: TypeAlias = "tuple[str, ...]"
 LENGTH = PRIMITIVES["ros2"]["uint32"]
@@ -68,7 +79,7 @@ class Trigger:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Run:
+class RunNode:
     """Primitives in a row: a string, or an array or a sequence of primitives.
 
     Attributes
@@ -95,10 +106,10 @@ class Run:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Loop:
+class LoopNode:
     """Elements in a row that are not primitives.
 
-    Attributes are as for :class:`Run`; `body` is one element, placed wherever any of them may
+    Attributes are as for :class:`RunNode`; `body` is one element, placed wherever any of them may
     start.
     """
 
@@ -110,7 +121,7 @@ class Loop:
     min_body_bytes: int
 
 
-Node: TypeAlias = "Scalar | Trigger | Run | Loop"
+Node: TypeAlias = "Scalar | Trigger | RunNode | LoopNode"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -164,7 +175,7 @@ def walk(nodes: tuple[Node, ...]) -> Iterator[Node]:
     """Yield all nodes in wire order, a loop before its body."""
     for node in nodes:
         yield node
-        if isinstance(node, Loop):
+        if isinstance(node, LoopNode):
             yield from walk(node.body)
 
 
@@ -255,9 +266,9 @@ class _Builder:
             case Array() | Sequence():
                 return (self.loop(kind, path, at),)
 
-    def text(self, kind: String, path: Path, at: int) -> Run:
+    def text(self, kind: String, path: Path, at: int) -> RunNode:
         # wstring: each UTF-16 unit in four bytes, without a NUL, in today's ROS 2 middlewares.
-        return Run(
+        return RunNode(
             path=path,
             gap=self.gap(LENGTH, at),
             item_gap=Gap(align=1, bytes=0),
@@ -267,10 +278,10 @@ class _Builder:
             terminated=self.rules.terminated and not kind.wide,
         )
 
-    def run(self, kind: Array | Sequence, item: Primitive, path: Path, at: int) -> Run:
+    def run(self, kind: Array | Sequence, item: Primitive, path: Path, at: int) -> RunNode:
         counted = isinstance(kind, Array)
         start = at if counted else self.past(LENGTH, at)
-        return Run(
+        return RunNode(
             path=path,
             gap=None if counted else self.gap(LENGTH, at),
             item_gap=self.gap(item, start),
@@ -280,12 +291,12 @@ class _Builder:
             terminated=False,
         )
 
-    def loop(self, kind: Array | Sequence, path: Path, at: int) -> Loop:
+    def loop(self, kind: Array | Sequence, path: Path, at: int) -> LoopNode:
         counted = isinstance(kind, Array)
         count = kind.count if isinstance(kind, Array) else None
         start = at if counted else self.past(LENGTH, at)
         entry, _ = rs.repeat(start, lambda now: self.after(kind.element, now), count)
-        return Loop(
+        return LoopNode(
             path=path,
             gap=None if counted else self.gap(LENGTH, at),
             count=count,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from xml.sax.saxutils import escape
 
 from firm_hdl.wire import Layout
-from firm_hdl.wire.bands import Band, Cell, Grid, Note, bands
+from firm_hdl.wire.bands import Band, BandCell, Grid, Note, bands
 
 __all__ = ["to_svg"]
 
@@ -42,7 +42,7 @@ STYLE = (
 class _Piece:
     """A cell's part of a row, which may stand for a number of rows that are left out."""
 
-    cell: Cell
+    cell: BandCell
     row: int
     first: int
     bytes: int
@@ -122,7 +122,7 @@ def _grid(grid: Grid, left: int, y: int) -> tuple[list[str], int, int]:
     return shapes, len(rows) * ROW_HEIGHT, right
 
 
-def _pieces(cell: Cell) -> Iterator[_Piece]:
+def _pieces(cell: BandCell) -> Iterator[_Piece]:
     """Cut a cell into rows; of many, only the outer ones."""
     end = cell.at + cell.bytes
     rows = list(range(cell.at // ROW_BYTES, -(-end // ROW_BYTES)))

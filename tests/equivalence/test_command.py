@@ -10,12 +10,12 @@ import pytest
 
 from firm_hdl.cli import main
 from firm_hdl.equivalence import Proof, Tools, command, converters, tools
-from firm_hdl.equivalence.converters import Attempt, Task
+from firm_hdl.equivalence.converters import Attempt, ProofTask
 from firm_hdl.equivalence.covering import covering_tasks, write_definitions
 from firm_hdl.jobs.programs import find_ghdl
 from tests.frontend.recordings import make_recording
 
-TASK = Task(distro="lyrical", name="a/msg/B", direction="serializer")
+TASK = ProofTask(distro="lyrical", name="a/msg/B", direction="serializer")
 EQUAL = Attempt(proof=Proof(result="equal", registers=1, claims=1, seconds=1.0))
 UNEQUAL = Attempt(
     proof=Proof(
@@ -172,7 +172,9 @@ def test_unknown_types_are_an_error(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_what_cannot_be_built_is_a_failure() -> None:
-    attempt = converters.attempt(Task(distro="lyrical", name="no/msg/T", direction="serializer"))
+    attempt = converters.attempt(
+        ProofTask(distro="lyrical", name="no/msg/T", direction="serializer")
+    )
     assert attempt.result == "failed"
     assert "no/msg/T" in attempt.problem or "package 'no'" in attempt.problem
 

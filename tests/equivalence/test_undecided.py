@@ -15,7 +15,7 @@ from amaranth.hdl import Module, Signal
 from firm_hdl.cli import main
 from firm_hdl.equivalence import Proof, ProofError, Tools, command, converters, prove
 from firm_hdl.equivalence import proof as proof_module
-from firm_hdl.equivalence.converters import Attempt, Task
+from firm_hdl.equivalence.converters import Attempt, ProofTask
 from firm_hdl.equivalence.miter import Claim, Miter
 from firm_hdl.equivalence.solve import solve
 from firm_hdl.equivalence.tools import ToolError, TooSlowError
@@ -23,7 +23,7 @@ from firm_hdl.vhdl.convert import Vhdl, convert
 
 # Two primes of 31 bits: whoever wants to know whether the output is ever 1 has to find them.
 PRODUCT = 1500450271 * 1836311903
-TASK = Task(distro="lyrical", name="std_msgs/msg/Bool", direction="serializer")
+TASK = ProofTask(distro="lyrical", name="std_msgs/msg/Bool", direction="serializer")
 
 
 def rtlil_of(*, is_zero: bool) -> str:

@@ -16,7 +16,7 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DISTROS, Library
 from firm_hdl.metrics import Analyses, metrics_of
 from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, String
-from firm_hdl.wire import Loop, Run, Scalar, Trigger, lay_out, walk
+from firm_hdl.wire import LoopNode, RunNode, Scalar, Trigger, lay_out, walk
 from tests.steps import calls_at_most
 
 from ..frontend.workspace import library
@@ -42,16 +42,16 @@ def of_layout(message, wire):
         return isinstance(kind, String)
 
     for node in walk(lay_out(message, wire).nodes):
-        counts["leaves"] += not isinstance(node, Loop)
+        counts["leaves"] += not isinstance(node, LoopNode)
         match node:
             case Scalar():
                 place(node.gap)
-            case Run():
+            case RunNode():
                 if node.gap is not None:
                     place(node.gap)
                 if not has_text(node.path):
                     place(node.item_gap)
-            case Loop():
+            case LoopNode():
                 if node.gap is not None:
                     place(node.gap)
             case Trigger():

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from firm_hdl.model import PRIMITIVES
 from firm_hdl.plan import build_plan, encode
 from firm_hdl.sim.values import to_transfers
-from firm_hdl.wire import Gap, Loop, Run, Scalar, Trigger, lay_out, walk
+from firm_hdl.wire import Gap, LoopNode, RunNode, Scalar, Trigger, lay_out, walk
 from tests.plan.reference import Reference
 from tests.strategies import definitions, make, values
 
@@ -26,10 +26,10 @@ def gaps_of(layout):
         match node:
             case Scalar():
                 result[node.path] = node.gap
-            case Run() | Loop():
+            case RunNode() | LoopNode():
                 if node.gap is not None:
                     result[(*node.path, "length")] = node.gap
-                if isinstance(node, Run):
+                if isinstance(node, RunNode):
                     result[(*node.path, "items")] = node.item_gap
     return result
 
