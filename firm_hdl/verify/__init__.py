@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from firm_hdl.verify.cases.make import Case, make_cases
-    from firm_hdl.verify.references.oracle import Oracle, distro_oracle
-    from firm_hdl.verify.systems.tasks import Task, collect_tasks
+    from firm_hdl.verify.references.oracle import RosbagsOracle, distro_oracle
+    from firm_hdl.verify.systems.tasks import TypeUnderTest, collect_tasks
     from firm_hdl.verify.ts3.acceptance import accept, accept_message
     from firm_hdl.verify.ts3.options import Options, Result
     from firm_hdl.verify.ts3.runner import run_tasks
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 __all__ = [
     "Case",
     "Options",
-    "Oracle",
     "Result",
-    "Task",
+    "RosbagsOracle",
+    "TypeUnderTest",
     "accept",
     "accept_message",
     "collect_tasks",
@@ -34,9 +34,9 @@ __all__ = [
 _HOME = {
     "Case": "cases.make",
     "Options": "ts3.options",
-    "Oracle": "references.oracle",
+    "RosbagsOracle": "references.oracle",
     "Result": "ts3.options",
-    "Task": "systems.tasks",
+    "TypeUnderTest": "systems.tasks",
     "accept": "ts3.acceptance",
     "accept_message": "ts3.acceptance",
     "collect_tasks": "systems.tasks",

@@ -11,7 +11,12 @@ from firm_hdl.frontend import DEFAULT_DISTRO
 from firm_hdl.frontend.search import workspace_folders
 from firm_hdl.jobs.executors import PROCESSES
 from firm_hdl.verify.choices import LONGEST
-from firm_hdl.verify.systems.tasks import Task, UnknownTypeError, collect_own, collect_tasks
+from firm_hdl.verify.systems.tasks import (
+    TypeUnderTest,
+    UnknownTypeError,
+    collect_own,
+    collect_tasks,
+)
 from firm_hdl.wire import Wire
 
 __all__ = ["Request", "Workload"]
@@ -120,7 +125,7 @@ class Workload:
             self._search_workspace()
 
     @cached_property
-    def tasks(self) -> list[Task]:
+    def tasks(self) -> list[TypeUnderTest]:
         """The types that are tested.
 
         Raises

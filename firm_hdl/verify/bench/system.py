@@ -18,7 +18,7 @@ from firm_hdl.verify.bench.run import BenchResult, BenchRun, run_bench
 from firm_hdl.verify.results.records import Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.systems.system import Judged, Recorder, System, judged, wire_of
-from firm_hdl.verify.systems.tasks import Task
+from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.wire import Wire
 
 __all__ = ["Benches"]
@@ -47,7 +47,7 @@ class Benches(System):
 
     def __init__(
         self,
-        tasks: Sequence[Task],
+        tasks: Sequence[TypeUnderTest],
         *,
         paths: Iterable[str] = (),
         wire: Wire | None = None,

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from firm_hdl.plan import BeginRun, Edge, Plan, decode, encode
 from firm_hdl.plan.edges import edges
 from firm_hdl.verify.cases.make import Case, make_cases
-from firm_hdl.verify.references.oracle import Oracle
+from firm_hdl.verify.references.oracle import RosbagsOracle
 
 __all__ = ["Coverage", "bare_packets", "coverage", "more_cases"]
 
@@ -57,7 +57,7 @@ def coverage(plan: Plan, packets: Iterable[bytes]) -> Coverage:
 
 
 def more_cases(
-    oracle: Oracle, name: str, plan: Plan, cases: Sequence[Case], *, seed: int = 0
+    oracle: RosbagsOracle, name: str, plan: Plan, cases: Sequence[Case], *, seed: int = 0
 ) -> list[Case]:
     """Return cases that take decisions which none of the given ones takes.
 

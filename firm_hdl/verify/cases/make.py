@@ -19,7 +19,13 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys.base import normalize_fieldname
 
 from firm_hdl.plan import DecodeStatus
-from firm_hdl.verify.references.oracle import EMPTY_MEMBER, SIZES, FieldType, Oracle, Transfers
+from firm_hdl.verify.references.oracle import (
+    EMPTY_MEMBER,
+    SIZES,
+    FieldType,
+    RosbagsOracle,
+    Transfers,
+)
 
 __all__ = ["Case", "make_cases", "run_lengths"]
 
@@ -99,7 +105,7 @@ def run_lengths(item_bytes: int, bus_bytes: int, bound: int | None) -> list[int]
 
 
 def make_cases(
-    oracle: Oracle,
+    oracle: RosbagsOracle,
     name: str,
     *,
     wire: str,
@@ -152,7 +158,7 @@ def _more(number: int, most: int | None, visits: dict[tuple[str, ...], _Visits])
 class _Maker:
     """Values of one case. `visits` goes from case to case."""
 
-    oracle: Oracle
+    oracle: RosbagsOracle
     bus_bytes: int
     rng: random.Random
     mode: str

@@ -22,7 +22,7 @@ from firm_hdl.verify.references.objects import full_text
 from firm_hdl.verify.references.values import shown
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.systems.system import Judged
-from firm_hdl.verify.systems.tasks import Task
+from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.wire import Wire
 
 __all__ = ["find_clients", "run_sut"]
@@ -58,7 +58,9 @@ def find_clients(names: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
     return versions, missing
 
 
-def run_sut(tasks: Sequence[Task], options: SutOptions, jobs: int | None = None) -> list[Judged]:
+def run_sut(
+    tasks: Sequence[TypeUnderTest], options: SutOptions, jobs: int | None = None
+) -> list[Judged]:
     """Judge libraries on types, print what came of it, and return it.
 
     Parameters
@@ -82,7 +84,7 @@ def run_sut(tasks: Sequence[Task], options: SutOptions, jobs: int | None = None)
     options = replace(options, here=here)
     for line in _judges(_wires(tasks, options), options, versions, missing):
         print(line)
-    trials: list[tuple[Task, Trial]] = []
+    trials: list[tuple[TypeUnderTest, Trial]] = []
     with (
         tqdm(total=len(tasks), unit="type", desc="client libraries", disable=None) as bar,
         closing(judge_types(tasks, options, jobs)) as run,
@@ -104,7 +106,7 @@ def run_sut(tasks: Sequence[Task], options: SutOptions, jobs: int | None = None)
     ]
 
 
-def _wires(tasks: Sequence[Task], options: SutOptions) -> list[Wire]:
+def _wires(tasks: Sequence[TypeUnderTest], options: SutOptions) -> list[Wire]:
     if options.wire is not None:
         return [options.wire]
     dialects = {DISTROS[task.distro].dialect for task in tasks}
@@ -129,7 +131,9 @@ def _judges(
                 yield f"{library} {versions[library]} on {wire}: judged by {said}"
 
 
-def _differences(trials: Sequence[tuple[Task, Trial]], options: SutOptions) -> Iterator[str]:
+def _differences(
+    trials: Sequence[tuple[TypeUnderTest, Trial]], options: SutOptions
+) -> Iterator[str]:
     """Print what is new, the first few of each library with the smallest case."""
     shown_of: Counter[tuple[str, str]] = Counter()
     for task, trial in sorted(trials, key=lambda each: (each[1].library, each[1].type)):

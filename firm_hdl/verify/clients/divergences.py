@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from firm_hdl.model import FieldType, Message, Primitive, String
-from firm_hdl.verify.clients.finding import Change, Known
+from firm_hdl.verify.clients.finding import Change, KnownDivergence
 from firm_hdl.verify.references.values import Plain, is_nan
 
 __all__ = ["KNOWN"]
@@ -74,19 +74,21 @@ _FAST_CDR = ("fastcdr", "fastcdr-2.2", "fastcdr-2.3")
 _CUTS = ("cut-1", "cut-half", "cut-all", "long-text", "long-items")
 
 
-def _entry(key: str, libraries: str | tuple[str, ...], wires: str, text: str, **more: Any) -> Known:
+def _entry(
+    key: str, libraries: str | tuple[str, ...], wires: str, text: str, **more: Any
+) -> KnownDivergence:
     names = (libraries,) if isinstance(libraries, str) else libraries
-    return Known(key=key, libraries=names, wires=wires, text=text, **more)
+    return KnownDivergence(key=key, libraries=names, wires=wires, text=text, **more)
 
 
-KNOWN: tuple[Known, ...] = (
+KNOWN: tuple[KnownDivergence, ...] = (
     # What they make of values.
     _entry(
         "python-signalling-nan",
         _PYTHON,
         "ros1 cdr",
         "A signalling NaN of 4 bytes becomes a quiet one, as any Python float.",
-        tame=_quiet,
+        take_out=_quiet,
         same=_quiet,
     ),
     _entry(
@@ -102,7 +104,7 @@ KNOWN: tuple[Known, ...] = (
         "rosbags",
         "cdr",
         "A byte is -128 to 127; in ROS 2 it is 0 to 255.",
-        tame=_number("byte", 0x7F),
+        take_out=_number("byte", 0x7F),
         same=_number("byte", 0xFF),
     ),
     _entry(
@@ -111,7 +113,7 @@ KNOWN: tuple[Known, ...] = (
         "ros1 cdr",
         "Seconds of a ROS 1 time are signed, nanoseconds of a duration are not; in ROS 1 it is the "
         "other way round.",
-        tame=_tame_times,
+        take_out=_tame_times,
         same=_same_times,
     ),
     _entry(
@@ -119,7 +121,7 @@ KNOWN: tuple[Known, ...] = (
         "mcap-ros2",
         "cdr",
         "A char is -128 to 127; in ROS 2 it is 0 to 255.",
-        tame=_number("char", 0x7F),
+        take_out=_number("char", 0x7F),
         same=_number("char", 0xFF),
     ),
     _entry(
@@ -127,7 +129,7 @@ KNOWN: tuple[Known, ...] = (
         ("fastcdr", "fastcdr-2.2"),
         "cdr",
         "A string and a wstring are written up to the first NUL.",
-        tame=_cut,
+        take_out=_cut,
     ),
     _entry(
         "fastcdr-no-nul-inside",

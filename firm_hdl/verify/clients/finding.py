@@ -12,7 +12,7 @@ from firm_hdl.verify.references.client import Refusal
 from firm_hdl.verify.references.values import Plain
 from firm_hdl.wire import Wire
 
-__all__ = ["Change", "Finding", "Known", "changed"]
+__all__ = ["Change", "Finding", "KnownDivergence", "changed"]
 
 Change: TypeAlias = "Callable[[FieldType, Plain], Plain]"
 """Returns what a text, a number or a ROS 1 time is to be replaced by."""
@@ -55,7 +55,7 @@ class Finding:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Known:
+class KnownDivergence:
     """One known difference.
 
     Attributes
@@ -68,7 +68,7 @@ class Known:
         ``ros1``, ``cdr``, or both.
     text : str
         What it does, in one sentence.
-    tame : callable or None
+    take_out : callable or None
         Takes what it is about out of a value, so that all write the same.
     same : callable or None
         Takes it out of what was read.
@@ -82,7 +82,7 @@ class Known:
     libraries: tuple[str, ...]
     wires: str
     text: str
-    tame: Change | None = None
+    take_out: Change | None = None
     same: Change | None = None
     whats: tuple[str, ...] = ()
     answer: Literal["takes", "refuses"] | None = None

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from firm_hdl.model import Message
 from firm_hdl.verify.clients.divergences import KNOWN
-from firm_hdl.verify.clients.finding import Finding, Known, changed
+from firm_hdl.verify.clients.finding import Finding, KnownDivergence, changed
 from firm_hdl.verify.references.client import Codec, Refusal, UnsupportedError
 from firm_hdl.verify.references.clients import client
 from firm_hdl.verify.references.values import Plain
@@ -42,12 +42,12 @@ def known_keys(finding: Finding, theirs: Codec, right: Codec) -> Sequence[str]:
 
 
 def _explained_writing(
-    finding: Finding, entries: Sequence[Known], theirs: Codec, right: Codec
+    finding: Finding, entries: Sequence[KnownDivergence], theirs: Codec, right: Codec
 ) -> Sequence[str]:
     found, value = [], finding.value
     for entry in entries:
-        if entry.tame is not None:
-            tamed = changed(finding.message, value, entry.tame)
+        if entry.take_out is not None:
+            tamed = changed(finding.message, value, entry.take_out)
             if tamed != value:
                 found.append(entry.key)
             value = tamed

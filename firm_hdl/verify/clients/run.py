@@ -19,7 +19,7 @@ from firm_hdl.verify.references.values import Plain, from_objects
 from firm_hdl.verify.results.verdict import NotJudged, NotJudgedError
 from firm_hdl.verify.systems.again import command_again
 from firm_hdl.verify.systems.libraries import library_of
-from firm_hdl.verify.systems.tasks import Task
+from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["SutOptions", "contest_of", "judge_type", "judge_types", "reference_of"]
@@ -139,8 +139,8 @@ def _values(distro: str, name: str, wire: Wire, options: SutOptions) -> list[Pla
 
 
 def judge_types(
-    tasks: Sequence[Task], options: SutOptions, jobs: int | None
-) -> Generator[tuple[Task, list[Trial]], None, None]:
+    tasks: Sequence[TypeUnderTest], options: SutOptions, jobs: int | None
+) -> Generator[tuple[TypeUnderTest, list[Trial]], None, None]:
     """Judge all libraries on types, and yield what comes of each, as it comes."""
     work = [(task, (task.distro, task.name, options)) for task in tasks]
     for task, trials in in_processes(judge_type, work, jobs):

@@ -19,7 +19,7 @@ from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.base import normalize_fieldname
 from rosbags.typesys.store import Typestore
 
-__all__ = ["DISTRO_STORES", "FieldType", "Oracle", "Transfers", "distro_oracle"]
+__all__ = ["DISTRO_STORES", "FieldType", "RosbagsOracle", "Transfers", "distro_oracle"]
 
 DISTRO_STORES = {
     "noetic": Stores.ROS1_NOETIC,
@@ -46,7 +46,7 @@ ROS1_TIMES = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 
 
 @dataclass(frozen=True, slots=True)
-class Oracle:
+class RosbagsOracle:
     """rosbags' view of a set of types.
 
     Attributes
@@ -101,17 +101,17 @@ class Oracle:
 
 
 @cache
-def distro_oracle(distro: str) -> Oracle:
+def distro_oracle(distro: str) -> RosbagsOracle:
     """Return the oracle of a distribution."""
     store = get_typestore(DISTRO_STORES[distro])
-    return Oracle(store, "ros1" if distro == "noetic" else "ros2")
+    return RosbagsOracle(store, "ros1" if distro == "noetic" else "ros2")
 
 
 @dataclass(slots=True)
 class _Walk:
     """The leaves of one object, in wire order."""
 
-    oracle: Oracle
+    oracle: RosbagsOracle
     wire: str
     bus_bytes: int
     found: Transfers

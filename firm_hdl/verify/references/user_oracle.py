@@ -14,7 +14,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from firm_hdl import model
 from firm_hdl.model import IDL_PRIMITIVES, Message, Primitive, String, element_of
-from firm_hdl.verify.references.oracle import FieldType, Oracle, distro_oracle
+from firm_hdl.verify.references.oracle import FieldType, RosbagsOracle, distro_oracle
 from firm_hdl.verify.references.wide_oracle import (
     STAND_IN_NOTE,
     WideOracle,
@@ -42,7 +42,7 @@ class Judge:
         What is to be known about it; empty in most cases.
     """
 
-    def __init__(self, oracle: Oracle, name: str, note: str = ""):
+    def __init__(self, oracle: RosbagsOracle, name: str, note: str = ""):
         self.oracle, self.name, self.note = oracle, name, note
 
 
@@ -74,7 +74,7 @@ def judge_of(message: Message, distro: str | None = None, *, stand_in: bool = Fa
     return Judge(oracle, name, _note(message, oracle, name))
 
 
-def resolved_oracle(message: Message, *, stand_in: bool = False) -> Oracle:
+def resolved_oracle(message: Message, *, stand_in: bool = False) -> RosbagsOracle:
     """Return an oracle that has the type and all that it is made of, as they were resolved.
 
     Raises
@@ -143,7 +143,7 @@ def _refuse_wide(message: Message) -> None:
 
 def _oracle(
     message: Message, texts: Mapping[str, str], wide: Mapping[str, str] | None = None
-) -> Oracle:
+) -> RosbagsOracle:
     store = get_typestore(Stores.EMPTY)
     names = {kind.name: oracle_name(kind) for kind in _all_messages(message)}
     try:
@@ -155,10 +155,10 @@ def _oracle(
     except Exception as error:
         said = str(error).strip().splitlines() or [type(error).__name__]
         raise NotJudgedError(f"rosbags refuses the definition: {said[0]}") from None
-    return (WideOracle if wide else Oracle)(store, message.dialect)
+    return (WideOracle if wide else RosbagsOracle)(store, message.dialect)
 
 
-def _unknown(oracle: Oracle, name: str) -> str:
+def _unknown(oracle: RosbagsOracle, name: str) -> str:
     """Return the first type that is named and not there."""
     seen, pending = {name}, [name]
     while pending:
@@ -180,7 +180,7 @@ def _named(kind: FieldType) -> str | None:
     return None if node == Nodetype.BASE else _named(detail[0])
 
 
-def _note(message: Message, oracle: Oracle, name: str) -> str:
+def _note(message: Message, oracle: RosbagsOracle, name: str) -> str:
     """Say whether rosbags reads the texts as we have."""
     texts = {kind.name: kind.text for kind in _all_messages(message)}
     try:

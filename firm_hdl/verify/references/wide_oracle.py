@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import Any
 
 from firm_hdl.model import Array, FieldType, Message, Sequence, String
-from firm_hdl.verify.references.oracle import Oracle, Transfers
+from firm_hdl.verify.references.oracle import RosbagsOracle, Transfers
 
 __all__ = ["STAND_IN_NOTE", "WIDE_MEMBER", "WideOracle", "fit_units", "stand_in_type", "stand_ins"]
 
@@ -53,7 +53,7 @@ def _base_name(text: String) -> str:
     return "Text" if text.bound is None else f"Text{text.bound}"
 
 
-class WideOracle(Oracle):
+class WideOracle(RosbagsOracle):
     """rosbags with messages of numbers for wide texts."""
 
     __slots__ = ()

@@ -6,7 +6,7 @@ from markupsafe import Markup
 
 from firm_hdl.verify.report.charts import counts_bar
 from firm_hdl.verify.report.summary import Summary
-from firm_hdl.verify.report.tables import Cell
+from firm_hdl.verify.report.tables import TableCell
 from firm_hdl.verify.report.templates import environment, text_of
 
 __all__ = ["to_html"]
@@ -33,7 +33,7 @@ def to_html(summary: Summary) -> str:
     return page.render(style=text_of("page.css"), script=text_of("page.js")).lstrip() + "\n"
 
 
-def _cell(cell: Cell) -> Markup:
+def _cell(cell: TableCell) -> Markup:
     kind = cell.verdict.replace(" ", "-")
     if cell.counts is not None:
         return Markup('<td data-v="{}">{}</td>').format(cell.value, Markup(counts_bar(cell.counts)))

@@ -11,12 +11,12 @@ import numpy as np
 
 from firm_hdl.verify.report.outcomes import Counts, NotRun, Outcome, count, outcomes_of
 from firm_hdl.verify.report.stats import Box, Correlation, box_of, correlate, curve_of, share_within
-from firm_hdl.verify.report.verdicts import OracleSum, Said, oracle_sums, said_of
+from firm_hdl.verify.report.verdicts import OracleSum, Remark, oracle_sums, said_of
 from firm_hdl.verify.results.file import Results
 from firm_hdl.verify.results.records import STAGES, Record
 from firm_hdl.verify.results.verdict import Failed, NotJudged
 
-__all__ = ["LIMITS", "CoverageSum", "Curve", "Group", "Run", "Summary", "Trend", "summarise"]
+__all__ = ["LIMITS", "CoverageSum", "Curve", "Group", "RunSummary", "Summary", "Trend", "summarise"]
 
 LIMITS = (0.01, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 60)
 """Seconds that shares of tests are given for."""
@@ -114,7 +114,7 @@ class CoverageSum:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Run:
+class RunSummary:
     """A file of results.
 
     Attributes
@@ -169,8 +169,8 @@ class Summary:
     trends: tuple[Trend, ...]
     coverage: tuple[CoverageSum, ...]
     oracles: tuple[OracleSum, ...]
-    said: tuple[Said, ...]
-    runs: tuple[Run, ...]
+    said: tuple[Remark, ...]
+    runs: tuple[RunSummary, ...]
 
     @property
     def failed(self) -> list[Outcome]:
@@ -361,8 +361,8 @@ def _coverage(suite: str, outcomes: Iterable[Outcome]) -> CoverageSum:
     )
 
 
-def _run(name: str, results: Results) -> Run:
-    return Run(
+def _run(name: str, results: Results) -> RunSummary:
+    return RunSummary(
         name=name,
         options=results.options,
         sessions=results.sessions,

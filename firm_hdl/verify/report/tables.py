@@ -19,8 +19,8 @@ from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, 
 __all__ = [
     "MOST_ROWS",
     "SIGNS",
-    "Cell",
     "Table",
+    "TableCell",
     "circuits_table",
     "coverage_table",
     "cut",
@@ -53,7 +53,7 @@ SIGNS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class TableCell:
     """A cell.
 
     Attributes
@@ -78,18 +78,18 @@ class Table:
     """A table; the headings of numbers end in ``#``."""
 
     headings: tuple[str, ...]
-    rows: tuple[tuple[Cell, ...], ...]
+    rows: tuple[tuple[TableCell, ...], ...]
 
 
-def _count(value: float) -> Cell:
-    return Cell(number(value), value)
+def _count(value: float) -> TableCell:
+    return TableCell(number(value), value)
 
 
-def _time(value: float) -> Cell:
-    return Cell(seconds(value) if value else "-", value)
+def _time(value: float) -> TableCell:
+    return TableCell(seconds(value) if value else "-", value)
 
 
-def _of(headings: str, rows: Iterable[Iterable[Cell]]) -> Table:
+def _of(headings: str, rows: Iterable[Iterable[TableCell]]) -> Table:
     """Make a table, without columns that are empty."""
     names, made = headings.split("|"), [tuple(row) for row in rows]
     kept = [
@@ -125,13 +125,13 @@ def title_of(outcome: Outcome) -> str:
 def group_table(groups: Iterable[Group], names: str) -> Table:
     """List groups of tests with their counts."""
 
-    def rows() -> Iterator[Iterable[Cell]]:
+    def rows() -> Iterator[Iterable[TableCell]]:
         for group in groups:
             counts = group.counts
             yield (
-                *map(Cell, group.labels),
-                Cell(SIGNS[counts.verdict], verdict=counts.verdict),
-                Cell("", (counts.passed + counts.known) / max(1, counts.total), counts=counts),
+                *map(TableCell, group.labels),
+                TableCell(SIGNS[counts.verdict], verdict=counts.verdict),
+                TableCell("", (counts.passed + counts.known) / max(1, counts.total), counts=counts),
                 *map(_count, (counts.passed, counts.known, counts.failed)),
                 *map(_count, (counts.not_judged, counts.not_run)),
                 _time(group.cpu_seconds),
@@ -146,7 +146,7 @@ def writer_table(summary: Summary) -> Table:
     return _of(
         "Test system|Library|Tests#",
         (
-            (Cell(suite), Cell(name), _count(tests))
+            (TableCell(suite), TableCell(name), _count(tests))
             for suite, writers in summary.writers.items()
             for name, tests in writers.items()
         ),
@@ -158,7 +158,7 @@ def circuits_table(summary: Summary) -> Table:
     return _of(
         "Test system|Different circuits#|Tested with that of another type#",
         (
-            (Cell(suite), _count(shapes), _count(shared))
+            (TableCell(suite), _count(shapes), _count(shared))
             for suite, (shapes, shared) in summary.circuits.items()
         ),
     )
@@ -170,10 +170,12 @@ def oracle_table(summary: Summary) -> Table:
         "Distribution|Oracle|Agree#|Of these, both refuse#|Known difference#|Differ#|Not judged#",
         (
             (
-                Cell(each.distro),
-                Cell(each.oracle),
+                TableCell(each.distro),
+                TableCell(each.oracle),
                 *map(_count, (each.agree, each.refused, each.known)),
-                Cell(number(each.differ), each.differ, verdict=Failed.name if each.differ else ""),
+                TableCell(
+                    number(each.differ), each.differ, verdict=Failed.name if each.differ else ""
+                ),
                 _count(each.not_judged),
             )
             for each in summary.oracles
@@ -187,9 +189,9 @@ def said_table(summary: Summary) -> Table:
         "Oracle|Verdict|Key or reason|Definitions#|Such as",
         (
             (
-                *map(Cell, (each.oracle, each.verdict, each.what)),
+                *map(TableCell, (each.oracle, each.verdict, each.what)),
                 _count(each.count),
-                Cell(each.example),
+                TableCell(each.example),
             )
             for each in summary.said
         ),
@@ -199,12 +201,12 @@ def said_table(summary: Summary) -> Table:
 def failure_table(outcomes: Iterable[Outcome]) -> Table:
     """List failed tests in a line each."""
 
-    def rows() -> Iterator[Iterable[Cell]]:
+    def rows() -> Iterator[Iterable[TableCell]]:
         for outcome in outcomes:
             text = failures_of(outcome)[0]
             shown = text if len(text) <= MOST_TEXT else f"{text[:MOST_TEXT]}..."
             command = outcome.record.command if outcome.record is not None else ""
-            yield Cell(title_of(outcome)), Cell(shown), Cell(command)
+            yield TableCell(title_of(outcome)), TableCell(shown), TableCell(command)
 
     return _of("Test|Failure|Repeat it", rows())
 
@@ -216,9 +218,9 @@ def within_table(curves: Iterable[Curve]) -> Table:
         f"Test system|Tests#|{limits}",
         (
             (
-                Cell(curve.suite),
+                TableCell(curve.suite),
                 _count(0 if curve.seconds is None else curve.seconds.count),
-                *(Cell(_percent(share), share) for share in curve.within.values()),
+                *(TableCell(_percent(share), share) for share in curve.within.values()),
             )
             for curve in curves
         ),
@@ -234,14 +236,14 @@ def _percent(share: float) -> str:
 def stage_table(curves: Iterable[Curve]) -> Table:
     """List quartiles of the times of stages."""
 
-    def rows() -> Iterator[Iterable[Cell]]:
+    def rows() -> Iterator[Iterable[TableCell]]:
         for curve in curves:
             boxes = [(stage, curve.stages[stage]) for stage in STAGES if stage in curve.stages]
             boxes += [("all stages", curve.seconds)] if curve.seconds else []
             boxes += [("processor", curve.cpu_seconds)] if curve.cpu_seconds else []
             for name, box in boxes:
                 times = (box.least, box.q1, box.median, box.q3, box.p95, box.most, box.total)
-                yield (Cell(curve.suite), Cell(name), *map(_time, times))
+                yield (TableCell(curve.suite), TableCell(name), *map(_time, times))
 
     columns = "Least#|Quartile 1#|Median#|Quartile 3#|95 %#|Most#|Sum#"
     return _of(f"Test system|Stage|{columns}", rows())
@@ -250,18 +252,18 @@ def stage_table(curves: Iterable[Curve]) -> Table:
 def trend_table(trends: Iterable[Trend]) -> Table:
     """List how figures go with times."""
 
-    def rows() -> Iterator[Iterable[Cell]]:
+    def rows() -> Iterator[Iterable[TableCell]]:
         for trend in trends:
             found = trend.correlation
             yield (
-                Cell(trend.suite),
-                Cell(trend.metric.replace("_", " ")),
-                Cell(trend.time),
+                TableCell(trend.suite),
+                TableCell(trend.metric.replace("_", " ")),
+                TableCell(trend.time),
                 _count(found.count),
-                *(Cell(f"{value:+.2f}", value) for value in (found.spearman, found.pearson)),
-                Cell(law_text(found.power)),
+                *(TableCell(f"{value:+.2f}", value) for value in (found.spearman, found.pearson)),
+                TableCell(law_text(found.power)),
                 _r2(found.power.r2 if found.power else None),
-                Cell(line_text(found.linear)),
+                TableCell(line_text(found.linear)),
                 _r2(found.linear.r2 if found.linear else None),
             )
 
@@ -269,43 +271,43 @@ def trend_table(trends: Iterable[Trend]) -> Table:
     return _of(f"Test system|Figure x|Time|Tests#|{columns}", rows())
 
 
-def _r2(value: float | None) -> Cell:
-    return Cell("-", -1.0) if value is None else Cell(f"{value:.2f}", value)
+def _r2(value: float | None) -> TableCell:
+    return TableCell("-", -1.0) if value is None else TableCell(f"{value:.2f}", value)
 
 
 def every_table(outcomes: Iterable[Outcome]) -> Table:
     """List tests one by one."""
 
-    def rows() -> Iterator[Iterable[Cell]]:
+    def rows() -> Iterator[Iterable[TableCell]]:
         for outcome in outcomes:
             test, record = outcome.test, outcome.record
             metrics = record.metrics if record is not None else {}
             circuit = f"{test.wire} {test.bus_bytes or ''}".strip()
             yield (
-                Cell(test.type),
-                Cell(" ".join(test.distros)),
-                Cell(" ".join(part for part in (test.system, test.simulator) if part)),
-                Cell(circuit),
-                Cell(SIGNS[outcome.verdict.name], verdict=outcome.verdict.name),
+                TableCell(test.type),
+                TableCell(" ".join(test.distros)),
+                TableCell(" ".join(part for part in (test.system, test.simulator) if part)),
+                TableCell(circuit),
+                TableCell(SIGNS[outcome.verdict.name], verdict=outcome.verdict.name),
                 _time(record.seconds.total if record else 0),
                 _time(record.cpu_seconds if record else 0),
                 *(_count(metrics.get(name, 0)) for name in ("leaves", "steps")),
                 _count(record.packets if record else 0),
                 _count(record.cycles if record else 0),
                 _covered(outcome),
-                Cell(outcome.circuit_of),
+                TableCell(outcome.circuit_of),
             )
 
     columns = "Time#|CPU#|Leaves#|Steps#|Packets#|Cycles#|Plan coverage#|Circuit of"
     return _of(f"Type|Distributions|Test system|Wire|Result|{columns}", rows())
 
 
-def _covered(outcome: Outcome) -> Cell:
+def _covered(outcome: Outcome) -> TableCell:
     coverage = outcome.record.coverage if outcome.record is not None else None
     if coverage is None:
-        return Cell("-", -1.0)
+        return TableCell("-", -1.0)
     share = coverage.taken / coverage.possible if coverage.possible else 1.0
-    return Cell(f"{coverage.taken} of {coverage.possible}", share)
+    return TableCell(f"{coverage.taken} of {coverage.possible}", share)
 
 
 def coverage_table(summary: Summary) -> Table:
@@ -314,9 +316,9 @@ def coverage_table(summary: Summary) -> Table:
         "Test system|Tests#|All decisions taken#|Decisions taken#|Of#|Coverage#",
         (
             (
-                Cell(each.suite),
+                TableCell(each.suite),
                 *map(_count, (each.types, each.full, each.taken, each.possible)),
-                Cell(_percent(share := each.taken / max(1, each.possible)), share),
+                TableCell(_percent(share := each.taken / max(1, each.possible)), share),
             )
             for each in summary.coverage
         ),
@@ -326,10 +328,10 @@ def coverage_table(summary: Summary) -> Table:
 def missing_table(outcomes: Iterable[Outcome]) -> Table:
     """List decisions that no packet took."""
 
-    def rows() -> Iterator[Iterable[Cell]]:
+    def rows() -> Iterator[Iterable[TableCell]]:
         for outcome in outcomes:
             assert outcome.record is not None and outcome.record.coverage is not None
             names = "; ".join(outcome.record.coverage.missing)
-            yield Cell(title_of(outcome)), _covered(outcome), Cell(names or "not named")
+            yield TableCell(title_of(outcome)), _covered(outcome), TableCell(names or "not named")
 
     return _of("Test|Plan coverage#|Not taken", rows())

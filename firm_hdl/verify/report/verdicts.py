@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from firm_hdl.verify.report.outcomes import NotRun, Outcome
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 
-__all__ = ["OracleSum", "Reason", "Said", "oracle_sums", "reason_groups", "said_of"]
+__all__ = ["OracleSum", "Reason", "Remark", "oracle_sums", "reason_groups", "said_of"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,7 +34,7 @@ class OracleSum:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Said:
+class Remark:
     """A known difference from an oracle, or why it did not judge.
 
     Attributes
@@ -94,7 +94,7 @@ def oracle_sums(outcomes: Iterable[Outcome]) -> tuple[OracleSum, ...]:
     )
 
 
-def said_of(outcomes: Iterable[Outcome]) -> tuple[Said, ...]:
+def said_of(outcomes: Iterable[Outcome]) -> tuple[Remark, ...]:
     """List known differences and reasons not to judge, the most frequent of an oracle first."""
     names: dict[tuple[str, str, str], list[str]] = defaultdict(list)
     texts: dict[tuple[str, str, str], str] = {}
@@ -106,7 +106,7 @@ def said_of(outcomes: Iterable[Outcome]) -> tuple[Said, ...]:
                 names[key].append(outcome.test.type)
     ordered = sorted(names, key=lambda key: (key[0], key[1], -len(names[key]), key[2]))
     return tuple(
-        Said(
+        Remark(
             oracle=key[0],
             verdict=key[1],
             what=texts[key],

@@ -15,7 +15,7 @@ from firm_hdl.model import Message, closure
 from firm_hdl.verify.systems.libraries import library_of
 from firm_hdl.wire import refusals
 
-__all__ = ["Task", "UnknownTypeError", "collect_own", "collect_tasks"]
+__all__ = ["TypeUnderTest", "UnknownTypeError", "collect_own", "collect_tasks"]
 
 
 class UnknownTypeError(ValueError):
@@ -23,7 +23,7 @@ class UnknownTypeError(ValueError):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Task:
+class TypeUnderTest:
     """One run.
 
     Attributes
@@ -44,7 +44,7 @@ def collect_tasks(
     names: Sequence[str] = (),
     *,
     problems: dict[str, Diagnostic] | None = None,
-) -> list[Task]:
+) -> list[TypeUnderTest]:
     """List what to run, the largest types first.
 
     Parameters
@@ -82,7 +82,7 @@ def collect_tasks(
         problems[str(unknown)] = unknown
     # The largest first, so that no processor is left with one at the end.
     keys = sorted(found, key=lambda key: (-weights[key], key))
-    return [Task(distro=found[k][-1], name=k[0], same=tuple(found[k])) for k in keys]
+    return [TypeUnderTest(distro=found[k][-1], name=k[0], same=tuple(found[k])) for k in keys]
 
 
 def collect_own(
@@ -92,7 +92,7 @@ def collect_own(
     *,
     own: Sequence[str] | None = None,
     problems: dict[str, Diagnostic] | None = None,
-) -> list[Task]:
+) -> list[TypeUnderTest]:
     """List what to run of the types in folders, the largest types first.
 
     Parameters
@@ -132,7 +132,7 @@ def collect_own(
     if wrong and (problems is None or (names and not found)):
         raise DefinitionError(wrong.values())
     keys = sorted(found, key=lambda key: (-found[key], key))
-    return [Task(distro=distro, name=name, same=(distro,)) for distro, name in keys]
+    return [TypeUnderTest(distro=distro, name=name, same=(distro,)) for distro, name in keys]
 
 
 def _weight(message: Message) -> int:

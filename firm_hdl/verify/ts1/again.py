@@ -8,16 +8,16 @@ from typing import TypeAlias
 from firm_hdl.errors import DefinitionError
 from firm_hdl.model import Interface, Message
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, Passed, Verdict
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.comparison import Compared, compared
 from firm_hdl.verify.ts1.known import KNOWN
-from firm_hdl.verify.ts1.known.rule import Known
+from firm_hdl.verify.ts1.known.rule import KnownRule
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle
 from firm_hdl.verify.ts1.universe import Universe
 
 __all__ = ["Again"]
 
-_Read: TypeAlias = "Callable[[Universe, Case], Interface | Exception]"
+_Read: TypeAlias = "Callable[[Universe, DefinitionCase], Interface | Exception]"
 
 
 class Again:
@@ -42,14 +42,14 @@ class Again:
         self,
         universe: Universe | None,
         oracle: Oracle,
-        case: Case,
+        case: DefinitionCase,
         ours: Interface | Exception,
         answer: Answer,
         read: _Read,
     ) -> None:
         self._universe, self._oracle, self._case = universe, oracle, case
         self._ours, self._answer, self._read = ours, answer, read
-        self._texts: dict[str, Case] = {}
+        self._texts: dict[str, DefinitionCase] = {}
         show = self._show
         self._plain = compared(ours, answer, oracle.alike(case), lambda: show(case))
 
@@ -81,7 +81,7 @@ class Again:
         beside = f" (beside {', '.join(entry.key for entry in touched)})" if touched else ""
         return Failed(tuple(f"{each}{beside}" for each in left.differences)), False
 
-    def _entries(self, *, with_mistakes: bool = True) -> list[Known]:
+    def _entries(self, *, with_mistakes: bool = True) -> list[KnownRule]:
         if self._universe is None:
             return []
         name, release = self._oracle.name, self._oracle.version()
@@ -92,8 +92,8 @@ class Again:
         ]
 
     def _needed(
-        self, entries: Sequence[Known], found: Compared
-    ) -> tuple[Sequence[Known], Compared]:
+        self, entries: Sequence[KnownRule], found: Compared
+    ) -> tuple[Sequence[KnownRule], Compared]:
         """Leave out entries without which nothing is left either."""
         for entry in entries:
             fewer = [each for each in entries if each is not entry]
@@ -102,13 +102,13 @@ class Again:
                 entries, found = fewer, without
         return entries, found
 
-    def _compared(self, entries: Sequence[Known]) -> tuple[Compared, list[Known]]:
+    def _compared(self, entries: Sequence[KnownRule]) -> tuple[Compared, list[KnownRule]]:
         """Compare without what some entries know; list those that have changed anything."""
         if not entries:
             return self._plain, []
-        touched: dict[str, Known] = {}
+        touched: dict[str, KnownRule] = {}
 
-        def change(case: Case, only_mistakes: bool = False) -> Case:
+        def change(case: DefinitionCase, only_mistakes: bool = False) -> DefinitionCase:
             self._texts.setdefault(case.spelled_name, case)
             for entry in entries:
                 if entry.rewrite is not None and (entry.is_mistake or not only_mistakes):
@@ -141,13 +141,15 @@ class Again:
             found = Compared(cases=0)
         return found, [entry for entry in entries if entry.key in touched]
 
-    def _asked(self, change: Callable[[Case], Case]) -> Answer:
+    def _asked(self, change: Callable[[DefinitionCase], DefinitionCase]) -> Answer:
         """Ask the oracle about the text that a change makes; it keeps its word on the same text."""
         if change(self._case) is self._case and not self._oracle.changes_needs:
             return self._answer
         return self._oracle.judge_changed(self._case, change)
 
-    def _read_again(self, change: Callable[[Case], Case]) -> tuple[Interface | Exception, Case]:
+    def _read_again(
+        self, change: Callable[[DefinitionCase], DefinitionCase]
+    ) -> tuple[Interface | Exception, DefinitionCase]:
         assert self._universe is not None
         case = change(self._case)
         if not isinstance(self._ours, DefinitionError):
@@ -159,7 +161,7 @@ class Again:
             return self._ours, self._case
         return self._read(universe, case), case
 
-    def _show(self, case: Case) -> str:
+    def _show(self, case: DefinitionCase) -> str:
         return "" if self._universe is None else self._universe.show(case)
 
     def _not_judged(self) -> Iterator[str]:
@@ -175,7 +177,7 @@ class Again:
             if keys:
                 yield f"it needs {need.full_name}, a known difference: {', '.join(keys)}"
 
-    def _needs(self) -> Iterator[Case]:
+    def _needs(self) -> Iterator[DefinitionCase]:
         """Yield definitions that it needs and that the oracle reads from their files."""
         if self._universe is None or self._oracle.changes_needs:
             return
@@ -191,7 +193,7 @@ class Again:
                 if need is not None and need.spelled_name != self._case.spelled_name:
                     yield need
 
-    def _known_of(self, case: Case) -> tuple[str, ...]:
+    def _known_of(self, case: DefinitionCase) -> tuple[str, ...]:
         universe = self._universe
         if universe is None or case.language not in self._oracle.languages.get(case.dialect, ()):
             return ()

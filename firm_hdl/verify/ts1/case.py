@@ -9,11 +9,11 @@ from firm_hdl.frontend.names import Kind
 from firm_hdl.frontend.sources import Language
 from firm_hdl.model import Dialect
 
-__all__ = ["Case"]
+__all__ = ["DefinitionCase"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Case:
+class DefinitionCase:
     """One definition to judge.
 
     Attributes

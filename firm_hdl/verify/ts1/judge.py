@@ -12,7 +12,7 @@ from firm_hdl.model import Interface
 from firm_hdl.verify.results.records import OracleVerdict
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Verdict
 from firm_hdl.verify.ts1.again import Again
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.oracles.oracle import Answer, Oracle
 from firm_hdl.verify.ts1.universe import Universe
 
@@ -34,12 +34,12 @@ class Outcome:
     """
 
     oracle: str
-    case: Case
+    case: DefinitionCase
     verdict: Verdict
     is_refused: bool = False
 
     @classmethod
-    def of(cls, case: Case, said: OracleVerdict) -> Outcome:
+    def of(cls, case: DefinitionCase, said: OracleVerdict) -> Outcome:
         """Say it of a definition again."""
         return cls(
             oracle=said.oracle,
@@ -77,7 +77,7 @@ class Judgement:
     metrics: dict[str, float] = field(default_factory=dict)
 
 
-def judge_case(universe: Universe, oracles: Sequence[Oracle], case: Case) -> Judgement:
+def judge_case(universe: Universe, oracles: Sequence[Oracle], case: DefinitionCase) -> Judgement:
     """Compare our reading of one definition with those of oracles."""
     began, began_cpu = time.perf_counter(), cpu_seconds()
     ours = read(universe, case)
@@ -102,7 +102,7 @@ def judge_case(universe: Universe, oracles: Sequence[Oracle], case: Case) -> Jud
     )
 
 
-def _metrics(case: Case, ours: Interface | Exception) -> dict[str, float]:
+def _metrics(case: DefinitionCase, ours: Interface | Exception) -> dict[str, float]:
     found = {"characters": len(case.text)}
     if not isinstance(ours, Exception):
         found["fields"] = sum(len(message.fields) for message in ours.messages)
@@ -113,8 +113,8 @@ def _metrics(case: Case, ours: Interface | Exception) -> dict[str, float]:
 def judge(
     universe: Universe,
     oracle: Oracle,
-    cases: Sequence[Case],
-    ours: Callable[[Case], Interface | Exception] | None = None,
+    cases: Sequence[DefinitionCase],
+    ours: Callable[[DefinitionCase], Interface | Exception] | None = None,
 ) -> Iterator[Outcome]:
     """Compare our reading of definitions with an oracle's, in order.
 
@@ -141,7 +141,7 @@ def judge(
         yield compare(oracle, case, mine, answer, universe)
 
 
-def read(universe: Universe, case: Case) -> Interface | Exception:
+def read(universe: Universe, case: DefinitionCase) -> Interface | Exception:
     """Read a definition as users of firm-hdl do."""
     try:
         return universe.interface(case)
@@ -151,7 +151,7 @@ def read(universe: Universe, case: Case) -> Interface | Exception:
 
 def compare(
     oracle: Oracle,
-    case: Case,
+    case: DefinitionCase,
     ours: Interface | Exception,
     answer: Answer,
     universe: Universe | None = None,

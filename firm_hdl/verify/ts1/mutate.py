@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 
 __all__ = ["mutate", "mutation"]
 
@@ -40,7 +40,7 @@ _NAMES = "x a_b a__b a_ _a A aB Ab A_B range a1 1a é message".split()
 _Rule = Callable[[random.Random, str], str]
 
 
-def mutation(cases: Sequence[Case], number: int) -> Case:
+def mutation(cases: Sequence[DefinitionCase], number: int) -> DefinitionCase:
     """Make a mutation.
 
     Parameters

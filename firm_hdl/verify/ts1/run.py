@@ -19,7 +19,7 @@ from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.systems.again import command_again
 from firm_hdl.verify.systems.system import run_shares, shares_of
 from firm_hdl.verify.systems.tasks import UnknownTypeError
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.judge import Judgement, Outcome, judge_case
 from firm_hdl.verify.ts1.mutate import mutation
 from firm_hdl.verify.ts1.oracles import ORACLES
@@ -58,7 +58,9 @@ class Selection:
     mutations: int = 0
     seed: int = 0
 
-    def command(self, case: Case, number: int | None = None, oracles: Sequence[str] = ()) -> str:
+    def command(
+        self, case: DefinitionCase, number: int | None = None, oracles: Sequence[str] = ()
+    ) -> str:
         """Write the command that judges one definition, or one mutation, again."""
         names = [case.spelled_name] if number is None else self.types or ["--all"]
         return command_again(
@@ -223,7 +225,7 @@ class Ts1Run:
             digest.update(case.text.encode("utf-8", "surrogatepass"))
         return digest.hexdigest()[:16]
 
-    def case(self, number: int) -> Case:
+    def case(self, number: int) -> DefinitionCase:
         """Return the definition of a number, or the mutation."""
         if self.selection.mutations:
             return mutation(self.cases, number)
@@ -291,7 +293,7 @@ class _Session:
     """What a process has for a run: our reader, the cases in the order of all, and oracles."""
 
     universe: Universe
-    cases: list[Case]
+    cases: list[DefinitionCase]
     oracles: list[Oracle]
 
 
@@ -335,7 +337,7 @@ def _judge_share(key: _Key, share: tuple[int, ...]) -> list[Judgement]:
     ]
 
 
-def _shares(cases: Sequence[Case], numbers: Sequence[int]) -> list[tuple[int, ...]]:
+def _shares(cases: Sequence[DefinitionCase], numbers: Sequence[int]) -> list[tuple[int, ...]]:
     """Deal out cases, the longest first: none is to be left with one of those at the end."""
     shares: list[tuple[int, ...]] = []
     share: list[int] = []

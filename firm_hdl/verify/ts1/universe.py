@@ -16,7 +16,7 @@ from firm_hdl.frontend.names import KINDS, Kind
 from firm_hdl.frontend.search import environment_origins
 from firm_hdl.frontend.sources import Definition, EmbeddedOrigin, FolderOrigin, Origin, Sources
 from firm_hdl.model import Dialect, Interface
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 
 __all__ = ["Universe", "write_definitions"]
 
@@ -49,7 +49,7 @@ class Universe:
         """Whose rules the definitions follow."""
         return self.library.dialect
 
-    def select(self, types: Iterable[str]) -> list[Case]:
+    def select(self, types: Iterable[str]) -> list[DefinitionCase]:
         """List the definitions of some types.
 
         If none is named, these are all that the folders have, or if there are no folders, all.
@@ -65,7 +65,7 @@ class Universe:
         names = Sources(self._folders).names or self._sources.names
         return [self._case(*name)[1] for name in sorted(names)]
 
-    def _selected(self, name: str) -> Case:
+    def _selected(self, name: str) -> DefinitionCase:
         kinds = KINDS
         match name.split("/"):
             case [package, base]:
@@ -81,23 +81,23 @@ class Universe:
         message = f"'{name}' has no definition of its own"
         raise DefinitionError([Diagnostic(message=message)])
 
-    def message_case(self, package: str, name: str) -> Case | None:
+    def message_case(self, package: str, name: str) -> DefinitionCase | None:
         """Give the definition of a message; `None` if there is none."""
         if (package, "msg", name) not in self._sources.names:
             return None
         return self._case(package, "msg", name)[1]
 
-    def read_all(self) -> Iterator[tuple[Source, Case]]:
+    def read_all(self) -> Iterator[tuple[Source, DefinitionCase]]:
         """Yield every definition with its source, whose name may be that of a file."""
         for package, kind, name in sorted(self._sources.names):
             yield self._case(package, kind, name)
 
     @cached_property
-    def by_source(self) -> dict[str, Case]:
+    def by_source(self) -> dict[str, DefinitionCase]:
         """Every definition by the name of its source."""
         return {source.name: case for source, case in self.read_all()}
 
-    def _case(self, package: str, kind: Kind, name: str) -> tuple[Source, Case]:
+    def _case(self, package: str, kind: Kind, name: str) -> tuple[Source, DefinitionCase]:
         try:
             found = self._sources.find(package, kind, name)
             assert found is not None
@@ -106,7 +106,7 @@ class Universe:
             # A file that is no text: oracles are to say so, too.
             source = _source_of(error)
             language = "idl" if source.name.endswith(".idl") else kind
-        return source, Case(
+        return source, DefinitionCase(
             dialect=self.dialect,
             package=package,
             kind=kind,
@@ -129,7 +129,7 @@ class Universe:
                         pending.append(definition.source.text)
         return found
 
-    def changed(self, change: Callable[[Case], Case]) -> Universe:
+    def changed(self, change: Callable[[DefinitionCase], DefinitionCase]) -> Universe:
         """Give the same definitions with the texts of messages in ``.msg`` changed."""
         other = copy.copy(self)
         other._origins = [_AllChanged(each, self.dialect, change) for each in self._origins]
@@ -137,7 +137,7 @@ class Universe:
         other.library = Library(self.distro, origins=other._origins)
         return other
 
-    def interface(self, case: Case) -> Interface:
+    def interface(self, case: DefinitionCase) -> Interface:
         """Read a definition as users do.
 
         Raises
@@ -150,7 +150,7 @@ class Universe:
             library = Library(self.distro, origins=[_Changed(case), *self._origins])
         return library.interface(case.spelled_name)
 
-    def show(self, case: Case) -> str:
+    def show(self, case: DefinitionCase) -> str:
         """Print a definition as ``firm-hdl show`` does."""
         library = self.library
         if case.is_changed:
@@ -161,7 +161,7 @@ class Universe:
 class _Changed:
     """An origin of one text."""
 
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: DefinitionCase) -> None:
         self._case = case
         self._key = case.package, case.kind, case.name
 
@@ -178,7 +178,9 @@ class _Changed:
 class _AllChanged:
     """An origin with all its texts changed."""
 
-    def __init__(self, origin: Origin, dialect: Dialect, change: Callable[[Case], Case]) -> None:
+    def __init__(
+        self, origin: Origin, dialect: Dialect, change: Callable[[DefinitionCase], DefinitionCase]
+    ) -> None:
         self._origin, self._dialect, self._change = origin, dialect, change
 
     def names(self) -> Iterable[tuple[str, Kind, str]]:
@@ -188,7 +190,7 @@ class _AllChanged:
         found = self._origin.find(package, kind, name)
         if found is None or found.language != "msg":
             return found
-        case = Case(
+        case = DefinitionCase(
             dialect=self._dialect,
             package=package,
             kind=kind,
@@ -202,7 +204,7 @@ class _AllChanged:
 
 def write_definitions(universe: Universe) -> None:
     """Put all definitions where oracles find them: files as links, other texts as files."""
-    folders: dict[tuple[str, str], list[tuple[str, Case]]] = {}
+    folders: dict[tuple[str, str], list[tuple[str, DefinitionCase]]] = {}
     for source, case in universe.read_all():
         folders.setdefault((case.package, case.kind), []).append((source.name, case))
     for (package, kind), found in folders.items():

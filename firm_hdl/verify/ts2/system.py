@@ -37,7 +37,7 @@ from firm_hdl.verify.systems.system import (
     shares_of,
     wire_of,
 )
-from firm_hdl.verify.systems.tasks import Task
+from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts2.golden import Checked, Golden, check_golden, read_golden
 from firm_hdl.wire import Wire, lay_out, refusals
 
@@ -139,7 +139,7 @@ class Ts2Options:
 class _Item:
     """A plan to check."""
 
-    task: Task
+    task: TypeUnderTest
     bus_bytes: int
 
 
@@ -165,7 +165,7 @@ class Ts2(System):
 
     def __init__(
         self,
-        tasks: Sequence[Task],
+        tasks: Sequence[TypeUnderTest],
         options: Ts2Options | None = None,
         *,
         jobs: int | None = None,

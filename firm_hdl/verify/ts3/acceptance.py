@@ -29,7 +29,7 @@ from firm_hdl.verify.cases.effort import message_limit, too_large
 from firm_hdl.verify.cases.figures import digest, figures
 from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.references.choice import WIDE_REFERENCES, may_stand_in
-from firm_hdl.verify.references.oracle import Oracle
+from firm_hdl.verify.references.oracle import RosbagsOracle
 from firm_hdl.verify.references.user_oracle import Judge, judge_of
 from firm_hdl.verify.references.wide_oracle import WideOracle
 from firm_hdl.verify.results.verdict import NotJudged, NotJudgedError
@@ -96,7 +96,7 @@ def measured(
 
 
 def accept_message(
-    message: Message, oracle: Oracle, name: str, options: Options, result: Result
+    message: Message, oracle: RosbagsOracle, name: str, options: Options, result: Result
 ) -> None:
     """Run all cases of a message type that the oracle knows by `name`, and add to `result`."""
     began = time.perf_counter()

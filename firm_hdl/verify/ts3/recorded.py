@@ -14,7 +14,7 @@ from firm_hdl.verify.choices import LONGEST
 from firm_hdl.verify.results.records import PlanCoverage, Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.systems.libraries import library_of
 from firm_hdl.verify.systems.system import wire_of
-from firm_hdl.verify.systems.tasks import Task
+from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts3.options import Options, Result
 from firm_hdl.wire import lay_out
 
@@ -24,7 +24,7 @@ __all__ = ["record_of", "same_circuits", "test_of"]
 WAVEFORM_FOLDER = "waveforms"
 
 
-def test_of(task: Task, options: Options) -> Test:
+def test_of(task: TypeUnderTest, options: Options) -> Test:
     """Return the test that runs a task with some options."""
     own = [f"seed={options.seed}"]
     own += [] if options.most_cases is None else [f"cases={options.most_cases}"]
@@ -50,7 +50,7 @@ def test_of(task: Task, options: Options) -> Test:
 test_of.__test__ = False  # type: ignore[attr-defined]
 
 
-def record_of(task: Task, result: Result, options: Options, same_as: str = "") -> Record:
+def record_of(task: TypeUnderTest, result: Result, options: Options, same_as: str = "") -> Record:
     """Return what is kept of a result.
 
     Parameters
@@ -95,13 +95,15 @@ def _coverage(result: Result) -> PlanCoverage | None:
     )
 
 
-def same_circuits(tasks: Sequence[Task], options: Options) -> dict[Task, Task]:
+def same_circuits(
+    tasks: Sequence[TypeUnderTest], options: Options
+) -> dict[TypeUnderTest, TypeUnderTest]:
     """Return tasks whose circuit is that of an earlier task, and that task.
 
     Circuits are the same where plans are the same but for names.
     """
-    first: dict[str, Task] = {}
-    found: dict[Task, Task] = {}
+    first: dict[str, TypeUnderTest] = {}
+    found: dict[TypeUnderTest, TypeUnderTest] = {}
     for task in tasks:
         try:
             message = library_of(task.distro, options.paths).message(task.name)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend import open_library
-from firm_hdl.verify.systems.tasks import Task, UnknownTypeError
+from firm_hdl.verify.systems.tasks import TypeUnderTest, UnknownTypeError
 from firm_hdl.verify.ts3.recording import topics_of
 from firm_hdl.wire import Wire, refusals
 
@@ -20,7 +20,7 @@ def collect_recorded(
     *,
     wire: Wire | None,
     problems: dict[str, Diagnostic],
-) -> list[Task]:
+) -> list[TypeUnderTest]:
     """List the types to replay: those that are named, or all that there are topics of.
 
     Parameters
@@ -59,4 +59,6 @@ def collect_recorded(
         )
     if no_layout := [each for name in names for each in refusals(library.message(name))]:
         raise DefinitionError(no_layout)
-    return [Task(distro=library.distro, name=name, same=(library.distro,)) for name in wanted]
+    return [
+        TypeUnderTest(distro=library.distro, name=name, same=(library.distro,)) for name in wanted
+    ]

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from firm_hdl.errors import described
 from firm_hdl.jobs.executors import PROCESSES, run_each
-from firm_hdl.verify.systems.tasks import Task
+from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts3.acceptance import accept
 from firm_hdl.verify.ts3.options import Options, Result
 from firm_hdl.verify.ts3.replay import replay
@@ -16,13 +16,13 @@ __all__ = ["run_tasks"]
 
 
 def run_tasks(
-    tasks: Sequence[Task],
+    tasks: Sequence[TypeUnderTest],
     options: Options,
     jobs: int | None = None,
     *,
     executor: str = PROCESSES,
-    golden_only: Container[Task] = (),
-) -> Generator[tuple[Task, Result], None, None]:
+    golden_only: Container[TypeUnderTest] = (),
+) -> Generator[tuple[TypeUnderTest, Result], None, None]:
     """Run tasks in `jobs` processes (`None`: one per processor), and yield results as they come.
 
     Parameters

@@ -17,13 +17,13 @@ from firm_hdl.verify.cases.effort import (
     work_of,
 )
 from firm_hdl.verify.cases.make import Case, make_cases
-from firm_hdl.verify.references.oracle import Oracle
+from firm_hdl.verify.references.oracle import RosbagsOracle
 from firm_hdl.verify.ts3.options import Options
 
 __all__ = ["affordable", "all_cases", "disturbed", "is_large"]
 
 
-def all_cases(oracle: Oracle, name: str, plan: Plan, options: Options) -> list[Case]:
+def all_cases(oracle: RosbagsOracle, name: str, plan: Plan, options: Options) -> list[Case]:
     """Make the cases, and those that the plan's other decisions need if there is no limit."""
     made = make_cases(
         oracle,

@@ -18,7 +18,7 @@ from firm_hdl.verify.results.records import Record, Test, settled
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.simulators import simulator
 from firm_hdl.verify.systems.system import Judged, Recorder, System, judged, wire_of
-from firm_hdl.verify.systems.tasks import Task
+from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts3.options import Options, Result
 from firm_hdl.verify.ts3.recorded import record_of, same_circuits, test_of
 from firm_hdl.verify.ts3.runner import run_tasks
@@ -62,7 +62,9 @@ class Ts3(System):
 
     name = "ts3"
 
-    def __init__(self, tasks: Sequence[Task], options: Sequence[Options], how: How | None = None):
+    def __init__(
+        self, tasks: Sequence[TypeUnderTest], options: Sequence[Options], how: How | None = None
+    ):
         self._tasks, self._options, self._how = tasks, options, how or How()
 
     def __enter__(self) -> Ts3:
@@ -142,7 +144,7 @@ class Ts3(System):
         return judged(records.values())
 
 
-def _said(task: Task, result: Result, *, is_new: bool) -> Iterator[str]:
+def _said(task: TypeUnderTest, result: Result, *, is_new: bool) -> Iterator[str]:
     """Say what is to be known of a type; what is said of many types, of the first one only."""
     if isinstance(result.verdict, Failed):
         yield _describe(task, result, result.verdict)
@@ -157,7 +159,7 @@ def _repeat(notes: Mapping[str, int]) -> None:
             print(f"note: {count - 1} more types: {note}")
 
 
-def _count(records: Mapping[Task, Record], options: Options) -> None:
+def _count(records: Mapping[TypeUnderTest, Record], options: Options) -> None:
     """Print how many types of each distribution pass."""
     by_key = {record.test.key: record for record in records.values()}
     verdicts = {task: settled(record, by_key) for task, record in records.items()}
@@ -212,7 +214,7 @@ def _summarize(results: Sequence[Result], options: Options) -> None:
         )
 
 
-def _describe(task: Task, result: Result, failed: Failed) -> str:
+def _describe(task: TypeUnderTest, result: Result, failed: Failed) -> str:
     lines = [f"FAIL {task.name} ({', '.join(task.same)})"]
     lines += [f"    {_clip(failure)}" for failure in failed.failures[:8]]
     if len(failed.failures) > 8:

@@ -11,7 +11,7 @@ import pytest
 
 from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, String
 from firm_hdl.verify.clients.divergences import KNOWN
-from firm_hdl.verify.clients.finding import Finding, Known, changed
+from firm_hdl.verify.clients.finding import Finding, KnownDivergence, changed
 from firm_hdl.verify.clients.judge import Contest, Trial
 from firm_hdl.verify.clients.known import known_keys
 from firm_hdl.verify.clients.odd import ODDITIES, odd_packet, odd_value, odd_values, plain_packet
@@ -56,7 +56,9 @@ class Says(Codec):
 
 # What is known.
 
-ENTRY = Known(key="k", libraries=("mine",), wires="cdr", text="", whats=("bool-2",), answer="takes")
+ENTRY = KnownDivergence(
+    key="k", libraries=("mine",), wires="cdr", text="", whats=("bool-2",), answer="takes"
+)
 
 
 @pytest.mark.parametrize(
@@ -94,7 +96,9 @@ def quiet(kind, value):
 @pytest.fixture
 def one_entry(monkeypatch):
     """Only one thing is known: the highest bit of numbers."""
-    entry = Known(key="k", libraries=("mine",), wires="cdr", text="", tame=quiet, same=quiet)
+    entry = KnownDivergence(
+        key="k", libraries=("mine",), wires="cdr", text="", take_out=quiet, same=quiet
+    )
     monkeypatch.setattr("firm_hdl.verify.clients.known.KNOWN", (entry,))
     return entry
 
@@ -192,26 +196,26 @@ DURATION = Message(name="duration", dialect="ros1", fields=())
         ("python-signalling-nan", "same", ROS2["float32"], 0x7F800000, 0x7F800000),
         ("python-signalling-nan", "same", ROS2["float32"], 0x3F800000, 0x3F800000),
         ("python-signalling-nan", "same", ROS2["float64"], 0x7FF0000000000001, 0x7FF0000000000001),
-        ("python-signalling-nan", "tame", ROS2["uint32"], 0x7F800001, 0x7F800001),
-        ("rosbags-byte-signed", "tame", ROS2["byte"], 0xFE, 0x7E),
+        ("python-signalling-nan", "take_out", ROS2["uint32"], 0x7F800001, 0x7F800001),
+        ("rosbags-byte-signed", "take_out", ROS2["byte"], 0xFE, 0x7E),
         ("rosbags-byte-signed", "same", ROS2["byte"], -2, 0xFE),
-        ("rosbags-byte-signed", "tame", ROS2["uint8"], 0xFE, 0xFE),
-        ("rosbags-byte-signed", "tame", ROS2["char"], 0xFE, 0xFE),
-        ("rosbags-byte-signed", "tame", ROS1["byte"], -2, -2),
+        ("rosbags-byte-signed", "take_out", ROS2["uint8"], 0xFE, 0xFE),
+        ("rosbags-byte-signed", "take_out", ROS2["char"], 0xFE, 0xFE),
+        ("rosbags-byte-signed", "take_out", ROS1["byte"], -2, -2),
         ("mcap-ros2-char-signed", "same", ROS2["char"], -56, 200),
         ("mcap-ros2-char-signed", "same", ROS2["byte"], 200, 200),
         ("rosbags-time-signs", "same", TIME, {"secs": -1, "nsecs": 5},
          {"secs": 0xFFFFFFFF, "nsecs": 5}),
         ("rosbags-time-signs", "same", DURATION, {"secs": -1, "nsecs": 0xFFFFFFFF},
          {"secs": -1, "nsecs": -1}),
-        ("rosbags-time-signs", "tame", TIME, {"secs": 1 << 31, "nsecs": 5},
+        ("rosbags-time-signs", "take_out", TIME, {"secs": 1 << 31, "nsecs": 5},
          {"secs": 0, "nsecs": 5}),
-        ("rosbags-time-signs", "tame", DURATION, {"secs": 3, "nsecs": -1},
+        ("rosbags-time-signs", "take_out", DURATION, {"secs": 3, "nsecs": -1},
          {"secs": 3, "nsecs": 0x7FFFFFFF}),
-        ("fastcdr-cut-at-nul", "tame", String(), b"ab\0c\0", b"ab"),
-        ("fastcdr-cut-at-nul", "tame", String(), b"ab", b"ab"),
-        ("fastcdr-cut-at-nul", "tame", String(wide=True), [1, 2, 0, 3, 0], [1, 2]),
-        ("fastcdr-cut-at-nul", "tame", String(wide=True), [1, 2], [1, 2]),
+        ("fastcdr-cut-at-nul", "take_out", String(), b"ab\0c\0", b"ab"),
+        ("fastcdr-cut-at-nul", "take_out", String(), b"ab", b"ab"),
+        ("fastcdr-cut-at-nul", "take_out", String(wide=True), [1, 2, 0, 3, 0], [1, 2]),
+        ("fastcdr-cut-at-nul", "take_out", String(wide=True), [1, 2], [1, 2]),
         ("genpy-time-normalized", "same", TIME, {"secs": 1, "nsecs": 2_500_000_000},
          {"secs": 3, "nsecs": 500_000_000}),
         ("genpy-time-normalized", "same", TIME, {"secs": 1, "nsecs": 999_999_999},

@@ -6,7 +6,7 @@ from collections import Counter
 
 import pytest
 
-from firm_hdl.verify.clients.finding import Finding, Known, changed
+from firm_hdl.verify.clients.finding import Finding, KnownDivergence, changed
 from firm_hdl.verify.clients.judge import Contest, Trial
 from firm_hdl.verify.clients.shrink import shrunk
 from firm_hdl.verify.references import Client, Codec, Refusal
@@ -201,7 +201,7 @@ NO = Refusal("no")
 @pytest.mark.parametrize("answer", ["takes", "refuses", None])
 @pytest.mark.parametrize("is_mine", [True, False])
 def test_a_known_difference_explains_its_own_answer_alone(message, answer, is_mine):
-    entry = Known(
+    entry = KnownDivergence(
         key="k",
         libraries=("mine",) if is_mine else ("right",),
         wires="cdr",
@@ -223,12 +223,14 @@ def test_a_known_difference_explains_its_own_answer_alone(message, answer, is_mi
 
 
 def test_a_known_difference_is_about_its_libraries_wires_and_oddities(message):
-    entry = Known(key="k", libraries=("mine", "yours"), wires="cdr", text="", whats=("odd",))
+    entry = KnownDivergence(
+        key="k", libraries=("mine", "yours"), wires="cdr", text="", whats=("odd",)
+    )
     assert entry.is_about(finding_of(message)) == "mine"
     assert entry.is_about(finding_of(message, library="x", reference="yours")) == "yours"
     assert entry.is_about(finding_of(message, library="x")) is None
     assert entry.is_about(finding_of(message, wire="ros1")) is None
-    both = Known(key="k", libraries=("mine",), wires="ros1 cdr", text="", whats=("odd",))
+    both = KnownDivergence(key="k", libraries=("mine",), wires="ros1 cdr", text="", whats=("odd",))
     assert both.is_about(finding_of(message, wire="ros1")) == "mine"
     assert entry.explains_answer(finding_of(message))
     assert not entry.explains_answer(finding_of(message, what="other"))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from firm_hdl.verify.references.oracle import DISTRO_STORES, Oracle, distro_oracle
+from firm_hdl.verify.references.oracle import DISTRO_STORES, RosbagsOracle, distro_oracle
 
 INNER = "string name\nuint16[] numbers\n"
 OUTER = """
@@ -24,7 +24,7 @@ def oracle():
     store = get_typestore(Stores.EMPTY)
     store.register(get_types_from_msg(INNER, "test_msgs/msg/Inner"))
     store.register(get_types_from_msg(OUTER, "test_msgs/msg/Outer"))
-    return Oracle(store, "ros2")
+    return RosbagsOracle(store, "ros2")
 
 
 def test_every_kind_of_field_transfers_as_the_interface_says(oracle):
@@ -57,7 +57,7 @@ def test_byte_has_a_sign_in_ros1_alone(dialect, right):
     store.register(get_types_from_msg("byte b\nbyte[] more\nuint8 u\n", "test_msgs/msg/Bytes"))
     more = np.array([254], dtype=np.uint8)
     value = store.types["test_msgs/msg/Bytes"](b=-2, more=more, u=254)
-    found = Oracle(store, dialect).transfers(value, "test_msgs/msg/Bytes", "ros1", 1)
+    found = RosbagsOracle(store, dialect).transfers(value, "test_msgs/msg/Bytes", "ros1", 1)
     assert (found[("b",)], found[("u",)]) == ([right], [254])
     assert found[("more", "items")] == [((right,), True)]
 

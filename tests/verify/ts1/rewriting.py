@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.known import KNOWN
 
 BY_KEY = {entry.key: entry for entry in KNOWN}
 
 
 def case_of(text, *, dialect="ros2", language="msg", kind=None, name="A", before=None, included=()):
-    return Case(
+    return DefinitionCase(
         dialect=dialect,
         package="p",
         kind=kind or ("msg" if language == "idl" else language),

@@ -12,7 +12,7 @@ import pytest
 
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged
 from firm_hdl.verify.ts1 import judge as judging
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.known import KNOWN
 from firm_hdl.verify.ts1.known.texts import hidden, renamed, renamed_back, shown
 from tests.verify.judged import assert_known, assert_passed
@@ -85,7 +85,7 @@ PLAIN = {
 @pytest.mark.parametrize("entry", KNOWN, ids=lambda entry: entry.key)
 def test_an_entry_normalises_one_thing_and_leaves_other_texts_alone(entry, dialect):
     assert any((entry.rewrite, entry.theirs, entry.spoils))
-    case = Case(
+    case = DefinitionCase(
         dialect=dialect, package="p", kind="msg", name="A", language="msg", text=PLAIN[dialect]
     )
     if entry.is_about(min(entry.oracles), "", case):

@@ -19,7 +19,7 @@ from firm_hdl.verify.systems.system import Recorder
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1 import ORACLES, Selection, Ts1, Ts1Run, selections_of
 from firm_hdl.verify.ts1 import judge as judging
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.judge import Outcome
 from firm_hdl.verify.ts1.oracles.oracle import Refused
 from firm_hdl.verify.ts1.run import Tally
@@ -175,7 +175,7 @@ def test_all_that_was_asked_for_is_in_each_selection():
     ]
 
 
-CASE = Case(
+CASE = DefinitionCase(
     dialect="ros2", package="p", kind="srv", name="S", language="srv", text="---", before=None
 )
 

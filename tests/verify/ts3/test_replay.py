@@ -12,7 +12,7 @@ import firm_hdl.verify.ts3.replay as replay_module
 from firm_hdl.cli import main
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.verify import Options
-from firm_hdl.verify.references.oracle import Oracle
+from firm_hdl.verify.references.oracle import RosbagsOracle
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.ts3.replay import replay
 from tests.frontend.recordings import make_old_db3
@@ -110,12 +110,12 @@ def test_faults_in_hardware_are_found(capsys, monkeypatch, tmp_path, which, faul
 
 
 def test_oracle_that_reads_another_byte_disagrees(monkeypatch, tmp_path):
-    original = Oracle.read
+    original = RosbagsOracle.read
 
     def read(self, packet, name, wire):
         return original(self, packet.replace(b"b", b"B"), name, wire)
 
-    monkeypatch.setattr(Oracle, "read", read)
+    monkeypatch.setattr(RosbagsOracle, "read", read)
     result = replayed(strings(tmp_path, TEXT))
     # Both models of ours, and the circuit, say what is in the packet.
     assert any(each.startswith("golden model, /text message 0") for each in result.failures)
@@ -128,13 +128,13 @@ def test_what_rosbags_cannot_read_is_judged_by_what_it_can(monkeypatch, tmp_path
     latin = TEXT[:9] + b"\xff" + TEXT[10:]
     bag = strings(tmp_path, latin)
     assert replayed(bag).failures == []
-    original = Oracle.read
+    original = RosbagsOracle.read
 
     def read(self, packet, name, wire):
         return original(self, packet.replace(b"c\0", b"C\0"), name, wire)
 
     # Beside the text that is not UTF-8, rosbags reads another letter.
-    monkeypatch.setattr(Oracle, "read", read)
+    monkeypatch.setattr(RosbagsOracle, "read", read)
     (failure,) = replayed(bag).failures
     assert "its 12 bytes do not fit the definition: status OK; rosbags says: " in failure
 

@@ -13,9 +13,9 @@ from firm_hdl.verify.ts1.known.idl_values import IDL_VALUES
 from firm_hdl.verify.ts1.known.lenient import LENIENT
 from firm_hdl.verify.ts1.known.ros import ROS
 from firm_hdl.verify.ts1.known.rosbags import ROSBAGS
-from firm_hdl.verify.ts1.known.rule import Known
+from firm_hdl.verify.ts1.known.rule import KnownRule
 
 __all__ = ["KNOWN"]
 
-KNOWN: tuple[Known, ...] = (*ROSBAGS, *LENIENT, *ROS, *IDL_FIT, *IDL, *IDL_VALUES)
+KNOWN: tuple[KnownRule, ...] = (*ROSBAGS, *LENIENT, *ROS, *IDL_FIT, *IDL, *IDL_VALUES)
 """All entries, in the order in which they are applied."""

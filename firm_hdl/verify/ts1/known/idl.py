@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.known.idl_text import blanked, changed, entry, in_code, modules_of
-from firm_hdl.verify.ts1.known.rule import Known
+from firm_hdl.verify.ts1.known.rule import KnownRule
 from firm_hdl.verify.ts1.known.texts import renamed
 
 __all__ = ["IDL"]
@@ -19,7 +19,7 @@ __all__ = ["IDL"]
 _PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
 
 
-def _named_as_file(facts: Facts, case: Case) -> Facts:
+def _named_as_file(facts: Facts, case: DefinitionCase) -> Facts:
     """Give the message its package and folder, where other modules are around it."""
     if "names" not in facts:
         return _parts_named_as_file(facts, case)
@@ -29,7 +29,7 @@ def _named_as_file(facts: Facts, case: Case) -> Facts:
     return {**facts, "names": [f"{case.package}/{case.kind}/{base}"]} if is_written else facts
 
 
-def _parts_named_as_file(facts: Facts, case: Case) -> Facts:
+def _parts_named_as_file(facts: Facts, case: DefinitionCase) -> Facts:
     """Give the messages of a service or an action its package and folder."""
     messages = facts.get("structure", {})
     scopes = {name.rpartition("/")[0] for name in messages}
@@ -54,7 +54,7 @@ def _parts_named_as_file(facts: Facts, case: Case) -> Facts:
     return {**facts, "structure": mended}
 
 
-def _called_as_file(case: Case) -> str:
+def _called_as_file(case: DefinitionCase) -> str:
     """Call what a file declares as the file is called."""
     found = re.findall(r"\bstruct\s+(\w+)", blanked(case.text))
     bases = {re.sub(rf"_(?:{'|'.join(_PARTS)})$", "", name) for name in found}
@@ -70,7 +70,7 @@ def _called_as_file(case: Case) -> str:
 _DECLARED = re.compile(r"\bconst\s+[\w :<>,]*?\b(\w+)\s*=\s*([^;]*);")
 
 
-def _bounds_by_value(case: Case) -> str:
+def _bounds_by_value(case: DefinitionCase) -> str:
     """Write the value of a constant that bounds a wstring in place of its name."""
     values = dict(_DECLARED.findall(blanked(case.text)))
 
@@ -81,7 +81,7 @@ def _bounds_by_value(case: Case) -> str:
     return in_code(case.text, r"(\bwstring\s*<\s*)([A-Za-z_][\w:]*)", bound)
 
 
-def _floats(facts: Facts, case: Case) -> Facts:
+def _floats(facts: Facts, case: DefinitionCase) -> Facts:
     """Make floating-point numbers of integers that are given for such."""
 
     def number(kind: str, value: Any) -> Any:
@@ -105,7 +105,7 @@ def _floats(facts: Facts, case: Case) -> Facts:
     return {**facts, "structure": mended}
 
 
-def _without_long_double_hash(facts: Facts, case: Case) -> Facts:
+def _without_long_double_hash(facts: Facts, case: DefinitionCase) -> Facts:
     """Take away what rosidl raises in place of the hash of a long double; it has no other."""
     if facts.get("hash") != "raises KeyError: 'long double'":
         return facts
@@ -127,7 +127,7 @@ _NAMES = re.compile(
 )
 
 
-def _declared_once(case: Case) -> str:
+def _declared_once(case: DefinitionCase) -> str:
     """Give what is declared again in the same braces another name."""
     # As long as the text, so that places in it are those in the text.
     code = blanked(case.text)
@@ -150,7 +150,7 @@ def _declared_once(case: Case) -> str:
 # What rosidl_parser does not look at.
 
 
-def _positive_lengths(case: Case) -> str:
+def _positive_lengths(case: DefinitionCase) -> str:
     return in_code(case.text, r"(\[\s*)-\s*\d+(?=\s*\])", r"\g<1>1")
 
 
@@ -159,7 +159,7 @@ _SCOPED = r"(?<![\w:])(?:\w+\s*::\s*)+\w+(?=\s+\w+\s*(?:[;,]|\[))"
 _SCOPED_ELEMENT = r"(\bsequence\s*<\s*)((?:\w+\s*::\s*)+\w+)(?=\s*[,>])"
 
 
-def _types_of_ros(case: Case) -> str:
+def _types_of_ros(case: DefinitionCase) -> str:
     """Write a builtin type in place of one whose scopes are none of ROS."""
 
     def kind(name: str) -> str:
@@ -180,7 +180,7 @@ _GLUED = (
 )
 
 
-def _words_apart(case: Case) -> str:
+def _words_apart(case: DefinitionCase) -> str:
     """Write a blank behind a type that a name, or a part of its own name, follows at once."""
     return in_code(case.text, _GLUED, lambda m: f"{m[1] or m[3] or ''}{m[2] or m[4]} ")
 
@@ -190,11 +190,11 @@ def _words_apart(case: Case) -> str:
 _UNSUPPORTED = r"@(?:optional|mutable)\b(?:\s*\([^()]*\))?|@extensibility\s*\(\s*MUTABLE\s*\)"
 
 
-def _without_unsupported(case: Case) -> str:
+def _without_unsupported(case: DefinitionCase) -> str:
     return in_code(case.text, _UNSUPPORTED, "")
 
 
-def _has_lists_of_lists(case: Case) -> bool:
+def _has_lists_of_lists(case: DefinitionCase) -> bool:
     """Whether a list of a type that is a list itself, by a typedef, is declared."""
     code = blanked(case.text)
     lists = set(re.findall(r"\btypedef\s+sequence\s*<[^;]*>\s*(\w+)\s*;", code))
@@ -204,7 +204,7 @@ def _has_lists_of_lists(case: Case) -> bool:
     return bool(named) and re.search(pattern, code) is not None
 
 
-IDL: tuple[Known, ...] = (
+IDL: tuple[KnownRule, ...] = (
     entry(
         "idl-names",
         "A type in IDL is called by its package and its file, whatever its modules say.",

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.known.idl_text import (
     DECLARED,
@@ -23,7 +23,7 @@ from firm_hdl.verify.ts1.known.idl_text import (
     modules_of,
 )
 from firm_hdl.verify.ts1.known.idl_values import integer_of, integers_of
-from firm_hdl.verify.ts1.known.rule import Known, mend_members
+from firm_hdl.verify.ts1.known.rule import KnownRule, mend_members
 
 __all__ = ["IDL_FIT"]
 
@@ -57,7 +57,7 @@ _WORD = re.compile(r"[A-Za-z_]\w*")
 # What another file declares.
 
 
-def _without_includes(case: Case) -> str:
+def _without_includes(case: DefinitionCase) -> str:
     """Write what included files declare in place of its names."""
     values: dict[str, int] = {}
     kinds: dict[str, str] = {}
@@ -97,7 +97,7 @@ class _Names:
     declared: set[str]
 
     @classmethod
-    def of(cls, case: Case) -> _Names:
+    def of(cls, case: DefinitionCase) -> _Names:
         texts = [blanked(text) for text in (*case.included, case.text)]
         code = "\n".join(texts)
         return cls(
@@ -175,7 +175,7 @@ class _Default:
     text: str
 
 
-def _members(case: Case) -> Iterator[tuple[re.Match[str], list[_Default]]]:
+def _members(case: DefinitionCase) -> Iterator[tuple[re.Match[str], list[_Default]]]:
     """Yield the members that have defaults."""
     code = blanked(case.text)
     for member in _MEMBER.finditer(code):
@@ -187,7 +187,7 @@ def _members(case: Case) -> Iterator[tuple[re.Match[str], list[_Default]]]:
             yield member, found
 
 
-def _fitting_values(case: Case) -> str:
+def _fitting_values(case: DefinitionCase) -> str:
     """Write a value that fits in place of one that does not, and leave such defaults out."""
     names = _Names.of(case)
     code = blanked(case.text)
@@ -222,13 +222,13 @@ def _is_default(
     return _is_value(kind, text, names)
 
 
-def _one_default(case: Case) -> str:
+def _one_default(case: DefinitionCase) -> str:
     """Leave all defaults of a member out but the first."""
     further = [each for _, defaults in _members(case) for each in defaults[1:]]
     return changed(case.text, [(each.start, each.end, "") for each in further])
 
 
-def _lists_of_one(case: Case) -> str:
+def _lists_of_one(case: DefinitionCase) -> str:
     """Write a comma behind the only element of a list, as rosidl_adapter does."""
     changes = [
         (each.start, each.end, f'@default(value="({match[1]},)")')
@@ -244,7 +244,7 @@ def _lists_of_one(case: Case) -> str:
 _WIDE = re.compile(r"\bsequence\s*<\s*wstring\s*<[^<>]*>\s*>\s+(\w+)|\bwstring<=\d+\[\] +(\w+)")
 
 
-def _own_bounds(facts: Facts, case: Case) -> Facts:
+def _own_bounds(facts: Facts, case: DefinitionCase) -> Facts:
     """Take the bound of texts away from a sequence of them that has none."""
     code = blanked(case.text) if case.language == "idl" else case.text
     names = {one or other for one, other in _WIDE.findall(code)}
@@ -261,7 +261,7 @@ def _own_bounds(facts: Facts, case: Case) -> Facts:
     return {name: fact for name, fact in mended.items() if name != "hash"}
 
 
-IDL_FIT: tuple[Known, ...] = (
+IDL_FIT: tuple[KnownRule, ...] = (
     entry(
         "idl-includes",
         "rosidl_parser does not look at included files.",

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from firm_hdl.verify.ts1.known.rule import Known
+from firm_hdl.verify.ts1.known.rule import KnownRule
 
 __all__ = ["DECLARED", "TYPEDEF", "blanked", "changed", "entry", "in_code", "modules_of"]
 
@@ -44,7 +44,7 @@ def changed(text: str, changes: Iterable[tuple[int, int, str]]) -> str:
     return text
 
 
-def entry(key: str, text: str, **more: Any) -> Known:
+def entry(key: str, text: str, **more: Any) -> KnownRule:
     """Return a difference to rosidl_parser, of what is written in IDL."""
     more = {"language": "idl", **more}
-    return Known(key=key, oracles=frozenset({"rosidl_parser"}), text=text, **more)
+    return KnownRule(key=key, oracles=frozenset({"rosidl_parser"}), text=text, **more)

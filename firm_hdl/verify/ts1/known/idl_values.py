@@ -11,7 +11,7 @@ import operator
 import re
 from collections.abc import Callable, Mapping
 
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.known.idl_text import (
     DECLARED,
     TYPEDEF,
@@ -20,7 +20,7 @@ from firm_hdl.verify.ts1.known.idl_text import (
     entry,
     modules_of,
 )
-from firm_hdl.verify.ts1.known.rule import Known, mend_constants, whole_bool
+from firm_hdl.verify.ts1.known.rule import KnownRule, mend_constants, whole_bool
 from firm_hdl.verify.ts1.known.texts import renamed, renamed_back
 
 __all__ = ["IDL_VALUES", "integer_of", "integers_of"]
@@ -112,7 +112,7 @@ def integers_of(code: str) -> dict[str, int]:
     return names
 
 
-def _literals(case: Case) -> str:
+def _literals(case: DefinitionCase) -> str:
     """Write the value of each integer expression in its place."""
     code = blanked(case.text)
     names, modules = integers_of(code), modules_of(code)
@@ -146,7 +146,7 @@ def _paths(code: str) -> list[str]:
     return found
 
 
-def _plain_typedefs(case: Case) -> str:
+def _plain_typedefs(case: DefinitionCase) -> str:
     """Write what a typedef of a typedef means, and typedefs without their scopes."""
     code = blanked(case.text)
     meanings: dict[str, tuple[str, str]] = {}
@@ -171,7 +171,7 @@ def _plain_typedefs(case: Case) -> str:
 # Constants of services.
 
 
-def _own_constants(case: Case) -> str:
+def _own_constants(case: DefinitionCase) -> str:
     """Give constants that another part has, too, names of their own."""
     code = blanked(case.text)
     seen: set[str] = set()
@@ -186,7 +186,7 @@ def _own_constants(case: Case) -> str:
     return changed(case.text, changes)
 
 
-def _long_names(case: Case) -> str:
+def _long_names(case: DefinitionCase) -> str:
     """Call a long int32, where the name behind it begins like the second word of a type."""
     code = blanked(case.text)
     pattern = r"\b(unsigned\s+)?long(?=\s+(?:long|double)\w+\s*[;,\[])"
@@ -198,7 +198,7 @@ def _long_names(case: Case) -> str:
     return changed(case.text, changes)
 
 
-IDL_VALUES: tuple[Known, ...] = (
+IDL_VALUES: tuple[KnownRule, ...] = (
     entry(
         "idl-typedefs",
         "rosidl_parser does not know typedefs of typedefs, and typedefs with their scopes.",

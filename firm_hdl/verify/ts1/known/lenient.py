@@ -10,8 +10,8 @@ import re
 from dataclasses import replace
 from typing import Any
 
-from firm_hdl.verify.ts1.case import Case
-from firm_hdl.verify.ts1.known.rule import Known, Line, by_lines
+from firm_hdl.verify.ts1.case import DefinitionCase
+from firm_hdl.verify.ts1.known.rule import KnownRule, Line, by_lines
 from firm_hdl.verify.ts1.known.texts import FLOATS, INTEGERS, TEXTS, float_of, integer_of, limits
 
 __all__ = ["LENIENT"]
@@ -26,7 +26,7 @@ _TYPE_NAME = re.compile(r"(?:[a-z][a-z0-9_]*/(?:msg/)?)?[A-Z][A-Za-z0-9]*")
 _WORD = re.compile(r"[A-Za-z]\w*", re.ASCII)
 
 
-def _legal_names(line: Line, case: Case) -> Line:
+def _legal_names(line: Line, case: DefinitionCase) -> Line:
     pattern = _CONSTANT_NAME if line.equals else _FIELD_NAME
     if pattern.fullmatch(line.name) or not _WORD.fullmatch(line.name):
         return line
@@ -34,13 +34,13 @@ def _legal_names(line: Line, case: Case) -> Line:
     return replace(line, name=f"RENAMED{code.upper()}" if line.equals else f"renamed{code}")
 
 
-def _has_illegal_type(case: Case) -> bool:
+def _has_illegal_type(case: DefinitionCase) -> bool:
     """Whether a message, or one that it needs, is called as ROS 2 does not let it be."""
     if case.dialect != "ros2":
         return False
     found: list[str] = [case.name]
 
-    def look(line: Line, case: Case) -> Line:
+    def look(line: Line, case: DefinitionCase) -> Line:
         if line.base not in _PRIMITIVES:
             found.append(line.base)
         return line
@@ -52,10 +52,10 @@ def _has_illegal_type(case: Case) -> bool:
 # What is declared twice.
 
 
-def _distinct(case: Case) -> str:
+def _distinct(case: DefinitionCase) -> str:
     seen: dict[str, int] = {}
 
-    def change(line: Line, case: Case) -> Line:
+    def change(line: Line, case: DefinitionCase) -> Line:
         if line.equals and case.dialect == "ros1":  # There it may be.
             return line
         count = seen[line.name] = seen.get(line.name, 0) + 1
@@ -68,7 +68,7 @@ def _distinct(case: Case) -> str:
 # Values.
 
 
-def _is_value(kind: str, value: str, case: Case) -> bool:
+def _is_value(kind: str, value: str, case: DefinitionCase) -> bool:
     """Whether a value is one of a scalar type without a bound."""
     if kind in INTEGERS:
         number = integer_of(value, case.dialect)
@@ -83,7 +83,7 @@ def _is_value(kind: str, value: str, case: Case) -> bool:
     return value in ("True", "False") or integer_of(value, "ros2") is not None
 
 
-def _fits(line: Line, case: Case) -> bool:
+def _fits(line: Line, case: DefinitionCase) -> bool:
     """Whether the value of a constant or a default is one of its type."""
     match = re.fullmatch(r"(\w+)(?:<=(\d+))?(?:\[(<=)?(\d*)\])?", line.type)
     if match is None or match[1] not in _PRIMITIVES:
@@ -104,7 +104,7 @@ def _is_short(value: str, bound: str | None) -> bool:
     return bound is None or len(value.strip("\"'")) <= int(bound)
 
 
-def _fitting_values(line: Line, case: Case) -> Line:
+def _fitting_values(line: Line, case: DefinitionCase) -> Line:
     if line.equals:
         is_legal = line.type not in _PRIMITIVES or _is_value(line.type, line.value, case)
         if is_legal:
@@ -119,7 +119,7 @@ def _fitting_values(line: Line, case: Case) -> Line:
 # Forms of types.
 
 
-def _legal_sizes(line: Line, case: Case) -> Line:
+def _legal_sizes(line: Line, case: DefinitionCase) -> Line:
     def size(match: re.Match[str]) -> str:
         is_legal = int(match[2]) > 0 and (case.dialect == "ros2" or match[2].isdecimal())
         return match[0] if is_legal else f"{match[1]}1"
@@ -127,28 +127,28 @@ def _legal_sizes(line: Line, case: Case) -> Line:
     return replace(line, type=re.sub(r"(\[(?:<=)?|<=)([+-]?\d+)", size, line.type))
 
 
-def _own_forms(line: Line, case: Case) -> Line:
+def _own_forms(line: Line, case: DefinitionCase) -> Line:
     """Take away bounds and defaults, which ROS 1 does not have."""
     plain = replace(line, type=re.sub(r"<=\d+", "", line.type))
     return plain.without_value() if line.value and not line.equals else plain
 
 
-def _plain_blanks(line: Line, case: Case) -> Line:
+def _plain_blanks(line: Line, case: DefinitionCase) -> Line:
     if case.dialect == "ros2":
         return replace(line, indent="")
     return replace(line, gap=line.gap.replace("\t", " "))
 
 
-def _without_annotations(case: Case) -> str:
+def _without_annotations(case: DefinitionCase) -> str:
     return re.sub(r"(?m)^[ \t]*@[a-z]+[ \t]*(?:\n|$)", "", case.text)
 
 
-def _entry(key: str, text: str, **more: Any) -> Known:
+def _entry(key: str, text: str, **more: Any) -> KnownRule:
     more = {"is_mistake": "rewrite" in more, **more}
-    return Known(key=key, oracles=frozenset({"rosbags"}), text=text, **more)
+    return KnownRule(key=key, oracles=frozenset({"rosbags"}), text=text, **more)
 
 
-LENIENT: tuple[Known, ...] = (
+LENIENT: tuple[KnownRule, ...] = (
     _entry(
         "rosbags-names",
         "rosbags takes names of fields and constants that ROS 2 refuses.",

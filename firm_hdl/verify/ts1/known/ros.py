@@ -10,10 +10,10 @@ from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.known.rule import (
-    Known,
+    KnownRule,
     Line,
     by_lines,
     each_line,
@@ -30,7 +30,7 @@ _CONSTANT = re.compile(r"(\s*)(\w+)( +)(.*?)( *=.*)", re.DOTALL)
 _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
-def _legal_constant_names(case: Case) -> str:
+def _legal_constant_names(case: DefinitionCase) -> str:
     # The name may have blanks in it, so that it is no `Line`.
     def legal(line: str) -> str:
         match = _CONSTANT.fullmatch(line)
@@ -42,7 +42,7 @@ def _legal_constant_names(case: Case) -> str:
     return each_line(case.text, legal)
 
 
-def _plain_bools(line: Line, case: Case) -> Line:
+def _plain_bools(line: Line, case: DefinitionCase) -> Line:
     """Write truth values as such."""
     if line.type != "bool" or not line.equals or line.value in ("True", "False"):
         return line
@@ -53,11 +53,11 @@ def _plain_bools(line: Line, case: Case) -> Line:
     return line.with_value(str(bool(value)))
 
 
-def _no_indent(line: Line, case: Case) -> Line:
+def _no_indent(line: Line, case: DefinitionCase) -> Line:
     return replace(line, indent="") if line.type == "string" and line.equals else line
 
 
-def _within_64_bits(line: Line, case: Case) -> Line:
+def _within_64_bits(line: Line, case: DefinitionCase) -> Line:
     limits = {"int64": 1 << 63, "uint64": 1 << 64}
     if not line.equals or line.type not in limits:
         return line
@@ -69,7 +69,7 @@ def _within_64_bits(line: Line, case: Case) -> Line:
     return line.with_value(str(number - 1)) if number == limits[line.type] else line
 
 
-def _arrays_of_one(line: Line, case: Case) -> Line:
+def _arrays_of_one(line: Line, case: DefinitionCase) -> Line:
     return replace(line, type=re.sub(r"\[0+\]$", "[1]", line.type))
 
 
@@ -91,7 +91,7 @@ def _ascii(text: str) -> str:
     return "".join(map(sign, text))
 
 
-def _ascii_lines(case: Case) -> str:
+def _ascii_lines(case: DefinitionCase) -> str:
     if case.language == "idl":
         parts = re.split(r'("(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/)', case.text, flags=re.DOTALL)
         return "".join(part if index % 2 else _ascii(part) for index, part in enumerate(parts))
@@ -108,7 +108,7 @@ def _ascii_lines(case: Case) -> str:
 _LARGEST = 2**32 - 1
 
 
-def _sizes(case: Case) -> str:
+def _sizes(case: DefinitionCase) -> str:
     """Write sizes and bounds that take more than 32 bits as the largest that takes no more."""
 
     def size(match: re.Match[str]) -> str:
@@ -117,7 +117,7 @@ def _sizes(case: Case) -> str:
     if case.language == "idl":
         return re.sub(r"([<\[,]\s*)(\d+)(?=\s*[>\]])", size, case.text)
 
-    def change(line: Line, case: Case) -> Line:
+    def change(line: Line, case: DefinitionCase) -> Line:
         return replace(line, type=re.sub(r"(\[(?:<=)?|<=)([0-9_]+)", size, line.type))
 
     return by_lines(change)(case)
@@ -126,7 +126,7 @@ def _sizes(case: Case) -> str:
 # rosidl.
 
 
-def _no_escaped_quotes(line: Line, case: Case) -> Line:
+def _no_escaped_quotes(line: Line, case: DefinitionCase) -> Line:
     """Write escaped quotes in lists as characters that stand for them."""
     if line.equals or line.base not in TEXTS or not line.value.startswith("["):
         return line
@@ -156,7 +156,7 @@ def _unquoted(element: Any) -> Any:
     return text[1:-1] if is_quoted else text
 
 
-def _no_backslashes(line: Line, case: Case) -> Line:
+def _no_backslashes(line: Line, case: DefinitionCase) -> Line:
     """Write backslashes that escape nothing as characters that stand for them."""
     if line.base not in TEXTS:
         return line
@@ -169,7 +169,7 @@ def _no_backslashes(line: Line, case: Case) -> Line:
 _INFINITE, _NO_NUMBER = "1.25e300", "1.75e300"
 
 
-def _plain_floats(line: Line, case: Case) -> Line:
+def _plain_floats(line: Line, case: DefinitionCase) -> Line:
     """Write what is no finite number as one that stands for it."""
     if line.base not in FLOATS:
         return line
@@ -201,7 +201,7 @@ def _without_blanks(comment: str) -> str:
     return "\n".join(kept).strip("\n")
 
 
-def _comments(facts: Facts, case: Case) -> Facts:
+def _comments(facts: Facts, case: DefinitionCase) -> Facts:
     messages = facts.get("structure", {})
     mended = {
         name: {**message, "comment": _without_blanks(message.get("comment", ""))}
@@ -210,11 +210,11 @@ def _comments(facts: Facts, case: Case) -> Facts:
     return {**facts, "structure": mended}
 
 
-def _entry(key: str, oracles: str, text: str, **more: Any) -> Known:
-    return Known(key=key, oracles=frozenset(oracles.split()), text=text, **more)
+def _entry(key: str, oracles: str, text: str, **more: Any) -> KnownRule:
+    return KnownRule(key=key, oracles=frozenset(oracles.split()), text=text, **more)
 
 
-ROS: tuple[Known, ...] = (
+ROS: tuple[KnownRule, ...] = (
     _entry(
         "ros1-indented-texts",
         "genmsg",

@@ -19,10 +19,10 @@ from firm_hdl.model import (
     Sequence,
     String,
 )
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.known.rule import (
-    Known,
+    KnownRule,
     Line,
     by_lines,
     mend_constants,
@@ -46,14 +46,14 @@ __all__ = ["ROSBAGS"]
 _ROSBAGS = frozenset({"rosbags"})
 
 
-def _line_ends(case: Case) -> str:
+def _line_ends(case: DefinitionCase) -> str:
     return case.text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 # wstring.
 
 
-def _narrow_lines(line: Line, case: Case) -> Line:
+def _narrow_lines(line: Line, case: DefinitionCase) -> Line:
     return replace(line, type=line.type[1:]) if line.base == "wstring" else line
 
 
@@ -95,7 +95,7 @@ _UPPER = re.compile(r"[A-Z](?:_?[A-Z0-9]+)*")
 _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
-def _upper_lines(line: Line, case: Case) -> Line:
+def _upper_lines(line: Line, case: DefinitionCase) -> Line:
     is_legal = line.equals and _NAME.fullmatch(line.name)
     if not is_legal or _UPPER.fullmatch(line.name):
         return line
@@ -107,12 +107,12 @@ def _upper_lines(line: Line, case: Case) -> Line:
 _PLACEHOLDER, _STAND_IN = "structure_needs_at_least_one_member", "structure_has_one_more_member"
 
 
-def _plain_placeholders(line: Line, case: Case) -> Line:
+def _plain_placeholders(line: Line, case: DefinitionCase) -> Line:
     is_one = line.name == _PLACEHOLDER and not line.equals
     return replace(line, name=_STAND_IN) if is_one else line
 
 
-def _placeholders_back(facts: Facts, case: Case) -> Facts:
+def _placeholders_back(facts: Facts, case: DefinitionCase) -> Facts:
     def back(field: dict[str, Any]) -> dict[str, Any]:
         return {**field, "name": _PLACEHOLDER} if field["name"] == _STAND_IN else field
 
@@ -125,7 +125,7 @@ def _placeholders_back(facts: Facts, case: Case) -> Facts:
 # Texts: it looks for numbers in them, for quotes, and never for what ends them.
 
 
-def _text_of(line: Line, case: Case) -> str | None:
+def _text_of(line: Line, case: DefinitionCase) -> str | None:
     """Return the text that a line gives, as ROS reads it; `None` if ROS refuses it."""
     if case.dialect == "ros1":
         return line.rest.strip()
@@ -139,7 +139,7 @@ def _text_of(line: Line, case: Case) -> str | None:
     return inner.replace(f"\\{quote}", quote)
 
 
-def _quoted_lines(line: Line, case: Case) -> Line:
+def _quoted_lines(line: Line, case: DefinitionCase) -> Line:
     is_field = not line.equals and case.dialect == "ros2" and line.value and "[" not in line.type
     if line.base not in TEXTS or not (line.equals or is_field):
         return line
@@ -160,7 +160,7 @@ def _show_text(constant: dict[str, Any]) -> dict[str, Any]:
 # Numbers.
 
 
-def _decimal_lines(line: Line, case: Case) -> Line:
+def _decimal_lines(line: Line, case: DefinitionCase) -> Line:
     """Write integers without leading zeros and underscores, and without bases that ROS 1 lacks."""
     if "[" in line.type or line.base not in INTEGERS or "x" in line.value.lower():
         return line
@@ -173,7 +173,7 @@ _FRACTION = re.compile(
 )
 
 
-def _fraction_lines(line: Line, case: Case) -> Line:
+def _fraction_lines(line: Line, case: DefinitionCase) -> Line:
     """Write floating-point numbers with digits and a point, or an exponent."""
     if "[" in line.type or line.base not in FLOATS or _FRACTION.fullmatch(line.value):
         return line
@@ -192,7 +192,7 @@ def _float_constant(constant: dict[str, Any]) -> dict[str, Any]:
 # Types.
 
 
-def _own_types(line: Line, case: Case) -> Line:
+def _own_types(line: Line, case: DefinitionCase) -> Line:
     """Write out the package of what is no special type to ROS."""
     is_special = line.base in ("time", "duration", "Header")
     if case.dialect == "ros1":
@@ -200,15 +200,15 @@ def _own_types(line: Line, case: Case) -> Line:
     return replace(line, type=f"{case.package}/{line.type}") if is_special else line
 
 
-def _uint8_lines(line: Line, case: Case) -> Line:
+def _uint8_lines(line: Line, case: DefinitionCase) -> Line:
     return replace(line, type=f"uint8{line.type[4:]}") if line.base == "char" else line
 
 
-def _entry(key: str, text: str, **more: Any) -> Known:
-    return Known(key=key, oracles=_ROSBAGS, text=text, **more)
+def _entry(key: str, text: str, **more: Any) -> KnownRule:
+    return KnownRule(key=key, oracles=_ROSBAGS, text=text, **more)
 
 
-ROSBAGS: tuple[Known, ...] = (
+ROSBAGS: tuple[KnownRule, ...] = (
     _entry(
         "rosbags-crlf",
         "rosbags refuses lines that end in CR LF.",

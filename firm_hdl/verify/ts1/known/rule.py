@@ -14,11 +14,11 @@ from typing import Any, TypeAlias
 
 from firm_hdl.frontend.sources import Language
 from firm_hdl.model import Dialect, Interface
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
 
 __all__ = [
-    "Known",
+    "KnownRule",
     "Line",
     "by_lines",
     "each_line",
@@ -28,11 +28,11 @@ __all__ = [
     "whole_bool",
 ]
 
-_Rewrite: TypeAlias = "Callable[[Case], str]"
+_Rewrite: TypeAlias = "Callable[[DefinitionCase], str]"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Known:
+class KnownRule:
     """One deliberate difference.
 
     Attributes
@@ -75,12 +75,12 @@ class Known:
     language: Language | None = None
     rewrite: _Rewrite | None = None
     is_mistake: bool = False
-    theirs: Callable[[Facts, Case], Facts] | None = None
+    theirs: Callable[[Facts, DefinitionCase], Facts] | None = None
     ours: Callable[[Interface], Interface] | None = None
     alike: Mapping[str, str] = field(default_factory=dict)
-    spoils: Callable[[Case], bool] | None = None
+    spoils: Callable[[DefinitionCase], bool] | None = None
 
-    def is_about(self, oracle: str, release: str, case: Case) -> bool:
+    def is_about(self, oracle: str, release: str, case: DefinitionCase) -> bool:
         """Whether it can explain a difference to some oracle about some definition."""
         return (
             # Where there are several releases at once, the newer ones have theirs in their names.
@@ -90,7 +90,7 @@ class Known:
             and (self.releases is None or self.releases.fullmatch(release) is not None)
         )
 
-    def changed(self, case: Case) -> Case:
+    def changed(self, case: DefinitionCase) -> DefinitionCase:
         """Give a definition with the text rewritten."""
         text = case.text if self.rewrite is None else self.rewrite(case)
         if text == case.text:
@@ -153,10 +153,10 @@ _LINE = re.compile(
 )
 
 
-def by_lines(change: Callable[[Line, Case], Line]) -> _Rewrite:
+def by_lines(change: Callable[[Line, DefinitionCase], Line]) -> _Rewrite:
     """Make a rewriting of one that knows lines of ``.msg``, ``.srv`` and ``.action`` files."""
 
-    def rewrite(case: Case) -> str:
+    def rewrite(case: DefinitionCase) -> str:
         def line(text: str) -> str:
             match = _LINE.fullmatch(text)
             if match is None:
@@ -178,10 +178,10 @@ def each_line(text: str, change: Callable[[str], str]) -> str:
 
 def mend_members(
     part: str, change: Callable[[dict[str, Any]], dict[str, Any]]
-) -> Callable[[Facts, Case], Facts]:
+) -> Callable[[Facts, DefinitionCase], Facts]:
     """Make a mending of facts of one that knows a field (``fields``) or a constant."""
 
-    def mend(facts: Facts, case: Case) -> Facts:
+    def mend(facts: Facts, case: DefinitionCase) -> Facts:
         messages = facts.get("structure", {})
         mended = {
             name: {**message, part: [change(each) for each in message[part]]}
@@ -196,12 +196,12 @@ def mend_members(
 
 def mend_constants(
     change: Callable[[dict[str, Any]], dict[str, Any]],
-) -> Callable[[Facts, Case], Facts]:
+) -> Callable[[Facts, DefinitionCase], Facts]:
     """Make a mending of facts of one that knows a constant."""
     return mend_members("constants", change)
 
 
-def mend_values(change: Callable[[Any], Any]) -> Callable[[Facts, Case], Facts]:
+def mend_values(change: Callable[[Any], Any]) -> Callable[[Facts, DefinitionCase], Facts]:
     """Make a mending of facts of one that knows the value of a constant, or a default."""
     constants = mend_constants(lambda each: {**each, "value": change(each["value"])})
     defaults = mend_members("fields", lambda each: {**each, "default": change(each["default"])})

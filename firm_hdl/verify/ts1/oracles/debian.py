@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 from firm_hdl.frontend import DISTROS
 from firm_hdl.verify.ros2_wheels import RELEASES, Release
 from firm_hdl.verify.ros_python.worker import ROS_PYTHON, Worker
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle, Refused
 
@@ -43,11 +43,11 @@ class _Worked(Oracle):
     def version(self) -> str:
         return self._worker.versions.get(self.judge_name, "")
 
-    def judge(self, cases: Sequence[Case]) -> Iterator[Answer]:
+    def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
         for case in cases:
             yield _answer(self._worker.ask(self._request(case)))
 
-    def _request(self, case: Case) -> dict[str, Any]:
+    def _request(self, case: DefinitionCase) -> dict[str, Any]:
         return {
             "oracle": self.judge_name,
             "package": case.package,
@@ -116,13 +116,13 @@ class RosidlParser(_Worked):
     family = "rosidl"
     languages: ClassVar = {"ros2": frozenset({"msg", "srv", "action", "idl"})}
 
-    def judge(self, cases: Sequence[Case]) -> Iterator[Answer]:
+    def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
         for case, answer in zip(cases, super().judge(cases), strict=True):
             if case.language == "idl" and isinstance(answer, Accepted):
                 _name_as_file(answer.facts, case)
             yield answer
 
-    def alike(self, case: Case) -> Mapping[str, str]:
+    def alike(self, case: DefinitionCase) -> Mapping[str, str]:
         # There is no char in the IDL that rosidl_adapter writes.
         return {} if case.language == "idl" else {"char": "uint8"}
 
@@ -139,7 +139,7 @@ NEWER: tuple[type[Oracle], ...] = tuple(_newer())
 """Oracles of the releases that PyPI has, oldest first."""
 
 
-def _name_as_file(facts: Facts, case: Case) -> None:
+def _name_as_file(facts: Facts, case: DefinitionCase) -> None:
     """Give a message of IDL the name of its file, which its modules may contradict."""
     names = list(facts["structure"])
     if len(names) == 1:

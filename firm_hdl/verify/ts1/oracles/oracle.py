@@ -9,7 +9,7 @@ from typing import ClassVar, TypeAlias
 
 from firm_hdl.model import Dialect
 from firm_hdl.verify.results.verdict import NotJudged
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.universe import Universe
 
@@ -62,15 +62,17 @@ class Oracle(ABC):
         """Tell why the oracle cannot be asked here; `None` if it can."""
 
     @abstractmethod
-    def judge(self, cases: Sequence[Case]) -> Iterator[Answer]:
+    def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
         """Answer for each case, in order. All are of languages that it can read."""
 
-    def judge_changed(self, case: Case, change: Callable[[Case], Case]) -> Answer:
+    def judge_changed(
+        self, case: DefinitionCase, change: Callable[[DefinitionCase], DefinitionCase]
+    ) -> Answer:
         """Answer for a case with its text changed."""
         (answer,) = self.judge([change(case)])
         return answer
 
-    def alike(self, case: Case) -> Mapping[str, str]:
+    def alike(self, case: DefinitionCase) -> Mapping[str, str]:
         """Name the primitives that it cannot tell from others in a case, and those others."""
         return {}
 

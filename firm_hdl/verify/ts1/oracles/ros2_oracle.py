@@ -7,7 +7,7 @@ import subprocess
 from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle
 
 __all__ = ["Ros2Proto"]
@@ -28,11 +28,11 @@ class Ros2Proto(Oracle):
     def missing(self) -> str | None:
         return None if shutil.which("ros2") else "there is no command 'ros2'; source ROS 2's setup"
 
-    def judge(self, cases: Sequence[Case]) -> Iterator[Answer]:
+    def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
         for case in cases:
             yield self._judge(case)
 
-    def _judge(self, case: Case) -> Answer:
+    def _judge(self, case: DefinitionCase) -> Answer:
         command = ["ros2", "interface", "proto", case.full_name]
         try:
             done = subprocess.run(

@@ -16,7 +16,7 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
 
 from firm_hdl.model import Dialect
-from firm_hdl.verify.ts1.case import Case
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle, Refused
 
@@ -43,11 +43,13 @@ class Rosbags(Oracle):
     def version(self) -> str:
         return metadata.version("rosbags")
 
-    def judge(self, cases: Sequence[Case]) -> Iterator[Answer]:
+    def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
         for case in cases:
             yield self.judge_changed(case, lambda case: case)
 
-    def judge_changed(self, case: Case, change: Callable[[Case], Case]) -> Answer:
+    def judge_changed(
+        self, case: DefinitionCase, change: Callable[[DefinitionCase], DefinitionCase]
+    ) -> Answer:
         try:
             return self._judge(case, change)
         except RecursionError:
@@ -60,7 +62,9 @@ class Rosbags(Oracle):
             is_meant = isinstance(error, TypesysError)
             return Refused(why if is_meant else f"{type(error).__name__} {why}")
 
-    def _judge(self, case: Case, change: Callable[[Case], Case]) -> Answer:
+    def _judge(
+        self, case: DefinitionCase, change: Callable[[DefinitionCase], DefinitionCase]
+    ) -> Answer:
         found: dict[str, Any] = {}
         texts: list[str] = []
         missing = self._read(case, found, lambda case: _noted(change(case), texts))
@@ -73,7 +77,7 @@ class Rosbags(Oracle):
         self._last = (case.full_name, texts), answer
         return answer
 
-    def _answer(self, case: Case, found: dict[str, Any]) -> Answer:
+    def _answer(self, case: DefinitionCase, found: dict[str, Any]) -> Answer:
         full = f"{case.package}/msg/{case.name}"
         if _contains_itself(full, found):
             return Refused(f"{full} contains itself")
@@ -87,7 +91,10 @@ class Rosbags(Oracle):
         return Accepted(facts)
 
     def _read(
-        self, root: Case, found: dict[str, Any], change: Callable[[Case], Case]
+        self,
+        root: DefinitionCase,
+        found: dict[str, Any],
+        change: Callable[[DefinitionCase], DefinitionCase],
     ) -> str | None:
         """Read a definition and what it needs; return the name of a type that is nowhere."""
         pending = [root]
@@ -115,7 +122,7 @@ def _parsed(text: str, full: str) -> Any:
     return get_types_from_msg(text, full)[full]
 
 
-def _noted(case: Case, texts: list[str]) -> Case:
+def _noted(case: DefinitionCase, texts: list[str]) -> DefinitionCase:
     texts.append(case.text)
     return case
 
