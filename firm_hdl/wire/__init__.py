@@ -15,7 +15,7 @@ from firm_hdl.wire.layout import (
     lay_out,
     walk,
 )
-from firm_hdl.wire.refusals import MAX_LEAVES, MAX_LEVELS, refusals
+from firm_hdl.wire.refusals import MAX_LEAVES, MAX_LEVELS, refusals, too_large
 from firm_hdl.wire.ros1 import ROS1
 from firm_hdl.wire.rules import WireRules
 
@@ -37,5 +37,6 @@ __all__ = [
     "WireRules",
     "lay_out",
     "refusals",
+    "too_large",
     "walk",
 ]

@@ -9,12 +9,10 @@ fields than there are atoms, so what would be too large is counted before it is 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from firm_hdl.errors import Diagnostic
 from firm_hdl.model import Message, Primitive
 
-__all__ = ["MAX_LEAVES", "MAX_LEVELS", "refusals"]
+__all__ = ["MAX_LEAVES", "MAX_LEVELS", "refusals", "too_large"]
 
 MAX_LEAVES = 32_767
 """Most fields of a message with all messages in it written out.
@@ -36,20 +34,27 @@ def refusals(message: Message) -> list[Diagnostic]:
         in which the types are first named; without any, one for the size, which no text is to
         blame for. Empty if the message can be laid out.
     """
-    return _without_bytes(message) or list(_too_large(message))
+    return _without_bytes(message) or too_large(message)
 
 
-def _too_large(message: Message) -> Iterator[Diagnostic]:
+def too_large(message: Message) -> list[Diagnostic]:
+    """Find whether a message has more levels or more fields than can be laid out.
+
+    Returns
+    -------
+    list of Diagnostic
+        At most one, with the count and the limit.
+    """
     if message.depth > MAX_LEVELS:
-        yield Diagnostic(
-            message=f"{message.name} has {message.depth} levels of messages, and at most "
-            f"{MAX_LEVELS} can be laid out"
-        )
+        text = f"{message.depth} levels of messages, and at most {MAX_LEVELS}"
     elif message.leaf_count > MAX_LEAVES:
-        yield Diagnostic(
-            message=f"{message.name} has {message.leaf_count} fields when all messages in it are "
-            f"written out, and at most {MAX_LEAVES} can be laid out"
+        text = (
+            f"{message.leaf_count} fields when all messages in it are written out, and at most "
+            f"{MAX_LEAVES}"
         )
+    else:
+        return []
+    return [Diagnostic(message=f"{message.name} has {text} can be laid out")]
 
 
 def _without_bytes(message: Message) -> list[Diagnostic]:

@@ -13,7 +13,7 @@ from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message, closure
 from firm_hdl.verify.systems.libraries import library_of
-from firm_hdl.wire import refusals
+from firm_hdl.wire import too_large
 
 __all__ = ["TypeUnderTest", "UnknownTypeError", "collect_own", "collect_tasks"]
 
@@ -100,8 +100,8 @@ def collect_own(
     distros : iterable of str
         Whose rules and types the folders' own are read with, in turn.
     names : sequence of str
-        Types, services or actions; none: all that are in the folders. Types that are named have to
-        fit a wire (:func:`firm_hdl.wire.refusals`).
+        Types, services or actions; none: all that are in the folders. Types that are named must not
+        be too large to be laid out (:func:`firm_hdl.wire.too_large`).
     paths : sequence of str
     own : sequence of str or None
         Those of `paths` whose types are meant by all; `None`: all of them.
@@ -124,9 +124,9 @@ def collect_own(
             except DefinitionError as error:
                 wrong.update((str(problem), problem) for problem in error.diagnostics)
                 continue
-            # A type that is named and fits no wire is an error at once; of all, it is not judged.
-            if no_layout := [each for message in messages for each in refusals(message) if names]:
-                wrong.update((str(problem), problem) for problem in no_layout)
+            # Such a type is an error at once if it is named; of all, it is not judged.
+            if large := [each for message in messages for each in too_large(message) if names]:
+                wrong.update((str(problem), problem) for problem in large)
                 continue
             found.update(((distro, message.name), _weight(message)) for message in messages)
     if wrong and (problems is None or (names and not found)):

@@ -8,7 +8,7 @@ from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend import open_library
 from firm_hdl.verify.systems.tasks import TypeUnderTest, UnknownTypeError
 from firm_hdl.verify.ts3.recording import topics_of
-from firm_hdl.wire import Wire, refusals
+from firm_hdl.wire import Wire, too_large
 
 __all__ = ["collect_recorded"]
 
@@ -37,8 +37,8 @@ def collect_recorded(
     Raises
     ------
     DefinitionError
-        If a recording cannot be used, or the definition of a type that is named: it has to fit a
-        wire (:func:`firm_hdl.wire.refusals`).
+        If a recording cannot be used, or the definition of a type that is named: it must not be
+        too large to be laid out (:func:`firm_hdl.wire.too_large`).
     UnknownTypeError
         If there is no topic of a type that is named, or the recording is of another wire format.
     """
@@ -57,8 +57,8 @@ def collect_recorded(
         raise UnknownTypeError(
             f"There is no topic of {', '.join(missing)}, only of {', '.join(sorted(found))}"
         )
-    if no_layout := [each for name in names for each in refusals(library.message(name))]:
-        raise DefinitionError(no_layout)
+    if large := [each for name in names for each in too_large(library.message(name))]:
+        raise DefinitionError(large)
     return [
         TypeUnderTest(distro=library.distro, name=name, same=(library.distro,)) for name in wanted
     ]
