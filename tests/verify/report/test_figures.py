@@ -1,4 +1,4 @@
-"""What a report makes of figures: Markdown that renders, lists of the slowest, limits, relations."""
+"""What a report makes of figures: Markdown that renders, the slowest, limits, relations."""
 
 from __future__ import annotations
 

@@ -1,0 +1,136 @@
+"""Statements of several registers as those of one process: what they assign stays what it was."""
+
+from __future__ import annotations
+
+import itertools
+import random
+from collections.abc import Iterable
+
+import pytest
+
+from firm_hdl.rtlil.ir import Assign, Bits, Case, Slice, Statement, Switch
+from firm_hdl.vhdl.process import flatten, merged
+
+Body = tuple[Statement, ...]
+WIDTHS = {"s": 2, "t": 2, "u": 1}
+STATES = [
+    dict(zip(WIDTHS, bits, strict=True))
+    for bits in itertools.product(*(["".join(b) for b in itertools.product("01", repeat=width)]
+                                    for width in WIDTHS.values()))
+]  # fmt: skip
+
+
+def run(body: Iterable[Statement], state: dict[str, str], seen: dict[str, str]) -> dict[str, str]:
+    """Execute statements as RTLIL means them: the first arm that matches, the last assignment."""
+    for statement in body:
+        if isinstance(statement, Assign):
+            for target, value in zip(statement.target, statement.value, strict=True):
+                assert isinstance(target, Slice) and isinstance(value, Bits)
+                seen[target.wire] = value.text
+            continue
+        bits = "".join(state[each.wire] for each in statement.selector if isinstance(each, Slice))
+        for case in statement.cases:
+            if not case.patterns or any(fits(each, bits) for each in case.patterns):
+                run(case.body, state, seen)
+                break
+    return seen
+
+
+def fits(pattern: str, bits: str) -> bool:
+    return all(mark in ("-", bit) for mark, bit in zip(pattern, bits, strict=True))
+
+
+def body_of(wire: str, chosen: random.Random, depth: int = 0) -> Body:
+    """Make statements that assign one register."""
+    result: list[Statement] = []
+    for _ in range(chosen.randint(0 if depth else 1, 3)):
+        if depth == 3 or chosen.random() < 0.4:
+            result.append(assign(wire, f"{chosen.randrange(16):04b}"))
+            continue
+        name = chosen.choice([*WIDTHS, ""])
+        marks = "01-" if chosen.random() < 0.3 else "01"
+        width = WIDTHS.get(name, 0)
+        patterns = ["".join(each) for each in itertools.product(marks, repeat=width)]
+        cases = []
+        for _ in range(chosen.randint(1, 3)):
+            few = chosen.sample(patterns, min(len(patterns), chosen.randint(0, 2)))
+            cases.append(Case(patterns=tuple(few), body=body_of(wire, chosen, depth + 1)))
+        result.append(Switch(selector=(Slice(name, 0, width),) if name else (), cases=tuple(cases)))
+    return tuple(result)
+
+
+def assign(wire: str, text: str) -> Assign:
+    return Assign(target=(Slice(wire, 0, 4),), value=(Bits(text),))
+
+
+@pytest.mark.parametrize("start", range(0, 600, 100))
+def test_statements_of_two_registers_do_together_what_they_do_apart(start: int) -> None:
+    for seed in range(start, start + 100):
+        chosen = random.Random(seed)
+        first, second = (flatten(body_of(wire, chosen)) for wire in "pq")
+        both = merged(first, second)
+        for state in STATES:
+            apart = run(second, state, run(first, state, {}))
+            assert run(both, state, {}) == apart, (seed, state)
+
+
+@pytest.mark.parametrize("start", range(0, 300, 100))
+def test_what_chooses_nothing_is_gone_and_missed_by_nobody(start: int) -> None:
+    for seed in range(start, start + 100):
+        body = body_of("p", random.Random(seed))
+        flat = flatten(body)
+        for state in STATES:
+            assert run(flat, state, {}) == run(body, state, {}), (seed, state)
+        for statement in everything(flat):
+            if isinstance(statement, Switch):
+                assert statement.selector and any(case.body for case in statement.cases)
+
+
+def everything(body: Body) -> Iterable[Statement]:
+    for statement in body:
+        yield statement
+        for case in statement.cases if isinstance(statement, Switch) else ():
+            yield from everything(case.body)
+
+
+def on(wire: str, **bodies: str) -> Switch:
+    """Choose by `s`: a pattern such as `b01`, or `other`, to what `wire` becomes."""
+    cases = [
+        Case(patterns=() if name == "other" else (name[1:],), body=(assign(wire, text),))
+        for name, text in bodies.items()
+    ]
+    return Switch(selector=(Slice("s", 0, 2),), cases=tuple(cases))
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "together"),
+    [
+        # The same arms, whatever they are.
+        ({"b01": "0001"}, {"b01": "0010"}, True),
+        ({"b01": "0001", "other": "0010"}, {"b01": "0010", "other": "0011"}, True),
+        # Other arms, of which no two match.
+        ({"b01": "0001"}, {"b10": "0010", "b01": "0100"}, True),
+        # A default, or arms that overlap, have to be in their order.
+        ({"b01": "0001", "other": "0010"}, {"b01": "0010"}, False),
+        ({"b01": "0001"}, {"b10": "0010", "other": "0011"}, False),
+    ],
+)
+def test_one_choice_is_written_once(one: dict, other: dict, together: bool) -> None:
+    both = merged((on("p", **one),), (on("q", **other),))
+    assert (len(both) == 1) == together
+
+
+def test_a_choice_of_a_bit_is_joined_only_if_its_arms_are_the_same() -> None:
+    def bit(wire: str, *patterns: str) -> Switch:
+        cases = tuple(Case(patterns=(p,), body=(assign(wire, "0001"),)) for p in patterns)
+        return Switch(selector=(Slice("u", 0, 1),), cases=cases)
+
+    assert len(merged((bit("p", "1"),), (bit("q", "1"),))) == 1
+    assert len(merged((bit("p", "1"),), (bit("q", "0"),))) == 2
+
+
+def test_later_statements_join_later_ones() -> None:
+    first = (on("p", b00="0000"), assign("p", "0001"), on("p", b01="0010"))
+    second = (on("q", b01="0001"), on("q", b00="0010"), assign("q", "1111"))
+    both = merged(first, second)
+    assert [type(each).__name__ for each in both] == ["Switch", "Assign", "Switch", "Assign"]
