@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 
@@ -86,6 +87,20 @@ def test_info_says_what_was_tried_and_of_long_arrays_only_where_there_are_some(c
     assert "clock for the hardest packet tried (200 bytes, 25 beats, 33 cycles): " in polygon
     assert "long" not in polygon
     assert "clock for long strings or arrays: " in image
+
+
+def test_limitations_deny_nothing_that_verify_does(capsys):
+    with pytest.raises(SystemExit):
+        main(["verify", "--help"])
+    said = capsys.readouterr().out
+    page = (Path(__file__).parents[1] / "docs" / "limitations.md").read_text()
+    for option, denial in (
+        ("--results", r"Only \w+ keeps results"),
+        ("--bag", r"[Rr]ecorded messages are not replayed"),
+        ("--sut", r"no other client library can be"),
+    ):
+        assert option in said
+        assert not re.search(denial.replace(" ", r"\s+"), page), option
 
 
 BOOL = load_message("std_msgs/msg/Bool")

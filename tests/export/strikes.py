@@ -3,6 +3,8 @@
 Run as a program, so that it may fork: each strike is a process of its own, which ends as SIGKILL
 would end it, without any ``finally``. What is left is looked at, then another build is made. It
 prints how many strikes there were, and what was wrong.
+
+It can also look on: before each call to the system, it reads the manifest as another program would.
 """
 
 from __future__ import annotations
@@ -122,10 +124,36 @@ def problems_after(target: Path) -> Iterator[str]:
         yield f"the next build left {rest}"
 
 
-def main(has_exchange: bool) -> None:
+def look_on() -> None:
+    """Count how often there is no whole manifest while folders are replaced."""
+    manifests = {with_manifest(files)["manifest.json"] for files in (OLD, NEW)}
+    looks, misses, looking = 0, 0, False
+
+    with tempfile.TemporaryDirectory() as root:
+        target = set_up(Path(root))
+
+        def look(event: str, arguments: tuple[Any, ...]) -> None:
+            nonlocal looks, misses, looking
+            if looking or not is_change(event, arguments):
+                return
+            looking = True  # Reading is a call, too.
+            looks += 1
+            try:
+                misses += (target / "manifest.json").read_text() not in manifests
+            except OSError:
+                misses += 1
+            looking = False
+
+        sys.addaudithook(look)
+        for files in (NEW, OLD):
+            module.replace(target, with_manifest(files))
+        looking = True
+    print(json.dumps({"looks": looks, "misses": misses}))
+
+
+def strike(has_exchange: bool) -> None:
+    """End builds before each call to the system; print what was wrong."""
     wrong: list[str] = []
-    if not has_exchange:
-        module.exchange = lambda one, other: False  # type: ignore[attr-defined]
     for number in range(MOST_STRIKES):
         with tempfile.TemporaryDirectory() as root:
             target = set_up(Path(root))
@@ -146,5 +174,14 @@ def main(has_exchange: bool) -> None:
     print(json.dumps({"strikes": number, "wrong": wrong}))
 
 
+def main(has_exchange: str, does: str = "strike") -> None:
+    if has_exchange == "fallback":
+        module.exchange = lambda one, other: False  # type: ignore[attr-defined]
+    if does == "look":
+        look_on()
+    else:
+        strike(has_exchange == "exchange")
+
+
 if __name__ == "__main__":
-    main(sys.argv[1] == "exchange")
+    main(*sys.argv[1:])

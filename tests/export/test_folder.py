@@ -102,6 +102,31 @@ def test_a_reader_that_polls_always_sees_a_whole_manifest(target):
     assert (misses, looks > 0) == (0, True)
 
 
+@pytest.mark.usefixtures("has_exchange")
+def test_before_each_call_to_the_system_a_reader_sees_a_whole_manifest():
+    found = strike("exchange", "look")
+    assert found["misses"] == 0
+    assert found["looks"] > 30
+
+
+def test_a_reader_finds_the_gap_between_two_renames():
+    # Its twin: where folders cannot be exchanged, there is none for a moment.
+    found = strike("fallback", "look")
+    assert found["misses"] > 0
+
+
+def test_folders_of_others_are_not_taken_for_leftovers(target):
+    # As another program calls them, or an older build whose process had the number of this one.
+    for name in (f".type.{os.getpid()}.new", f".type.{os.getpid()}.old", ".type.old", "type.new"):
+        (target.parent / name).mkdir()
+        (target.parent / name / "thesis.tex").write_text("ten years")
+    before = {path.name for path in target.parent.iterdir()}
+    module.replace(target, with_manifest(NEW))
+    assert texts(target) == with_manifest(NEW)
+    assert {path.name for path in target.parent.iterdir()} == before
+    assert len([*target.parent.glob("*/thesis.tex")]) == len(before) - 1 == 4
+
+
 def test_users_files_are_the_same_files_after_a_build(target):
     kept = target / "results.csv"
     kept.write_text("1\n")

@@ -171,8 +171,10 @@ def test_packages_that_the_documentation_lists_are_not_here_and_are_told():
 def test_a_package_of_ros_that_is_not_here_is_told_from_one_that_nobody_has(distro, package):
     with pytest.raises(DefinitionError) as caught:
         Library(distro).interface(f"{package}/Such")
-    assert f"package '{package}' is not found; it is one of ROS that does not come" in str(
-        caught.value
+    assert str(caught.value) == (
+        f"error: package '{package}' is not found; it is one of ROS that does not come with "
+        f"firm-hdl: name a folder that has it with --path, or source the setup file of an "
+        f"installation that does"
     )
     with pytest.raises(DefinitionError, match=r"package 'nobodys' is not found$"):
         Library(distro).interface("nobodys/Such")

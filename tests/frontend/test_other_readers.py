@@ -36,9 +36,19 @@ def recorded(path, text, name="p/msg/A"):
     return path
 
 
-def test_full_names_and_indented_lines_are_read_in_recordings(tmp_path):
-    line = "=" * 80
-    text = f"  q/msg/Pt p\n\tq/msg/Pt[] more\n  # a comment\n{line}\nMSG: q/msg/Pt\n  int8 x\n"
+LINE = "=" * 80
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"q/msg/Pt p\nq/msg/Pt[] more\n{LINE}\nMSG: q/msg/Pt\nint8 x\n",
+        f"  q/Pt p\n\tq/Pt[] more\n  # a comment\n{LINE}\nMSG: q/Pt\n  int8 x\n",
+        f"  q/msg/Pt p\n\tq/msg/Pt[] more\n{LINE}\nMSG: q/msg/Pt\n  int8 x\n",
+    ],
+    ids=["full names", "indented lines", "both"],
+)
+def test_full_names_and_indented_lines_are_read_in_recordings(tmp_path, text):
     ours = open_library(bags=[recorded(tmp_path / "r", text)])
     assert [str(f.type) for f in ours.message("p/A").fields] == ["q/msg/Pt", "q/msg/Pt[]"]
     assert ours.message("q/Pt").fields[0].name == "x"

@@ -271,6 +271,9 @@ def test_tools_have_each_file_once(folders, tmp_path):
     assert status == 0, said
     read = [Path(line.split()[-1]).name for line in said.splitlines()]
     assert read == [path.name for path in once(folders, "files.txt")]
+    assert {"builtin_interfaces_msg_time_cdr_8_pkg.vhd", "std_msgs_msg_header_cdr_8_pkg.vhd"} <= {
+        *read
+    }
     shutil.copytree(folders[0].parents[1], tmp_path / "cores")
     (tmp_path / "both.core").write_text(
         "CAPI=2:\nname: my:own:both:1\nfilesets:\n  all:\n    depend:\n"
@@ -287,7 +290,22 @@ def test_tools_have_each_file_once(folders, tmp_path):
         assert text.count(f"/{path.name}\n") == 1, path.name
 
 
+HEADERS = """\
+library mine;
+use mine.sensor_msgs_msg_laserscan_cdr_8_pkg.all;
+use mine.sensor_msgs_msg_pointcloud2_cdr_8_pkg.all;
+entity headers is end entity;
+architecture sim of headers is
+  signal scan : laser_scan_t;
+  signal cloud : point_cloud2_t;
+begin
+  cloud.header <= scan.header;
+end architecture;
+"""
+
+
 def test_vhdl_compiles_as_a_library_of_vunit(ghdl, folders, tmp_path):
+    (tmp_path / "headers.vhd").write_text(HEADERS)
     (tmp_path / "run.py").write_text(
         "import sys\nfrom pathlib import Path\nfrom vunit import VUnit\n"
         "folders = [Path(each) for each in sys.argv[1:3]]\n"
@@ -297,7 +315,7 @@ def test_vhdl_compiles_as_a_library_of_vunit(ghdl, folders, tmp_path):
         "for folder in folders:\n"
         "    for name in (folder / 'files.txt').read_text().split():\n"
         "        files.setdefault(name, folder / name)\n"
-        "for file in files.values():\n"
+        "for file in [*files.values(), 'headers.vhd']:\n"
         "    library.add_source_file(file, vhdl_standard='2008')\n"
         "vunit.main()\n"
     )
