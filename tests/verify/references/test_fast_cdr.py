@@ -6,14 +6,19 @@ have to write it: so it holds where no Fast CDR is installed.
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 
+import firm_hdl
 from firm_hdl.model import IDL_PRIMITIVES, Field, Message, Sequence, String, idl_primitives
 from firm_hdl.verify.clients.run import SutOptions, judge_type
 from firm_hdl.verify.references import CLIENTS, Refusal, UnsupportedError
 from firm_hdl.verify.references.client import ClientDiedError
 from firm_hdl.verify.references.fastcdr import FastCdr
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, Passed
+from firm_hdl.verify.ros2_wheels import RELEASES as ROS2_RELEASES
 from tests.frontend.workspace import make_files
 from tests.plan.test_wire_facts import FACTS, WIDE, data
 from tests.strategies import make
@@ -25,6 +30,20 @@ CDR_FACTS = {name: fact for name, fact in FACTS.items() if fact[0] == "ros2"}
 
 def test_these_are_all_releases():
     assert [name for name, kind in CLIENTS.items() if issubclass(kind, FastCdr)] == [*RELEASES]
+
+
+def test_errata_are_of_the_releases_that_are_installed():
+    root = Path(firm_hdl.__file__).parent
+    page = (root.parent / "docs" / "errata.md").read_text()
+    wire = page.partition("## Definitions")[0]
+    for release in ROS2_RELEASES:
+        pinned = (root / "verify" / "ros2_wheels" / f"{release.name}.txt").read_text()
+        (version,) = re.findall(r"^ros-fastcdr==(.*)$", pinned, re.M)
+        assert version.startswith(f"{release.fastcdr}.")
+        assert f"{version} ({release.name})" in wire
+        (wchar,) = re.findall(r"^\| `wchar` of IDL \|(.*?)\|", wire, re.M)
+        (nul,) = re.findall(r"^\| `string` with a NUL inside, writing \|(.*?)\|", wire, re.M)
+        assert "Jazzy and later" in wchar and release.name in nul
 
 
 @pytest.mark.parametrize("release", RELEASES)
