@@ -6,7 +6,9 @@ import json
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
+from firm_hdl.verify.results.file import FORMAT
 from tests.attacks.table import Attack, files
 
 __all__ = ["other_attacks"]
@@ -15,7 +17,33 @@ BOOL = "std_msgs/msg/Bool"
 FOLDER = "out/lyrical/std_msgs_msg_Bool_cdr_8"
 BUILD = ("build", BOOL, "--out", "out")
 MANIFEST = f"{FOLDER}/manifest.json"
-LINES = "7", "[]", "null", '{"record": 7}', '{"record": {}}', '{"session": 7}', "{", "[" * 50_000
+RECORD: dict[str, Any] = {
+    "test": {"system": "ts2", "distro": "lyrical", "type": BOOL, "same": ["lyrical"]},
+    "verdict": {"verdict": "passed", "cases": 1},
+}
+WRONG: tuple[dict[str, Any], ...] = (
+    {"test": {**RECORD["test"], "same": ["humble", 7]}},
+    {"test": {**RECORD["test"], "bus_bytes": "8"}},
+    {"test": {**RECORD["test"], "age": 3}},
+    {"verdict": {"verdict": []}},
+    {"verdict": {"verdict": "failed", "failures": 7}},
+    {"seconds": 7},
+    {"seconds": {"testing": None}},
+    {"coverage": []},
+    {"metrics": {"steps": None}},
+    {"verdicts": [None]},
+    {"written_by": [True]},
+)
+LINES = (
+    *("7", "[]", "null", "{", "[" * 50_000, '{"session": 7}', '{"session": {"started": 7}}'),
+    *('{"record": 7}', '{"record": null}', '{"record": {}}', '{"record": {"test": 7}}'),
+    *(json.dumps({"record": {**RECORD, **wrong}}) for wrong in WRONG),
+)
+HEADS: dict[str, tuple[Any, ...]] = {
+    "format": (4, [], "firm-hdl results 1"),
+    "options": (7, [], None),
+    "planned": (7, ["x"], [7], [{"system": 7}]),
+}
 
 
 def other_attacks() -> Iterator[Attack]:
@@ -88,23 +116,13 @@ def _folders() -> Iterator[Attack]:
 
 
 def _results() -> Iterator[Attack]:
-    head = json.dumps({"format": 4, "options": {}, "planned": []})
-    for format_ in (1, 2, 3, 4, 5):
-        text = head.replace("4", str(format_), 1) + "\n"
-        for number, line in enumerate(
-            (
-                "7",
-                "[]",
-                "null",
-                '{"record": 7}',
-                '{"record": {}}',
-                '{"session": 7}',
-                "{",
-                "[" * 50_000,
-            )
-        ):
-            if (number + format_) % 3 == 0:
-                yield _report(f"line_{format_}_{number}", text + line + "\n")
+    head = {"format": FORMAT, "options": {}, "planned": []}
+    for number, line in enumerate(LINES):
+        yield _report(f"line_{number}", f"{json.dumps(head)}\n{line}\n", fails=True)
+    for key, values in HEADS.items():
+        for number, value in enumerate(values):
+            text = json.dumps({**head, key: value})
+            yield _report(f"{key}_{number}", f"{text}\n", fails=True)
     for name, text in {
         "empty": b"",
         "binary": bytes(range(256)) + b"\n",
@@ -113,12 +131,8 @@ def _results() -> Iterator[Attack]:
         "number": b"7\n",
         "deep": b"[" * 100_000 + b"\n",
         "no_line_end": b"x" * 1000,
-        "planned_number": b'{"format": 4, "options": {}, "planned": 7}\n',
-        "planned_text": b'{"format": 4, "options": {}, "planned": ["x"]}\n',
-        "options_list": b'{"format": 4, "options": [], "planned": []}\n',
-        "format_list": b'{"format": [], "options": [], "planned": []}\n',
     }.items():
-        yield _report(name, text)
+        yield _report(name, text, fails=None if name in ("empty", "no_line_end") else True)
 
     def fifo(root: Path) -> None:
         os.mkfifo(root / "r.jsonl")
@@ -151,8 +165,9 @@ def _results() -> Iterator[Attack]:
     )
 
 
-def _report(name: str, text: str | bytes) -> Attack:
-    return Attack(name=f"report_{name}", argv=("report", "r.jsonl"), make=files({"r.jsonl": text}))
+def _report(name: str, text: str | bytes, fails: bool | None) -> Attack:
+    made = files({"r.jsonl": text})
+    return Attack(name=f"report_{name}", argv=("report", "r.jsonl"), make=made, fails=fails)
 
 
 def _golden() -> Iterator[Attack]:

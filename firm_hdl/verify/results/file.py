@@ -98,7 +98,7 @@ def _read(path: Path) -> tuple[Results, int]:
         try:
             given = json.loads(line)
             if "session" in given:
-                sessions.append(given["session"])
+                sessions.append(_session(given["session"]))
             else:
                 record = Record.from_json(given["record"])
                 records[record.test.key] = record
@@ -114,11 +114,17 @@ def _read(path: Path) -> tuple[Results, int]:
 def _header(path: Path, line: bytes) -> tuple[Mapping[str, Any], tuple[Test, ...]]:
     try:
         given = json.loads(line)
-        if given["format"] != FORMAT:
+        if given["format"] != FORMAT or not isinstance(given["options"], dict):
             raise ValueError
         return given["options"], tuple(Test.from_json(test) for test in given["planned"])
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise ResultsError(f"'{path}' has no results of firm-hdl verify") from None
+
+
+def _session(given: object) -> Mapping[str, str]:
+    if not isinstance(given, dict) or not all(isinstance(each, str) for each in given.values()):
+        raise ValueError("A session must be an object of texts")
+    return given
 
 
 class ResultsWriter:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any
+from typing import Any, get_args, get_origin, get_type_hints
 
 from firm_hdl.verify.results.verdict import (
     Failed,
@@ -338,9 +338,14 @@ def _without_empty(values: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
+_JSON = {dict: "an object", list: "a list", str: "a text", bool: "a truth value"}
+"""What values that JSON has are called; all others but null are numbers."""
+
+
 def _mapping(given: object, what: str) -> dict[str, Any]:
     if not isinstance(given, dict):
-        raise ValueError(f"{what} must be an object, not {type(given).__name__}")
+        kind = "nothing" if given is None else _JSON.get(type(given), "a number")
+        raise ValueError(f"{what} must be an object, not {kind}")
     return given
 
 
@@ -349,7 +354,28 @@ def _made(kind: type[Any], given: object) -> Any:
     values = _mapping(given, kind.__name__)
     if unknown := sorted(values.keys() - kind.__dataclass_fields__.keys()):
         raise ValueError(f"{kind.__name__} has no {', '.join(unknown)}")
+    for name, value in values.items():
+        if not _fits(value, _HINTS[kind][name]):
+            raise ValueError(f"{kind.__name__}: {name} must be of another type")
     try:
         return kind(**{n: tuple(v) if type(v) is list else v for n, v in values.items()})
     except TypeError as error:
         raise ValueError(f"{kind.__name__}: {error}") from None
+
+
+_HINTS = {
+    kind: get_type_hints(kind) for kind in (Test, Seconds, PlanCoverage, OracleVerdict, Record)
+}
+
+
+def _fits(value: object, hint: Any) -> bool:
+    """Tell whether a value that JSON was read to can be that of an attribute."""
+    origin, arguments = get_origin(hint), get_args(hint)
+    if origin is tuple:
+        return isinstance(value, list | tuple) and all(_fits(v, arguments[0]) for v in value)
+    if origin is Mapping:
+        return isinstance(value, dict) and all(_fits(v, arguments[1]) for v in value.values())
+    if hint is float:
+        return type(value) in (int, float)
+    # A truth value is no number.
+    return type(value) is hint if hint is int else isinstance(value, hint)

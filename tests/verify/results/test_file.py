@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.verify.results.file import ResultsError, ResultsWriter, done, read_results
+from firm_hdl.verify.results.file import FORMAT, ResultsError, ResultsWriter, done, read_results
 from firm_hdl.verify.results.records import Record
 from firm_hdl.verify.results.verdict import Failed
 from tests.verify.report.samples import a_record, a_test
@@ -102,12 +102,15 @@ def test_damage_elsewhere_is_an_error_that_names_the_line(tmp_path):
     path = written(tmp_path / "r", a_record(), a_record(BOOL))
     lines = path.read_bytes().splitlines(keepends=True)
     path.write_bytes(b"".join([*lines[:2], b'{"record": {"status": "pass"}}\n', *lines[3:]]))
-    with pytest.raises(ResultsError, match=r"^'.*', line 3: Test must be an object, not NoneType$"):
+    with pytest.raises(ResultsError, match=r"^'.*', line 3: Test must be an object, not nothing$"):
         read_results(path)
 
 
+NO_OPTIONS = json.dumps({"format": FORMAT, "options": 7, "planned": []}).encode() + b"\n"
+
+
 @pytest.mark.parametrize(
-    "content", [b"hello", b"hello\n", b"{}\n", b'{"format": "other"}\n', b"[]\n"]
+    "content", [b"hello", b"hello\n", b"{}\n", b'{"format": "other"}\n', b"[]\n", NO_OPTIONS]
 )
 def test_other_files_are_refused_and_left_alone(tmp_path, content):
     path = tmp_path / "mine"
@@ -256,8 +259,10 @@ def test_workers_end_with_a_run_that_was_killed(tmp_path):
         ("{", "it is damaged"),
         ('{"record": {"test": {"age": 3}}}', "it is damaged"),
         ('{"record": {"test": {"system": "x"}}}', "it is damaged"),
-        ('{"record": []}', "A record must be an object, not list"),
-        ('{"record": {"test": 3}}', "Test must be an object, not int"),
+        ('{"record": []}', "A record must be an object, not a list"),
+        ('{"record": {"test": 3}}', "Test must be an object, not a number"),
+        ('{"session": 7}', "A session must be an object of texts"),
+        ('{"session": {"started": 7}}', "A session must be an object of texts"),
     ],
 )
 def test_a_line_that_is_none_is_named_with_the_reason(tmp_path, line, reason):

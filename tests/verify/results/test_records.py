@@ -168,8 +168,8 @@ def test_times_alone_are_left_out():
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ([], "A record must be an object, not list"),
-        ({}, "Test must be an object, not NoneType"),
+        ([], "A record must be an object, not a list"),
+        ({}, "Test must be an object, not nothing"),
         ({"test": {"system": "x", "size": 1, "age": 2}}, "Test has no age, size"),
     ],
 )
@@ -185,14 +185,46 @@ def test_parts_of_a_record_are_refused_by_name():
         "verdict": {"verdict": "passed", "cases": 1},
     }
     for part, said in {
-        "seconds": "Seconds must be an object, not int",
-        "coverage": "PlanCoverage must be an object, not int",
-        "test": "Test must be an object, not int",
+        "seconds": "Seconds must be an object, not a number",
+        "coverage": "PlanCoverage must be an object, not a number",
+        "test": "Test must be an object, not a number",
     }.items():
         with pytest.raises(ValueError) as error:
             Record.from_json({**whole, part: 3})
         assert str(error.value) == said
-    with pytest.raises(ValueError, match="What an oracle says must be an object, not int"):
+    with pytest.raises(ValueError, match="What an oracle says must be an object, not a number"):
         Record.from_json({**whole, "verdicts": [3]})
     with pytest.raises(ValueError, match="Test: "):
         Record.from_json({**whole, "test": {"system": "ts2"}})
+
+
+@pytest.mark.parametrize(
+    ("part", "name", "values"),
+    [
+        ("test", "type", [7, None]),
+        ("test", "same", ["humble", [7], {}]),
+        ("test", "bus_bytes", [True, 8.0, "8"]),
+        ("seconds", "testing", ["1", None]),
+        ("coverage", "missing", [[None], 7]),
+        (None, "metrics", [{"steps": None}, [1], {"steps": True}]),
+        (None, "written_by", [[True], "rosbags"]),
+        (None, "cases", [1.5, None]),
+        (None, "verdicts", [[{"oracle": 7, "verdict": "passed", "cases": 1}]]),
+    ],
+)
+def test_values_of_another_type_are_refused(part, name, values):
+    whole = {
+        "test": {"system": "ts2", "distro": "iron", "type": "p/A", "same": ["iron"]},
+        "verdict": {"verdict": "passed", "cases": 1},
+        "seconds": {"testing": 1},
+        "coverage": {"taken": 1, "possible": 2, "missing": ["x"]},
+        "metrics": {"steps": 1, "depth": 1.5},
+        "verdicts": [{"oracle": "genmsg", "verdict": "passed", "cases": 1, "is_refused": True}],
+        "written_by": ["rosbags"],
+        "cases": 3,
+    }
+    assert Record.from_json(whole).cases == 3
+    for value in values:
+        wrong = {name: value} if part is None else {part: {**whole[part], name: value}}
+        with pytest.raises(ValueError, match=r"must be of another type$"):
+            Record.from_json({**whole, **wrong})
