@@ -19,7 +19,7 @@ __all__ = ["add_build", "add_info", "add_plan"]
 
 def add_build(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl build``."""
-    from firm_hdl.export.vhdl.backend import PORTS
+    from firm_hdl.export.backend import PORTS
 
     _add_types(command)
     add_options(command)
@@ -36,6 +36,7 @@ def add_build(command: argparse.ArgumentParser) -> None:
 
 
 def _build(given: argparse.Namespace) -> None:
+    from firm_hdl.export.backend import Options
     from firm_hdl.export.build import build
 
     def packets_of(message: Message, plan: Plan) -> list[bytes]:
@@ -54,11 +55,13 @@ def _build(given: argparse.Namespace) -> None:
         given.types,
         given.out,
         library=library_of(given),
-        wire=given.wire,
-        bus_bytes=given.bus_bytes,
-        max_message_bytes=given.max_message_bytes,
-        window_words=given.window_words,
-        ports=given.ports,
+        options=Options(
+            wire=given.wire,
+            bus_bytes=given.bus_bytes,
+            max_message_bytes=given.max_message_bytes,
+            window_words=given.window_words,
+            ports=given.ports,
+        ),
         force=given.force,
         stimuli=packets_of,
         report=report,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from firm_hdl.export.backend import Options
 from firm_hdl.export.build import BuildError, Built, build
 from firm_hdl.export.top import Port, Top, ports_of
 from firm_hdl.export.verilog import to_verilog
@@ -10,6 +11,7 @@ from firm_hdl.names.identifiers import flat_names, identifier, scope_names
 __all__ = [
     "BuildError",
     "Built",
+    "Options",
     "Port",
     "Top",
     "build",

@@ -13,26 +13,27 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from firm_hdl.errors import DefinitionError, Diagnostic, UserError
+from firm_hdl.export.backend import Converters, Options
+from firm_hdl.export.documents import Documents
 from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
-from firm_hdl.export.manifest import MANIFEST, inputs_of, make_manifest, module_name, to_json
-from firm_hdl.export.packaging import packaging
-from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, Direction, Top, ports_of
-from firm_hdl.export.verilog import WAIVERS, to_verilog, waivers
-from firm_hdl.export.vhdl.backend import FOLDER, Ports, to_vhdl
+from firm_hdl.export.manifest import MANIFEST, inputs_of, make_manifest, to_json
+from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, ports_of
+from firm_hdl.export.verilog import Verilog
+from firm_hdl.export.vhdl.backend import FOLDER, Vhdl
 from firm_hdl.export.vhdl.tree import tree_of
-from firm_hdl.frontend import DEFAULT_DISTRO, Library
-from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.frontend import Library
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import identifier
-from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan, to_yaml
+from firm_hdl.plan import Plan, build_plan
 from firm_hdl.plan.timing import Timing, describe, timing
 from firm_hdl.wire import Wire, lay_out, refusals
-from firm_hdl.wire.picture import to_svg
 
-__all__ = ["BuildError", "Built", "build", "check_size", "load_all", "plan_of"]
+__all__ = ["BACK_ENDS", "BuildError", "Built", "build", "check_size", "load_all", "plan_of"]
+
+BACK_ENDS = (Verilog(), Documents(), Vhdl())
+"""What writes the files of a folder, in the order of their entries in the manifest."""
 
 
 class BuildError(UserError):
@@ -66,26 +67,21 @@ class Built:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Task:
-    message: Message
-    plan: Plan
+    converters: Converters
     folder: Path
-    inputs: dict[str, Any]
-    stimuli: Sequence[bytes]
-    window_words: int
+
+    @property
+    def name(self) -> str:
+        """The message's."""
+        return self.converters.message.name
 
 
 def build(
     types: Iterable[str],
     out: str | os.PathLike[str] = "vhdl_out",
     *,
-    distro: str = DEFAULT_DISTRO,
-    paths: Iterable[str | os.PathLike[str]] = (),
     library: Library | None = None,
-    wire: Wire | None = None,
-    bus_bytes: int = 8,
-    max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
-    window_words: int = 1,
-    ports: Ports = "records",
+    options: Options | None = None,
     force: bool = False,
     stimuli: Callable[[Message, Plan], Sequence[bytes]] | None = None,
     report: Callable[[Built], None] | None = None,
@@ -98,14 +94,10 @@ def build(
         As for `Library.interface`. All messages of services and actions are built.
     out : path
         Made if need be.
-    distro, paths
-        As for `Library`.
     library : Library or None
-        What to take the types from, instead of `distro` and `paths`.
-    wire, bus_bytes, max_message_bytes, window_words
-        As for the converters.
-    ports : "records" or "flat"
-        Whether the VHDL has a layer with records; "flat" is for tools that dislike them.
+        What to take the types from; `None` for those of the default distribution.
+    options : Options or None
+        What the converters are to be like; `None` for the defaults.
     force : bool
         Whether to write folders that are current, too.
     stimuli : callable or None
@@ -121,14 +113,22 @@ def build(
         If a type cannot be built with these options, and nothing was written; or if writing fails,
         and all folders are whole, old or new.
     """
-    if library is None:
-        library = Library(distro, paths)
+    library = Library() if library is None else library
+    options = Options() if options is None else options
     tasks = []
     for message in load_all(library, types):
-        plan = plan_of(message, wire, bus_bytes, max_message_bytes, window_words)
+        plan = plan_of(
+            message,
+            options.wire,
+            options.bus_bytes,
+            options.max_message_bytes,
+            options.window_words,
+        )
         check_size(plan)
         packets = list(stimuli(message, plan)) if stimuli is not None else []
-        tasks.append(_task(library, message, plan, Path(out), ports, packets, window_words))
+        converters = _converters(library, message, plan, options, packets)
+        folder = Path(out, library.distro, converters.name)
+        tasks.append(_Task(converters=converters, folder=folder))
     _check_folders(tasks)
     _check_packages(tasks)
     return [_done(task, force, report) for task in tasks]
@@ -141,34 +141,26 @@ def _done(task: _Task, force: bool, report: Callable[[Built], None] | None) -> B
     return built
 
 
-def _task(
-    library: Library,
-    message: Message,
-    plan: Plan,
-    out: Path,
-    ports: Ports,
-    packets: Sequence[bytes],
-    window_words: int,
-) -> _Task:
+def _converters(
+    library: Library, message: Message, plan: Plan, options: Options, packets: Sequence[bytes]
+) -> Converters:
     inputs = inputs_of(
         message,
         plan,
         distro=library.distro,
         definition_sha256=library.definition_hash(message),
-        ports=ports,
+        ports=options.ports,
     )
-    if window_words != 1:
-        inputs["options"]["window_words"] = window_words
+    if options.window_words != 1:
+        inputs["options"]["window_words"] = options.window_words
     inputs["stimuli_sha256"] = _digest(packets)
-    name = f"{identifier(message.name)}_{plan.wire}_{plan.bus_bytes}"
-    folder = out / library.distro / name
-    return _Task(
+    return Converters(
         message=message,
         plan=plan,
-        folder=folder,
+        name=f"{identifier(message.name)}_{plan.wire}_{plan.bus_bytes}",
+        options=options,
         inputs=inputs,
         stimuli=packets,
-        window_words=window_words,
     )
 
 
@@ -236,16 +228,16 @@ def _check_folders(tasks: list[_Task]) -> None:
     owners: dict[str, str] = {}
     for task in tasks:
         # Some file systems do not tell upper from lower case.
-        other = owners.setdefault(str(task.folder).lower(), task.message.name)
-        if other != task.message.name:
+        other = owners.setdefault(str(task.folder).lower(), task.name)
+        if other != task.name:
             raise BuildError(
-                f"{task.message.name}: its folder '{task.folder}' is that of {other}, too"
+                f"{task.name}: its folder '{task.folder}' is that of {other}, too"
             )
         found = read_manifest(task.folder)
         if found is not None:
             other = str(found["inputs"].get("message"))
-            if other != task.message.name:
-                raise BuildError(f"{task.message.name}: '{task.folder}' holds {other}")
+            if other != task.name:
+                raise BuildError(f"{task.name}: '{task.folder}' holds {other}")
         elif task.folder.exists() and not is_empty(task.folder):
             raise BuildError(f"'{task.folder}' is not a folder that firm-hdl made; move it away")
 
@@ -257,15 +249,15 @@ def _check_packages(tasks: list[_Task]) -> None:
     of one name once, so the name has to mean the same in all folders.
     """
     owners: dict[Path, tuple[str, Path]] = {}
-    for task in (task for task in tasks if task.inputs["options"]["ports"] == "records"):
-        for package in tree_of(task.message, task.plan).packages:
+    for task in (task for task in tasks if task.converters.options.ports == "records"):
+        for package in tree_of(task.converters.message, task.converters.plan).packages:
             file, owner = task.folder.parent / package.name, package.message.name
             if file not in owners:
                 owners[file] = _owner(file, tasks) or (owner, task.folder)
             other, folder = owners[file]
             if other != owner:
                 raise BuildError(
-                    f"{task.message.name}: the VHDL package '{package.name}' would be that of "
+                    f"{task.name}: the VHDL package '{package.name}' would be that of "
                     f"{owner}, and in '{folder}' it is that of {other}; build one of them into "
                     "another folder (--out), and compile it into another library"
                 )
@@ -285,7 +277,7 @@ def _owner(file: Path, tasks: list[_Task]) -> tuple[str, Path] | None:
 
 
 def _do(task: _Task, force: bool) -> Built:
-    figures = timing(task.plan)
+    figures = timing(task.converters.plan)
     try:
         return _written(task, figures, force)
     except OSError as error:
@@ -295,78 +287,30 @@ def _do(task: _Task, force: bool) -> Built:
 
 def _written(task: _Task, figures: Timing, force: bool) -> Built:
     clear_up(task.folder)
+    converters = task.converters
     built = Built(
-        name=task.message.name,
+        name=task.name,
         folder=task.folder,
-        was_current=not force and is_current(task.folder, task.inputs),
-        description=describe(task.message.name, task.plan, figures),
+        was_current=not force and is_current(task.folder, converters.inputs),
+        description=describe(task.name, converters.plan, figures),
     )
     if not built.was_current:
-        built = dataclasses.replace(built, renamed=replace(task.folder, _files(task, figures)))
+        files = _files(converters, figures)
+        built = dataclasses.replace(built, renamed=replace(task.folder, files))
     return built
 
 
-def _files(task: _Task, figures: Timing) -> dict[str, str]:
+def _files(converters: Converters, figures: Timing) -> dict[str, str]:
     """Write all files of a folder."""
-    files, vhdl = _texts(task)
-
-    def manifest() -> dict[str, Any]:
-        return make_manifest(
-            task.message,
-            task.plan,
-            figures,
-            inputs=task.inputs,
-            folder=task.folder.name,
-            files=files,
-            vhdl=vhdl,
-        )
-
-    files.update((f"{FOLDER}/{name}", text) for name, text in packaging(manifest()).items())
-    # Once more, now that all files are known.
-    return {**files, MANIFEST: to_json(manifest())}
-
-
-def _texts(task: _Task) -> tuple[dict[str, str], dict[str, Any]]:
-    """Write what a manifest is about; also what it says of the VHDL."""
-    message, plan, name = task.message, task.plan, task.folder.name
-    tops: dict[Direction, Top] = {}
-    files = {WAIVERS: waivers(module_name(name, direction) for direction in DIRECTIONS)}
-    for direction in DIRECTIONS:
-        converter = Deserializer if direction == "deserializer" else Serializer
-        tops[direction] = Top(
-            converter(
-                message,
-                wire=plan.wire,
-                bus_bytes=plan.bus_bytes,
-                max_message_bytes=plan.max_message_bytes,
-                window_words=task.window_words,
-            )
-        )
-        module = module_name(name, direction)
-        header = _header(task, module, f"the {direction}")
-        files[f"{module}.v"] = to_verilog(tops[direction], module=module, header=header)
-    files["plan.yaml"] = to_yaml(plan)
-    files["layout.svg"] = to_svg(lay_out(message, plan.wire), f"{message.name} on {plan.wire}")
-    vhdl = to_vhdl(
-        message,
-        plan,
-        tops,
-        name=name,
-        header=_header(task, name, "converters"),
-        stimuli=task.stimuli,
-        ports=task.inputs["options"]["ports"],
-        window_words=task.window_words,
+    converters = dataclasses.replace(converters, tops=converters.make_tops())
+    outputs = [each.write(converters) for each in BACK_ENDS]
+    files = {name: text for output in outputs for name, text in output.files.items()}
+    manifest = make_manifest(
+        converters.message,
+        converters.plan,
+        figures,
+        inputs=converters.inputs,
+        files=files,
+        sections={key: value for output in outputs for key, value in output.manifest.items()},
     )
-    files.update((f"{FOLDER}/{file}", text) for file, text in vhdl.files.items())
-    return files, vhdl.manifest
-
-
-def _header(task: _Task, name: str, what: str) -> str:
-    return (
-        f"{name}: {what} of {task.message.name}, made by "
-        f"firm-hdl {task.inputs['generator']['firm-hdl']}.\n"
-        f"{task.inputs['distro']}, wire {task.plan.wire}, bus of {task.plan.bus_bytes} bytes, "
-        f"messages of at most {task.plan.max_message_bytes} bytes\n"
-        f"definition (SHA-256): {task.inputs['definition_sha256']}\n"
-        f"What each port means: {MANIFEST}.\n"
-    )
+    return {**files, MANIFEST: to_json(manifest)}

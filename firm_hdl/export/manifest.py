@@ -14,13 +14,13 @@ from math import isfinite
 from typing import Any
 
 import firm_hdl
-from firm_hdl.export.top import DIRECTIONS, Direction, leaf_names, ports_of
+from firm_hdl.export.top import leaf_names
 from firm_hdl.gateware.signatures import LATENCY_CYCLES, Status
 from firm_hdl.model import Array, Constant, Field, Message, Sequence, closure
 from firm_hdl.plan import Leaf, Plan, to_yaml
 from firm_hdl.plan.timing import LINE_RATES, Cost, Timing, clock_mhz
 
-__all__ = ["FORMAT", "MANIFEST", "inputs_of", "make_manifest", "module_name", "to_json"]
+__all__ = ["FORMAT", "MANIFEST", "inputs_of", "make_manifest", "to_json"]
 
 FORMAT = 1
 """Version of the manifest's form."""
@@ -53,24 +53,14 @@ def inputs_of(
     }
 
 
-def module_name(folder: str, direction: Direction) -> str:
-    """Name the module of a converter in a folder.
-
-    No entity in VHDL has that name, whatever its case: simulators of both languages keep modules
-    and entities in one library, and look in it without regard to case.
-    """
-    return f"{folder}_{direction}_verilog"
-
-
 def make_manifest(
     message: Message,
     plan: Plan,
     figures: Timing,
     *,
     inputs: Mapping[str, Any],
-    folder: str,
     files: Mapping[str, str],
-    vhdl: Mapping[str, Any],
+    sections: Mapping[str, Any],
 ) -> dict[str, Any]:
     """Describe a folder.
 
@@ -78,12 +68,10 @@ def make_manifest(
     ----------
     inputs : mapping
         As :func:`inputs_of` gives them.
-    folder : str
-        The folder's own name.
     files : mapping of str to str
         Text of every other file in it, by name.
-    vhdl : mapping
-        What there is in VHDL; see :func:`firm_hdl.export.vhdl.backend.to_vhdl`.
+    sections : mapping
+        What back ends say of their files; see :class:`firm_hdl.export.backend.Output`.
     """
     statuses: Any = Status
     return {
@@ -92,17 +80,7 @@ def make_manifest(
         "inputs_sha256": _digest(to_json(inputs)),
         "timing": _timing(figures),
         "status": {status.name: status.value for status in statuses},
-        "converters": {
-            direction: {
-                "module": module_name(folder, direction),
-                "verilog": f"{module_name(folder, direction)}.v",
-                "clock": "aclk",
-                "reset": "aresetn",
-                "ports": _ports(plan, direction),
-            }
-            for direction in DIRECTIONS
-        },
-        "vhdl": dict(vhdl),
+        **sections,
         "leaves": list(_leaves(message, plan)),
         "constants": [_constant(constant) for constant in message.constants],
         "files": {name: _digest(text) for name, text in sorted(files.items())},
@@ -145,22 +123,6 @@ def _cost(cost: Cost) -> dict[str, Any]:
 
 def _clocks(cost: Cost) -> dict[str, float]:
     return {rate: round(clock_mhz(cost, bits), 3) for rate, bits in LINE_RATES.items()}
-
-
-def _ports(plan: Plan, direction: Direction) -> list[dict[str, Any]]:
-    entries = []
-    for port in ports_of(plan, direction):
-        entry: dict[str, Any] = {
-            "name": port.name,
-            "direction": port.direction,
-            "width": port.width,
-            "signed": port.signed,
-            "meaning": port.meaning,
-        }
-        if port.leaf is not None:
-            entry["leaf"] = str(plan.leaves[port.leaf])
-        entries.append(entry)
-    return entries
 
 
 def _leaves(message: Message, plan: Plan) -> Iterator[dict[str, Any]]:

@@ -14,8 +14,9 @@ import pytest
 
 import firm_hdl
 from firm_hdl.errors import DefinitionError
+from firm_hdl.export.backend import Converters, Options, Output
 from firm_hdl.export.build import BuildError, Built, build, check_size
-from firm_hdl.export.vhdl.backend import VhdlFolder
+from firm_hdl.export.vhdl.backend import Vhdl
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, from_yaml
 from firm_hdl.wire import lay_out
@@ -36,26 +37,27 @@ def tree(folder: Path) -> dict[str, bytes]:
 
 
 def build_one(out: Path, type_: str = "std_msgs/msg/Bool", **options: object) -> Built:
-    [built] = build([type_], out, **options)
+    """Build a type; what is not an argument of `build` is one of `Library` or `Options`."""
+    library = Library("lyrical", options.pop("paths", ()))
+    rest = {name: options.pop(name) for name in ("force", "stimuli") if name in options}
+    [built] = build([type_], out, library=library, options=Options(**options), **rest)
     return built
+
+
+def quick_vhdl(self: Vhdl, converters: Converters) -> Output:
+    text = converters.header(converters.name, "converters")
+    return Output(files={"vhdl/a.vhd": f"-- {text}"}, manifest={"vhdl": {}})
 
 
 @pytest.fixture
 def quick(monkeypatch):
     """Leave out Yosys, which takes nearly all of a build's time."""
-    for name in ("Deserializer", "Serializer", "Top"):
-        monkeypatch.setattr(build_module, name, lambda *args, **options: None)
+    monkeypatch.setattr("firm_hdl.export.backend.Top", lambda core: None)
     monkeypatch.setattr(
-        build_module, "to_verilog", lambda top, module, header: f"{header}module {module};\n"
+        "firm_hdl.export.verilog.backend.to_verilog",
+        lambda top, module, header: f"{header}module {module};\n",
     )
-    monkeypatch.setattr(
-        build_module,
-        "to_vhdl",
-        lambda *args, header, **options: VhdlFolder(files={"a.vhd": f"-- {header}"}, manifest={}),
-    )
-    monkeypatch.setattr(
-        build_module, "packaging", lambda manifest: {"files.txt": "".join(manifest["files"])}
-    )
+    monkeypatch.setattr(Vhdl, "write", quick_vhdl)
 
 
 def test_folder_is_complete(tmp_path):
@@ -339,8 +341,8 @@ def test_type_that_amaranth_cannot_elaborate_is_refused_before_writing(tmp_path)
         build(
             ["std_msgs/msg/Bool", "big_msgs/msg/Big"],
             tmp_path / "out",
-            paths=[tmp_path / "src"],
-            bus_bytes=64,
+            library=Library("lyrical", [tmp_path / "src"]),
+            options=Options(bus_bytes=64),
         )
     assert str(caught.value) == (
         "big_msgs/msg/Big: its serializer has 65644 input bits on a bus of 64 bytes, "

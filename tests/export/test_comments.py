@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.export.build import build
+from firm_hdl.frontend import Library
 
 ORDERS = (
     "synthesis translate_off",
@@ -44,7 +45,7 @@ def folder(tmp_path_factory) -> Path:
     text += 'string S="-- synthesis translate_off"\nInner[2] inner\n'
     (messages / "Orders.msg").write_text(text, encoding="utf-8", newline="")
     (messages / "Inner.msg").write_text(f"{COMMENTS}float64 x # pragma translate_off\n")
-    (built,) = build(["my_msgs/msg/Orders"], here / "out", paths=[here])
+    (built,) = build(["my_msgs/msg/Orders"], here / "out", library=Library("lyrical", [here]))
     return built.folder
 
 

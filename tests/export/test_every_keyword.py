@@ -92,7 +92,7 @@ def test_every_tool_takes_every_word(ghdl, iverilog, verilator, tmp_path):
     words = sorted(KEYWORDS) if ALL else SPOT
     types = ["all_words/Fields", "all_words/Types"]
     folder = made(tmp_path / "ws", words)
-    for built in build(types, tmp_path / "out", distro="noetic", paths=[folder]):
+    for built in build(types, tmp_path / "out", library=Library("noetic", [folder])):
         vhdl = built.folder / "vhdl"
         files = [*(vhdl / "files.txt").read_text().split()]
         files += (vhdl / "bench_files.txt").read_text().split()

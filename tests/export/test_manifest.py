@@ -10,6 +10,7 @@ import pytest
 
 from firm_hdl.export.manifest import FORMAT, inputs_of, make_manifest, to_json
 from firm_hdl.export.top import DIRECTIONS, leaf_names, ports_of
+from firm_hdl.export.verilog.backend import section
 from firm_hdl.frontend import Library
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.model import Message
@@ -31,8 +32,9 @@ TEXTS = {
 def manifest_of(message: Message, files: dict[str, str] | None = None, **options):
     plan = build_plan(lay_out(message), **{"bus_bytes": 8, **options})
     inputs = inputs_of(message, plan, distro="lyrical", definition_sha256="0" * 64)
+    sections = {"converters": section(plan, "f")}
     return plan, make_manifest(
-        message, plan, timing(plan), inputs=inputs, folder="f", files=files or {}, vhdl={}
+        message, plan, timing(plan), inputs=inputs, files=files or {}, sections=sections
     )
 
 

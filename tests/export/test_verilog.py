@@ -168,9 +168,10 @@ class BrokenYosys:
 def test_errors_of_the_system_are_told_in_its_words(monkeypatch):
     top = Top(Deserializer(load_message("std_msgs/msg/Bool")))
     said = "failed to write the module\n\nCaused by:\n    File too large (os error 27)"
-    monkeypatch.setattr("firm_hdl.export.verilog.find_yosys", lambda _: BrokenYosys(said))
+    finds = "firm_hdl.export.verilog.yosys.find_yosys"
+    monkeypatch.setattr(finds, lambda _: BrokenYosys(said))
     with pytest.raises(UserError, match=r"^m: Yosys cannot be run: File too large$"):
         to_verilog(top, module="m", header="")
-    monkeypatch.setattr("firm_hdl.export.verilog.find_yosys", lambda _: BrokenYosys("a fault"))
+    monkeypatch.setattr(finds, lambda _: BrokenYosys("a fault"))
     with pytest.raises(RuntimeError, match=r"^a fault$"):
         to_verilog(top, module="m", header="")

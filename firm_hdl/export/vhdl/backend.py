@@ -1,11 +1,13 @@
-"""The VHDL folder of a message type: cores, the user's layer, test benches, stimuli and script."""
+"""The VHDL folder of a message type: cores, the user's layer, test benches, and files for tools."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, TypeAlias
+from typing import Any
 
+from firm_hdl.export.backend import BackEnd, Converters, Output
+from firm_hdl.export.packaging import packaging
 from firm_hdl.export.record_top import RecordTop, why_no_record
 from firm_hdl.export.top import DIRECTIONS, Direction, Top
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT, STIMULI, bench, run_script
@@ -15,16 +17,12 @@ from firm_hdl.export.vhdl.layer import flat_package, user_layer
 from firm_hdl.export.vhdl.parts import PARTS, packets_text
 from firm_hdl.export.vhdl.types import TYPES_NAME
 from firm_hdl.export.vhdl.wrapper import Core
-from firm_hdl.model import Message
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan
 from firm_hdl.vhdl.convert import convert
 from firm_hdl.vhdl.package import PACKAGE_NAME
 
-__all__ = ["FOLDER", "PORTS", "Ports", "VhdlFolder", "to_vhdl"]
-
-Ports: TypeAlias = Literal["records", "flat"]
-PORTS: tuple[Ports, ...] = ("records", "flat")
+__all__ = ["FOLDER", "Vhdl", "VhdlFolder", "to_vhdl"]
 
 FOLDER = "vhdl"
 """Where in a type's folder the VHDL is."""
@@ -35,7 +33,7 @@ COMMON = (f"{TYPES_NAME}.vhd", f"{PACKAGE_NAME}.vhd")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VhdlFolder:
-    """Files, and what the manifest says of them.
+    """Files but for those of :mod:`firm_hdl.export.packaging`, and what the manifest says of them.
 
     Attributes
     ----------
@@ -47,6 +45,17 @@ class VhdlFolder:
 
     files: dict[str, str]
     manifest: dict[str, Any]
+
+
+class Vhdl(BackEnd):
+    """VHDL-2008; the manifest says it as `vhdl`."""
+
+    def write(self, converters: Converters) -> Output:
+        made = to_vhdl(converters)
+        manifest = {"vhdl": made.manifest}
+        tools = packaging({"inputs": converters.inputs, **manifest})
+        files = {f"{FOLDER}/{name}": text for name, text in {**made.files, **tools}.items()}
+        return Output(files=files, manifest=manifest)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -73,38 +82,20 @@ class _Parts:
         )
 
 
-def to_vhdl(
-    message: Message,
-    plan: Plan,
-    tops: Mapping[Direction, Top],
-    *,
-    name: str,
-    header: str = "",
-    stimuli: Sequence[bytes] = (),
-    ports: Ports = "records",
-    window_words: int = 1,
-) -> VhdlFolder:
-    """Write the VHDL of a message type.
-
-    Parameters
-    ----------
-    tops : mapping of direction to Top
-        Both converters.
-    name : str
-        What all names start with, once they are identifiers in lower case.
-    header : str
-        Lines for a comment at the head of every file that is the type's own.
-    stimuli : sequence of bytes
-        Packets for the test benches. Without any, there is no file of them.
-    ports : "records" or "flat"
-        Whether there is a layer with records around the converters.
-    """
-    parts = _Parts(base=identifier(name).lower(), header=header)
-    cores = {way: parts.core(tops[way], f"{parts.base}_{way}_flat") for way in DIRECTIONS}
+def to_vhdl(converters: Converters) -> VhdlFolder:
+    """Write the VHDL of a message type."""
+    message, plan, name = converters.message, converters.plan, converters.name
+    parts = _Parts(
+        base=identifier(name).lower(), header=converters.header(name, "converters")
+    )
+    cores = {
+        way: parts.core(converters.tops[way], f"{parts.base}_{way}_flat") for way in DIRECTIONS
+    }
+    ports = converters.options.ports
     if ports == "records":
-        _add_records(parts, message, plan, cores, window_words)
+        _add_records(parts, converters, cores)
     else:
-        _add_flat(parts, message, plan, cores)
+        _add_flat(parts, converters, cores)
     common = [file for file in COMMON if file in parts.design]
     design = [*common, *(file for file in parts.design if file not in common)]
     benches = {**PARTS, **{f"{top}.vhd": text for top, text in parts.benches.items()}}
@@ -114,9 +105,10 @@ def to_vhdl(
         **benches,
         RUN_SCRIPT: run_script([*design, *benches], entities[0]),
     }
+    stimuli = list(converters.stimuli)
     if stimuli:
         remark = f"Packets of {message.name}, {plan.wire}, written by rosbags; one a line."
-        files[STIMULI] = packets_text(list(stimuli), remark)
+        files[STIMULI] = packets_text(stimuli, remark)
     bench = {
         "entity": entities[0],
         "entities": entities,
@@ -130,7 +122,7 @@ def to_vhdl(
 
 def _section(
     parts: _Parts,
-    ports: Ports,
+    ports: str,
     design: Sequence[str],
     common: Sequence[str],
     bench: Mapping[str, Any],
@@ -149,15 +141,12 @@ def _section(
 
 
 def _add_records(
-    parts: _Parts,
-    message: Message,
-    plan: Plan,
-    cores: Mapping[Direction, Core],
-    window_words: int,
+    parts: _Parts, converters: Converters, cores: Mapping[Direction, Core]
 ) -> None:
     """Add the layer with records, and its benches."""
+    message, plan = converters.message, converters.plan
     reason = why_no_record(message, plan)
-    whole = {} if reason else _record_cores(parts, message, plan, window_words)
+    whole = {} if reason else _record_cores(parts, converters)
     layer = user_layer(
         message,
         plan,
@@ -208,18 +197,16 @@ def _add_records(
     }
 
 
-def _record_cores(
-    parts: _Parts, message: Message, plan: Plan, window_words: int
-) -> dict[Direction, Core]:
+def _record_cores(parts: _Parts, converters: Converters) -> dict[Direction, Core]:
     """Add converters with the whole message as one vector."""
-    options = {"bus_bytes": plan.bus_bytes, "max_message_bytes": plan.max_message_bytes}
-    options["window_words"] = window_words
-    tops = {way: RecordTop.of(message, way, wire=plan.wire, **options) for way in DIRECTIONS}
+    parameters = converters.parameters()
+    tops = {way: RecordTop.of(converters.message, way, **parameters) for way in DIRECTIONS}
     return {way: parts.core(top, f"{parts.base}_{way}_record_flat") for way, top in tops.items()}
 
 
-def _add_flat(parts: _Parts, message: Message, plan: Plan, cores: Mapping[Direction, Core]) -> None:
+def _add_flat(parts: _Parts, converters: Converters, cores: Mapping[Direction, Core]) -> None:
     """Add a package without records, and a bench."""
+    message, plan = converters.message, converters.plan
     package = f"{parts.base}_pkg"
     text, constants = flat_package(message, plan, name=package, cores=cores, header=parts.header)
     parts.design = {f"{package}.vhd": text, **parts.design}

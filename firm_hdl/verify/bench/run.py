@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from firm_hdl.errors import described
+from firm_hdl.export.backend import Options
 from firm_hdl.export.build import BuildError, Built, build, check_size, plan_of
 from firm_hdl.export.manifest import MANIFEST
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT
@@ -140,8 +141,7 @@ def _run_bench(
         [name],
         folder,
         library=library,
-        wire=run.wire,
-        bus_bytes=run.bus_bytes,
+        options=Options(wire=run.wire, bus_bytes=run.bus_bytes),
         stimuli=lambda *_: [case.packet for case in cases],
     )
     vhdl, entities = _analyse(built[0], run.ghdl)

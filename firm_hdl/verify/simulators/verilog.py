@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from firm_hdl.export.manifest import module_name
 from firm_hdl.export.top import Top
-from firm_hdl.export.verilog import to_verilog
+from firm_hdl.export.verilog import module_name, to_verilog
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.verify.simulators.trace import Device, Pin, Trace
 

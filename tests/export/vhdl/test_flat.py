@@ -8,6 +8,7 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.cli import main
+from firm_hdl.export.backend import Options
 from firm_hdl.export.build import build
 from firm_hdl.verify.cases.stimuli import stimuli
 from tests.export.vhdl.test_bench import run
@@ -70,5 +71,5 @@ def test_ports_are_an_option_of_the_command(tmp_path, capsys):
 
 
 def test_python_callers_choose_too(tmp_path):
-    [built] = build(["std_msgs/msg/Bool"], tmp_path, ports="flat")
+    [built] = build(["std_msgs/msg/Bool"], tmp_path, options=Options(ports="flat"))
     assert not (built.folder / "vhdl" / "firm_hdl_types_pkg.vhd").exists()

@@ -13,8 +13,9 @@ from typing import Any
 import pytest
 
 from firm_hdl import Deserializer, Serializer, load_message
+from firm_hdl.export.backend import Converters, Options, Ports
 from firm_hdl.export.top import Direction, Top
-from firm_hdl.export.vhdl.backend import Ports, VhdlFolder, to_vhdl
+from firm_hdl.export.vhdl.backend import VhdlFolder, to_vhdl
 from firm_hdl.export.vhdl.layer import UserLayer, user_layer
 from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.model import Message
@@ -86,8 +87,15 @@ def vhdl_of(
     }
     plan = tops["deserializer"].core.plan
     name = f"{message.name}_{plan.wire}_{bus_bytes}"
-    made = to_vhdl(message, plan, tops, name=name, stimuli=list(stimuli), ports=ports)
-    return made, plan
+    made = Converters(
+        message=message,
+        plan=plan,
+        name=name,
+        options=Options(bus_bytes=bus_bytes, ports=ports),
+        stimuli=list(stimuli),
+        tops=tops,
+    )
+    return to_vhdl(made), plan
 
 
 def write(folder: Path, files: dict[str, str]) -> None:

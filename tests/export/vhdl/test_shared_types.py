@@ -233,7 +233,7 @@ def similar(tmp_path) -> Path:
 def test_two_types_whose_package_has_one_name_are_not_built_side_by_side(
     similar, tmp_path, one, other, package, types
 ):
-    options = {"distro": "noetic", "paths": [similar]}
+    options = {"library": Library("noetic", [similar])}
     said = f"{other}: the VHDL package '{package}' would be that of {types[0]}, and in .* it is "
     with pytest.raises(BuildError, match=f"^{said}that of {types[1]}; build one of them"):
         build([one, other], tmp_path / "at once", **options)
@@ -241,7 +241,7 @@ def test_two_types_whose_package_has_one_name_are_not_built_side_by_side(
 
 
 def test_what_was_built_before_counts(similar, tmp_path):
-    options = {"out": tmp_path / "out", "distro": "noetic", "paths": [similar]}
+    options = {"out": tmp_path / "out", "library": Library("noetic", [similar])}
     (before,) = build(["p/A"], **options)
     with pytest.raises(BuildError, match=r"that of p/INNER, and in '.*p_A_ros1_8' it is that"):
         build(["p/B"], **options)
@@ -254,7 +254,7 @@ def test_what_was_built_before_counts(similar, tmp_path):
 
 
 def test_types_that_are_similar_within_a_message_have_packages_each(ghdl, similar, tmp_path):
-    (built,) = build(["p/Both"], tmp_path / "out", distro="noetic", paths=[similar])
+    (built,) = build(["p/Both"], tmp_path / "out", library=Library("noetic", [similar]))
     files = (built.folder / "vhdl" / "files.txt").read_text().split()
     assert {"p_inner_ros1_8_pkg.vhd", "p_inner_ros1_8_2_pkg.vhd"} <= {*files}
     (tmp_path / "work").mkdir()

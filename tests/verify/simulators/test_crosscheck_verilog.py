@@ -182,7 +182,7 @@ def test_text_is_that_of_build(tmp_path):
     message = load_message(BOOL, distro="lyrical")
     cores = [Deserializer(message), Serializer(message)]
     files = write_inputs(Trace(cores, BOOL), [Top(core) for core in cores], tmp_path)
-    (built,) = build([BOOL], tmp_path / "out", distro="lyrical")
+    (built,) = build([BOOL], tmp_path / "out")
     for file in files:
         text = (built.folder / file).read_text()
         without_header = re.sub(r"\A(//.*\n)+", "", text)

@@ -14,7 +14,7 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 from amaranth._toolchain.yosys import find_yosys
@@ -28,17 +28,7 @@ from firm_hdl.names.keywords import KEYWORDS
 if sys.platform != "win32":
     import resource
 
-__all__ = ["WAIVERS", "to_verilog", "waivers"]
-
-WAIVERS = "waivers.vlt"
-"""What Verilator need not warn of, in a file of its own language."""
-
-_WAIVED = {
-    "WIDTH": "Amaranth relies on Verilog's own extension of the narrower operand.",
-    "UNUSEDSIGNAL": "Amaranth names every field of a structure, used or not.",
-    "CASEOVERLAP": "No two of the patterns ever match at once: they are of one-hot selectors.",
-    "DECLFILENAME": "One file has a module and those within it.",
-}
+__all__ = ["is_out_of_memory", "out_of_memory", "to_verilog"]
 
 _SCRIPT = """\
 read_rtlil <<rtlil
@@ -162,26 +152,6 @@ def _without_keywords(design: str) -> str:
         return f"\\{names.get(name, name)}"
 
     return _IDENTIFIER.sub(renamed, design)
-
-
-def waivers(modules: Iterable[str]) -> str:
-    """Write the waivers of some modules, each with its reason, for ``verilator --lint-only -Wall``.
-
-    Parameters
-    ----------
-    modules : iterable of str
-        Each in the file ``module.v``.
-    """
-    lines = [
-        "// Warnings of Verilator that do not matter here, each with the reason. To lint:\n",
-        f"// $ verilator --lint-only -Wall {WAIVERS} FILE.v\n\n",
-        "`verilator_config\n",
-    ]
-    files = [f"{module}.v" for module in modules]
-    for rule, reason in _WAIVED.items():
-        lines.append(f"\n// {reason}\n")
-        lines += [f'lint_off -rule {rule} -file "*{file}"\n' for file in files]
-    return "".join(lines)
 
 
 @contextmanager

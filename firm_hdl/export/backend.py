@@ -1,0 +1,133 @@
+"""What back ends share: the options of a build, a type's converters, and what is made of them.
+
+A back end turns a type's converters into files. What it says of them becomes part of the manifest.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeAlias
+
+from firm_hdl.export.manifest import MANIFEST
+from firm_hdl.export.top import Direction, Top
+from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.model import Message
+from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
+from firm_hdl.wire import Wire
+
+__all__ = ["PORTS", "BackEnd", "Converters", "Options", "Output", "Ports"]
+
+Ports: TypeAlias = Literal["records", "flat"]
+PORTS: tuple[Ports, ...] = ("records", "flat")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """What a user may choose, besides the type.
+
+    Attributes
+    ----------
+    wire : "ros1", "cdr" or None
+        `None`: that of the distribution.
+    bus_bytes, max_message_bytes, window_words : int
+        As for the converters.
+    ports : "records" or "flat"
+        Whether there is a layer with records and structs; "flat" is for tools that dislike them.
+    """
+
+    wire: Wire | None = None
+    bus_bytes: int = 8
+    max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
+    window_words: int = 1
+    ports: Ports = "records"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Converters:
+    """The converters of a message type, which back ends write in their languages.
+
+    Attributes
+    ----------
+    message : Message
+    plan : Plan
+        What the options have led to for this message.
+    name : str
+        Of the folder; names of modules and entities start with it.
+    options : Options
+    inputs : mapping
+        All that decides what the files are; see :func:`firm_hdl.export.manifest.inputs_of`.
+    stimuli : sequence of bytes
+        Packets for test benches.
+    tops : mapping of direction to Top
+        Circuits with named ports; none before there is need of them (:meth:`elaborated`).
+    """
+
+    message: Message
+    plan: Plan
+    name: str
+    options: Options = field(default_factory=Options)
+    inputs: Mapping[str, Any] = field(default_factory=dict)
+    stimuli: Sequence[bytes] = ()
+    tops: Mapping[Direction, Top] = field(default_factory=dict)
+
+    def parameters(self) -> dict[str, Any]:
+        """Return the keyword arguments of `Deserializer` and `Serializer`."""
+        return {
+            "wire": self.plan.wire,
+            "bus_bytes": self.plan.bus_bytes,
+            "max_message_bytes": self.plan.max_message_bytes,
+            "window_words": self.options.window_words,
+        }
+
+    def make_tops(self) -> dict[Direction, Top]:
+        """Make the circuits, with named ports."""
+        parameters = self.parameters()
+        return {
+            "deserializer": Top(Deserializer(self.message, **parameters)),
+            "serializer": Top(Serializer(self.message, **parameters)),
+        }
+
+    def header(self, name: str, what: str) -> str:
+        """Write lines for a comment at the head of a file; empty without `inputs`.
+
+        Parameters
+        ----------
+        name, what : str
+            What the file is of: a name, and what that is.
+        """
+        if not self.inputs:
+            return ""
+        return (
+            f"{name}: {what} of {self.message.name}, made by "
+            f"firm-hdl {self.inputs['generator']['firm-hdl']}.\n"
+            f"{self.inputs['distro']}, wire {self.plan.wire}, bus of {self.plan.bus_bytes} bytes, "
+            f"messages of at most {self.plan.max_message_bytes} bytes\n"
+            f"definition (SHA-256): {self.inputs['definition_sha256']}\n"
+            f"What each port means: {MANIFEST}.\n"
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Output:
+    """What a back end has made.
+
+    Attributes
+    ----------
+    files : mapping of str to str
+        Texts by path in the type's folder.
+    manifest : mapping
+        Entries of the manifest about them, by their keys.
+    """
+
+    files: Mapping[str, str]
+    manifest: Mapping[str, Any] = field(default_factory=dict)
+
+
+class BackEnd(ABC):
+    """A language, or another form of output."""
+
+    @abstractmethod
+    def write(self, converters: Converters) -> Output:
+        """Write the files of a message type's converters."""

@@ -1,0 +1,97 @@
+"""The Verilog of a type's converters: a file per module, and waivers for Verilator."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from firm_hdl.export.backend import BackEnd, Converters, Output
+from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
+from firm_hdl.export.verilog.yosys import to_verilog
+from firm_hdl.plan import Plan
+
+__all__ = ["WAIVERS", "Verilog", "module_name", "waivers"]
+
+WAIVERS = "waivers.vlt"
+"""What Verilator need not warn of, in a file of its own language."""
+
+_WAIVED = {
+    "WIDTH": "Amaranth relies on Verilog's own extension of the narrower operand.",
+    "UNUSEDSIGNAL": "Amaranth names every field of a structure, used or not.",
+    "CASEOVERLAP": "No two of the patterns ever match at once: they are of one-hot selectors.",
+    "DECLFILENAME": "One file has a module and those within it.",
+}
+
+
+class Verilog(BackEnd):
+    """Verilog-2005 that means the same in SystemVerilog; the manifest says it as `converters`."""
+
+    def write(self, converters: Converters) -> Output:
+        name = converters.name
+        modules = {direction: module_name(name, direction) for direction in DIRECTIONS}
+        files = {WAIVERS: waivers(modules.values())}
+        for direction, module in modules.items():
+            header = converters.header(module, f"the {direction}")
+            files[f"{module}.v"] = to_verilog(
+                converters.tops[direction], module=module, header=header
+            )
+        return Output(files=files, manifest={"converters": section(converters.plan, name)})
+
+
+def module_name(folder: str, direction: Direction) -> str:
+    """Name the module of a converter in a folder.
+
+    No entity in VHDL has that name, whatever its case: simulators of both languages keep modules
+    and entities in one library, and look in it without regard to case.
+    """
+    return f"{folder}_{direction}_verilog"
+
+
+def waivers(modules: Iterable[str]) -> str:
+    """Write the waivers of some modules, each with its reason, for ``verilator --lint-only -Wall``.
+
+    Parameters
+    ----------
+    modules : iterable of str
+        Each in the file ``module.v``.
+    """
+    lines = [
+        "// Warnings of Verilator that do not matter here, each with the reason. To lint:\n",
+        f"// $ verilator --lint-only -Wall {WAIVERS} FILE.v\n\n",
+        "`verilator_config\n",
+    ]
+    files = [f"{module}.v" for module in modules]
+    for rule, reason in _WAIVED.items():
+        lines.append(f"\n// {reason}\n")
+        lines += [f'lint_off -rule {rule} -file "*{file}"\n' for file in files]
+    return "".join(lines)
+
+
+def section(plan: Plan, folder: str) -> dict[str, Any]:
+    """Return what the manifest says of the modules in a folder."""
+    return {
+        direction: {
+            "module": module_name(folder, direction),
+            "verilog": f"{module_name(folder, direction)}.v",
+            "clock": "aclk",
+            "reset": "aresetn",
+            "ports": _ports(plan, direction),
+        }
+        for direction in DIRECTIONS
+    }
+
+
+def _ports(plan: Plan, direction: Direction) -> list[dict[str, Any]]:
+    entries = []
+    for port in ports_of(plan, direction):
+        entry: dict[str, Any] = {
+            "name": port.name,
+            "direction": port.direction,
+            "width": port.width,
+            "signed": port.signed,
+            "meaning": port.meaning,
+        }
+        if port.leaf is not None:
+            entry["leaf"] = str(plan.leaves[port.leaf])
+        entries.append(entry)
+    return entries
