@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.export.vhdl.constants import named_constants
+from firm_hdl.export.constants import named_constants
 from firm_hdl.names.keywords import KEYWORDS
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.cases.stimuli import stimuli

@@ -7,15 +7,15 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from firm_hdl.export.backend import BackEnd, Converters, Output
+from firm_hdl.export.constants import Named
 from firm_hdl.export.packaging import packaging
+from firm_hdl.export.primitives import TYPES_NAME
 from firm_hdl.export.record_top import RecordTop, why_no_record
 from firm_hdl.export.top import DIRECTIONS, Direction, Top
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT, STIMULI, bench, run_script
 from firm_hdl.export.vhdl.bench_views import View, flat_view, record_view, stream_view
-from firm_hdl.export.vhdl.constants import Named
 from firm_hdl.export.vhdl.layer import flat_package, user_layer
 from firm_hdl.export.vhdl.parts import PARTS, packets_text
-from firm_hdl.export.vhdl.types import TYPES_NAME
 from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan

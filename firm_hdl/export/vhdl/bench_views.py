@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from firm_hdl.export.primitives import TYPES_NAME, primitive_name
 from firm_hdl.export.top import DIRECTIONS, Direction, Port, leaf_names, ports_of
 from firm_hdl.export.vhdl.layer import UserLayer
-from firm_hdl.export.vhdl.types import TYPES_NAME, primitive_name
 from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.plan import Leaf, Plan
 

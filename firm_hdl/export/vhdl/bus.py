@@ -8,29 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from firm_hdl.export.primitives import PRIMITIVE_BYTES, TEXTS, TYPES_NAME, bus_name
 from firm_hdl.export.vhdl.records import Element, stream_record
-from firm_hdl.export.vhdl.types import PRIMITIVE_BYTES, TYPES_NAME
 
-__all__ = ["BUS_TYPES", "bus_name", "bus_package"]
-
-_TEXTS = {"string": "uint8", "wstring": "uint32"}
-_FORMS = ("sequence", "array")
-_RECORDS = (
-    *_TEXTS,
-    *(f"{name}_{form}" for name in (*PRIMITIVE_BYTES, *_TEXTS) for form in _FORMS),
-)
-
-BUS_TYPES = frozenset(
-    [
-        *(f"{name}_items_stream_{what}" for name in PRIMITIVE_BYTES for what in ("t", "idle")),
-        *(
-            f"{name}_stream_{what}"
-            for name in _RECORDS
-            for what in ("t", "ready_t", "idle", "all_ready")
-        ),
-    ]
-)
-"""All that the package declares, in lower case."""
+__all__ = ["bus_package"]
 
 _LENGTH = Element(
     name="length",
@@ -40,11 +21,6 @@ _LENGTH = Element(
     all_ready="'1'",
     remark="  -- how many follow",
 )
-
-
-def bus_name(bus_bytes: int) -> str:
-    """Name the package."""
-    return f"firm_hdl_bus_{bus_bytes}_pkg"
 
 
 def bus_package(bus_bytes: int) -> str:
@@ -67,13 +43,13 @@ package {name} is
 """
     for primitive, size in PRIMITIVE_BYTES.items():
         yield from _items(primitive, max(1, bus_bytes // size))
-    for text, primitive in _TEXTS.items():
+    for text, primitive in TEXTS.items():
         yield from stream_record(f"{text}_stream", [_LENGTH, _of_items(primitive)])
     for primitive in PRIMITIVE_BYTES:
         items = _of_items(primitive)
         yield from stream_record(f"{primitive}_sequence_stream", [_LENGTH, items])
         yield from stream_record(f"{primitive}_array_stream", [items])
-    for text in _TEXTS:
+    for text in TEXTS:
         item = Element(
             name="item",
             type=f"{text}_stream_t",

@@ -3,7 +3,7 @@
 For each message type: a package with the records of its fields and its constants, which all
 converters share; a package with components; and an entity per direction around the core, whose flat
 ports stay usable on their own. A message of fixed size also gets entities that give, and take, all
-of it at once. What the records are is decided in :mod:`firm_hdl.export.vhdl.tree` and
+of it at once. What the records are is decided in :mod:`firm_hdl.export.tree` and
 :mod:`firm_hdl.export.vhdl.values`.
 """
 
@@ -12,18 +12,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from firm_hdl.export.constants import Named, named_constants
+from firm_hdl.export.primitives import TYPES_NAME, bus_name
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
-from firm_hdl.export.vhdl.bus import bus_name, bus_package
-from firm_hdl.export.vhdl.constants import (
-    Named,
-    comment,
-    declarations,
-    named_constants,
-    quoted,
-)
+from firm_hdl.export.tree import Tree, tree_of
+from firm_hdl.export.vhdl.bus import bus_package
+from firm_hdl.export.vhdl.constants import comment, declarations, quoted
 from firm_hdl.export.vhdl.package import constants_of, message_package
-from firm_hdl.export.vhdl.tree import Tree, tree_of
-from firm_hdl.export.vhdl.types import TYPES_NAME, types_package
+from firm_hdl.export.vhdl.types import types_package
 from firm_hdl.export.vhdl.values import ValueType, values_of
 from firm_hdl.export.vhdl.wrapper import (
     IEEE,

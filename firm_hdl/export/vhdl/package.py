@@ -8,18 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from firm_hdl.export.vhdl.bus import BUS_TYPES, bus_name
-from firm_hdl.export.vhdl.constants import (
-    Named,
-    comment,
-    declarations,
-    named_constants,
-    origin,
-    quoted,
-)
+from firm_hdl.export.constants import Named, named_constants
+from firm_hdl.export.primitives import TYPES_NAME, bus_name
+from firm_hdl.export.tree import Node, Package, taken_names
+from firm_hdl.export.vhdl.constants import comment, declarations, origin, quoted
 from firm_hdl.export.vhdl.records import Element, stream_record
-from firm_hdl.export.vhdl.tree import Node, Package, derived
-from firm_hdl.export.vhdl.types import SHARED_WORDS, TYPES_NAME
 from firm_hdl.export.vhdl.values import ValueType
 from firm_hdl.plan import Plan
 from firm_hdl.vhdl.text import wrap
@@ -29,13 +22,7 @@ __all__ = ["constants_of", "message_package"]
 
 def constants_of(package: Package, plan: Plan) -> list[Named]:
     """Name the constants of a message's own."""
-    return named_constants(package.message, _taken(package, plan), nested=False)
-
-
-def _taken(package: Package, plan: Plan) -> frozenset[str]:
-    """Give what no constant may hide: the package's own names, and those that it uses."""
-    own = {package.name, *derived(package.base)}
-    return frozenset({*own, *SHARED_WORDS, *BUS_TYPES, bus_name(plan.bus_bytes)})
+    return named_constants(package.message, taken_names(package, plan), nested=False)
 
 
 def message_package(package: Package, plan: Plan, values: ValueType | None) -> str:
@@ -43,7 +30,7 @@ def message_package(package: Package, plan: Plan, values: ValueType | None) -> s
     text = [*_head(package, plan), *_streams(package, plan)]
     if values is not None:
         text += values.declarations()
-    text += declarations(constants_of(package, plan), _taken(package, plan))
+    text += declarations(constants_of(package, plan), taken_names(package, plan))
     text.append(f"\nend package {package.name};\n")
     if values is not None:
         text += [f"\npackage body {package.name} is\n", *values.bodies()]

@@ -9,22 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from firm_hdl.export.primitives import PRIMITIVE_BITS, TYPES_NAME
 from firm_hdl.gateware.signatures import Status
-from firm_hdl.plan import Leaf
 
-__all__ = [
-    "PRIMITIVE_BITS",
-    "PRIMITIVE_BYTES",
-    "SHARED_TYPES",
-    "SHARED_WORDS",
-    "TYPES_NAME",
-    "data_type",
-    "primitive_name",
-    "types_package",
-]
-
-TYPES_NAME = "firm_hdl_types_pkg"
-"""What the package is called."""
+__all__ = ["data_type", "types_package"]
 
 _INTEGERS = [(f"{sign}int{bits}", bits) for bits in (8, 16, 32, 64) for sign in ("", "u")]
 _DATA = {
@@ -36,31 +24,6 @@ _DATA = {
     "float32": ("std_logic_vector(31 downto 0)", "IEEE 754 bits"),
     "float64": ("std_logic_vector(63 downto 0)", "IEEE 754 bits"),
 }
-PRIMITIVE_BITS = {"bool": 1, "float32": 32, "float64": 64, **dict(_INTEGERS)}
-
-SHARED_TYPES = frozenset(
-    [
-        *("std_logic", "std_logic_vector", "unsigned", "signed"),
-        *(f"{kind}_{what}_t" for kind in _DATA for what in ("stream", "items")),
-    ]
-)
-"""Types that records have members of, besides those of the message's own package."""
-
-_STATUSES: Any = Status
-
-SHARED_WORDS = frozenset(
-    [
-        *SHARED_TYPES,
-        *(f"{kind}_stream_idle" for kind in _DATA),
-        *(f"to_{kind}_items" for kind in _DATA),
-        *(f"status_{status.name.lower()}" for status in _STATUSES),
-        *("status_name", "to_slv", TYPES_NAME),
-    ]
-)
-"""All that the package declares, and its name, in lower case."""
-
-PRIMITIVE_BYTES = {name: max(1, bits // 8) for name, bits in PRIMITIVE_BITS.items()}
-"""Primitives, and how many bytes they have on a wire."""
 
 _HEAD = f"""\
 -- Streams of ROS's primitive types, for all message types and bus widths.
@@ -76,20 +39,6 @@ package {TYPES_NAME} is
 
   -- How a packet ended, once per packet, on m_axis_status_tdata.
 """
-
-
-def primitive_name(leaf: Leaf) -> str:
-    """Name the primitive of a leaf as the types here are called: ``byte`` and ``char`` are 8 bits.
-
-    >>> primitive_name(Leaf(path=("a",), kind="scalar", type="byte", signed=True))
-    'int8'
-    """
-    if leaf.kind == "trigger":
-        return "bool"
-    primitive = leaf.primitive
-    if primitive.kind != "int":
-        return primitive.kind if primitive.kind == "bool" else primitive.name
-    return f"{'' if leaf.signed else 'u'}int{8 * primitive.bytes}"
 
 
 def data_type(primitive: str) -> str:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
+from firm_hdl.export.primitives import TYPES_NAME, primitive_name
 from firm_hdl.export.record_top import record_ports
 from firm_hdl.export.top import Direction, Port, leaf_names, ports_of
+from firm_hdl.export.tree import Tree
 from firm_hdl.export.vhdl.constants import comment
-from firm_hdl.export.vhdl.tree import Tree
-from firm_hdl.export.vhdl.types import TYPES_NAME, primitive_name
 from firm_hdl.export.vhdl.values import ValueType
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan

@@ -10,10 +10,11 @@ from itertools import pairwise
 
 import pytest
 
+from firm_hdl.export.constants import named_constants
 from firm_hdl.export.top import leaf_names, ports_of
+from firm_hdl.export.tree import tree_of
 from firm_hdl.export.vhdl.bus import bus_package
-from firm_hdl.export.vhdl.constants import comment, declarations, named_constants
-from firm_hdl.export.vhdl.tree import tree_of
+from firm_hdl.export.vhdl.constants import comment, declarations
 from firm_hdl.export.vhdl.types import types_package
 from firm_hdl.gateware import record_layout
 from firm_hdl.names.identifiers import flat_names, scope_names

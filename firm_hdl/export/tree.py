@@ -1,6 +1,7 @@
-"""The records of a message type in VHDL: what is nested in what, and what everything is called.
+"""The records of a message type: what is nested in what, and what everything is called.
 
-Decisions only; :mod:`firm_hdl.export.vhdl.package` prints them. A type in ROS has one package
+Decisions only; :mod:`firm_hdl.export.vhdl.package` prints them as records of VHDL, and
+:mod:`firm_hdl.export.systemverilog.package` as structs. A type in ROS has one package
 for each wire and bus width, whatever message it is in: names depend on nothing but the type itself.
 So all converters of a design share the packages, and a header goes from one message to another.
 """
@@ -8,17 +9,22 @@ So all converters of a design share the packages, and a header goes from one mes
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 
-from firm_hdl.export.vhdl.bus import BUS_TYPES, bus_name
-from firm_hdl.export.vhdl.types import SHARED_TYPES, SHARED_WORDS, primitive_name
+from firm_hdl.export.primitives import (
+    BUS_TYPES,
+    SHARED_TYPES,
+    SHARED_WORDS,
+    bus_name,
+    primitive_name,
+)
 from firm_hdl.model import Array, Field, FieldType, Message, Sequence, String
 from firm_hdl.names.identifiers import first_free, identifier, scope_names
 from firm_hdl.plan import Leaf, Plan
 from firm_hdl.wire import Wire
 
-__all__ = ["Node", "Package", "Tree", "derived", "package_name", "snake", "tree_of"]
+__all__ = ["Node", "Package", "Tree", "derived", "package_name", "snake", "taken_names", "tree_of"]
 
 _Paths = dict[str, "_Paths | int"]
 
@@ -152,8 +158,20 @@ def derived(base: str) -> tuple[str, ...]:
     )
 
 
-def tree_of(message: Message, plan: Plan) -> Tree:
-    """Decide on the records of a message."""
+def taken_names(package: Package, plan: Plan) -> frozenset[str]:
+    """Give what no constant may hide: the package's own names, and those that it uses."""
+    own = {package.name, *derived(package.base)}
+    return frozenset({*own, *SHARED_WORDS, *BUS_TYPES, bus_name(plan.bus_bytes)})
+
+
+def tree_of(message: Message, plan: Plan, reserved: Collection[str] = ()) -> Tree:
+    """Decide on the records of a message.
+
+    Parameters
+    ----------
+    reserved : collection of str
+        What a language needs in all packages, besides what VHDL does; in lower case.
+    """
     paths: _Paths = {}
     for index, leaf in enumerate(plan.leaves):
         place = paths
@@ -162,7 +180,7 @@ def tree_of(message: Message, plan: Plan) -> Tree:
             assert isinstance(below, dict), "a leaf has nothing below it"
             place = below
         place[leaf.path[-1]] = index
-    maker = _Maker(plan)
+    maker = _Maker(plan, frozenset(reserved))
     root = maker.node(paths, message, "", "")
     return Tree(root=root, packages=tuple(maker.packages.values()))
 
@@ -170,6 +188,7 @@ def tree_of(message: Message, plan: Plan) -> Tree:
 @dataclass(slots=True)
 class _Maker:
     plan: Plan
+    reserved: frozenset[str]
     packages: dict[str, Package] = field(default_factory=dict)
     # Names of packages, in lower case.
     taken: set[str] = field(default_factory=set)
@@ -216,7 +235,8 @@ class _Maker:
             name = first_free(wanted.removesuffix("_pkg"), self.taken, lambda n: (f"{n}_pkg",))
             self.taken.add(f"{name}_pkg")
             wanted = snake(re.sub(r"[^A-Za-z0-9]+", "_", message.base_name)) or "message"
-            hidden = {*SHARED_WORDS, *BUS_TYPES, bus_name(self.plan.bus_bytes), f"{name}_pkg"}
+            hidden = {*SHARED_WORDS, *BUS_TYPES, *self.reserved}
+            hidden |= {bus_name(self.plan.bus_bytes), f"{name}_pkg"}
             needs = dict.fromkeys(self.packages[child.name].name for child in message.children)
             found = Package(
                 message=message,

@@ -1,0 +1,90 @@
+"""Constants of a message type: what they are called in VHDL and SystemVerilog, and their bits."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from firm_hdl.export.tree import snake
+from firm_hdl.model import Constant, Message
+from firm_hdl.names.identifiers import scope_names
+from firm_hdl.vhdl.names import PREDEFINED, USED
+
+__all__ = ["Named", "float_bits", "named_constants", "string_bytes"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Named:
+    """A constant, and what it is called.
+
+    Attributes
+    ----------
+    owner : Message
+        Whose it is: the message's own, or that of a type that it contains.
+    name : str
+        The same in VHDL and SystemVerilog.
+    """
+
+    owner: Message
+    constant: Constant
+    name: str
+
+
+def named_constants(message: Message, taken: Iterable[str], *, nested: bool = True) -> list[Named]:
+    """Name the constants of a message; with `nested`, those of all types in it.
+
+    `taken` is in lower case.
+
+    The message's own keep their names, as far as these do not hide what VHDL code needs (`ERROR` is
+    a severity, and `NS` a unit); the others start with the name of their type.
+    """
+    found: dict[str, tuple[Message, Constant]] = {}
+    hiding = {*USED, *PREDEFINED, *taken}
+    for owner in _types(message) if nested else [message]:
+        prefix = "" if owner is message else f"{snake(owner.base_name).upper()}_"
+        for constant in owner.constants:
+            name = f"{prefix}{constant.name}"
+            if name.lower() in hiding:
+                name = f"{name}_CONSTANT"
+            # Two packages may have a type of one name.
+            while name in found:
+                name = f"{name}_{owner.package}"
+            found[name] = (owner, constant)
+    given: Mapping[str, str] = scope_names(found, hiding)
+    return [
+        Named(owner=owner, constant=constant, name=given[name])
+        for name, (owner, constant) in found.items()
+    ]
+
+
+def _types(message: Message) -> list[Message]:
+    """List a message and the types in it, each once, as fields name them."""
+    found: dict[str, Message] = {}
+
+    def visit(kind: Message) -> None:
+        if kind.name not in found:
+            found[kind.name] = kind
+            for item in kind.fields:
+                inner = item.element_type
+                if isinstance(inner, Message):
+                    visit(inner)
+
+    visit(message)
+    return list(found.values())
+
+
+def float_bits(value: float, size: int) -> int:
+    """Give the bits of a float of 4 or 8 bytes."""
+    if size == 8:
+        return int(struct.unpack("<Q", struct.pack("<d", value))[0])
+    try:
+        packed = struct.pack("<f", value)
+    except OverflowError:
+        packed = struct.pack("<f", float("inf") if value > 0 else float("-inf"))
+    return int(struct.unpack("<I", packed)[0])
+
+
+def string_bytes(value: object) -> bytes:
+    """Give the bytes of a string's value, as they are on a wire."""
+    return value if isinstance(value, bytes) else str(value).encode("utf-8", "surrogatepass")

@@ -1,0 +1,100 @@
+"""What is the same for all messages: ROS's primitives, and the types that packages make of them.
+
+Records in VHDL and structs in SystemVerilog have the same names. How many items go in one transfer
+depends on the primitive and on the width of the bus, and on nothing else; so one package per width
+has the strings, arrays and sequences of primitives of all messages.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from firm_hdl.gateware.signatures import Status
+from firm_hdl.plan import Leaf
+
+__all__ = [
+    "BUS_TYPES",
+    "FORMS",
+    "PRIMITIVE_BITS",
+    "PRIMITIVE_BYTES",
+    "SHARED_TYPES",
+    "SHARED_WORDS",
+    "TEXTS",
+    "TYPES_NAME",
+    "bus_name",
+    "primitive_name",
+]
+
+TYPES_NAME = "firm_hdl_types_pkg"
+"""What the VHDL package of all messages is called."""
+
+PRIMITIVE_BITS = {
+    "bool": 1,
+    "float32": 32,
+    "float64": 64,
+    **{f"{sign}int{bits}": bits for bits in (8, 16, 32, 64) for sign in ("", "u")},
+}
+PRIMITIVE_BYTES = {name: max(1, bits // 8) for name, bits in PRIMITIVE_BITS.items()}
+"""Primitives, and how many bytes they have on a wire."""
+
+TEXTS = {"string": "uint8", "wstring": "uint32"}
+"""Strings, and what their items are."""
+
+FORMS = ("sequence", "array")
+
+SHARED_TYPES = frozenset(
+    [
+        *("std_logic", "std_logic_vector", "unsigned", "signed"),
+        *(f"{kind}_{what}_t" for kind in PRIMITIVE_BITS for what in ("stream", "items")),
+    ]
+)
+"""Types that records have members of, besides those of the message's own package."""
+
+_STATUSES: Any = Status
+
+SHARED_WORDS = frozenset(
+    [
+        *SHARED_TYPES,
+        *(f"{kind}_stream_idle" for kind in PRIMITIVE_BITS),
+        *(f"to_{kind}_items" for kind in PRIMITIVE_BITS),
+        *(f"status_{status.name.lower()}" for status in _STATUSES),
+        *("status_name", "to_slv", TYPES_NAME),
+    ]
+)
+"""All that the package of all messages declares, and its name, in lower case."""
+
+_RECORDS = (
+    *TEXTS,
+    *(f"{name}_{form}" for name in (*PRIMITIVE_BYTES, *TEXTS) for form in FORMS),
+)
+
+BUS_TYPES = frozenset(
+    [
+        *(f"{name}_items_stream_{what}" for name in PRIMITIVE_BYTES for what in ("t", "idle")),
+        *(
+            f"{name}_stream_{what}"
+            for name in _RECORDS
+            for what in ("t", "ready_t", "idle", "all_ready")
+        ),
+    ]
+)
+"""All that the package of a bus width declares, in lower case."""
+
+
+def bus_name(bus_bytes: int) -> str:
+    """Name the VHDL package of a bus width."""
+    return f"firm_hdl_bus_{bus_bytes}_pkg"
+
+
+def primitive_name(leaf: Leaf) -> str:
+    """Name the primitive of a leaf as the types here are called: ``byte`` and ``char`` are 8 bits.
+
+    >>> primitive_name(Leaf(path=("a",), kind="scalar", type="byte", signed=True))
+    'int8'
+    """
+    if leaf.kind == "trigger":
+        return "bool"
+    primitive = leaf.primitive
+    if primitive.kind != "int":
+        return primitive.kind if primitive.kind == "bool" else primitive.name
+    return f"{'' if leaf.signed else 'u'}int{8 * primitive.bytes}"

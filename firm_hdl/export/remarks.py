@@ -1,0 +1,75 @@
+"""Text of definitions as comments in VHDL and Verilog: printable ASCII, and no order to a tool.
+
+What a comment starts with is `mark`: ``--`` or ``//``.
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Iterator
+
+from firm_hdl.model import Field
+
+__all__ = ["ascii_of", "origin", "quoted", "remark", "unit_of"]
+
+_PLAIN = str.maketrans(
+    {
+        "°": "deg",
+        "²": "^2",
+        "³": "^3",
+        "µ": "u",
+        "\N{EN DASH}": "-",
+        "\N{EM DASH}": "-",
+        "\N{RIGHT SINGLE QUOTATION MARK}": "'",
+        "\N{LEFT DOUBLE QUOTATION MARK}": '"',
+        "\N{RIGHT DOUBLE QUOTATION MARK}": '"',
+    }
+)
+
+
+def remark(text: str, indent: str = "  ", mark: str = "//") -> Iterator[str]:
+    """Yield text as comment lines of at most 100 columns, in ASCII, which every tool reads."""
+    for line in text.splitlines():
+        for part in _wrapped(line, 97 - len(indent)):
+            yield f"{indent}{mark} {part}".rstrip() + "\n"
+
+
+def quoted(text: str, indent: str = "  ", mark: str = "//") -> Iterator[str]:
+    """Yield a comment of a definition, each line with the ``#`` that it has there.
+
+    Tools take what some comments begin with as an order to them, such as ``synthesis`` and ``psl``.
+    Which words these are, nobody can know; so no line of a definition begins a comment.
+    """
+    for line in text.splitlines():
+        for part in _wrapped(line, 95 - len(indent)):
+            yield f"{indent}{mark} # {part}".rstrip() + "\n"
+
+
+def _wrapped(line: str, columns: int) -> list[str]:
+    return textwrap.wrap(ascii_of(line).rstrip(), columns, break_long_words=False) or [""]
+
+
+def ascii_of(text: str) -> str:
+    """Give a line in printable ASCII."""
+    plain = text.translate(_PLAIN).encode("ascii", "backslashreplace").decode()
+    return re.sub(r"[^ -~]", " ", plain.expandtabs(4))
+
+
+def origin(source: Field, name: str) -> str:
+    """Say what a member of a record is in ROS.
+
+    Parameters
+    ----------
+    name : str
+        What it is called in the record.
+    """
+    what = str(source.type)
+    if source.name != name:
+        what = f"{source.name}: {what}"
+    return f"{what}{unit_of(source.unit)}"
+
+
+def unit_of(unit: str | None) -> str:
+    """Write a unit behind something; nothing if there is none."""
+    return f" [{ascii_of(unit)}]" if unit else ""
