@@ -94,8 +94,9 @@ verify-vhdl: $(VENV)/.installed ghdl ## every bench of lyrical and noetic in GHD
 	$(BIN)/python -m firm_hdl.verify --systems bench --distro lyrical --distro noetic --jobs $(JOBS)
 
 verify-languages: $(VENV)/.installed-dev verilog ## Verilog of four types, in every language of Icarus and Verilator
-	FIRM_HDL_EVERY_LANGUAGE=1 CI=1 $(BIN)/python -m pytest -q -k "language or every_tool" \
-	  -n $(JOBS) tests/verify/simulators/test_crosscheck_verilog.py tests/export/test_every_keyword.py
+	FIRM_HDL_EVERY_LANGUAGE=1 CI=1 $(BIN)/python -m pytest -q -k "language or every_tool or come_back" \
+	  -n $(JOBS) tests/verify/simulators/test_crosscheck_verilog.py \
+	  tests/export/test_every_keyword.py tests/export/systemverilog/test_simulation.py
 
 prove: $(VENV)/.installed-dev ghdl ## proofs that VHDL equals RTLIL, for types with all constructs
 	$(BIN)/python -m firm_hdl.equivalence --jobs $(JOBS) $(PROVE_ARGS)

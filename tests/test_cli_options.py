@@ -11,6 +11,7 @@ import pytest
 from firm_hdl.cli import main
 from firm_hdl.equivalence import command as prove_command
 from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.export.backend import Options
 from firm_hdl.export.build import BuildError
 from firm_hdl.export.top import DIRECTIONS
 from firm_hdl.frontend import Library
@@ -96,12 +97,12 @@ def test_build_is_given_all_options(here, monkeypatch):
     words = [*WORDS, "--out", "there", "--ports", "flat", "--force", "--distro", "iron"]
     assert main(["build", "p/A", "p/srv/S", "--path", ".", *words]) == 0
     assert given["types"] == ["p/A", "p/srv/S"] and given["out"] == "there"
-    assert {name: given[name] for name in OPTIONS} == OPTIONS
-    assert (given["ports"], given["force"]) == ("flat", True)
+    assert given["options"] == Options(**OPTIONS, ports="flat") and given["force"] is True
     assert given["library"].distro == "iron" and "p/msg/A" in given["library"].names()
     assert main(["build", "p/A", "--path", "."]) == 0
-    assert (given["ports"], given["force"], given["out"]) == ("records", False, "vhdl_out")
-    assert (given["wire"], given["bus_bytes"]) == (None, 8)
+    assert (given["options"], given["force"]) == (Options(), False)
+    assert given["out"] == "vhdl_out"
+    assert (Options().wire, Options().bus_bytes, Options().ports) == (None, 8, "records")
 
 
 def proved(monkeypatch, arguments, status=0):

@@ -1,20 +1,15 @@
 // Sends the beats of a file, with random pauses, and compares each new speed of the motor with
 // another file.
 
-`timescale 1ns / 1ps
-
 module motor_tb;
 
   logic        aclk = 0, aresetn = 0;
-  logic [31:0] tdata = 0;
-  logic [3:0]  tkeep = 0;
-  logic        tlast = 0, tvalid = 0, tready;
+  logic        tready;
   logic [63:0] speed;
 
-  motor dut (
-    .aclk, .aresetn, .s_axis_tdata(tdata), .s_axis_tkeep(tkeep), .s_axis_tlast(tlast),
-    .s_axis_tvalid(tvalid), .s_axis_tready(tready), .speed
-  );
+  firm_hdl_bus_4_sv_pkg::packet_beat_t beat = firm_hdl_bus_4_sv_pkg::PACKET_BEAT_IDLE;
+
+  motor dut (.aclk, .aresetn, .s_axis(beat), .s_axis_tready(tready), .speed);
 
   always #5 aclk = !aclk;
 
@@ -26,17 +21,17 @@ module motor_tb;
 
   initial begin
     beats = $fopen("work/beats.txt", "r");
-    repeat (3) @(posedge aclk);
-    aresetn <= 1;
-    @(posedge aclk);
+    repeat (3) @(negedge aclk);
+    aresetn = 1;
     while ($fscanf(beats, "%h %b %b", data, keep, last) == 3) begin
-      {tvalid, tdata, tkeep, tlast} <= {1'b1, data, keep, last};
-      do @(posedge aclk); while (!tready);
-      tvalid <= 0;
-      sent += last;
-      repeat ($urandom_range(2)) @(posedge aclk);
+      beat = '{tdata: data, tkeep: keep, tlast: last, tuser: 1'b0, tvalid: 1'b1};
+      // All changes are half a cycle away from the edge that counts.
+      #1 while (!tready) @(negedge aclk) #1;
+      @(negedge aclk) beat.tvalid = 0;
+      if (last) sent += 1;
+      repeat ($urandom_range(2)) @(negedge aclk);
     end
-    repeat (100) @(posedge aclk);
+    repeat (100) @(negedge aclk);
     if (sent == 0 || $fscanf(speeds, "%h", want) == 1) begin
       $display("FAIL after %0d packets and %0d speeds: %h is missing", sent, seen, want);
       $fatal(1);

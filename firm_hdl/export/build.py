@@ -15,14 +15,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from firm_hdl.errors import DefinitionError, Diagnostic, UserError
-from firm_hdl.export.backend import Converters, Options
+from firm_hdl.export.backend import BackEnd, Converters, Options
 from firm_hdl.export.documents import Documents
 from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
 from firm_hdl.export.manifest import MANIFEST, inputs_of, make_manifest, to_json
+from firm_hdl.export.systemverilog import SystemVerilog
 from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, ports_of
+from firm_hdl.export.tree import tree_of
 from firm_hdl.export.verilog import Verilog
 from firm_hdl.export.vhdl.backend import FOLDER, Vhdl
-from firm_hdl.export.vhdl.tree import tree_of
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import identifier
@@ -32,7 +33,7 @@ from firm_hdl.wire import Wire, lay_out, refusals
 
 __all__ = ["BACK_ENDS", "BuildError", "Built", "build", "check_size", "load_all", "plan_of"]
 
-BACK_ENDS = (Verilog(), Documents(), Vhdl())
+BACK_ENDS: tuple[BackEnd, ...] = (Verilog(), Documents(), Vhdl(), SystemVerilog())
 """What writes the files of a folder, in the order of their entries in the manifest."""
 
 

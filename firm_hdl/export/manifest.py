@@ -14,9 +14,9 @@ from math import isfinite
 from typing import Any
 
 import firm_hdl
-from firm_hdl.export.top import leaf_names
+from firm_hdl.export.top import field_of, leaf_names
 from firm_hdl.gateware.signatures import LATENCY_CYCLES, Status
-from firm_hdl.model import Array, Constant, Field, Message, Sequence, closure
+from firm_hdl.model import Constant, Message, closure
 from firm_hdl.plan import Leaf, Plan, to_yaml
 from firm_hdl.plan.timing import LINE_RATES, Cost, Timing, clock_mhz
 
@@ -128,7 +128,7 @@ def _clocks(cost: Cost) -> dict[str, float]:
 def _leaves(message: Message, plan: Plan) -> Iterator[dict[str, Any]]:
     names = leaf_names(plan)
     for leaf in plan.leaves:
-        field = _field(message, leaf)
+        field = field_of(message, leaf)
         entry = {
             "path": str(leaf),
             "name": names[leaf.path],
@@ -148,24 +148,6 @@ def _layout(leaf: Leaf) -> dict[str, int]:
     """Return how items stand in ``data``: item k in bits k * item_bits and up."""
     bits = 1 if leaf.primitive.kind == "bool" else 8 * leaf.primitive.bytes
     return {"lanes": leaf.lanes, "item_bits": bits, "data_bits": leaf.lanes * bits}
-
-
-def _field(message: Message, leaf: Leaf) -> Field | None:
-    """Find the field that a leaf belongs to, the innermost one."""
-    found = None
-    current: Message | None = message
-    names = iter(leaf.path)
-    for name in names:
-        match = next((f for f in current.fields if f.name == name), None) if current else None
-        if match is None:
-            break
-        found, kind = match, match.type
-        if isinstance(kind, Array | Sequence):
-            # The leaf's own "length" or "items", or "item" on the way to the element.
-            next(names, None)
-            kind = kind.element
-        current = kind if isinstance(kind, Message) else None
-    return found
 
 
 def _constant(constant: Constant) -> dict[str, Any]:

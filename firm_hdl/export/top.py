@@ -18,10 +18,20 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.limits import MAX_CELL_BITS
 from firm_hdl.gateware.signatures import leaf_shape
+from firm_hdl.model import Array, Field, Message, Sequence
 from firm_hdl.names.identifiers import flat_names
 from firm_hdl.plan import Leaf, Plan
 
-__all__ = ["DIRECTIONS", "MAX_INPUT_BITS", "Direction", "Port", "Top", "leaf_names", "ports_of"]
+__all__ = [
+    "DIRECTIONS",
+    "MAX_INPUT_BITS",
+    "Direction",
+    "Port",
+    "Top",
+    "field_of",
+    "leaf_names",
+    "ports_of",
+]
 
 Direction: TypeAlias = Literal["deserializer", "serializer"]
 DIRECTIONS: tuple[Direction, ...] = ("deserializer", "serializer")
@@ -61,6 +71,24 @@ class Port:
 def leaf_names(plan: Plan) -> dict[tuple[str, ...], str]:
     """Give what the names of each leaf's ports start with, by the leaf's path."""
     return flat_names((leaf.path for leaf in plan.leaves), _RESERVED)
+
+
+def field_of(message: Message, leaf: Leaf) -> Field | None:
+    """Find the field that a leaf belongs to, the innermost one."""
+    found = None
+    current: Message | None = message
+    names = iter(leaf.path)
+    for name in names:
+        match = next((f for f in current.fields if f.name == name), None) if current else None
+        if match is None:
+            break
+        found, kind = match, match.type
+        if isinstance(kind, Array | Sequence):
+            # The leaf's own "length" or "items", or "item" on the way to the element.
+            next(names, None)
+            kind = kind.element
+        current = kind if isinstance(kind, Message) else None
+    return found
 
 
 def ports_of(plan: Plan, direction: Direction) -> tuple[Port, ...]:

@@ -35,6 +35,8 @@ async def packets_come_back(dut):
     status = AxiStreamSink(AxiStreamBus.from_prefix(dut, "m_axis_status"), dut.aclk, **reset)
     for number, port in enumerate((source, sink, status)):
         port.set_pause_generator(pauses(number))
+    if "SWAP" in os.environ:
+        dut.swap.value = int(os.environ["SWAP"])
     dut.aresetn.value = 0
     await ClockCycles(dut.aclk, 2)
     dut.aresetn.value = 1

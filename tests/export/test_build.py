@@ -52,7 +52,8 @@ def quick_vhdl(self: Vhdl, converters: Converters) -> Output:
 @pytest.fixture
 def quick(monkeypatch):
     """Leave out Yosys, which takes nearly all of a build's time."""
-    monkeypatch.setattr("firm_hdl.export.backend.Top", lambda core: None)
+    for name in ("Deserializer", "Serializer", "Top"):
+        monkeypatch.setattr(f"firm_hdl.export.backend.{name}", lambda *args, **options: None)
     monkeypatch.setattr(
         "firm_hdl.export.verilog.backend.to_verilog",
         lambda top, module, header: f"{header}module {module};\n",
@@ -73,10 +74,20 @@ def test_folder_is_complete(tmp_path):
         f"geometry_msgs_msg_Twist_cdr_8/{name}"
         for name in (
             "geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.v",
+            "geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.veo",
             "geometry_msgs_msg_Twist_cdr_8_serializer_verilog.v",
+            "geometry_msgs_msg_Twist_cdr_8_serializer_verilog.veo",
             "layout.svg",
             "manifest.json",
             "plan.yaml",
+            "systemverilog/files.f",
+            "systemverilog/firm_hdl_bus_8_sv_pkg.sv",
+            "systemverilog/firm_hdl_sv_pkg.sv",
+            "systemverilog/geometry_msgs_msg_Twist_cdr_8_deserializer_sv.sv",
+            "systemverilog/geometry_msgs_msg_Twist_cdr_8_serializer_sv.sv",
+            "systemverilog/geometry_msgs_msg_twist_cdr_8_sv_pkg.sv",
+            "systemverilog/geometry_msgs_msg_vector3_cdr_8_sv_pkg.sv",
+            "systemverilog/waivers.vlt",
             "vhdl/Makefile",
             "vhdl/bench_files.txt",
             "vhdl/files.txt",

@@ -1,4 +1,4 @@
-"""The Verilog of a type's converters: a file per module, and waivers for Verilator."""
+"""The Verilog of a type's converters: a file per module, a template of each, and waivers."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 
 from firm_hdl.export.backend import BackEnd, Converters, Output
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
+from firm_hdl.export.verilog.template import template
 from firm_hdl.export.verilog.yosys import to_verilog
 from firm_hdl.plan import Plan
 
@@ -34,6 +35,9 @@ class Verilog(BackEnd):
             header = converters.header(module, f"the {direction}")
             files[f"{module}.v"] = to_verilog(
                 converters.tops[direction], module=module, header=header
+            )
+            files[f"{module}.veo"] = template(
+                converters.message, converters.plan, direction, module=module, header=header
             )
         return Output(files=files, manifest={"converters": section(converters.plan, name)})
 
@@ -73,6 +77,7 @@ def section(plan: Plan, folder: str) -> dict[str, Any]:
         direction: {
             "module": module_name(folder, direction),
             "verilog": f"{module_name(folder, direction)}.v",
+            "template": f"{module_name(folder, direction)}.veo",
             "clock": "aclk",
             "reset": "aresetn",
             "ports": _ports(plan, direction),

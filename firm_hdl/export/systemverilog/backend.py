@@ -1,0 +1,124 @@
+"""The SystemVerilog folder of a message type: packages, modules with structs, a list of files."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from firm_hdl.export.backend import BackEnd, Converters, Output
+from firm_hdl.export.remarks import remark
+from firm_hdl.export.systemverilog.package import constants_of, message_package, package_name
+from firm_hdl.export.systemverilog.types import (
+    TYPES_NAME,
+    WORDS,
+    bus_name,
+    bus_package,
+    types_package,
+)
+from firm_hdl.export.systemverilog.wrapper import wrapper
+from firm_hdl.export.top import DIRECTIONS, Direction
+from firm_hdl.export.tree import Tree, tree_of
+from firm_hdl.export.verilog import module_name
+
+__all__ = ["FOLDER", "LIST", "SystemVerilog", "wrapper_name"]
+
+FOLDER = "systemverilog"
+"""Where in a type's folder it is."""
+
+LIST, WAIVERS = "files.f", "waivers.vlt"
+
+_WAIVERS = """\
+// Warnings of Verilator that do not matter here, each with the reason. To lint:
+// $ verilator --lint-only -Wall ../waivers.vlt waivers.vlt -F files.f --top-module MODULE
+
+`verilator_config
+
+// A package has constants for whoever needs them.
+lint_off -rule UNUSEDPARAM -file "*_sv_pkg.sv"
+
+// A field has its own name, also if that is a word of C++: Verilator renames it.
+lint_off -rule SYMRSVDWORD -file "*_sv_pkg.sv"
+"""
+
+
+def wrapper_name(folder: str, direction: Direction) -> str:
+    """Name the module with structs."""
+    return f"{folder}_{direction}_sv"
+
+
+class SystemVerilog(BackEnd):
+    """SystemVerilog of 2012 around the modules in Verilog; the manifest says it as `systemverilog`.
+
+    There is none if ports are to be flat.
+    """
+
+    def write(self, converters: Converters) -> Output:
+        if converters.options.ports == "flat":
+            return Output(files={})
+        tree = tree_of(converters.message, converters.plan, WORDS)
+        packages = {
+            TYPES_NAME: types_package(),
+            bus_name(converters.plan.bus_bytes): bus_package(converters.plan.bus_bytes),
+            **{
+                package_name(each.name): message_package(each, converters.plan)
+                for each in tree.packages
+            },
+        }
+        modules = {way: wrapper_name(converters.name, way) for way in DIRECTIONS}
+        cores = [f"../{module_name(converters.name, way)}.v" for way in DIRECTIONS]
+        texts = {f"{name}.sv": text for name, text in packages.items()}
+        shared = list(texts)
+        for way, name in modules.items():
+            texts[f"{name}.sv"] = _module(converters, tree, way, name)
+        listed = [*shared, *cores, *(f"{name}.sv" for name in modules.values())]
+        files = {**texts, LIST: "".join(f"{file}\n" for file in listed), WAIVERS: _WAIVERS}
+        return Output(
+            files={f"{FOLDER}/{name}": text for name, text in files.items()},
+            manifest={"systemverilog": _section(converters, tree, modules, listed)},
+        )
+
+
+def _module(converters: Converters, tree: Tree, way: Direction, name: str) -> str:
+    header = "".join(remark(converters.header(name, f"the {way}"), ""))
+    core = module_name(converters.name, way)
+    return header + wrapper(
+        converters.message, converters.plan, tree, way, name=name, core=core
+    )
+
+
+def _section(
+    converters: Converters, tree: Tree, modules: dict[Direction, str], listed: list[str]
+) -> dict[str, Any]:
+    """Return what the manifest says of the folder; files in the order in which they compile."""
+    plan = converters.plan
+    return {
+        "folder": FOLDER,
+        "standard": "1800-2012",
+        "package": package_name(tree.packages[-1].name),
+        "modules": modules,
+        "message_type": tree.root.type,
+        "ready_type": tree.root.ready_type,
+        "leaves": {
+            str(plan.leaves[node.leaf]): node.access
+            for node in tree.root.leaves()
+            if node.leaf is not None
+        },
+        "constants": [
+            {
+                "type": entry.owner.name,
+                "constant": entry.constant.name,
+                "package": package_name(package.name),
+                "name": entry.name,
+            }
+            for package in tree.packages
+            for entry in constants_of(package, plan)
+        ],
+        "shared_packages": [
+            {"name": bus_name(plan.bus_bytes), "message": None},
+            *(
+                {"name": package_name(each.name), "message": each.message.name}
+                for each in tree.packages
+            ),
+        ],
+        "files": listed,
+        "waivers": WAIVERS,
+    }

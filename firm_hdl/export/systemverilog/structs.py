@@ -1,0 +1,62 @@
+"""Packed structs in SystemVerilog, forwards and backwards, and constants that tie them off."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+__all__ = ["Member", "constant", "guarded", "stream_structs", "struct"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Member:
+    """A member of a struct of streams.
+
+    Attributes
+    ----------
+    name, type, ready_type : str
+    comment : tuple of str
+        Lines above it.
+    remark : str
+        Behind it.
+    """
+
+    name: str
+    type: str
+    ready_type: str = "logic"
+    comment: tuple[str, ...] = ()
+    remark: str = ""
+
+
+def guarded(package: str, text: Iterable[str]) -> str:
+    """Put the text of a package between guards: several folders have the same file."""
+    macro = package.upper()
+    return "".join([f"`ifndef {macro}\n`define {macro}\n\n", *text, "\n`endif\n"])
+
+
+def struct(name: str, members: Sequence[Member], *, ready: bool = False) -> Iterator[str]:
+    """Yield a typedef; with `ready`, of what goes backwards."""
+    kinds = [member.ready_type if ready else member.type for member in members]
+    # Types of other packages are long.
+    width = max((len(kind) for kind in kinds if "::" not in kind), default=0)
+    yield "\n  typedef struct packed {\n"
+    for member, kind in zip(members, kinds, strict=True):
+        if not ready:
+            yield from member.comment
+        remark = "" if ready else member.remark
+        yield f"    {kind:{width}} {member.name};{remark}\n"
+    yield f"  }} {name};\n"
+
+
+def constant(kind: str, name: str, value: str) -> str:
+    """Write a constant of a type."""
+    return f"  localparam {kind} {name} = {value};\n"
+
+
+def stream_structs(base: str, members: Sequence[Member]) -> Iterator[str]:
+    """Yield the types ``base_t`` and ``base_ready_t``, and ``BASE_IDLE`` and ``BASE_ALL_READY``."""
+    yield from struct(f"{base}_t", members)
+    yield from struct(f"{base}_ready_t", members, ready=True)
+    yield "\n"
+    yield constant(f"{base}_t", f"{base.upper()}_IDLE", "'0")
+    yield constant(f"{base}_ready_t", f"{base.upper()}_ALL_READY", "'1")

@@ -1,0 +1,91 @@
+"""Modules in SystemVerilog whose ports are structs, around those with plain ports in Verilog."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from firm_hdl.export.remarks import remark
+from firm_hdl.export.systemverilog.package import package_name
+from firm_hdl.export.systemverilog.types import BEAT, STATUS, STATUS_STREAM, TYPES_NAME, bus_name
+from firm_hdl.export.top import Direction, Port, leaf_names, ports_of
+from firm_hdl.export.tree import Node, Tree
+from firm_hdl.model import Message
+from firm_hdl.plan import Plan
+
+__all__ = ["wrapper"]
+
+_STATUS = "m_axis_status"
+
+
+def wrapper(
+    message: Message, plan: Plan, tree: Tree, direction: Direction, *, name: str, core: str
+) -> str:
+    """Write a module.
+
+    Parameters
+    ----------
+    name : str
+        Of the module.
+    core : str
+        The one in Verilog.
+    """
+    head = remark(f"The {direction} of {message.name} with structs. {core} has plain ports.", "")
+    return "".join(
+        [
+            *head,
+            f"\nmodule {name} (\n",
+            *_ports(message, plan, tree, direction),
+            ");\n",
+            *_body(plan, tree, direction, core),
+            f"\nendmodule : {name}\n",
+        ]
+    )
+
+
+def _ports(message: Message, plan: Plan, tree: Tree, direction: Direction) -> Iterator[str]:
+    own, bus = package_name(tree.packages[-1].name), bus_name(plan.bus_bytes)
+    reads = direction == "deserializer"
+    to, fro = ("output", "input") if reads else ("input", "output")
+    beats = "s_axis" if reads else "m_axis"
+    lines = [
+        ("input", "logic", "aclk", "Clock; its rising edge counts."),
+        ("input", "logic", "aresetn", "Synchronous reset, active low."),
+        (fro, f"{bus}::{BEAT}", beats, "Packets."),
+        (to, "logic", f"{beats}_tready", "beat: taken."),
+        (to, f"{own}::{tree.root.type}", "msg", f"The fields of {message.name}."),
+        (fro, f"{own}::{tree.root.ready_type}", "rdy", "Which of them are taken."),
+        ("output", f"{TYPES_NAME}::{STATUS_STREAM}", _STATUS, "How packets ended."),
+        ("input", "logic", f"{_STATUS}_tready", "status: taken."),
+    ]
+    for number, (way, kind, name, meaning) in enumerate(lines):
+        end = "," if number < len(lines) - 1 else ""
+        yield from remark(meaning)
+        yield f"  {way:6} {kind} {name}{end}\n"
+
+
+def _body(plan: Plan, tree: Tree, direction: Direction, core: str) -> Iterator[str]:
+    # An enumeration takes nothing but its own values, or what is cast to it.
+    yield "\n  logic [7:0] status;\n\n"
+    yield f"  assign {_STATUS}.tdata = {TYPES_NAME}::{STATUS}'(status);\n"
+    if direction == "deserializer":
+        yield "\n  wire unused = &{1'b0, s_axis.tuser};\n"
+    ports = ports_of(plan, direction)
+    names, nodes = leaf_names(plan), {node.leaf: node for node in tree.root.leaves()}
+    width = max(len(port.name) for port in ports)
+    actuals = {port.name: _actual(port, plan, names, nodes) for port in ports}
+    joined = ",\n".join(f"    .{port:{width}} ({actual})" for port, actual in actuals.items())
+    yield f"\n  {core} core (\n{joined}\n  );\n"
+
+
+def _actual(
+    port: Port, plan: Plan, names: Mapping[tuple[str, ...], str], nodes: Mapping[int | None, Node]
+) -> str:
+    """Say what a port of the core is connected to."""
+    if port.leaf is not None:
+        node = nodes[port.leaf]
+        member = port.name.removeprefix(f"{names[plan.leaves[port.leaf].path]}_")
+        return f"rdy.{node.access}" if member == "ready" else f"msg.{node.access}.{member}"
+    stream, _, member = port.name.rpartition("_")
+    if not stream or member == "tready":
+        return port.name
+    return "status" if port.name == f"{_STATUS}_tdata" else f"{stream}.{member}"

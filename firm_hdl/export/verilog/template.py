@@ -1,0 +1,127 @@
+"""Templates of instances in Verilog-2005, as FPGA vendors have them: to copy, with all tied off."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import groupby
+
+from firm_hdl.export.remarks import remark
+from firm_hdl.export.top import Direction, Port, field_of, leaf_names, ports_of
+from firm_hdl.model import Array, Message
+from firm_hdl.plan import Leaf, Plan
+
+__all__ = ["template"]
+
+_STATUS_READY = "m_axis_status_tready"
+
+_ABOUT: dict[Direction, str] = {
+    "deserializer": (
+        "Every field is tied off: it is taken as soon as it is there. To use one, change its line: "
+        "connect data and valid, and give ready."
+    ),
+    "serializer": (
+        "Every field is tied off: it is 0 in all packets, and strings and sequences are empty. To "
+        "use one, change its line: connect data and valid, and look at ready."
+    ),
+}
+
+
+def template(
+    message: Message, plan: Plan, direction: Direction, *, module: str, header: str
+) -> str:
+    """Write an instance of a converter's module, and the nets that it needs.
+
+    Parameters
+    ----------
+    module : str
+    header : str
+        Lines for the comment at the head.
+    """
+    text = [
+        *remark(header, ""),
+        "//\n",
+        *remark(
+            "Copy what follows into a module that has aclk and aresetn. Leave out the declarations "
+            "of nets that your module has as ports.",
+            "",
+        ),
+        "//\n",
+        *remark(_ABOUT[direction], ""),
+        "\n",
+    ]
+    ports = ports_of(plan, direction)
+    for port in ports:
+        if port.leaf is None and port.name not in ("aclk", "aresetn", _STATUS_READY):
+            text.append(f"wire {_range(port)}{port.name};\n")
+    text.append(f"\n{module} {direction} (\n")
+    text += _connections(message, plan, direction, ports)
+    text.append(");\n")
+    return "".join(text)
+
+
+def _range(port: Port) -> str:
+    return f"[{port.width - 1}:0] " if port.width > 1 else ""
+
+
+def _connections(
+    message: Message, plan: Plan, direction: Direction, ports: tuple[Port, ...]
+) -> Iterator[str]:
+    """Yield a line for each port that is no field's, and one for each field, with a remark."""
+    names = leaf_names(plan)
+    left = len(ports)
+    for index, group in groupby(ports, key=lambda port: port.leaf):
+        of_leaf = list(group)
+        left -= len(of_leaf)
+        end = "," if left else ""
+        if index is None:
+            # Packets wait until their status is taken.
+            actuals = {port.name: port.name for port in of_leaf} | (
+                {_STATUS_READY: "1'b1"} if not left else {}
+            )
+            nets = (f"  .{port}({actual})" for port, actual in actuals.items())
+            yield ",\n".join(nets) + f"{end}\n"
+            continue
+        leaf = plan.leaves[index]
+        transfers = _transfers(message, plan, leaf)
+        tied = {
+            port.name: _tied(leaf, port, port.name.removeprefix(f"{names[leaf.path]}_"), transfers)
+            for port in of_leaf
+        }
+        yield from remark(_what(leaf, direction, transfers))
+        yield "  " + ", ".join(f".{name}({value})" for name, value in tied.items()) + f"{end}\n"
+
+
+def _transfers(message: Message, plan: Plan, leaf: Leaf) -> int | None:
+    """Return how many transfers a leaf has for each element that it is in; `None` if they vary."""
+    if leaf.kind != "items":
+        return 1
+    if any(other.path == (*leaf.path[:-1], "length") for other in plan.leaves):
+        return None
+    source = field_of(message, leaf)
+    assert source is not None and isinstance(source.type, Array)
+    return -(-source.type.count // leaf.lanes)
+
+
+def _what(leaf: Leaf, direction: Direction, transfers: int | None) -> str:
+    """Say what a leaf is."""
+    if leaf.kind == "length":
+        return f"{leaf}: how many follow"
+    if leaf.kind == "trigger":
+        return f"{leaf}: there is one"
+    lanes = f"{leaf.lanes} x " if leaf.lanes > 1 else ""
+    what = f"{leaf}: {lanes}{leaf.type}"
+    if direction == "serializer" and transfers is None:
+        return f"{what}; none, as the length is 0"
+    if direction == "serializer" and transfers != 1:
+        return f"{what}; {transfers} transfers: packets wait for them, and for last with the final"
+    return what
+
+
+def _tied(leaf: Leaf, port: Port, member: str, transfers: int | None) -> str:
+    """Say what a port is tied to; empty for outputs."""
+    if port.direction == "out":
+        return ""
+    if member == "data":
+        return f"{port.width}'d{int(leaf.kind == 'trigger')}"
+    # Nothing constant ends an array of several transfers.
+    return "1'b1" if member == "ready" or transfers == 1 else "1'b0"

@@ -1,0 +1,64 @@
+// geometry_msgs_msg_Twist_cdr_8_serializer_sv: the serializer of geometry_msgs/msg/Twist, made by
+// firm-hdl 0.1.0.
+// lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
+// definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
+// What each port means: manifest.json.
+// The serializer of geometry_msgs/msg/Twist with structs.
+// geometry_msgs_msg_Twist_cdr_8_serializer_verilog has plain ports.
+
+module geometry_msgs_msg_Twist_cdr_8_serializer_sv (
+  // Clock; its rising edge counts.
+  input  logic aclk,
+  // Synchronous reset, active low.
+  input  logic aresetn,
+  // Packets.
+  output firm_hdl_bus_8_sv_pkg::packet_beat_t m_axis,
+  // beat: taken.
+  input  logic m_axis_tready,
+  // The fields of geometry_msgs/msg/Twist.
+  input  geometry_msgs_msg_twist_cdr_8_sv_pkg::twist_t msg,
+  // Which of them are taken.
+  output geometry_msgs_msg_twist_cdr_8_sv_pkg::twist_ready_t rdy,
+  // How packets ended.
+  output firm_hdl_sv_pkg::packet_status_stream_t m_axis_status,
+  // status: taken.
+  input  logic m_axis_status_tready
+);
+
+  logic [7:0] status;
+
+  assign m_axis_status.tdata = firm_hdl_sv_pkg::packet_status_t'(status);
+
+  geometry_msgs_msg_Twist_cdr_8_serializer_verilog core (
+    .aclk                 (aclk),
+    .aresetn              (aresetn),
+    .m_axis_tdata         (m_axis.tdata),
+    .m_axis_tkeep         (m_axis.tkeep),
+    .m_axis_tlast         (m_axis.tlast),
+    .m_axis_tuser         (m_axis.tuser),
+    .m_axis_tvalid        (m_axis.tvalid),
+    .m_axis_tready        (m_axis_tready),
+    .linear_x_data        (msg.linear.x.data),
+    .linear_x_valid       (msg.linear.x.valid),
+    .linear_x_ready       (rdy.linear.x),
+    .linear_y_data        (msg.linear.y.data),
+    .linear_y_valid       (msg.linear.y.valid),
+    .linear_y_ready       (rdy.linear.y),
+    .linear_z_data        (msg.linear.z.data),
+    .linear_z_valid       (msg.linear.z.valid),
+    .linear_z_ready       (rdy.linear.z),
+    .angular_x_data       (msg.angular.x.data),
+    .angular_x_valid      (msg.angular.x.valid),
+    .angular_x_ready      (rdy.angular.x),
+    .angular_y_data       (msg.angular.y.data),
+    .angular_y_valid      (msg.angular.y.valid),
+    .angular_y_ready      (rdy.angular.y),
+    .angular_z_data       (msg.angular.z.data),
+    .angular_z_valid      (msg.angular.z.valid),
+    .angular_z_ready      (rdy.angular.z),
+    .m_axis_status_tdata  (status),
+    .m_axis_status_tvalid (m_axis_status.tvalid),
+    .m_axis_status_tready (m_axis_status_tready)
+  );
+
+endmodule : geometry_msgs_msg_Twist_cdr_8_serializer_sv
