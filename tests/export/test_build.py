@@ -385,7 +385,7 @@ def test_output_is_the_same_everywhere(tmp_path):
         command = [sys.executable, "-c", script, "out"]
         subprocess.run(command, cwd=home, env=environment, check=True)
         trees.append(tree(home / "out"))
-    assert len(trees[0]) == 70
+    assert len(trees[0]) == 90
     assert trees[0] == trees[1]
     for text in trees[0].values():
         assert str(ROOT).encode() not in text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 
 from firm_hdl.export.build import build
 from firm_hdl.frontend import Library
+from tests.export.systemverilog.hdl import slang
 
 ORDERS = (
     "synthesis translate_off",
@@ -83,9 +85,37 @@ def test_comments_as_they_were_act(ghdl, folder, tmp_path):
     assert "translate_off" in complaints
 
 
+def linted(verilator: str, folder: Path) -> str:
+    """Give what Verilator and slang say of the structs."""
+    list_ = (folder / "systemverilog" / "files.f").read_text().split()
+    top = [name for name in list_ if name.endswith("_deserializer_sv.sv")]
+    waived = ["../waivers.vlt", "waivers.vlt", "--top-module", top[0].removesuffix(".sv")]
+    done = subprocess.run(
+        [verilator, "--lint-only", "-Wall", *waived, "-F", "files.f"],
+        cwd=folder / "systemverilog",
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    orders = ["--translate-off-format", "synthesis,translate_off,translate_on"]
+    said = slang(list_, folder / "systemverilog", "-Wno-case-overlap", *orders)
+    return done.stdout + done.stderr + said
+
+
+def test_linters_see_all_that_structs_declare(verilator, folder):
+    assert linted(verilator, folder) == ""
+
+
+def test_comments_of_structs_as_they_were_act(verilator, folder, tmp_path):
+    shutil.copytree(folder, tmp_path / "copy")
+    for path in (tmp_path / "copy" / "systemverilog").glob("*_sv_pkg.sv"):
+        path.write_text(re.sub(r"// # (?=synthesis)", "// ", path.read_text()))
+    assert "error: " in linted(verilator, tmp_path / "copy")
+
+
 WORDS = "synthesis|pragma|synopsys|rtl_synthesis|psl|verilator|vhdl_comp_off|coverage|protect"
 STARTS = re.compile(rf"(?:--|//|/\*|^\s*#)\s*(?:{WORDS})\b", re.MULTILINE)
-QUOTED = re.compile(r"-- # .*")
+QUOTED = re.compile(r"(?:--|//) # .*")
 
 
 def test_no_comment_of_any_file_begins_with_an_order(folder):
