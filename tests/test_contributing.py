@@ -1,0 +1,49 @@
+"""The five walks of docs/contributing.md: their files exist, and each walk has at most six."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import firm_hdl
+
+ROOT = Path(firm_hdl.__file__).parent.parent
+PAGE = (ROOT / "docs" / "contributing.md").read_text(encoding="utf-8")
+# Of a new file, which the walk makes.
+NEW = re.compile(r"NAME|PART")
+FILE = re.compile(r"`([\w/]+\.(?:py|md|lark))`")
+
+
+def tables(page):
+    """Yield the rows of each table of files."""
+    return [
+        [row for row in block.splitlines()[2:] if row.startswith("|")]
+        for block in re.findall(r"(?m)^\| File \|.*\n(?:\|.*\n?)+", page)
+    ]
+
+
+def missing(page):
+    for name in FILE.findall(page):
+        places = (ROOT / name, ROOT / "firm_hdl" / name, ROOT / "firm_hdl" / "cli" / name)
+        beside = (ROOT / "firm_hdl" / "wire" / name, ROOT / "docs" / name)
+        if not NEW.search(name) and not any(path.is_file() for path in (*places, *beside)):
+            yield name
+
+
+def test_files_that_the_page_names_exist():
+    assert list(missing(PAGE)) == []
+
+
+def test_a_walk_touches_at_most_six_files():
+    # One of six walks, as oracles of definitions and of packets have one each.
+    assert [len(rows) for rows in tables(PAGE)] == [5, 4, 5, 6, 6, 5]
+
+
+def test_a_file_that_is_gone_is_seen():
+    page = PAGE.replace("`firm_hdl/wire/formats.py`", "`firm_hdl/wire/format.py`")
+    assert list(missing(page)) == ["firm_hdl/wire/format.py"]
+
+
+def test_a_walk_that_is_too_long_is_seen():
+    row = "| `firm_hdl/wire/formats.py` | Add it to `RULES`. |\n"
+    assert len(tables(PAGE.replace(row, 3 * row))[0]) == 7
