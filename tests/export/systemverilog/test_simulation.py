@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from importlib.util import find_spec
@@ -106,6 +107,28 @@ def test_lists_of_two_types_go_together(verilator, folder):
     status, said = lint(verilator, folder, *both)
     assert status == 0 and "MODDUP" not in said and "uplicate" not in said, said
     assert slang([*sources(folder), *sources(other)], folder, "-Wno-case-overlap") == ""
+
+
+UNIT = r"^(?:module|package(?! body)|entity) +(\\?[\w.]+)"
+
+
+def units(folder: Path) -> dict[str, list[str]]:
+    """What files declare, in lower case, by the kind of file."""
+    found: dict[str, list[str]] = {}
+    for path in sorted(folder.rglob("*.*")):
+        if path.suffix in (".v", ".sv", ".vhd"):
+            names = re.findall(UNIT, path.read_text(), re.MULTILINE)
+            found.setdefault(path.suffix, []).extend(name.lower() for name in names)
+    return found
+
+
+def test_all_languages_go_into_one_library(folder):
+    found = units(folder)
+    assert all(len(found[kind]) > 3 for kind in (".v", ".sv", ".vhd"))
+    names = [name for kind in found for name in found[kind]]
+    assert len(names) == len({*names})
+    # Its twin: packages called as those of VHDL are.
+    assert {name.replace("_sv_pkg", "_pkg") for name in found[".sv"]} & {*found[".vhd"]}
 
 
 def environment() -> dict[str, str]:

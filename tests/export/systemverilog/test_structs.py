@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 
 from firm_hdl import load_message
+from firm_hdl.export.backend import Converters, Options
 from firm_hdl.export.primitives import BUS_TYPES, SHARED_WORDS
+from firm_hdl.export.systemverilog import SystemVerilog
 from firm_hdl.export.systemverilog.package import constants_of
 from firm_hdl.export.systemverilog.types import WORDS, bus_package, types_package
 from firm_hdl.export.tree import tree_of
@@ -88,6 +90,17 @@ def test_linters_find_nothing_in_the_covering_types(design, verilator):
                 design.add(message)
     assert len(design.instances) > 100
     clean(design, verilator)
+
+
+def test_flat_ports_leave_structs_out():
+    message = load_message("std_msgs/msg/Header")
+    for ports, there in (("flat", False), ("records", True)):
+        made = SystemVerilog().write(
+            Converters(
+                message=message, plan=plan_of(message), name="t", options=Options(ports=ports)
+            )
+        )
+        assert (bool(made.files), bool(made.manifest)) == (there, there)
 
 
 def test_wrong_member_is_seen_by_both_linters(design, verilator):
