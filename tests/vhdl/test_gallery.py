@@ -13,7 +13,20 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from amaranth.hdl import Cat, Module, Mux, Signal, Value, signed
+from amaranth.hdl import (
+    Assert,
+    Assume,
+    Cat,
+    Const,
+    Cover,
+    Format,
+    Module,
+    Mux,
+    Print,
+    Signal,
+    Value,
+    signed,
+)
 from amaranth.lib import data, enum
 from amaranth.lib.memory import Memory
 
@@ -707,6 +720,220 @@ def parts_of_registers() -> Made:
     with m.If(i[1]):
         m.d.sync += o[2:].eq(0)
     return m, [i, o]
+
+
+@shows(
+    """\
+begin
+
+  o0 <= '1' when unsigned(p) = x"FFFFFFFFFF" else '0';
+  o1 <= '1' when unsigned(p) < 34x"200000000" else '0';
+  o2 <= '1' when unsigned(p) = 5 else '0';
+  o3 <= '1' when unsigned(s) = x"FFFFFFFFFF" else '0';
+  o4 <= '1' when unsigned(q) > 5 else '0';
+  o5 <= '1' when signed(unsigned(s)) < signed(unsigned'(x"800000000")) else '0';
+  o6 <= '1' when unsigned(p) >= 2147483647 else '0';
+  o7 <= '1' when unsigned(p) > x"80000000" else '0';
+  o8 <= '1' when unsigned(q) <= 3 else '0';
+"""
+)
+def limits() -> Made:
+    """Numbers are decimal up to what an integer of VHDL holds, and literals beyond it."""
+    m, (p,), (q,) = Module(), signals("p", 40), signals("q", 4)
+    s, outputs = Signal(signed(40), name="s"), signals("o0 o1 o2 o3 o4 o5 o6 o7 o8")
+    values = [p == (1 << 40) - 1, p < (1 << 33), p == 5, s == -1, Const(5, 4) < q]
+    values += [s < -(1 << 35), p >= (1 << 31) - 1, p > (1 << 31), Const(3, 4) >= q]
+    m.d.comb += [output.eq(value) for output, value in zip(outputs, values, strict=True)]
+    return m, [p, s, q, *outputs]
+
+
+@shows(
+    """\
+begin
+
+  o0 <= std_logic_vector(resize(unsigned(q), 5) + 3);
+  o1 <= std_logic_vector(resize(unsigned(q), 5) + 3);
+  o2 <= std_logic_vector(3 - resize(unsigned(q), 5));
+  o3 <= std_logic_vector(resize(unsigned(q), 5) - 3);
+  o4 <= std_logic_vector(sign_extend(unsigned(sq), 5) - 3);
+  o5 <= std_logic_vector(sign_extend(unsigned(sq), 5) - 3);
+
+  o6 <= std_logic_vector(resize(unsigned(q), 5));
+"""
+)
+def sums() -> Made:
+    """What is added to or taken from a signal is a number, on either side."""
+    m, (q,), outputs = Module(), signals("q", 4), signals("o0 o1 o2 o3 o4 o5 o6", 5)
+    sq = Signal(signed(4), name="sq")
+    values: list[Value] = [q + 3, 3 + q, 3 - q, q - 3, sq - 3, sq + (-3), q + Const(0, 4)]
+    m.d.comb += [output.eq(value) for output, value in zip(outputs, values, strict=True)]
+    return m, [q, sq, *outputs]
+
+
+@shows(
+    """\
+begin
+
+  o0 <= not (a xor b);
+  o1 <= a xor b;
+  o2 <= a;
+  o3 <= to_std_logic(resize(a, 1) = 0);
+  o4 <= not (sa xor sb);
+  o5 <= to_std_logic(resize(a, 1) < resize(b, 1));
+
+  w <= "01" when a = b else
+       "10" when a /= '1' else
+       (others => '0');
+"""
+)
+def single_bits() -> Made:
+    """Bits are compared without a detour over numbers, but for their order."""
+    m, (a, b), outputs = Module(), signals("a b"), signals("o0 o1 o2 o3 o4 o5")
+    sa, sb = Signal(signed(1), name="sa"), Signal(signed(1), name="sb")
+    w = Signal(2, name="w")
+    values = [a == b, a != b, a == 1, a == 0, sa == sb, a < b]
+    m.d.comb += [output.eq(value) for output, value in zip(outputs, values, strict=True)]
+    with m.If(a == b):
+        m.d.comb += w.eq(1)
+    with m.Elif(a != 1):
+        m.d.comb += w.eq(2)
+    return m, [a, b, sa, sb, *outputs, w]
+
+
+@shows(
+    """\
+begin
+
+  o <= "01" when s(2) = '1' else
+       "10";
+
+  z <= "10" when (s(0) = '0' and s(2) = '0') or unsigned(s(2 downto 1)) = "11" else
+       (others => '0');
+"""
+)
+def always_and_never() -> Made:
+    """What always matches ends a choice; what never does is not asked for."""
+    m, (s,), (o, z) = Module(), signals("s", 3), signals("o z", 2)
+    with m.Switch(s):
+        with m.Case("1--"):
+            m.d.comb += o.eq(1)
+        with m.Case("-1-", "---"):
+            m.d.comb += o.eq(2)
+        with m.Case("--1"):
+            m.d.comb += o.eq(3)
+    with m.Switch(s):
+        with m.Case():
+            m.d.comb += z.eq(1)
+        with m.Case("0-0", "11-"):
+            m.d.comb += z.eq(2)
+    return m, [s, o, z]
+
+
+@shows(
+    """\
+
+  -- Combinational signals.
+  signal choice_1 : std_logic;
+  signal choice_2 : std_logic;
+  signal choice_4 : std_logic;
+  signal choice_6 : std_logic;
+  signal choice_7 : std_logic;
+begin
+
+  choice_1 <= '1' when a = '1' else
+              '0';
+
+  choice_2 <= '1' when a = '1' else
+              '0';
+
+  choice_4 <= '1' when a = '1' else
+              '0';
+
+  choice_6 <= '1' when a = '1' else
+              '0';
+
+  choice_7 <= '1' when a = '1' else
+              '0';
+
+  -- synthesis translate_off
+  postponed process (all)
+  begin
+    if choice_1 = '1' then
+      report "{\"\"\" & to_decimal(unsigned(d)) & \"\"\" " & to_hstring(unsigned(d)) & " " &
+          to_string(unsigned(sd)) & " " & to_ostring(unsigned(d)) & "}" & character'val(9) &
+          to_characters(unsigned(d)) severity note;
+    end if;
+  end process;
+  -- synthesis translate_on
+
+  -- synthesis translate_off
+  postponed process (all)
+  begin
+    if choice_2 = '1' then
+      assert a = '1' report "assumption failed in t" severity error;
+    end if;
+  end process;
+  -- synthesis translate_on
+
+  -- Cover: to_std_logic(unsigned(d) = 1)
+
+  -- synthesis translate_off
+  process (clk)
+  begin
+    if rising_edge(clk) and (choice_6 = '1') then
+      assert signed(resize(unsigned(d), 9)) = signed(unsigned(sd)) report "no" severity error;
+    end if;
+  end process;
+  -- synthesis translate_on
+
+  -- synthesis translate_off
+  process (clk)
+  begin
+    if rising_edge(clk) and (choice_7 = '1') then
+      report "" severity note;
+    end if;
+  end process;
+  -- synthesis translate_on
+"""
+)
+def messages() -> Made:
+    """Messages are for simulators; of a format the kinds of numbers are kept."""
+    m, (a,), (d,) = Module(), signals("a"), signals("d", 8)
+    sd = Signal(signed(8), name="sd")
+    with m.If(a):
+        text = Format('{{"{}" {:x} {:b} {:o}}}\t{:c}', d, d, sd, d, d)
+        m.d.comb += [Print(text), Assume(a), Cover(d == 1)]
+        m.d.sync += [Assert(d == sd, "no"), Print("")]
+    return m, [a, d, sd]
+
+
+@shows(
+    """\
+
+  -- More names of values, for whoever looks at a simulation.
+  signal port_data : unsigned(3 downto 0);
+
+  type some_array is array (0 to 1) of unsigned(3 downto 0);
+  signal some : some_array := (
+    0 => "0001",
+    others => (others => '0')
+  );
+begin
+
+
+  o <= std_logic_vector(some(to_integer(port_addr)));
+
+  port_data <= unsigned(o);
+"""
+)
+def a_memory_behind_an_empty_one() -> Made:
+    """One without words is not there, and the next one is."""
+    m, (o,) = Module(), signals("o", 4)
+    m.submodules.none = Memory(shape=4, depth=0, init=[])
+    m.submodules.some = memory = Memory(shape=4, depth=2, init=[1])
+    port = memory.read_port(domain="comb")
+    m.d.comb += o.eq(port.data)
+    return m, [o, port.addr]
 
 
 @shows(
