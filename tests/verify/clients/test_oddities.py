@@ -1,0 +1,128 @@
+"""The table of odd packets: where each is made, whether it is legal, how many, and up to what size.
+
+What is legal decides whether a library that refuses a packet is told of as wrong.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.verify.clients import odd
+from firm_hdl.verify.clients.odd import (
+    ODDITIES,
+    odd_packet,
+    odd_packets,
+    odd_value,
+    odd_values,
+    plain_packet,
+    zero,
+)
+
+LEGAL = "bare-string big-endian options dirty-padding pad-1 pad-2 pad-3".split()
+CDR_ALONE = [*LEGAL, "no-nul", "cut-header"]
+ANYWHERE = (
+    "nul-inside not-utf8 bool-2 trailing-4 cut-1 cut-half cut-all bound-text bound-items "
+    "long-text long-items"
+).split()
+
+
+def test_each_is_where_it_can_be_and_is_called_legal_if_it_is():
+    assert {*ODDITIES} == {*CDR_ALONE, *ANYWHERE, "trailing-1"}
+    for name, each in ODDITIES.items():
+        wires = "cdr" if name in CDR_ALONE else "ros1" if name == "trailing-1" else "ros1 cdr"
+        assert (each.name, each.wires) == (name, wires)
+        assert each.is_legal == (name in LEGAL)
+        assert each.text
+
+
+ROS1 = "01 02000000 02000000 7879 00000000 01 01000000 05"
+ROS1_ODD = {
+    "nul-inside": ROS1.replace("02000000 7879", "03000000 610062"),
+    "not-utf8": ROS1.replace("02000000 7879", "02000000 c328"),
+    "bool-2": ROS1.replace("00000000 01 01", "00000000 02 01"),
+    "trailing-1": f"{ROS1} 00",
+    "trailing-4": f"{ROS1} 00000000",
+    "cut-1": ROS1[:-3],
+    "cut-half": "01 02000000 02000000 78",
+    "cut-all": "",
+    "bound-text": ROS1.replace("02000000 7879", "03000000 787978"),
+    "bound-items": ROS1.replace("01000000 05", "02000000 05 00"),
+    "long-text": ROS1.replace("02000000 7879", "70110100 7879"),
+    "long-items": ROS1.replace("01000000 05", "70110100 05"),
+}
+
+
+def test_packets_of_ros1_are_odd_at_their_first_place(make_message):
+    message = make_message("uint8 a\nuint32 n\nstring<=2 s\nstring e\nbool t\nuint8[<=1] l\n")
+    value = {"a": 1, "n": 2, "s": b"xy", "e": b"", "t": True, "l": [5]}
+    assert plain_packet(message, "ros1", value) == bytes.fromhex(ROS1)
+    found = {each.name: packet for each, _, packet in odd_packets(message, "ros1", [value])}
+    assert found == {name: bytes.fromhex(text) for name, text in ROS1_ODD.items()}
+
+
+def test_two_packets_of_a_kind_are_made_odd_and_two_values(make_message):
+    message = make_message("string<=2 s\nuint8 a")
+    values = [{"s": bytes([each]), "a": each} for each in (65, 66, 67)]
+    packets = [(each.name, value["a"]) for each, value, _ in odd_packets(message, "ros1", values)]
+    names = [name for name in ROS1_ODD if name not in ("bool-2", "bound-items", "long-items")]
+    assert sorted(packets) == sorted((name, number) for name in names for number in (65, 66))
+    assert [(name, value["a"]) for name, value in odd_values(message, values)] == [
+        (name, number) for name in ("nul-inside", "not-utf8", "bound-text") for number in (65, 66)
+    ]
+
+
+def test_who_has_no_place_for_it_is_passed_over(make_message):
+    message = make_message("string s")
+    values = [{"s": b"a"}, {"s": b""}, {"s": b"b"}, {"s": b""}]
+    bare = [v for each, v, _ in odd_packets(message, "cdr", values) if each.name == "bare-string"]
+    assert bare == [{"s": b""}] * 2
+
+
+@pytest.mark.parametrize(("size", "is_made"), [(4096, True), (4097, False)])
+def test_packets_are_made_odd_up_to_a_size(make_message, size, is_made):
+    message = make_message(f"uint8[{size}] a")
+    packet = odd_packet(message, "ros1", {"a": [0] * size}, ODDITIES["cut-1"])
+    assert (packet is not None) == is_made
+
+
+@pytest.mark.parametrize(("bound", "is_made"), [(64, True), (65, False)])
+def test_bounds_are_exceeded_up_to_one(make_message, bound, is_made):
+    message = make_message(f"string<={bound} s\nuint8[<={bound}] l\nwstring<={bound} w")
+    value = {"s": b"", "l": [], "w": []}
+    text, items = odd_value(message, value, "bound-text"), odd_value(message, value, "bound-items")
+    assert (text is not None, items is not None) == (is_made, is_made)
+    if is_made:
+        assert text == {"s": b"x" * 65, "l": [], "w": []}
+        assert items == {"s": b"", "l": [0] * 65, "w": []}
+    wide = odd_value(make_message(f"wstring<={bound} w"), {"w": [1]}, "bound-text")
+    assert wide == ({"w": [1] + [0x61] * 64} if is_made else None)
+
+
+def test_everything_of_a_packet_may_be_big_endian(make_message):
+    message = make_message("uint8 a\nuint16 b\nuint32 c\nuint64 d\nstring s")
+    value = {"a": 1, "b": 2, "c": 3, "d": 4, "s": b"x"}
+    packet = odd_packet(message, "cdr", value, ODDITIES["big-endian"])
+    want = "00000000 01 00 0002 00000003 0000000000000004 00000002 7800"
+    assert packet == bytes.fromhex(want)
+
+
+@pytest.mark.parametrize(
+    ("fields", "value"),
+    [
+        ("bool a", {"a": False}),
+        ("float64 a", {"a": 0}),
+        ("string a", {"a": b""}),
+        ("wstring a", {"a": []}),
+        ("uint8[3] a", {"a": [0, 0, 0]}),
+        ("uint8[] a", {"a": []}),
+        ("string[<=2] a", {"a": []}),
+        ("B a", {"a": {"b": 0}}),
+        ("B[2] a", {"a": [{"b": 0}, {"b": 0}]}),
+    ],
+)
+def test_zero_is_what_a_library_makes_of_nothing(make_message, fields, value):
+    assert zero(make_message(fields, B="uint8 b")) == value
+
+
+def test_lengths_that_lie_are_within_what_a_library_may_allocate():
+    assert odd.TOO_LONG > odd.MOST_PACKET_BYTES and odd.TOO_LONG < 1 << 20
