@@ -1,0 +1,127 @@
+"""What is left of a difference: the smallest type and value that still show it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from firm_hdl.verify.clients.finding import Finding
+from firm_hdl.verify.clients.shrink import shrunk
+from firm_hdl.verify.references.objects import full_text
+
+TEXT = "uint8 a\nstring s\nB b\nB[] many\nuint16[6] fixed\nuint32[] plain\nbool t\nC[2] two"
+B = "uint32 x\nstring name\nC c"
+C = "int8 y\nint8 z"
+POINT = {"x": 7, "name": b"point", "c": {"y": 1, "z": 2}}
+VALUE = {
+    "a": 3,
+    "s": b"some text",
+    "b": POINT,
+    "many": [{**POINT, "x": number} for number in (4, 5, 6)],
+    "fixed": [1, 2, 3, 4, 5, 6],
+    "plain": [10, 11, 12],
+    "t": True,
+    "two": [{"y": 3, "z": 4}, {"y": 5, "z": 6}],
+}
+
+
+def everything(value):
+    """Yield all that is in a value, by the name of the field that it is in."""
+    if isinstance(value, dict):
+        for name, each in value.items():
+            yield name, each
+            yield from everything(each)
+    elif isinstance(value, list):
+        for each in value:
+            yield from everything(each)
+
+
+def shrink(make_message, shows, text=TEXT, value=VALUE):
+    message = make_message(text, B=B, C=C)
+    asked = []
+
+    def again(message, what, value):
+        asked.append(what)
+        found = replace(finding, message=message, value=value)
+        return found if shows(dict(everything(value)), value) else None
+
+    finding = Finding(
+        library="mine",
+        reference="yours",
+        wire="cdr",
+        what="encode",
+        message=message,
+        value=value,
+        packet=b"",
+        expected=None,
+        got=None,
+    )
+    assert shows(dict(everything(value)), value)
+    found = shrunk(finding, again)
+    assert {*asked} == {"encode"}
+    lines = [line for line in full_text(found.message).splitlines() if line]
+    return lines, found.value
+
+
+@pytest.mark.parametrize(
+    ("shows", "lines", "value"),
+    [
+        # A field of the type itself, of whatever value; then one whose value matters.
+        (lambda all_, _: "a" in all_, ["uint8 a"], {"a": 0}),
+        (lambda all_, _: all_.get("a") == 3, ["uint8 a"], {"a": 3}),
+        (lambda all_, _: "t" in all_, ["bool t"], {"t": False}),
+        # Texts get shorter, from both ends, and plainer.
+        (lambda all_, _: "s" in all_, ["string s"], {"s": b""}),
+        (lambda all_, _: len(all_.get("s", b"")) > 2, ["string s"], {"s": b"xxx"}),
+        (lambda all_, _: b"t" in all_.get("s", b""), ["string s"], {"s": b"t"}),
+        # So do sequences and arrays.
+        (lambda all_, _: "plain" in all_, ["uint32[] plain"], {"plain": []}),
+        (lambda all_, _: 12 in all_.get("plain", []), ["uint32[] plain"], {"plain": [12]}),
+        (lambda all_, _: 11 in all_.get("plain", []), ["uint32[] plain"], {"plain": [11]}),
+        (lambda all_, _: "fixed" in all_, ["uint16[1] fixed"], {"fixed": [0]}),
+        (lambda all_, _: 6 in all_.get("fixed", []), ["uint16[1] fixed"], {"fixed": [6]}),
+        (
+            lambda all_, _: len(all_.get("fixed", [])) > 2,
+            ["uint16[3] fixed"],
+            {"fixed": [0, 0, 0]},
+        ),
+        # What is inside another type stands for itself, if it can.
+        (lambda all_, _: "y" in all_, ["int8 y"], {"y": 0}),
+        (lambda all_, _: all_.get("z") == 6, ["int8 z"], {"z": 6}),
+        (lambda all_, _: all_.get("x") == 6, ["uint32 x"], {"x": 6}),
+        # Two fields that are both needed.
+        (
+            lambda all_, _: all_.get("a") == 3 and all_.get("t") is True,
+            ["uint8 a", "bool t"],
+            {"a": 3, "t": True},
+        ),
+    ],
+)
+def test_nothing_is_left_that_does_not_matter(make_message, shows, lines, value):
+    assert shrink(make_message, shows) == (lines, value)
+
+
+def test_an_element_keeps_the_type_that_it_needs(make_message):
+    def shows(_, value):
+        return any(isinstance(each, list) and len(each) > 1 for each in value.values())
+
+    lines, value = shrink(make_message, shows, "uint8 a\nB[] many", {"a": 1, "many": [POINT] * 3})
+    (items,) = value.values()
+    assert len(items) == 2
+    # Of the element, one field is left, as a type needs one to be an element of something.
+    assert lines[0] == "B[] many" or lines[0].endswith("B[] many")
+    assert all(len(each) <= 1 for each in items)
+
+
+def test_time_ends_it(make_message):
+    message = make_message("uint8 a\nuint8 b")
+    finding = Finding(
+        library="", reference="", wire="cdr", what="decode", message=message,
+        value={"a": 1, "b": 1}, packet=b"", expected=None, got=None,
+    )  # fmt: skip
+    same = lambda message, what, value: replace(finding, message=message, value=value)  # noqa: E731
+    assert shrunk(finding, same, seconds=-1) is finding
+    assert shrunk(finding, lambda *_: None) is finding
+    # What is no smaller is not taken, or it would never end.
+    assert shrunk(finding, lambda *_: replace(finding)) is finding
