@@ -110,6 +110,8 @@ COMMAND = (
             [REGISTER.replace("Signal(8)", "Signal(8, reset_less=True)")],
         ),
         ("kept state", "x: list = field(default_factory=list)", 1),
+        ("kept state", "x: Mapping[str, int] = field(default_factory=dict)", []),
+        ("kept state", "x: dict[str, int] = field(default_factory=dict)", 1),
         ("kept state", "def f():\n    a = []\n    b = 0", 1),
         ("constant return", "def f() -> bool:\n    return a == b", 2),
         ("constant return", "def f() -> A | None:\n    return a", 1),

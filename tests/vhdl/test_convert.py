@@ -216,6 +216,28 @@ end
     assert "c <= std_logic_vector(unsigned(i(7 downto 4)));" in text
 
 
+def test_what_only_another_connection_reads_is_a_signal() -> None:
+    # What nobody reads is one more name, for whoever looks at a simulation.
+    rtlil = r"""
+attribute \top 1
+module \top
+  wire width 4 input 0 \i
+  wire width 4 output 1 \o
+  wire width 4 \x
+  wire width 4 \seen
+  connect \x \i
+  connect \o \x
+  connect \seen \i
+end
+"""
+    text = list(convert(rtlil).files.values())[-1]
+    named, _, more = text.partition("More names of values")
+    assert "signal x : unsigned(3 downto 0);" in named
+    assert "signal seen : unsigned(3 downto 0);" in more
+    for line in ("x <= unsigned(i);", "o <= std_logic_vector(x);", "seen <= unsigned(i);"):
+        assert f"\n  {line}\n" in more
+
+
 def test_names_are_legal_and_never_merged(tmp_path: Path) -> None:
     names = "signal a__b a_b A_B _a a_ range RANGE 0x a$b a.b resize work top rtl p_clk".split()
     module = Module()

@@ -10,7 +10,7 @@ import re
 
 from tools.mutation.source import Functions, Source
 
-__all__ = ["are_independent", "durations", "is_plain_bool"]
+__all__ = ["are_independent", "durations", "is_plain_bool", "is_read_only"]
 
 # What a list, set, dictionary or deque is told, and changes nothing else.
 COLLECTS = {
@@ -123,6 +123,15 @@ def _is_duration(source: Source, number: ast.Constant) -> bool:
         target = above.targets[0] if isinstance(above, ast.Assign) else above.target
         return DURATION.search(ast.unparse(target).rpartition(".")[2]) is not None
     return False
+
+
+def is_read_only(source: Source, factory: ast.keyword) -> bool:
+    """Tell the default of a field whose type lets nobody change it: all objects may share one."""
+    field = source.parent(factory)
+    declared = source.parent(field) if field is not None else None
+    return isinstance(declared, ast.AnnAssign) and ast.unparse(declared.annotation).startswith(
+        ("Mapping[", "Sequence[", "Collection[", "Iterable[")
+    )
 
 
 def is_plain_bool(source: Source, call: ast.Call) -> bool:

@@ -7,7 +7,7 @@ import itertools
 import re
 from collections.abc import Iterator
 
-from tools.mutation.harmless import are_independent
+from tools.mutation.harmless import are_independent, is_read_only
 from tools.mutation.index import Index
 from tools.mutation.mutants import Change
 from tools.mutation.order_rules import blocks, hardware_branch
@@ -137,7 +137,7 @@ def kept_state(source: Source, _: Index) -> Iterator[Change]:
     for node in source.nodes:
         if isinstance(node, ast.keyword) and node.arg == "default_factory":
             text = source.of(node.value)
-            if text in EMPTY:
+            if text in EMPTY and not is_read_only(source, node):
                 yield source.change("kept state", node.value, f"lambda kept={text}(): kept")
         elif isinstance(node, (ast.Assign, ast.AnnAssign)) and isinstance(node.value, ast.expr):
             function = source.function(node)

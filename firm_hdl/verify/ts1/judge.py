@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from firm_hdl.errors import DefinitionError
@@ -74,7 +74,7 @@ class Judgement:
     reading_seconds: float = 0.0
     asking_seconds: float = 0.0
     cpu_seconds: float = 0.0
-    metrics: dict[str, float] = field(default_factory=dict)
+    metrics: Mapping[str, float] = field(default_factory=dict)
 
 
 def judge_case(universe: Universe, oracles: Sequence[Oracle], case: DefinitionCase) -> Judgement:

@@ -67,7 +67,7 @@ class Invariants:
 
     verdict: Verdict
     shape: str = ""
-    metrics: dict[str, float] = field(default_factory=dict)
+    metrics: Mapping[str, float] = field(default_factory=dict)
     planning_seconds: float = 0.0
     checking_seconds: float = 0.0
     cpu_seconds: float = 0.0

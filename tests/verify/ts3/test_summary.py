@@ -1,0 +1,96 @@
+"""What TS3 prints at the end of a run: who passed, what took long, and what a failure says."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+
+from firm_hdl.verify.results.verdict import Failed
+from firm_hdl.verify.simulators.crosscheck import Comparison
+from firm_hdl.verify.ts3 import system
+from firm_hdl.verify.ts3.options import Result
+
+
+def result(name, took, **more):
+    return Result(distro="lyrical", name=name, seconds=took, **more)
+
+
+PYTHON = SimpleNamespace(simulator="python")
+
+
+def test_nothing_is_said_of_nothing(capsys):
+    system._summarize([], PYTHON)
+    assert capsys.readouterr().out == ""
+
+
+def test_times_are_those_of_the_types_and_the_slowest_come_first(capsys):
+    results = [
+        result(f"T{n}", took, packets=10, simulated_cycles=100, cases=1)
+        for n, took in enumerate([0.25, 4, 1, 3, 2, 0.5, 0.75])
+    ]
+    system._summarize(results, PYTHON)
+    assert capsys.readouterr().out.splitlines() == [
+        "7 different types, 70 packets, 700 cycles; seconds per type: median 1.00, most 4.0, "
+        "12 in total",
+        "slowest: T1 4.0 s, T3 3.0 s, T4 2.0 s, T2 1.0 s, T6 0.8 s",
+        "wire bytes: rosbags 7 types",
+    ]
+
+
+def test_who_wrote_bytes_is_counted_by_types(capsys):
+    results = [
+        result("A", 1, cases=2, written_by=("genpy", "fastcdr")),
+        result("B", 1, cases=1, written_by=("genpy",)),
+        result("C", 1, cases=0, written_by=("genpy",)),
+    ]
+    system._summarize(results, PYTHON)
+    said = capsys.readouterr().out.splitlines()[-1]
+    assert said == "wire bytes: rosbags 2 types, genpy 2 types, fastcdr 1 types"
+    system._summarize([result("C", 1)], PYTHON)
+    assert capsys.readouterr().out.splitlines()[-1] == "wire bytes: nobody wrote any"
+
+
+def test_another_simulator_is_summed_up(capsys):
+    def compared(*failures, cycles=5):
+        return Comparison(
+            failures=failures, cycles=cycles, packets=2, transfers=3, statuses=4, seconds=1.5
+        )
+
+    results = [
+        result("A", 1, comparison=compared()),
+        result("B", 1, comparison=compared("no")),
+        result("C", 1, comparison=compared(cycles=0)),
+        result("D", 1),
+    ]
+    system._summarize(results, SimpleNamespace(simulator="ghdl"))
+    assert capsys.readouterr().out.splitlines()[-1] == (
+        "ghdl: 1 of 3 types the same in every cycle; 10 cycles, 6 packets, 9 leaf transfers and "
+        "12 statuses seen there, in 4 s"
+    )
+
+
+def test_notes_that_many_types_share_are_counted_once(capsys):
+    system._repeat({"no genpy": 3, "alone": 1, "": 9, "two": 2})
+    assert capsys.readouterr().out.splitlines() == [
+        "note: 2 more types: no genpy",
+        "note: 1 more types: two",
+    ]
+
+
+@pytest.mark.parametrize(("count", "more"), [(8, []), (9, ["    and 1 more"])])
+def test_eight_failures_are_told_and_how_to_see_them_again(count, more):
+    task = SimpleNamespace(name="a/B", same=("kilted", "lyrical"))
+    failures = tuple(f"failure {n}" for n in range(count))
+    told = system._describe(task, result("a/B", 1, command="firm-hdl verify"), Failed(failures))
+    assert told.splitlines() == [
+        "FAIL a/B (kilted, lyrical)",
+        *(f"    failure {n}" for n in range(8)),
+        *more,
+        "    again: firm-hdl verify",
+    ]
+
+
+def test_long_failures_are_cut():
+    assert system._clip("x" * 600) == "x" * 600
+    assert system._clip("x" * 601) == "x" * 600 + "... (601 characters)"
