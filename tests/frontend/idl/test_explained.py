@@ -1,0 +1,88 @@
+"""What is said of a text that is no IDL, and just which words are marked."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.errors import Diagnostic, Source
+from firm_hdl.frontend.idl.parse import parse_file
+
+RULE = "letters, digits and underscores, a letter first"
+
+
+def said(marked):
+    """Parse a text; return what is said, and the text with marks around the words meant."""
+    text = marked.replace("«", "").replace("»", "")
+    found = parse_file(Source(name="t.idl", text=text))
+    assert isinstance(found, Diagnostic), found
+    start, end = found.span.start, found.span.end
+    return f"{text[:start]}«{text[start:end]}»{text[end:]}", found.message
+
+
+CASES = [
+    ("«#include» x", "'#include' needs a file in quotes or in angles"),
+    ("«#define» X", "'#define' is not supported: ROS 2 knows '#include' alone"),
+    ("«# pragma» X", "'# pragma' is not supported: ROS 2 knows '#include' alone"),
+    ("«/**/»", "an empty comment is not allowed: ROS 2 takes its end for its contents"),
+    ("module m { «/*» }", "this comment does not end"),
+    ('const string S = «"abc»\n;', "this text does not end in its line"),
+    # The L is a name, as far as anybody has come.
+    ('const wstring S = L«"abc»\n;', "this text does not end in its line"),
+    ("module m {\n«\ufeff»", "a byte order mark is not allowed"),
+    ("const long N = «0x»;", "'0x' is not a number"),
+    ("const long N = «1e+»;", "'1e+' is not a number"),
+    ("const char C = «'»ab';", "this is not a character: one of them, or an escape, stands "
+     "between two quotes"),
+    ("const wchar C = L«'»ab';", "this is not a character: one of them, or an escape, stands "
+     "between two quotes"),
+    ("struct «_a» { long b; };", f"'_a' is not a legal name: {RULE}"),
+    ("@annotation «a» { };", "annotations cannot be declared, only used"),
+    ("struct S { struct T «{» long a; }; };",
+     "a type cannot be declared inside another declaration"),
+    ("struct S { enum T «{» A }; };", "a type cannot be declared inside another declaration"),
+    ("struct S «:» T { };", "inheritance of structs is not supported"),
+    ("struct S { «}»;", "a struct must not be empty"),
+    ("enum E { «}»;", "an enum must not be empty"),
+    ("module m { «}»;", "a module must not be empty"),
+    ("enum E { A, «}»;", "a name must follow the comma"),
+    ("struct S { map«<»long, long> a; };", "maps are not supported"),
+    ("«;»", "expected a definition, not ';'"),
+    ("struct S { long a; }; «}»", "expected a definition or the end of the file, not '}'"),
+    ("module m { struct S { long a; }; «;»}",
+     "expected a definition or '}', not ';'"),
+    ("struct S { long «;» };", "expected 'long' or a name, not ';'"),
+    ("struct S { long a «}»;", "expected '[', ',' or ';', not '}'"),
+    ("struct«»", "expected a name, but the file ends here"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("marked", "message"), CASES)
+def test_the_words_that_are_wrong_are_marked_and_called_so(marked, message):
+    assert said(marked) == (marked, message)
+
+
+@pytest.mark.parametrize(
+    ("word", "what"),
+    {
+        "abstract": "interfaces are",
+        "bitmask": "bitmasks are",
+        "bitset": "bitsets are",
+        "component": "components are",
+        "custom": "value types are",
+        "eventtype": "event types are",
+        "exception": "exceptions are",
+        "home": "components are",
+        "import": "'import' is",
+        "interface": "interfaces are",
+        "local": "interfaces are",
+        "native": "native types are",
+        "typeid": "'typeid' is",
+        "typeprefix": "'typeprefix' is",
+        "union": "unions are",
+        "valuetype": "value types are",
+    }.items(),
+)
+def test_what_ros_2_has_not_is_called_by_its_name(word, what):
+    for before in ("", "module m { "):
+        marked = f"{before}«{word}» x"
+        assert said(marked) == (marked, f"{what} not supported")
