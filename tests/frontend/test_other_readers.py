@@ -26,8 +26,8 @@ def test_zeros_in_front_of_a_length_are_kept_as_genmsg_keeps_them(tmp_path, leng
             ours.message("p/A")
         return
     assert ours.message("p/A").fields[0].type.count == 10
-    assert show(ours, "p/A") == text
-    assert md5sum(ours.message("p/A")) == hashlib.md5(text.strip().encode()).hexdigest()
+    said = show(ours, "p/A"), md5sum(ours.message("p/A"))
+    assert said == (text, hashlib.md5(text.strip().encode()).hexdigest())
 
 
 def recorded(path, text, name="p/msg/A"):
