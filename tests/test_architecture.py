@@ -28,7 +28,8 @@ MAY_IMPORT = {
     "vhdl": {"names", "rtlil"},
     # Of messages.
     "model": {"errors"},
-    "frontend": {"errors", "files", "model"},
+    # What no wire can carry is refused where types are loaded.
+    "frontend": {"errors", "files", "model", "wire"},
     "identity": {"errors", "model", "frontend"},
     "wire": {"errors", "model"},
     "metrics": {"errors", "model", "frontend", "identity", "wire"},

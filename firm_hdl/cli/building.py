@@ -79,7 +79,7 @@ def add_plan(command: argparse.ArgumentParser) -> None:
 
 
 def _plan(given: argparse.Namespace) -> None:
-    from firm_hdl.export.build import load_all
+    from firm_hdl.frontend import load_all
     from firm_hdl.plan import to_yaml
 
     for index, message in enumerate(load_all(library_of(given), [given.type])):
@@ -96,7 +96,7 @@ def add_info(command: argparse.ArgumentParser) -> None:
 
 
 def _info(given: argparse.Namespace) -> None:
-    from firm_hdl.export.build import load_all
+    from firm_hdl.frontend import load_all
     from firm_hdl.plan.timing import describe, timing
 
     for message in load_all(library_of(given), given.types):

@@ -12,9 +12,9 @@ from tqdm import tqdm
 
 from firm_hdl.covering.choose import FAMILIES, all_features, choose, cost
 from firm_hdl.errors import DefinitionError
-from firm_hdl.export.build import BuildError, load_all, plan_of
+from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.files import read_file
-from firm_hdl.frontend import Library, open_library
+from firm_hdl.frontend import Library, load_all, open_library
 from firm_hdl.model import Message
 from firm_hdl.plan.shape import shape
 

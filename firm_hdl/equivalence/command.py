@@ -13,8 +13,8 @@ from firm_hdl.arguments import add_jobs, add_types_or_all, positive
 from firm_hdl.equivalence.converters import Attempt, ProofTask, both, run_tasks
 from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT
 from firm_hdl.equivalence.tools import MissingToolError, ToolError, find_tools
-from firm_hdl.export.build import load_all, plan_of
-from firm_hdl.frontend import open_library
+from firm_hdl.export.build import plan_of
+from firm_hdl.frontend import load_all, open_library
 
 __all__ = ["add_prove_arguments", "run_proofs", "run_prove"]
 

@@ -14,7 +14,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from firm_hdl.errors import DefinitionError, Diagnostic, UserError
+from firm_hdl.errors import UserError
 from firm_hdl.export.backend import BackEnd, Converters, Options
 from firm_hdl.export.documents import Documents
 from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
@@ -24,14 +24,14 @@ from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, ports_of
 from firm_hdl.export.tree import tree_of
 from firm_hdl.export.verilog import Verilog
 from firm_hdl.export.vhdl.backend import FOLDER, Vhdl
-from firm_hdl.frontend import Library
+from firm_hdl.frontend import Library, load_all
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan, build_plan
 from firm_hdl.plan.timing import Timing, describe, timing
-from firm_hdl.wire import Wire, lay_out, refusals
+from firm_hdl.wire import Wire, lay_out
 
-__all__ = ["BACK_ENDS", "BuildError", "Built", "build", "check_size", "load_all", "plan_of"]
+__all__ = ["BACK_ENDS", "BuildError", "Built", "build", "check_size", "plan_of"]
 
 BACK_ENDS: tuple[BackEnd, ...] = (Verilog(), Documents(), Vhdl(), SystemVerilog())
 """What writes the files of a folder, in the order of their entries in the manifest."""
@@ -167,32 +167,6 @@ def _converters(
 
 def _digest(packets: Sequence[bytes]) -> str:
     return hashlib.sha256("".join(f"{packet.hex()}\n" for packet in packets).encode()).hexdigest()
-
-
-def load_all(library: Library, types: Iterable[str]) -> list[Message]:
-    """Load messages that are to be put on a wire, each once.
-
-    A service or an action stands for all messages that it has.
-
-    Raises
-    ------
-    DefinitionError
-        With the problems of all of them, fields that no wire has included.
-    """
-    messages: dict[str, Message] = {}
-    problems: dict[str, Diagnostic] = {}
-    for name in types:
-        try:
-            found = library.interface(name).messages
-        except DefinitionError as error:
-            wrong = list(error.diagnostics)
-        else:
-            wrong = [each for message in found for each in refusals(message)]
-            messages.update((message.name, message) for message in found)
-        problems.update((str(problem), problem) for problem in wrong)
-    if problems:
-        raise DefinitionError(problems.values())
-    return list(messages.values())
 
 
 def plan_of(

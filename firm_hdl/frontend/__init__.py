@@ -9,7 +9,7 @@ from __future__ import annotations
 from firm_hdl.frontend.embedded import DEFAULT_DISTRO, DISTROS, Distro
 from firm_hdl.frontend.library import Library, load_message
 from firm_hdl.frontend.recordings import RecordingOrigin
-from firm_hdl.frontend.search import all_names, open_library
+from firm_hdl.frontend.search import all_names, load_all, open_library
 from firm_hdl.frontend.show import show
 
 __all__ = [
@@ -19,6 +19,7 @@ __all__ = [
     "Library",
     "RecordingOrigin",
     "all_names",
+    "load_all",
     "load_message",
     "open_library",
     "show",

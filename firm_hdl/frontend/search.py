@@ -17,9 +17,17 @@ from firm_hdl.frontend.library import Library
 from firm_hdl.frontend.names import KINDS
 from firm_hdl.frontend.recordings import RecordingOrigin
 from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin, Origin
-from firm_hdl.model import Dialect
+from firm_hdl.model import Dialect, Message
+from firm_hdl.wire import refusals
 
-__all__ = ["ENVIRONMENT", "all_names", "environment_origins", "open_library", "workspace_folders"]
+__all__ = [
+    "ENVIRONMENT",
+    "all_names",
+    "environment_origins",
+    "load_all",
+    "open_library",
+    "workspace_folders",
+]
 
 ENVIRONMENT: dict[Dialect, str] = {"ros1": "ROS_PACKAGE_PATH", "ros2": "AMENT_PREFIX_PATH"}
 """The variable that says where packages are."""
@@ -153,3 +161,29 @@ def _ros(dialect: Dialect) -> str:
 
 def _error(message: str) -> DefinitionError:
     return DefinitionError([Diagnostic(message=message)])
+
+
+def load_all(library: Library, types: Iterable[str]) -> list[Message]:
+    """Load messages that are to be put on a wire, each once.
+
+    A service or an action stands for all messages that it has.
+
+    Raises
+    ------
+    DefinitionError
+        With the problems of all of them, fields that no wire has included.
+    """
+    messages: dict[str, Message] = {}
+    problems: dict[str, Diagnostic] = {}
+    for name in types:
+        try:
+            found = library.interface(name).messages
+        except DefinitionError as error:
+            wrong = list(error.diagnostics)
+        else:
+            wrong = [each for message in found for each in refusals(message)]
+            messages.update((message.name, message) for message in found)
+        problems.update((str(problem), problem) for problem in wrong)
+    if problems:
+        raise DefinitionError(problems.values())
+    return list(messages.values())

@@ -6,8 +6,8 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from firm_hdl.export.build import BuildError, load_all, plan_of
-from firm_hdl.frontend import open_library
+from firm_hdl.export.build import BuildError, plan_of
+from firm_hdl.frontend import load_all, open_library
 from firm_hdl.verify.results.verdict import Passed
 from firm_hdl.verify.ts2.golden import Checked, add, check_golden, read_golden, summarise
 
