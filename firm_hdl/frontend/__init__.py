@@ -1,7 +1,7 @@
-"""Definitions in: text to syntax to model.
+"""The front end: from the text of definitions to syntax, and from syntax to the model.
 
-Everything that most parts of firm-hdl need is named here. A `Library` gives the models of messages,
-services and actions, whatever they are written in and wherever their definitions come from.
+The names that most parts of firm-hdl need are exported here. A `Library` gives the models of
+messages, services and actions, in every definition language and from every origin.
 """
 
 from __future__ import annotations

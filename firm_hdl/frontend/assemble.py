@@ -1,4 +1,4 @@
-"""Messages to interfaces: the parts of a service or an action, put together again."""
+"""Assemble the model of a service or an action from its messages."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def assemble(unit: Unit, resolve: Callable[[str], Message | None]) -> Service | 
     Raises
     ------
     DefinitionError
-        With all that is wrong with any of its messages.
+        With the errors of all of its messages.
     """
     messages = _resolve_all(unit, resolve)
     if unit.name.kind == "srv":
@@ -50,7 +50,7 @@ def _resolve_all(unit: Unit, resolve: Callable[[str], Message | None]) -> dict[s
 
 
 def _in_order(unit: Unit, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Sort by place in the file; what is wrong with other files stays behind that."""
+    """Sort by position in the file; diagnostics of other files come last."""
 
     def place(diagnostic: Diagnostic) -> tuple[bool, int]:
         span = diagnostic.span

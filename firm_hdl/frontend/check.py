@@ -1,4 +1,4 @@
-"""What a well-formed text can still get wrong by itself: sizes, values and doubled names.
+"""Checks of one well-formed text: sizes, values and duplicate names.
 
 The limits are those of genmsg for ROS 1 and of rosidl_adapter for ROS 2. Each check yields
 diagnostics; none of them raises, so that all mistakes of a text are found.
@@ -25,21 +25,21 @@ from firm_hdl.model import IDL_PRIMITIVES, PRIMITIVES, Primitive
 
 __all__ = ["check_members", "check_type_name"]
 
-# Every wire format counts in 32 bits.
-_MOST = 2**32 - 1
+# A length has 32 bits in every wire format.
+_MAX_LENGTH = 2**32 - 1
 
 
 def check_type_name(
     source: Source, name: TypeName, messages: Iterable[str]
 ) -> Iterator[Diagnostic]:
-    """Check what a file is called, and its messages. The start of its text is to blame."""
+    """Check the names of a file and of its messages; errors point at the start of the text."""
     start = Span(source=source, start=0, end=0)
-    dialect, some = name.dialect, "Name" if name.dialect == "ros2" else "name"
-    if not is_type_name(f"{name.package}/{some}", dialect):
+    dialect, any_name = name.dialect, "Name" if name.dialect == "ros2" else "name"
+    if not is_type_name(f"{name.package}/{any_name}", dialect):
         rule = NAME_RULES["FIELD_NAME" if dialect == "ros2" else "NAME"]
         message = f"'{name.package}' is not a legal package name: {rule}"
         yield Diagnostic(message=message, span=start)
-    # A recording has the messages that are made of services and actions, each by itself.
+    # In a recording, each message of a service or an action has a definition of its own.
     bases = [next((o.name for o in owners(name)), m) if m == name.name else m for m in messages]
     if not all(is_type_name(base, dialect) for base in bases):
         rule = NAME_RULES["MESSAGE_NAME" if dialect == "ros2" else "NAME"]
@@ -48,7 +48,7 @@ def check_type_name(
 
 
 def check_members(syntax: MessageSyntax) -> Iterator[Diagnostic]:
-    """Check every line of a text for itself, then the names against each other."""
+    """Check every line of a text by itself, then the names against each other."""
     primitives = IDL_PRIMITIVES if syntax.language == "idl" else PRIMITIVES[syntax.dialect]
     checked: ListSyntax | None = None
     for member in syntax.members:
@@ -93,8 +93,8 @@ def _check_size(size: SizeSyntax | None, what: str) -> Iterator[Diagnostic]:
         return
     if size.value < 1:
         yield Diagnostic(message=f"the {what} must be at least 1, not 0", span=size.span)
-    elif size.value > _MOST:
-        yield Diagnostic(message=f"the {what} must be at most {_MOST}", span=size.span)
+    elif size.value > _MAX_LENGTH:
+        yield Diagnostic(message=f"the {what} must be at most {_MAX_LENGTH}", span=size.span)
 
 
 def _check_list(

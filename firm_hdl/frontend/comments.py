@@ -20,7 +20,7 @@ def condense(lines: list[str]) -> tuple[str, str | None]:
     Parameters
     ----------
     lines : list of str
-        Comments without their ``#``.
+        Comment lines without their ``#``.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def _units(comment: str) -> Iterator[tuple[str, str]]:
 
 
 class CommentCollector:
-    """Hands each comment to its owner while the lines of a text go by."""
+    """Assigns each comment to a definition while the lines of a text are read."""
 
     def __init__(self) -> None:
         self.head: list[str] = []
@@ -71,7 +71,7 @@ class CommentCollector:
         comment : str
             All of it, from its first ``#`` to the end of the line.
         is_indented : bool
-            Whether blanks stand before it. Not looked at unless it is alone.
+            Whether blanks precede it. Ignored unless it is alone.
         is_alone : bool
             Whether its line has no definition.
         """
@@ -84,7 +84,7 @@ class CommentCollector:
             self._last.append(text)
 
     def end_head(self) -> None:
-        """Note that a line went by that is no comment in the first column."""
+        """Note a line that is not a comment in the first column."""
         self._is_head = False
 
     def claim(self) -> list[str]:
@@ -93,7 +93,7 @@ class CommentCollector:
         Returns
         -------
         list of str
-            Still grows while indented comment lines follow.
+            The list still grows while indented comment lines follow.
         """
         self._last, self._pending = self._pending, []
         return self._last

@@ -1,9 +1,9 @@
 """The definitions that rosbags ships for every ROS distribution, as ``.msg`` text.
 
 rosbags keeps parsed definitions only. They are written out as text again and read by our own
-parser, so that an embedded type goes the same way as a user's. What rosbags does not keep is lost:
-comments, and the difference between ``builtin_interfaces/Time`` and ``time``. Default values, which
-are few, are kept here.
+parser, so that an embedded type is processed like a user's. rosbags does not keep comments, nor the
+difference between ``builtin_interfaces/Time`` and ``time``; both are lost. The few default values
+are kept here.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Distro:
     Attributes
     ----------
     store : rosbags.typesys.Stores
-        What rosbags calls its types.
+        The rosbags type store with its types.
     has_events : bool
         Whether services have a message for introspection, ``_Event``: since iron.
     wchar_bytes : int
@@ -127,8 +127,10 @@ def embedded_source(distro: str, package: str, name: str) -> Source | None:
 def _default(distro: str, package: str, name: str, field: str) -> str:
     value, since = _DEFAULTS.get((package, name, field), ("", "noetic"))
     distros = list(DISTROS)
-    has_it = DISTROS[distro].dialect == "ros2" and distros.index(distro) >= distros.index(since)
-    return f" {value}" if value and has_it else ""
+    has_default = (
+        DISTROS[distro].dialect == "ros2" and distros.index(distro) >= distros.index(since)
+    )
+    return f" {value}" if value and has_default else ""
 
 
 def _value(value: str | int | float | bool) -> str:

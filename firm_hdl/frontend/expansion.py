@@ -1,9 +1,9 @@
-"""How much a recording may expand to: rosbags decompresses whatever comes, without an end.
+"""Limit how much a recording may expand to: rosbags decompresses without any limit.
 
-A chunk or a file of some kilobytes can stand for gigabytes, in memory or on the disk. What rosbags
-decompresses with is therefore replaced by functions that count what comes out, as long as a
-recording is `bounded`. They are found by their names in rosbags' modules; without a recording they
-do what those do.
+A chunk or a file of some kilobytes can expand to gigabytes, in memory or on the disk. The functions
+with which rosbags decompresses are therefore replaced, by their names in rosbags' modules. The
+replacements count the decompressed bytes while a recording is `bounded`; otherwise they behave like
+the originals.
 """
 
 from __future__ import annotations
@@ -22,26 +22,26 @@ from rosbags.rosbag1 import reader as rosbag1
 from rosbags.rosbag2 import reader as rosbag2
 from rosbags.rosbag2 import storage_mcap
 
-__all__ = ["LEAST", "MOST_AT_ONCE", "RATIO", "Budget", "bounded"]
+__all__ = ["MAX_CHUNK_BYTES", "MAX_RATIO", "MIN_BUDGET_BYTES", "Budget", "bounded"]
 
-LEAST = 1 << 28
-"""So much may come out of any recording, in bytes."""
+MIN_BUDGET_BYTES = 1 << 28
+"""Decompressed bytes that every recording may have."""
 
-RATIO = 100
-"""And so many times its own size. Recordings of real sensors shrink to a third, or to a tenth."""
+MAX_RATIO = 100
+"""Decompressed bytes per byte of a larger recording. Those of real sensors have 3 to 10."""
 
-MOST_AT_ONCE = 1 << 29
-"""And so many from one chunk, which is held in memory. Writers close chunks at some megabytes."""
+MAX_CHUNK_BYTES = 1 << 29
+"""Decompressed bytes of one chunk, which is held in memory. Writers close chunks at megabytes."""
 
-_PIECE = 1 << 20
+_READ_BYTES = 1 << 20
 
 
 class TooLargeError(Exception):
-    """More would come out of a recording than its size lets one expect."""
+    """A recording would decompress to more bytes than its budget."""
 
 
 class Budget:
-    """What may still come out of a recording.
+    """The number of bytes to which a recording may still be decompressed.
 
     Parameters
     ----------
@@ -51,24 +51,24 @@ class Budget:
     Attributes
     ----------
     excess : str
-        What there was too much of; empty as long as there is not.
+        Why the budget was exceeded; empty while it was not.
     """
 
     def __init__(self, compressed: int) -> None:
-        self._most = max(LEAST, RATIO * compressed)
-        self._left = self._most
+        self._limit = max(MIN_BUDGET_BYTES, MAX_RATIO * compressed)
+        self._remaining = self._limit
         self.excess = ""
 
     def take(self, count: int) -> None:
-        """Count bytes that came out."""
-        self._left -= count
-        if self._left < 0:
-            self._refuse(f"more than {self._most} bytes come out of it when it is decompressed")
+        """Count decompressed bytes."""
+        self._remaining -= count
+        if self._remaining < 0:
+            self._refuse(f"more than {self._limit} bytes come out of it when it is decompressed")
 
     def check_block(self, count: int) -> None:
-        """Check how many bytes of one chunk came out so far."""
-        if count > MOST_AT_ONCE:
-            self._refuse(f"it has a chunk of more than {MOST_AT_ONCE} bytes")
+        """Check the number of decompressed bytes of one chunk."""
+        if count > MAX_CHUNK_BYTES:
+            self._refuse(f"it has a chunk of more than {MAX_CHUNK_BYTES} bytes")
 
     def _refuse(self, reason: str) -> None:
         self.excess = reason
@@ -80,9 +80,9 @@ _BUDGET: ContextVar[Budget | None] = ContextVar("budget", default=None)
 
 @contextmanager
 def bounded(path: str) -> Iterator[Budget]:
-    """Bound what rosbags decompresses of a recording.
+    """Limit how much of a recording rosbags decompresses.
 
-    When more would come out, reading fails, and the budget says so.
+    Over the limit, reading fails, and the budget's `excess` says why.
     """
     budget = Budget(_size(path))
     token = _BUDGET.set(budget)
@@ -100,7 +100,7 @@ def _size(path: str) -> int:
 
 
 class _CountedFile:
-    """A file that decompresses, of which what is read is counted."""
+    """A decompressing file whose read bytes are counted."""
 
     def __init__(self, file: IO[bytes], budget: Budget) -> None:
         self._file = file
@@ -118,7 +118,7 @@ class _CountedFile:
         self._file.close()
 
     def read(self, size: int) -> bytes:
-        """Read so many bytes, at most."""
+        """Read at most `size` bytes."""
         data = self._file.read(size)
         self._budget.take(len(data))
         return data
@@ -127,7 +127,7 @@ class _CountedFile:
 def _counted(
     open_: Callable[..., Any], decompress: Callable[[bytes], bytes]
 ) -> Callable[[bytes], bytes]:
-    """Give a function that decompresses like another, and stops where the budget ends."""
+    """Wrap a decompressor so that it stops at the end of the budget."""
 
     def decompress_counted(data: bytes) -> bytes:
         budget = _BUDGET.get()
@@ -135,7 +135,7 @@ def _counted(
             return decompress(data)
         block = bytearray()
         with _CountedFile(open_(BytesIO(data), "rb"), budget) as file:
-            while piece := file.read(_PIECE):
+            while piece := file.read(_READ_BYTES):
                 block += piece
                 budget.check_block(len(block))
         return bytes(block)
@@ -144,7 +144,7 @@ def _counted(
 
 
 class _CountedZstd:
-    """What rosbags uses of a module zstd to read files.
+    """The part of a zstd module that rosbags uses to read files, with counting.
 
     Parameters
     ----------
@@ -158,15 +158,15 @@ class _CountedZstd:
     def open(self, file: IO[bytes], mode: str) -> Any:
         """Open a file."""
         budget = _BUDGET.get()
-        found = self._module.open(file, mode)
-        return found if budget is None else _CountedFile(found, budget)
+        opened = self._module.open(file, mode)
+        return opened if budget is None else _CountedFile(opened, budget)
 
 
-def _count() -> None:
-    """Replace what rosbags decompresses with."""
+def _install() -> None:
+    """Replace the functions with which rosbags decompresses."""
     lz4_ = _counted(lz4.frame.open, lz4.frame.decompress)
     rosbag1.decompressors.update(bz2=_counted(bz2.open, bz2.decompress), lz4=lz4_)
-    # Which module it is depends on the versions of Python and of rosbags.
+    # The name of the module depends on the versions of Python and of rosbags.
     modules = vars(storage_mcap)
     zstd = _CountedZstd(modules["zstd" if "zstd" in modules else "zstandard"])
     storage_mcap.DECOMPRESSORS["lz4"] = lambda data, _: lz4_(data)
@@ -175,4 +175,4 @@ def _count() -> None:
         vars(rosbag2)["zstd"] = zstd
 
 
-_count()
+_install()

@@ -1,7 +1,7 @@
-"""What to say about a line that is no sentence of the language.
+"""The wording of all syntax errors in lines of ``.msg``, ``.srv`` and ``.action`` files.
 
-A parser knows which terminals it expected. This module says it in the user's words, and where the
-mistake is one that people make, names it. All wording of syntax errors is here.
+A parser knows which terminals it expected. This module puts that into the user's words, and names
+common mistakes.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ NAME_RULES = {
     "underscore last",
     "MESSAGE_NAME": "letters and digits, a capital first",
 }
-"""What a name of each kind is made of."""
+"""The rule for each kind of name."""
 
 _ROS1_CONSTANT_RULE = "letters, digits and underscores, no digit first"
 
@@ -103,20 +103,20 @@ def explain(error: UnexpectedInput, line: str, dialect: Dialect) -> tuple[int, i
 
 
 def clip(text: str) -> str:
-    """Make a quotation fit for a message: not too long, and nothing in it that cannot be seen."""
+    """Shorten a quotation for a message, and escape what cannot be printed."""
     shown = text if len(text) <= 60 else text[:57] + "..."
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in shown)
 
 
 def similar_builtin(word: str, dialect: Dialect) -> list[str]:
-    """List the builtin type that somebody who wrote this word may have meant, if there is one."""
+    """List the builtin type that was probably meant by a word, or nothing."""
     if word in _FOREIGN:
         return [_FOREIGN[word]]
     return get_close_matches(word, [*PRIMITIVES[dialect], "string"], n=1, cutoff=0.7)
 
 
 def _place(error: UnexpectedInput, line: str) -> tuple[int, frozenset[str]]:
-    """Find where in the line the parser was stuck, and which terminals would have helped."""
+    """Find where in the line the parser stopped, and which terminals it expected."""
     if isinstance(error, UnexpectedCharacters):
         assert error.pos_in_stream is not None
         return error.pos_in_stream, frozenset(error.allowed or ())

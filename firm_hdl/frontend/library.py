@@ -1,4 +1,4 @@
-"""The front end's face: a set of definitions that can be asked for types."""
+"""`Library`: a set of definitions that gives the models of types."""
 
 from __future__ import annotations
 
@@ -27,12 +27,11 @@ class Library:
     Parameters
     ----------
     distro : str
-        ROS distribution: a key of `DISTROS`. It decides the dialect, and which types are there
-        without any folder.
+        ROS distribution: a key of `DISTROS`. It decides the dialect and the embedded types.
     paths : iterable of str or path
         Folders with ROS packages, searched in this order and before anything else.
     origins : iterable of Origin or None
-        What to search after the folders. By default, the distribution's own types.
+        Origins to search after the folders. By default, the distribution's own types.
 
     Raises
     ------
@@ -54,12 +53,12 @@ class Library:
         self._distro = distro
         others = [EmbeddedOrigin(distro)] if origins is None else origins
         self._sources = Sources([*_folders(paths), *others])
-        facts = DISTROS[distro]
+        distribution = DISTROS[distro]
         self._resolver = Resolver(
             self._sources,
             self.dialect,
-            has_events=facts.has_events,
-            wchar_bytes=facts.wchar_bytes,
+            has_events=distribution.has_events,
+            wchar_bytes=distribution.wchar_bytes,
         )
         self._interfaces: dict[TypeName, Service | Action] = {}
 
@@ -70,7 +69,7 @@ class Library:
 
     @property
     def dialect(self) -> Dialect:
-        """Whose rules the definitions follow."""
+        """Dialect of the definitions."""
         return DISTROS[self._distro].dialect
 
     def names(self) -> list[str]:
@@ -79,9 +78,9 @@ class Library:
         return sorted(map(str, found))
 
     def interfaces(self) -> list[str]:
-        """List the full names of all that has a definition, services and actions too, sorted.
+        """List the full names of all messages, services and actions with a definition, sorted.
 
-        Where ROS 1 gives two of them the same name, the kind is in it: ``package/srv/Name``.
+        Where two have the same name in ROS 1, the second has the kind in it: ``package/srv/Name``.
         """
         names: dict[str, TypeName] = {}
         order = {kind: index for index, kind in enumerate(KINDS)}
@@ -103,8 +102,8 @@ class Library:
         Raises
         ------
         DefinitionError
-            With all that is wrong with the definition and with those that it depends on; without
-            a span, if `name` means no message.
+            With all errors of the definition and of its dependencies; without a span if no message
+            has this name.
         """
         candidates = self._parse(name)
         for candidate in self._by_origin(candidates):
@@ -126,8 +125,8 @@ class Library:
         Parameters
         ----------
         name : str
-            ``package/kind/Name`` or ``package/Name``, the latter for the first of message, service
-            and action that there is; also what `message` takes.
+            ``package/kind/Name``, or ``package/Name`` for the first of message, service and action
+            of that name; also any name that `message` takes.
 
         Raises
         ------
@@ -153,7 +152,7 @@ class Library:
         return self._unit(name).language == "idl"
 
     def definition_hash(self, name: str | Interface) -> str:
-        """Digest a type's text and those of all types that it depends on.
+        """Hash the texts of a type and of all types that it depends on.
 
         Parameters
         ----------
@@ -175,7 +174,7 @@ class Library:
             text = message.text.replace("\r\n", "\n").replace("\r", "\n")
             parts = [message.name, text]
             if "#include" in text:
-                # Constants and typedefs of files that are no type's: what they came to.
+                # An included file may declare no type: hash what its constants and typedefs gave.
                 parts += [f"{item.type} {item.name} {item.default!r}" for item in message.fields]
                 parts += [f"{c.type} {c.name} {c.value!r}" for c in message.constants]
             for part in parts:
@@ -202,7 +201,7 @@ class Library:
         return self._interfaces[name]
 
     def _parse(self, name: str) -> list[TypeName]:
-        """List what a name can mean, the likeliest first."""
+        """List the types that a name can mean, the likeliest first."""
         if not isinstance(name, str):
             raise TypeError(f"Name of a type must be a string, not {name!r}")
         kinds: tuple[Kind, ...] = KINDS
@@ -217,12 +216,14 @@ class Library:
         raise self._error(did_you_mean(message, self._spell(similar)))
 
     def _by_origin(self, names: list[TypeName]) -> list[TypeName]:
-        """Put what is found in an earlier origin first: `TestGoal` may be a message of the
-        distribution, and that of an action in a folder of the user."""
+        """Sort names by the origin that defines them; drop those that no origin defines.
+
+        `TestGoal` may be a message of the distribution, and part of an action in a user's folder.
+        """
         found: dict[TypeName, None] = {}
         asked = {other: name for name in names for other in (name, *owners(name))}
-        for there in self._sources.by_origin(asked):
-            found[asked[there]] = None
+        for defined in self._sources.by_origin(asked):
+            found[asked[defined]] = None
         return list(found)
 
     def _unknown(self, names: list[TypeName]) -> DefinitionError:
@@ -254,7 +255,7 @@ def load_message(
     name : str
         ``package/msg/Name`` or ``package/Name``.
     distro, paths
-        As for `Library`, which is the thing to use for more than one type.
+        As for `Library`. To load more than one type, use a `Library`.
     """
     return Library(distro, paths).message(name)
 

@@ -1,4 +1,4 @@
-"""What interfaces and their messages are called.
+"""The names of interfaces and of their messages.
 
 A service or an action has several messages, and each has a name of its own: that of the interface
 and a suffix. The suffixes are those of genmsg and of ``genaction.py`` (ROS 1), and of
@@ -25,7 +25,7 @@ __all__ = [
 ]
 
 Kind: TypeAlias = Literal["msg", "srv", "action"]
-"""What a definition declares; in ROS 2 also the namespace of its messages."""
+"""The kind of interface that a definition declares; in ROS 2 also its messages' namespace."""
 
 KINDS: tuple[Kind, ...] = ("msg", "srv", "action")
 """All kinds, in the order in which a name without one is looked up."""
@@ -35,7 +35,7 @@ KINDS: tuple[Kind, ...] = ("msg", "srv", "action")
 class TypeName:
     """The name of a message, a service or an action; `str` writes it as the dialect does.
 
-    The kind of a message that is made from a service or an action is that of its origin.
+    A message that is derived from a service or an action has the kind of that interface.
     """
 
     package: str
@@ -59,10 +59,10 @@ PARTS: dict[tuple[Dialect, Kind], tuple[str, ...]] = {
 """Suffixes of the messages that a definition declares itself, in the order of its text."""
 
 EVENT = "_Event"
-"""Suffix of the message that ROS 2 makes of a service from iron on."""
+"""Suffix of the message that ROS 2 derives from a service, from iron on."""
 
 ACTION_SERVICES = ("_SendGoal", "_GetResult")
-"""Suffixes of the services that ROS 2 makes of an action."""
+"""Suffixes of the services that ROS 2 derives from an action."""
 
 ACTION_WRAPPERS: dict[Dialect, tuple[str, ...]] = {
     "ros1": ("ActionGoal", "ActionResult", "ActionFeedback", "Action"),
@@ -72,15 +72,15 @@ ACTION_WRAPPERS: dict[Dialect, tuple[str, ...]] = {
 
 
 def _suffixes(dialect: Dialect, kind: Kind) -> tuple[str, ...]:
-    """List what the names of an interface's messages end in, longer suffixes first."""
+    """List the suffixes of an interface's messages, longer ones first."""
     if kind == "msg":
         return ()
     if kind == "action":
-        return (*_made_of_action(dialect), *PARTS[dialect, kind])
+        return (*_derived_from_action(dialect), *PARTS[dialect, kind])
     return (*PARTS[dialect, kind], *((EVENT,) if dialect == "ros2" else ()))
 
 
-def _made_of_action(dialect: Dialect) -> Iterator[str]:
+def _derived_from_action(dialect: Dialect) -> Iterator[str]:
     if dialect == "ros2":
         for service in ACTION_SERVICES:
             yield from (service + suffix for suffix in _suffixes(dialect, "srv"))

@@ -1,8 +1,8 @@
 """Text to syntax, line by line.
 
-A ``.msg`` text is a list of lines that do not know of each other, so each one is parsed for itself
-and a wrong one never hides the next. The language of a line is in the grammars ``ros1_msg.lark``
-and ``ros2_msg.lark``; here is only what turns a parse tree into syntax.
+The lines of a ``.msg`` text are independent. So each one is parsed by itself, and an error never
+hides the next one. The grammars of a line are ``ros1_msg.lark`` and ``ros2_msg.lark``; this module
+turns their parse trees into syntax.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _LINE_ENDS = {
     "ros2": re.compile("\r\n|[\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029]"),
 }
 
-# Nobody reads on after so many; without a limit, a large file of another kind takes minutes.
+# More help nobody; without a limit, a large file that is no definition takes minutes.
 _MOST_DIAGNOSTICS = 1000
 
 
@@ -52,7 +52,7 @@ def parse_message(source: Source, dialect: Dialect) -> MessageSyntax:
     Raises
     ------
     DefinitionError
-        With one diagnostic for each line that is no sentence of the language.
+        With one diagnostic for each line with a syntax error.
     """
     syntax, diagnostics = read_message(source, dialect)
     if diagnostics:
@@ -67,19 +67,19 @@ def read_message(
     lines: Iterable[tuple[int, str]] | None = None,
     text: str | None = None,
 ) -> tuple[MessageSyntax, list[Diagnostic]]:
-    """Parse a ``.msg`` text, leaving out the lines that are wrong.
+    """Parse a ``.msg`` text, leaving out the lines with errors.
 
     Parameters
     ----------
     lines : iterable of tuple of int and str
-        Those of the lines that `lines_of` gives which belong to the message; by default all.
+        The lines from `lines_of` that belong to the message; by default all.
     text : str or None
         The text of the message, where that is not the whole source.
 
     Returns
     -------
     tuple of MessageSyntax and list of Diagnostic
-        The good lines, and what is wrong with the others, in the order of the text.
+        The syntax of the correct lines, and the errors of the others, in the order of the text.
     """
     parser = _parser(dialect)
     comments = CommentCollector()
@@ -116,14 +116,14 @@ def read_message(
 
 
 def line_trees(text: str, dialect: Dialect) -> Iterator[Tree[Token]]:
-    """Yield the parse trees of all lines that are sentences of the language."""
+    """Yield the parse trees of all lines without a syntax error."""
     for _, line in lines_of(text, dialect):
         with suppress(UnexpectedInput):
             yield _parser(dialect).parse(line, start="line")
 
 
 def is_type_name(name: str, dialect: Dialect) -> bool:
-    """Tell whether ``Name`` or ``package/Name`` is what a message type may be called."""
+    """Tell whether ``Name`` or ``package/Name`` is a legal name of a message type."""
     if name != name.strip():
         return False
     try:
@@ -145,8 +145,8 @@ def lines_of(text: str, dialect: Dialect) -> Iterator[tuple[int, str]]:
     Yields
     ------
     tuple of int and str
-        Where a line starts, and the line without its end. Behind the last line end there is one
-        more line, which may be empty.
+        Offset of a line, and the line without its line end. The text behind the last line end is
+        a line, too; it may be empty.
     """
     if dialect == "ros2":
         text = text.replace("\t", " ")  # So does rosidl_adapter, in texts and comments, too.
@@ -158,7 +158,7 @@ def lines_of(text: str, dialect: Dialect) -> Iterator[tuple[int, str]]:
 
 
 def _collect_comment(line: Tree[Token], comments: CommentCollector) -> Tree[Token] | None:
-    """Hand a line's comment on; return its definition, if there is one."""
+    """Pass a line's comment to the collector; return the line's definition, if any."""
     definition: Tree[Token] | None = None
     for child in line.children:
         if isinstance(child, Tree):
@@ -203,7 +203,7 @@ class _Reader:
         self._dialect = dialect
 
     def draft(self, tree: Tree[Token]) -> _Draft | Diagnostic:
-        """Read a definition. What a grammar cannot say is reported here."""
+        """Read a definition. Errors that a grammar cannot express are returned."""
         children = [child for child in tree.children if child is not None]
         at_name = next(i for i, c in enumerate(children) if _kind(c) in _NAMES)
         name = children[at_name]
@@ -302,7 +302,7 @@ _BRACKETS = frozenset({"EMPTY_LIST", "LIST_OPEN", "LIST_CLOSE", "LAST_CLOSE"})
 
 
 class _TokenError(Exception):
-    """A word that the grammar lets through, and that means nothing."""
+    """A token that the grammar accepts but that has no value."""
 
     def __init__(self, token: Token, message: str) -> None:
         super().__init__(message)
@@ -328,7 +328,7 @@ def _integer(token: Token) -> int:
             return int(token, base)
         except ValueError:
             continue
-    # The grammar lets through nothing but integers, so it is Python's limit on digits.
+    # The grammar accepts integers only, so the number is over Python's limit on digits.
     raise _TokenError(token, f"a number of {len(token)} digits is too long")
 
 
@@ -344,7 +344,7 @@ def _unquoted(text: str) -> str:
 
 def _item(token: Token) -> str:
     """Read an element of a list of texts as rosidl does, which unquotes and strips it twice."""
-    text = str(token)  # A plain one, no token.
+    text = str(token)  # A plain string, not a token.
     if text[0] in "\"'":
         text = _unquoted(text).strip()
     if text and text[0] in "\"'" and text[0] == text[-1]:

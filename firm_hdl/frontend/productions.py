@@ -1,8 +1,8 @@
-"""Which parts of a grammar a definition uses, for choosing definitions that use all of it.
+"""The grammar productions that a definition uses, for choosing definitions that use all of them.
 
-A production is a rule of the grammar with what stood for it in a text, as the parser's tree has it:
-``field: INT_TYPE array NAME``. Several in a row of the same kind count as "one or more", so that
-there are finitely many.
+A production is a rule of the grammar with the kinds of its children in a parse tree, such as
+``field: INT_TYPE array NAME``. Several children of one kind in a row count as "one or more", so
+that the number of productions is finite.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ __all__ = ["productions"]
 
 
 def productions(text: str, dialect: Dialect, *, is_idl: bool = False) -> frozenset[str]:
-    """List the productions of a text; what is no sentence of the language has none.
+    """List the productions of a text; a part with a syntax error has none.
 
     Parameters
     ----------
     text : str
-        Of one message, or of a whole IDL file.
+        Text of one message, or of a whole IDL file.
     dialect : "ros1" or "ros2"
     is_idl : bool
-        Whether it is OMG IDL.
+        Whether the text is OMG IDL.
     """
     trees = idl_tree(text) if is_idl else line_trees(text, dialect)
     return frozenset(found for tree in trees for found in _productions(tree))

@@ -1,8 +1,8 @@
-"""Sections of a recording in IDL that declare several messages, which a file may not.
+"""Split IDL sections of a recording that declare several messages.
 
-ROS has one message per file, and so in each section that it records. Other writers put all types
-of a topic into one. Each struct is given a text of its own, in which the others are blank, so that
-constants, typedefs and the numbers of lines stay.
+ROS has one message per file, and so one in each section that it records. Other writers put all
+types of a topic into one section. Each struct gets a text of its struct, in which the other structs
+are blank. So constants, typedefs and line numbers stay.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from firm_hdl.frontend.names import KINDS, PARTS, Kind
 
 __all__ = ["structs_of"]
 
-_QUIET = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
+_TEXT_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 _MARK = re.compile(r"\bmodule\s+(?P<module>\w+)\s*\{|\bstruct\s+(?P<struct>\w+)\s*\{|[{}]")
 _EMPTY = re.compile(r"\bmodule\s+\w+\s*\{\s*\}\s*;?")
 _SUFFIXES = PARTS["ros2", "srv"] + PARTS["ros2", "action"]
@@ -22,7 +22,7 @@ _SUFFIXES = PARTS["ros2", "srv"] + PARTS["ros2", "action"]
 
 @dataclass(frozen=True, slots=True)
 class _Struct:
-    """A struct, its annotations included: where it stands, and the modules that it is in."""
+    """The position of a struct with its annotations, and the modules around it."""
 
     modules: tuple[str, ...]
     name: str
@@ -33,7 +33,7 @@ class _Struct:
 def structs_of(text: str) -> dict[tuple[str, Kind, str], str]:
     """Cut a section into texts of one message each, by package, folder and name.
 
-    It is empty if there is nothing to cut: one message, a service or an action.
+    The result is empty if there is nothing to cut: one message, a service or an action.
     """
     found = _find(_blank(text))
     if len(found) < 2 or any(each.name.endswith(_SUFFIXES) for each in found):
@@ -43,13 +43,13 @@ def structs_of(text: str) -> dict[tuple[str, Kind, str], str]:
         kind = next((kind for kind in KINDS if each.modules[1:] == (kind,)), None)
         if kind is None:
             return {}
-        texts[each.modules[0], kind, each.name] = _alone(text, each, found)
+        texts[each.modules[0], kind, each.name] = _isolated(text, each, found)
     return texts
 
 
 def _blank(text: str) -> str:
     """Return a text of the same length with blanks for its texts and comments."""
-    return _QUIET.sub(lambda match: _blanks(match[0]), text)
+    return _TEXT_OR_COMMENT.sub(lambda match: _blanks(match[0]), text)
 
 
 def _blanks(text: str) -> str:
@@ -61,23 +61,23 @@ def _find(code: str) -> list[_Struct]:
     scopes: list[tuple[str, str, int]] = []
     for mark in _MARK.finditer(code):
         if mark[0] != "}":
-            # Annotations stand between a struct and what ends in front of it.
+            # Annotations stand between a struct and the end of what precedes it.
             start = max(code.rfind(sign, 0, mark.start()) for sign in ";{}") + 1
             kind = "module" if mark["module"] else "struct" if mark["struct"] else ""
             scopes.append((kind, mark["module"] or mark["struct"] or "", start))
         elif scopes:
             kind, name, start = scopes.pop()
             if kind == "struct":
-                behind = re.compile(r"\s*;?").match(code, mark.end())
-                assert behind is not None
+                terminator = re.compile(r"\s*;?").match(code, mark.end())
+                assert terminator is not None
                 modules = tuple(each for what, each, _ in scopes if what == "module")
-                found.append(_Struct(modules, name, start, behind.end()))
+                found.append(_Struct(modules, name, start, terminator.end()))
     return found
 
 
-def _alone(text: str, own: _Struct, structs: list[_Struct]) -> str:
+def _isolated(text: str, struct: _Struct, structs: list[_Struct]) -> str:
     for other in structs:
-        if other is not own:
+        if other is not struct:
             inside = text[other.start : other.end]
             text = text[: other.start] + _blanks(inside) + text[other.end :]
     code = _blank(text)
@@ -85,17 +85,18 @@ def _alone(text: str, own: _Struct, structs: list[_Struct]) -> str:
         start, end = empty.span()
         text = text[:start] + _blanks(text[start:end]) + text[end:]
         code = _blank(text)
-    return _with_scopes(text, code, own, structs)
+    return _with_scopes(text, code, struct, structs)
 
 
-def _with_scopes(text: str, code: str, own: _Struct, structs: list[_Struct]) -> str:
-    """Write the names of structs beside a struct in full, as ROS has it."""
-    beside = [each.name for each in structs if each.modules == own.modules and each is not own]
-    if not beside:
+def _with_scopes(text: str, code: str, struct: _Struct, structs: list[_Struct]) -> str:
+    """Write the names of structs in the same module in full, as ROS does."""
+    others = (each for each in structs if each is not struct)
+    siblings = [each.name for each in others if each.modules == struct.modules]
+    if not siblings:
         return text
-    name = f"(?:{'|'.join(map(re.escape, beside))})"
+    name = f"(?:{'|'.join(map(re.escape, siblings))})"
     places = re.compile(rf"(?<![\w:]){name}(?=\s+\w+\s*[;,\[])|(?<=<){name}(?=\s*[>,])")
     for match in reversed([*places.finditer(code)]):
-        full = "::".join([*own.modules, match[0]])
+        full = "::".join([*struct.modules, match[0]])
         text = text[: match.start()] + full + text[match.end() :]
     return text

@@ -1,9 +1,9 @@
-"""Definitions that a recording carries, for whoever has the data but not the packages.
+"""Definitions in recordings, for users who have the data but not the packages.
 
-A ``.bag`` of ROS 1 has the definition of every topic's type, with those of all types in it behind
-it. So have an ``.mcap`` of ROS 2, and a ``.db3`` from iron on; ros2/rosbag2's
-``docs/message_definition_encoding.md`` says how. rosbags reads the files; the texts then go the
-same way as any other.
+A ``.bag`` of ROS 1 has the definition of every topic's type, followed by those of all types in it.
+An ``.mcap`` of ROS 2 has them, too, and so has a ``.db3`` from iron on. Their format is described
+in ros2/rosbag2, ``docs/message_definition_encoding.md``. rosbags reads the files; the texts are
+then processed like any other.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ __all__ = ["Reader", "RecordingOrigin", "use_recording"]
 Reader: TypeAlias = "Reader1 | Reader2"
 """rosbags' reader of a recording."""
 
-# rosbags reads all of it.
-_MOST_METADATA = 1 << 20
+# rosbags reads the whole file.
+_MAX_METADATA_BYTES = 1 << 20
 _MAGIC, _MAGIC_BYTES = b"#ROSBAG V", 64
 
 _Name = tuple[str, Kind, str]
@@ -44,9 +44,9 @@ _T = TypeVar("_T")
 
 _KINDS: dict[str, Kind] = {"msg": "msg", "srv": "srv", "action": "action"}
 
-# What stands between the definitions of a topic: a line of ``=``, and what comes next.
+# The separator between the definitions of a topic: a line of ``=``, and the next type's name.
 _NEXT = re.compile(r"^={3,}[ \t]*\r?\n(MSG|SRV|IDL):[ \t]*(\S+)[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
-# Of MCAP's registry of schemas.
+# Schema encodings of MCAP's registry that are not read here.
 _OTHER_LANGUAGES = "omgidl", "protobuf", "flatbuffer", "jsonschema"
 _INDENTED = re.compile(r"^[ \t]+(?=[^\s#])", re.MULTILINE)
 _FULL_NAME = re.compile(r"^([A-Za-z]\w*)/msg/(?=[A-Z])", re.MULTILINE)
@@ -84,10 +84,10 @@ class RecordingOrigin:
         self._missing: set[_Name] = set()
         # Messages without fields have definitions without text.
         self._empty: set[_Name] = set()
-        # Types of topics that have no name of ROS's form.
-        self._odd: set[str] = set()
-        # In OMG IDL as DDS tools write it: all types in one text, without headings.
-        self._foreign: set[_Name] = set()
+        # Types of topics whose names do not have ROS's form.
+        self._not_ros: set[str] = set()
+        # Types in OMG IDL as DDS tools write it: all types in one text, without headings.
+        self._of_dds: set[_Name] = set()
         for connection in self._connections():
             self._add(connection)
         for name in sorted(self._empty - self._definitions.keys()):
@@ -97,17 +97,17 @@ class RecordingOrigin:
             raise _refusal(self._why_empty())
 
     def names(self) -> Iterable[_Name]:
-        """List all that the recording defines."""
+        """List the types that the recording defines."""
         return self._definitions
 
     def find(self, package: str, kind: Kind, name: str) -> Definition | None:
-        """Give a definition. A topic's type that has none is a `DefinitionError`."""
+        """Give a definition; raise `DefinitionError` for a topic's type without one."""
         if (package, kind, name) in self._missing:
             raise _refusal(
                 f"'{self.path}' has a topic of type '{package}/{kind}/{name}', but not its "
                 "definition"
             )
-        if (package, kind, name) in self._foreign:
+        if (package, kind, name) in self._of_dds:
             raise _refusal(self._in_omgidl(f"{package}/{kind}/{name}"))
         return self._definitions.get((package, kind, name))
 
@@ -135,27 +135,28 @@ class RecordingOrigin:
         # In omgidl, names have scopes of IDL.
         name = _parse(connection.msgtype.replace("::", "/") if is_idl else connection.msgtype)
         if name is None:
-            self._odd.add(connection.msgtype)
+            self._not_ros.add(connection.msgtype)
         elif language == MessageDefinitionFormat.NONE or (is_idl and not text):
             self._missing.add(name)
         elif not text and self.dialect == "ros2":
             self._empty.add(name)
         elif is_idl and _is_of_dds(connection.msgtype, text):
-            self._foreign.add(name)
+            self._of_dds.add(name)
         else:
             for part, kind, body in _split(name, text, is_idl):
                 self._define(part, kind, body)
 
     def _define(self, name: _Name, language: Language, text: str) -> None:
-        """Note a definition, unless there is one of that name."""
+        """Keep a definition, unless one of that name was found before."""
         source = Source(name=f"<{self.path}>/{'/'.join(name)}.{language}", text=text)
         self._definitions.setdefault(name, Definition(source=source, language=language))
 
     def _why_empty(self) -> str:
-        if self._foreign:
-            return self._in_omgidl("/".join(min(self._foreign)))
-        if self._odd and not self._missing:
-            return f"'{self.path}' has a topic of type {min(self._odd)!r}, which is no name in ROS"
+        if self._of_dds:
+            return self._in_omgidl("/".join(min(self._of_dds)))
+        if self._not_ros and not self._missing:
+            name = min(self._not_ros)
+            return f"'{self.path}' has a topic of type {name!r}, which is no name in ROS"
         if not self._missing:
             return f"'{self.path}' has no topics, and so no definitions"
         return (
@@ -171,7 +172,7 @@ def use_recording(path: str, use: Callable[[Reader], _T]) -> _T:
     Parameters
     ----------
     use : callable
-        Gets rosbags' reader. It is to do no more than to read: whatever fails in it is taken for
+        Called with rosbags' reader. It must only read: any other exception in it is reported as
         damage of the file.
 
     Raises
@@ -199,12 +200,12 @@ def _use(path: str, use: Callable[[Reader], _T], budget: Budget) -> _T:
         with reader(Path(path)) as recording:
             return use(recording)
     except OSError as error:
-        # A damaged file asks for places that no file has.
+        # A damaged file has offsets that no file can have.
         reason = "it is damaged" if error.errno == errno.EINVAL else error.strerror or str(error)
     except (ReaderError1, ReaderError2) as error:
-        # Of what it did not look for, rosbags passes on Python's own words.
-        odd = isinstance(error.__context__, TypeError | AttributeError | KeyError | ValueError)
-        reason = "it is damaged" if odd else str(error)
+        # Where rosbags does not check the data, its message is that of Python's exception.
+        unchecked = TypeError | AttributeError | KeyError | ValueError
+        reason = "it is damaged" if isinstance(error.__context__, unchecked) else str(error)
     except KeyError as error:
         # Such as the language of the definitions.
         reason = f"rosbags does not know {error}"
@@ -213,27 +214,27 @@ def _use(path: str, use: Callable[[Reader], _T], budget: Budget) -> _T:
     except MemoryError:
         reason = "it asks for more memory than there is"
     except Exception:
-        # A damaged file makes a reader fail in ways that nobody has listed.
+        # A damaged file can make a reader fail in any way.
         reason = "it is damaged"
     reason = budget.excess or reason
     raise _refusal(f"'{path}' cannot be read as a recording: {reason}")
 
 
 def _check_files(path: str) -> None:
-    """Check that nothing has to be waited for, before rosbags opens it."""
+    """Check, before rosbags opens them, that no file blocks its reader, such as a pipe."""
     if not os.path.isdir(path):
         check_file(path)
         return
     with os.scandir(path) as entries:
         for entry in entries:
             if entry.name == "metadata.yaml":
-                check_file(entry.path, _MOST_METADATA)
+                check_file(entry.path, _MAX_METADATA_BYTES)
             elif not entry.is_dir():
                 check_file(entry.path)
 
 
 def _is_bag(path: str) -> bool:
-    """Whether a file starts like one of ROS 1; rosbags reads a line, which may never end."""
+    """Tell whether a file starts like a bag of ROS 1; rosbags reads a line, which may not end."""
     with open(path, "rb") as file:
         start = file.read(_MAGIC_BYTES)
     return start.startswith(_MAGIC) and b"\n" in start
@@ -258,12 +259,12 @@ def _parse(name: str) -> _Name | None:
 
 
 def _is_of_dds(name: str, text: str) -> bool:
-    """Whether a definition in IDL is one as DDS tools write it, without headings."""
+    """Tell whether DDS tools wrote a definition in IDL: without headings."""
     return "::" in name or (not text.startswith("===") and len(_STRUCT.findall(text)) > 1)
 
 
 def _split(name: _Name, text: str, is_idl: bool) -> Iterator[tuple[_Name, Language, str]]:
-    """Cut a topic's definition into those of the types in it."""
+    """Cut a topic's definition into the definitions of the types in it."""
     marks = list(_NEXT.finditer(text))
     starts = [0, *(mark.end() for mark in marks)]
     ends = [*(mark.start() for mark in marks), len(text)]
@@ -278,20 +279,20 @@ def _split(name: _Name, text: str, is_idl: bool) -> Iterator[tuple[_Name, Langua
         if body and not body.endswith("\n"):
             body += "\n"
         if is_idl:
-            for each, alone in ({part: body} | _messages(part, body)).items():
-                yield each, "idl", alone
+            for each, isolated in ({part: body} | _messages(part, body)).items():
+                yield each, "idl", isolated
         else:
-            yield part, _language(part, body), _usual(body)
+            yield part, _language(part, body), _normalized(body)
 
 
 def _messages(name: _Name, text: str) -> dict[_Name, str]:
-    """Give the texts of all messages of a section in IDL, if that of its heading is one of many."""
+    """Give the texts of all messages of an IDL section, if its heading names one of several."""
     found = structs_of(text)
     return found if name in found else {}
 
 
-def _usual(text: str) -> str:
-    """Write a definition as its file has it; writers indent it, or spell types' names in full."""
+def _normalized(text: str) -> str:
+    """Write a definition as in its file; some writers indent it or write types' names in full."""
     return _FULL_NAME.sub(r"\1/", _INDENTED.sub("", text))
 
 

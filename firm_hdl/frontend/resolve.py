@@ -1,9 +1,8 @@
-"""Syntax to model: names become types, and every wrong definition is found.
+"""Resolve syntax to the model: names become types, and all errors are found.
 
-A message is resolved once, after the messages that it names. What is wrong with a text is kept with
-that text, so that a mistake in a dependency is reported once, where it stands. Dependencies are
-walked with a stack of our own: their depth is the user's business, not that of Python's recursion
-limit.
+A message is resolved once, after the messages that it names. Errors are kept with their text, so
+that an error in a dependency is reported once, at its own place. Dependencies are walked with an
+explicit stack, because they may nest deeper than Python's recursion limit.
 """
 
 from __future__ import annotations
@@ -54,13 +53,13 @@ def _time(name: str, element: str) -> Message:
     return Message(name=name, dialect="ros1", fields=fields)
 
 
-# genmsg calls these builtin, and says what they are made of: time is unsigned, duration signed.
+# genmsg calls these builtin, and defines their fields: time is unsigned, duration signed.
 _TIMES = {"time": _time("time", "uint32"), "duration": _time("duration", "int32")}
 
 
 @dataclass(slots=True)
 class _Entry:
-    """What is known of a message: its text, what is wrong with it, and what it needs."""
+    """State of one message: its syntax, its errors and its dependencies."""
 
     name: TypeName
     syntax: MessageSyntax
@@ -98,12 +97,12 @@ class Resolver:
         Returns
         -------
         Message or None
-            `None` if there is no message of that name.
+            `None` if no message has that name.
 
         Raises
         ------
         DefinitionError
-            With all that is wrong in its text, then in those of its dependencies.
+            With all errors in its text, then those in its dependencies.
         """
         entry = self._enter(name)
         if entry is None:
@@ -120,12 +119,12 @@ class Resolver:
         Returns
         -------
         Unit or None
-            `None` if there is no file of that name.
+            `None` if no file has that name.
 
         Raises
         ------
         DefinitionError
-            If there is, but it cannot be read. What is wrong with its text is in the unit.
+            If the file exists but cannot be read. Errors in its text are in the unit.
         """
         if name not in self._units:
             definition = self._sources.find(name.package, name.kind, name.name)
@@ -137,7 +136,7 @@ class Resolver:
         return self._units[name]
 
     def unit_of(self, name: TypeName) -> Unit | None:
-        """Read the file that a message is made from; as `unit`."""
+        """Read the file that declares a message or that it is derived from; as `unit`."""
         for owner in self._sources.by_origin([name, *owners(name)]):
             unit = self.unit(owner)
             if unit is not None and (name.name in unit.messages or unit.diagnostics):
@@ -172,13 +171,13 @@ class Resolver:
                     parent.failed_needs.append(name)
 
     def _unknown(self, entry: _Entry, name: TypeName, span: Span) -> Diagnostic:
-        """Word the message for a type that a text names and that is nowhere."""
+        """Make the diagnostic for the name of a type that is not defined."""
         message = unknown_type(self._sources, name.package, name.name)
-        made_from = self._sources.by_origin(owners(replace(name, kind="action")))
-        if made_from and self._dialect == "ros1":
-            action = f"the action '{made_from[0].name}'"
+        actions = self._sources.by_origin(owners(replace(name, kind="action")))
+        if actions and self._dialect == "ros1":
+            action = f"the action '{actions[0].name}'"
             message += f"; it will be, when the package is built and a file is made from {action}"
-        # Looking for similar names is slow; whoever has so many mistakes made them all in one way.
+        # Searching for similar names is slow, and so many errors have one common cause.
         if len(entry.diagnostics) < _MOST_SUGGESTIONS:
             builtins: list[str] = []
             if name.package == entry.name.package:
@@ -204,7 +203,7 @@ class Resolver:
             return None
         syntax = unit.messages.get(name.name)
         if syntax is None:
-            # A part that the file lacks, because it is wrong.
+            # The file lacks this part because of an error.
             return self._failed(name, unit.diagnostics)
         needs: dict[TypeName, Span] = {}
         for member in syntax.members:
@@ -296,7 +295,7 @@ class Resolver:
         return _TIMES.get(syntax.name) or primitives[syntax.name]
 
     def _collect(self, entry: _Entry) -> list[Diagnostic]:
-        """Gather what is wrong with a type and with those that it needs, each text once."""
+        """Collect the errors of a type and of its dependencies, each text once."""
         found: list[Diagnostic] = []
         seen = {entry.name}
         pending = [entry]
@@ -308,7 +307,7 @@ class Resolver:
                 if name not in seen and needed is not None:
                     seen.add(name)
                     pending.append(needed)
-        # Parts of one file have all that is wrong with it in common.
+        # All messages of one file share its errors.
         return list(dict.fromkeys(found))
 
 

@@ -1,8 +1,8 @@
-"""Where a command searches for definitions: what it is told, and what the environment says.
+"""Where a command searches for definitions: in the places of its options and the environment.
 
-ROS's tools find packages by variables that a ROS setup file sets, and the command takes them, too,
-so that it knows the packages of the workspace that is active. In both variables the first folder
-that has a package wins, as for ROS itself; here, type by type.
+ROS's tools find packages by variables that a ROS setup file sets. The command reads them, too, so
+that it finds the packages of the active workspace. In both variables the first folder that has a
+package wins, as in ROS; here, this is decided type by type.
 """
 
 from __future__ import annotations
@@ -46,14 +46,14 @@ def open_library(
     Parameters
     ----------
     distro : str or None
-        `None`: what the recordings say, else the newest distribution of their kind of ROS.
+        `None`: the distribution that the recordings name, else the newest one of their dialect.
     paths : iterable of str or path
         Folders with ROS packages. They come first, then those of the environment, then the
         distribution's own types.
     bags : iterable of str or path
         Recordings. If there are any, definitions come from nowhere else but `depends`.
     depends : iterable of str or path
-        Folders with packages that others need, searched behind `paths` or the recordings.
+        Folders with packages that others depend on, searched after `paths` or the recordings.
     environment : mapping or None
         Variables to read (by default those of the process).
 
@@ -81,7 +81,7 @@ def all_names(
     paths: Iterable[str | os.PathLike[str]],
     bags: Iterable[str | os.PathLike[str]],
 ) -> list[str]:
-    """List what is meant by all types: those of the folders or recordings, or else all there are.
+    """List all types: those of the folders or recordings, or else those of all origins.
 
     Parameters and errors are those of `open_library`.
     """
@@ -92,7 +92,7 @@ def all_names(
 
 
 def environment_origins(dialect: Dialect, environment: Mapping[str, str]) -> Iterator[Origin]:
-    """Give the folders of packages that the environment names; what is no folder is left out."""
+    """Give the package folders that the environment names; other entries are skipped."""
     return map(FolderOrigin, _folders(dialect, environment))
 
 
@@ -117,7 +117,7 @@ def workspace_folders(
 def _folders(dialect: Dialect, environment: Mapping[str, str]) -> Iterator[str]:
     for place in environment.get(ENVIRONMENT[dialect], "").split(os.pathsep):
         if not os.path.isdir(place):
-            continue  # So do ROS's tools. An empty entry is no folder, either.
+            continue  # ROS's tools skip it, too. An empty entry is not a folder, either.
         if dialect == "ros1":
             yield place
         else:

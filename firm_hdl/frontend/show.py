@@ -2,9 +2,9 @@
 
 For ROS 1 that is ``rosmsg show`` and ``rossrv show``: what the definition means, constants first.
 For ROS 2 it is ``ros2 interface show``: the text as it stands, with the definitions of nested types
-under each field. Comments of nested types are left out, all of each: released ros2cli versions
-leave stray ``#`` behind, which they call a bug (ros2cli issue 769). A definition in IDL is shown
-as the ``.msg`` text that means the same.
+under each field. Comments of nested types are left out completely; released versions of ros2cli
+leave a stray ``#``, which is a known bug (ros2cli issue 769). A definition in IDL is shown as the
+``.msg`` text that means the same.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from firm_hdl.model import (
 __all__ = ["MOST_CHARACTERS", "show"]
 
 MOST_CHARACTERS = 1 << 26
-"""Of a text that is shown. Types that use each other many times have texts beyond all bounds."""
+"""Limit on a shown text. Its length can grow exponentially with the number of types."""
 
 _SEPARATOR = "---"
 
@@ -72,8 +72,8 @@ _Entries = Iterator[tuple[str, "Message | None"]]
 
 
 def _check_characters(printer: _Ros1 | _Ros2, interface: Interface) -> None:
-    """Refuse a text that would be too long, before more than each type by itself is written."""
-    # Lines of each type, and their characters, when it stands at the margin.
+    """Refuse a text that would be too long, without writing the nested types out."""
+    # Lines and characters of each type when it is not indented.
     lines: dict[str, int] = {}
     characters: dict[str, int] = {}
 
@@ -162,11 +162,11 @@ class _Ros2:
 
 
 def _lines(text: str, fields: Iterable[Field]) -> _Entries:
-    """Yield the lines of a ROS 2 text, each with the message that its field is of."""
+    """Yield the lines of a ROS 2 text, each with the message type of its field."""
     remaining = iter(fields)
     lines = [text[start : start + len(line)] for start, line in lines_of(text, "ros2")]
     if not lines[-1]:
-        lines.pop()  # What follows the last line's end is no line.
+        lines.pop()  # The empty text behind the last line end is not a line.
     for line in lines:
         type_, _, rest = line.replace("\t", " ").partition("#")[0].rstrip().partition(" ")
         is_field = type_ and rest and "=" not in rest

@@ -1,8 +1,8 @@
-"""Where definitions come from: one origin after the other, the first that has a type wins.
+"""The origins of definitions, searched in order: the first one that has a type wins.
 
-An origin is anything that can list names and find a text: folders with ROS packages, the types of a
-distribution, a recording. Each type is looked up for itself: a folder that has a package with some
-of its types adds to the embedded package of that name and overrides type by type.
+An origin can list names and find a text: a folder with ROS packages, the types of a distribution, a
+recording. Each type is looked up by itself: a package in a folder adds types to the embedded
+package of that name, and overrides types of the same name.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from firm_hdl.frontend.names import KINDS, Kind, TypeName
 __all__ = ["Definition", "EmbeddedOrigin", "FolderOrigin", "Language", "Origin", "Sources"]
 
 Language: TypeAlias = Literal["msg", "srv", "action", "idl"]
-"""What a text is written in."""
+"""The language of a definition's text."""
 
-# The longest definition in any of a thousand packages has a tenth of that.
-_MOST_BYTES = 1 << 22
+# Ten times the longest definition of a thousand packages.
+_MAX_BYTES = 1 << 22
 
-# How colcon and catkin are told to leave a folder alone.
+# Files that make colcon and catkin skip a folder.
 _IGNORE_MARKERS = frozenset({"AMENT_IGNORE", "CATKIN_IGNORE", "COLCON_IGNORE"})
 
 
@@ -41,7 +41,7 @@ class Definition:
 
 
 class Origin(Protocol):
-    """A place that definitions come from."""
+    """A place from which definitions are read."""
 
     def names(self) -> Iterable[tuple[str, Kind, str]]:
         """List package, kind and name of everything that is defined here."""
@@ -82,9 +82,9 @@ class EmbeddedOrigin:
 class FolderOrigin:
     """A folder that is a package, or contains packages at any depth.
 
-    It is scanned once, for names only; a file is read when its type is asked for. A package has its
-    files in ``msg/``, ``srv/`` and ``action/``, in source or in installed layout. Where a type is
-    there in ROS's own form and in IDL, which is what an installation has, the former is taken.
+    The folder is scanned once, for names only; a file is read when its type is needed. A package
+    has its files in ``msg/``, ``srv/`` and ``action/``, in source or in installed layout. An
+    installation has each type in ROS's own form and in IDL; the former is read.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ class FolderOrigin:
                     self._files.setdefault(key, os.path.join(folder, kind, file))
 
     def names(self) -> Iterable[tuple[str, Kind, str]]:
-        """List what the files are called."""
+        """List the types of all files."""
         return self._files
 
     def find(self, package: str, kind: Kind, name: str) -> Definition | None:
@@ -136,7 +136,7 @@ class FolderOrigin:
 
 
 class Sources:
-    """All definitions that a name can mean.
+    """The definitions of several origins.
 
     Parameters
     ----------
@@ -157,12 +157,12 @@ class Sources:
         return frozenset().union(*self._names)
 
     def by_origin(self, names: Iterable[TypeName]) -> list[TypeName]:
-        """Sort names by where the first definition of each is; leave out those without one."""
+        """Sort names by the first origin that defines them; leave out those without one."""
         found: dict[TypeName, None] = {}
         candidates = list(names)
-        for there in self._names:
+        for names_of_origin in self._names:
             for name in candidates:
-                if (name.package, name.kind, name.name) in there:
+                if (name.package, name.kind, name.name) in names_of_origin:
                     found[name] = None
         return list(found)
 
@@ -179,7 +179,7 @@ class Sources:
     def packages_of(self) -> dict[tuple[Kind, str], list[str]]:
         """Packages that have a definition of a kind and name, those of the last origin first.
 
-        The last one is the distribution, whose types are the likeliest to be meant.
+        The last origin is the distribution, whose types are the likeliest to be meant.
         """
         found: dict[tuple[Kind, str], dict[str, None]] = {}
         for names in reversed(self._names):
@@ -193,12 +193,12 @@ class Sources:
         Returns
         -------
         Definition or None
-            `None` if there is none of that name.
+            `None` if no origin has one of that name.
 
         Raises
         ------
         DefinitionError
-            If there is, but it cannot be read.
+            If the definition exists but cannot be read.
         """
         for origin in self._origins:
             found = origin.find(package, kind, name)
@@ -212,9 +212,9 @@ class Sources:
         Returns
         -------
         Source or None
-            `None` if there is no such file. ROS makes an IDL file of every definition that is
-            written otherwise; what others need of that one is its types, which are found by name,
-            so that its text is given as empty.
+            `None` if the file does not exist. ROS generates an IDL file from every definition in
+            another language. The types of that file are found by name, so its text is returned as
+            empty.
         """
         for origin in self._origins:
             if isinstance(origin, FolderOrigin):
@@ -233,7 +233,7 @@ class Sources:
 def _packages(root: str) -> Iterator[tuple[str, str, str]]:
     """Yield name and folder of every package at or below a folder, in order of their paths.
 
-    The third is why the package cannot be used; empty for nearly all.
+    The third item is the reason why the package cannot be used; empty for nearly all.
     """
     seen: set[tuple[int, int]] = set()
     pending = [root]
@@ -243,7 +243,7 @@ def _packages(root: str) -> Iterator[tuple[str, str, str]]:
             status = os.stat(folder)
             entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
         except OSError:
-            continue  # A folder that this user may not read has nothing to offer.
+            continue  # This user may not read the folder.
         names = {entry.name for entry in entries}
         # A link may lead back to a folder above it.
         if (status.st_dev, status.st_ino) in seen or names & _IGNORE_MARKERS:
@@ -276,14 +276,14 @@ def _definition_files(package: str, kind: Kind) -> list[str]:
 
 
 def _package_name(folder: str, is_named: bool) -> tuple[str, str]:
-    """Read a package's name; also why it cannot be told, if that is so."""
+    """Read a package's name; also return the reason if it cannot be read."""
     name, wrong = None, ""
     if is_named:
         path = os.path.join(folder, "package.xml")
         try:
-            name = ElementTree.fromstring(read_file(path, _MOST_BYTES)).findtext("name")
+            name = ElementTree.fromstring(read_file(path, _MAX_BYTES)).findtext("name")
         except ElementTree.ParseError:
-            pass  # The folder is called like the package, as nearly always.
+            pass  # The folder nearly always has the name of the package.
         except OSError as error:
             wrong = f"'{path}' cannot be read: {error.strerror}"
         except (LookupError, ValueError):
@@ -293,7 +293,7 @@ def _package_name(folder: str, is_named: bool) -> tuple[str, str]:
 
 def _read(path: str) -> Source:
     try:
-        data = read_file(path, _MOST_BYTES)
+        data = read_file(path, _MAX_BYTES)
     except OSError as error:
         message = f"'{path}' cannot be read: {error.strerror}"
         raise DefinitionError([Diagnostic(message=message)]) from None

@@ -1,4 +1,4 @@
-"""What to say about a name that means nothing, and what may have been meant."""
+"""Messages about names that are not defined, and suggestions of what was meant."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from firm_hdl.frontend.sources import Sources
 
 __all__ = ["did_you_mean", "similar_types", "unknown_type"]
 
-# Packages with messages, services or actions in what ROS calls desktop or perception, and not in
-# rosbags, for at least one distribution; see docs/limitations.md.
+# Packages with interfaces that, for at least one distribution, are in ROS's variants desktop or
+# perception but not in rosbags; see docs/limitations.md.
 _NOT_EMBEDDED = frozenset(
     "action_tutorials_interfaces actionlib_msgs actionlib_tutorials bond composition_interfaces "
     "control_msgs controller_manager_msgs dynamic_reconfigure example_interfaces gazebo_msgs "
@@ -23,7 +23,7 @@ _NOT_EMBEDDED = frozenset(
 
 
 def unknown_type(sources: Sources, package: str, name: str) -> str:
-    """Word the message for a type that is not defined."""
+    """Give the message for a type that is not defined."""
     if package in sources.types:
         return f"type '{clip(name)}' is not defined in package '{clip(package)}'"
     message = f"package '{clip(package)}' is not found"
@@ -40,8 +40,8 @@ def similar_types(
 ) -> list[tuple[str, Kind, str]]:
     """List package, kind and name of the types that may have been meant, the likeliest first.
 
-    The same name in a package that looks alike, then in any other; a name that looks alike in the
-    package, if it exists.
+    The order is: the same name in a package with a similar name, then in any other package; then
+    a similar name in the package, if it exists.
     """
     found: list[tuple[str, Kind, str]] = []
     for kind in kinds:

@@ -1,8 +1,8 @@
-"""The syntax trees of definitions: what stands in a text, where, and nothing that it means.
+"""The syntax trees of definitions: the content of a text with its positions, without its meaning.
 
-One class for each thing that a text can say. Names are not resolved, sizes and values are not
-checked against their types; that is the business of :mod:`firm_hdl.frontend.resolve`. Every node
-knows its span, so that whoever finds a mistake can point at it.
+Each construct of the language has a class. Names are not resolved, and sizes and values are not
+checked against their types; :mod:`firm_hdl.frontend.resolve` does that. Every node has its span, so
+that an error can point at it.
 """
 
 from __future__ import annotations
@@ -53,10 +53,10 @@ class TypeSyntax:
     name : str
         A builtin type's name, or that of a message type.
     is_builtin : bool
-        Whether `name` is one of the dialect's own words.
+        Whether `name` is a builtin type of the dialect.
     kind : "msg", "srv", "action" or None
-        The namespace of a message type, where the text says it (in IDL ``pkg::action::X_Goal``).
-        `None` means that of messages, as everywhere in ``.msg``, ``.srv`` and ``.action`` files.
+        The namespace of a message type, if the text has it (in IDL ``pkg::action::X_Goal``).
+        `None` means "msg", as everywhere in ``.msg``, ``.srv`` and ``.action`` files.
     bound : SizeSyntax or None
         What follows ``string<=``.
     array : "one", "array" or "sequence"
@@ -124,7 +124,7 @@ class MessageSyntax:
     Attributes
     ----------
     source : Source
-        The whole file, which all spans speak of.
+        The whole file, to which all spans refer.
     members : tuple of FieldSyntax or ConstantSyntax
         In the order of the text.
     comment : str
@@ -132,7 +132,7 @@ class MessageSyntax:
     text : str or None
         The text of this message alone; `None` means all of the source.
     language : "msg" or "idl"
-        Whose words the names of builtin types are: `char` is another type in IDL.
+        Language of the names of builtin types: `char` is another type in IDL.
     """
 
     source: Source

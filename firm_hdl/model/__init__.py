@@ -1,9 +1,9 @@
 """The message model: what a ROS interface definition means, with every name resolved.
 
-A model is a tree of frozen values, equal when the definitions mean the same. It knows nothing of
-bytes on a wire beyond the size of each primitive; that is the business of :mod:`firm_hdl.wire`.
-Analyses are cached attributes, computed when first read (reference attribute grammars are the model
-of that: each attribute is an equation over the node and its children).
+A model is a tree of frozen values, equal when the definitions mean the same. It has the size of
+each primitive; everything else about bytes on a wire is in :mod:`firm_hdl.wire`. Analyses are
+attributes that are computed when first read and then cached, as in a reference attribute grammar:
+each attribute is an equation over the node and its children.
 """
 
 from firm_hdl.model.closure import closure

@@ -1,4 +1,4 @@
-"""The transitive closure of message types: they and all types that they are made of."""
+"""The transitive closure of message types: the given types and all types in their fields."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ __all__ = ["closure"]
 
 
 def closure(roots: Iterable[Message]) -> list[Message]:
-    """List messages and all messages in them, each once and after those that it is made of.
+    """List messages and all messages in them, each once and after those in its fields.
 
-    The stack is our own: how deep definitions nest is their author's business. What has the same
-    name is taken for the same type, as it is in one library.
+    The stack is explicit, because definitions may nest deeper than Python's recursion limit.
+    Messages of the same name are taken for the same type, as in one library.
     """
     done: dict[str, Message] = {}
     for root in roots:

@@ -1,4 +1,4 @@
-"""Services and actions: what a definition declares that has several messages."""
+"""Services and actions: definitions that have several messages."""
 
 from __future__ import annotations
 
@@ -91,4 +91,4 @@ class Action:
 
 
 Interface: TypeAlias = "Message | Service | Action"
-"""Whatever a definition file declares."""
+"""What a definition file declares."""

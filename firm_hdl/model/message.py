@@ -33,7 +33,7 @@ class Field:
     default : Value or None
         ROS 2 only; never on the wire.
     comment : str
-        Comment lines above and behind it, without the `#`, joined by newlines.
+        Comment lines above and behind the field, without the `#`, joined by newlines.
     unit : str or None
         A comment's ``[unit]``, as rosidl reads it.
     span : Span or None
@@ -49,12 +49,12 @@ class Field:
 
     @property
     def element_type(self) -> Primitive | String | Message:
-        """The type, or that of the elements of an array or a sequence."""
+        """The type; for an array or a sequence, the type of its elements."""
         return element_of(self.type)
 
     @property
     def type_text(self) -> str:
-        """The type as genmsg has it, which keeps zeros in front of an array's length."""
+        """The type as genmsg writes it, which keeps leading zeros of an array's length."""
         text = str(self.type)
         if not isinstance(self.type, Array) or self.span is None:
             return text
@@ -95,7 +95,7 @@ class Message:
         and ``duration`` for the built-in types of ROS 1.
     dialect : "ros1" or "ros2"
     fields : tuple of Field
-        In wire order. Empty for an empty message: what stands on the wire then depends on the wire.
+        In wire order. Empty for an empty message, whose bytes depend on the wire format.
     constants : tuple of Constant
     comment : str
         The comment at the head of the file.
@@ -119,7 +119,7 @@ class Message:
 
     @property
     def messages(self) -> tuple[Message, ...]:
-        """The message alone: what services and actions have several of."""
+        """The message itself, as the only one; services and actions have several."""
         return (self,)
 
     @property
@@ -149,17 +149,17 @@ class Message:
     @cached_property
     def depth(self) -> int:
         """Levels of messages: 1 for a message without message fields."""
-        self._settle("depth")
+        self._evaluate_children("depth")
         return 1 + max((child.depth for child in self.children), default=0)
 
     @cached_property
     def leaf_count(self) -> int:
-        """Fields of all levels that are no messages; an array or a sequence counts one element.
+        """Number of fields of all levels that are not messages; an array counts one element.
 
-        A message without fields counts as one. Types that use each other many times have numbers
-        that nobody could count out.
+        A sequence counts one element, too, and a message without fields counts as one. The number
+        can grow exponentially with the number of types, so it is never counted field by field.
         """
-        self._settle("leaf_count")
+        self._evaluate_children("leaf_count")
 
         def count(kind: FieldType) -> int:
             return kind.leaf_count if isinstance(kind, Message) else 1
@@ -169,10 +169,10 @@ class Message:
     @cached_property
     def is_fixed_size(self) -> bool:
         """Whether every value of the message has the same number of bytes on a given wire."""
-        self._settle("is_fixed_size")
+        self._evaluate_children("is_fixed_size")
         return all(is_fixed_size(item.type) for item in self.fields)
 
-    def _settle(self, attribute: str) -> None:
+    def _evaluate_children(self, attribute: str) -> None:
         """Evaluate an attribute of all messages below, deepest first.
 
         Nesting may be deeper than Python's recursion limit.

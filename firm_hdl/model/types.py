@@ -26,7 +26,7 @@ __all__ = [
 ]
 
 Dialect: TypeAlias = Literal["ros1", "ros2"]
-"""Whose rules a definition follows: ROS 1 (genmsg) or ROS 2 (rosidl)."""
+"""The rules that a definition follows: those of ROS 1 (genmsg) or of ROS 2 (rosidl)."""
 
 Wire: TypeAlias = Literal["ros1", "cdr"]
 """Names of the wire formats; :mod:`firm_hdl.wire` has their rules."""
@@ -45,12 +45,12 @@ class Primitive:
         As ROS writes it: ``bool``, ``byte``, ``char``, ``int8`` ... ``uint64``, ``float32``,
         ``float64``; from IDL also ``wchar`` and ``long double``.
     bytes : int
-        Size on every wire, in bytes: 1, 2, 4 or 8; of `wchar`, that of a distribution. For `long
-        double` 16, which is that of the standard; it is on no wire, see `has_wire_format`.
+        Size on every wire, in bytes: 1, 2, 4 or 8. The size of `wchar` depends on the distribution.
+        The 16 bytes of `long double` are those of the standard; see `has_wire_format`.
     signed : bool
         Whether an integer is two's complement. `byte` is signed in ROS 1 only, `char` in IDL only.
     kind : "bool", "int" or "float"
-        How the bits are to be read.
+        How to interpret the bits.
     """
 
     name: str
@@ -63,10 +63,10 @@ class Primitive:
 
     @property
     def has_wire_format(self) -> bool:
-        """Whether all systems agree about its bytes; of `long double` they do not.
+        """Whether all systems write it with the same bytes; false for `long double` only.
 
-        By OMG CDR it is an IEEE quadruple. ROS 2 leaves it to the compiler's type of that name,
-        and Fast CDR warns that Windows and Unix do not understand each other's.
+        In OMG CDR, a `long double` is an IEEE quadruple. ROS 2 uses the compiler's type of that
+        name, and Fast CDR warns that Windows and Unix cannot exchange it.
         """
         return self.name != "long double"
 
@@ -111,7 +111,7 @@ def idl_primitives(wchar_bytes: int) -> dict[str, Primitive]:
 
 
 IDL_PRIMITIVES: dict[str, Primitive] = idl_primitives(2)
-"""Those of the newest distribution. In C++ and Python a `wchar` has 16 bits in every one."""
+"""IDL's primitives in the newest distribution. In C++ and Python, a `wchar` always has 16 bits."""
 
 PRIMITIVE_OF: dict[tuple[str, bool], Primitive] = {
     (item.name, item.signed and item.kind == "int"): item
@@ -130,7 +130,7 @@ class String:
     Attributes
     ----------
     bound : int or None
-        Most characters that it may have (bytes for `string`, UTF-16 units for `wstring`).
+        Largest number of characters (bytes for `string`, UTF-16 units for `wstring`).
     wide : bool
         True for `wstring`.
     """
@@ -157,7 +157,7 @@ class Array:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sequence:
-    """A number of elements that each message says anew; at most `bound`, unless that is `None`."""
+    """A variable number of elements: at most `bound`, or any number if `bound` is `None`."""
 
     element: Primitive | String | Message
     bound: int | None = None
@@ -170,7 +170,7 @@ FieldType: TypeAlias = "Primitive | String | Array | Sequence | Message"
 
 
 EMPTY_MEMBER = "structure_needs_at_least_one_member"
-"""The `uint8` that rosidl gives to a message without fields. It stands in no definition."""
+"""The `uint8` that rosidl adds to a message without fields. No definition declares it."""
 
 
 def element_of(kind: FieldType) -> Primitive | String | Message:

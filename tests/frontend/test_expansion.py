@@ -33,8 +33,8 @@ def temporary(tmp_path, monkeypatch):
 def test_recordings_that_expand_too_far_are_refused_where_they_do(
     tmp_path, form, monkeypatch, temporary
 ):
-    monkeypatch.setattr(expansion, "LEAST", 4 * MIB)
-    monkeypatch.setattr(expansion, "RATIO", 1)
+    monkeypatch.setattr(expansion, "MIN_BUDGET_BYTES", 4 * MIB)
+    monkeypatch.setattr(expansion, "MAX_RATIO", 1)
     path = BOMBS[form](tmp_path, 8 * MIB)
     with pytest.raises(DefinitionError) as caught:
         use_recording(str(path), sizes)
@@ -58,7 +58,7 @@ def test_recordings_that_expand_to_little_are_no_bombs(tmp_path, form, temporary
 
 @pytest.mark.parametrize("form", ["mcap of zstd", "mcap of lz4", "bag of bz2"])
 def test_a_single_chunk_has_a_limit_of_its_own(tmp_path, form, monkeypatch):
-    monkeypatch.setattr(expansion, "MOST_AT_ONCE", 4 * MIB)
+    monkeypatch.setattr(expansion, "MAX_CHUNK_BYTES", 4 * MIB)
     path = BOMBS[form](tmp_path, 8 * MIB)
     with pytest.raises(DefinitionError, match=f"it has a chunk of more than {4 * MIB} bytes$"):
         use_recording(str(path), sizes)
@@ -67,21 +67,21 @@ def test_a_single_chunk_has_a_limit_of_its_own(tmp_path, form, monkeypatch):
 
 def test_large_recordings_may_expand_to_more(tmp_path, monkeypatch):
     path = BOMBS["compressed message"](tmp_path, 8 * MIB)
-    monkeypatch.setattr(expansion, "LEAST", 1)
+    monkeypatch.setattr(expansion, "MIN_BUDGET_BYTES", 1)
     size = sum(each.stat().st_size for each in path.iterdir())
-    monkeypatch.setattr(expansion, "RATIO", 8 * MIB // size)
+    monkeypatch.setattr(expansion, "MAX_RATIO", 8 * MIB // size)
     with pytest.raises(DefinitionError, match="bytes come out of it"):
         use_recording(str(path), sizes)
-    monkeypatch.setattr(expansion, "RATIO", 8 * MIB // size + 1)
+    monkeypatch.setattr(expansion, "MAX_RATIO", 8 * MIB // size + 1)
     assert use_recording(str(path), sizes) == [8 * MIB]
 
 
 def test_rosbags_reads_as_ever_outside_of_us(tmp_path, monkeypatch):
     from rosbags.rosbag2 import Reader
 
-    monkeypatch.setattr(expansion, "LEAST", 1)
-    monkeypatch.setattr(expansion, "RATIO", 0)
-    monkeypatch.setattr(expansion, "MOST_AT_ONCE", 1)
+    monkeypatch.setattr(expansion, "MIN_BUDGET_BYTES", 1)
+    monkeypatch.setattr(expansion, "MAX_RATIO", 0)
+    monkeypatch.setattr(expansion, "MAX_CHUNK_BYTES", 1)
     for form in ("compressed message", "compressed database"):
         (tmp_path / form).mkdir()
         with Reader(BOMBS[form](tmp_path / form, MIB)) as reader:

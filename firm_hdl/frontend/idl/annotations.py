@@ -1,8 +1,8 @@
-"""What annotations say: comments, units and defaults.
+"""Annotations: comments, units and defaults.
 
-All others are ignored, as rosidl_parser does; except those that change the bytes on the wire by the
-standard. ROS 2 ignores them, too, but whoever writes one expects something else, so they are
-refused by name.
+All others are ignored, as rosidl_parser does. The exception are those that change the bytes on the
+wire by the standard: ROS 2 ignores them, too, but their author expects otherwise, so they are
+errors.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _REFUSED = ("optional", "mutable")
 
 
 def refusals(annotations: tuple[Annotation, ...]) -> Iterator[Diagnostic]:
-    """Find annotations that promise another wire format."""
+    """Find annotations that would change the bytes on the wire."""
     for annotation in annotations:
         name = annotation.name.parts[0]
         values = [v for _, v in annotation.arguments if isinstance(v, ScopedName)]
@@ -62,12 +62,12 @@ def unit_of(annotations: tuple[Annotation, ...]) -> str | None:
 def default_of(
     annotations: tuple[Annotation, ...], type_: TypeSyntax, lookup: Lookup
 ) -> ValueSyntax | ListSyntax | None:
-    """Give the value of ``@default(value=...)``, as that of a type.
+    """Give the value of ``@default(value=...)``, converted to a type.
 
     Raises
     ------
     IdlError
-        If there are two, if it has no value, or if the type does not have that value.
+        If there are two defaults, if the default has no value, or if it does not fit the type.
     """
     found = list(_named(annotations, "default"))
     if not found:
@@ -85,7 +85,7 @@ def default_of(
 
 
 def unsigned_bits(name: str) -> int | None:
-    """Give the size of a type, if it is an unsigned integer."""
+    """Give the bits of an unsigned integer type; `None` for any other type."""
     primitive = IDL_PRIMITIVES.get(name)
     if primitive is None or primitive.kind != "int" or primitive.signed:
         return None
@@ -93,12 +93,12 @@ def unsigned_bits(name: str) -> int | None:
 
 
 def words_of(span: Span) -> str:
-    """Give the text that a span means, on one line."""
+    """Give the text of a span, on one line."""
     return " ".join(span.source.text[span.start : span.end].split())
 
 
 def _named(annotations: tuple[Annotation, ...], name: str) -> Iterator[Annotation]:
-    # rosidl_parser goes by the first word of a name with a scope.
+    # rosidl_parser compares only the first word of a name with a scope.
     return (a for a in annotations if a.name.parts[0] == name)
 
 
@@ -121,14 +121,14 @@ def _default_expression(annotation: Annotation) -> Expression:
     raise IdlError("a default needs a value: '@default(value=...)'", annotation.span)
 
 
-# An element of a Python list. Each is a word of its own, so that nothing is nested.
+# An element of a Python list. Each is a single token, so lists cannot nest.
 _ITEM = re.compile(
     r"""\s*(?P<item>[+-]?[\w.]+(?:(?<=[eE])[+-]\d+)?|'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*")\s*(?:,|$)"""
 )
 
 
 def _list(value: Value, type_: TypeSyntax, span: Span) -> ListSyntax:
-    """Read a default of several elements, which rosidl_adapter writes as a Python tuple's text."""
+    """Read a default of several elements, which rosidl_adapter writes like a Python tuple."""
     text = value.value.strip() if isinstance(value.value, str) else ""
     if text[:1] + text[-1:] not in ("()", "[]") or len(text) < 2:
         raise _no_list(type_, span)

@@ -1,7 +1,7 @@
-"""What to say about a text that is no IDL, or no IDL that ROS 2 knows.
+"""The wording of syntax errors in IDL, and of constructs that ROS 2 does not support.
 
-A parser knows which terminals it would have taken. This module says it in the user's words, and
-calls by its name what the standard has and ROS 2 has not.
+A parser knows which terminals it expected. This module puts that into the user's words, and names
+the constructs that the standard has and ROS 2 does not support.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from firm_hdl.frontend.explain import clip
 
 __all__ = ["explain"]
 
-# What OMG IDL has and rosidl_parser has not, by the word that it begins with.
+# Constructs that OMG IDL has and rosidl_parser does not, by their first word.
 _REFUSED = {
     "abstract": "interfaces are",
     "bitmask": "bitmasks are",
@@ -77,7 +77,7 @@ def explain(error: UnexpectedInput, text: str, accepts: Iterable[str]) -> tuple[
     Parameters
     ----------
     accepts : iterable of str
-        Names of the terminals that could have stood at this place.
+        Names of the terminals that are legal at this place.
 
     Returns
     -------
@@ -86,7 +86,7 @@ def explain(error: UnexpectedInput, text: str, accepts: Iterable[str]) -> tuple[
     """
     start = _place(error, text)
     expected = frozenset(accepts)
-    # Names and comments may be long, but not the context that makes a mistake a known one.
+    # Names and comments may be long, but a known mistake is recognized by a short context.
     before = text[max(0, start - 200) : start]
     for rule in (_wrong_character, _wrong_word, _wrong_sign):
         found = rule(text, start, before, expected)
@@ -112,7 +112,7 @@ _Found = tuple[int, str] | None
 
 
 def _wrong_character(text: str, start: int, before: str, expected: frozenset[str]) -> _Found:
-    """Explain what is no word of the language at any place."""
+    """Explain characters that start no token at any place."""
     rest = text[start : start + 100]
     if rest.startswith("#"):
         directive = _group(_DIRECTIVE, text, start)
@@ -141,7 +141,7 @@ def _wrong_character(text: str, start: int, before: str, expected: frozenset[str
 
 
 def _wrong_word(text: str, start: int, before: str, expected: frozenset[str]) -> _Found:
-    """Explain what the standard has and ROS 2 has not."""
+    """Explain a construct that the standard has and ROS 2 does not support."""
     word = _group(_WORD, text, start)
     last = _LAST_WORD.search(before)
     at, previous = last.groups() if last else (None, "")
@@ -162,7 +162,7 @@ def _wrong_sign(text: str, start: int, before: str, expected: frozenset[str]) ->
     if sign == ":" and "_OPEN" in expected:
         return 1, "inheritance of structs is not supported"
     if sign == ">" and stripped.endswith(">") and "IDENTIFIER" in expected:
-        return 1, "'>' has ended the type before; a shift to the right needs parentheses here"
+        return 1, "the '>' before this one ends the type; put a right shift in parentheses here"
     if sign == "}" and stripped.endswith("{"):
         what = "struct" if "SIZED_TYPE" in expected else "enum" if "_MODULE" not in expected else ""
         return 1, f"{'an' if what == 'enum' else 'a'} {what or 'module'} must not be empty"

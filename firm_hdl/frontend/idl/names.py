@@ -1,8 +1,8 @@
-"""What the names in an IDL file mean: constants, typedefs, and what files include.
+"""The names in an IDL file: constants, typedefs and types, also of included files.
 
-rosidl_parser does not read what a file includes, and has no scopes: typedefs are known by their
-last name in the whole file. Constants are looked up as the standard says, from the inner module to
-the outer, and then in the modules ``..._Constants``, which ROS 2 puts beside the struct.
+rosidl_parser does not read included files and has no scopes: a typedef is known by its last name in
+the whole file. Constants are looked up as the standard requires, from the inner module to the
+outer, and then in the modules ``..._Constants``, which ROS 2 puts beside the struct.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ __all__ = ["CONSTANTS", "Alias", "Names", "Path", "definitions", "included"]
 Path = tuple[str, ...]
 
 CONSTANTS = "_Constants"
-"""What the module with a struct's constants is called, behind the struct's name."""
+"""Suffix of the module with a struct's constants, after the struct's name."""
 
 
 class Alias(NamedTuple):
@@ -62,9 +62,9 @@ def definitions(file: FileSyntax) -> Iterator[tuple[Path, Definition]]:
 def included(file: FileSyntax, include: Callable[[str], Source | None]) -> list[FileSyntax]:
     """Read all files that a file includes, directly or not; each follows those that it includes.
 
-    A path is looked for as it is written, then beside the file that includes it. What is not found
-    or is no IDL is left out: rosidl_parser does not look at it at all, and whoever needs something
-    from it will miss it.
+    A path is searched for as written, then in the folder of the including file. A file that is not
+    found, or has a syntax error, is left out: rosidl_parser does not read included files at all,
+    and a name that is missing is reported where it is used.
     """
     found: list[FileSyntax] = []
     seen = {file.source.name}
@@ -99,17 +99,17 @@ def _source(path: str, include: Callable[[str], Source | None]) -> Source | None
     try:
         return include(path)
     except DefinitionError:
-        return None  # It is there, but cannot be read.
+        return None  # The file exists but cannot be read.
 
 
 @dataclass(slots=True)
 class Names:
-    """All that can be named from within a file.
+    """All names that a file can use.
 
     Attributes
     ----------
     constants : dict of tuple of str to (Value or None)
-        By full name; `None` for one that is wrong, which has been reported.
+        By full name; `None` for a constant with an error, which has been reported.
     aliases : dict of str to Alias
         What typedefs declare, by last name.
     enums, structs : dict of str to tuple of str
@@ -137,14 +137,14 @@ class Names:
             For typedefs that give a name two meanings.
         """
         wrong = []
-        own: dict[str, str] = {}
+        meanings: dict[str, str] = {}
         for path, definition in definitions(file):
             match definition:
                 case Typedef():
                     for declarator in definition.declarators:
                         name = declarator.name
                         meaning = _describe(definition.type, declarator)
-                        if own.setdefault(name.text, meaning) != meaning:
+                        if meanings.setdefault(name.text, meaning) != meaning:
                             message = f"typedef '{name.text}' is already declared as another type"
                             wrong.append(Diagnostic(message=message, span=name.span))
                         self.aliases[name.text] = Alias(path, definition.type, declarator)
@@ -160,19 +160,19 @@ class Names:
         Parameters
         ----------
         path : tuple of str
-            The modules around the place where it is named.
+            The modules around the reference.
         struct : str or None
-            The struct that it is named in.
+            The struct around the reference.
 
         Raises
         ------
         UnknownNameError
-            If there is none of that name.
+            If no constant has that name.
         """
         full = self._find(name, path, struct)
         value = self.constants[full]
         if value is None:
-            # Reported where it stands; this one must not be used either.
+            # The error was reported at the declaration; what depends on it has no value, either.
             raise AlreadyReportedError(f"constant '{name}' is wrong", name.span)
         return value
 
@@ -184,9 +184,9 @@ class Names:
                     return full
         places = self._by_last.get(name.parts[-1], [])
         if len(name.parts) == 1:
-            beside = [p for p in places if len(p) > 1 and p[-2].endswith(CONSTANTS)]
-            if len(beside) == 1:
-                return beside[0]
+            of_structs = [p for p in places if len(p) > 1 and p[-2].endswith(CONSTANTS)]
+            if len(of_structs) == 1:
+                return of_structs[0]
         message = f"constant '{clip(str(name))}' is not declared above"
         if name.parts in (("true",), ("false",)):
             message = f"'{name}' is not a truth value: TRUE or FALSE"
@@ -196,7 +196,7 @@ class Names:
 
 
 def _describe(type_: TypeNode, declarator: Declarator) -> str:
-    """Write a type so that equal ones come out equal, as far as rosidl_parser knows."""
+    """Write a type so that types have equal texts if rosidl_parser takes them for equal."""
     text = "".join(f"[{_words(size)}]" for size in declarator.sizes)
     while isinstance(type_, SequenceType):
         text += f"<{'' if type_.bound is None else _words(type_.bound)}>"

@@ -1,8 +1,7 @@
 """Text to tree, with the grammar in ``idl.lark``.
 
-The parser is LALR with a stack of its own, and the tree is built from the leaves up, so that no
-text reaches Python's limit of recursion. Those who walk the tree may recurse nevertheless: the
-parser refuses what is nested deeper than anybody writes.
+The LALR parser has an explicit stack and the tree is built bottom-up, so that no text reaches
+Python's recursion limit. Code that walks the tree may recurse, because the parser limits nesting.
 """
 
 from __future__ import annotations
@@ -79,7 +78,7 @@ def parse_file(source: Source) -> FileSyntax | Diagnostic:
     Returns
     -------
     FileSyntax or Diagnostic
-        The tree, or what is wrong at the first place that is no sentence of the language.
+        The tree, or the first syntax error.
     """
     parser = _parser().parse_interactive(source.text)
     try:
@@ -100,7 +99,7 @@ def parse_file(source: Source) -> FileSyntax | Diagnostic:
 
 
 def idl_tree(text: str) -> list[Tree[Token]]:
-    """Return the parse tree of a text, or nothing if it is no sentence of the language."""
+    """List the parse tree of a text, or nothing if the text has a syntax error."""
     try:
         return [_parser().parse(text)]
     except UnexpectedInput:
@@ -115,7 +114,7 @@ def _parser() -> Lark:
 
 @v_args(meta=True)
 class _Builder(Transformer_NonRecursive[Token, Any]):
-    """Makes our tree of the parser's: each rule of the grammar has a method of its name."""
+    """Builds the syntax tree from the parse tree; each grammar rule has a method of its name."""
 
     def __init__(self, source: Source) -> None:
         super().__init__()

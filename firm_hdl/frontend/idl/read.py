@@ -1,8 +1,8 @@
-"""Trees to the syntax that all languages share: one message for each struct of a file.
+"""Convert IDL trees to the syntax that all languages share: one message per struct of a file.
 
-What is checked is what rosidl_parser checks, and then what the C++ made from such a file would be
-refused for; ``docs/errata.md`` lists the differences. Everything that is wrong is reported, and
-what it concerns is left out.
+The checks are those of rosidl_parser, and those of a C++ compiler on the code that ROS 2 generates;
+``docs/errata.md`` lists the differences. All errors are reported, and the parts with errors are
+left out.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ from firm_hdl.model import EMPTY_MEMBER
 
 __all__ = ["read_idl"]
 
-# Nobody reads on after so many.
+# More help nobody.
 _MOST_DIAGNOSTICS = 1000
 
 # What a file declares, by the number of its structs.
@@ -77,20 +77,20 @@ def read_idl(
     Parameters
     ----------
     include : callable
-        Gives the text of what the file includes, by the words between the quotes or angles.
+        Gives the text of an included file, by the path between the quotes or angle brackets.
 
     Returns
     -------
     tuple of (dict of str to MessageSyntax) and list of Diagnostic
         The structs by their names, such as ``Imu`` or ``SetBool_Request``, with typedefs expanded
-        and constants evaluated; and what is wrong, in the order of the text.
+        and constants evaluated; and the errors, in the order of the text.
     """
     file = parse_file(source)
     if isinstance(file, Diagnostic):
         return {}, [file]
     reader = _Reader(file, included(file, include))
     messages = reader.messages()
-    # Those of included files come first.
+    # Errors of included files come first.
     wrong = sorted(reader.wrong, key=lambda d: (_place(d, source), d.message))
     wrong = list(dict.fromkeys(wrong))
     if len(wrong) > _MOST_DIAGNOSTICS:
@@ -105,7 +105,7 @@ def _place(diagnostic: Diagnostic, source: Source) -> int:
 
 
 class _Reader:
-    """Reads one file; collects what is wrong in `wrong`."""
+    """Reads one file; collects its errors in `wrong`."""
 
     def __init__(self, file: FileSyntax, includes: list[FileSyntax]) -> None:
         self.wrong: list[Diagnostic] = []
@@ -138,14 +138,14 @@ class _Reader:
         messages = {node.name.text: self._struct(node, path) for path, node in structs}
         for _, node in definitions(self._file):
             if isinstance(node, Typedef):
-                self._unused(node)
+                self._check_alias(node)
         return messages
 
     def _included_constant(self, node: Constant, path: Path) -> None:
         try:
             value, *_ = self._value(node, path)
         except IdlError:
-            return  # Who needs it will find it missing; what is wrong is that file's business.
+            return  # A use of the constant is reported; this error belongs to the other file.
         self._names.add_constant((*path, node.name.text), value)
 
     def _constant(self, node: Constant, path: Path) -> None:
@@ -185,7 +185,7 @@ class _Reader:
     def _value(
         self, node: Constant, path: Path
     ) -> tuple[Value, TypeSyntax, bool | int | float | str]:
-        """Evaluate a constant: what expressions see of it, its type, and its value."""
+        """Evaluate a constant: its value in expressions, its type, and its value of that type."""
         type_ = self._constant_type(node)
         lookup = partial(self._names.constant, path=path)
         value = evaluate(node.value, lookup, unsigned_bits(type_.name))
@@ -197,7 +197,7 @@ class _Reader:
     def _constant_type(self, node: Constant) -> TypeSyntax:
         match node.type:
             case StringType():
-                # ROS 2 forgets the bound.
+                # ROS 2 ignores the bound.
                 name = "wstring" if node.type.wide else "string"
             case BasicType():
                 name = node.type.name
@@ -221,7 +221,7 @@ class _Reader:
             message = f"a typedef declares one name in ROS 2; '{declarator.name.text}' is one more"
             self.wrong.append(Diagnostic(message=message, span=declarator.name.span))
 
-    def _unused(self, node: Typedef) -> None:
+    def _check_alias(self, node: Typedef) -> None:
         """Check a typedef even if no member uses it, except for the names in it, as rosidl does."""
         for declarator in node.declarators:
             try:
@@ -257,14 +257,14 @@ class _Reader:
         self.wrong += refusals(node.annotations)
         comment, unit = comment_of(node.annotations), unit_of(node.annotations)
         array: Declarator | None = None
-        # Long types and defaults in front of many names are read once.
+        # A type and a default that precede several names are read once.
         known: dict[bool, tuple[TypeSyntax, ValueSyntax | ListSyntax | None]] = {}
         for declarator in node.declarators:
             name = declarator.name
             if array is not None:
                 message = (
-                    f"'{name.text}' stands behind array '{array.name.text}', whose size ROS 2 "
-                    "gives it too; declare it in a line of its own"
+                    f"'{name.text}' follows array '{array.name.text}', and ROS 2 gives both the "
+                    "same size; declare it in a line of its own"
                 )
                 self.wrong.append(Diagnostic(message=message, span=name.span))
                 return
@@ -328,7 +328,7 @@ def _check_structs(file: FileSyntax, structs: list[tuple[Path, Struct]]) -> Iter
     suffixes = PARTS["ros2", kind]
     names = [struct.name.text for _, struct in structs]
     if len(structs) == 2 and not any(name.endswith(suffixes) for name in names):
-        # No service was meant.
+        # The names are not those of a service.
         message = f"'{names[1]}' is a second struct beside '{names[0]}'; one message per file"
         yield Diagnostic(message=message, span=structs[1][1].name.span)
         return

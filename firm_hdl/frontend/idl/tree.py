@@ -1,8 +1,8 @@
-"""The syntax tree of an IDL file: what stands in it and where, nothing that it means.
+"""The syntax tree of an IDL file: its content with positions, without its meaning.
 
-Typedefs are not expanded, expressions not evaluated, names not resolved. That is the business of
+Typedefs are not expanded, expressions not evaluated, names not resolved. That is done by
 :mod:`firm_hdl.frontend.idl.names`, :mod:`~firm_hdl.frontend.idl.values` and
-:mod:`~firm_hdl.frontend.idl.types`; what comes out of them has the form that all languages share
+:mod:`~firm_hdl.frontend.idl.types`, which produce the syntax that all languages share
 (:mod:`firm_hdl.frontend.syntax`).
 """
 
@@ -72,9 +72,9 @@ class LiteralSyntax:
     Attributes
     ----------
     text : str
-        As it is written; of a string with several parts, all of them.
+        The literal as written; for a string of several tokens, all of them.
     parts : tuple of str
-        The words that it consists of: several only of strings.
+        Its tokens; only a string can have several.
     """
 
     kind: Literal["integer", "float", "fixed", "character", "boolean", "string", "wstring"]
@@ -94,7 +94,7 @@ class Unary:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Chain:
-    """Operands with operators of one precedence between them, to be worked off from the left.
+    """Operands joined by operators of one precedence, evaluated from the left.
 
     A sum of a thousand numbers is one node, so that the tree is no deeper than its parentheses.
     """
@@ -114,7 +114,7 @@ class Annotation:
     Attributes
     ----------
     arguments : tuple of (Name or None) and Expression
-        The one value without a key has `None` for its name.
+        A value without a key has `None` for its name.
     """
 
     name: ScopedName
@@ -129,7 +129,7 @@ class BasicType:
     Attributes
     ----------
     name : str
-        As ROS writes it; ``long double``, which only IDL has, as IDL does.
+        Its name in ROS; ``long double``, which only IDL has, keeps its name in IDL.
     """
 
     name: str
@@ -166,7 +166,7 @@ TypeNode: TypeAlias = "BasicType | StringType | SequenceType | FixedType | Scope
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Declarator:
-    """A name, and the dimensions that stand behind it."""
+    """A name and the dimensions that follow it."""
 
     name: Name
     sizes: tuple[Expression, ...]
@@ -218,7 +218,7 @@ class Member:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Struct:
-    """A struct; its declaration ahead of the definition has `None` for members."""
+    """A struct; a forward declaration has `None` for members."""
 
     annotations: tuple[Annotation, ...]
     name: Name

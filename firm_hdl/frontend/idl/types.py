@@ -1,7 +1,7 @@
 """Types with all typedefs expanded.
 
-ROS 2 knows elements, and arrays or sequences of them. Typedefs are the one way to get an array of
-arrays or of sequences past rosidl_parser; it is refused here, as nothing behind it can be built.
+ROS 2 has single elements, and arrays or sequences of them. With typedefs, rosidl_parser accepts an
+array of arrays or of sequences. It is an error here, because ROS 2 cannot build such a type.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ from firm_hdl.frontend.syntax import SizeSyntax, TypeSyntax
 
 __all__ = ["Expander"]
 
-# Every wire format counts in 32 bits.
-_MOST = 2**32 - 1
+# A length has 32 bits in every wire format.
+_MAX_LENGTH = 2**32 - 1
 
-# What other languages, and ROS itself, call the types of IDL.
+# Names of IDL's types in other languages and in ROS.
 _FOREIGN = {
     "bool": "boolean",
     "byte": "octet",
@@ -50,7 +50,7 @@ _REFUSED = ("any", "map", "Object", "ValueBase")
 
 
 class _Shape(NamedTuple):
-    """What a type is, wherever it is written."""
+    """A type, independent of the place where it is written."""
 
     name: str
     is_builtin: bool = True
@@ -63,7 +63,7 @@ class _Shape(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Layer:
-    """A type as it is written in one place: that of a member, or a typedef on the way from it."""
+    """A type as written in one place: the type of a member, or of a typedef that it uses."""
 
     type: TypeNode
     declarator: Declarator
@@ -90,7 +90,7 @@ class _Layer:
 
 
 class Expander:
-    """Gives types their meaning, each typedef once."""
+    """Expands types, each typedef once."""
 
     def __init__(self, names: Names) -> None:
         self._names = names
@@ -104,26 +104,26 @@ class Expander:
         Raises
         ------
         IdlError
-            If it has none; `AlreadyReportedError` if that of a typedef was raised before.
+            If the type is wrong; `AlreadyReportedError` if a typedef's error was raised before.
         """
         layer = _Layer(type=type_, declarator=declarator, path=path, struct=struct)
         return TypeSyntax(**self._expand([layer], {})._asdict(), span=type_.span)
 
     def alias(self, name: str) -> None:
-        """Expand a typedef, which need not be used; raises as `member` does."""
+        """Expand a typedef, whether it is used or not; raises as `member` does."""
         if name not in self._shapes:
             self._shapes[name] = None
             self._expand([_layer_of(self._names.aliases[name])], {name: None})
 
     def _expand(self, layers: list[_Layer], names: dict[str, None]) -> _Shape:
-        """Follow typedefs down to a type that is none, then put on the layers one by one.
+        """Follow typedefs down to a type that is not a typedef, then apply the layers one by one.
 
         Parameters
         ----------
         layers : list of _Layer
             The type to expand.
         names : dict of str to None
-            The typedefs, in order, that the last layers stand for.
+            The typedefs of the last layers, in order.
         """
         shape: _Shape | None = None
         while shape is None:
@@ -138,12 +138,12 @@ class Expander:
                 if shape is None:
                     raise AlreadyReportedError(f"typedef '{name}' is wrong", core.span)
             else:
-                self._shapes[name] = None  # It stays so if anything on the way is wrong.
+                self._shapes[name] = None  # It stays `None` if there is an error below.
                 names[name] = None
                 layers.append(_layer_of(self._names.aliases[name]))
-        return self._put_on(layers, [*names], shape)
+        return self._apply(layers, [*names], shape)
 
-    def _put_on(self, layers: list[_Layer], names: list[str], shape: _Shape) -> _Shape:
+    def _apply(self, layers: list[_Layer], names: list[str], shape: _Shape) -> _Shape:
         # The first layer may be a member, which has no name.
         padded = [None] * (len(layers) - len(names)) + names
         for layer, name in zip(reversed(layers), reversed(padded), strict=True):
@@ -158,7 +158,7 @@ class Expander:
         alias = self._names.aliases.get(core.parts[-1])
         if alias is None:
             return None
-        # With a scope, it is looked for like a constant, from the module of the place outwards.
+        # A name with a scope is looked up like a constant, from the inner module outwards.
         around = range(0 if core.is_absolute else len(path), -1, -1)
         full = [(*path[:depth], *core.parts) for depth in around]
         is_bare = len(core.parts) == 1 and not core.is_absolute
@@ -186,7 +186,7 @@ class Expander:
         raise UnknownNameError(self._explain(name), name.span)
 
     def _explain(self, name: ScopedName) -> str:
-        """Say why a name is not that of a type."""
+        """Explain why a name is not the name of a type."""
         text = clip(str(name))
         last = name.parts[-1]
         if last in self._names.enums:
@@ -232,8 +232,8 @@ class Expander:
         assert isinstance(value.value, int)
         if value.value < 1:
             raise IdlError(f"the {what} must be at least 1, not {value.value}", span)
-        if value.value > _MOST:
-            raise IdlError(f"the {what} must be at most {_MOST}", span)
+        if value.value > _MAX_LENGTH:
+            raise IdlError(f"the {what} must be at most {_MAX_LENGTH}", span)
         return SizeSyntax(value=value.value, span=span)
 
 

@@ -1,8 +1,8 @@
-"""The values of expressions, and whether they fit the types that they are given for.
+"""Evaluate expressions, and check that their values fit their types.
 
 Expressions are those of OMG IDL 4.2, 7.4.1.4.3; rosidl_parser reads one literal with a sign, or
-one name. Texts have the values that it gives them, the doubled reading of backslashes included,
-because those are the ones that programs of ROS 2 see.
+one name. Strings have the values that rosidl_parser gives them, because programs of ROS 2 see
+those; it undoes backslashes twice.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ __all__ = [
 
 
 class IdlError(Exception):
-    """What is wrong with a part of a file; those who can go on without that part collect it."""
+    """An error in a part of a file; callers that can go on without that part collect it."""
 
     def __init__(self, message: str, span: Span) -> None:
         super().__init__(message)
@@ -44,11 +44,11 @@ class IdlError(Exception):
 
 
 class UnknownNameError(IdlError):
-    """Raised for names that mean nothing here; rosidl_parser does not look at all of them."""
+    """Raised for names that are not declared; rosidl_parser does not check all of them."""
 
 
 class AlreadyReportedError(IdlError):
-    """Raised for what depends on something that has a diagnostic of its own."""
+    """Raised for a part that depends on a declaration whose error has been reported."""
 
 
 class Value(NamedTuple):
@@ -79,17 +79,17 @@ _ESCAPE = re.compile(r"\\(?:([ntvbrfa\\'\"])|([0-7]{1,3})|x([0-9A-Fa-f]{1,2})|(u
 
 
 def evaluate(expression: Expression, lookup: Lookup, bits: int | None = None) -> Value:
-    """Compute an expression.
+    """Evaluate an expression.
 
     Parameters
     ----------
     bits : int or None
-        Size of the type that it is for, if that is unsigned: what `~` inverts.
+        Size of the target type if that is unsigned: the bits that `~` inverts.
 
     Raises
     ------
     IdlError
-        If it has no value.
+        If the expression has no value.
     """
     match expression:
         case ScopedName():
@@ -108,7 +108,7 @@ def evaluate(expression: Expression, lookup: Lookup, bits: int | None = None) ->
 
 
 def fit(value: Value, name: str, span: Span) -> bool | int | float | str:
-    """Turn a value into that of a type.
+    """Convert a value to a type.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def fit(value: Value, name: str, span: Span) -> bool | int | float | str:
     Raises
     ------
     IdlError
-        If the type does not have the value.
+        If the value does not fit the type.
     """
     kind, content = value
     if name in ("string", "wstring"):
@@ -274,7 +274,7 @@ def _binary(left: Value, sign: str, right: Value, span: Span) -> Value:
 
 
 def _checked(value: int, span: Span) -> Value:
-    """Keep numbers to 64 bits, so that no expression takes long."""
+    """Limit numbers to 64 bits, so that no expression takes long."""
     if not _LOWEST <= value <= _HIGHEST:
         raise IdlError("this value does not fit 64 bits", span)
     return Value("integer", value)
