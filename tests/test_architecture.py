@@ -10,7 +10,7 @@ from pathlib import Path
 import firm_hdl
 
 PACKAGE = Path(firm_hdl.__file__).parent
-MOST_LINES = 450
+MOST_LINES = 400
 # Of a function, with its docstring.
 MOST_SIZE = 60
 # In a folder, its `__init__.py` included.
@@ -199,7 +199,7 @@ def test_violations_are_found(tmp_path: Path) -> None:
         "sim/a.py: sim imports export",
         "sim/b.py: no docstring",
         "sim/b.py: no literal __all__",
-        "terminal.py: more than 450 lines",
+        "terminal.py: more than 400 lines",
         "terminal.py: terminal imports verify",
         "utils.py: a part of the package that the architecture does not know",
         "verify/more.py: a part of the package that the architecture does not know",
