@@ -1,0 +1,144 @@
+"""What is told of a contest: the first differences with all that they need, the rest by number."""
+
+from __future__ import annotations
+
+from collections import Counter
+from types import SimpleNamespace
+
+import pytest
+
+from firm_hdl.verify.clients import command
+from firm_hdl.verify.clients.finding import Finding
+from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
+
+OPTIONS = SimpleNamespace(
+    libraries=("mine", "yours"), command=lambda distro, name, library: f"{library} {name} {distro}"
+)
+
+
+@pytest.fixture(autouse=True)
+def small(monkeypatch):
+    """Let the smallest case of a difference be itself."""
+    monkeypatch.setattr(command, "shrunk", lambda finding, again: finding)
+    monkeypatch.setattr(command, "contest_of", lambda *_: SimpleNamespace(again=None))
+    monkeypatch.setattr(command, "described", lambda finding: [f"    small {finding.what}"])
+
+
+def trial(name, *whats, library="mine", obstacle=None, **more):
+    findings = [SimpleNamespace(what=what, wire="cdr") for what in whats]
+    task = SimpleNamespace(distro="lyrical", name=name)
+    made = {"library": library, "type": name, "findings": findings, "obstacle": obstacle, **more}
+    return task, SimpleNamespace(**made)
+
+
+def told(*trials):
+    return "\n".join(command._differences(trials, OPTIONS)).splitlines()
+
+
+def named(name, what, library="mine"):
+    return [f"DIFFERS {library}, {what}: {name} (lyrical)", f"    again: {library} {name} lyrical"]
+
+
+def detailed(name, what, library="mine"):
+    head, again = named(name, what, library)
+    return [head, f"    small {what}", again]
+
+
+@pytest.mark.parametrize("count", [1, 5, 6, 8])
+def test_of_one_kind_the_first_is_told_in_full_and_five_by_name(count):
+    trials = [trial(f"T{n}", "encode") for n in reversed(range(count))]
+    names = [line for n in range(1, min(count, 5)) for line in named(f"T{n}", "encode")]
+    more = [f"DIFFERS mine, encode: and {count - 5} more types"] if count > 5 else []
+    assert told(*trials) == [*detailed("T0", "encode"), *names, *more]
+
+
+def test_kinds_and_libraries_are_counted_apart():
+    lines = told(trial("B", "encode", "decode"), trial("A", "decode", library="yours"))
+    assert lines == [
+        *detailed("B", "encode"),
+        *detailed("B", "decode"),
+        *detailed("A", "decode", "yours"),
+    ]
+
+
+def test_five_kinds_for_each_library_are_told_in_full():
+    lines = told(trial("A", *(f"kind{n:02}" for n in range(12))))
+    assert [line for line in lines if "small" in line] == [
+        f"    small kind{n:02}" for n in range(10)
+    ]
+    assert lines[-2:] == named("A", "kind11")
+
+
+def test_who_could_not_be_asked_is_told_behind_the_differences():
+    failed = trial("A", obstacle=Failed(("it crashed", "and more")))
+    silent = trial("B", obstacle=NotJudged("nobody"))
+    assert told(failed, silent, trial("C", "encode")) == [
+        *detailed("C", "encode"),
+        "FAIL mine: A (lyrical): it crashed",
+    ]
+
+
+def summary(*trials):
+    versions = {"mine": "1.0", "yours": "2"}
+    return list(command._summary(trials, OPTIONS, versions))
+
+
+def judged(verdict, library="mine", comparisons=0, **known):
+    return SimpleNamespace(
+        library=library, verdict=verdict, comparisons=comparisons, known=Counter(known)
+    )
+
+
+def test_each_library_has_a_row_with_its_verdicts():
+    head, mine, yours = summary(
+        judged(Passed(3), comparisons=3),
+        judged(Passed(4), comparisons=4),
+        judged(Failed(("no",)), comparisons=5),
+        judged(Passed(1), "yours", 9),
+    )
+    assert head.split() == ["types", "agree", "known", "differ", "not", "judged", "comparisons"]
+    assert mine.split() == ["mine", "1.0", "2", "0", "1", "0", "12"]
+    assert yours.split() == ["yours", "2", "1", "0", "0", "0", "9"]
+    assert len(head) == len(mine) == len(yours)
+
+
+def test_known_differences_and_reasons_are_counted():
+    reasons = [judged(NotJudged(f"reason {n}")) for n in range(7) for _ in range(7 - n)]
+    lines = summary(*reasons, judged(Passed(1), b=2, a=1), judged(Passed(1), a=1))[3:]
+    assert lines == [
+        "known, mine: a: 2",
+        "known, mine: b: 2",
+        *(f"not judged, mine: reason {n}: {7 - n}" for n in range(5)),
+        "not judged, mine: other reasons: 3",
+    ]
+    assert summary(*reasons[:22])[3:] == [
+        f"not judged, mine: reason {n}: {7 - n}" for n in range(4)
+    ]
+
+
+def test_a_difference_is_described_by_all_that_one_needs(make_message, monkeypatch):
+    monkeypatch.undo()
+    given = {
+        "library": "mine", "reference": "yours", "wire": "cdr", "value": {"a": 1},
+        "message": make_message("uint8 a"),
+    }  # fmt: skip
+    read = Finding(what="decode", packet=b"\1\2", expected={"a": 1}, got={"a": 2}, **given)
+    lines = command.described(read)
+    assert lines[0] == "    uint8 a"
+    assert [line.partition(":")[0].strip() for line in lines[1:]] == [
+        "value", "packet", "yours", "mine"
+    ]  # fmt: skip
+    assert "    packet: 0102" in lines
+    none = Finding(what="decode", packet=b"", expected=b"\7", got=b"", **given)
+    assert command.described(none)[-3:] == [
+        "    packet: no bytes", "    yours: 07", "    mine: no bytes"
+    ]  # fmt: skip
+    written = Finding(what="encode", packet=b"\1", expected=b"\7", got=[1], **given)
+    assert not any("packet" in line for line in command.described(written))
+    assert command.described(written)[-1] == "    mine: [1]"
+
+
+def test_long_answers_are_cut():
+    most = command.MOST_CHARACTERS
+    assert command._clip("x" * most) == "x" * most
+    assert command._clip("x" * (most + 1)) == f"{'x' * most}... ({most + 1} characters)"
