@@ -14,20 +14,21 @@ if TYPE_CHECKING:
     from firm_hdl.model import Message
     from firm_hdl.plan import Plan
 
-__all__ = ["add_build", "add_info", "add_plan"]
+__all__ = ["PORT_NAMES", "add_build", "add_info", "add_plan"]
+
+PORT_NAMES = ("records", "flat")
+"""What ``--ports`` takes: `firm_hdl.export.backend.PORTS`, without the imports of that."""
 
 
 def add_build(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl build``."""
-    from firm_hdl.export.backend import PORTS
-
     _add_types(command)
     add_options(command)
     _add_window(command)
     command.add_argument("--out", default="vhdl_out", help="folder to write to (%(default)s)")
     command.add_argument(
         "--ports",
-        choices=PORTS,
+        choices=PORT_NAMES,
         default="records",
         help="whether the VHDL has records, or plain vectors only; default: %(default)s",
     )
@@ -36,6 +37,11 @@ def add_build(command: argparse.ArgumentParser) -> None:
 
 
 def _build(given: argparse.Namespace) -> None:
+    from firm_hdl.frontend import load_all
+
+    library = library_of(given)
+    # A definition that cannot be used is told before Amaranth is imported.
+    load_all(library, given.types)
     from firm_hdl.export.backend import Options
     from firm_hdl.export.build import build
 
@@ -54,7 +60,7 @@ def _build(given: argparse.Namespace) -> None:
     done = build(
         given.types,
         given.out,
-        library=library_of(given),
+        library=library,
         options=Options(
             wire=given.wire,
             bus_bytes=given.bus_bytes,
