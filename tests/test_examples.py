@@ -146,6 +146,8 @@ def test_links_lead_somewhere():
 def test_tests_that_pages_name_exist():
     for page in PAGES:
         for path, name in re.findall(r"`(tests/[\w/]+\.py)(?:::(\w+))?`", page.read_text("utf-8")):
+            if "NAME" in path:
+                continue  # What a reader is to write: tests.test_contributing looks at those.
             assert (ROOT / path).exists(), f"{page.name}: {path}"
             text = (ROOT / path).read_text(encoding="utf-8")
             assert f"def {name}(" in text if name else True, f"{page.name}: {path}::{name}"
