@@ -18,6 +18,7 @@ def faults(text, rule, index=None):
 
 
 CHAIN = "if a:\n    x()\nelif b:\n    y()\nelse:\n    z()"
+T_A, T_AB, T_AC = (f"t.startswith({each!r}):" for each in ("a", "ab", "ac"))
 GUARDS = "def f():\n    if a:\n        return 1\n    if b:\n        return 2\n    return 3"
 HARDWARE = "with m.If(a):\n    m.d.comb += x.eq(1)\nwith m.Elif(b):\n    m.d.comb += x.eq(2)"
 OVERRIDE = "m.d.comb += x.eq(1)\nm.d.comb += z.eq(1)\nwith m.If(a):\n    m.d.comb += x.eq(2)"
@@ -51,6 +52,10 @@ COMMAND = (
             "match a:\n    case A():\n        x()\n    case B():\n        y()",
             [],
         ),
+        # No text begins with both; with the second, it may begin with the first.
+        ("swapped branches", CHAIN.replace("a:", T_AB).replace("b:", T_AC), []),
+        ("swapped branches", CHAIN.replace("a:", T_A).replace("b:", T_AC), 1),
+        ("swapped branches", CHAIN.replace("a:", T_AB).replace("b:", "u.startswith('c'):"), 1),
         ("swapped branches", KINDS, []),
         ("swapped branches", KINDS.replace("k=2", "b=2"), 1),
         (

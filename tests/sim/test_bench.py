@@ -5,6 +5,8 @@ The design is a register in a stream: what comes in in one cycle goes out in the
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 from amaranth.hdl import Cat, Module, Signal
 from amaranth.lib import stream, wiring
@@ -12,6 +14,7 @@ from amaranth.lib.wiring import In, Out
 
 from firm_hdl.sim import DeadlineError, StreamRuleError
 from firm_hdl.sim.bench import WORD_BITS, Bench, Job
+from firm_hdl.sim.harness import Harness
 from firm_hdl.sim.stalls import Stalls
 from tests.sim.components import Relay
 
@@ -247,3 +250,26 @@ def test_taps_are_watched_and_held_up_by_their_gates(stalls, times):
     )
     bench.run(job)
     assert taken["o"] == taken["tap"] == list(zip(times, [7, 8, 9], strict=True))
+
+
+@pytest.mark.parametrize("name", ["a", "b", "c"])
+def test_a_limit_leaves_time_for_the_stalls_of_every_stream(name):
+    harness = SimpleNamespace(bench=SimpleNamespace(names=["a", "b", "c"]))
+    packets, transfers = [b"12345", b"678"], {0: [1, 2], 3: [4]}
+
+    def limit(stalls, packets=packets, transfers=transfers):
+        return Harness._limit(harness, packets, transfers, 2, stalls)
+
+    assert limit(None) == 10_000 + 50 * (8 + 3 + 16)
+    assert limit({name: Stalls.bits("1000")}) == 10_000 + 50 * (8 + 3 + 16) * 4
+    assert limit(None, packets=None) == 10_000 + 50 * (3 + 16)
+    assert limit(None, transfers=None) == 10_000 + 50 * (8 + 16)
+
+
+@pytest.mark.parametrize("name", ["a", "b", "c"])
+def test_no_leaf_is_stalled_where_nothing_can_hold_it_up(name):
+    harness = SimpleNamespace(leaf_ports=["a", "b", "c"])
+    with pytest.raises(ValueError, match=f"^Stream '{name}' can be stalled in a gated harness"):
+        Harness._refuse_leaf_stalls(harness, {name: Stalls.bits("10")})
+    for stalls in (None, {}, {"other": Stalls.bits("10")}, {name: Stalls.bits("1")}):
+        Harness._refuse_leaf_stalls(harness, stalls)

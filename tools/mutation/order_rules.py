@@ -166,7 +166,27 @@ def _disjoint(one: ast.expr, two: ast.expr) -> bool:
     calls = [each for each in (one, two) if isinstance(each, ast.Call) and len(each.args) == 2]
     if len(calls) == 2 and all(ast.unparse(each.func) == "isinstance" for each in calls):
         return ast.unparse(calls[0].args[0]) == ast.unparse(calls[1].args[0])
+    if _starts_otherwise(one, two):
+        return True
     return ast.unparse(one) in (f"not {ast.unparse(two)}", ast.unparse(two))
+
+
+def _starts_otherwise(one: ast.expr, two: ast.expr) -> bool:
+    """Tell two beginnings that no text has both."""
+    receivers, begins = [], []
+    for each in (one, two):
+        if not (
+            isinstance(each, ast.Call)
+            and isinstance(each.func, ast.Attribute)
+            and each.func.attr == "startswith"
+            and len(each.args) == 1
+            and isinstance(each.args[0], ast.Constant)
+        ):
+            return False
+        receivers.append(ast.unparse(each.func.value))
+        begins.append(str(each.args[0].value))
+    short, long = sorted(begins, key=len)
+    return receivers[0] == receivers[1] and not long.startswith(short)
 
 
 def _disjoint_cases(one: ast.match_case, two: ast.match_case) -> bool:
