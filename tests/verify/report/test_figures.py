@@ -12,7 +12,7 @@ from firm_hdl.verify.report.prose import slowest_suite, trends_by_suite
 from firm_hdl.verify.report.stats import correlate, curve_of, share_within
 from firm_hdl.verify.report.summary import summarise
 from firm_hdl.verify.report.svg import number
-from firm_hdl.verify.report.tables import Cell, Table
+from firm_hdl.verify.report.tables import Table, TableCell
 from firm_hdl.verify.results.file import Results
 from firm_hdl.verify.results.records import Seconds
 from tests.verify.report.samples import a_record, a_test
@@ -28,7 +28,7 @@ def timed(name, took, **more):
 
 
 def test_a_table_has_numbers_on_the_right_and_no_marks():
-    rows = ((Cell("a|b"), Cell("1", 1)), (Cell("*c*"), Cell("2", 2)))
+    rows = ((TableCell("a|b"), TableCell("1", 1)), (TableCell("*c*"), TableCell("2", 2)))
     assert _table(Table(("Type", "Leaves#"), rows)).splitlines() == [
         "| Type | Leaves |",
         "| --- | ---: |",
