@@ -9,11 +9,11 @@ from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Spec, Value
 from firm_hdl.vhdl.body import Body
 from firm_hdl.vhdl.declare import declare, enumeration, initial_value
 from firm_hdl.vhdl.expr import Declared, Values
-from firm_hdl.vhdl.graph import Graph
 from firm_hdl.vhdl.instance import component, foreign_instance, instance
 from firm_hdl.vhdl.memory import MemoryText, memory_id
 from firm_hdl.vhdl.messages import message
 from firm_hdl.vhdl.package import PACKAGE_NAME
+from firm_hdl.vhdl.passes import graph_of
 from firm_hdl.vhdl.process import Statements
 from firm_hdl.vhdl.registers import Registers
 from firm_hdl.vhdl.text import wrap
@@ -64,7 +64,7 @@ class ModuleWriter:
         self._port_names = port_names
         self._modules = modules
         self._entity = entities[module.name]
-        self._graph = Graph(module, modules=modules)
+        self._graph = graph_of(module, modules)
         self._names = declare(
             self._graph,
             entity=self._entity,
