@@ -1,7 +1,7 @@
-"""What ROS itself says of an interface: its sums and hashes, and the text of an example.
+"""What ROS's own tools compute for an interface: md5 sum, type hash, and the text of an example.
 
-All of it is computed from the model, so that it can be compared with what ROS's own tools say of
-the same definition.
+All of it is computed from the model. So it can be compared with the output of ROS's tools for the
+same definition.
 """
 
 from __future__ import annotations

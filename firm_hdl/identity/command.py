@@ -1,4 +1,4 @@
-"""What the commands ``md5``, ``hash`` and ``proto`` print."""
+"""The output of the commands ``md5``, ``hash`` and ``proto``."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ __all__ = ["hash_lines", "load_interfaces", "md5_lines", "proto_texts"]
 
 
 def md5_lines(library: Library, names: Iterable[str]) -> tuple[list[str], DefinitionError | None]:
-    """List md5 sums, each with the name of its type; an action's are those of its messages.
+    """List md5 sums, each with the name of its type. An action gives those of its messages.
 
     Returns
     -------
     tuple of list and DefinitionError or None
-        The lines of good types, and what is wrong with the others.
+        The lines of the types that could be loaded, and the errors of the others.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def hash_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defin
     Returns
     -------
     tuple of list and DefinitionError or None
-        The lines of good types, and what is wrong with the others, or why they have no hashes.
+        The lines of the types that have a hash, and the errors of the others.
 
     Raises
     ------
@@ -69,13 +69,13 @@ def hash_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defin
 def proto_texts(
     library: Library, names: Iterable[str], *, quotes: bool
 ) -> tuple[dict[str, str], DefinitionError | None]:
-    """Give the texts of `proto` for types, each with the line end behind it.
+    """Give the texts of `proto` for types, each with its last line end.
 
     Returns
     -------
     tuple of dict and DefinitionError or None
-        The texts of good types, by name, and what is wrong with the others, or why an example of
-        theirs would be too long.
+        The texts by name of type, and the errors of the other types. A text that would be too long
+        is an error, too.
     """
     texts: dict[str, str] = {}
 
@@ -111,14 +111,15 @@ def load_interfaces(
     ----------
     library : Library
     names : iterable of str
-        As for `Library.interface`; also the services that ROS 2 makes of an action.
+        As for `Library.interface`; also the services that ROS 2 derives from an action.
     found : callable or None
-        Called with each, good ones among wrong ones included. It may raise DefinitionError, too.
+        Called with each interface that was loaded, also if others fail. It may raise
+        DefinitionError, too.
 
     Raises
     ------
     DefinitionError
-        With the problems of all of them.
+        With the errors of all names.
     """
     interfaces: dict[tuple[type, str], Interface] = {}
     problems: dict[str, Diagnostic] = {}

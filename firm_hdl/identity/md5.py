@@ -1,9 +1,8 @@
-"""The md5 sum by which ROS 1 tells one version of a type from another.
+"""The md5 sum by which ROS 1 distinguishes versions of a type.
 
-genmsg computes it over the definition without comments, constants first, in which each message
-type is replaced by its own sum; a service's is over the request's text and the response's, with
-nothing between them. genmsg 0.6.0, ``gentools.compute_md5``, is the reference; ROS 2 has no such
-sums.
+genmsg computes the sum over the definition without comments, constants first, in which each message
+type is replaced by its own sum. For a service, the texts of request and response are concatenated.
+genmsg 0.6.0, ``gentools.compute_md5``, is the reference. ROS 2 has no md5 sums.
 """
 
 from __future__ import annotations
@@ -49,8 +48,8 @@ def _text(message: Message, sums: dict[str, str]) -> str:
     lines = [f"{item.type} {item.name}={item.text}" for item in message.constants]
     for field in message.fields:
         kind = field.element_type
-        # The builtin times have no package, and stand for themselves.
+        # The builtin types `time` and `duration` have no package, and are written by name.
         is_nested = isinstance(kind, Message) and kind.package != ""
         lines.append(f"{sums[str(kind)] if is_nested else field.type_text} {field.name}")
-    # So does genmsg, which matters if the last line is a text that ends in blanks.
+    # genmsg strips the text, too. It matters if the last line is a string that ends in blanks.
     return "\n".join(lines).strip()

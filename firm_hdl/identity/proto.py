@@ -1,7 +1,7 @@
-"""An example of a message as ROS's own tools print it, for people to fill in.
+"""An example of a message as ROS's own tools print it, to be filled in by the user.
 
-That of ROS 2 is ``ros2 interface proto``, that of ROS 1 is ``rosmsg-proto``. Either shows a service
-by its request, and we show an action by its goal, as ROS 2 does.
+The tool is ``ros2 interface proto`` in ROS 2 and ``rosmsg-proto`` in ROS 1. For a service, both
+print the request. For an action, the goal is printed, as ROS 2 does.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ def proto(interface: Interface, *, quotes: bool = True) -> str:
     ----------
     interface : Message, Service or Action
     quotes : bool
-        Whether double quotes enclose the text, as both tools have it unless told otherwise.
+        Whether double quotes enclose the text, which is the default of both tools.
 
     Returns
     -------
     str
-        The text without the last line end, which is that of whoever prints it.
+        The text without the last line end.
 
     Raises
     ------
     TooLargeError
-        If the text would be too long for anybody.
+        If the text would be too long.
     """
     match interface:
         case Message():

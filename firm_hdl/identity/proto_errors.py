@@ -1,4 +1,4 @@
-"""What is wrong with a type of which no example can be printed."""
+"""The error of a type whose example cannot be printed."""
 
 from __future__ import annotations
 
@@ -6,4 +6,4 @@ __all__ = ["TooLargeError"]
 
 
 class TooLargeError(ValueError):
-    """An example that would be too long; the text says of what."""
+    """An example would be too long; the message names the type."""

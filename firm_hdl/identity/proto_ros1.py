@@ -1,9 +1,10 @@
 """An example of a message as ``rosmsg-proto`` prints it.
 
-It is the YAML of a new message, with one element in every sequence. Which parts stand in braces and
-brackets depends on what was seen before: the tool starts with a line for each field, and changes
-over, for the rest of the text, at the first message with more than four fields or the first fixed
-array of more than four elements. What encloses them has not been decided then, so it changes, too.
+The example is the YAML of a new message, with one element in every sequence. Whether YAML's block
+style or flow style (braces and brackets) is used depends on the parts before: the tool starts with
+block style. At the first message with more than four fields, or the first fixed array of more than
+four elements, it leaves the choice to PyYAML for the rest of the text. That includes the enclosing
+parts, whose style is not decided yet at that point.
 """
 
 from __future__ import annotations
@@ -29,20 +30,20 @@ from firm_hdl.model import (
 
 __all__ = ["ros1_proto"]
 
-# From here on PyYAML takes minutes.
-_MOST_VALUES = 1_000_000
-# PyYAML calls itself for each level.
-_MOST_LEVELS = 100
+# With more, PyYAML takes minutes.
+_MAX_VALUES = 1_000_000
+# PyYAML recurses for each level.
+_MAX_LEVELS = 100
 
-# What rosmsg counts as long.
-_SHORT = 4
+# Largest number of fields or elements that rosmsg writes in block style.
+_MAX_BLOCK = 4
 
 _TAG = "tag:yaml.org,2002:"
 
-# What genpy, whose attributes are printed, adds an underscore to.
+# Names to which genpy, whose attributes are printed, adds an underscore.
 _RESERVED = frozenset({*keyword.kwlist, "self"})
 
-# Bytes to Python, which it holds as one value.
+# Element types of arrays that are `bytes` in Python, and so one value.
 _PACKED = frozenset({"uint8", "char"})
 
 
@@ -51,10 +52,10 @@ def ros1_proto(message: Message) -> str:
     values: dict[str, int] = {}
     for part in closure([message]):
         values[part.name] = sum(1 + _values(item.type, values) for item in part.fields)
-        if values[part.name] > _MOST_VALUES:
+        if values[part.name] > _MAX_VALUES:
             raise TooLargeError(
                 f"{part.name} has an example of {values[part.name]} values, which is more than "
-                f"{_MOST_VALUES}"
+                f"{_MAX_VALUES}"
             )
     node = _Writer(name=message.name).message(message, 1)
     return yaml.serialize(node, Dumper=yaml.SafeDumper).rstrip("\n")
@@ -66,7 +67,7 @@ def _values(kind: FieldType, values: dict[str, int]) -> int:
         case Message():
             return values[kind.name]
         case Array(count=count) if _is_packed(kind):
-            # The text of a long one takes PyYAML time, too.
+            # PyYAML takes time for the text of a long array of bytes, too.
             return 1 + count // 16
         case Array(element=element, count=count):
             return count * (1 + _values(element, values))
@@ -81,17 +82,18 @@ class _Writer:
     """Builds YAML nodes in the order in which rosmsg does, which decides their style."""
 
     name: str
-    # `False`: one line for each; `None`: what PyYAML finds best.
+    # `flow_style` of PyYAML. `False`: one line for each item; `None`: PyYAML's own choice.
     style: bool | None = False
 
     def message(self, message: Message, level: int) -> yaml.MappingNode:
-        if level > _MOST_LEVELS:
-            raise TooLargeError(f"{self.name} has an example of more than {_MOST_LEVELS} levels")
+        if level > _MAX_LEVELS:
+            raise TooLargeError(f"{self.name} has an example of more than {_MAX_LEVELS} levels")
         has_long_list = any(
-            isinstance(item.type, Array) and item.type.count > _SHORT and not _is_packed(item.type)
+            item.type.count > _MAX_BLOCK and not _is_packed(item.type)
             for item in message.fields
+            if isinstance(item.type, Array)
         )
-        if has_long_list or len(message.fields) > _SHORT:
+        if has_long_list or len(message.fields) > _MAX_BLOCK:
             self.style = None
         return self.mapping([(item.name, item) for item in message.fields], level)
 
@@ -114,10 +116,10 @@ class _Writer:
             case Array(element=element, count=count):
                 return self.sequence([self.value(element, level) for _ in range(count)])
             case Sequence(element=Message(name="time" | "duration") as element):
-                # rosmsg has an element of the message that bears the name, instead.
+                # rosmsg writes an element of the message `Time` or `Duration` instead.
                 return self.sequence([self.mapping([("data", _field(element))], level + 1)])
             case Sequence(element=element):
-                # It takes 0 for any number, a float included.
+                # rosmsg writes 0 for any number, also for a float.
                 number = isinstance(element, Primitive) and element.kind == "float"
                 return self.sequence([self.value(_INTEGER if number else element, level)])
             case String():

@@ -1,8 +1,8 @@
 """An example of a message as ``ros2 interface proto`` prints it.
 
-It is the YAML of a new message: fixed arrays are written out, sequences are empty, defaults are
-applied. The text of each type is put together once, from those of its parts, so that an array of
-millions costs no more than its text.
+The example is the YAML of a new message: fixed arrays are written out, sequences are empty,
+defaults are applied. The text of each type is joined once from the texts of its parts, so that an
+array of millions costs no more than its text.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from firm_hdl.model import Array, Field, Message, Primitive, Sequence, String, V
 
 __all__ = ["ros2_proto"]
 
-# The example of an array of 8 MiB fits several times; that of arrays of such arrays does not.
-_MOST_CHARACTERS = 1 << 28
+# Several arrays of 8 MiB fit, but not an array of such arrays.
+_MAX_CHARACTERS = 1 << 28
 
 _LINE = re.compile(r"^(?=.)", re.MULTILINE)
 
@@ -40,7 +40,7 @@ def ros2_proto(message: Message) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Size:
-    """Of a text: what is indented gets two characters more in each line."""
+    """Size of a text. Indentation adds two characters to each line."""
 
     characters: int
     lines: int
@@ -59,10 +59,10 @@ def _size(message: Message, sizes: dict[str, _Size]) -> _Size:
         each = _field_size(item, sizes)
         characters += each.characters
         lines += each.lines
-    if characters > _MOST_CHARACTERS:
+    if characters > _MAX_CHARACTERS:
         raise TooLargeError(
             f"{message.name} has an example of {characters} characters, which is more than "
-            f"{_MOST_CHARACTERS}"
+            f"{_MAX_CHARACTERS}"
         )
     return _Size(characters=characters, lines=lines) if lines else _Size(characters=3, lines=1)
 
@@ -96,7 +96,7 @@ def _field(item: Field, texts: dict[str, str]) -> str:
         case Message():
             return f"{_key(item)}\n{_indented(texts[item.type.name])}"
         case Array(element=Message() as element, count=count):
-            # A list stands no deeper than its key, and its dashes are the indentation.
+            # A list is not indented under its key; the dash and blank are the indentation.
             entry = texts[element.name]
             return f"{_key(item)}\n" + f"- {_indented(entry)[2:]}" * count
         case Array(element=element, count=count) if item.default is None:
@@ -135,7 +135,7 @@ def _initial(kind: Any) -> Any:
 
 
 def _converted(value: Value, kind: Any) -> Any:
-    """Turn a value into that of rosidl_generator_py's class, as rosidl_runtime_py prints it."""
+    """Convert a value to Python's type in rosidl_generator_py, as rosidl_runtime_py prints it."""
     if isinstance(kind, Primitive) and not isinstance(value, str | bytes | tuple):
         if kind.name == "byte" or _is_character(kind):
             return chr(int(value) & 0xFF if kind.name == "byte" else int(value))
@@ -145,12 +145,12 @@ def _converted(value: Value, kind: Any) -> Any:
 
 
 def _is_character(kind: Primitive) -> bool:
-    # The ``char`` of a ``.msg`` is a number to rosidl, those of an IDL are characters.
+    # In rosidl, the ``char`` of a ``.msg`` is a number; those of IDL are characters.
     return kind.name == "wchar" or (kind.name == "char" and kind.signed)
 
 
 def _listed(value: Any, kind: Any) -> Any:
-    """Round as an array of float32 does; a single float32 is a Python float there."""
+    """Round as NumPy's array of float32 does; a single float32 is a Python float in ROS 2."""
     if not isinstance(kind, Primitive) or kind.name != "float32":
         return value
     try:

@@ -1,8 +1,8 @@
 """The type hash of ROS 2, version RIHS01.
 
-REP 2011: SHA-256 of a type's description as JSON, which lists the fields with their types, and the
-descriptions of all types that it refers to, sorted by name. Default values, constants and comments
-do not count. rosidl_generator_type_description is the reference (iron and later);
+REP 2011: SHA-256 of a type's description as JSON. The description lists the fields with their
+types, and the descriptions of all referenced types, sorted by name. Default values, constants and
+comments do not count. rosidl_generator_type_description is the reference (iron and later);
 ``type_description_interfaces/msg/FieldType`` fixes the numbers.
 """
 
@@ -40,10 +40,10 @@ _TYPE_IDS = {
 }
 # ``char`` of a ``.msg`` is a uint8 to rosidl, and ``char`` of an IDL is a character.
 _CHAR_OF_IDL = 13
-_TEXT, _BOUNDED_TEXT = 17, 21  # One more for wide ones.
+_STRING, _BOUNDED_STRING = 17, 21  # Plus one for `wstring`.
 _ARRAY, _BOUNDED_SEQUENCE, _UNBOUNDED_SEQUENCE = 48, 96, 144
 
-# rosidl gives an empty message one member, which stands in no definition.
+# The member that rosidl adds to an empty message.
 _EMPTY = (EMPTY_MEMBER, "uint8")
 
 _Member: TypeAlias = "tuple[str, FieldType | Service]"
@@ -67,13 +67,13 @@ def type_hash(interface: Interface) -> str:
 
 
 def type_description(interface: Interface) -> dict[str, Any]:
-    """Describe a type as ``type_description_interfaces/msg/TypeDescription`` does, for hashing.
+    """Describe a type in the form of ``type_description_interfaces/msg/TypeDescription``.
 
     Raises
     ------
     ValueError
-        If the definition is of ROS 1; if it is, or has, a service without an event message, which
-        services have from iron on, as they have hashes.
+        If the definition is of ROS 1. If it is or has a service without an event message: services
+        have event messages and hashes from iron on.
     """
     if interface.dialect != "ros2":
         raise ValueError(f"Only types of ROS 2 have type hashes, and {interface} is of ROS 1")
@@ -155,14 +155,14 @@ def _element(kind: Any, offset: int, capacity: int) -> dict[str, Any]:
         case Message() | Service():
             return _described(offset + _NESTED_TYPE, capacity, nested=kind.name)
         case _:
-            number = (_TEXT if kind.bound is None else _BOUNDED_TEXT) + kind.wide
+            number = (_STRING if kind.bound is None else _BOUNDED_STRING) + kind.wide
             return _described(offset + number, capacity, text=kind.bound or 0)
 
 
 def _described(
     number: int, capacity: int = 0, *, text: int = 0, nested: str = ""
 ) -> dict[str, Any]:
-    # The order of the keys counts.
+    # The hash depends on the order of the keys.
     return {
         "type_id": number,
         "capacity": capacity,

@@ -1,4 +1,4 @@
-"""Figures of message types, by which to explain what is hard about them."""
+"""Figures of message types that explain how hard a type is to convert."""
 
 from __future__ import annotations
 

@@ -1,12 +1,12 @@
-"""What can be said of a message type without any message: how deep, how large, how regular.
+"""Static figures of a message type: how deep, how large and how regular it is.
 
 The paper explains test results by such figures. Each is an attribute of a type that follows from
-those of its parts, computed once per type (and per place modulo 8 that the type may start at, for
-what depends on that); nothing is unrolled, and nothing calls itself, so that neither arrays of
-millions nor deep nesting cost anything.
+those of its parts. It is computed once per type; sizes and alignment once per type and offset
+modulo 8 at which the type may start. Nothing is unrolled and nothing recurses, so that neither
+arrays of millions of elements nor deep nesting take long.
 
-That sizes are found by making everything as short, or as long, as it may be holds on any wire: what
-starts later never ends earlier.
+The shortest message is the one in which every part is as short as possible, and the longest
+likewise. This holds on any wire, because a part that starts later never ends earlier.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from firm_hdl.wire import residues as rs
 
 __all__ = ["Analyses", "Metrics", "metrics_of"]
 
-# Python itself refuses to print numbers of some thousand digits.
-_MOST_LEAVES = 10**100
+# Python refuses to print numbers of some thousand digits.
+_MAX_LEAVES = 10**100
 
 _LENGTH_BYTES = 4
 _RESIDUES = range(rs.MODULUS)
@@ -37,34 +37,34 @@ class Metrics:
     name : str
     wire : "ros1" or "cdr"
     depth : int
-        Levels of messages; 1 if there is no message in it.
+        Levels of messages; 1 if the type has no message fields.
     types : int
         Different message types in it, itself included.
     constants : int
-        Its own ones.
+        Constants of the type itself.
     fields : int
-        Its own ones.
+        Fields of the type itself.
     leaves : int
-        Fields of all levels that are no messages. An array or a sequence counts as one element,
+        Fields of all levels that are not messages. An array or a sequence counts as one element,
         and so does a message without fields.
     fixed_leaves, dynamic_leaves : int
-        Those that have the same number of bytes in each message, and the others: strings,
-        sequences, and all that is in sequences of messages.
+        Leaves that have the same number of bytes in each message, and the others: strings,
+        sequences, and all leaves in sequences of messages.
     min_bytes : int or None
         Size of the shortest message, encapsulation header included, as encoders write it.
     max_bytes : int or None
-        Size of the longest message; `None` if there is none.
+        Size of the longest message; `None` if sizes are not limited.
     aligned, padded, shifting : int or None
-        Places on the wire, lengths of sequences and strings included, which never have padding in
-        front, or the same in each message (but some), or padding that differs.
+        Number of values on the wire (lengths of sequences and strings included) that never have
+        padding in front, that have the same padding in each message, and whose padding differs.
     features : tuple of str
-        Keys of `FEATURES` that occur in it or in any message in it.
+        Keys of `FEATURES` that occur in the type or in any message in it.
     definition_bytes : int
         Size of the text that defines the type; that of the whole file for a message of a service or
         an action.
     unsized : str
-        Why there are no sizes and no places: the type has a field that no wire has
-        (:func:`firm_hdl.wire.refusals`). Empty for all others.
+        Why sizes and alignment are `None`: the type has a field that no wire format has
+        (:func:`firm_hdl.wire.refusals`). Empty for all other types.
     """
 
     name: str
@@ -93,23 +93,23 @@ def metrics_of(message: Message, wire: Wire | None = None) -> Metrics:
 
 @dataclass(slots=True, kw_only=True)
 class _Type:
-    """What is known of a type, wherever it starts.
+    """Attributes of a type, for each residue of the offset where it starts.
 
     Attributes
     ----------
     after : list of int
         Residues where it may end, by the residue where it starts.
-    least : list of int
+    min_bytes : list of int
         Bytes of the shortest value, by the residue where it starts.
-    most : list of int or None
-        Those of the longest.
+    max_bytes : list of int or None
+        Bytes of the longest value, likewise.
     fixed, dynamic : int
-        Leaves.
+        Number of leaves.
     """
 
     after: list[int]
-    least: list[int]
-    most: list[int] | None
+    min_bytes: list[int]
+    max_bytes: list[int] | None
     fixed: int
     dynamic: int
     features: frozenset[str]
@@ -121,7 +121,7 @@ _Counts = tuple[int, int, int]
 
 @dataclass(slots=True)
 class Analyses:
-    """Analyses of many types on one wire; what they share is analysed once."""
+    """Analyses of many types on one wire; a type that several of them use is analysed once."""
 
     wire: Wire
     _rules: WireRules = field(init=False)
@@ -137,9 +137,9 @@ class Analyses:
         Raises
         ------
         DefinitionError
-            If the figures have so many digits that nobody could read them.
+            If the figures have too many digits to be printed.
         """
-        if message.leaf_count > _MOST_LEAVES:
+        if message.leaf_count > _MAX_LEAVES:
             problem = f"{message.name} has more than 10^100 fields when it is written out"
             raise DefinitionError([Diagnostic(message=problem)])
         parts = closure([message])
@@ -172,22 +172,22 @@ class Analyses:
 
     def _sizes(self, message: Message) -> tuple[int | None, ...]:
         known, header = self._types[message], self._rules.header_bytes
-        most = None if known.most is None else header + known.most[0]
-        return header + known.least[0], most, *self._alignment(message)
+        largest = None if known.max_bytes is None else header + known.max_bytes[0]
+        return header + known.min_bytes[0], largest, *self._alignment(message)
 
-    # Attributes of a type from those of its parts, which are known.
+    # The attributes of a type are computed from those of its parts, which are known by then.
 
     def _analyse(self, message: Message) -> _Type:
         kinds = [item.type for item in message.fields]
         parts = {child: self._types[child].features for child in message.children}
         after = [self._after_all(kinds, rs.single(r)) for r in _RESIDUES]
-        least = [self._size_all(kinds, r, False) for r in _RESIDUES]
-        most = [self._size_all(kinds, r, True) for r in _RESIDUES]
+        shortest = [self._size_all(kinds, r, False) for r in _RESIDUES]
+        longest = [self._size_all(kinds, r, True) for r in _RESIDUES]
         leaves = [self._leaves(kind) for kind in kinds] or [(1, 0)]
         return _Type(
             after=after,
-            least=[size for size in least if size is not None],
-            most=[size for size in most if size is not None] or None,
+            min_bytes=[size for size in shortest if size is not None],
+            max_bytes=[size for size in longest if size is not None] or None,
             fixed=sum(fixed for fixed, _ in leaves),
             dynamic=sum(dynamic for _, dynamic in leaves),
             features=features_of(message, parts),
@@ -225,7 +225,8 @@ class Analyses:
             case Primitive():
                 return -start % self._align(kind.bytes) + kind.bytes
             case Message():
-                sizes = self._types[kind].most if longest else self._types[kind].least
+                attributes = self._types[kind]
+                sizes = attributes.max_bytes if longest else attributes.min_bytes
                 return None if sizes is None else sizes[start]
             case String(bound=bound, wide=wide):
                 if longest and bound is None:
@@ -251,7 +252,7 @@ class Analyses:
         return min(size, self._rules.max_align)
 
     def _repeated(self, kind: FieldType, start: int, count: int, longest: bool) -> int | None:
-        """Add up elements; where they start recurs modulo 8, so few are looked at."""
+        """Add up the sizes of elements; their start recurs modulo 8, so few are computed."""
         seen: dict[int, tuple[int, int]] = {}
         at, done = start, 0
         while done < count:
@@ -308,17 +309,17 @@ class Analyses:
             if key in self._places:
                 stack.pop()
                 continue
-            own, parts = self._own_places(key)
+            counts, parts = self._direct_places(key)
             missing = [part for part in parts if part not in self._places]
             stack += missing
             if not missing:
                 for part in parts:
-                    own = [a + b for a, b in zip(own, self._places[part], strict=True)]
-                self._places[stack.pop()] = own[0], own[1], own[2]
+                    counts = [a + b for a, b in zip(counts, self._places[part], strict=True)]
+                self._places[stack.pop()] = counts[0], counts[1], counts[2]
         return self._places[root]
 
-    def _own_places(self, key: _Key) -> tuple[list[int], list[_Key]]:
-        """Count the places that are a type's own; list the messages in it and where they start."""
+    def _direct_places(self, key: _Key) -> tuple[list[int], list[_Key]]:
+        """Count the values of a type without its message fields; list these and their starts."""
         message, at = key
         counts = [0, 0, 0]
         parts: list[_Key] = []
@@ -351,7 +352,7 @@ class Analyses:
         return counts, parts
 
     def _entry(self, element: Primitive | String | Message, at: int, count: int | None) -> int:
-        """Return where some element may start, padding in front of it not yet taken."""
+        """Return the offsets modulo 8 where an element may start, before its padding."""
         if isinstance(element, Primitive):
-            return at  # The others follow without padding.
+            return at  # Later elements follow without padding.
         return rs.repeat(at, lambda now: self._after(element, now), count)[0]

@@ -1,4 +1,4 @@
-"""What the command ``metrics`` prints."""
+"""The output of the command ``metrics``."""
 
 from __future__ import annotations
 
@@ -25,24 +25,24 @@ def metrics_text(
     *,
     bar: bool,
 ) -> tuple[str, DefinitionError | None]:
-    """Write down the figures of types; those of a service or an action are of its messages.
+    """Write the figures of types. A service or an action gives those of its messages.
 
     Parameters
     ----------
     library : Library
     names : iterable of str or None
-        `None`: all that the library has.
+        `None`: all types of the library.
     form : str
         A key of `FORMATS`.
     wire : "ros1", "cdr" or None
-        `None`: that of the library's dialect.
+        `None`: the wire format of the library's dialect.
     bar : bool
-        Whether to show a progress bar, where a person can see it.
+        Whether to show a progress bar if standard error is a terminal.
 
     Returns
     -------
     tuple of str and DefinitionError or None
-        The text, and what is wrong with the types that are not in it.
+        The text, and the errors of the types that are not in it.
     """
     analyses = Analyses(wire or ("ros1" if library.dialect == "ros1" else "cdr"))
     rows: dict[str, Metrics] = {}

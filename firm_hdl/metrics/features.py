@@ -1,4 +1,4 @@
-"""Which parts of the language a message type uses."""
+"""The features of the definition language that a message type uses."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ FEATURES: dict[str, str] = {
     "bounded_sequences": "a sequence with a bound",
     "nested_sequences": "a sequence of messages that have sequences themselves",
 }
-"""Every feature, and what has it."""
+"""Every feature, with the construct that has it."""
 
 
 def features_of(message: Message, parts: Mapping[Message, frozenset[str]]) -> frozenset[str]:
-    """List what a type uses, given what the messages in it use."""
+    """List the features of a type, given those of the messages in it."""
     found = set().union(*parts.values())
     if message.constants:
         found.add("constants")

@@ -14,7 +14,7 @@ __all__ = ["FORMATS", "report"]
 
 _COLUMNS = tuple(item.name for item in fields(Metrics))
 
-# Columns of the table, which leaves out what is quickly seen elsewhere, and their headings.
+# Columns of the table with their headings. The table leaves out some figures that are easy to find.
 _HEADINGS = {
     "name": "name",
     "depth": "depth",
@@ -32,7 +32,7 @@ _HEADINGS = {
 
 
 def report(rows: Iterable[Metrics], form: str) -> str:
-    """Write figures down.
+    """Write figures in one of the formats.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def _csv(rows: list[Metrics]) -> str:
     writer.writerow(_COLUMNS)
     for row in rows:
         values = asdict(row) | {"features": " ".join(row.features)}
-        # An empty cell for what has no maximum, or no size at all.
+        # `None` gives an empty cell: the type has no maximum, or no size at all.
         writer.writerow([values[name] for name in _COLUMNS])
     return text.getvalue()
 
@@ -80,4 +80,4 @@ def _json(rows: list[Metrics]) -> str:
 
 
 FORMATS: dict[str, Callable[[list[Metrics]], str]] = {"table": _table, "csv": _csv, "json": _json}
-"""How figures can be written down."""
+"""The writers of figures, by format."""

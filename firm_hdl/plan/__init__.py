@@ -1,4 +1,4 @@
-"""The plan of a converter: what it does in each cycle, decided before there is any circuit."""
+"""The plan of a converter: its work in each cycle, decided before any circuit is built."""
 
 from firm_hdl.plan.build import build_plan
 from firm_hdl.plan.check import check

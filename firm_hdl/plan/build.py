@@ -1,9 +1,9 @@
-"""From a layout and a bus width to a plan.
+"""Build a plan from a layout and a bus width.
 
-The layout is flattened into segments, runs of bytes whose map is static, which end where a length
-decides what follows, where a loop starts or ends, or where padding is only known in the circuit.
-Segments are cut into steps (see :mod:`firm_hdl.plan.cut`), and a run of items is started in the
-very step that holds its length wherever the window has room for both.
+The layout is flattened into segments: bytes in a row whose map is static. A segment ends where a
+length decides what follows, where a loop starts or ends, or where padding is known in the circuit
+only. Segments are cut into steps (see :mod:`firm_hdl.plan.cut`). The step that holds a length also
+takes the first items of its run if the window has room for both.
 """
 
 from __future__ import annotations
@@ -58,17 +58,17 @@ def build_plan(
     bus_bytes : int
         Width of the packet stream: 1, 2, 4, 8, 16, 32 or 64 bytes.
     max_message_bytes : int
-        Packets that promise more are refused; at most 2**32 - 1.
+        A packet whose lengths promise more is an error; at most 2**32 - 1.
     window_words : 1 or 2
-        Bus words that a step may take. With 2, the step that holds a length takes the first items
-        too, and remainders need no step of their own: about one cycle less for each string or
-        sequence, for a wider shifter and a longer path through it. Messages of fixed size always
-        have 2.
+        Bus words that a step may take. With 2, the step that holds a length also takes the first
+        items, and remainders need no step of their own. This saves about one cycle for each string
+        or sequence, and costs a wider shifter and a longer path through it. Messages of fixed size
+        always have 2.
 
     Raises
     ------
     TypeError
-        If a parameter is no integer.
+        If a parameter is not an integer.
     ValueError
         If a parameter is out of range, or no message of the type fits `max_message_bytes`.
     """
@@ -78,7 +78,7 @@ def build_plan(
         raise TypeError(f"Window must have an integer number of words, not {window_words!r}")
     if window_words not in (1, 2):
         raise ValueError(f"Window must have 1 or 2 bus words, not {window_words!r}")
-    # Where no length is counted, a wide window costs no time, and the bus is kept busy with it.
+    # Without lengths, a wide window does not slow the circuit down, and keeps the bus busy.
     if not any(isinstance(n, RunNode | LoopNode) and n.count is None for n in walk(layout.nodes)):
         window_words = 2
     builder = _Builder(layout, bus_bytes, max_message_bytes, window_words * bus_bytes)
@@ -100,10 +100,10 @@ def build_plan(
 
 @dataclass(slots=True, kw_only=True)
 class _Mark:
-    """A place between steps where a loop starts or ends, or a constant counter is loaded.
+    """A position between steps where a loop starts or ends, or a constant counter is loaded.
 
     `kind` is "enter" (load `counter` with `count`), "loop" (the body of loop `counter` starts) or
-    "end" (it ends).
+    "end" (the body ends).
     """
 
     kind: str
@@ -113,7 +113,7 @@ class _Mark:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Count:
-    """A number of elements that a length says: the leaf, and the largest legal value."""
+    """A number of elements that a length decides: its leaf, and its largest legal value."""
 
     length: int
     limit: int
@@ -128,12 +128,12 @@ class _Builder:
     leaves: list[Leaf] = field(default_factory=list)
     runs: list[Run] = field(default_factory=list)
     levels: int = 0
-    # Steps and marks in wire order. Exits and bodies are filled in by `link`, when all is known.
+    # Steps and marks in wire order. `link` fills in exits and bodies at the end.
     program: list[Step | _Mark] = field(default_factory=list)
     segment: list[Slice] = field(default_factory=list)
     segment_align: int = 1
     depth: int = 0
-    # Index of the step at each place of the program that holds one.
+    # Index of the step at each place of the program that is a step.
     numbers: dict[int, int] = field(default_factory=dict)
 
     def build(self) -> tuple[Step, ...]:
@@ -192,7 +192,7 @@ class _Builder:
 
     def limit(self, bound: int | None, item_bytes: int, end_bytes: int = 0) -> int:
         """Return the largest count that a legal message can have."""
-        # Elements without bytes still take a transfer each, so they count as one byte.
+        # An element without bytes still takes a transfer, so it counts as one byte.
         left = self.max_message_bytes - self.layout.min_bytes - end_bytes
         room = max(0, left // max(1, item_bytes))
         return room if bound is None else min(bound, room)
@@ -239,8 +239,8 @@ class _Builder:
     def item_loop(self, node: RunNode, items: int, count: int | _Count) -> None:
         """Plan items wider than the bus: a loop over single items, some steps each."""
         level = self.enter_loop(count)
-        # Padding is in front of the first item only, but then it is there for all: items keep their
-        # own alignment. The gap of the layout was found for the first one, so it cannot be static.
+        # Only the first item has padding, but the loop may align each item, as later items are
+        # aligned already. The gap of the layout is that of the first item, so it cannot be static.
         if node.item_gap.bytes is None or node.item_gap.bytes:
             self.segment_align = node.item_gap.align
         self.value(items, node.item.bytes, level=level)
@@ -280,7 +280,7 @@ class _Builder:
     # Segments to steps.
 
     def run(self, node: RunNode, begin: BeginRun | BeginArray) -> None:
-        """End the segment with the start of a run, and add the run's body if it may need one."""
+        """End the segment with the start of a run, and add the run's body if it may be needed."""
         at_once = self.bus_bytes + (1 if self.runs[begin.run].terminated else 0)
         body = RunStep(run=begin.run, head=min(at_once, self.window_bytes), exits=_NOWHERE)
         if isinstance(begin, BeginArray) and not self.segment:
@@ -302,7 +302,7 @@ class _Builder:
         return align
 
     def flush(self, begin: Begin | None = None) -> None:
-        """Turn the segment into steps, the last of which starts `begin`."""
+        """Cut the segment into steps. The last step starts `begin`."""
         if not self.segment:
             assert begin is None
             return
@@ -313,8 +313,8 @@ class _Builder:
             sizes = [min(bus, self.segment_bytes - at) for at in range(0, self.segment_bytes, bus)]
             sizes = sizes or [0]
         else:
-            # Elsewhere the offset is dynamic. A remainder costs no cycle when the last step takes
-            # it along, unless the room is needed for the head of a run.
+            # Elsewhere the offset is dynamic. The last step may be longer, so that a remainder
+            # takes no cycle, unless that room is needed for the head of a run.
             sizes = cut(self.segment, bus, bus if heads else self.window_bytes)
         align = self.take_align()
         steps = split(self.segment, sizes)
@@ -346,7 +346,7 @@ class _Builder:
         return Jump(enter=tuple(enter), step=self.numbers.get(place))
 
     def exits_at(self, place: int, bodies: dict[int, int]) -> Exits:
-        """Return the exits of something that ends in front of a place of the program."""
+        """Return the exits of a step or run that ends in front of a place of the program."""
         repeats: list[tuple[int, Jump]] = []
         while place < len(self.program):
             item = self.program[place]
@@ -370,9 +370,9 @@ class _Builder:
                     begin = replace(begin, body=self.jump_to(after))
                     after = ends[after] + 1
                 elif after < len(self.program):
-                    # The body of a run, if any, is the next step.
-                    follower = self.program[after]
-                    if isinstance(follower, RunStep) and follower.run == begin.run:
+                    # If the run has a body, it is the next step.
+                    next_step = self.program[after]
+                    if isinstance(next_step, RunStep) and next_step.run == begin.run:
                         begin = replace(begin, body=self.jump_to(after))
                         after += 1
                 item = replace(item, begin=begin)
@@ -380,7 +380,7 @@ class _Builder:
         return tuple(steps)
 
     def loop_places(self) -> tuple[dict[int, int], dict[int, int]]:
-        """Return the start of the body by the place of its loop's end, and that by the start."""
+        """Return the start of each loop's body by the loop's end, and the end by its start."""
         bodies: dict[int, int] = {}
         ends: dict[int, int] = {}
         open_loops: list[int] = []

@@ -1,8 +1,8 @@
-"""What must hold of every plan, checked without knowing how it was built.
+"""The invariants of every plan, checked without knowing how the plan was built.
 
-A plan that passes can be transcribed blindly: each byte has one meaning, every jump is sound, each
-loop closes where it was opened. Where things stand in the packet is checked by
-:mod:`firm_hdl.plan.offsets`. Problems are sentences for people; an empty list means a good plan.
+A plan that passes can be transcribed without further checks: each byte is mapped once, every jump
+is sound, each loop ends at the level where it starts. :mod:`firm_hdl.plan.offsets` checks the
+offsets in the packet. Problems are sentences for people; an empty list means a good plan.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ __all__ = ["check"]
 
 
 def check(plan: Plan, layout: Layout | None = None) -> list[str]:
-    """Return what is wrong with a plan, by itself and, if given, as a plan of a layout."""
+    """Return the problems of a plan: by itself and, if a layout is given, as a plan of it."""
     problems: list[str] = []
-    # Each stage relies on what those before it have found to hold.
+    # Each stage relies on the invariants that the stages before it have checked.
     for stage in (_tables, _steps, _header, _transfers, _flow, check_offsets):
         problems.extend(stage(plan))
         if problems:
@@ -49,7 +49,7 @@ def check(plan: Plan, layout: Layout | None = None) -> list[str]:
 
 def _tables(plan: Plan) -> Iterator[str]:
     if plan.bus_bytes not in BUS_BYTES:
-        yield f"bus of {plan.bus_bytes} bytes"
+        yield f"a bus cannot have {plan.bus_bytes} bytes"
         return
     rules = RULES[plan.wire]
     if (plan.header_bytes, plan.slack_bytes) != (rules.header_bytes, rules.slack_bytes):
@@ -62,7 +62,7 @@ def _tables(plan: Plan) -> Iterator[str]:
         yield "two runs have the same items"
     for index, run in enumerate(plan.runs):
         if run.items not in range(len(plan.leaves)) or plan.leaves[run.items].kind != "items":
-            yield f"run {index}: it has no items"
+            yield f"run {index}: its leaf is not of kind 'items'"
         elif plan.leaves[run.items].item_bytes > plan.bus_bytes:
             yield f"run {index}: items are wider than the bus"
         elif run.terminated and plan.leaves[run.items].item_bytes != 1:
@@ -106,7 +106,7 @@ def _header(plan: Plan) -> Iterator[str]:
     slices = [item for step in plan.steps for item in step.slices]
     fixed = [item for item in slices if isinstance(item, Fixed)]
     if fixed != slices[: len(fixed)]:
-        yield "fixed bytes stand behind the header"
+        yield "fixed bytes follow the header"
     got = [(byte, item.check) for item in fixed for byte in item.data]
     want = [(byte, True) for byte in rules.encapsulation] + [(0, False)] * rules.option_bytes
     if got != want:
@@ -124,7 +124,7 @@ def _head(plan: Plan, run: int, head: int) -> Iterator[str]:
     leaf = plan.leaves[plan.runs[run].items]
     word = leaf.lanes * leaf.item_bytes
     if not word <= head <= word + (1 if plan.runs[run].terminated else 0):
-        yield f"{head} bytes of {leaf} a cycle do not suit words of {word}"
+        yield f"{head} bytes of {leaf} per cycle do not fit words of {word}"
 
 
 def _map(plan: Plan, step: MapStep) -> Iterator[str]:
@@ -135,23 +135,23 @@ def _map(plan: Plan, step: MapStep) -> Iterator[str]:
     at = 0
     for item in step.slices:
         if item.at != at:
-            yield f"byte {min(at, item.at)} has no or two meanings"
+            yield f"byte {min(at, item.at)} is not mapped exactly once"
         at = item.at + item.bytes
     if at != step.bytes:
         yield f"the map has {at} bytes, the step {step.bytes}"
     if step.most_bytes > 2 * plan.bus_bytes:
-        yield f"{step.most_bytes} bytes in one cycle"
+        yield f"one cycle takes {step.most_bytes} bytes, more than two bus words"
     for part in step.parts[:-1]:
         if not part.completes:
-            yield f"{plan.leaves[part.leaf]} is interrupted"
+            yield f"{plan.leaves[part.leaf]} is cut by the next part"
     for item in step.slices[1:]:
         if isinstance(item, Part) and item.first:
-            yield f"{plan.leaves[item.leaf]} goes on behind something else"
+            yield f"{plan.leaves[item.leaf]} continues behind other bytes"
     lengths = [part.leaf for part in step.parts if plan.leaves[part.leaf].kind == "length"]
     done = [part.leaf for part in step.parts if part.completes and part.leaf in lengths]
     counted = [step.begin.length] if isinstance(step.begin, CountedBegin) else []
     if done != counted or (done and step.slices[-1] is not step.parts[-1]):
-        yield "a length must be complete just where it starts something"
+        yield "a length must be complete in the step that starts what it counts, and in no other"
     if step.begin is not None:
         yield from _begin(plan, step.begin)
 
@@ -159,7 +159,7 @@ def _map(plan: Plan, step: MapStep) -> Iterator[str]:
 def _slice(plan: Plan, item: Slice) -> Iterator[str]:
     if isinstance(item, Pad | Fixed):
         if item.bytes < 1:
-            yield f"nothing at byte {item.at}"
+            yield f"the slice at byte {item.at} is empty"
         return
     if item.leaf not in range(len(plan.leaves)):
         yield f"there is no leaf {item.leaf}"
@@ -173,13 +173,13 @@ def _slice(plan: Plan, item: Slice) -> Iterator[str]:
         yield f"{leaf} has no bytes {item.first} to {item.first + item.bytes - 1}"
     ends = item.last or item.last_level is not None
     if ends != (leaf.kind == "items") or (item.last and item.last_level is not None):
-        yield f"what ends {leaf} is not said once"
+        yield f"{leaf} has too few or too many marks of its end"
 
 
 def _begin(plan: Plan, begin: Begin) -> Iterator[str]:
     if isinstance(begin, BeginArray):
         if begin.count < 1:
-            yield f"a constant count of {begin.count}"
+            yield f"a constant count cannot be {begin.count}"
     elif begin.limit < 0:
         yield f"a count has the limit {begin.limit}"
     if not isinstance(begin, BeginLoop):
@@ -196,7 +196,7 @@ def _begin_run(plan: Plan, begin: BeginRun | BeginArray) -> Iterator[str]:
     if begin.head:
         yield from _head(plan, begin.run, begin.head)
     if not 0 <= begin.gap < max(8, item_bytes):
-        yield f"a gap of {begin.gap} bytes"
+        yield f"a gap cannot have {begin.gap} bytes"
     has_nul = plan.has_nul(begin)
     most = (plan.most(begin) - has_nul) * item_bytes + has_nul
     if begin.body is None and most > begin.head:
@@ -232,7 +232,7 @@ def _ends(plan: Plan, parts: list[Part], runs: list[int]) -> Iterator[str]:
     if len(parts) > 1 or len(runs) > 1 or not (parts or runs):
         yield f"{len(parts)} transfers and {len(runs)} runs"
     elif runs and plan.runs[runs[0]].last != (not parts):
-        yield "its end is not where the run says"
+        yield "its run and its tail disagree about its end"
     elif runs and parts and parts[0].last_level is not None:
         yield "the tail of a run is in a loop"
 
@@ -270,11 +270,11 @@ State = tuple[int, ...]
 
 @dataclass(slots=True)
 class _Walk:
-    """Follow all jumps, with the first steps of the loops that are open."""
+    """Follows all jumps. A state holds the first step of each open loop."""
 
     plan: Plan
     states: dict[int, State] = field(default_factory=dict)
-    # For the body of a run: who loaded the counter ("constant", or the run that was begun).
+    # For the body of a run: what loaded the counter ("constant", or the run that was started).
     loaded: dict[int, int | str | None] = field(default_factory=dict)
     counts: dict[tuple[int | str, int | None], int] = field(default_factory=dict)
     todo: list[int] = field(default_factory=list)
@@ -283,11 +283,11 @@ class _Walk:
     def jump(
         self, jump: Jump, state: State, expected: int, who: str, run: int | None = None
     ) -> None:
-        """Follow a jump from a place where loops are open to where it is expected to go."""
+        """Follow a jump from a state, and check that it leads to the expected step."""
         loaded: int | str | None = run
         for counter, count in jump.enter:
             if count < 1 or count != self.counts.setdefault((counter, jump.step), count):
-                self.problems.append(f"{who}: {count} elements")
+                self.problems.append(f"{who}: loads a count of {count}")
             if counter == RUN_COUNTER:
                 if loaded is not None:
                     self.problems.append(f"{who}: the counter of the run is loaded twice")
@@ -296,26 +296,27 @@ class _Walk:
                 self.problems.append(f"{who}: loop {counter} inside {len(state)} loops")
             else:
                 state = (*state, expected)
-        there = len(self.plan.steps) if jump.step is None else jump.step
-        if there != expected:
-            self.problems.append(f"{who}: goes to step {there}, not {expected}")
+        target = len(self.plan.steps) if jump.step is None else jump.step
+        if target != expected:
+            self.problems.append(f"{who}: goes to step {target}, not {expected}")
         elif jump.step is None:
             if state or loaded is not None:
                 self.problems.append(f"{who}: ends within a loop or a run")
-        elif there >= len(self.plan.steps):
-            self.problems.append(f"{who}: there is no step {there}")
-        elif there not in self.states:
-            self.states[there] = state
-            self.loaded[there] = loaded
-            self.todo.append(there)
-        elif (state, loaded) != (self.states[there], self.loaded[there]):
-            self.problems.append(f"{who}: step {there} is reached with other loops open before")
+        elif target >= len(self.plan.steps):
+            self.problems.append(f"{who}: there is no step {target}")
+        elif target not in self.states:
+            self.states[target] = state
+            self.loaded[target] = loaded
+            self.todo.append(target)
+        elif (state, loaded) != (self.states[target], self.loaded[target]):
+            self.problems.append(f"{who}: step {target} is also reached with other open loops")
 
     def step(self, index: int, spans: dict[Span, int]) -> None:
         step, state, who = self.plan.steps[index], self.states[index], f"step {index}"
         loads = ("constant", step.run) if isinstance(step, RunStep) else (None,)
         if self.loaded[index] not in loads:
-            self.problems.append(f"{who}: the counter of the run is not loaded, or in vain")
+            problem = "the counter of the run is not loaded, or needlessly loaded"
+            self.problems.append(f"{who}: {problem}")
         if (
             isinstance(step, RunStep)
             and self.loaded[index] == "constant"

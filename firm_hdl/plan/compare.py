@@ -1,8 +1,8 @@
-"""What differs between two plans, by meaning and not by line.
+"""The differences between two plans, by meaning and not by line.
 
-Plans are compared in their printed form, which is what people review. Steps are told apart by what
-they take instead of by their numbers, so that a step which is added in front renumbers nothing, and
-a jump is compared by where it leads.
+Plans are compared in their printed form, which is what people review. A step is identified by the
+leaf that it takes first, not by its number. So an additional step does not change the names of the
+others. A jump is compared by the step to which it leads.
 """
 
 from __future__ import annotations
@@ -31,9 +31,10 @@ class Change:
     Attributes
     ----------
     path : str
-        Where: ``steps[header.stamp.sec].begin.limit``. A step is named by what it takes first.
+        Place in the plan: ``steps[header.stamp.sec].begin.limit``. A step is named by the leaf that
+        it takes first.
     old, new : str or None
-        What stands there; `None` if nothing does.
+        The text at this place; `None` if the plan does not have it.
     """
 
     path: str
@@ -49,7 +50,7 @@ class Change:
 
     @property
     def kind(self) -> str:
-        """The change without the names of one type, for counting over many types."""
+        """The change without the names of a type, for counting over many types."""
         where = re.sub(r"\[[^]]*\]", "[*]", self.path)
         where = re.sub(r"^(leaves|runs)\..*", r"\1.*", where)
         if self.old is None or self.new is None:
@@ -63,15 +64,15 @@ def compare(old: str, new: str) -> list[Change]:
     Returns
     -------
     list of Change
-        Empty if they mean the same. In the order of the new plan; what is gone comes last.
+        Empty if the plans mean the same. In the order of the new plan; removed parts come last.
 
     Raises
     ------
     ValueError
-        If a text is not that of a plan.
+        If a text is not a plan.
     """
     before, after = _facts(old), _facts(new)
-    # A step that only one of them has is one change, not one for each of its entries.
+    # A step that only one plan has is one change, not one for each of its entries.
     before, after = _fold(before, after), _fold(after, before)
     changes = [
         Change(path=path, old=before.get(path), new=text)
@@ -101,7 +102,7 @@ def _fold(facts: Mapping[str, str], others: Mapping[str, str]) -> dict[str, str]
 
 
 def _facts(text: str) -> dict[str, str]:
-    """Give everything that a plan says, by path."""
+    """Give every value of a plan, by path."""
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
         document = yaml.load(text, Loader=loader)
@@ -121,7 +122,7 @@ def _facts(text: str) -> dict[str, str]:
 
 
 def _step_names(steps: Mapping[str, Any]) -> dict[str, str]:
-    """Name each step by what it takes first; several of one name are numbered."""
+    """Name each step by the leaf that it takes first; equal names are numbered."""
     seen: Counter[str] = Counter()
     names = {}
     for step, content in steps.items():
@@ -167,17 +168,17 @@ def _entries(facts: Mapping[str, str], what: str) -> list[str]:
 
 
 def _moved(what: str, old: list[str], new: list[str]) -> Iterator[Change]:
-    """Say which entries of both lists stand in another order."""
+    """Yield the entries of both lists whose order differs."""
     common = set(old) & set(new)
     first = [name for name in old if name in common]
     second = [name for name in new if name in common]
     if first == second:
         return
     matcher = SequenceMatcher(a=first, b=second, autojunk=False)
-    for tag, start, end, at, to in matcher.get_opcodes():
+    for tag, start, end, new_start, new_end in matcher.get_opcodes():
         if tag != "equal":
             yield Change(
                 path=f"order of {what}",
                 old=", ".join(first[start:end]) or "(nothing here)",
-                new=", ".join(second[at:to]) or "(nothing here)",
+                new=", ".join(second[new_start:new_end]) or "(nothing here)",
             )

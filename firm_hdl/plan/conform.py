@@ -1,4 +1,4 @@
-"""Whether a plan is one of a given layout: its leaves, bounds and constant counts."""
+"""Check that a plan belongs to a layout: its leaves, bounds and constant counts."""
 
 from __future__ import annotations
 
@@ -11,33 +11,33 @@ Row = tuple[tuple[str, ...], str, str]
 
 
 def against_layout(plan: Plan, layout: Layout) -> list[str]:
-    """Return what a plan, sound by itself, has otherwise than a layout says."""
-    judge = _Judge(plan)
-    judge.problems += (
-        [f"it is of {plan.message} on {plan.wire}"]
+    """Return the differences between a plan, which is sound by itself, and a layout."""
+    comparison = _Comparison(plan)
+    comparison.problems += (
+        [f"the plan is of {plan.message} on {plan.wire}"]
         if (plan.message, plan.wire) != (layout.message.name, layout.rules.wire)
         else []
     )
     for node in walk(layout.nodes):
         match node:
             case Scalar():
-                judge.leaves.append((node.path, "scalar", node.type.name))
+                comparison.leaves.append((node.path, "scalar", node.type.name))
             case Trigger():
-                judge.leaves.append(((*node.path, "trigger"), "trigger", "bool"))
+                comparison.leaves.append(((*node.path, "trigger"), "trigger", "bool"))
             case RunNode():
-                judge.run(node)
+                comparison.run(node)
             case LoopNode(count=None):
-                judge.counted(node, node.bound, terminated=False)
+                comparison.counted(node, node.bound, terminated=False)
             case LoopNode(count=int() as count):
-                judge.counts.append(count)
-    if judge.leaves != [(leaf.path, leaf.kind, leaf.type) for leaf in plan.leaves]:
-        judge.problems.append("leaves are not those of the layout")
-    if judge.counts != _loop_counts(plan):
-        judge.problems.append("constant loops are not those of the layout")
-    return judge.problems
+                comparison.counts.append(count)
+    if comparison.leaves != [(leaf.path, leaf.kind, leaf.type) for leaf in plan.leaves]:
+        comparison.problems.append("leaves are not those of the layout")
+    if comparison.counts != _loop_counts(plan):
+        comparison.problems.append("constant loops are not those of the layout")
+    return comparison.problems
 
 
-class _Judge:
+class _Comparison:
     def __init__(self, plan: Plan):
         self.plan = plan
         self.leaves: list[Row] = []
@@ -55,13 +55,13 @@ class _Judge:
         elif bound is not None and begin.limit > bound:
             self.problems.append(f"{name} may have more than {bound} elements")
         elif self.plan.has_nul(begin) != terminated:
-            self.problems.append(f"{name} has the NUL wrong")
+            self.problems.append(f"{name} must have a NUL in both plan and layout, or in neither")
 
     def run(self, node: RunNode) -> None:
         if node.count is None:
             self.counted(node, node.bound, terminated=node.terminated)
         else:
-            # Items wider than the bus are a loop over single ones.
+            # Items wider than the bus are planned as a loop over single items.
             wide = node.item.bytes > self.plan.bus_bytes and node.count > 1
             self.counts += [node.count] if wide else []
             total = self.totals.get(len(self.leaves))
@@ -82,7 +82,7 @@ def _loop_counts(plan: Plan) -> list[int]:
 
 
 def _totals(plan: Plan) -> dict[int, int]:
-    """Return the constant number of items of each leaf that has one: parts and constant runs."""
+    """Return the number of items of each leaf with a constant one: of parts and constant runs."""
     totals: dict[int, int] = {}
     runs: dict[int, int] = {}
     for step in plan.steps:

@@ -1,4 +1,4 @@
-"""Cutting a segment, bytes whose map to leaves is static, into steps."""
+"""Cut a segment (bytes whose map to leaves is static) into steps."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["cut", "split"]
 
 
 def cut(segment: list[Slice], bus_bytes: int, last_bytes: int) -> list[int]:
-    """Return step sizes for a segment: as few as can be, cut between values where that is possible.
+    """Return step sizes for a segment: as few steps as possible, cut between values if possible.
 
     Steps take up to a bus word, the last one up to `last_bytes`.
     """
@@ -20,8 +20,8 @@ def cut(segment: list[Slice], bus_bytes: int, last_bytes: int) -> list[int]:
     start = 0
     while total - start > last_bytes:
         later = -(-(total - start - last_bytes) // bus_bytes) - 1
-        least = total - last_bytes - later * bus_bytes
-        cuts = [at for at in range(max(least, start + 1), start + bus_bytes + 1) if at in borders]
+        lowest = max(total - last_bytes - later * bus_bytes, start + 1)
+        cuts = [at for at in range(lowest, start + bus_bytes + 1) if at in borders]
         end = cuts[-1] if cuts else start + bus_bytes
         sizes.append(end - start)
         start = end

@@ -1,7 +1,7 @@
-"""All decisions that packets can make in a plan, so that tests can say which of them they took.
+"""All decisions that a plan leaves to the packet, so that tests can report which were covered.
 
 The paper that firm-hdl follows leaves open how much of a generated circuit its tests reach. A plan
-answers that: a converter's behaviour is its steps, and what is left to the packet is listed here.
+answers that: a converter's behaviour is its steps, and the packet only decides what is listed here.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ __all__ = ["edges"]
 def edges(plan: Plan) -> frozenset[Edge]:
     """Return every decision that some legal packet takes.
 
-    What limits forbid is left out: no second turn of a loop that has at most one element, for
-    instance. :attr:`firm_hdl.plan.Decoded.edges` has what one packet took.
+    Decisions that limits exclude are left out, such as a second iteration of a loop that has at
+    most one element. :attr:`firm_hdl.plan.Decoded.edges` has the decisions of one packet.
     """
     padding = paddings(plan)
-    most = _most(plan)
+    most = _max_counts(plan)
     return frozenset(
         Edge(index, way)
         for index, step in enumerate(plan.steps)
@@ -39,11 +39,11 @@ def edges(plan: Plan) -> frozenset[Edge]:
     )
 
 
-Counts = dict[tuple["int | str", int], int]
+MaxCounts = dict[tuple["int | str", int], int]
 
 
 def _ways(
-    plan: Plan, index: int, step: Step, padding: frozenset[int], most: Counts
+    plan: Plan, index: int, step: Step, padding: frozenset[int], most: MaxCounts
 ) -> Iterator[str]:
     if step.align != 1:
         yield from (f"padding {count}" for count in padding)
@@ -53,9 +53,9 @@ def _ways(
     ):
         yield "again"
     begin = step.begin
-    if begin is not None and begin.body is not None and _goes_on(plan, begin):
+    if begin is not None and begin.body is not None and _may_need_body(plan, begin):
         yield "body"
-    if begin is not None and begin.body is not None and not _may_be_done(plan, begin):
+    if begin is not None and begin.body is not None and not _may_finish(plan, begin):
         return
     for level, jump in step.exits.repeats:
         if jump.step is not None and most.get((level, jump.step), 0) > 1:
@@ -63,9 +63,9 @@ def _ways(
     yield "next"
 
 
-def _most(plan: Plan) -> Counts:
+def _max_counts(plan: Plan) -> MaxCounts:
     """Return the largest count of every loop and run, by counter and first step."""
-    most: Counts = {}
+    most: MaxCounts = {}
 
     def note(counter: int | str, step: int | None, count: int) -> None:
         if step is not None:
@@ -86,16 +86,16 @@ def _most(plan: Plan) -> Counts:
 
 
 def _head_items(plan: Plan, begin: BeginRun | BeginArray) -> int:
-    """Return how many items a step takes of a run that it does not finish."""
+    """Return the number of items that a step takes of a run that it does not finish."""
     return plan.leaves[plan.runs[begin.run].items].lanes if begin.head else 0
 
 
-def _goes_on(plan: Plan, begin: Begin) -> bool:
+def _may_need_body(plan: Plan, begin: Begin) -> bool:
     if isinstance(begin, BeginLoop):
         return begin.limit > 0
     return plan.most(begin) * plan.item_bytes(begin.run) > begin.head
 
 
-def _may_be_done(plan: Plan, begin: Begin) -> bool:
-    """Return whether a step that starts something may be its end, too."""
-    return not isinstance(begin, BeginArray) or not _goes_on(plan, begin)
+def _may_finish(plan: Plan, begin: Begin) -> bool:
+    """Return whether a step may also finish the loop or run that it starts."""
+    return not isinstance(begin, BeginArray) or not _may_need_body(plan, begin)

@@ -1,7 +1,7 @@
-"""What a plan needs of its window: how wide, where steps may start, how many beats they touch.
+"""The window that a plan needs: its width, where steps may start, and how many beats they touch.
 
-Found by following residues of the position through the control flow of the plan until nothing new
-turns up. A plan whose steps all start at bus words needs no shifter at all.
+Residues of the position are followed through the control flow of the plan until no set grows any
+more. A plan whose steps all start at bus words needs no shifter at all.
 """
 
 from __future__ import annotations
@@ -22,16 +22,17 @@ class Geometry:
     Attributes
     ----------
     window_bytes : int
-        Most bytes that a step takes in one cycle; at least 1.
+        Largest number of bytes that a step takes in one cycle; at least 1.
     skip_bytes : int
-        Most bytes that a step goes forward, padding of known size in front of a run included.
+        Largest number of bytes by which a step advances, including padding of known size in front
+        of a run.
     start_alignment_bytes : int
         Every step starts at a multiple of this many bytes of a bus word; a power of two up to the
         bus width.
     window_beats : int
-        Most beats that the bytes of one step touch; at least 1.
+        Largest number of beats that the bytes of one step touch; at least 1.
     aligns : bool
-        Whether any padding is computed in the circuit.
+        Whether the circuit computes any padding.
     """
 
     window_bytes: int
@@ -91,7 +92,7 @@ class _Flow:
         }
         bodies = (plan.steps[index] for index in entered if index is not None)
         begins = (step.begin for step in plan.steps)
-        # Runs of constant count are cut to whole bus words by the planner.
+        # The planner cuts runs of constant count to whole bus words.
         self.constant_runs = {
             *(body.run for body in bodies if isinstance(body, RunStep)),
             *(begin.run for begin in begins if isinstance(begin, BeginArray)),
@@ -103,11 +104,11 @@ class _Flow:
     def aligned(self, residues: int, align: int) -> int:
         """Align positions in the packet, which count from the start of its header."""
         header = self.plan.header_bytes
-        behind = self.advance(residues, -header)
-        return self.advance(rs.aligned(behind, align, self.modulus), header)
+        after_header = self.advance(residues, -header)
+        return self.advance(rs.aligned(after_header, align, self.modulus), header)
 
     def run_end(self, residues: int, run: int) -> int:
-        """Return where the last bytes of a run may end that are taken from one of `residues`."""
+        """Return the positions where a run may end if its last word starts at one of `residues`."""
         if run in self.constant_runs:
             return self.advance(residues, self.plan.bus_bytes)
         return rs.spread(residues, self.plan.item_bytes(run), self.modulus)

@@ -1,4 +1,4 @@
-"""What widths and sizes converters may be asked for."""
+"""The legal bus widths and message sizes of converters."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from firm_hdl.wire import Layout
 __all__ = ["BUS_BYTES", "DEFAULT_MAX_MESSAGE_BYTES", "check_bus_bytes", "check_max_message_bytes"]
 
 BUS_BYTES = (1, 2, 4, 8, 16, 32, 64)
-"""Widths of a bus of packets."""
+"""Legal widths of the packet bus."""
 
 DEFAULT_MAX_MESSAGE_BYTES = 1 << 24
 
 
 def check_bus_bytes(bus_bytes: int) -> None:
-    """Check the width of a bus of packets.
+    """Check the width of the packet bus.
 
     Raises
     ------
     TypeError
-        If it is no integer.
+        If the width is not an integer.
     ValueError
-        If it is none of `BUS_BYTES`.
+        If the width is not one of `BUS_BYTES`.
     """
     if not isinstance(bus_bytes, int) or isinstance(bus_bytes, bool):
         raise TypeError(f"Bus width must be an integer, not {bus_bytes!r}")
@@ -36,9 +36,9 @@ def check_max_message_bytes(layout: Layout, max_message_bytes: int) -> None:
     Raises
     ------
     TypeError
-        If it is no integer.
+        If the size is not an integer.
     ValueError
-        If no message of the type fits it, or it is above 2**32 - 1.
+        If no message of the type has so few bytes, or the size is above 2**32 - 1.
     """
     # To Python, a truth value is an integer, too.
     if not isinstance(max_message_bytes, int) or isinstance(max_message_bytes, bool):

@@ -1,8 +1,8 @@
-"""Where the leaves of a plan stand in a packet, found by running the plan on offsets alone.
+"""The offsets of the leaves of a plan in a packet, found by running the plan on offsets alone.
 
-An independent judge of alignment: the layout works out residues from the message's types, this
-module from the steps, one residue modulo 8 at a time. OMG DDS-XTypes 1.3, clause 7.4.1: a primitive
-of n bytes stands at a multiple of n, and there is no more padding than that takes.
+This is an independent check of alignment: the layout computes residues from the message's types,
+this module from the steps, one residue modulo 8 at a time. OMG DDS-XTypes 1.3, clause 7.4.1: a
+primitive of n bytes starts at a multiple of n, with no more padding than that requires.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Span: TypeAlias = "tuple[int, int]"
 """Level and first step of a loop."""
 
 Place: TypeAlias = "tuple[int, int]"
-"""An offset modulo 8, and padding bytes since then that nothing stands behind yet."""
+"""An offset modulo 8, and the number of padding bytes since then that no value follows yet."""
 
 
 def loop_spans(plan: Plan) -> dict[Span, int]:
@@ -46,22 +46,22 @@ def loop_spans(plan: Plan) -> dict[Span, int]:
 
 
 def check_offsets(plan: Plan) -> list[str]:
-    """Return what is misaligned or has other padding than it needs. The control flow is sound."""
+    """Return the errors in alignment and padding of a plan whose control flow is sound."""
     walk = _Walk(plan)
     start: set[Place] = {(-plan.header_bytes % 8, 0)}
     end = walk.region(0, len(plan.steps) - 1, 0, start)
-    walk.settle(end, "the end")
+    walk.check_padding_used(end, "the end")
     for index, step in enumerate(plan.steps):
         if step.align != 1 and not any(walk.skipped.get(index, ())):
-            walk.say(f"step {index}: is aligned already")
+            walk.report(f"step {index}: is aligned already")
     return list(walk.problems)
 
 
 def paddings(plan: Plan) -> dict[int, frozenset[int]]:
     """Return, for each step that is aligned, the numbers of bytes that may be skipped before it.
 
-    Unlike the layout, this counts on limits: what stands in front of the second element of a loop
-    is nothing to a loop that has at most one.
+    Unlike the layout, this respects limits: a loop that has at most one element has no padding in
+    front of a second one.
     """
     walk = _Walk(plan, limited=True)
     walk.region(0, len(plan.steps) - 1, 0, {(-plan.header_bytes % 8, 0)})
@@ -71,15 +71,15 @@ def paddings(plan: Plan) -> dict[int, frozenset[int]]:
 @dataclass(slots=True)
 class _Walk:
     plan: Plan
-    # Whether counts that a packet says are within their limits, and not just any.
+    # Whether counts in a packet are within their limits; otherwise they are arbitrary.
     limited: bool = False
     spans: dict[Span, int] = field(init=False)
     # Constant counts by level (or "run") and first step.
     counts: dict[tuple[int | str, int], int] = field(default_factory=dict)
     known: dict[tuple[int, int, int, Place], frozenset[Place]] = field(default_factory=dict)
-    # A dict for its order.
+    # A dict, because it keeps the order.
     problems: dict[str, None] = field(default_factory=dict)
-    # Bytes that are skipped in front of steps that are aligned.
+    # Numbers of bytes that are skipped in front of each aligned step.
     skipped: dict[int, set[int]] = field(default_factory=dict)
     max_align: int = field(init=False)
 
@@ -91,12 +91,12 @@ class _Walk:
                 if jump.step is not None:
                     self.counts[counter, jump.step] = count
 
-    def say(self, problem: str) -> None:
+    def report(self, problem: str) -> None:
         self.problems[problem] = None
 
-    def settle(self, places: set[Place], where: str) -> None:
+    def check_padding_used(self, places: set[Place], where: str) -> None:
         if any(pad for _, pad in places):
-            self.say(f"{where}: padding in front of nothing")
+            self.report(f"{where}: padding that no value follows")
 
     def align(self, leaf: Leaf) -> int:
         return min(leaf.item_bytes, self.max_align) or 1
@@ -117,7 +117,7 @@ class _Walk:
         while index <= last:
             if (depth, index) in self.counts:
                 count = self.counts[depth, index]
-                self.settle(places, f"step {index}")
+                self.check_padding_used(places, f"step {index}")
                 end = self.spans.get((depth, index), last)
                 places = self.repeat(index, end, depth + 1, places, count)
                 index = end + 1
@@ -133,7 +133,7 @@ class _Walk:
         for done in range(count):
             frozen = frozenset(places)
             if frozen in seen:
-                # From here on everything recurs.
+                # The sets recur from here on.
                 period = done - seen[frozen]
                 return order[seen[frozen] + (count - done) % period]
             seen[frozen] = done
@@ -153,11 +153,11 @@ class _Walk:
         return places
 
     def step(self, index: int, depth: int, places: set[Place]) -> tuple[set[Place], int]:
-        """Run a step and what it starts; return also the step behind all that."""
+        """Run a step and the loop or run that it starts; return the places and the step after."""
         step = self.plan.steps[index]
         if step.align != 1:
-            self.settle(places, f"step {index}")
-            self.natural(index, step)
+            self.check_padding_used(places, f"step {index}")
+            self.check_step_align(index, step)
             self.pad(index, places)
             places = {((r + -r % step.align) % 8, 0) for r, _ in places}
         if isinstance(step, RunStep):
@@ -168,7 +168,7 @@ class _Walk:
         if begin is None:
             return places, index + 1
         if not isinstance(begin, BeginArray):
-            self.settle(places, f"step {index}")
+            self.check_padding_used(places, f"step {index}")
         if isinstance(begin, BeginLoop):
             end = self.spans.get((depth, index + 1), index + 1)
             most = begin.limit if self.limited else None
@@ -179,36 +179,36 @@ class _Walk:
         align = self.plan.steps[index].align
         self.skipped.setdefault(index, set()).update(-residue % align for residue, _ in places)
 
-    def natural(self, index: int, step: Step) -> None:
-        """Check that a step aligns to just what it starts with."""
+    def check_step_align(self, index: int, step: Step) -> None:
+        """Check that a step has the alignment of the value that it starts with."""
         if isinstance(step, RunStep):
             leaf = self.plan.leaves[self.plan.runs[step.run].items]
         else:
             first = step.slices[0] if step.slices else None
             if not isinstance(first, Part) or first.first:
-                self.say(f"step {index}: alignment in front of nothing")
+                self.report(f"step {index}: alignment that no value follows")
                 return
             leaf = self.plan.leaves[first.leaf]
         if step.align != self.align(leaf):
-            self.say(f"step {index}: {leaf} is aligned to {step.align}, not {self.align(leaf)}")
+            self.report(f"step {index}: {leaf} is aligned to {step.align}, not {self.align(leaf)}")
 
     def slice(self, index: int, item: Pad | Fixed | Part, place: Place) -> Place:
         residue, pad = place
         if isinstance(item, Pad):
             if pad + item.bytes > 7:
-                self.say(f"step {index}: 8 padding bytes or more")
+                self.report(f"step {index}: 8 padding bytes or more")
             return residue, min(7, pad + item.bytes)
         if isinstance(item, Part) and item.first == 0:
             leaf = self.plan.leaves[item.leaf]
             self.expect(index, leaf, residue, pad)
         elif pad:
-            self.say(f"step {index}: padding in front of nothing")
+            self.report(f"step {index}: padding that no value follows")
         return (residue + pad + item.bytes) % 8, 0
 
     def expect(self, index: int, leaf: Leaf, residue: int, pad: int) -> None:
         align = self.align(leaf)
         if pad != -residue % align:
-            self.say(
+            self.report(
                 f"step {index}: {leaf} has {pad} bytes of padding in front, "
                 f"not {-residue % align}, at offset {residue} modulo 8"
             )
@@ -223,10 +223,10 @@ class _Walk:
             body = self.plan.steps[index + 1]
             body_align = body.align
             if body_align != 1:
-                self.natural(index + 1, body)
+                self.check_step_align(index + 1, body)
                 self.pad(index + 1, places)
                 if begin.gap or begin.head:
-                    self.say(f"step {index}: {leaf} starts here and in an aligned step, too")
+                    self.report(f"step {index}: {leaf} starts here and in an aligned step, too")
         result: set[Place] = set() if isinstance(begin, BeginArray) else set(places)
         for residue, pad in places:
             if body_align == 1:
@@ -238,7 +238,7 @@ class _Walk:
         return result
 
     def run_counts(self, begin: BeginRun | BeginArray) -> Sequence[int]:
-        """Return the counts of a run that is not empty, as far as they make a difference."""
+        """Return the counts of a run that is not empty, as far as they give different offsets."""
         if isinstance(begin, BeginArray):
             return [begin.count]
         most = self.plan.most(begin) if self.limited else 8

@@ -1,7 +1,7 @@
-"""What plans have in common: their shape, and the constructs that they are made of.
+"""The shape of a plan, which types can share, and the constructs in it.
 
-Gateware transcribes a plan, and a leaf's name is nothing but the name of its ports. So plans that
-are equal except for names give equal circuits, and verifying one of them verifies all.
+Gateware transcribes a plan, and the name of a leaf only names its ports. So plans that are equal
+except for names give equal circuits, and verifying one of them verifies all.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ def shape(plan: Plan) -> Plan:
     """Return the plan without names: equal for types whose converters are the same circuit."""
     leaves = []
     for index, leaf in enumerate(plan.leaves):
-        # The last part of a path says what kind of leaf it is; the check of plans looks at it.
+        # The last part of a path is the kind of the leaf; `check` compares it.
         end = () if leaf.kind == "scalar" else (leaf.kind,)
         leaves.append(replace(leaf, path=(f"leaf{index}", *end)))
     return replace(plan, message="", leaves=tuple(leaves))
 
 
 def constructs(plan: Plan) -> frozenset[str]:
-    """Name everything that a plan is made of, for choosing types that cover all of it."""
+    """Name the constructs of a plan, for choosing types that cover all constructs."""
     found = {f"wire {plan.wire}", f"{min(plan.levels, 3)} loop levels", *_jump("start", plan.start)}
     for leaf in plan.leaves:
         found.add(f"leaf {leaf.kind} {'signed ' if leaf.signed else ''}{leaf.type}")

@@ -1,8 +1,8 @@
-"""What a converter costs in cycles, found by running its plan.
+"""The cycles that a converter takes for a packet, found by running its plan.
 
-A packet takes as long as its beats or its steps, whichever are more. Which packets are the
-hardest for their size is searched, not proved: short strings and few elements cost a step each and
-bring few bytes.
+A packet takes as many cycles as it has beats or steps, whichever is more. The packet with the most
+cycles per byte is searched for, not proved: short strings and few elements take a step each and
+have few bytes.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from firm_hdl.plan.geometry import geometry
 __all__ = ["LINE_RATES", "Cost", "Timing", "clock_mhz", "describe", "timing"]
 
 LINE_RATES = {"100 Mbit/s": 0.1e9, "1 Gbit/s": 1e9, "10 Gbit/s": 10e9}
-"""Bits of packets per second, by what people call that."""
+"""Bits of packets per second, by the usual name of the rate."""
 
-MANY_ELEMENTS = {1: 16, 2: 4}
-"""Most elements per loop that the search tries, by depth of loops: packets grow exponentially."""
+MAX_ELEMENTS = {1: 16, 2: 4}
+"""Largest number of elements per loop in the search, by levels of loops."""
 
-MOST_TRANSFERS = 1 << 12
-"""Of a packet that the search tries. Loops in loops soon have more, with few elements each."""
+MAX_TRANSFERS = 1 << 12
+"""Largest number of transfers of a packet in the search. Nested loops soon have more."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cost:
-    """What one packet takes when packets come back to back."""
+    """Size and cycles of one packet when packets come back to back."""
 
     bytes: int
     beats: int
@@ -48,15 +48,15 @@ class Timing:
     ----------
     bus_bytes : int
     steps : int
-        Of the plan; each is one cycle, or one cycle per bus word of a run.
+        Number of steps of the plan; each takes one cycle, or one cycle per bus word of a run.
     window_bytes : int
-        Most bytes that one cycle takes.
+        Largest number of bytes that one cycle takes.
     window_beats : int
-        Most beats that these bytes touch.
+        Largest number of beats that these bytes touch.
     shortest : Cost
-        Of the packet with every length 0.
+        Cost of the packet with every length 0.
     hardest : Cost
-        Of the packet with the most cycles per byte among those tried.
+        Cost of the packet with the most cycles per byte among those tried.
     """
 
     bus_bytes: int
@@ -68,17 +68,17 @@ class Timing:
 
 
 def timing(plan: Plan) -> Timing:
-    """Work out the figures of a plan."""
+    """Compute the figures of a plan."""
     bus = plan.bus_bytes
     sizes = geometry(plan)
     shortest = hardest = _cost(plan, 0, 0)
-    # Of a long packet, short strings are a small part.
+    # In a long packet, short strings are a small part.
     is_short = shortest.bytes < 1 << 14
     if is_short and any(leaf.kind == "length" for leaf in plan.leaves):
-        counts = sorted({0, 1, MANY_ELEMENTS.get(plan.levels, 2)})
+        counts = sorted({0, 1, MAX_ELEMENTS.get(plan.levels, 2)})
         for elements, items in product(counts, sorted({0, 1, bus // 2, bus, bus + 1})):
             try:
-                cost = _cost(plan, elements, items, MOST_TRANSFERS)
+                cost = _cost(plan, elements, items, MAX_TRANSFERS)
             except _TooLongError:
                 continue
             if cost.cycles * hardest.bytes > hardest.cycles * cost.bytes:
@@ -94,16 +94,25 @@ def timing(plan: Plan) -> Timing:
 
 
 class _TooLongError(Exception):
-    """A packet has more transfers than anybody wants to wait for."""
+    """A packet has too many transfers for the search."""
 
 
 def _cost(plan: Plan, elements: int, items: int, most: int | None = None) -> Cost:
-    """Cost a packet whose sequences of messages and of primitives have lengths as given.
+    """Compute the cost of a packet by the lengths of its sequences.
+
+    Parameters
+    ----------
+    elements : int
+        Length of each sequence of messages.
+    items : int
+        Length of each string and sequence of primitives.
+    most : int or None
+        Largest number of transfers of the packet.
 
     Raises
     ------
     _TooLongError
-        If it has more than `most` transfers.
+        If the packet has more than `most` transfers.
     """
     left = most
 
@@ -125,7 +134,7 @@ def _cost(plan: Plan, elements: int, items: int, most: int | None = None) -> Cos
         elif leaf.kind == "items":
             payload = ((0,) * leaf.lanes, False)
         streams[index] = transfers(payload)
-    # That `last` is never set is an error that the serializer marks; the bytes are those promised.
+    # `last` is never set, which is an error; the serializer still writes all bytes.
     packet, _ = encode(plan, streams)
     return Cost(
         bytes=len(packet),
@@ -135,12 +144,12 @@ def _cost(plan: Plan, elements: int, items: int, most: int | None = None) -> Cos
 
 
 def clock_mhz(cost: Cost, bits_per_second: float) -> float:
-    """Return the clock that packets like this one need, back to back at a line rate."""
+    """Return the clock rate in MHz that packets like this one need, back to back at a line rate."""
     return bits_per_second / 8 / max(1, cost.bytes) * cost.cycles / 1e6
 
 
 def describe(name: str, plan: Plan, figures: Timing) -> str:
-    """Say in a few lines what a converter takes and which clock a line rate needs."""
+    """Describe in a few lines the cycles of a converter and the clock that a line rate needs."""
     short, hard = figures.shortest, figures.hardest
     varies = any(leaf.kind == "length" for leaf in plan.leaves)
     rows = [("every packet", short)]
@@ -162,7 +171,7 @@ def describe(name: str, plan: Plan, figures: Timing) -> str:
 
 
 def _has_long(plan: Plan) -> bool:
-    """Whether a packet can be long: runs of any number of items, which pass a bus word a cycle."""
+    """Tell whether a packet can be long: it has a run of variable length."""
     lengths = {leaf.path[:-1] for leaf in plan.leaves if leaf.kind == "length"}
     return any(leaf.kind == "items" and leaf.path[:-1] in lengths for leaf in plan.leaves)
 

@@ -1,8 +1,8 @@
-"""Plans as YAML, for people to review and for tools to read back.
+"""Print plans as YAML, for people to review and for tools to read back.
 
-The text names leaves by their paths, and bytes by where they stand in a step's window; everything
-that an FPGA engineer needs to judge a converter stands in the step that does it. Comments are help
-for the reader and carry nothing. Reading is in :mod:`firm_hdl.plan.yaml_reader`.
+The text names leaves by their paths, and bytes by their offsets in a step's window. Each step shows
+all that an FPGA engineer needs to review it. Comments help the reader and are not read back.
+Reading is in :mod:`firm_hdl.plan.yaml_reader`.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ WORDS = frozenset({"yes", "no", "on", "off", "true", "false", "null", "y", "n"})
 
 
 def to_yaml(plan: Plan) -> str:
-    """Print a plan; :func:`from_yaml` reads it back to an equal one."""
+    """Print a plan; :func:`from_yaml` reads an equal plan back."""
     return "".join(f"{line}\n" for line in _Printer(plan).lines())
 
 
@@ -216,7 +216,7 @@ def _exits(exits: Exits) -> Iterator[str]:
 
 
 def _short(key: str, entries: dict[str, str]) -> Iterator[str]:
-    """Yield a mapping in one line if that is short enough."""
+    """Yield a mapping, in one line if that is short enough."""
     text = f"{key}: {{{', '.join(f'{name}: {value}' for name, value in entries.items())}}}"
     if len(text) <= COLUMNS - 4:
         yield text
@@ -227,7 +227,7 @@ def _short(key: str, entries: dict[str, str]) -> Iterator[str]:
 
 
 def _notes(plan: Plan) -> list[str]:
-    """Return a comment for each step: its place in the packet if that is fixed, and its loops."""
+    """Return a comment for each step: its bytes of the packet if they are fixed, and its loops."""
     notes = [[place] if place else [] for place in _places(plan)]
     for (level, first), (last, name) in sorted(_loops(plan).items()):
         for index in range(first, last + 1):
@@ -236,7 +236,7 @@ def _notes(plan: Plan) -> list[str]:
 
 
 def _loops(plan: Plan) -> dict[tuple[int, int], tuple[int, str]]:
-    """Return, by level and first step of each loop, its last step and what counts it."""
+    """Return, by level and first step of each loop, its last step and the name of its count."""
     names: dict[tuple[int, int], str] = {}
     for jump in plan.jumps():
         for counter, count in jump.enter:
@@ -247,7 +247,7 @@ def _loops(plan: Plan) -> dict[tuple[int, int], tuple[int, str]]:
         if isinstance(begin, BeginLoop) and begin.body.step is not None:
             names[begin.level, begin.body.step] = str(plan.leaves[begin.length])
     loops: dict[tuple[int, int], tuple[int, str]] = {}
-    # A loop whose last step starts a run has an exit there and another behind the run.
+    # A loop whose last step starts a run has an exit in that step and another after the run.
     for last, step in enumerate(plan.steps):
         for level, jump in step.exits.repeats:
             if jump.step is not None:
@@ -256,11 +256,11 @@ def _loops(plan: Plan) -> dict[tuple[int, int], tuple[int, str]]:
 
 
 def _places(plan: Plan) -> list[str]:
-    """Return the bytes of the packet that each step takes, where all packets agree on them."""
+    """Return the bytes of the packet that each step takes, if they are the same in every packet."""
     places = [""] * len(plan.steps)
     repeated = {jump.step for step in plan.steps for _, jump in step.exits.repeats}
     at, run_bytes, jump = 0, 0, plan.start
-    # Steps whose place is fixed form one chain: it ends at the first loop or variable length.
+    # Steps with fixed offsets form one chain: it ends at the first loop or variable length.
     while jump.step is not None and jump.step not in repeated:
         step = plan.steps[jump.step]
         size = step.bytes

@@ -1,7 +1,7 @@
-"""Reading of plans that :mod:`firm_hdl.plan.yaml` printed, or that somebody edited since.
+"""Read plans that :mod:`firm_hdl.plan.yaml` printed and a user may have edited.
 
-Only the syntax is checked here, each mistake with its line; whether a plan makes sense is what
-:func:`firm_hdl.plan.check` finds out.
+Only the syntax is checked here, and errors have line numbers. :func:`firm_hdl.plan.check` checks
+whether the plan is sound.
 """
 
 from __future__ import annotations
@@ -160,7 +160,7 @@ class _Reader:
             return Leaf(path=names, kind="length", type="uint32", signed=False)
         if not any((name, sign) in PRIMITIVE_OF for sign in (False, True)):
             raise _error(node, f"{name!r} is not a primitive")
-        # Without the word, the sign is that of the type; `byte` and `char` have none then.
+        # Without the word "signed", the type decides the sign; `byte` and `char` are unsigned.
         is_signed = bool(signed) or (name, False) not in PRIMITIVE_OF
         if (name, is_signed) not in PRIMITIVE_OF:
             raise _error(node, f"{name!r} has no sign")
@@ -188,7 +188,7 @@ class _Reader:
     # Steps.
 
     def jump(self, node: yaml.Node, what: str) -> Jump:
-        found = _match(JUMP, node, f"a place to go on ({what})")
+        found = _match(JUMP, node, f"a jump ({what})")
         step, loads = found.groups()
         enter: list[tuple[int | str, int]] = []
         for load in loads.split("; ") if loads else ():
@@ -264,7 +264,7 @@ class _Reader:
         if (run is None) == (level is None):
             raise _error(node, "begin has one of 'run' and 'loop'")
         if run is None:
-            self.nothing_left(entries, "begin")
+            self.reject_others(entries, "begin")
             if length is None or body is None or level is None:
                 raise _error(node, "begin of a loop needs 'count' and 'body'")
             return BeginLoop(length=length, limit=limit, level=level, body=body)
@@ -273,7 +273,7 @@ class _Reader:
             raise _error(node, "begin and the run do not agree about a NUL")
         gap = _take(entries, "gap", _number) or 0
         head = _take(entries, "head", lambda each, _: self.head(each, at + gap)) or 0
-        self.nothing_left(entries, "begin")
+        self.reject_others(entries, "begin")
         if count is None:
             assert length is not None
             return BeginRun(length=length, limit=limit, run=run, gap=gap, head=head, body=body)
@@ -281,7 +281,7 @@ class _Reader:
             raise _error(node, f"a constant count of {count} has the limit {limit}")
         return BeginArray(count=count, run=run, gap=gap, head=head, body=body)
 
-    def nothing_left(self, entries: Entries, what: str) -> None:
+    def reject_others(self, entries: Entries, what: str) -> None:
         for key, value in entries.items():
             raise _error(value, f"{what} has no {key!r}")
 
@@ -298,10 +298,10 @@ class _Reader:
         found = RANGE.fullmatch(key)
         if found is None:
             raise _error(node, f"a step has no {key!r}")
-        nowhere, first, last = found.groups()
-        if nowhere is not None:
+        empty_at, first, last = found.groups()
+        if empty_at is not None:
             nodes = node.value if isinstance(node, yaml.SequenceNode) else [node]
-            return [self.slice(int(nowhere), 0, each) for each in nodes]
+            return [self.slice(int(empty_at), 0, each) for each in nodes]
         return [self.slice(int(first), int(last or first) - int(first) + 1, node)]
 
     def slice(self, at: int, size: int, node: yaml.Node) -> Slice:

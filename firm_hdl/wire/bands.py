@@ -1,7 +1,7 @@
-"""The bytes of a message as bands: what a picture of its layout shows, from top to bottom.
+"""The bytes of a message as bands: the parts of a picture of its layout, from top to bottom.
 
-Where bytes stand is exact as far as it is the same in every packet. Behind a part whose size
-varies, offsets start anew.
+Offsets are those in the packet while they are the same in every packet. After a part whose size
+varies, offsets start again from 0.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Kind: TypeAlias = Literal["header", "padding", "length", "field"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BandCell:
-    """Bytes that belong together; `at` counts from the start of the grid."""
+    """The bytes of one value or padding; `at` counts from the start of the grid."""
 
     at: int
     bytes: int
@@ -34,10 +34,10 @@ class Grid:
     Attributes
     ----------
     depth : int
-        Loops around it.
+        Number of loops around the grid.
     start : int or None
-        Where it starts in the packet, if that is the same in every packet.
-    cells : list of Cell
+        Offset in the packet, if that is the same in every packet.
+    cells : list of BandCell
     """
 
     depth: int
@@ -47,7 +47,7 @@ class Grid:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Note:
-    """Something whose size varies, or a loop's start.
+    """A line of text for a part whose size varies, or for the start of a loop.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ def bands(layout: Layout) -> list[Band]:
     header = layout.rules.header_bytes
     if header:
         drawing.cell("header", header, "encapsulation", f"{header} bytes")
-        # Alignment counts from behind the header, and so do the rows.
+        # Alignment counts from the end of the header, and so do the rows.
         drawing.grid = None
     drawing.nodes(layout.nodes, header)
     return drawing.bands

@@ -1,4 +1,4 @@
-"""The wire formats that there are."""
+"""The table of all wire formats."""
 
 from __future__ import annotations
 

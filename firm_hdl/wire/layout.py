@@ -1,8 +1,9 @@
-"""Layout: a message on a wire, field by field, with all that is statically known of its offsets.
+"""Layout: a message on a wire, field by field, with the statically known part of its offsets.
 
-The layout is a tree in wire order. Alignment is decided here and nowhere else: each node carries a
-:class:`Gap`, the padding in front of it, as a number of bytes where the abstract interpretation of
-:mod:`firm_hdl.wire.residues` finds one, and else as the alignment that the circuit must reach.
+The layout is a tree in wire order. Alignment is decided here and nowhere else: each node has a
+:class:`Gap`, the padding in front of it. The gap is a number of bytes where the abstract
+interpretation of :mod:`firm_hdl.wire.residues` finds a single one; otherwise it is the alignment
+that the circuit must reach.
 """
 
 from __future__ import annotations
@@ -48,14 +49,14 @@ OCTET = PRIMITIVES["ros2"]["uint8"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gap:
-    """Padding in front of something that stands at a multiple of `align` bytes.
+    """Padding in front of a value that starts at a multiple of `align` bytes.
 
     Attributes
     ----------
     align : int
         1, 2, 4 or 8.
     bytes : int or None
-        Size if it is the same in every packet, else `None`.
+        Size of the padding if it is the same in every packet, else `None`.
     """
 
     align: int
@@ -85,15 +86,15 @@ class RunNode:
     Attributes
     ----------
     gap : Gap or None
-        In front of the length on the wire; `None` if there is none (fixed arrays).
+        Padding in front of the length on the wire; `None` if the run has no length (fixed arrays).
     item_gap : Gap
-        In front of the first item. An empty run has no such padding (CDR).
+        Padding in front of the first item. An empty run does not have it (CDR).
     count : int or None
-        Items, if the type fixes their number.
+        Number of items, if the type fixes it.
     bound : int or None
-        Most items, if the type bounds their number.
+        Largest number of items, if the type bounds it.
     terminated : bool
-        Whether a NUL follows the items, which the length on the wire counts.
+        Whether a NUL follows the items. The length on the wire counts the NUL.
     """
 
     path: Path
@@ -109,8 +110,8 @@ class RunNode:
 class LoopNode:
     """Elements in a row that are not primitives.
 
-    Attributes are as for :class:`RunNode`; `body` is one element, placed wherever any of them may
-    start.
+    Attributes are as for :class:`RunNode`. `body` is one element, laid out for all offsets where
+    any element may start.
     """
 
     path: Path
@@ -131,9 +132,9 @@ class Layout:
     Attributes
     ----------
     nodes : tuple of Node
-        Everything behind the encapsulation header, nested messages spliced in.
+        Everything after the encapsulation header, with nested messages written out.
     min_bytes : int
-        No packet of the type is shorter than this; header included.
+        Lower bound of the size of a packet in bytes, header included.
     """
 
     message: Message
@@ -148,11 +149,11 @@ def lay_out(message: Message, wire: Wire | None = None) -> Layout:
     Raises
     ------
     DefinitionError
-        If a field of it, or of a message in it, is of a type that no wire has (`refusals`).
+        If a field of the message, or of a message in it, has no wire format (`refusals`).
     ValueError
-        If there is no such wire.
+        If `wire` is not the name of a wire format.
     TypeError
-        If it is no message.
+        If `message` is not a Message.
     """
     if not isinstance(message, Message):
         raise TypeError(f"Message must be a Message, as load_message gives it, not {message!r}")
@@ -180,7 +181,7 @@ def walk(nodes: tuple[Node, ...]) -> Iterator[Node]:
 
 
 def _number(primitive: Primitive) -> Primitive:
-    """Return what stands on the wire: of a `wchar`, an integer of its size."""
+    """Return the primitive on the wire: for a `wchar`, an integer of its size."""
     if primitive.name != "wchar":
         return primitive
     return PRIMITIVES["ros2"][f"uint{8 * primitive.bytes}"]
@@ -199,7 +200,7 @@ class _Builder:
         align = self.align(primitive)
         return Gap(align=align, bytes=rs.pad_of(at, align))
 
-    # Where a value of a type ends, by where it starts.
+    # Residues where a value of a type may end, by those where it may start.
 
     def after(self, kind: FieldType, at: int) -> int:
         result = 0
@@ -308,7 +309,7 @@ class _Builder:
     # Sizes.
 
     def min_bytes(self, kind: FieldType) -> int:
-        """Return a lower bound of a value's size, without padding, which depends on the place."""
+        """Return a lower bound of a value's size: without padding, which depends on the offset."""
         if kind not in self._min:
             self._min[kind] = self._min_bytes(kind)
         return self._min[kind]

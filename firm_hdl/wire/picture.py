@@ -1,7 +1,7 @@
-"""A picture of a message's bytes, as SVG: eight to a row, in the order of the wire.
+"""A picture of a message's bytes, as SVG: eight bytes per row, in wire order.
 
-Drawn here rather than by a library for bit fields: messages have parts whose size varies, and rows
-of hundreds of equal items that nobody wants to see one by one.
+Libraries for bit fields cannot draw it: messages have parts whose size varies, and hundreds of
+equal items, of which only the outer rows are shown.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ STYLE = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Piece:
-    """A cell's part of a row, which may stand for a number of rows that are left out."""
+    """A cell's part of a row. It may stand for a number of rows that are left out."""
 
     cell: BandCell
     row: int
@@ -123,7 +123,7 @@ def _grid(grid: Grid, left: int, y: int) -> tuple[list[str], int, int]:
 
 
 def _pieces(cell: BandCell) -> Iterator[_Piece]:
-    """Cut a cell into rows; of many, only the outer ones."""
+    """Cut a cell into rows. If there are many, only the outer ones are drawn."""
     end = cell.at + cell.bytes
     rows = list(range(cell.at // ROW_BYTES, -(-end // ROW_BYTES)))
     shown = rows if len(rows) <= 4 else [rows[0], rows[1], rows[-1]]

@@ -1,10 +1,10 @@
-"""What a definition may say and no wire can carry.
+"""Legal definitions that cannot be laid out on any wire.
 
-IDL has a `long double`. rosidl reads it, so that a type with one can be looked at; but systems do
-not agree about its bytes, so no layout has one (:attr:`firm_hdl.model.Primitive.has_wire_format`).
+IDL has a `long double`. rosidl reads it, so such a type can be shown. But systems do not agree
+about its bytes, so it cannot be laid out (:attr:`firm_hdl.model.Primitive.has_wire_format`).
 
-A layout writes out every message in a message. A few small files can describe a type with more
-fields than there are atoms, so what would be too large is counted before it is written out.
+A layout writes out every nested message. A few small files can describe a type with more fields
+than a computer can hold, so the fields are counted before they are written out.
 """
 
 from __future__ import annotations
@@ -15,30 +15,30 @@ from firm_hdl.model import Message, Primitive
 __all__ = ["MAX_LEAVES", "MAX_LEVELS", "refusals", "too_large"]
 
 MAX_LEAVES = 32_767
-"""Most fields of a message with all messages in it written out.
+"""Largest number of fields of a message with all nested messages written out.
 
-A serializer has at least two input bits for each, and Amaranth elaborates at most 65,535.
+A serializer has at least two input bits for each field, and Amaranth elaborates at most 65,535.
 """
 
 MAX_LEVELS = 32
-"""Most levels of messages in a message: layouts, plans and circuits are made level by level."""
+"""Largest nesting depth of messages: layouts, plans and circuits are built recursively."""
 
 
 def refusals(message: Message) -> list[Diagnostic]:
-    """Find what keeps a message from any wire: its size, or fields that no wire has.
+    """Find why a message cannot be laid out on any wire: its fields or its size.
 
     Returns
     -------
     list of Diagnostic
-        One for each such field of the message and of all messages in it, at its name, in the order
-        in which the types are first named; without any, one for the size, which no text is to
-        blame for. Empty if the message can be laid out.
+        One for each field without a wire format, of the message and of all messages in it, in the
+        order in which the types are first named; the span is the field's name. If no field has such
+        an error, at most one for the size, without a span. Empty if the message can be laid out.
     """
     return _without_bytes(message) or too_large(message)
 
 
 def too_large(message: Message) -> list[Diagnostic]:
-    """Find whether a message has more levels or more fields than can be laid out.
+    """Check whether a message has too many levels or fields to be laid out.
 
     Returns
     -------

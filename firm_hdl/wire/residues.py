@@ -1,8 +1,8 @@
-"""Sets of residues: all that is known, before a packet comes, of where a field may start.
+"""Sets of residues: the statically known part of the offsets where a field may start.
 
-A set is a mask, bit r for offsets that are r modulo 8. Eight is enough because no primitive aligns
-to more; a plan's places in a bus word take a larger power of two. Every operation distributes over
-union, so a set's image is the union of its members'.
+A set is a mask: bit r is set if the offset may be r modulo 8. Eight is enough because no primitive
+has a larger alignment; for positions in a bus word, a plan takes a larger power of two. Every
+operation distributes over union, so the image of a set is the union of the images of its members.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ def members(residues: int) -> Iterator[int]:
 
 
 def advance(residues: int, count: int, modulus: int = MODULUS) -> int:
-    """Return where offsets are after `count` bytes."""
+    """Return the set of offsets after `count` bytes."""
     count %= modulus
     return (residues << count | residues >> (modulus - count)) & ((1 << modulus) - 1)
 
 
 def aligned(residues: int, align: int, modulus: int = MODULUS) -> int:
-    """Return where offsets are after padding to a multiple of `align` bytes."""
+    """Return the set of offsets after padding to a multiple of `align` bytes."""
     result = 0
     for r in members(residues):
         result |= single(r + -r % align, modulus)
@@ -57,7 +57,7 @@ def pad_of(residues: int, align: int) -> int | None:
 
 
 def spread(residues: int, unit_bytes: int, modulus: int = MODULUS) -> int:
-    """Return where offsets are after any number of units, zero included."""
+    """Return the set of offsets after any number of units, zero included."""
     result = residues
     for n in range(1, modulus // math.gcd(unit_bytes, modulus)):
         result |= advance(residues, n * unit_bytes, modulus)
@@ -70,14 +70,14 @@ def repeat(residues: int, body: Callable[[int], int], count: int | None) -> tupl
     Returns
     -------
     entry : int
-        Where some iteration may start.
+        Offsets where an iteration may start.
     after : int
-        Where the loop may end.
+        Offsets where the loop may end.
     """
     seen: list[int] = []
     now = residues
     entry = 0
-    # The images are subsets of a set of eight and so must recur; a recurring one closes the cycle.
+    # There are finitely many sets, so they recur; the first one that recurs closes the cycle.
     while now not in seen and (count is None or len(seen) < count):
         seen.append(now)
         entry |= now

@@ -1,4 +1,4 @@
-"""What distinguishes one wire format from another, as data."""
+"""The differences between wire formats, as data."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ class WireRules:
     ----------
     wire : "ros1" or "cdr"
     encapsulation : bytes
-        Representation identifier that starts every packet; empty if the format has none. A packet
-        that starts with other bytes was not made for this converter.
+        Representation identifier at the start of every packet; empty if the format has none. A
+        packet that starts with other bytes is an error.
     option_bytes : int
-        Bytes behind the identifier that a receiver ignores and a sender sets to zero.
+        Number of bytes after the identifier that a receiver ignores and a sender sets to zero.
     max_align : int
-        A primitive of n bytes stands at a multiple of min(n, max_align) bytes, counted from the end
+        A primitive of n bytes starts at a multiple of min(n, max_align) bytes, counted from the end
         of the encapsulation header.
     terminated : bool
-        Whether a string's bytes end in a NUL that its length on the wire counts.
+        Whether a string ends in a NUL, which its length on the wire counts.
     empty_member : str or None
-        Name of the uint8 that stands for a message without fields; `None`: such a message has no
+        Name of the uint8 that represents a message without fields; `None`: such a message has no
         bytes.
     slack_bytes : int
-        Most bytes that may follow a message in its packet.
+        Largest number of bytes that may follow a message in its packet.
     """
 
     wire: Wire
@@ -44,5 +44,5 @@ class WireRules:
 
     @property
     def header_bytes(self) -> int:
-        """Bytes in front of the first field; alignment counts from behind them."""
+        """Bytes of the encapsulation header; alignment counts from its end."""
         return len(self.encapsulation) + self.option_bytes

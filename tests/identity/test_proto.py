@@ -276,9 +276,9 @@ def test_size_is_that_of_the_text_before_it_is_written(tmp_path, monkeypatch):
     ours = library(tmp_path, {**texts, "p/None": ""})
     examples = {name: proto(ours.message(name), quotes=False) for name in texts}
     for name, text in examples.items():
-        monkeypatch.setattr("firm_hdl.identity.proto_ros2._MOST_CHARACTERS", len(text))
+        monkeypatch.setattr("firm_hdl.identity.proto_ros2._MAX_CHARACTERS", len(text))
         assert proto(ours.message(name), quotes=False) == text
-        monkeypatch.setattr("firm_hdl.identity.proto_ros2._MOST_CHARACTERS", len(text) - 1)
+        monkeypatch.setattr("firm_hdl.identity.proto_ros2._MAX_CHARACTERS", len(text) - 1)
         said = f" has an example of {len(text)} characters, which is more than {len(text) - 1}$"
         with pytest.raises(TooLargeError, match=said):
             proto(ours.message(name))
@@ -303,9 +303,9 @@ def test_size_is_that_of_the_text_before_it_is_written(tmp_path, monkeypatch):
 )
 def test_values_of_ros1_are_counted_before_they_are_written(tmp_path, monkeypatch, text, values):
     message = library(tmp_path, {"p/A": text, "p/Part": "int8 x\nint8 y\n"}, "ros1").message("p/A")
-    monkeypatch.setattr("firm_hdl.identity.proto_ros1._MOST_VALUES", values)
+    monkeypatch.setattr("firm_hdl.identity.proto_ros1._MAX_VALUES", values)
     proto(message)
-    monkeypatch.setattr("firm_hdl.identity.proto_ros1._MOST_VALUES", values - 1)
+    monkeypatch.setattr("firm_hdl.identity.proto_ros1._MAX_VALUES", values - 1)
     said = f"^p/(A|Part) has an example of {values} values, which is more than {values - 1}$"
     with pytest.raises(TooLargeError, match=said):
         proto(message)

@@ -160,15 +160,15 @@ def test_limits_of_examples_are_allowed_and_one_more_is_not(tmp_path, monkeypatc
         "p/B": "int8 x",
     }
     ours = library(tmp_path / "1", texts, "ros1")
-    monkeypatch.setattr(proto_ros1, "_MOST_VALUES", 4)
+    monkeypatch.setattr(proto_ros1, "_MAX_VALUES", 4)
     proto(ours.message("p/Four"))
-    monkeypatch.setattr(proto_ros1, "_MOST_VALUES", 3)
+    monkeypatch.setattr(proto_ros1, "_MAX_VALUES", 3)
     with pytest.raises(TooLargeError, match=r"^p/Four has an example of .*more than 3"):
         proto(ours.message("p/Four"))
-    monkeypatch.setattr(proto_ros1, "_MOST_VALUES", 100)
-    monkeypatch.setattr(proto_ros1, "_MOST_LEVELS", 3)
+    monkeypatch.setattr(proto_ros1, "_MAX_VALUES", 100)
+    monkeypatch.setattr(proto_ros1, "_MAX_LEVELS", 3)
     proto(ours.message("p/Deep"))
-    monkeypatch.setattr(proto_ros1, "_MOST_LEVELS", 2)
+    monkeypatch.setattr(proto_ros1, "_MAX_LEVELS", 2)
     with pytest.raises(TooLargeError, match=r"^p/Deep has an example of .*more than 2"):
         proto(ours.message("p/Deep"))
 
@@ -177,10 +177,10 @@ def test_limits_of_examples_are_allowed_and_one_more_is_not(tmp_path, monkeypatc
 def test_limit_of_characters_is_that_of_the_text(tmp_path, monkeypatch, text):
     message = library(tmp_path, {"p/T": text, "p/Two": "int8 x"}).message("p/T")
     size = len(proto(message, quotes=False)) + 1
-    monkeypatch.setattr(proto_ros2, "_MOST_CHARACTERS", size)
+    monkeypatch.setattr(proto_ros2, "_MAX_CHARACTERS", size)
     proto(message)
     # Of an array, its elements are counted before they are written.
-    monkeypatch.setattr(proto_ros2, "_MOST_CHARACTERS", len("- 0\n") * 2)
+    monkeypatch.setattr(proto_ros2, "_MAX_CHARACTERS", len("- 0\n") * 2)
     with pytest.raises(TooLargeError):
         proto(message)
 

@@ -55,13 +55,14 @@ def problems_of(which, changes):
 PLAIN = Exits(default=Jump(step=None))
 BYTE = Part(at=4, bytes=1, leaf=0, first=0, size=1)
 X = PLANS["rich"].steps[5].slices[0]
-RULE = "a length must be complete just where it starts something"
+MARKS = "has too few or too many marks of its end"
+RULE = "a length must be complete in the step that starts what it counts, and in no other"
 JOIN = "the parts of a transfer do not join"
 
 # Which plan, what is changed in it, and what is said of that.
 CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     # Tables.
-    ("rich", {"bus_bytes": 3}, ["bus of 3 bytes"]),
+    ("rich", {"bus_bytes": 3}, ["a bus cannot have 3 bytes"]),
     ("rich", {"header_bytes": 0}, ["header or slack is not that of cdr"]),
     ("rich", {"slack_bytes": 0}, ["header or slack is not that of cdr"]),
     ("rich", {"wire": "ros1"}, ["header or slack is not that of ros1"]),
@@ -83,9 +84,9 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
         ["leaf e.trigger: a trigger is of type bool, not uint8"],
     ),
     ("rich", {"runs.3.items": 2}, ["two runs have the same items"]),
-    ("rich", {"runs.1.items": 0}, ["run 1: it has no items"]),
-    ("rich", {"runs.1.items": 15}, ["run 1: it has no items"]),
-    ("rich", {"runs.1.items": -1}, ["run 1: it has no items"]),
+    ("rich", {"runs.1.items": 0}, ["run 1: its leaf is not of kind 'items'"]),
+    ("rich", {"runs.1.items": 15}, ["run 1: its leaf is not of kind 'items'"]),
+    ("rich", {"runs.1.items": -1}, ["run 1: its leaf is not of kind 'items'"]),
     ("narrow", {"runs.0.items": 0}, ["run 0: items are wider than the bus"]),
     ("rich", {"runs.0.terminated": True}, ["run 0: a NUL follows items that are not bytes"]),
     # Steps.
@@ -94,13 +95,13 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("rich", {"steps.3.align": 16}, ["step 3: alignment to 16"]),
     ("rich", {"steps.2.run": 4}, ["step 2: there is no run 4"]),
     ("rich", {"steps.2.run": -1}, ["step 2: there is no run -1"]),
-    ("rich", {"steps.2.head": 7}, ["step 2: 7 bytes of q.items a cycle do not suit words of 8"]),
-    ("rich", {"steps.2.head": 9}, ["step 2: 9 bytes of q.items a cycle do not suit words of 8"]),
+    ("rich", {"steps.2.head": 7}, ["step 2: 7 bytes of q.items per cycle do not fit words of 8"]),
+    ("rich", {"steps.2.head": 9}, ["step 2: 9 bytes of q.items per cycle do not fit words of 8"]),
     ("rich", {"steps.8.head": 9}, []),
     (
         "rich",
         {"steps.8.head": 10},
-        ["step 8: 10 bytes of ps.item.s.items a cycle do not suit words of 8"],
+        ["step 8: 10 bytes of ps.item.s.items per cycle do not fit words of 8"],
     ),
     ("rich", {"steps.3.slices.0.leaf": 15}, ["step 3: there is no leaf 15"]),
     ("rich", {"steps.3.slices.0.leaf": -1}, ["step 3: there is no leaf -1"]),
@@ -115,18 +116,18 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("rich", {"steps.3.slices.0.first": 1}, ["step 3: b has no bytes 1 to 8"]),
     ("rich", {"steps.3.slices.0.bytes": 9}, ["step 3: b has no bytes 0 to 8"]),
     ("rich", {"steps.3.slices.0.bytes": 0}, ["step 3: b has no bytes 0 to -1"]),
-    ("rich", {"steps.12.slices.0.last": False}, ["step 12: what ends m.items is not said once"]),
-    ("rich", {"steps.12.slices.0.last_level": 0}, ["step 12: what ends m.items is not said once"]),
-    ("rich", {"steps.3.slices.0.last": True}, ["step 3: what ends b is not said once"]),
-    ("rich", {"steps.3.slices.0.last_level": 0}, ["step 3: what ends b is not said once"]),
-    ("rich", {"steps.0.slices.3": Pad(at=5, bytes=0)}, ["step 0: nothing at byte 5"]),
-    ("rich", {"steps.0.slices.1.data": b""}, ["step 0: nothing at byte 2"]),
+    ("rich", {"steps.12.slices.0.last": False}, [f"step 12: m.items {MARKS}"]),
+    ("rich", {"steps.12.slices.0.last_level": 0}, [f"step 12: m.items {MARKS}"]),
+    ("rich", {"steps.3.slices.0.last": True}, [f"step 3: b {MARKS}"]),
+    ("rich", {"steps.3.slices.0.last_level": 0}, [f"step 3: b {MARKS}"]),
+    ("rich", {"steps.0.slices.3": Pad(at=5, bytes=0)}, ["step 0: the slice at byte 5 is empty"]),
+    ("rich", {"steps.0.slices.1.data": b""}, ["step 0: the slice at byte 2 is empty"]),
     ("rich", {"steps.3.bytes": 9}, ["step 3: the map has 8 bytes, the step 9"]),
-    ("rich", {"steps.12.slices.0.size": 8}, ["step 12: m.items is interrupted"]),
+    ("rich", {"steps.12.slices.0.size": 8}, ["step 12: m.items is cut by the next part"]),
     (
         "side",
         {"steps.0.slices.1.first": 1, "steps.0.slices.1.bytes": 7, "steps.0.bytes": 8},
-        ["step 0: b goes on behind something else"],
+        ["step 0: b continues behind other bytes"],
     ),
     # What a step begins.
     ("rich", {"steps.1.begin": None}, [f"step 1: {RULE}"]),
@@ -141,7 +142,7 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ),
     ("rich", {"steps.4.begin.limit": -1}, ["step 4: a count has the limit -1"]),
     ("rich", {"steps.4.begin.limit": 0}, []),
-    ("begun", {"steps.0.begin.count": 0}, ["step 0: a constant count of 0"]),
+    ("begun", {"steps.0.begin.count": 0}, ["step 0: a constant count cannot be 0"]),
     ("begun", {"steps.0.begin.count": 1}, []),
     ("rich", {"steps.1.begin.run": 4}, ["step 1: there is no run 4"]),
     ("rich", {"steps.1.begin.run": -1}, ["step 1: there is no run -1"]),
@@ -149,10 +150,10 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     (
         "rich",
         {"steps.1.begin.head": 7},
-        ["step 1: 7 bytes of q.items a cycle do not suit words of 8"],
+        ["step 1: 7 bytes of q.items per cycle do not fit words of 8"],
     ),
-    ("rich", {"steps.1.begin.gap": 8}, ["step 1: a gap of 8 bytes"]),
-    ("rich", {"steps.1.begin.gap": -1}, ["step 1: a gap of -1 bytes"]),
+    ("rich", {"steps.1.begin.gap": 8}, ["step 1: a gap cannot have 8 bytes"]),
+    ("rich", {"steps.1.begin.gap": -1}, ["step 1: a gap cannot have -1 bytes"]),
     # The header.
     ("rich", {"steps.0.slices.0.data": b"\0\0"}, ["the header is not that of cdr"]),
     ("rich", {"steps.0.slices.0.check": False}, ["the header is not that of cdr"]),
@@ -161,7 +162,7 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     (
         "rich",
         {"steps.5.slices": (X, Fixed(at=1, data=b"x", check=False)), "steps.5.bytes": 2},
-        ["fixed bytes stand behind the header", "the header is not that of cdr"],
+        ["fixed bytes follow the header", "the header is not that of cdr"],
     ),
     # Transfers.
     (
@@ -185,8 +186,8 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
         },
         ["leaf a: 2 transfers and 0 runs"],
     ),
-    ("rich", {"runs.2.last": True}, ["leaf m.items: its end is not where the run says"]),
-    ("rich", {"runs.0.last": False}, ["leaf q.items: its end is not where the run says"]),
+    ("rich", {"runs.2.last": True}, ["leaf m.items: its run and its tail disagree about its end"]),
+    ("rich", {"runs.0.last": False}, ["leaf q.items: its run and its tail disagree about its end"]),
     (
         "rich",
         {"steps.12.slices.0.last": False, "steps.12.slices.0.last_level": 0},
@@ -228,13 +229,13 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     (
         "rich",
         {"start.enter": (("run", 1),)},
-        ["step 0: the counter of the run is not loaded, or in vain"],
+        ["step 0: the counter of the run is not loaded, or needlessly loaded"],
     ),
     ("rich", {"levels": 2}, ["2 loop counters, of which 1 are used"]),
     ("rich", {"levels": 0}, ["step 4, next: loop 0 inside 0 loops"]),
-    ("rich", {"steps.4.exits.default.enter": ((0, 0),)}, ["step 4, next: 0 elements"]),
-    ("rich", {"steps.4.exits.default.enter": ((0, 5),)}, ["step 7, next: 6 elements"]),
-    ("rich", {"steps.7.exits.default.enter": ((0, 5),)}, ["step 7, next: 5 elements"]),
+    ("rich", {"steps.4.exits.default.enter": ((0, 0),)}, ["step 4, next: loads a count of 0"]),
+    ("rich", {"steps.4.exits.default.enter": ((0, 5),)}, ["step 7, next: loads a count of 6"]),
+    ("rich", {"steps.7.exits.default.enter": ((0, 5),)}, ["step 7, next: loads a count of 5"]),
     (
         "rich",
         {"steps.4.exits.default.enter": ()},
@@ -249,12 +250,12 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     (
         "rich",
         {"steps.10.exits.default.enter": ()},
-        ["step 11: the counter of the run is not loaded, or in vain"],
+        ["step 11: the counter of the run is not loaded, or needlessly loaded"],
     ),
     (
         "rich",
         {"steps.9.exits.default.enter": (("run", 6),)},
-        ["step 10: the counter of the run is not loaded, or in vain"],
+        ["step 10: the counter of the run is not loaded, or needlessly loaded"],
     ),
     ("entered", {"runs.0.terminated": True}, ["step 0: a constant run counts a NUL"]),
     (
@@ -270,7 +271,7 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     (
         "rich",
         {"steps.8.exits.default.enter": ()},
-        ["step 8, next: step 9 is reached with other loops open before"],
+        ["step 8, next: step 9 is also reached with other open loops"],
     ),
     ("rich", {"steps.14.exits.default.step": 15}, ["step 14, next: there is no step 15"]),
     ("rich", {"steps.13.exits.default.step": 15}, ["step 13, next: goes to step 15, not 14"]),
@@ -339,7 +340,7 @@ OFFSETS: list[tuple[str, dict[str, Any], set[str]]] = [
     (
         "rich",
         {"steps.0.align": 4},
-        {"step 0: alignment in front of nothing", "step 0: is aligned already"},
+        {"step 0: alignment that no value follows", "step 0: is aligned already"},
     ),
     ("rich", {"steps.2.align": 2}, {"step 2: is aligned already"}),
     ("rich", {"steps.1.begin.gap": 1}, missing(1, "q.items", [(0, 1, 0)])),
@@ -366,18 +367,18 @@ OFFSETS: list[tuple[str, dict[str, Any], set[str]]] = [
     (
         "rich",
         {"steps.5.slices": (X, Pad(at=1, bytes=1)), "steps.5.bytes": 2},
-        {"step 6: padding in front of nothing"},
+        {"step 6: padding that no value follows"},
     ),
     (
         "rich",
         {"steps.9.slices": (*RICH_STEPS[9].slices, Pad(at=3, bytes=1)), "steps.9.bytes": 4},
-        {"step 10: padding in front of nothing"},
+        {"step 10: padding that no value follows"},
     ),
     (
         "rich",
         {"steps.10.slices": (*RICH_STEPS[10].slices, Pad(at=2, bytes=1)), "steps.10.bytes": 3},
         missing(9, "grid.item.row.items", [(offset, 1, 0) for offset in (0, 2, 4, 6)])
-        | {"step 11: padding in front of nothing"},
+        | {"step 11: padding that no value follows"},
     ),
     (
         "rich",

@@ -87,7 +87,7 @@ def test_packets_with_too_many_transfers_are_left_out(monkeypatch):
         19: cost(33, 5, 6),
     }
     for most, found in hardest.items():
-        monkeypatch.setattr("firm_hdl.plan.timing.MOST_TRANSFERS", most)
+        monkeypatch.setattr("firm_hdl.plan.timing.MAX_TRANSFERS", most)
         assert timing(plan_of(fields, 8)).hardest == found
 
 

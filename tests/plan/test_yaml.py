@@ -156,7 +156,7 @@ MISTAKES = [
     ("4..7: stamp", "4..7: stamp?", "Line 23: 'stamp?' is not a leaf, padding or fixed bytes"),
     ("4..7: stamp", "four: stamp", "Line 23: a step has no 'four'"),
     ("(00 01 checked)", "(00 checked)", "Line 21: 1 fixed bytes stand where 2 are needed"),
-    ("next: step 1\n", "next: stop 1\n", "Line 24: 'stop 1' is not a place to go on (next)"),
+    ("next: step 1\n", "next: stop 1\n", "Line 24: 'stop 1' is not a jump (next)"),
     ("    next: step 1\n", "", "Line 21: the step has no 'next'"),
     ("with run = 4\n  step 2", "with run 4\n  step 2",
      "Line 28: 'run 4' is not a counter and a number"),

@@ -131,15 +131,15 @@ def test_an_example_is_counted_to_the_character(monkeypatch, tmp_path):
     }
     made = Library(paths=[make_files(tmp_path, files)]).message("p/Out")
     text = proto(made, quotes=False)
-    monkeypatch.setattr("firm_hdl.identity.proto_ros2._MOST_CHARACTERS", len(text))
+    monkeypatch.setattr("firm_hdl.identity.proto_ros2._MAX_CHARACTERS", len(text))
     assert proto(made, quotes=False) == text
-    monkeypatch.setattr("firm_hdl.identity.proto_ros2._MOST_CHARACTERS", len(text) - 1)
+    monkeypatch.setattr("firm_hdl.identity.proto_ros2._MAX_CHARACTERS", len(text) - 1)
     with pytest.raises(TooLargeError, match=f"an example of {len(text)} characters"):
         proto(made)
 
 
 def test_loops_in_loops_end_the_search_for_the_hardest_packet(monkeypatch):
-    monkeypatch.setattr("firm_hdl.plan.timing.MOST_TRANSFERS", 100)
+    monkeypatch.setattr("firm_hdl.plan.timing.MAX_TRANSFERS", 100)
     top = chain(10, lambda kind: Sequence(element=kind, bound=None))
     plan = build_plan(lay_out(top))
     with calls_at_most(60_000):

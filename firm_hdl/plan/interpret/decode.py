@@ -1,4 +1,4 @@
-"""From a packet to transfers, as a deserializer does it."""
+"""Decode a packet to transfers, as a deserializer does."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ class Transfer(NamedTuple):
     leaf : int
         Index into `Plan.leaves`.
     payload : int or (tuple of int, bool)
-        For items: all lanes (those past the end 0), and `last`. For the others a number: floats as
-        their bits, a `bool` as 0 or 1, a trigger as 1.
+        For items: all lanes (lanes past the end are 0), and `last`. For other leaves a number: a
+        float as its bits, a `bool` as 0 or 1, a trigger as 1.
     """
 
     leaf: int
@@ -40,7 +40,7 @@ class Transfer(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Decoded:
-    """What a packet decodes to.
+    """The result of decoding a packet.
 
     Attributes
     ----------
@@ -88,7 +88,7 @@ class _Reader(Machine):
     position: int = 0
     status: DecodeStatus = "OK"
     transfers: list[Transfer] = field(default_factory=list)
-    # What was read of the transfer under way.
+    # The bytes read so far of the current transfer.
     partial: bytes = b""
 
     @property
@@ -96,11 +96,11 @@ class _Reader(Machine):
         return self.position
 
     def skip(self, count: int) -> None:
-        # Missing padding is no error by itself; what it is in front of will be missing, too.
+        # Missing padding is not an error: the value after it is missing, too.
         self.position += count
 
     def read(self, count: int) -> bytes:
-        """Return the next bytes, or those that are there; none after an error."""
+        """Return the next bytes, or as many as the packet has; none after an error."""
         start = self.position
         self.position += count
         if self.status != "OK":
@@ -134,10 +134,10 @@ class _Reader(Machine):
         self.transfers.append(Transfer(part.leaf, payload))
 
     def count(self, begin: CountedBegin, wire: int) -> int:
-        """Return what a length transfers as, and remember what it means on the wire."""
+        """Return the payload of a length, and keep the length on the wire."""
         length = wire - 1 if self.plan.has_nul(begin) and wire else wire
         if length > begin.limit:
-            # A length is read whole or is 0, so there was no error before.
+            # A length is read whole or is 0, so no error came before.
             self.status = "LENGTH"
             wire = length = 0
         self.length = wire
@@ -156,12 +156,12 @@ class _Reader(Machine):
 def _numbers(leaf: Leaf, data: bytes, count: int) -> tuple[int, ...]:
     """Return a payload's lanes: `count` numbers, 0 for those not wholly in `data`, then 0."""
     size = leaf.item_bytes
-    there = min(count, len(data) // size)
+    complete = min(count, len(data) // size)
     if leaf.type == "bool":
-        values = [int(byte != 0) for byte in data[:there]]
+        values = [int(byte != 0) for byte in data[:complete]]
     elif size == 1 and not leaf.signed:
-        values = list(data[:there])
+        values = list(data[:complete])
     else:
-        pieces = (data[i * size : (i + 1) * size] for i in range(there))
+        pieces = (data[i * size : (i + 1) * size] for i in range(complete))
         values = [int.from_bytes(piece, "little", signed=leaf.signed) for piece in pieces]
-    return (*values, *([0] * (leaf.lanes - there)))
+    return (*values, *([0] * (leaf.lanes - complete)))

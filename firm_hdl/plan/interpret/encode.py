@@ -1,4 +1,4 @@
-"""From transfers to a packet, as a serializer does it."""
+"""Encode transfers to a packet, as a serializer does."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ def encode(
     ----------
     plan : Plan
     streams : mapping of int to iterable
-        Payloads by index of the leaf. Iterators are advanced by what one message takes, so that
-        calls with the same iterators give one packet each.
+        Payloads by index of the leaf. Each call takes the payloads of one message from iterators,
+        so that calls with the same iterators give one packet each.
     bare_strings : bool
-        Whether to write an empty CDR string as the length 0, without its NUL. Serializers never
-        do, but ROS 2 and the deserializer read it.
+        Whether to write an empty CDR string as the length 0, without its NUL. A serializer never
+        writes it, but ROS 2 and the deserializer accept it.
 
     Returns
     -------
     packet : bytes
-        What the lengths promise, even if the status is not ``OK``.
+        All bytes that the lengths promise, even if the status is not ``OK``.
     status : str
         ``OK``, or the first error in wire order.
 
@@ -59,7 +59,7 @@ class _Writer(Machine):
     bare_strings: bool
     status: EncodeStatus = "OK"
     packet: bytearray = field(default_factory=bytearray)
-    # All bytes of the transfer under way.
+    # All bytes of the current transfer.
     whole: bytes = b""
 
     @property
@@ -123,6 +123,6 @@ class _Writer(Machine):
 
 
 def _bytes(leaf: Leaf, value: int) -> bytes:
-    """Return a number as it stands on the wire, cut to the width of its leaf."""
+    """Return the bytes of a number on the wire, cut to the width of its leaf."""
     bits = min(1 if leaf.type == "bool" else 64, 8 * leaf.item_bytes)
     return (value & ((1 << bits) - 1)).to_bytes(leaf.item_bytes, "little")

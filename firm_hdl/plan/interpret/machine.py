@@ -1,4 +1,4 @@
-"""The control flow of a plan, which both directions have in common."""
+"""The control flow of a plan, common to both directions."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from firm_hdl.plan.ir import (
 __all__ = ["Edge", "Machine", "Payload", "Visit"]
 
 Payload: TypeAlias = "int | tuple[tuple[int, ...], bool]"
-"""What one transfer carries: a number, or for items all lanes and `last`."""
+"""The payload of one transfer: a number, or for items all lanes and `last`."""
 
 
 class Visit(NamedTuple):
-    """One cycle of a plan: the step, and the bytes it takes, padding in front of it left out."""
+    """One cycle of a plan: the step, and the bytes that it takes, without padding in front."""
 
     step: int
     bytes: int
@@ -44,8 +44,8 @@ class Edge(NamedTuple):
     step : int
     way : str
         ``padding N``: the step was aligned by skipping N bytes. ``again``: the body of a run was
-        repeated. ``body``: what the step starts goes on elsewhere. ``loop N again`` and ``next``:
-        the exit that was taken.
+        repeated. ``body``: the loop or run that the step starts continues in its body. ``loop N
+        again`` and ``next``: the exit that was taken.
     """
 
     step: int
@@ -62,7 +62,7 @@ class Machine(ABC):
     length: int = 0
     visits: list[Visit] = field(default_factory=list)
     edges: set[Edge] = field(default_factory=set)
-    # What each length counts; its first bytes may be some steps before that starts.
+    # The loop or run of each length. A length's first bytes may come some steps before its start.
     begins: dict[int, CountedBegin] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -71,33 +71,33 @@ class Machine(ABC):
     @property
     @abstractmethod
     def offset(self) -> int:
-        """Bytes of the packet in front of here."""
+        """Number of bytes of the packet so far."""
 
     @abstractmethod
     def skip(self, count: int) -> None:
-        """Pass over padding."""
+        """Skip padding."""
 
     @abstractmethod
     def fixed(self, item: Fixed) -> None:
-        """Pass bytes that are the same in every packet."""
+        """Read or write bytes that are the same in every packet."""
 
     @abstractmethod
     def part(self, part: Part) -> None:
-        """Pass a part of a transfer."""
+        """Read or write a part of a transfer."""
 
     @abstractmethod
     def items(self, run: Run, count: int, last: bool) -> None:
-        """Pass one transfer of a run, of `count` items."""
+        """Read or write one transfer of a run, of `count` items."""
 
     @abstractmethod
     def terminator(self) -> None:
-        """Pass a string's NUL."""
+        """Read or write a string's NUL."""
 
     def go(self) -> None:
         """Run the plan from start to end."""
-        now = self.enter(self.plan.start)
-        while now is not None:
-            now = self.step(now)
+        index = self.enter(self.plan.start)
+        while index is not None:
+            index = self.step(index)
 
     def enter(self, jump: Jump) -> int | None:
         self.counters.update(jump.enter)
@@ -144,7 +144,7 @@ class Machine(ABC):
         return self.enter(exits.default)
 
     def begin(self, step: MapStep) -> Jump | None:
-        """Start what a count counts, and return where it goes on, if it does."""
+        """Start the step's loop or run, and return the jump to its body, if it is needed."""
         begin = step.begin
         if begin is None:
             return None
@@ -165,7 +165,7 @@ class Machine(ABC):
         return begin.body
 
     def take(self, take: Take) -> None:
-        """Do one cycle of a run: its rest if that fits in the head, else all lanes."""
+        """Run one cycle of a run: take its rest if that fits in the head, else all lanes."""
         run = self.plan.runs[take.run]
         leaf = self.plan.leaves[run.items]
         left = self.counters[RUN_COUNTER]
@@ -174,9 +174,9 @@ class Machine(ABC):
         after = left - count
         self.counters[RUN_COUNTER] = after
         nul = 1 if run.terminated else 0
-        real = count - (nul if finish else 0)
-        if real:
-            self.items(run, real, run.last and after <= nul)
+        items = count - (nul if finish else 0)
+        if items:
+            self.items(run, items, run.last and after <= nul)
         if finish and nul:
             self.terminator()
 

@@ -5,10 +5,10 @@ map to leaves is static, and may end in the head of a run of items. One plan ser
 a deserializer takes the bytes of a step from its window and writes leaves, a serializer reads
 leaves and appends the bytes.
 
-Control flow. Steps stand in wire order. A step ends in its :class:`Exits`: loop counters are tried
-from the innermost outwards, and the first loop that has elements left is repeated; otherwise the
-plan goes on at another step or ends the packet. `MapStep.begin` starts what a length (or a
-constant) counts: a loop over elements, or a run of items.
+Control flow: steps are in wire order. A step ends in its :class:`Exits`: loop counters are tried
+from the innermost outwards, and the first loop that has elements left is repeated. If no loop has,
+the plan continues at another step or ends the packet. `MapStep.begin` starts a loop over elements
+or a run of items, which a length or a constant counts.
 """
 
 from firm_hdl.plan.ir.leaves import Fixed, Leaf, LeafKind, Pad, Part, Run, Slice

@@ -19,8 +19,7 @@ class Leaf:
     Attributes
     ----------
     path : tuple of str
-        ROS names from the message down; the last one is ``length``, ``items`` or ``trigger`` where
-        `kind` says so.
+        Names of fields from the message down. Unless `kind` is "scalar", the last name is `kind`.
     kind : "scalar", "length", "items" or "trigger"
     type : str
         ROS name of the primitive (``uint32`` for a length, ``bool`` for a trigger).
@@ -41,8 +40,8 @@ class Leaf:
 
     @property
     def primitive(self) -> Primitive:
-        """The primitive that `type` names; of `byte` and `char`, that with the sign."""
-        # Only a plan that is wrong has the other sign, and the check of plans says so.
+        """The primitive that `type` names; for `byte` and `char`, the one with the leaf's sign."""
+        # Only a wrong plan has the other sign, and `check` reports it.
         found = PRIMITIVE_OF.get((self.type, self.signed))
         return found or PRIMITIVE_OF[self.type, not self.signed]
 
@@ -81,7 +80,7 @@ class Part:
     Attributes
     ----------
     at : int
-        Where the part starts in its step.
+        Offset of the part in its step.
     bytes : int
         Size of the part; 0 for a trigger.
     leaf : int
@@ -91,9 +90,9 @@ class Part:
     size : int
         Bytes of the whole transfer.
     last : bool
-        For items: whether this transfer ends its array whatever the counters say.
+        For items: whether this transfer is always the last one of its array.
     last_level : int or None
-        For items: the loop counter that says so.
+        For items: the loop counter that is 1 if this transfer is the last one.
     """
 
     at: int
@@ -115,17 +114,17 @@ Slice: TypeAlias = "Pad | Fixed | Part"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Run:
-    """Items in a row, a bus word per transfer. Takes what `Plan.runs` has at its index.
+    """Items in a row, one bus word per transfer.
 
     Attributes
     ----------
     items : int
         Index of the leaf.
     terminated : bool
-        Whether a NUL follows on the wire, counted there.
+        Whether a NUL follows on the wire, where the length counts it.
     last : bool
-        Whether the last transfer of the run is the last of its leaf (false if a tail of a fixed
-        array follows as a part).
+        Whether the last transfer of the run is the last one of its leaf. False if a part with the
+        tail of a fixed array follows.
     """
 
     items: int

@@ -24,18 +24,18 @@ class Plan:
     bus_bytes : int
         1, 2, 4, 8, 16, 32 or 64.
     max_message_bytes : int
-        Longest packet, header included, that lengths may promise.
+        Size of the longest packet that lengths may promise, header included.
     header_bytes : int
-        Bytes of the encapsulation header; alignment counts from behind it.
+        Bytes of the encapsulation header; alignment counts from its end.
     slack_bytes : int
-        Most bytes that may follow the message in its packet.
+        Largest number of bytes that may follow the message in its packet.
     leaves : tuple of Leaf
         In wire order.
     runs : tuple of Run
     levels : int
         Number of loop counters.
     start : Jump
-        Where each packet starts.
+        Jump to the first step of each packet.
     steps : tuple of Step
     """
 
@@ -62,12 +62,12 @@ class Plan:
 
     @property
     def counted(self) -> dict[int, CountedBegin]:
-        """What each length counts, by the leaf of the length."""
+        """The loop or run that each length counts, by the index of the length's leaf."""
         begins = (step.begin for step in self.steps)
         return {b.length: b for b in begins if isinstance(b, CountedBegin)}
 
     def has_nul(self, begin: Begin) -> bool:
-        """Tell whether a count includes a NUL on the wire, which the leaf's length does not."""
+        """Tell whether a count on the wire includes a NUL; the leaf's length never does."""
         return not isinstance(begin, BeginLoop) and self.runs[begin.run].terminated
 
     def most(self, begin: Begin) -> int:

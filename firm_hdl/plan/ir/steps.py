@@ -1,4 +1,4 @@
-"""Steps, what they start, and where they go on."""
+"""Steps, the loops and runs that they start, and the jumps that follow them."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ __all__ = [
 ]
 
 RUN_COUNTER = "run"
-"""Name of the counter of items, beside the loop counters 0, 1, ... (outermost first)."""
+"""Name of the counter of items. Loop counters are called 0, 1, ... (outermost first)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Jump:
-    """Where to go on.
+    """The transition to the next step.
 
     Attributes
     ----------
     enter : tuple of (counter, count)
-        Counters to load on the way, for loops and runs of constant count that start there.
+        Counters to load, for loops and runs of constant count that start at the next step.
     step : int or None
         Index of the next step; `None` ends the packet.
     """
@@ -44,13 +44,13 @@ class Jump:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Exits:
-    """What follows a finished step.
+    """The jumps that may follow a finished step.
 
     Attributes
     ----------
     repeats : tuple of (level, Jump)
-        Loops that may end here, innermost first. The first with more than one element left counts
-        down and is repeated.
+        Loops that may end here, innermost first. The first loop with more than one element left is
+        repeated, and its counter is decremented.
     default : Jump
         Taken when no loop repeats.
     """
@@ -61,18 +61,18 @@ class Exits:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BeginLoop:
-    """The start of a loop over as many elements as a length says.
+    """The start of a loop over elements whose number is a length of the message.
 
     Attributes
     ----------
     length : int
-        Index of the leaf that counts; its last part is in this step.
+        Index of the leaf of the length; its last part is in this step.
     limit : int
-        Largest legal count: the declared bound, and what `max_message_bytes` can hold.
+        Largest legal count: the declared bound, or the count that `max_message_bytes` can hold.
     level : int
         Loop counter to load.
     body : Jump
-        Where a count above zero goes on.
+        Taken if the count is above zero.
     """
 
     length: int
@@ -83,24 +83,24 @@ class BeginLoop:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BeginRun:
-    """The start of a run of as many items as a length says.
+    """The start of a run of items whose number is a length of the message.
 
     Attributes
     ----------
     length : int
-        Index of the leaf that counts; its last part is in this step. On the wire, the length of a
-        run with a NUL counts the NUL, too.
+        Index of the leaf of the length; its last part is in this step. On the wire, the length of
+        a run with a NUL counts the NUL, too.
     limit : int
-        Largest legal count: the declared bound, and what `max_message_bytes` can hold.
+        Largest legal count: the declared bound, or the count that `max_message_bytes` can hold.
     run : int
         Index into `Plan.runs`.
     gap : int
-        Padding bytes in front of the first item, if there is one.
+        Padding bytes in front of the first item; an empty run has none.
     head : int
-        Most bytes of the run that this step takes itself; 0: none. They start `gap` bytes behind
-        the step's own. A count that needs no more is done here.
+        Largest number of bytes of the run that this step itself takes; 0: none. They start `gap`
+        bytes after the step's own bytes. A run that is no longer ends in this step.
     body : Jump or None
-        Where a count above zero and beyond the head goes on. `None`: never needed.
+        Taken if the run is longer than the head. `None`: it never is.
     """
 
     length: int
@@ -131,10 +131,10 @@ class BeginArray:
 
 
 Begin: TypeAlias = BeginLoop | BeginRun | BeginArray
-"""What a step starts."""
+"""The loop or run that a step starts."""
 
 CountedBegin: TypeAlias = BeginLoop | BeginRun
-"""What a length counts."""
+"""A loop or run that a length counts."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,16 +144,16 @@ class MapStep:
     Attributes
     ----------
     align : int
-        The step starts at a multiple of this many bytes (behind the encapsulation header); whatever
-        led here has skipped the padding. 1 where padding is statically known.
+        The step starts at a multiple of this many bytes, counted from the end of the encapsulation
+        header. The step before has skipped the padding. 1 where padding is statically known.
     bytes : int
         Bytes of the static map.
     slices : tuple of Slice
         The static map: each byte once, in wire order.
     begin : Begin or None
-        What the step starts behind its map.
+        The loop or run that the step starts after its map.
     exits : Exits
-        Where to go when the step, and the run that it starts, is done.
+        Taken when the step, and a run that it starts, is done.
     """
 
     align: int = 1
@@ -182,7 +182,7 @@ class MapStep:
 
     @property
     def most_bytes(self) -> int:
-        """Most bytes that one cycle of the step can take."""
+        """Largest number of bytes that one cycle of the step can take."""
         take = self.take
         return self.bytes if take is None else take.at + take.head
 
@@ -198,9 +198,9 @@ class RunStep:
     run : int
         Index into `Plan.runs`.
     head : int
-        Most bytes of the run per repetition.
+        Largest number of bytes of the run per repetition.
     exits : Exits
-        Where to go when the run is done.
+        Taken when the run is done.
     """
 
     align: int = 1
@@ -208,7 +208,7 @@ class RunStep:
     head: int
     exits: Exits
 
-    # It has no map, and starts nothing.
+    # A body has no map, and starts no loop or run.
     bytes: ClassVar[int] = 0
     slices: ClassVar[tuple[Slice, ...]] = ()
     parts: ClassVar[tuple[Part, ...]] = ()
@@ -222,7 +222,7 @@ class RunStep:
 
     @property
     def most_bytes(self) -> int:
-        """Most bytes that one cycle of the step can take."""
+        """Largest number of bytes that one cycle of the step can take."""
         return self.head
 
 
@@ -238,9 +238,9 @@ class Take:
     run : int
         Index into `Plan.runs`.
     at : int
-        Where the first of them stands in the step.
+        Offset of the first item in the step.
     head : int
-        Most bytes of them.
+        Largest number of bytes of these items.
     """
 
     run: int
