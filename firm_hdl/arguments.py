@@ -1,6 +1,7 @@
-"""Arguments that several commands take, each defined once.
+"""Command line arguments that several commands take, each defined once.
 
-The parser of a command is made before anything else of it, so nothing heavy is imported here.
+The parser of a command is made before its modules are imported, so no heavy module is imported
+here.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ def positive(text: str) -> int:
     return number_between(text, 1, None)
 
 
-def number_between(text: str, least: int, most: int | None) -> int:
+def number_between(text: str, minimum: int, maximum: int | None) -> int:
     """Read a number between limits, both included, for `argparse`.
 
     Parameters
@@ -40,14 +41,14 @@ def number_between(text: str, least: int, most: int | None) -> int:
     Raises
     ------
     argparse.ArgumentTypeError
-        If it is no number or none of these.
+        If the text is not a number, or the number is out of range.
     """
     try:
         number = int(text, 0)
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
-    if number < least or (most is not None and number > most):
-        limits = f"at least {least}" if most is None else f"from {least} to {most}"
+    if number < minimum or (maximum is not None and number > maximum):
+        limits = f"at least {minimum}" if maximum is None else f"from {minimum} to {maximum}"
         raise argparse.ArgumentTypeError(f"must be {limits}, not {number}")
     return number
 
@@ -56,14 +57,14 @@ def add_types_or_all(
     command: argparse.ArgumentParser,
     which: str = "all types; with --path, all in those folders; with --bag, all in the recordings",
 ) -> None:
-    """Add names of types, and ``--all`` instead."""
+    """Add names of types, and ``--all`` as the alternative."""
     command.add_argument("types", nargs="*", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
     command.add_argument("--all", action="store_true", help=which)
     command.set_defaults(usage_error=command.error)
 
 
 def add_origins(command: argparse.ArgumentParser) -> None:
-    """Add where definitions come from. Without ``--distro``, a recording says which it is."""
+    """Add the origins of definitions. Without ``--distro``, a recording names its distribution."""
     command.add_argument(
         "--distro",
         choices=list(DISTROS),
@@ -119,7 +120,7 @@ def add_jobs(command: argparse._ActionsContainer) -> None:
 
 
 def add_options(command: argparse._ActionsContainer) -> None:
-    """Add what a converter is made for: wire format, bus width, longest message."""
+    """Add the options of a converter: wire format, bus width, longest message."""
     from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES
 
     add_wire(command)

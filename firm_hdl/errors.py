@@ -1,8 +1,8 @@
-"""Errors in a user's definitions: where they are, what is wrong, and how that is printed.
+"""Errors in a user's definitions, with their position, and how they are printed.
 
-Libraries raise :class:`DefinitionError` with every problem that they found; only the command line
+Libraries raise :class:`DefinitionError` with all problems that they found; only the command line
 prints. The form is that of compilers: ``file:line:column: error: message``, then the source line,
-then a caret under the words that are meant.
+then carets under the words in question.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ class Source:
     Parameters
     ----------
     name : str
-        What to call it in messages: a file's path as the user wrote it, or ``<origin>/...`` for a
-        text that is in no file.
+        Name in messages: a file's path as the user wrote it, or ``<origin>/...`` for a text that is
+        in no file.
     text : str
-        All of its characters, line ends as they were.
+        The whole text, with its original line ends.
     """
 
     name: str
@@ -36,7 +36,7 @@ class Source:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Span:
-    """A range of characters of a source. Line and column are computed when somebody asks."""
+    """A range of characters of a source. Line and column are computed when they are read."""
 
     source: Source
     start: int
@@ -62,45 +62,44 @@ class Span:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Diagnostic:
-    """One problem: a sentence, and the place that it is about (`None`: no text is to blame)."""
+    """One problem: a sentence, and its place in a text (`None` if it has none)."""
 
     message: str
     span: Span | None = None
 
     def __str__(self) -> str:
-        said = printable(self.message)
+        message = printable(self.message)
         if self.span is None:
-            return f"error: {said}"
+            return f"error: {message}"
         span = self.span
         column = span.column
         where = f"{printable(span.source.name)}:{span.line}:{column}"
         text, before = _clip(span.line_text, column - 1)
-        meant = max(1, min(span.end - span.start, len(text) - before))
+        end = before + max(1, min(span.end - span.start, len(text) - before))
         head, words, tail = (
-            printable(part)
-            for part in (text[:before], text[before : before + meant], text[before + meant :])
+            printable(part) for part in (text[:before], text[before:end], text[end:])
         )
-        # Tabs stay tabs in front of the caret, so that it stands right at any tab width.
+        # Tabs stay tabs in front of the carets, so that these are aligned at any tab width.
         indent = "".join("\t" if c == "\t" else " " for c in head)
         carets = "^" * max(1, len(words))
-        return f"{where}: error: {said}\n{head}{words}{tail}\n{indent}{carets}"
+        return f"{where}: error: {message}\n{head}{words}{tail}\n{indent}{carets}"
 
 
-# A file may be one line, with all of its mistakes.
-_MOST_SHOWN = 400
+# A file may be one single line with many errors.
+_MAX_SHOWN = 400
 
 
 def _clip(text: str, before: int) -> tuple[str, int]:
-    """Cut a long line to what stands around a place; give the characters in front of it, too."""
-    if len(text) <= _MOST_SHOWN:
+    """Cut a long line to the part around a position; also return the new position."""
+    if len(text) <= _MAX_SHOWN:
         return text, before
-    start = max(0, before - _MOST_SHOWN // 2)
-    end = start + _MOST_SHOWN
+    start = max(0, before - _MAX_SHOWN // 2)
+    end = start + _MAX_SHOWN
     head, tail = "..." if start else "", "..." if end < len(text) else ""
     return head + text[start:end] + tail, before - start + len(head)
 
 
-# A text with a thousand mistakes must not be searched from its start for each of them.
+# A text with a thousand errors must not be searched from its start for each of them.
 @lru_cache(maxsize=16)
 def _line_starts(text: str) -> list[int]:
     starts = [0]
@@ -124,16 +123,16 @@ class DefinitionError(Exception):
         super().__init__(self.diagnostics)
 
     def __str__(self) -> str:
-        # Not made before somebody reads it: there may be a thousand, in a thousand types.
+        # Formatted only when it is read: there may be a thousand errors in a thousand types.
         return "\n".join(str(d) for d in self.diagnostics)
 
 
 class UserError(Exception):
-    """What was asked for cannot be done; the text says why, for whoever asked."""
+    """A request of the user cannot be met; the message gives the reason."""
 
 
 def described(error: BaseException) -> str:
-    """Return what an error says; of one that is not meant for users, with its name in Python."""
+    """Return the message of an error; for errors not meant for users, with their Python name."""
     if isinstance(error, DefinitionError | UserError):
         return str(error)
     return f"{type(error).__name__}: {error}"

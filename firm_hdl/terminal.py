@@ -1,8 +1,8 @@
-"""What commands print: no text of a definition and no name of a file acts on the terminal.
+"""Escape control characters in everything that commands print.
 
-Definitions are other people's. An escape sequence in one of their comments could move the cursor,
-rename the window or hide what stands in front of it; so characters that act instead of being seen
-are printed as Python would write them. Letters of any alphabet stay.
+Definitions and names of files come from other people. An escape sequence in a comment could move
+the cursor, rename the window or hide text in front of it. So control characters are printed as in
+a Python string literal. Letters of any alphabet stay.
 """
 
 from __future__ import annotations
@@ -15,30 +15,30 @@ from typing import Any, TextIO
 
 __all__ = ["printable", "printable_streams"]
 
-# Control characters but for tab and line feed, line and paragraph separators, and what turns the
-# direction of writing round.
-_ACTING = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
-# What tqdm writes beside its bars, in texts of its own: it moves, and resets the colour.
+# Control characters except tab and line feed, line and paragraph separators, and characters that
+# change the direction of writing.
+_CONTROL = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
+# Texts that tqdm writes besides its bars: they move the cursor and reset the colour.
 _MOVES = re.compile(r"(?:\n|\x1b\[A|\x1b\[0m)*")
 
 
 def printable(text: str) -> str:
-    r"""Give a text in which everything can be seen.
+    r"""Escape the control characters of a text.
 
     >>> printable("\x1b[2Jgrün\n")
     '\\x1b[2Jgrün\n'
     """
-    return _ACTING.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+    return _CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
 
 
 class _Printable:
-    """A stream that writes what is printable.
+    """A stream that escapes control characters.
 
     Parameters
     ----------
     stream : text stream
     bars : bool
-        Whether progress bars go there, which return to the start of their lines.
+        Whether progress bars are written to it, which return to the start of their lines.
     """
 
     def __init__(self, stream: TextIO, *, bars: bool) -> None:
@@ -63,7 +63,7 @@ class _Printable:
 
 @contextmanager
 def printable_streams() -> Iterator[None]:
-    """Let nothing but what is printable go to standard output and standard error."""
+    """Escape control characters in all that goes to standard output and standard error."""
     before = sys.stdout, sys.stderr
     sys.stdout = _Printable(sys.stdout, bars=False)
     sys.stderr = _Printable(sys.stderr, bars=True)

@@ -1,10 +1,10 @@
-"""``firm-hdl``, the command: arguments in, text out, and everything else is somebody else's.
+"""The command ``firm-hdl``: it parses arguments, calls other modules, and prints their results.
 
-Exit status: 0 if all went well; 1 if a definition or what was asked for cannot be used, which
-standard error explains; 2 if the command was called wrongly; 130 if it was interrupted.
+Exit status: 0 for success; 1 if a definition cannot be used or a request cannot be met, with the
+reason on standard error; 2 for wrong arguments; 130 if the command was interrupted.
 
-Nothing but Python's own modules is imported before the command is known, and nothing at all outside
-of `main`, which turns whatever ends it into words.
+Before the command is known, only Python's own modules are imported. Other modules are imported
+inside `main`, which reports every exception as a message.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return _run(arguments)
     except KeyboardInterrupt:
-        _say("interrupted")
+        _print_error("interrupted")
         return 130
 
 
 def _run(arguments: Sequence[str] | None) -> int:
     from firm_hdl.terminal import printable_streams
 
-    # A process may be started without them.
+    # A process may be started without standard output and standard error.
     sys.stdout = sys.stdout or io.StringIO()
     sys.stderr = sys.stderr or io.StringIO()
     with printable_streams():
@@ -39,7 +39,7 @@ def _run(arguments: Sequence[str] | None) -> int:
             try:
                 return _dispatch(sys.argv[1:] if arguments is None else list(arguments))
             finally:
-                # Help, too, which leaves by an exception.
+                # Also after help, which ends by an exception.
                 sys.stdout.flush()
         except OSError as error:
             return _failed(error)
@@ -54,29 +54,29 @@ def _dispatch(arguments: list[str]) -> int:
 
     reconfigure = getattr(sys.stdout, "reconfigure", None)
     if reconfigure is not None:
-        # A comment in a definition may have characters that the terminal has not.
+        # A comment in a definition may have characters that the terminal cannot encode.
         reconfigure(errors="backslashreplace")
     try:
         return given.run(given) or 0
     except DefinitionError as error:
-        _say(str(error))
+        _print_error(str(error))
     except UserError as error:
-        _say(f"error: {error}")
+        _print_error(f"error: {error}")
     except MemoryError:
-        _say("error: there is not enough memory for this")
+        _print_error("error: there is not enough memory for this")
     except RecursionError:
-        _say("error: something here nests deeper than can be followed")
+        _print_error("error: the input nests too deeply")
     return 1
 
 
 def _failed(error: OSError) -> int:
-    """Say what the system would not do; nobody may be there to hear it."""
+    """Report an error of the operating system, if standard error can still be written to."""
     if isinstance(error, BrokenPipeError):
         _abandon()
         return 1
     where = f"'{os.fsdecode(error.filename)}': " if error.filename is not None else ""
-    _say(f"error: {where}{error.strerror or error}")
-    # What is left of the output would not fit at the end, either.
+    _print_error(f"error: {where}{error.strerror or error}")
+    # The rest of the output would fail again when Python ends.
     with suppress(OSError, ValueError):
         sys.stdout.flush()
         return 1
@@ -85,18 +85,18 @@ def _failed(error: OSError) -> int:
 
 
 def _abandon() -> None:
-    """Send what is left of the output nowhere: Python would try once more at its end."""
+    """Discard the rest of the output: Python would try to write it again at its end."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _say(text: str) -> None:
+def _print_error(text: str) -> None:
     with suppress(OSError, ValueError):
         print(text, file=sys.stderr, flush=True)
 
 
 class _Version(argparse.Action):
-    """Print the version, which is not looked up for anything else."""
+    """Print the version, which is looked up for this option only."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
         import firm_hdl
@@ -106,7 +106,7 @@ class _Version(argparse.Action):
 
 
 def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
-    """Make a parser that knows all commands, and the arguments of the one that is called."""
+    """Make a parser with all commands, and with the arguments of the command that is called."""
     from firm_hdl.cli.table import COMMANDS
 
     parser = argparse.ArgumentParser(

@@ -46,7 +46,7 @@ def _build(given: argparse.Namespace) -> None:
     from firm_hdl.export.build import build
 
     def packets_of(message: Message, plan: Plan) -> list[bytes]:
-        # This imports NumPy and rosbags, which a build that is refused need not wait for.
+        # This imports NumPy and rosbags, which takes time that a failing build does not need.
         from firm_hdl.verify.cases.stimuli import stimuli
 
         return stimuli(message, plan)

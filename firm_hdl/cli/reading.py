@@ -94,7 +94,7 @@ def _metrics(given: argparse.Namespace) -> None:
     from firm_hdl.metrics.command import metrics_text
 
     if given.all and not given.types:
-        # The distribution's own, too: they are what one's own are compared with.
+        # The distribution's types, too: a user compares his own types with them.
         names = open_library(given.distro, given.path, given.bag).interfaces()
     else:
         names = names_of(given)
@@ -105,7 +105,7 @@ def _metrics(given: argparse.Namespace) -> None:
 
 
 def _print_all(lines: list[str], wrong: Exception | None) -> None:
-    """Print what there is to say of good types, and then what is wrong with the others."""
+    """Print the lines of the types that could be loaded, then raise the errors of the others."""
     print("".join(f"{line}\n" for line in lines), end="")
     if wrong is not None:
         raise wrong

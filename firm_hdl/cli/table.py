@@ -1,7 +1,7 @@
-"""What ``firm-hdl`` can do: each command, and where its arguments and its work are defined.
+"""The table of commands of ``firm-hdl``, with the modules that define them.
 
-A command's module is imported when the command is called, and imports what its work needs when the
-work starts.
+The module of a command is imported when the command is called. It imports further modules when
+their work starts.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ class Command:
     Attributes
     ----------
     help : str
-        What it does, in a line.
+        Purpose of the command, in one line.
     module : str
-        Name of the module of `firm_hdl.cli` that has its function ``add_NAME``, which adds the
+        Name of the module of `firm_hdl.cli` with the function ``add_NAME``, which adds the
         arguments and sets ``run``.
     has_origins : bool
-        Whether it takes ``--distro``, ``--path``, ``--bag`` and ``--depends`` as most commands do.
+        Whether the command takes ``--distro``, ``--path``, ``--bag`` and ``--depends``.
     """
 
     help: str
@@ -68,4 +68,4 @@ COMMANDS: dict[str, Command] = {
         module="reading",
     ),
 }
-"""By name, in the order in which ``--help`` lists them."""
+"""All commands by name, in the order in which ``--help`` lists them."""

@@ -1,4 +1,4 @@
-"""The commands that judge converters: ``verify``, ``report``, ``prove``, ``golden``, ``cover``."""
+"""The commands that test converters: ``verify``, ``report``, ``prove``, ``golden``, ``cover``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which types a command is about, and where their definitions are."""
+"""The types that a command works on, and the library of their definitions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["library_of", "names_of"]
 
 
 def names_of(given: argparse.Namespace) -> list[str]:
-    """Give the types that a command is to do: those named, or all of the folders or recordings."""
+    """Give the types to work on: those named, or all types of the folders or recordings."""
     if given.all == bool(given.types):
         given.usage_error("name either types or --all")
     if not given.all:
@@ -19,5 +19,5 @@ def names_of(given: argparse.Namespace) -> list[str]:
 
 
 def library_of(given: argparse.Namespace) -> Library:
-    """Open the library that a command is to look types up in."""
+    """Open the library in which a command looks types up."""
     return open_library(given.distro, given.path, given.bag, depends=given.depends)

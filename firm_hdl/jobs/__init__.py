@@ -1,4 +1,4 @@
-"""Work in other processes: tools that are run, and tasks that are shared out."""
+"""Work in other processes: programs, and tasks that are distributed to workers."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""Where tests run: in processes here, or on a Dask cluster, through `concurrent.futures`.
+"""Run tasks in processes of this machine or on a Dask cluster, through `concurrent.futures`.
 
-What an executor is does not matter to results: each task is one call of a function with arguments
-that can be pickled, results come back in whatever order, and a task is either answered or blamed.
-A process that dies takes no other task with it: those that were under way are repeated, each in a
-process of its own, and only the one that dies again has failed.
+Results do not depend on the executor. Each task is one call of a function with arguments that can
+be pickled. Results come back in any order, and every task gives a result or an error. If a process
+dies, the tasks that were running are repeated, each in a process of its own; only a task whose
+process dies again has failed.
 """
 
 from __future__ import annotations
@@ -37,14 +37,15 @@ PROCESSES = "processes"
 DASK = "dask://"
 CONNECT_SECONDS = 10
 CHECK_SECONDS = 5
-MOST_IDLE_SECONDS = 60
+MAX_IDLE_SECONDS = 60
 
-# So many tasks per worker are handed out at a time: none is idle, and few are in doubt if one dies.
+# Tasks per worker that are submitted at a time: no worker is idle, and few tasks are repeated if a
+# worker dies.
 TASKS_PER_WORKER = 2
 
 
 class ExecutorError(ValueError):
-    """An executor is not there, or was lost; the text says why."""
+    """An executor cannot be reached, or was lost; the message gives the reason."""
 
 
 def check_executor(name: str) -> str:
@@ -53,7 +54,7 @@ def check_executor(name: str) -> str:
     Raises
     ------
     ExecutorError
-        If there is none of that name.
+        If the name is not that of an executor.
     """
     address = name.removeprefix(DASK)
     host, _, port = address.rpartition(":")
@@ -77,18 +78,20 @@ def run_each(
     executor : str
         ``processes``, or ``dask://HOST:PORT`` with the address of a scheduler.
     jobs : int or None
-        Processes here (`None`: one per processor); 1 runs everything in this one. On a cluster, how
-        many tasks are under way at most (`None`: as many as it has threads).
+        Number of processes on this machine (`None`: one per processor); 1 runs everything in this
+        process. On a cluster, the largest number of running tasks (`None`: as many as it has
+        threads).
 
     Yields
     ------
     key, result
-        What `work` raised, or why it cannot be said, stands for a result that there is none of.
+        The result of `work`, or the exception that it raised, or an `ExecutorError` if its process
+        died.
 
     Raises
     ------
     ExecutorError
-        If there is no such executor, or a cluster was lost on the way.
+        If there is no such executor, or the cluster was lost.
     """
     check_executor(executor)
     if executor != PROCESSES:
@@ -112,19 +115,19 @@ def _called(work: Callable[..., R], arguments: tuple[Any, ...]) -> R | Exception
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """Where tasks run.
+    """An executor as the scheduling here needs it.
 
     Attributes
     ----------
     open : callable
-        Returns a pool of so many workers, as a context manager.
+        Returns a pool with a number of workers, as a context manager.
     broken : exception type
-        Of a task whose worker died.
+        Exception of a task whose worker died.
     workers, window : int
-        How many there are, and how many tasks are under way at most.
+        Number of workers, and largest number of submitted tasks.
     is_busy : callable
-        Whether anybody works on a task. A pool here tells when one of its processes dies; a cluster
-        that has lost its workers just says nothing.
+        Whether a worker is running a task. A pool of this machine reports that a process died; a
+        cluster that has lost its workers reports nothing.
     """
 
     open: Callable[[int], AbstractContextManager[Executor]]
@@ -137,45 +140,45 @@ class _Place:
 def _at(
     place: _Place, work: Callable[..., R], tasks: Sequence[tuple[K, tuple[Any, ...]]]
 ) -> Iterator[tuple[K, R | Exception]]:
-    left = deque(tasks)
-    while left:
-        before = len(left)
+    remaining = deque(tasks)
+    while remaining:
+        before = len(remaining)
         with place.open(place.workers) as pool:
-            suspects = yield from _share_out(pool, place, place.window, work, left)
+            suspects = yield from _distribute(pool, place, place.window, work, remaining)
         for key, arguments in suspects:
-            # One of these ended a worker. Alone, it takes nobody else's result with it.
+            # One of these ended a worker. In a process of its own, it cannot lose other results.
             with place.open(1) as pool:
                 again = deque([(key, arguments)])
-                dead = yield from _share_out(pool, place, 1, work, again)
+                dead = yield from _distribute(pool, place, 1, work, again)
             if dead or again:
                 yield key, ExecutorError("the process that ran it died, and died again")
-        if len(left) == before:
+        if len(remaining) == before:
             raise ExecutorError("processes die before they are given anything")
 
 
-def _share_out(
+def _distribute(
     pool: Executor,
     place: _Place,
     window: int,
     work: Callable[..., R],
-    left: deque[tuple[K, tuple[Any, ...]]],
+    remaining: deque[tuple[K, tuple[Any, ...]]],
 ) -> Generator[tuple[K, R | Exception], None, list[tuple[K, tuple[Any, ...]]]]:
-    """Hand out tasks until there are none left, or until a worker died.
+    """Submit tasks until none remains, or until a worker has died.
 
     Returns
     -------
     list of (key, arguments)
-        Tasks that nobody knows the end of.
+        Tasks that were running when the worker died.
     """
     running: dict[Future[R], tuple[K, tuple[Any, ...]]] = {}
     suspects: list[tuple[K, tuple[Any, ...]]] = []
     while True:
-        while left and not suspects and len(running) < window:
+        while remaining and not suspects and len(running) < window:
             try:
-                future = pool.submit(work, *left[0][1])
+                future = pool.submit(work, *remaining[0][1])
             except BrokenExecutor:
                 break
-            running[future] = left.popleft()
+            running[future] = remaining.popleft()
         if not running:
             return suspects
         finished = _finished(running, place)
@@ -194,14 +197,14 @@ def _share_out(
 
 
 def _finished(running: Collection[Future[R]], place: _Place) -> set[Future[R]]:
-    """Wait for results, as long as somebody works on them."""
+    """Wait for results while a worker is busy."""
     idle = 0
     while True:
         finished, _ = wait(running, timeout=CHECK_SECONDS, return_when=FIRST_COMPLETED)
         if finished:
             return finished
         idle = 0 if place.is_busy() else idle + CHECK_SECONDS
-        if idle >= MOST_IDLE_SECONDS:
+        if idle >= MAX_IDLE_SECONDS:
             raise ExecutorError(
                 f"nobody has worked on any test for {idle} s; the results so far are kept"
             )
@@ -210,7 +213,7 @@ def _finished(running: Collection[Future[R]], place: _Place) -> set[Future[R]]:
 @contextmanager
 def _dask(address: str, jobs: int | None) -> Iterator[_Place]:
     try:
-        # Not a plain import: whether it is there, and has types, is nobody else's business.
+        # Not a plain import: Dask is optional, and mypy must not depend on its types.
         distributed: Any = importlib.import_module("distributed")
     except ImportError:
         raise ExecutorError(
@@ -226,7 +229,7 @@ def _dask(address: str, jobs: int | None) -> Iterator[_Place]:
 
         @contextmanager
         def pool(workers: int) -> Iterator[Executor]:
-            # Not pure: what a type costs is measured each time.
+            # Not pure: equal tasks must run again, because their time is measured.
             with client.get_executor(pure=False) as executor:
                 try:
                     yield executor

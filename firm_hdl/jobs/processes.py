@@ -1,8 +1,7 @@
-"""Other programs, and many processes of our own, such that an interruption leaves nothing behind.
+"""Run programs and worker processes such that an interruption leaves no process and file behind.
 
-A program runs in a process group of its own and is killed with all that it started when whoever
-waits for it is stopped. Processes that share out work are stopped, and not waited for, when the one
-that hands it out is interrupted.
+A program runs in a process group of its own. When the process that waits for it is stopped, the
+group is killed. Worker processes are stopped, and not waited for, when their parent is interrupted.
 """
 
 from __future__ import annotations
@@ -47,24 +46,25 @@ def cpu_seconds() -> float:
 
 
 class ToolError(Exception):
-    """A program failed, did not end, or did not do its work; the text is what it said, if anything.
+    """A program failed, did not end, or did not do its work.
 
     Parameters
     ----------
-    said : str
+    output : str
+        What the program printed; the message of the error.
     """
 
-    def __init__(self, said: str):
-        super().__init__(said.strip() or "it failed without a word")
+    def __init__(self, output: str):
+        super().__init__(output.strip() or "it failed without a word")
 
 
 def made_by(tool: str, file: Path) -> Path:
-    """Return a file that a program was to make.
+    """Return a file that a program had to write.
 
     Raises
     ------
     ToolError
-        If it is not there: a program may end well and have done nothing.
+        If the file does not exist: a program may end without an error and have done nothing.
     """
     if not file.is_file():
         raise ToolError(f"{tool} ended without an error, and has not written {file.name}")
@@ -78,12 +78,12 @@ def run_tool(
     environment: Mapping[str, str] | None = None,
     timeout: float = 600.0,
 ) -> str:
-    """Run a program in a folder; return what it said on both of its outputs.
+    """Run a program in a folder; return its standard output and standard error.
 
     Raises
     ------
     ToolError
-        If it fails, or takes longer than `timeout` seconds.
+        If the program fails, or takes longer than `timeout` seconds.
     """
     process = subprocess.Popen(
         command,
@@ -98,23 +98,23 @@ def run_tool(
     )
     _running.add(process)
     try:
-        said, _ = process.communicate(timeout=timeout)
+        output, _ = process.communicate(timeout=timeout)
     except subprocess.TimeoutExpired:
         raise ToolError(f"{Path(command[0]).name} took more than {timeout:.0f} s") from None
     finally:
         _kill(process)
-        # Waits for it, and closes its output.
+        # Waits for the program, and closes its output.
         with process:
             _running.discard(process)
     if process.returncode:
-        raise ToolError(said.strip() or f"exit status {process.returncode}")
-    return said
+        raise ToolError(output.strip() or f"exit status {process.returncode}")
+    return output
 
 
 def hang_up(process: subprocess.Popen[Any], seconds: float = 0.0) -> None:
-    """Close the pipes of a process, and kill it if it has not ended some seconds later."""
+    """Close the pipes of a process, and kill the process if it has not ended `seconds` later."""
     assert process.stdin is not None and process.stdout is not None
-    with suppress(OSError):  # It may be dead, with something still to be said to it.
+    with suppress(OSError):  # The process may be dead, with unread input in the pipe.
         process.stdin.close()
     process.stdout.close()
     with suppress(subprocess.TimeoutExpired):
@@ -131,13 +131,13 @@ def in_processes(
     Parameters
     ----------
     work : callable
-        A function of a module. What it leaves in temporary folders goes with the processes.
+        A function of a module. Its temporary files are removed when the processes end.
     tasks : sequence of (key, arguments)
 
     Yields
     ------
     key, result
-        As they come. An exception stands for the result of a process that died.
+        Results in the order in which tasks end. An exception is the result if the process died.
     """
     if jobs == 1:
         for key, arguments in tasks:
@@ -150,7 +150,7 @@ def in_processes(
             if error is None:
                 yield futures[future], future.result()
             else:
-                # A process that died takes its task with it, not the rest.
+                # Only this task is lost, not the others.
                 yield futures[future], Exception(f"{type(error).__name__}: {error}")
 
 
@@ -172,7 +172,7 @@ def worker_pool(jobs: int | None) -> Iterator[ProcessPoolExecutor]:
 
 @contextmanager
 def unwound_when_terminated() -> Iterator[None]:
-    """Let SIGTERM end this process as an exception does, so that it puts things in order."""
+    """Let SIGTERM end this process by an exception, so that it cleans up."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -188,9 +188,9 @@ def unwound_when_terminated() -> Iterator[None]:
 
 
 def _prepare(folder: str, parent: int) -> None:
-    """Make a worker wait for its parent's word when somebody presses Ctrl-C.
+    """Make a worker ignore Ctrl-C; the parent stops it.
 
-    Its temporary files go to a folder that the parent removes, however the worker ends.
+    The worker's temporary files are in a folder that the parent removes, however the worker ends.
     """
     tempfile.tempdir = folder
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -199,11 +199,11 @@ def _prepare(folder: str, parent: int) -> None:
 
 
 def _end_with(parent: int, folder: str) -> None:
-    """End this process when its parent has been killed, which tells nobody."""
-    # Whoever forked it: the parent, or a server that ends with the parent. An orphan gets another,
-    # also as long as nobody has taken notice that the parent is dead.
+    """End this process when its parent has been killed; no signal reports that."""
+    # The process that forked this one: the parent, or a fork server that ends with the parent. An
+    # orphan gets another parent, even while the dead one still is a zombie.
     forked_by = os.getppid()
-    while os.getppid() == forked_by and _is_there(parent):
+    while os.getppid() == forked_by and _exists(parent):
         time.sleep(1)
     for process in list(_running):
         _kill(process)
@@ -211,7 +211,7 @@ def _end_with(parent: int, folder: str) -> None:
     os._exit(128 + signal.SIGKILL)
 
 
-def _is_there(process: int) -> bool:
+def _exists(process: int) -> bool:
     try:
         os.kill(process, 0)
     except ProcessLookupError:
@@ -226,7 +226,7 @@ def _stop(number: int, frame: object) -> None:
 
 
 def _kill(process: subprocess.Popen[str]) -> None:
-    # Once it has been waited for, its number may be somebody else's.
+    # After a process has been waited for, another process may have its number.
     if process.poll() is None:
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)

@@ -1,4 +1,4 @@
-"""Where programs are that are run, such as GHDL."""
+"""Find the programs that are run, such as GHDL."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ GHDL_NAMES = ("ghdl", "ghdl-mcode", "ghdl-llvm", "ghdl-gcc")
 
 
 class ProgramMissingError(ValueError):
-    """A program is not installed; the text says how to get it."""
+    """A program is not installed; the message says how to install it."""
 
 
 def find_program(title: str, variable: str, names: Sequence[str], package: str) -> str:
@@ -21,13 +21,13 @@ def find_program(title: str, variable: str, names: Sequence[str], package: str) 
     Parameters
     ----------
     title : str
-        What it is called in messages.
+        Name of the program in messages.
     variable : str
-        A variable that names a command, or has its path.
+        Environment variable with the name or the path of a command.
     names : sequence of str
-        Commands to look for without the variable.
+        Commands to search for if the variable is not set.
     package : str
-        What to install on Debian and Ubuntu.
+        Package of Debian and Ubuntu that has the program.
 
     Raises
     ------

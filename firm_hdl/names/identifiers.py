@@ -1,12 +1,11 @@
-"""The one table of names: ROS names as identifiers of VHDL and Verilog.
+"""ROS names as identifiers of VHDL and Verilog: one name for both languages.
 
 ROS field names such as `range`, `type`, `label` and `reg` are keywords of one language or the
 other; ROS 1 allows `a__b`, `a_` and both `A` and `a`, which VHDL does not. One identifier serves
-both languages, so that a port has one name wherever a user meets it: legal in VHDL-2008 and in
-SystemVerilog-2017, and different from its neighbours even where case does not count.
+both languages, so that a port has the same name in both. The identifier is legal in VHDL-2008 and
+in SystemVerilog-2017, and differs from its neighbours in more than case.
 
-No two names are ever merged: names that are fine as they are stay, and the others get a suffix
-that nobody else has.
+No two names are ever merged: legal names stay as they are, and the others get a unique suffix.
 """
 
 from __future__ import annotations
@@ -20,19 +19,19 @@ from firm_hdl.names.keywords import KEYWORDS
 __all__ = ["first_free", "flat_names", "identifier", "plain", "scope_names"]
 
 KEYWORD_SUFFIX = "_field"
-"""What a name gets that is a keyword. VHDL forbids the customary trailing underscore."""
+"""Suffix of a name that is a keyword. VHDL forbids the customary trailing underscore."""
 
 _NOT_ALLOWED = re.compile(r"[^A-Za-z0-9]+")
 _Key = TypeVar("_Key")
 
 
 def plain(name: str, initial: str) -> str:
-    """Give a name without what VHDL's basic identifiers may not have (IEEE Std 1076-2008, 15.4).
+    """Make a name a basic identifier of VHDL (IEEE Std 1076-2008, 15.4), keywords included.
 
     Parameters
     ----------
     initial : str
-        A letter to start with if the name starts with none.
+        Letter to put in front if the name does not start with a letter.
     """
     text = _NOT_ALLOWED.sub("_", name).strip("_")
     return text if text[:1].isalpha() else f"{initial}{text}"
@@ -43,14 +42,14 @@ def first_free(
     taken: Collection[str],
     derived: Callable[[str], Iterable[str]] = lambda name: (name,),
 ) -> str:
-    """Give a name that nothing has, case not counting: the wanted one, or that with a number.
+    """Give a name that is not taken, ignoring case: the wanted one, or that one with a number.
 
     Parameters
     ----------
     taken : collection of str
-        In lower case.
+        Names in lower case.
     derived : callable
-        Gives all identifiers that the name leads to, which have to be free, too.
+        Gives all identifiers that are derived from the name. They have to be free, too.
 
     >>> first_free("Vector", {"vector", "vector_2"})
     'Vector_3'
@@ -62,7 +61,7 @@ def first_free(
 
 
 def identifier(name: str) -> str:
-    """Give the identifier for a name on its own: itself, if it is a legal one."""
+    """Give the identifier for a single name: the name itself, if it is legal."""
     text = plain(name, "f")
     return text + KEYWORD_SUFFIX if text.lower() in KEYWORDS else text
 
@@ -73,16 +72,16 @@ def scope_names(names: Iterable[str], reserved: Collection[str] = ()) -> dict[st
     Parameters
     ----------
     names : iterable of str
-        All different.
+        They must be distinct.
     reserved : collection of str
-        Identifiers that are taken; case does not count.
+        Identifiers that are taken, ignoring case.
 
     Returns
     -------
     dict of str to str
-        By name, in the order of `names`. It depends on nothing but the arguments.
+        By name, in the order of `names`. The result depends on the arguments only.
     """
-    return _give({name: name for name in names}, reserved)
+    return _assign({name: name for name in names}, reserved)
 
 
 def flat_names(
@@ -93,17 +92,17 @@ def flat_names(
     Parameters
     ----------
     paths : iterable of tuple of str
-        All different.
+        They must be distinct.
     reserved : collection of str
         As for :func:`scope_names`.
     """
-    return _give({path: "_".join(path) for path in paths}, reserved)
+    return _assign({path: "_".join(path) for path in paths}, reserved)
 
 
-def _give(wanted: Mapping[_Key, str], reserved: Collection[str]) -> dict[_Key, str]:
+def _assign(wanted: Mapping[_Key, str], reserved: Collection[str]) -> dict[_Key, str]:
     taken = {name.lower() for name in reserved}
     given: dict[_Key, str] = {}
-    # Names that can stay come first: no neighbour's escape may push them aside.
+    # Legal names come first, so that the changed name of another one never takes their place.
     for key, text in wanted.items():
         if identifier(text) == text and text.lower() not in taken:
             taken.add(text.lower())

@@ -1,7 +1,7 @@
-"""Words that VHDL or Verilog keeps for itself, in lower case.
+"""Reserved words of VHDL and Verilog, in lower case.
 
-IEEE Std 1076-2008, clause 15.10 (VHDL), what IEEE Std 1076-2019 adds to it, and IEEE Std 1800-2017,
-annex B (SystemVerilog), which contains those of IEEE Std 1364-2005 (Verilog).
+IEEE Std 1076-2008, clause 15.10 (VHDL), with the additions of IEEE Std 1076-2019; and IEEE Std
+1800-2017, annex B (SystemVerilog), which contains those of IEEE Std 1364-2005 (Verilog).
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ _VHDL_2008 = frozenset(
     """.split()
 )
 
-# Our text is of 2008, but nobody should have to tell a tool that reads 2019 apart.
-# `vpkg` comes from the PSL of 2010, which that of 2019 has.
+# The generated text is VHDL-2008, but tools that read VHDL-2019 must accept it, too.
+# `vpkg` is a word of PSL 2010, which VHDL-2019 includes.
 _VHDL_2019 = frozenset(["private", "view", "vpkg"])
 
-# PSL has the word; the standard does not list it, but GHDL 2.0 keeps it in VHDL-2008.
+# A word of PSL. The VHDL standard does not list it, but GHDL 2.0 reserves it in VHDL-2008.
 _GHDL = frozenset(["inherit"])
 
 VHDL = _VHDL_2008 | _VHDL_2019 | _GHDL

@@ -219,7 +219,7 @@ def test_an_orphan_ends_with_its_tools_and_files(ends, monkeypatch, tmp_path, ad
     alive = iter([True, True] if adopted else [True, True, False])
     waited = []
     monkeypatch.setattr(processes.os, "getppid", lambda: next(parents))
-    monkeypatch.setattr(processes, "_is_there", lambda process: process == 4 and next(alive))
+    monkeypatch.setattr(processes, "_exists", lambda process: process == 4 and next(alive))
     monkeypatch.setattr(processes.time, "sleep", waited.append)
     with pytest.raises(LeftError, match=r"^137$"):
         processes._end_with(4, str(folder))
@@ -230,9 +230,9 @@ def test_an_orphan_ends_with_its_tools_and_files(ends, monkeypatch, tmp_path, ad
 
 def test_who_is_there_is_asked_of_the_system():
     process = started("sleep", "60")
-    assert processes._is_there(process.pid) and processes._is_there(os.getpid())
+    assert processes._exists(process.pid) and processes._exists(os.getpid())
     hang_up(process)
-    assert not processes._is_there(process.pid)
+    assert not processes._exists(process.pid)
 
 
 def test_who_has_ended_is_not_killed_again(monkeypatch):

@@ -146,7 +146,7 @@ class TestDask:
     def test_lost_cluster_is_an_error_that_keeps_what_came(self, cluster, monkeypatch):
         made, executor = cluster
         monkeypatch.setattr(executors, "CHECK_SECONDS", 0.5)
-        monkeypatch.setattr(executors, "MOST_IDLE_SECONDS", 2)
+        monkeypatch.setattr(executors, "MAX_IDLE_SECONDS", 2)
         found = []
         with pytest.raises(ExecutorError, match=r"results so far are kept"):
             for key, _ in run_each(slow_square, TASKS, executor=executor):

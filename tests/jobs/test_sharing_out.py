@@ -179,7 +179,7 @@ def test_a_run_that_ends_well_stops_nobody(cluster):
 @pytest.mark.parametrize("busy", [{"a": (), "b": ()}, {}, OSError("lost")])
 def test_idle_clusters_are_given_up(cluster, monkeypatch, busy):
     monkeypatch.setattr(executors, "CHECK_SECONDS", 0.01)
-    monkeypatch.setattr(executors, "MOST_IDLE_SECONDS", 0.02)
+    monkeypatch.setattr(executors, "MAX_IDLE_SECONDS", 0.02)
     cluster.pools, cluster.busy = [Pool({(2,): Future})], busy
     said = r"^nobody has worked on any test for 0\.02 s; the results so far are kept$"
     with pytest.raises(ExecutorError, match=said):
@@ -189,7 +189,7 @@ def test_idle_clusters_are_given_up(cluster, monkeypatch, busy):
 def test_clusters_that_are_busy_are_waited_for(cluster, monkeypatch):
     """And what idled before it was busy again does not count."""
     monkeypatch.setattr(executors, "CHECK_SECONDS", 0.001)
-    monkeypatch.setattr(executors, "MOST_IDLE_SECONDS", 0.002)
+    monkeypatch.setattr(executors, "MAX_IDLE_SECONDS", 0.002)
     pool, asked = Pool({(2,): Future}), []
     submit = pool.submit
     late = []
@@ -269,7 +269,7 @@ def test_pools_here_have_as_many_processes_as_asked_for(monkeypatch, jobs, worke
 
 def test_pools_here_are_always_waited_for(monkeypatch):
     monkeypatch.setattr(executors, "CHECK_SECONDS", 0.001)
-    monkeypatch.setattr(executors, "MOST_IDLE_SECONDS", 0.002)
+    monkeypatch.setattr(executors, "MAX_IDLE_SECONDS", 0.002)
     future, waits = Future(), []
 
     def wait(running, **how):
