@@ -42,7 +42,7 @@ _LINE_ENDS = {
     "ros2": re.compile("\r\n|[\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029]"),
 }
 
-# More help nobody; without a limit, a large file that is no definition takes minutes.
+# Largest number of diagnostics. Without a limit, a large file that is no definition takes minutes.
 _MOST_DIAGNOSTICS = 1000
 
 

@@ -164,14 +164,14 @@ def _error(message: str) -> DefinitionError:
 
 
 def load_all(library: Library, types: Iterable[str]) -> list[Message]:
-    """Load messages that are to be put on a wire, each once.
+    """Load the messages of types that are to be laid out, each once.
 
-    A service or an action stands for all messages that it has.
+    A service or an action gives all of its messages.
 
     Raises
     ------
     DefinitionError
-        With the problems of all of them, fields that no wire has included.
+        With the errors of all types, including fields without a wire format.
     """
     messages: dict[str, Message] = {}
     problems: dict[str, Diagnostic] = {}

@@ -58,7 +58,7 @@ from firm_hdl.model import EMPTY_MEMBER
 
 __all__ = ["read_idl"]
 
-# More help nobody.
+# Largest number of diagnostics.
 _MOST_DIAGNOSTICS = 1000
 
 # What a file declares, by the number of its structs.
