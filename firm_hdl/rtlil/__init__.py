@@ -1,4 +1,4 @@
-"""RTLIL, the netlist that Amaranth writes: read, simplified, and evaluated. Knows no messages."""
+"""Read, simplify and evaluate RTLIL, the netlist that Amaranth writes. Independent of ROS."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""What an operator gives if some of its operands are constant.
+"""Evaluate operators whose operands are constant, wholly or in part.
 
-The rules of widths are those of Yosys (`kernel/calc.cc`), as in `vhdl_cells`.
+The rules of widths are those of Yosys (`kernel/calc.cc`), as in :mod:`firm_hdl.vhdl.cells`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _SHIFTS = ("$shl", "$shr", "$sshr", "$shift")
 
 
 def constant(spec: Spec, *, signed: bool = False) -> int | None:
-    """Give the number that a value is, if all of it is constant."""
+    """Give the number of a value, if all bits are constant, else `None`."""
     text = bits_of(spec)
     if text is None:
         return None
@@ -24,7 +24,7 @@ def constant(spec: Spec, *, signed: bool = False) -> int | None:
 
 
 def extended(spec: Spec, width: int, *, signed: bool) -> Spec:
-    """Extend or cut a value."""
+    """Extend a value, or cut it, to `width` bits."""
     missing = width - spec_width(spec)
     if missing <= 0:
         return cut(spec, 0, width)
@@ -34,7 +34,7 @@ def extended(spec: Spec, width: int, *, signed: bool) -> Spec:
 
 
 def evaluate(cell: Cell) -> Spec | None:
-    """Give the result of an operator if it needs none, else `None`."""
+    """Give the result of an operator as a value that needs no operator, else `None`."""
     kind, ports = cell.kind, cell.ports
     width = spec_width(ports["Y"])
     if kind == "$mux":
@@ -102,7 +102,7 @@ def _binary(kind: str, a: int, b: int, size: int) -> int:
     if kind == "$shl":
         return a << min(b, 1 << 16)
     if kind in _SHIFTS:
-        # A is as wide as it was given: a signed one is negative here and keeps its sign.
+        # A has its own width: if it is signed and negative, the shift keeps the sign.
         return a >> min(b, 1 << 16)
     results = {
         "$add": a + b,
@@ -157,7 +157,7 @@ def _product(
 
 
 def _compared(kind: str, a: int | None, b: int | None, left: Spec, right: Spec) -> Spec | None:
-    """Decide comparisons of unsigned numbers that no value can change."""
+    """Evaluate comparisons of unsigned numbers whose result is the same for all values."""
     if b is not None and (bits := spec_width(left)) < b.bit_length():
         less = kind in ("$lt", "$le", "$ne")
         return _bits(int(less), 1) if bits else None

@@ -1,7 +1,7 @@
 """RTLIL as data: modules of wires, cells, processes, memories and connections.
 
-The names are those of Yosys. Signals are specifications: chunks of wires and constants, least
-significant first.
+The names are those of Yosys. A value is a signal specification: chunks of wires and constants, the
+least significant chunk first.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class Bits:
-    """A constant; `text` has one of ``0 1 x z -`` per bit, most significant first."""
+    """A constant; `text` has one of ``0 1 x z -`` per bit, the most significant bit first."""
 
     text: str
 
@@ -47,7 +47,7 @@ class Bits:
 
 @dataclass(frozen=True, slots=True)
 class Slice:
-    """`width` bits of a wire from bit `low` up. `bare`: printed as a name alone, so all of it."""
+    """`width` bits of a wire from bit `low` up. `bare`: printed as a name only: the whole wire."""
 
     wire: str
     low: int
@@ -67,7 +67,7 @@ def spec_width(spec: Spec) -> int:
 
 
 def bits_of(spec: Spec) -> str | None:
-    """Give the bits of a constant, the most significant first; of anything else, nothing."""
+    """Give the bits of a constant, the most significant first, or `None` for any other value."""
     text = ""
     for chunk in spec:
         if not isinstance(chunk, Bits):
@@ -115,7 +115,7 @@ def join(*specs: Spec) -> Spec:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wire:
-    """A wire; `direction` is ``input``, ``output``, ``inout`` or, if it is no port, `None`."""
+    """A wire; `direction` is ``input``, ``output``, ``inout``, or `None` if it is not a port."""
 
     name: str
     width: int
@@ -156,7 +156,7 @@ class Assign:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """One arm of a switch. No patterns: the default arm."""
+    """One arm of a switch; the default arm has no patterns."""
 
     patterns: tuple[str, ...]
     body: tuple[Statement, ...]
@@ -175,7 +175,7 @@ Statement: TypeAlias = Assign | Switch
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Process:
-    """Combinational assignments; what a target gets first is its default."""
+    """Combinational assignments; the first assignment to a target is its default."""
 
     name: str
     body: tuple[Statement, ...]
@@ -184,7 +184,7 @@ class Process:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Module:
-    """One module: names are without RTLIL's leading backslash, made-up ones keep their ``$``."""
+    """One module. Names have no leading backslash; generated names keep their ``$``."""
 
     name: str
     attributes: Mapping[str, Value]

@@ -1,8 +1,8 @@
 """Read the RTLIL text that Amaranth prints.
 
-RTLIL is the one public, complete and stable form in which Amaranth hands out an elaborated circuit
-(`amaranth.back.rtlil.convert`), so every back end of ours starts here. What is understood is the
-subset that Amaranth 0.5 can emit, no more: anything else is a `ValueError` that names the line.
+RTLIL is the only public, complete and stable form of an elaborated Amaranth circuit
+(`amaranth.back.rtlil.convert`), so every back end starts here. The reader accepts the subset that
+Amaranth 0.5 can emit; anything else is a `ValueError` with the number of the line.
 """
 
 from __future__ import annotations
@@ -49,12 +49,12 @@ _ESCAPES = {"t": "\t", "r": "\r", "n": "\n"}
 
 
 def parse(text: str) -> Design:
-    """Parse what `amaranth.back.rtlil.convert` returned.
+    """Parse the text that `amaranth.back.rtlil.convert` returns.
 
     Parameters
     ----------
     text : str
-        RTLIL, with or without source attributes (which are dropped).
+        RTLIL, with or without source attributes, which are dropped.
 
     Returns
     -------
@@ -64,14 +64,14 @@ def parse(text: str) -> Design:
     Raises
     ------
     ValueError
-        A line that Amaranth 0.5 does not print; the message has its number.
+        If Amaranth 0.5 does not print such a line; the message has its number.
     """
     return Design(modules={module.name: module for module in _Parser(text).modules()})
 
 
 class _Parser:
     def __init__(self, text: str) -> None:
-        # Not `splitlines`: a string may hold characters that it takes for line ends.
+        # Not `splitlines`: it would also split at other characters, which a string may contain.
         self._lines = text.split("\n")
         self._number = 0
         self._wires: dict[str, Wire] = {}
@@ -195,7 +195,7 @@ class _Parser:
         return Process(name=line.partition(" ")[2], body=body, line=number)
 
     def _body(self) -> tuple[tuple[Statement, ...], str]:
-        """Parse statements, and return with them the line that is none."""
+        """Parse statements; return them and the first line that is not a statement."""
         body: list[Statement] = []
         while (line := self._next()) is not None:
             if line.startswith("assign "):
@@ -252,7 +252,7 @@ class _Parser:
             if match is None:
                 self._fail(f"malformed signal {text!r}")
             position = match.end()
-            brace, high, low, size, bits, name, made_up = match.groups()
+            brace, high, low, size, bits, name, generated = match.groups()
             if brace:
                 depth += 1 if brace == "{" else -1
             elif high is not None:
@@ -263,9 +263,9 @@ class _Parser:
                 if bits:
                     chunks.append(Bits(bits))
             else:
-                wire = self._wires.get(name or made_up)
+                wire = self._wires.get(name or generated)
                 if wire is None:
-                    self._fail(f"no wire {name or made_up!r}")
+                    self._fail(f"no wire {name or generated!r}")
                 chunks.append(Slice(wire.name, 0, wire.width, True))
         if depth or (len(chunks) != 1 and not text.startswith("{") and "'" not in text):
             self._fail(f"malformed signal {text!r}")

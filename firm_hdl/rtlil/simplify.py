@@ -1,8 +1,8 @@
-"""Work out what is constant, or the same as something else, before anyone has to read it.
+"""Simplify a module: replace values that are constant or equal to another value.
 
-Amaranth emits operators on constants as it finds them: generators leave many, such as a comparison
-with a width of 0 or a condition that no message of this type can meet. Registers, memories and
-instances stay as they are; a signal that turns out constant keeps its name.
+Amaranth emits operators on constants unchanged. Generated circuits have many of them, such as a
+comparison with a constant 0, or a condition that no message of the type can meet. Registers with a
+constant value are replaced, too; memories and instances stay. A constant signal keeps its name.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _OUTPUTS = {"$dff": "Q", "$adff": "Q", "$memrd_v2": "DATA", "$tribuf": "Y"}
 
 
 def simplified(module: Module) -> Module:
-    """Give a module that does the same with less."""
+    """Give an equivalent module with fewer operators and statements."""
     return _Simplifier(module).run()
 
 
@@ -95,7 +95,7 @@ class _Simplifier:
         return replace(cell, ports=ports) if ports != cell.ports else cell
 
     def _constant_register(self, cell: Cell, ports: Mapping[str, Spec]) -> Spec:
-        """Give the value of a register that never leaves the one that it starts with."""
+        """Give the value of a register that always keeps its initial value."""
         if not ports["Q"]:
             return ()
         (chunk,) = ports["Q"]
@@ -133,9 +133,10 @@ class _Simplifier:
         Parameters
         ----------
         state : Spec or None
-            What the whole target has been assigned so far, if that is known.
+            Value of the whole target after the statements before, if known.
         start : bool
-            The first assignment is the default of a process: it is to the whole target.
+            Whether the body is that of a process, whose first assignment is the default of the
+            whole target.
         """
         result: list[Statement] = []
         pending = list(reversed(body))
@@ -175,7 +176,7 @@ class _Simplifier:
             cases.append(Case(patterns=unique, body=self._body(case.body, state)))
             if total:
                 break
-        cases = _without_idle(cases)
+        cases = _without_empty(cases)
         if not cases:
             return ()
         if not cases[0].patterns:
@@ -183,8 +184,8 @@ class _Simplifier:
         return (Switch(selector=kept, cases=tuple(cases)),)
 
 
-def _without_idle(cases: list[Case]) -> list[Case]:
-    """Drop arms that do nothing, unless a later one would match instead."""
+def _without_empty(cases: list[Case]) -> list[Case]:
+    """Drop arms without statements, unless a later arm would match instead."""
     while cases and not cases[-1].body:
         cases = cases[:-1]
     if any(not c.patterns or any("-" in pattern for pattern in c.patterns) for c in cases):
@@ -200,7 +201,7 @@ def _without_idle(cases: list[Case]) -> list[Case]:
 
 
 def _append(result: list[Statement], statement: Assign) -> None:
-    """Add an assignment, to the one before it if that ends where it starts."""
+    """Add an assignment; join it with the last one if their targets are adjacent."""
     last = result[-1] if result else None
     if isinstance(last, Assign) and len(last.target) == len(statement.target) == 1:
         target = join(last.target, statement.target)
@@ -211,7 +212,7 @@ def _append(result: list[Statement], statement: Assign) -> None:
 
 
 def _whole_target(process: Process) -> Spec | None:
-    """Give the wire that a process drives; its first assignment is to all of it."""
+    """Give the wire that a process drives, which is the target of its first assignment."""
     first = process.body[0] if process.body else None
     if not isinstance(first, Assign) or not first.target:
         return None
@@ -221,7 +222,7 @@ def _whole_target(process: Process) -> Spec | None:
 
 
 def _overlaid(value: Spec, statement: Assign) -> Spec:
-    """Replace the bits of a value that an assignment gives."""
+    """Replace the bits of a value to which a statement assigns."""
     if not value:
         return statement.value
     (chunk,) = statement.target

@@ -1,4 +1,4 @@
-"""Any Amaranth design as VHDL-2008: `convert`. Knows no messages."""
+"""Write any Amaranth design as VHDL-2008: `convert`. Independent of ROS."""
 
 from __future__ import annotations
 

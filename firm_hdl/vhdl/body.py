@@ -24,7 +24,7 @@ class Body:
         self._names = names
 
     def operators(self) -> Iterator[str]:
-        """Yield operators that have a signal of their own."""
+        """Yield assignments of operators whose result is a signal."""
         graph = self._graph
         for cell in graph.cells:
             if cell.kind in INLINE and output(cell) not in graph.folded:
@@ -33,7 +33,7 @@ class Body:
                 yield from self._tristate(cell)
 
     def connections(self, pairs: Sequence[tuple[Spec, Spec]]) -> Iterator[str]:
-        """Yield assignments of values that need no operator."""
+        """Yield assignments of connections, each a target and a value."""
         for target, value in pairs:
             for chunk, declared, part in self._parts(target, value):
                 cell = self._values.folded(part)
@@ -77,7 +77,7 @@ class Body:
             yield f"{name} <= {target.accept(value, chunk.width)} when {enable} else {off};"
 
     def processes(self) -> Iterator[Iterator[str]]:
-        """Yield a block for each signal that depends on conditions."""
+        """Yield a block of lines for each process."""
         for process in self._graph.processes:
             yield self._process(self._graph.target(process), process.body)
 

@@ -1,7 +1,8 @@
 """Amaranth's operators in terms of `ieee.numeric_std`.
 
-The rules of widths are those of Yosys (`kernel/calc.cc`): operands are extended to the width of the
-result, or to the wider operand if that is more, signed only where both are, and the result is cut.
+The rules of widths are those of Yosys (`kernel/calc.cc`). Operands are extended to the width of the
+result, or to that of the wider operand if it is larger; they are sign-extended only if both are
+signed. The result is cut to its width.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["COMPARISONS", "Cells"]
 
 NATURAL_BITS = 31
-"""Widest number that is written in decimal: VHDL's integers have 32 bits and a sign."""
+"""Widest number that is written in decimal: VHDL's integers have 31 bits and a sign."""
 
 COMPARISONS = {"$eq": "=", "$ne": "/=", "$lt": "<", "$le": "<=", "$gt": ">", "$ge": ">="}
 _INVERSE = {"=": "/=", "/=": "=", "<": ">=", "<=": ">", ">": "<=", ">=": "<"}
@@ -36,17 +37,17 @@ _REDUCTIONS = {
 
 
 class Cells:
-    """Writes operators of one module, whose operands are `values`."""
+    """Writes the operators of one module; `values` writes their operands."""
 
     def __init__(self, values: Values) -> None:
         self._values = values
 
     def width(self, cell: Cell) -> int:
-        """Count the bits of the result that anybody reads."""
+        """Count the bits of the result that are read."""
         return self._values.width(output(cell))
 
     def is_condition(self, cell: Cell) -> bool:
-        """Tell results that are better written as a condition: they compare something."""
+        """Tell whether a result is better written as a condition: it is made of comparisons."""
         if cell.kind in COMPARISONS:
             return spec_width(cell.ports["A"]) > 1 or spec_width(cell.ports["B"]) > 1
         if cell.kind in ("$and", "$or", "$not") and self.width(cell) == 1:
@@ -56,7 +57,7 @@ class Cells:
         return False
 
     def boolean(self, cell: Cell, *, inverted: bool = False) -> Expression:
-        """Write a result of one bit as a condition, or the opposite of it."""
+        """Write a result of one bit as a condition, or as the inverted condition."""
         kind, ports = cell.kind, cell.ports
         if kind in COMPARISONS:
             return self._compare(cell, inverted=inverted)
@@ -138,7 +139,7 @@ class Cells:
             return self._division(cell, width, signed)
         if kind in ("$shl", "$shr", "$sshr", "$shift"):
             return self._shift(cell, width, signed)
-        # Comparisons and reductions have one bit; a wider result would be zeros above it.
+        # Comparisons and reductions have one bit; the other bits of a wider result are zeros.
         return call("resize", self.logic(cell), width)
 
     def _bitwise(self, spec: Spec, width: int, signed: bool) -> Expression:
@@ -222,7 +223,7 @@ class Cells:
         return shifted if whole == width else call("resize", shifted, width)
 
     def _distance(self, spec: Spec, width: int) -> Expression:
-        """Write a shift distance that any integer holds."""
+        """Write a shift distance that fits in VHDL's integers."""
         value = self._values.constant(spec)
         if value is not None:
             return atom(str(min(value, width)))
@@ -232,7 +233,7 @@ class Cells:
         return call("to_integer", call("saturate", self._values.unsigned(spec), bits))
 
     def _compare_bits(self, cell: Cell) -> Expression | None:
-        """Compare single bits for equality without a detour over `boolean`."""
+        """Compare single bits for equality without conversion to `boolean`."""
         a, b = cell.ports["A"], cell.ports["B"]
         if cell.kind not in ("$eq", "$ne") or spec_width(a) != 1 or spec_width(b) != 1:
             return None

@@ -1,11 +1,11 @@
-"""VHDL-2008 from any Amaranth design.
+"""Convert any Amaranth design to VHDL-2008.
 
 The design's hierarchy stays: one entity and architecture for each module, in a file of its own.
-Signals and instances keep their names as far as VHDL allows; what they are called is in the result.
-The text depends on the design alone: it has no paths, no dates and no source locations.
+Signals and instances keep their names as far as VHDL allows; the result has all names. The text
+depends on the design only: it has no paths, no dates and no source locations.
 
-Types: one bit is `std_logic`, more are `unsigned`, whatever their sign, because Amaranth's
-operators say for themselves how they take their operands; ports of the outermost entity are
+Types: one bit is `std_logic`, several bits are `unsigned`, whatever their sign, because in RTLIL
+each operator has its own flag for signed operands. Ports of the outermost entity are
 `std_logic_vector`, or `unsigned` by option.
 """
 
@@ -45,9 +45,8 @@ class Vhdl:
     files : mapping of str to str
         Texts by file name, in an order in which they compile.
     entities : mapping of str to EntityNames
-        By module of the netlist: what its ports, signals, memories and instances are called.
-        Wires without bits, and made-up ones (``$1``) that became part of an expression, have no
-        entry.
+        Names of ports, signals, memories and instances, by module of the netlist. Wires without
+        bits, and generated wires (``$1``) that became part of an expression, have no entry.
     """
 
     top: str
@@ -71,7 +70,7 @@ def convert(
     design : elaboratable or str
         An Amaranth component or other elaboratable, or RTLIL text of `amaranth.back.rtlil`.
     name : str
-        Name of the outermost entity; those within it are called after it and their path.
+        Name of the outermost entity; the names of inner entities are this name and their path.
     ports, platform
         As for `amaranth.back.rtlil.convert`; a component needs no ports.
     unsigned_ports : bool
@@ -87,8 +86,8 @@ def convert(
     Raises
     ------
     ValueError
-        The design has something that VHDL cannot express, such as `AnyConst`, or the text is no
-        RTLIL that Amaranth 0.5 prints.
+        If the design has a construct that VHDL cannot express, such as `AnyConst`, or the text is
+        not RTLIL that Amaranth 0.5 prints.
     """
     if not isinstance(design, str):
         design = amaranth_rtlil.convert(
@@ -117,7 +116,7 @@ def convert(
 
 
 def _read(text: str) -> Design:
-    """Read and simplify a netlist; refuse what VHDL has nothing for."""
+    """Read and simplify a netlist; refuse constructs that VHDL cannot express."""
     netlist = parse(text)
     if not netlist.modules:
         raise ValueError("The design is empty: it has no module with anything in it")
@@ -138,7 +137,7 @@ def _port_names(module: Module, entities: Mapping[str, str]) -> dict[str, str]:
 
 
 def _bottom_up(netlist: Design) -> list[Module]:
-    """Order modules so that each comes after those that it instantiates."""
+    """Order modules so that each module comes after those that it instantiates."""
     order: dict[str, Module] = {}
     stack = [(netlist.top, False)]
     while stack:

@@ -1,4 +1,4 @@
-"""Which signals and ports a module's architecture has, what they are called and how they start."""
+"""The signals and ports of a module's architecture, with their names and initial values."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["Names", "Port", "declare", "enumeration", "initial_value", "part_nam
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Port:
-    """A port of an entity. `inner`: the signal that drives it, if it is not assigned itself."""
+    """A port of an entity. `inner`: the signal that drives it, if logic cannot assign to it."""
 
     wire: str
     direction: str
@@ -27,21 +27,21 @@ class Port:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Names:
-    """Everything that is declared.
+    """All declarations of a module.
 
     Attributes
     ----------
     ports : tuple of Port
     declared : dict of str to Declared
-        What to read, and to assign, for each wire that has a driver.
+        Signal or port to read and to assign, for each wire that has a driver.
     signals : dict of str to Declared
-        Those of them that are signals of the architecture, in order.
-    watches : dict of str to Declared
-        Signals that only give a value one more name.
+        Those that are signals of the architecture, in order.
+    aliases : dict of str to Declared
+        Signals that only give a value another name.
     memories, labels : dict of str to str
         Identifiers of memories and instances.
     scope : Scope
-        For further names.
+        Scope of the architecture, for further names.
     """
 
     ports: tuple[Port, ...]
@@ -68,9 +68,9 @@ def declare(
     port_names : dict of str to str
         Identifiers of the ports by wire.
     child_names : mapping
-        The same of all modules, by module.
+        Identifiers of the ports of all modules, by module.
     vectors : bool
-        Ports are `std_logic_vector`.
+        Whether ports are `std_logic_vector`.
     """
     scope = Scope([entity, "rtl", *port_names.values()])
     instances = [cell for cell in graph.cells if graph.is_instance(cell)]
@@ -82,22 +82,22 @@ def declare(
     for port in ports:
         declared[port.wire] = port.inner or port.outer
     named: dict[str, str] = {}
-    made_up: dict[str, str] = {}
+    generated: dict[str, str] = {}
     for wire, fallback in driven.items():
         owner = graph.name_of.get(wire, wire)
         if owner in declared:
             declared[wire] = declared[owner]
         elif wire not in declared and owner.startswith("$"):
-            made_up[wire] = hints.get(wire, fallback)
+            generated[wire] = hints.get(wire, fallback)
         elif wire not in declared:
             named[wire] = owner
-    watched = [chunk.wire for (chunk, *_), _ in graph.aliases if isinstance(chunk, Slice)]
-    # A signal's own name goes before made-up ones.
-    given = scope.give_all({**named, **{wire: wire for wire in watched}})
-    given |= scope.give_all(made_up)
+    aliases = [chunk.wire for (chunk, *_), _ in graph.aliases if isinstance(chunk, Slice)]
+    # Names of the design take precedence over generated ones.
+    given = scope.give_all({**named, **{wire: wire for wire in aliases}})
+    given |= scope.give_all(generated)
     signals = dict(taken)
     for wire in driven:
-        if wire in named or wire in made_up:
+        if wire in named or wire in generated:
             signals[wire] = Declared(
                 name=given[wire], width=graph.width[wire], vector=wire in foreign
             )
@@ -106,7 +106,7 @@ def declare(
         ports=tuple(ports),
         declared=declared,
         signals=signals,
-        aliases={wire: Declared(name=given[wire], width=graph.width[wire]) for wire in watched},
+        aliases={wire: Declared(name=given[wire], width=graph.width[wire]) for wire in aliases},
         memories=scope.give_all({name: name for name in graph.module.memories}),
         labels=scope.give_all({cell.name: cell.name for cell in instances}),
         scope=scope,
@@ -122,10 +122,10 @@ def _ports(
     *,
     vectors: bool,
 ) -> tuple[list[Port], dict[str, Declared]]:
-    """List the ports, and the signals behind those that cannot be assigned where they are.
+    """List the ports, and the inner signals of those that logic cannot assign to.
 
-    A register keeps its initial value in a signal of its own, as not all tools honour that of a
-    port; an instance's output must have the type of what it is connected to.
+    A register needs an inner signal for its initial value, as not all tools use that of a port. An
+    instance's output needs one if its type differs from that of the port.
     """
     from_submodule = _submodule_outputs(graph)
     source_of = {owner: wire for wire, owner in graph.name_of.items()}
@@ -185,7 +185,7 @@ def _foreign_outputs(graph: Graph, instances: list[Cell]) -> frozenset[str]:
 
 
 def part_names(module: Module) -> dict[str, str]:
-    """Name made-up wires after the named signal that they are a part of."""
+    """Name generated wires after the named signal of which they are a part."""
     names: dict[str, str] = {}
     for target, value in module.connections:
         to = target[0] if target else None
@@ -205,7 +205,7 @@ def part_names(module: Module) -> dict[str, str]:
 
 
 def _driven(graph: Graph, child_names: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
-    """List the wires that something here drives, with a name for those that have none."""
+    """List the wires that this module drives, with a name for wires that have none."""
     driven: dict[str, str] = {}
     for cell in graph.cells:
         if graph.is_instance(cell):
@@ -220,23 +220,23 @@ def _driven(graph: Graph, child_names: Mapping[str, Mapping[str, str]]) -> dict[
         elif cell.kind in ("$dff", "$adff", "$memrd_v2") or cell.kind in INLINE:
             wire = output(cell)
             if wire not in graph.folded:
-                driven[wire] = _made_up(cell.kind, wire)
+                driven[wire] = _generated_name(cell.kind, wire)
     for process in graph.processes:
         wire = graph.target(process)
-        driven[wire] = _made_up("$choice", wire)
+        driven[wire] = _generated_name("$choice", wire)
     for (chunk, *_), _value in graph.drives:
         if isinstance(chunk, Slice) and graph.module.wires[chunk.wire].direction is None:
-            driven[chunk.wire] = _made_up("$pad", chunk.wire)
+            driven[chunk.wire] = _generated_name("$pad", chunk.wire)
     return driven
 
 
-def _made_up(kind: str, wire: str) -> str:
+def _generated_name(kind: str, wire: str) -> str:
     word = {"$dff": "register", "$adff": "register", "$memrd_v2": "read"}.get(kind, kind)
     return f"{word.removeprefix('$').removeprefix('reduce_')}_{wire.removeprefix('$')}"
 
 
 def initial_value(wire: Wire | None, width: int) -> str:
-    """Write the value that a register starts with."""
+    """Write the initial value of a register."""
     bits = wire.attributes.get("init") if wire is not None else None
     text = bits.text if isinstance(bits, Bits) else "0" * width
     if width == 1:
@@ -245,7 +245,7 @@ def initial_value(wire: Wire | None, width: int) -> str:
 
 
 def enumeration(wire: Wire, bits: str) -> str:
-    """Give what an enumeration calls a value, or nothing."""
+    """Give the name of a value in an enumeration, or an empty text."""
     return _one_line(wire.attributes.get(f"enum_value_{bits}", ""))
 
 

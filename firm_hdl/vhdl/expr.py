@@ -1,7 +1,7 @@
 """Netlist values as VHDL expressions: signals, slices, concatenations, constants.
 
-A value is wanted as one of four things: `std_logic` (one bit), `unsigned` (any number of bits, also
-one), `signed`, or a `boolean` condition. Operators are in `vhdl_cells`.
+A value can be written as one of four types: `std_logic` (one bit), `unsigned` (any number of bits,
+also one), `signed`, or a `boolean` condition. Operators are in :mod:`firm_hdl.vhdl.cells`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ __all__ = ["Declared", "Values"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Declared:
-    """A signal or port. `vector`: it is a `std_logic_vector`, which is converted to be read."""
+    """A signal or port. `vector`: its type is `std_logic_vector`, which is converted when read."""
 
     name: str
     width: int
@@ -39,7 +39,7 @@ class Declared:
         return "'0'" if self.width == 1 else "(others => '0')"
 
     def part(self, low: int, width: int) -> str:
-        """Name some of its bits, as a target or, if it is no vector, a value."""
+        """Name `width` of its bits, as a target; also as a value, unless it is a vector."""
         if width == self.width:
             return self.name
         if width == 1:
@@ -47,17 +47,17 @@ class Declared:
         return f"{self.name}({low + width - 1} downto {low})"
 
     def accept(self, value: Expression, width: int) -> str:
-        """Write a value as what may be assigned to `width` of its bits."""
+        """Write a value with the type that can be assigned to `width` of its bits."""
         if not self.vector or width == 1 or value.operator == "literal":
             return value.text
-        # A conversion does not tell the type of what it converts.
+        # A type conversion does not determine the type of its operand.
         if value.operator == "&":
             return f"std_logic_vector(unsigned'({value.text}))"
         return f"std_logic_vector({value.text})"
 
 
 class Values:
-    """Writes values of one module.
+    """Writes the values of one module.
 
     Parameters
     ----------
@@ -78,11 +78,11 @@ class Values:
         self.cells = Cells(self)
 
     def width(self, wire: str) -> int:
-        """Count the bits of a wire that anybody reads."""
+        """Count the bits of a wire that are read."""
         return self._width[wire]
 
     def folded(self, spec: Spec) -> Cell | None:
-        """Give the operator that a value is the whole result of, if it has no signal."""
+        """Give the operator whose whole result a value is, if the result has no signal."""
         if len(spec) == 1 and isinstance(spec[0], Slice):
             return self._folded.get(spec[0].wire)
         return None
@@ -97,7 +97,7 @@ class Values:
         return self._declared[chunk.wire].part(chunk.low, chunk.width)
 
     def is_vector(self, chunk: Chunk) -> bool:
-        """Tell signals that are `std_logic_vector` from those that are `unsigned`."""
+        """Tell whether a signal is a `std_logic_vector`, not `unsigned`."""
         return isinstance(chunk, Slice) and self._declared[chunk.wire].vector
 
     def logic(self, spec: Spec) -> Expression:
@@ -124,8 +124,8 @@ class Values:
         Parameters
         ----------
         target : bool
-            The context gives the type, as the target of an assignment does: a concatenation
-            needs no qualification.
+            Whether the context gives the type, as the target of an assignment does. Then a
+            concatenation needs no qualification.
         """
         natural = spec_width(spec)
         if width is None:
@@ -169,7 +169,7 @@ class Values:
         return call("to_integer", self.unsigned(spec))
 
     def constant(self, spec: Spec, *, signed: bool = False) -> int | None:
-        """Give the number that a value is, if it is a constant one."""
+        """Give the number of a constant value, else `None`."""
         return constant(spec, signed=signed)
 
     def _joined(self, spec: Spec, target: bool) -> Expression:
@@ -198,7 +198,7 @@ class Values:
         return call("unsigned", name) if self.is_vector(chunk) and chunk.width > 1 else name
 
     def _sign_run(self, spec: Spec, index: int) -> tuple[int, Expression]:
-        """Recognize a sign extension: top bits over and over, then what they are the top of."""
+        """Recognize a sign extension: copies of the top bit, then the value with that top bit."""
         used = _run_length(spec, index)
         below = index - used
         top = spec[index]
@@ -231,7 +231,7 @@ def _run_length(spec: Spec, index: int) -> int:
 
 
 def _constant(bits: str, *, target: bool) -> Expression:
-    """Write a constant; nothing but its context tells the type of a literal."""
+    """Write a constant; the type of a literal depends on its context only."""
     if target:
         return Expression(literal(bits), "literal")
     if len(bits) > 8 and "1" not in bits:

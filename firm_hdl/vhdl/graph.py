@@ -1,9 +1,9 @@
-"""What drives and what reads each wire of a module, and which expressions need no name.
+"""The drivers and readers of each wire of a module, and the expressions that need no signal.
 
-Amaranth gives every operator a wire of its own and leaves it to the reader to cut off the carry.
-Here each made-up wire is narrowed to the bits that are read, takes over the name of a signal that
-is the same thing, or disappears into the one expression that reads it. :mod:`firm_hdl.vhdl.passes`
-does that, one pass after the other.
+Amaranth gives every operator a wire of its own, including the carry bits that nothing reads. The
+passes of :mod:`firm_hdl.vhdl.passes` narrow each generated wire to the bits that are read. Then the
+wire takes over the name of a signal with the same value, or it is folded into the expression that
+reads it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from firm_hdl.vhdl.uses import Use, statement_uses, uses_of
 __all__ = ["Connection", "Graph", "only", "target_of"]
 
 Connection: TypeAlias = "tuple[Spec, Spec]"
-"""What is driven, and by what."""
+"""A target and the value that drives it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,21 +32,21 @@ class Graph:
         All modules of the design.
     cells : tuple of Cell
     processes : tuple of Process
-        Those that compute the next value of one register alone are in `next_state` instead.
+        All processes except those in `next_state`.
     width : mapping of str to int
-        Bits of each wire that are declared: those that somebody reads, for made-up wires.
+        Declared bits of each wire; for generated wires, the bits that are read.
     drives : tuple of Connection
-        Connections that drive something.
+        Connections that drive a wire.
     aliases : tuple of Connection
-        Connections that only give a value one more name.
+        Connections that only give a value another name.
     name_of : mapping of str to str
-        Made-up wires that take over the name of a signal or port that is the same.
+        Generated wires that take over the name of a signal or port with the same value.
     register_of : mapping of str to Cell
         Flip-flops by the wire that they drive.
     next_state : mapping of str to Process
-        By register wire: the process that computes its next value, for it alone.
+        By register wire: the process that computes its next value and nothing else.
     folded : mapping of str to Cell
-        Made-up wires that have no signal: their expression stands where they are read.
+        Generated wires without a signal: their expression is written where they are read.
     """
 
     module: Module
@@ -68,45 +68,43 @@ class Graph:
         return name
 
     def is_instance(self, cell: Cell) -> bool:
-        """Tell an instance, of a module of the design or of something foreign."""
+        """Tell whether a cell is an instance, of a module of the design or a foreign component."""
         return not cell.kind.startswith("$")
 
     def is_submodule(self, cell: Cell) -> bool:
-        """Tell an instance of a module of the design."""
+        """Tell whether a cell is an instance of a module of the design."""
         return cell.kind in self.modules
 
     def is_output(self, cell: Cell, port: str) -> bool:
-        """Tell whether a port of an instance drives what it is connected to.
+        """Tell whether a port of an instance is an output.
 
-        Of a foreign one, Amaranth prints the wire of an output without a slice, and everything else
-        with one.
+        For a foreign component, Amaranth prints the wire of an output without a slice, and
+        everything else with one.
         """
         if cell.kind in self.modules:
             return self.modules[cell.kind].wires[port].direction == "output"
         whole = only(cell.ports[port])
         return whole is not None and whole.bare
 
-    # What follows runs once, in the order of the constructor.
-
     def uses(self) -> Iterator[Use]:
-        """Yield what cells and processes read."""
+        """Yield the values that cells and processes read."""
         for cell in self.cells:
             yield from uses_of(cell, self.width)
         for process in self.processes:
             yield from statement_uses(process.body)
 
     def connected(self) -> Iterator[Spec]:
-        """Yield what connections read."""
+        """Yield the values that connections read."""
         yield from (value for _, value in self.drives + self.aliases)
 
 
 def only(spec: Spec) -> Slice | None:
-    """Return the part of a wire that a value is, if it is nothing besides."""
+    """Return the slice of a value that consists of a single slice, else `None`."""
     return spec[0] if len(spec) == 1 and isinstance(spec[0], Slice) else None
 
 
 def target_of(process: Process) -> str | None:
-    """Name the wire that a process drives, if it has bits: Amaranth makes one process a signal."""
+    """Name the wire that a process drives, if it has bits: each signal has its own process."""
     for statement in process.body:
         if isinstance(statement, Assign) and statement.target:
             chunk = statement.target[0]

@@ -1,7 +1,7 @@
-"""Instances: of the design's own entities, and of components that VHDL knows nothing about.
+"""Instances of the design's own entities, and of foreign components.
 
-What a foreign component looks like is what Amaranth prints of it: ports by name and width, of which
-those are outputs that are connected to a whole wire of their own.
+The declaration of a foreign component follows from the RTLIL that Amaranth prints: ports by name
+and width. A port that is connected to a whole wire is an output.
 """
 
 from __future__ import annotations
@@ -91,9 +91,9 @@ def _aligned(pairs: list[tuple[str, str]]) -> Iterator[str]:
 def _associate(
     formal: str, spec: Spec, values: Values, *, vector: bool
 ) -> Iterator[tuple[str, str]]:
-    """Yield associations; a value in several parts is connected part by part.
+    """Yield associations; a value of several chunks is connected chunk by chunk.
 
-    An expression in a port map would be a signal of its own, one delta cycle late.
+    An expression in a port map would be an implicit signal, one delta cycle late.
     """
     position = 0
     for chunk in spec:
@@ -144,7 +144,7 @@ def _sources(graph: Graph) -> set[str]:
 
 
 def _exact(name: str) -> str:
-    """Keep a foreign name letter by letter, if need be as an extended identifier."""
+    """Keep a foreign name unchanged, as an extended identifier if necessary."""
     return name if is_identifier(name) else "\\" + name.replace("\\", "\\\\") + "\\"
 
 

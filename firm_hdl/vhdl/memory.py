@@ -1,7 +1,7 @@
 """Amaranth's memories as arrays: contents, write ports, read ports.
 
-Reading or writing beyond the last word gives 0 or does nothing, as in Amaranth's simulator. A read
-register starts at 0. A port that is transparent for a write port reads what that one writes.
+As in Amaranth's simulator, a read beyond the last word gives 0, and a write there has no effect. A
+read register starts at 0. A port that is transparent for a write port reads the data being written.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ class MemoryText:
     ----------
     memory : Memory
     name : str
-        Identifier of the signal; its type is called after it.
+        Identifier of the signal; the name of its type is derived from it.
     ports : sequence of Cell
-        Its cells.
+        Cells of the memory's ports and contents.
     values : Values
     targets : mapping of str to Declared
         Signals that read ports drive.
@@ -114,7 +114,7 @@ class MemoryText:
                 yield self._direct_read(cell)
 
     def _guard(self, address: Spec) -> Expression | None:
-        """Write the test that an address is one of a word, if there are others."""
+        """Write the test that an address is in range, unless all addresses are."""
         if self._memory.size >= 1 << spec_width(address):
             return None
         constant = self._values.constant(address)
@@ -124,7 +124,7 @@ class MemoryText:
 
     def _word(self, address: Spec) -> str:
         constant = self._values.constant(address)
-        # Behind a guard that is false; but VHDL checks constants before it looks at conditions.
+        # The guard of such an address is false, but VHDL checks a constant index statically.
         number = "0" if (constant or 0) >= self._memory.size else self._values.number(address).text
         return f"{self._name}({number})"
 
@@ -191,15 +191,15 @@ class MemoryText:
 
     def _bypass(self, cell: Cell, write: Cell) -> Iterator[str]:
         target, values = self._target(cell), self._values
-        here, there = cell.ports["ADDR"], write.ports["ADDR"]
+        read_at, write_at = cell.ports["ADDR"], write.ports["ADDR"]
         same: list[Expression] = []
-        if values.constant(here) is not None and values.constant(there) is not None:
-            if values.constant(here) != values.constant(there):
+        if values.constant(read_at) is not None and values.constant(write_at) is not None:
+            if values.constant(read_at) != values.constant(write_at):
                 return
-        elif spec_width(here) == 1:
-            same = [infix("=", values.logic(here), values.logic(there))]
+        elif spec_width(read_at) == 1:
+            same = [infix("=", values.logic(read_at), values.logic(write_at))]
         else:
-            same = [infix("=", values.unsigned(here), values.unsigned(there))]
+            same = [infix("=", values.unsigned(read_at), values.unsigned(write_at))]
         for bit, low, width in enable_runs(write.ports["EN"]):
             if isinstance(bit, Bits) and bit.text != "1":
                 continue

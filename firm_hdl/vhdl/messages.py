@@ -1,8 +1,8 @@
 """Amaranth's `Print`, `Assert` and `Assume` as VHDL reports and assertions.
 
-They are for simulators and stand between ``translate_off`` marks. Without a clock they are
-postponed: they look once all signals have settled. `Cover` has no VHDL counterpart outside PSL and
-stays a comment. Of a format, the kind of number is kept, and the field width is not.
+They are for simulators and stand between ``translate_off`` marks. Without a clock they are in
+postponed processes, which run when all signals have settled. `Cover` has no VHDL counterpart
+outside PSL and stays a comment. A format keeps the kind of number, but not the field width.
 """
 
 from __future__ import annotations

@@ -44,10 +44,10 @@ class ModuleWriter:
     entities : mapping of str to str
         Identifiers of all entities by module.
     port_names : mapping
-        By module, the identifiers of its ports by wire.
+        Identifiers of ports, by module and wire.
     modules : mapping of str to Module
     vectors : bool
-        Ports of this entity are `std_logic_vector`.
+        Whether the ports of this entity are `std_logic_vector`.
     """
 
     def __init__(
@@ -82,7 +82,7 @@ class ModuleWriter:
         self._registers = Registers(graph, self._values, self._statements, self._names)
 
     def names(self) -> EntityNames:
-        """Tell what everything is called."""
+        """Give all identifiers of the module."""
         names, graph = self._names, self._graph
         signals = {wire: item.name for wire, item in (names.declared | names.aliases).items()}
         signals.update(
@@ -99,7 +99,7 @@ class ModuleWriter:
         )
 
     def text(self) -> str:
-        """Write the design unit pair, each line at most 100 columns where it can be broken."""
+        """Write entity and architecture; lines have at most 100 columns if they can be broken."""
         lines = [*self._entity_lines(), "", *self._architecture()]
         return "\n".join(part for line in lines for part in wrap(line)) + "\n"
 
@@ -134,7 +134,7 @@ class ModuleWriter:
         yield "end entity;"
 
     def _remark(self, name: str) -> str:
-        """Say what the type of a wire does not: its sign and its enumeration."""
+        """Write a comment with what the type of a wire lacks: its sign and its enumeration."""
         wire = self._module.wires[name]
         remarks = ["signed"] if wire.signed and wire.width > 1 else []
         values = [
@@ -203,7 +203,7 @@ class ModuleWriter:
         return lines
 
     def _attributes(self) -> Iterator[str]:
-        """Hand attributes of signals, such as ``keep``, on to tools."""
+        """Yield the attributes of signals, such as ``keep``, for tools."""
         types: dict[str, str] = {}
         uses: list[str] = []
         for wire, item in {**self._names.signals, **self._names.aliases}.items():
@@ -250,7 +250,7 @@ class ModuleWriter:
         yield from self._body.processes()
         for memory in self._memories():
             yield memory.processes()
-        yield self._reads_of_nothing()
+        yield self._empty_memory_reads()
         yield from self._registers.processes()
         yield self._body.connections(graph.drives)
         yield self._outputs()
@@ -259,8 +259,8 @@ class ModuleWriter:
             if cell.kind in ("$check", "$print"):
                 yield message(cell, self._values, self._module.name)
 
-    def _reads_of_nothing(self) -> Iterator[str]:
-        """Yield what ports of memories without words read."""
+    def _empty_memory_reads(self) -> Iterator[str]:
+        """Yield the value 0 for read ports of memories without words."""
         for cell in self._graph.cells:
             if cell.kind == "$memrd_v2" and not self._module.memories[memory_id(cell)].size:
                 target = self._names.declared[output(cell)]

@@ -1,8 +1,9 @@
 """Names of a netlist as VHDL identifiers.
 
-A name that is a legal identifier stays as it is; others lose what VHDL forbids (a double, leading
-or trailing underscore, ``$``, ``.``, brackets), and whoever then meets a keyword, a name that the
-generated text itself uses or, case not counting, a neighbour gets a suffix. No two are merged.
+A name that is a legal identifier stays as it is. Others lose what VHDL forbids: a double, leading
+or trailing underscore, ``$``, ``.``, brackets. A name gets a suffix if it is then a keyword or a
+name that the generated text uses, or if it is equal to a neighbour, ignoring case. No two are
+merged.
 IEEE Std 1076-2008, clause 15.4 (identifiers) and 12.2 (scope).
 """
 
@@ -25,7 +26,7 @@ USED = frozenset(
     repeat_bit mux to_std_logic lsb saturate floor_div floor_mod to_decimal to_characters rtl
     """.split()
 )
-"""Identifiers with a meaning in the text that we write; a signal of that name would hide them."""
+"""Identifiers that the generated text uses; a signal of the same name would hide them."""
 
 PREDEFINED = frozenset(
     """
@@ -43,23 +44,23 @@ PREDEFINED = frozenset(
     """.split()
     + [f"c{number}" for number in range(128, 160)]
 )
-"""What std.standard, ieee.std_logic_1164 and ieee.numeric_std declare besides those in `USED`.
+"""Identifiers of std.standard, ieee.std_logic_1164 and ieee.numeric_std that are not in `USED`.
 
-Nearly every design sees these by use clauses. Of two things of one name that are seen in this way
-VHDL takes neither, unless both are subprograms or literals (12.4): after ``use`` of a package with
-a constant ``NS``, there is no ``5 ns``.
+Nearly every design makes them visible by use clauses. If use clauses make two declarations of one
+name visible, VHDL hides both, unless both are subprograms or literals (12.4): after ``use`` of a
+package with a constant ``NS``, ``5 ns`` is an error.
 """
 
 _IDENTIFIER = re.compile(r"[A-Za-z](?:_?[A-Za-z0-9])*\Z")
 
 
 def is_identifier(name: str) -> bool:
-    """Tell whether a name is a basic identifier and no keyword."""
+    """Tell whether a name is a basic identifier and not a keyword."""
     return _IDENTIFIER.match(name) is not None and name.lower() not in KEYWORDS
 
 
 def legal(name: str) -> str:
-    """Make a name a basic identifier that is no keyword, whatever its neighbours are called."""
+    """Make a name a basic identifier that is not a keyword, regardless of its neighbours."""
     text = plain(name, "n")
     return f"{text}_sig" if text.lower() in KEYWORDS or text.lower() in USED else text
 
@@ -77,15 +78,15 @@ class Scope:
         self._taken = {name.lower() for name in reserved}
 
     def give(self, wanted: str) -> str:
-        """Take the identifier nearest to `wanted` that nobody has."""
+        """Take the identifier nearest to `wanted` that is free."""
         text = first_free(legal(wanted), self._taken)
         self._taken.add(text.lower())
         return text
 
     def give_all(self, wanted: Mapping[str, str]) -> dict[str, str]:
-        """Take identifiers for many things, by key; legal names choose before those that are not.
+        """Take identifiers for many names, by key; legal names come before the others.
 
-        Of those, the first choose first.
+        Within each group, the order of `wanted` decides.
         """
         given = {key: self.give(name) for key, name in wanted.items() if legal(name) == name}
         given.update((key, self.give(name)) for key, name in wanted.items() if key not in given)

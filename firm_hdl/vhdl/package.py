@@ -1,4 +1,4 @@
-"""The VHDL package that the generated text uses for what VHDL-2008 lacks."""
+"""The VHDL package with functions that VHDL-2008 lacks and the generated text uses."""
 
 from __future__ import annotations
 
@@ -9,4 +9,4 @@ __all__ = ["PACKAGE", "PACKAGE_NAME"]
 PACKAGE_NAME = "firm_hdl_pkg"
 
 PACKAGE = files("firm_hdl.vhdl").joinpath(f"{PACKAGE_NAME}.vhd").read_text(encoding="utf-8")
-"""Its text."""
+"""Text of the package."""

@@ -1,6 +1,6 @@
-"""The passes that make a module's :class:`~firm_hdl.vhdl.graph.Graph`, in the order of `PASSES`.
+"""The passes that build a module's :class:`~firm_hdl.vhdl.graph.Graph`, in the order of `PASSES`.
 
-Each takes a graph and returns another one.
+Each pass takes a graph and returns another one.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ __all__ = ["PASSES", "graph_of"]
 
 _COMPARISONS = frozenset("$eq $ne $lt $le $gt $ge".split())
 
-# How many operands an expression has at most, and how often a comparison is written out.
-_FOLD_LEAVES = 6
-_REPEATS = 3
+# Largest number of operands of an expression, and of times that a comparison is written out.
+_MAX_OPERANDS = 6
+_MAX_REPEATS = 3
 
 
 def graph_of(module: Module, modules: Mapping[str, Module]) -> Graph:
-    """Make the graph of a module.
+    """Build the graph of a module.
 
     Parameters
     ----------
@@ -37,15 +37,15 @@ def graph_of(module: Module, modules: Mapping[str, Module]) -> Graph:
         processes=tuple(i for i in module.items if isinstance(i, Process) and target_of(i)),
         width={name: wire.width for name, wire in module.wires.items()},
     )
-    for change in PASSES:
-        graph = change(graph)
+    for run_pass in PASSES:
+        graph = run_pass(graph)
     return graph
 
 
 def _drop_division_guards(graph: Graph) -> Graph:
-    """Let a division's result be what its multiplexer for divisor 0 makes of it.
+    """Replace a division and its multiplexer for divisor 0 by the division.
 
-    `floor_div` and `floor_mod` give 0 in that case by themselves.
+    `floor_div` and `floor_mod` of the VHDL package give 0 for divisor 0.
     """
     divisions = {
         output(cell): cell for cell in graph.cells if cell.kind in ("$divfloor", "$modfloor")
@@ -85,7 +85,7 @@ def _drop_division_guards(graph: Graph) -> Graph:
 
 
 def _sort_connections(graph: Graph) -> Graph:
-    """Tell connections that drive something from those that only give one more name."""
+    """Separate connections that drive a wire from those that only give a value another name."""
     module = graph.module
     read = {chunk.wire for use in graph.uses() for chunk in use.spec if isinstance(chunk, Slice)}
     read |= {c.wire for _, value in module.connections for c in value if isinstance(c, Slice)}
@@ -99,13 +99,13 @@ def _sort_connections(graph: Graph) -> Graph:
         wire = module.wires[chunk.wire]
         if wire.direction is not None or wire.name in read:
             drives.append((target, value))
-        elif not _is_echo(graph, wire.name, value):
+        elif not _is_redundant_name(graph, wire.name, value):
             aliases.append((target, value))
     return replace(graph, drives=tuple(drives), aliases=tuple(aliases))
 
 
-def _is_echo(graph: Graph, name: str, value: Spec) -> bool:
-    """Tell names that add nothing: fields of a signal, and a second copy of a name."""
+def _is_redundant_name(graph: Graph, name: str, value: Spec) -> bool:
+    """Tell whether a name is a field of a signal, or a second copy of a name."""
     cut = min((i for i in (name.find("."), name.find("[")) if i > 0), default=0)
     if cut and name[:cut] in graph.module.wires:
         return True
@@ -120,7 +120,7 @@ def _is_echo(graph: Graph, name: str, value: Spec) -> bool:
 
 
 def _narrow(graph: Graph) -> Graph:
-    """Give made-up operator results the width that is read; drop what nobody reads."""
+    """Give generated wires the width that is read; drop operators that nothing reads."""
     drivers = {
         output(cell): cell
         for cell in graph.cells
@@ -160,7 +160,7 @@ def _narrow(graph: Graph) -> Graph:
 
 
 def _adopt_names(graph: Graph) -> Graph:
-    """Give made-up wires the names of the signals that they are connected to as a whole."""
+    """Give generated wires the names of the signals to which they are connected as a whole."""
     name_of: dict[str, str] = {}
     drives = list(graph.drives)
     aliases = list(graph.aliases)
@@ -191,7 +191,7 @@ def _is_driven(wire: str, drives: list[Connection]) -> bool:
 
 
 def _pair_registers(graph: Graph) -> Graph:
-    """Find the registers, and the processes that compute the next value of one of them alone."""
+    """Find the registers, and the processes that compute the next value of a single register."""
     specs = [*(use.spec for use in graph.uses()), *graph.connected()]
     reads = Counter(chunk.wire for spec in specs for chunk in spec if isinstance(chunk, Slice))
     by_target = {target_of(process): process for process in graph.processes}
@@ -209,12 +209,12 @@ def _pair_registers(graph: Graph) -> Graph:
         ):
             next_state[register] = by_target[chunk.wire]
     paired = {id(process) for process in next_state.values()}
-    left = tuple(process for process in graph.processes if id(process) not in paired)
-    return replace(graph, processes=left, register_of=registers, next_state=next_state)
+    others = tuple(process for process in graph.processes if id(process) not in paired)
+    return replace(graph, processes=others, register_of=registers, next_state=next_state)
 
 
 def _uses_with_registers(graph: Graph) -> Iterator[Use]:
-    """Yield everything that is read; of a register's next value, what its process reads."""
+    """Yield all values that are read; for a register, the values that its process reads."""
     for cell in graph.cells:
         process = graph.next_state.get(output(cell)) if cell.kind in ("$dff", "$adff") else None
         for use in uses_of(cell, graph.width):
@@ -229,7 +229,7 @@ def _uses_with_registers(graph: Graph) -> Iterator[Use]:
 
 
 def _fold(graph: Graph) -> Graph:
-    """Find the made-up wires whose expression can stand where they are read."""
+    """Find the generated wires whose expression can be written where they are read."""
     count: Counter[str] = Counter()
     fixed: set[str] = set()
     for use in _uses_with_registers(graph):
@@ -257,7 +257,7 @@ def _fold(graph: Graph) -> Graph:
             if port != "Y"
             for chunk in spec
         )
-        if weight <= _FOLD_LEAVES and (
+        if weight <= _MAX_OPERANDS and (
             count[name] == 1 or _may_repeat(cell, count[name], folded)
         ):
             leaves[name] = weight
@@ -266,7 +266,7 @@ def _fold(graph: Graph) -> Graph:
 
 
 def _may_repeat(cell: Cell, uses: int, folded: dict[str, Cell]) -> bool:
-    """Tell what is as short as a name for it: an inverted bit, or two signals compared."""
+    """Tell whether an expression is short: an inverted bit, or a comparison of two signals."""
     specs = [spec for port, spec in cell.ports.items() if port != "Y"]
     if any(len(spec) > 1 for spec in specs):
         return False
@@ -274,11 +274,11 @@ def _may_repeat(cell: Cell, uses: int, folded: dict[str, Cell]) -> bool:
         return False
     if cell.kind == "$not":
         return spec_width(cell.ports["A"]) == 1
-    return cell.kind in _COMPARISONS and uses <= _REPEATS
+    return cell.kind in _COMPARISONS and uses <= _MAX_REPEATS
 
 
 def _in_order(candidates: dict[str, Cell]) -> Iterator[str]:
-    """Yield wires so that operands come before what they are operands of."""
+    """Yield wires so that operands come before the operators that read them."""
     done: set[str] = set()
     for root in candidates:
         stack = [(root, False)]
@@ -303,7 +303,7 @@ def _in_order(candidates: dict[str, Cell]) -> Iterator[str]:
 
 
 def _is_real(cell: Cell) -> bool:
-    """Tell cells with a result from those whose result has no bits."""
+    """Tell whether the result of a cell has any bits."""
     for port in ("Y", "Q"):
         if cell.kind.startswith("$") and port in cell.ports and not cell.ports[port]:
             return False
@@ -320,4 +320,4 @@ PASSES: tuple[Callable[[Graph], Graph], ...] = (
     _pair_registers,
     _fold,
 )
-"""In order: each relies on those before it."""
+"""In order: each pass relies on those before it."""

@@ -1,8 +1,8 @@
 """Amaranth's statements as VHDL: `if`, `case`, conditional assignments, clocked processes.
 
-RTLIL's switch takes the first arm that matches and knows don't-care bits; it becomes a `case` where
-every arm is plain and different, and a chain of conditions otherwise, which is what an Amaranth
-`If` was before it became a switch.
+RTLIL's switch takes the first arm that matches, and its patterns may have don't-care bits. If all
+patterns are distinct and have no don't-care bits, the switch becomes a `case`. Otherwise it becomes
+a chain of conditions, such as the Amaranth `If` from which many switches come.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from firm_hdl.vhdl.text import Expression, atom, chain, infix, literal
 
 __all__ = ["Arm", "Statements", "flatten", "merged"]
 
-# A conditional assignment of more is a list that nobody reads; a `case` of fewer is an `if`.
+# A conditional assignment with more choices is hard to read; a `case` with fewer becomes an `if`.
 _MAX_CHOICES = 6
 _MIN_CHOICES = 3
 
@@ -35,14 +35,14 @@ Comment = Callable[[Spec, str], str]
 
 @dataclass(frozen=True, slots=True)
 class Arm:
-    """One arm of a chain: its condition (`None`: otherwise) and its statements."""
+    """One arm of a chain: its condition (`None` for `else`) and its statements."""
 
     condition: Expression | None
     body: tuple[Statement, ...]
 
 
 def flatten(body: tuple[Statement, ...]) -> tuple[Statement, ...]:
-    """Drop switches that choose nothing: Amaranth uses them to keep assignments in order."""
+    """Drop switches without a selector: Amaranth uses them to keep assignments in order."""
     result: list[Statement] = []
     for statement in body:
         if isinstance(statement, Assign):
@@ -60,25 +60,25 @@ def flatten(body: tuple[Statement, ...]) -> tuple[Statement, ...]:
 
 
 def merged(first: tuple[Statement, ...], second: tuple[Statement, ...]) -> tuple[Statement, ...]:
-    """Join the statements of two registers; a switch that both have is written once.
+    """Join the statements of two registers; a switch in both is written once.
 
-    Amaranth splits a process into one for each signal. As no statement of a clocked process reads
-    what another one assigns, order matters only among the statements of one register.
+    Amaranth makes a process for each signal. No statement of a clocked process reads a value that
+    another one assigns, so order matters only among the statements of one register.
     """
     result = list(first)
     earliest = 0
     for statement in second:
-        place = next(
+        index = next(
             (i for i in range(earliest, len(first)) if _same_choice(result[i], statement)), None
         )
-        if place is None:
+        if index is None:
             result.append(statement)
             earliest = len(first)
             continue
-        a, b = result[place], statement
+        a, b = result[index], statement
         assert isinstance(a, Switch) and isinstance(b, Switch)
-        result[place] = _joined(a, b)
-        earliest = place + 1
+        result[index] = _joined(a, b)
+        earliest = index + 1
     return tuple(result)
 
 
@@ -101,7 +101,7 @@ def _joined(a: Switch, b: Switch) -> Switch:
 
 
 def _same_choice(a: Statement, b: Statement) -> bool:
-    """Tell switches with the same arms, or on one selector with plain ones only."""
+    """Tell whether two switches on one selector have the same patterns, or are both plain."""
     if not isinstance(a, Switch) or not isinstance(b, Switch) or a.selector != b.selector:
         return False
     if [case.patterns for case in a.cases] == [case.patterns for case in b.cases]:
@@ -110,7 +110,7 @@ def _same_choice(a: Statement, b: Statement) -> bool:
 
 
 def _is_plain(switch: Switch) -> bool:
-    """Tell switches of which no two arms match, and that do nothing if none does."""
+    """Tell whether at most one arm can match, and no arm is a default."""
     patterns = [pattern for case in switch.cases for pattern in case.patterns]
     return (
         all(case.patterns for case in switch.cases)
@@ -126,11 +126,11 @@ class Statements:
     Parameters
     ----------
     values : Values
-        For what is read.
+        Writer of the values that are read.
     targets : mapping of str to Declared
         Signals by the wire that is assigned; for a next state, the register.
     comment : callable
-        What to remark at a choice of a `case`.
+        Gives the comment for a choice of a `case`.
     """
 
     def __init__(self, values: Values, targets: Mapping[str, Declared], comment: Comment) -> None:
@@ -139,7 +139,7 @@ class Statements:
         self._comment = comment
 
     def body(self, statements: tuple[Statement, ...]) -> Iterator[str]:
-        """Yield lines."""
+        """Yield the lines of statements."""
         for statement in statements:
             if isinstance(statement, Assign):
                 yield from self.assign(statement)
@@ -149,7 +149,7 @@ class Statements:
                 yield from self._if(self.arms(statement))
 
     def assign(self, statement: Assign) -> Iterator[str]:
-        """Yield an assignment, one line a chunk of its target."""
+        """Yield an assignment, one line for each chunk of its target."""
         position = 0
         for chunk in statement.target:
             assert isinstance(chunk, Slice)
@@ -174,7 +174,7 @@ class Statements:
             yield end
 
     def value(self, spec: Spec, *, whole: bool = True) -> Expression:
-        """Write what is assigned. `whole`: to a signal, not a part of one."""
+        """Write the value of an assignment. `whole`: the target is a whole signal."""
         if spec_width(spec) == 1:
             return self._values.logic(spec)
         constant = self._values.constant(spec)
@@ -210,7 +210,7 @@ class Statements:
         return chain_
 
     def _nested(self, arm: Arm) -> Arm:
-        """Join the condition of an `if` with that of an `if` which is all that it holds."""
+        """Join the conditions of an `if` and of another `if` that is its only statement."""
         if len(arm.body) != 1 or not isinstance(arm.body[0], Switch) or arm.condition is None:
             return arm
         inner = arm.body[0]
@@ -222,7 +222,7 @@ class Statements:
         return Arm(chain("and", arm.condition, chain_[0].condition), chain_[0].body)
 
     def _inverted(self, switch: Switch, body: tuple[Statement, ...]) -> list[Arm] | None:
-        """Write an empty `if` with an `else` as the `if` of the opposite."""
+        """Write an empty `if` with an `else` as an `if` with the inverted condition."""
         if spec_width(switch.selector) != 1 or len(switch.cases[0].patterns) != 1:
             return None
         opposite = "1" if switch.cases[0].patterns[0] == "0" else "0"
@@ -234,7 +234,7 @@ class Statements:
         for chunk in selector:
             part = pattern[position - chunk.width : position]
             position -= chunk.width
-            for low, bits in reversed(_cared(part)):
+            for low, bits in reversed(_tested_runs(part)):
                 tests.append(self._equal(cut((chunk,), low, len(bits)), bits))
         return chain("and", *tests) if tests else atom("true")
 
@@ -252,7 +252,7 @@ class Statements:
         return infix("=", self._values.logic(spec), atom("'0'"))
 
     def _plain_cases(self, switch: Switch) -> list[tuple[list[str], Case]] | None:
-        """Give the choices of a `case` statement, if there is one that does the same."""
+        """Give the choices of an equivalent `case` statement, or `None` if none exists."""
         if not self._values.is_name(switch.selector) or spec_width(switch.selector) < 2:
             return None
         seen: set[str] = set()
@@ -272,7 +272,7 @@ class Statements:
             elif new:
                 plain.append((new, case))
         otherwise = default.body if default is not None else ()
-        # All choices differ, so those that do what `others` does can be left to it.
+        # All choices differ, so a choice with the body of `others` can be left out.
         plain = [(new, case) for new, case in plain if case.body != otherwise]
         if len(plain) < 2 and sum(len(new) for new, _ in plain) < _MIN_CHOICES:
             return None
@@ -308,10 +308,10 @@ class Statements:
             yield "end if;"
 
     def conditional(self, body: tuple[Statement, ...]) -> list[tuple[str, str | None]] | None:
-        """Give (value, condition) pairs of a conditional assignment that does what a process does.
+        """Give (value, condition) pairs of a conditional assignment equivalent to a process.
 
-        The body must be a default for the whole signal and at most one switch, whose arms assign
-        the whole signal once.
+        `None` if none exists: the body must be a default for the whole signal and at most one
+        switch, whose arms assign the whole signal once.
         """
         first = body[0]
         if not isinstance(first, Assign) or len(body) > 2 or not self._is_whole(first):
@@ -348,8 +348,8 @@ class Statements:
         return isinstance(chunk, Slice) and chunk.width == self._targets[chunk.wire].width
 
 
-def _cared(pattern: str) -> list[tuple[int, str]]:
-    """Split a pattern into its runs of bits that matter, each with its lowest bit's index."""
+def _tested_runs(pattern: str) -> list[tuple[int, str]]:
+    """Split a pattern into runs without don't-care bits, each with the index of its lowest bit."""
     runs: list[tuple[int, str]] = []
     start = None
     for index, mark in enumerate(f"{pattern}-"):

@@ -1,4 +1,4 @@
-"""Flip-flops: one clocked process for all that share a clock edge and a reset."""
+"""Flip-flops: one clocked process for all flip-flops with the same clock edge and reset."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class _Register:
 
 @dataclass(frozen=True, slots=True)
 class _Group:
-    """What registers of one process have in common, as text."""
+    """Clock and reset of the registers of one process, as text."""
 
     edge: str
     clock: str
@@ -55,7 +55,7 @@ class Registers:
         self._names = names
 
     def summary(self) -> Iterator[str]:
-        """Yield remarks on clocks and resets."""
+        """Yield comments on clocks and resets."""
         for group, registers in self._groups.items():
             count = len(registers)
             noun = "1 register" if count == 1 else f"{count} registers"
@@ -92,13 +92,13 @@ class Registers:
         if cell.kind == "$dff" and body and (reset := self._reset_of(body[-1], wire)):
             body = body[:-1]
         if not body:
-            # One that holds what it has; with nothing but a reset it would be a latch.
+            # The register holds its value; a process with a reset only would be a latch.
             whole = (Slice(wire, 0, self._graph.width[wire]),)
             body = (Assign(target=whole, value=whole),)
         return _Register(wire, cell, body, reset)
 
     def _holds(self, statement: Statement, wire: str) -> bool:
-        """Tell the default of a register: to stay what it is."""
+        """Tell whether a statement is the default of a register: to hold its value."""
         if not isinstance(statement, Assign) or len(statement.value) != 1:
             return False
         (chunk,) = statement.value
@@ -112,7 +112,7 @@ class Registers:
         )
 
     def _reset_of(self, statement: Statement, wire: str) -> Spec:
-        """Give the signal that brings a register to its initial value, whatever else is said."""
+        """Give the signal of a statement that resets a register to its initial value."""
         if not isinstance(statement, Switch) or spec_width(statement.selector) != 1:
             return ()
         if len(statement.cases) != 1 or statement.cases[0].patterns != ("1",):

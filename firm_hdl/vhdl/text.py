@@ -27,25 +27,25 @@ _LEVELS = {
     **dict.fromkeys(("+", "-", "&"), 4),
     "*": 5,
     "not": 6,
-    # A reduction such as `or x`: legal only where nothing is beside it.
+    # A reduction such as `or x`, which VHDL does not combine with other operators.
     "reduce": 0,
 }
 _ATOM = 9
 
 
 class Expression(NamedTuple):
-    """An expression; `operator` is its outermost one, which decides who needs parentheses."""
+    """An expression; its outermost `operator` decides whether it needs parentheses."""
 
     text: str
     operator: str = ""
 
     @property
     def level(self) -> int:
-        """How strongly the outermost operator binds."""
+        """Precedence of the outermost operator; a higher level binds more strongly."""
         return _LEVELS.get(self.operator, _ATOM)
 
     def inside(self, level: int) -> str:
-        """Give the text for a place that wants at least that level."""
+        """Give the text for a place that needs at least this level, in parentheses if necessary."""
         return self.text if self.level >= level else f"({self.text})"
 
 
@@ -68,7 +68,7 @@ def prefix(operator: str, operand: Expression) -> Expression:
 
 
 def infix(operator: str, left: Expression, right: Expression) -> Expression:
-    """Apply a binary operator. Of a chain of one operator, the left part needs no parentheses."""
+    """Apply a binary operator. The left operand may have the same operator without parentheses."""
     level = _LEVELS[operator]
     if level == 1:
         # VHDL does not mix logical operators, nor `not` with a relation, without parentheses.
@@ -89,12 +89,12 @@ def chain(operator: str, *operands: Expression) -> Expression:
 
 
 def bit_literal(bits: str) -> str:
-    """Give one bit; what is undefined is 0, as in Amaranth's simulator."""
+    """Write one bit; an undefined bit is 0, as in Amaranth's simulator."""
     return "'1'" if bits == "1" else "'0'"
 
 
 def literal(bits: str) -> str:
-    """Give a string of bits as the shortest literal of exactly that width."""
+    """Write a string of bits as the shortest literal of exactly that width."""
     bits = "".join("1" if bit == "1" else "0" for bit in bits)
     width = len(bits)
     if width <= 8:
@@ -106,7 +106,7 @@ def literal(bits: str) -> str:
 def wrap(line: str) -> list[str]:
     """Break a line of code that is too long, at spaces outside of strings.
 
-    A comment at its end goes before it.
+    A comment at the end of such a line becomes a line of its own in front.
     """
     indent = " " * (len(line) - len(line.lstrip()))
     code, mark, comment = line.partition("  -- ")
@@ -122,7 +122,7 @@ def wrap(line: str) -> list[str]:
 
 
 def _break(line: str, start: int) -> int:
-    """Find the last good space to break at: after a logical operator or comma if there is one."""
+    """Find the last good space to break at, preferably after a logical operator or a comma."""
     best, quoted = 0, False
     any_space = 0
     for index, character in enumerate(line[: COLUMNS + 1]):

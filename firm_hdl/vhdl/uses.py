@@ -1,4 +1,4 @@
-"""What reads a wire, and whether an expression may stand in its place there."""
+"""The readers of a wire, and whether they may read an expression instead."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ __all__ = [
 ]
 
 _MODULAR = frozenset("$add $sub $mul $neg $and $or $xor $not $mux $shl".split())
-"""Kinds whose low result bits depend on the low operand bits alone."""
+"""Kinds of cells whose low result bits depend on the low operand bits only."""
 
 INLINE = _MODULAR | frozenset(
     "$reduce_bool $reduce_or $reduce_and $reduce_xor $divfloor $modfloor $shr $sshr $shift "
     "$eq $ne $lt $le $gt $ge".split()
 )
-"""Kinds that are an expression."""
+"""Kinds of cells that VHDL writes as an expression."""
 
 
 def trim(spec: Spec, width: int) -> Spec:
@@ -83,19 +83,19 @@ def enable_runs(spec: Spec) -> list[tuple[Chunk, int, int]]:
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """A reading of a specification. `inline`: an expression may stand there."""
+    """One use of a specification. `inline`: an expression may replace it."""
 
     spec: Spec
     inline: bool
 
 
 def uses_of(cell: Cell, width: Mapping[str, int]) -> Iterator[Use]:
-    """Yield what a cell reads; `width` has the bits of each wire that anybody reads."""
+    """Yield what a cell reads; `width` has the bits of each wire that are read."""
     kind, ports = cell.kind, cell.ports
     if kind in INLINE:
         bits = width[output(cell)]
         for port, spec in ports.items():
-            # A select and a distance count as a whole, whatever the result is cut to.
+            # A select and a shift distance are read as a whole, also if the result is cut.
             cut_port = kind in _MODULAR and port != "S" and (kind != "$shl" or port != "B")
             if port != "Y":
                 yield Use(trim(spec, bits) if cut_port else spec, True)
@@ -132,15 +132,15 @@ def statement_uses(body: tuple[Statement, ...]) -> Iterator[Use]:
 
 
 def _selector_uses(switch: Switch) -> Iterator[Use]:
-    """A bit of a selector may be an expression if one arm alone looks at it."""
+    """Yield the uses of a selector. A bit may be an expression if only one arm depends on it."""
     position = spec_width(switch.selector)
     for chunk in reversed(switch.selector):
         low = position - chunk.width
-        looks = sum(
+        readers = sum(
             any(mark != "-" for mark in pattern[len(pattern) - position : len(pattern) - low])
             for case in switch.cases
             for pattern in case.patterns
         )
-        both = len(switch.selector) == 1 and looks == 2 and position == 1
-        yield Use((chunk,), chunk.width == 1 and (looks <= 1 or both))
+        both_values = len(switch.selector) == 1 and readers == 2 and position == 1
+        yield Use((chunk,), chunk.width == 1 and (readers <= 1 or both_values))
         position = low
