@@ -1,7 +1,8 @@
-"""Control flow that both converters share: counters, the head of a run, and what comes next.
+"""Control flow that both converters share: step number, counters, runs, and exits.
 
-Both transcribe the same plan, so both hold one step number, the loop counters, and the count of a
-run's items. What differs is only where a length comes from and what happens to the bytes.
+Both converters transcribe the same plan. So both have one step number, the loop counters, and the
+count of a run's items. They differ only in where a length comes from and in what they do with the
+bytes.
 """
 
 from __future__ import annotations
@@ -14,48 +15,48 @@ __all__ = ["Control"]
 
 
 class Control:
-    """Registers and decisions of a plan's control flow. Not a component: logic for one module.
+    """Registers and decisions of a plan's control flow. Not a component: adds logic to a module.
 
     Parameters
     ----------
     plan : Plan
     count_bits : int or None
-        Width of counters; `None`: what the limits of the plan need, as a deserializer never counts
-        further.
+        Width of the counters. `None`: as wide as the limits of the plan need, which is enough for a
+        deserializer.
 
     Attributes
     ----------
     step : Signal
         Number of the step.
     levels : list of Signal
-        Elements left of each loop, the one under way included.
+        Elements left of each loop, including the current one.
     run_left : Signal
-        Items left of the run (a terminator included) in its body.
+        Items left of the run, including a terminator, in the body of the run.
     count : Signal
-        Set by the user in a step that begins something: items or elements that are to come, as on
-        the wire (a terminator included). Need not be right if `some` is 0.
+        Set by the user in a step that begins a run or a loop: the number of items or elements, as
+        on the wire (including a terminator). Don't care if `some` is 0.
     some : Signal
-        Set by the user in such a step: whether the count is above zero, and to be believed.
+        Set by the user in such a step: `count` is non-zero and was decoded without error.
     left : Signal
-        Items of the run, terminator included, in front of this cycle.
+        Items of the run, including a terminator, that are left before this cycle.
     final : Signal
-        Whether the run ends in this cycle, if there is one.
+        The run ends in this cycle. Don't care in a step without a run.
     run_bytes : Signal
-        Bytes of the run in this cycle; 0 if there is none.
+        Bytes of the run in this cycle; 0 in a step without a run.
     has_items : Signal
-        Whether items are among them.
+        These bytes contain items, not only a terminator.
     last_items : Signal
-        Whether no items come after them.
+        No items follow those of this cycle.
     lane_used : Signal
         Bit k: lane k of the transfer is an item.
     base : Signal
-        Bytes of the step in front of the run, the gap included if something follows it.
+        Bytes of the step in front of the run, including the gap if the run or loop is not empty.
     done : Signal
-        Whether the plan leaves the step through its exits when it completes.
+        The step is left through its exits when it completes.
     ends : Signal
-        Whether it then ends the packet.
+        The packet ends with this step.
     align : Signal
-        What the next step needs: mask of the low bits of a position that must be zero.
+        Alignment of the next step: mask of the low bits of a position that must be zero.
     """
 
     def __init__(self, plan: Plan, *, count_bits: int | None = None):
@@ -66,7 +67,7 @@ class Control:
         if count_bits is not None and plan.counted:
             bits = max(bits, count_bits)
         self.bits = bits
-        # At least one bit: Yosys writes a signal of none as one of two.
+        # At least one bit: Yosys writes a signal of width 0 as a signal of width 2.
         self.step = Signal(range(max(2, len(plan.steps))), init=plan.start.step or 0)
         init = dict(plan.start.enter)
         self.levels = [
@@ -96,13 +97,13 @@ class Control:
         self.next_step = Signal.like(self.step)
 
     def add_run_logic(self, m: Module) -> None:
-        """Add what is the same for all runs: how much of one this cycle takes."""
+        """Add the logic that all runs share: how many items and bytes this cycle takes."""
         bus = self.plan.bus_bytes
         terminator = self.terminated
         small = Signal(range(bus + 2))
         m.d.comb += [
             small.eq(self.left),
-            # A wide comparison would be slow, and it is on the longest path.
+            # A wide comparison would be slow, and this is on the longest path.
             self.final.eq(~self.left[len(small) :].any() & (small <= self.most_items)),
             self.has_items.eq(self.allowed & (self.left > terminator)),
         ]
@@ -133,7 +134,7 @@ class Control:
             if step.take is not None:
                 self._run(m, step.take, self.count)
                 m.d.comb += [self.allowed.eq(self.some), self.done.eq(~self.some | self.final)]
-        # Where to go, and with what alignment; the counters follow when the step completes.
+        # The next step and its alignment. The counters change only when the step completes.
         with m.If(self.done):
             self._exits(m, step.exits)
         if begin is not None and begin.body is not None:

@@ -26,15 +26,15 @@ __all__ = ["Deserializer"]
 class Deserializer(wiring.Component):
     """Turn packets into messages.
 
-    Every leaf has one register. A packet moves one step of the plan per cycle, as long as its bytes
-    are there and the leaves of the step are free or being taken; leaves become valid in wire order.
-    Latency from the beat that completes a leaf to its `valid`: 2 cycles. `packets.ready` is a
-    function of registers; all outputs are registers. One clock domain, `sync`; its reset empties
-    everything.
+    Every leaf has one register. A packet advances one step of the plan per cycle, while its bytes
+    are present and the registers of the step's leaves are free or being read. Leaves become valid
+    in wire order. Latency from the beat that completes a leaf to its `valid`: 2 cycles.
+    `packets.ready` is a function of registers; all other outputs are registers. One clock domain,
+    `sync`; its reset discards all packets and messages inside.
 
     Each packet ends in one transfer on `status`. After the first error in a packet, remaining
-    scalars and lengths transfer as 0, a sequence under way is completed with zeros, and the rest of
-    the packet is dropped; the next packet decodes as if nothing had happened.
+    scalars and lengths transfer as 0, the current sequence is completed with zeros, and the rest of
+    the packet is dropped. The next packet is decoded normally.
 
     Parameters
     ----------
@@ -44,10 +44,10 @@ class Deserializer(wiring.Component):
     bus_bytes : int
         Bytes per beat: 1, 2, 4, 8, 16, 32 or 64.
     max_message_bytes : int
-        A length that no packet of so many bytes can hold is an error.
+        A length that does not fit into a packet of this many bytes is an error.
     window_words : 1 or 2
-        Most bus words per cycle. 2 saves about one cycle for each string or sequence, and makes the
-        circuit larger and slower.
+        Most bus words per step, hence per cycle. 2 saves about one cycle for each string or
+        sequence, and makes the circuit larger and slower.
 
     Members
     -------
@@ -59,7 +59,7 @@ class Deserializer(wiring.Component):
     ----------
     plan : Plan
     tree : MemberTree
-        Which member is which leaf.
+        The members of the message, with their leaves.
     """
 
     def __init__(

@@ -32,7 +32,17 @@ __all__ = ["DeserializerCircuit"]
 
 
 class DeserializerCircuit:
-    """The deserializer's logic, in pieces."""
+    """The deserializer's logic, built by one method for each part of it.
+
+    Parameters
+    ----------
+    component : Deserializer
+
+    Attributes
+    ----------
+    module : Module
+        The finished logic.
+    """
 
     def __init__(self, component: Deserializer):
         self.plan: Plan = component.plan
@@ -43,7 +53,7 @@ class DeserializerCircuit:
         m.submodules.window = self.window = Window(self.plan)
         self.control = Control(self.plan)
         self.slots = Slots(max(_slots(step) for step in self.plan.steps))
-        # First bytes of a transfer that crosses steps, until its last ones are there.
+        # First bytes of a transfer that crosses steps, until its last bytes are present.
         carried = max((part.first for step in self.plan.steps for part in step.parts), default=0)
         self.carry = Signal(8 * carried)
         self.error = Signal(Status)
@@ -51,14 +61,14 @@ class DeserializerCircuit:
         self.enable = Signal()
         self.promised = Signal()
         self.complete = Signal()
-        # Set by each step: whether the bytes of its map are there, which of those behind it are, as
-        # far as they matter, and what went wrong.
+        # Set by each step: whether the bytes of its map are present, which of the bytes behind the
+        # map are (as far as they matter), and its errors.
         self.map_there = Signal()
         self.behind = Signal(self.plan.slack_bytes + 1)
         self.extra = Signal(range(self.plan.slack_bytes + 2))
         self.mismatch = Signal()
         self.over = Signal()
-        # The window from where the run starts in this step.
+        # The bytes of the window from the start of the run in this step.
         most = self.plan.bus_bytes + 1
         self.run_bytes = Signal(8 * most)
         self.run_have = Signal(most + self.plan.slack_bytes + 1)
@@ -114,7 +124,7 @@ class DeserializerCircuit:
         self.control.add_step(m, step)
 
     def _check(self, item: Fixed) -> None:
-        """Compare bytes, each as far as it is there."""
+        """Compare constant bytes; bytes that are not present are not compared."""
         wrong = [
             self.have(item.at + k + 1) & (self.bytes(item.at + k, 1) != value)
             for k, value in enumerate(item.data)
@@ -126,15 +136,15 @@ class DeserializerCircuit:
         return Value.cast(self.window.data)[8 * at : 8 * (at + count)]
 
     def have(self, count: int) -> Value:
-        """Return whether so many bytes of the window are there."""
+        """Return whether the first `count` bytes of the window are present."""
         return self.window.have[count - 1] if count else Const(1)
 
     def good(self, count: int) -> Value:
-        """Return whether so many bytes are there, in a packet without an error so far."""
+        """Return whether `count` bytes are present and the packet has no error so far."""
         return self.have(count) & ~self.bad & ~self.mismatch
 
     def whole(self, part: Part, begin: int, end: int) -> Value:
-        """Return bytes of a transfer that ends in this step; what was before is in the carry."""
+        """Return bytes of a transfer that ends in this step; earlier bytes are in the carry."""
         carried = (
             self.carry[8 * begin : 8 * min(end, part.first)] if begin < part.first else Const(0, 0)
         )
@@ -142,12 +152,12 @@ class DeserializerCircuit:
         return Cat(carried, self.bytes(part.at + start - part.first, max(0, end - start)))
 
     def _carry(self, part: Part) -> None:
-        """Keep bytes of a transfer that goes on in the next step."""
+        """Keep bytes of a transfer that continues in the next step."""
         m = self.module
         size = self.plan.leaves[part.leaf].item_bytes
         for k in range(part.bytes):
             value: Value = self.bytes(part.at + k, 1)
-            # Items that end here are judged here: those in front of an error keep their values.
+            # An item that ends here is judged here: items in front of an error keep their values.
             item_end = (part.first + k) // size * size + size
             if item_end <= part.first + part.bytes:
                 value = Mux(self.good(part.at + item_end - part.first), value, 0)
@@ -177,7 +187,7 @@ class DeserializerCircuit:
                 m.d.sync += interface.payload.eq(Mux(good, result, 0))
 
     def _items(self, part: Part) -> None:
-        """Write a transfer of static size, lane by lane; each is good if all of it is there."""
+        """Write a transfer of static size; a lane is good if all of its bytes are present."""
         m = self.module
         leaf = self.plan.leaves[part.leaf]
         payload = self.streams[part.leaf].payload
@@ -198,7 +208,7 @@ class DeserializerCircuit:
         m.d.sync += payload.last.eq(last)
 
     def _length(self, wire_length: Value, good: Value, step: Step) -> Value:
-        """Judge a length; return what its leaf transfers, and set what the step counts."""
+        """Judge a length; set the count of the step, and return the payload of the leaf."""
         m = self.module
         begin = step.begin
         assert isinstance(begin, CountedBegin)
@@ -247,7 +257,7 @@ class DeserializerCircuit:
         ends = control.ends
         status_able = ~ends | self.free(self.status)
         m.d.comb += [
-            # The map does not wait for the items behind it: they take longer to count.
+            # The map does not wait for the items behind it: their number is known later in a cycle.
             self.enable.eq(
                 ~self.draining & (self.bad | (window.held & (self.map_there | window.ended)))
             ),
@@ -278,9 +288,10 @@ class DeserializerCircuit:
         failure : Signal(Status)
             The status after this step: the first error of the packet, in wire order.
         enough : Signal
-            All bytes that the step takes are there.
+            All bytes that the step takes are present.
         behind : Signal
-            Bit k: byte k behind them is there. The last bit is one more than may follow a message.
+            Bit k: byte k behind them is present. The last bit is for the first byte that may not
+            follow a message.
         """
         m, control = self.module, self.control
         failure, enough, behind = Signal(Status), Signal(), Signal.like(self.behind)
@@ -328,7 +339,7 @@ class DeserializerCircuit:
         ]
 
     def _drain(self) -> None:
-        """Drop what is left of a packet, beat by beat, and report it at the last one."""
+        """Drop the rest of a packet, beat by beat, and report its status at the last beat."""
         m, window = self.module, self.window
         slack = self.plan.slack_bytes
         extra = self.extra

@@ -1,9 +1,9 @@
 """Python names for ROS names: the members of message interfaces.
 
-Almost every ROS field name is used as it is. Three kinds are not: words that Python or Amaranth
-keeps for itself, and names with ``__``, which is what Amaranth joins the parts of a port's name
-with (``a__b`` and ``a.b`` would be one port, and one of the two silently lost). Such a member gets
-trailing underscores, as few as make it unique.
+Almost every ROS field name is used as it is. Exceptions are words that Python or Amaranth reserves,
+and names with ``__``. Amaranth joins the parts of a port's name with ``__``: ``a__b`` and ``a.b``
+would be one port, and one of the two would silently be lost. Such a member gets trailing
+underscores, as few as make it unique.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def _name(node: MemberTree) -> None:
     for child in node.children.values():
         _name(child)
     taken: set[str] = set()
-    # Names that cannot clash are given out first, so that they stay as they are.
+    # Names that cannot clash are assigned first, so that they stay unchanged.
     ordered = sorted(node.children.items(), key=lambda item: _may_clash(item[0]))
     careful = any(_may_clash(name) for name in node.children)
     for name, child in ordered:
@@ -75,7 +75,7 @@ def _may_clash(name: str) -> bool:
 
 
 def _ports(member: str, node: MemberTree, careful: bool) -> Iterator[str]:
-    """Yield the names that a member occupies, as far as a sibling could meet them."""
+    """Yield the port names that a member occupies and that a sibling could also get."""
     yield member
     if not careful:
         return

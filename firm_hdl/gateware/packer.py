@@ -1,4 +1,4 @@
-"""From words of any size to packets of full beats: the mirror of the window."""
+"""The packer joins words of any size to packets of full beats; it is the inverse of the window."""
 
 from __future__ import annotations
 
@@ -19,15 +19,16 @@ def word_layout(window_bytes: int, skip_bytes: int) -> data.StructLayout:
     Members
     -------
     data : ArrayLayout(8, window_bytes)
-        The first `count` lanes are the word; the others are 0.
+        The bytes of the word; the first one is in lane 0. Lanes from `count` on are 0.
     count : range(skip_bytes + 1)
-        Lanes of the word, and zeros behind it.
+        Bytes of the word. A count over `window_bytes` appends zeros.
     align : unsigned(3)
-        Padding follows up to a position behind the encapsulation header that has these bits 0.
+        Mask of the low bits of the position, counted from behind the encapsulation header, that
+        must be 0 behind the word. Padding is added up to there.
     last : unsigned(1)
         The packet ends with this word.
     error : unsigned(1)
-        Mark the packet, if `last`.
+        Mark the packet with an error. Only looked at when `last` is set.
     """
     return data.StructLayout(
         {
@@ -43,7 +44,7 @@ def word_layout(window_bytes: int, skip_bytes: int) -> data.StructLayout:
 class Packer(wiring.Component):
     """Join words into packets.
 
-    Takes one word and gives one beat per cycle; latency 1 cycle. `word.ready` depends
+    The packer takes one word and emits one beat per cycle; latency 1 cycle. `word.ready` depends
     combinationally on `packets.ready`.
 
     Parameters
@@ -56,7 +57,7 @@ class Packer(wiring.Component):
     word : In(stream.Signature(word_layout(window_bytes, skip_bytes)))
     packets : Out(PacketSignature(bus_bytes))
     error : Out(1)
-        The packet of the beat on `packets` is marked; set with its last beat only.
+        The packet is marked with an error. Set only with the last beat of the packet.
     """
 
     def __init__(self, plan: Plan):
@@ -74,7 +75,7 @@ class Packer(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         bus, window_bytes = self.plan.bus_bytes, self.geometry.window_bytes
-        # A packet may end in a step without bytes. Its last beat must then still be here.
+        # A packet may end in a step without bytes. Its last beat must not have left by then.
         holds = any(not step.most_bytes for step in self.plan.steps)
         # Where words are not beats, one beat may wait while the next word comes, so that a short
         # word, or the start of the next packet, does not leave a hole in the stream.
@@ -82,7 +83,7 @@ class Packer(wiring.Component):
         most_kept = 0 if words_are_beats and not holds else bus
         store = Signal(8 * max(bus, most_kept + window_bytes))
         level = Signal(range(most_kept + self.geometry.skip_bytes + 8 + bus))
-        # Whether the packet has any bytes yet.
+        # The packet has at least one byte so far.
         inside = Signal()
         ending = Signal()
         end_beats = Signal(range(len(store) // 8 // bus + 2))
@@ -109,7 +110,7 @@ class Packer(wiring.Component):
             rest.eq(Mux(leaves, level - bus, level)),
             kept.eq(Mux(leaves, store >> (8 * bus), store)),
             still_ending.eq(ending & ~(leaves & is_last)),
-            # One end of a packet is remembered at a time.
+            # The end of only one packet is remembered at a time.
             self.word.ready.eq((rest <= most_kept) & ~(still_ending & word.last)),
         ]
         position = self._position(m, rest)
@@ -139,7 +140,7 @@ class Packer(wiring.Component):
         end_beats: Signal,
         end_count: Signal,
     ) -> None:
-        """End the packet with the word that is being accepted; the next one starts a new beat."""
+        """End the packet with the word being accepted; the next packet starts a new beat."""
         bus = self.plan.bus_bytes
         low = bus.bit_length() - 1
         word = self.word.payload
@@ -157,7 +158,7 @@ class Packer(wiring.Component):
         ]
 
     def _placed(self, m: Module, rest: Value, most_kept: int) -> Value:
-        """Return the word's bytes, moved up behind those that are kept."""
+        """Return the word's bytes, shifted to the place behind the bytes that are kept."""
         now: Value = Value.cast(self.word.payload.data)
         for bit in range(most_kept.bit_length()):
             if 1 << bit < self.geometry.start_alignment_bytes:
@@ -168,7 +169,7 @@ class Packer(wiring.Component):
         return now
 
     def _position(self, m: Module, rest: Value) -> Signal:
-        """Return where the word starts, behind the encapsulation header and modulo 8."""
+        """Return the position of the word behind the encapsulation header, modulo 8."""
         header = self.plan.header_bytes
         position = Signal(unsigned(3))
         if not self.geometry.aligns:

@@ -1,8 +1,8 @@
-"""The record view: a message, or the part of it whose size is fixed, as one structure.
+"""The record view: a message, or its fields of fixed size, as one structure.
 
-A reader joins leaves into one stream whose payload has the message's own fields, all valid
-together; a writer splits such a stream. Scalars cost no storage, because the converters hold each
-leaf until it is taken. An array that comes in several transfers is collected in registers.
+A reader joins leaves into one stream whose payload has the message's own fields; they become valid
+together. A writer splits such a stream. Scalars cost no storage, because the converters hold each
+leaf until it is taken. An array of several transfers is collected in registers.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def _member(interface: object, path: tuple[str, ...]) -> stream.Interface:
 
 
 def _values(interface: stream.Interface) -> Value:
-    """Return the values of a transfer: its lanes, the first one lowest, or the one scalar."""
+    """Return the values of a transfer: a scalar, or the lanes with lane 0 in the lowest bits."""
     payload = interface.payload
     return Value.cast(payload.data if isinstance(payload, data.View) else payload)
 
@@ -90,23 +90,24 @@ def _values(interface: stream.Interface) -> Value:
 class RecordReader(_Adapter):
     """Join the leaves of a message that have a fixed size into one stream of records.
 
-    A record is offered when every one of its leaves is there; latency 0. `record.valid` depends
-    combinationally on the leaves' `valid`, their `ready` on `record.ready`. Arrays of more than one
-    transfer are collected in registers; their next message waits until the record is taken.
+    A record is offered when all of its leaves are valid; latency 0. `record.valid` depends
+    combinationally on the leaves' `valid`, and their `ready` on `record.ready`. Arrays of more than
+    one transfer are collected in registers. Such an array of the next message waits until the
+    record is taken.
 
     Parameters
     ----------
     message, wire, fields
         As for :func:`record_layout`.
     bus_bytes : int
-        That of the converter.
+        As for the converter.
 
     Members
     -------
     message : In(MessageSignature(message, bus_bytes))
     record : Out(stream.Signature(record_layout(message)))
     rest : Out(Signature)
-        The leaves that are not in the record, passed on; absent if there are none.
+        The leaves that are not in the record, connected through; absent if the record has all.
     """
 
     def __init__(
@@ -138,7 +139,8 @@ class RecordReader(_Adapter):
                 first = number * len(_values(leaf))
                 parts[bits.start] = kept[first : first + bits.stop - bits.start]
         m.d.comb += [
-            # One assignment: those to slices take time that grows with the square of their number.
+            # One assignment, because elaborating n assignments to slices takes quadratic time.
+
             Value.cast(self.record.payload).eq(Cat(parts[bit] for bit in sorted(parts))),
             self.record.valid.eq(Cat(there).all()),
             taken.eq(self.record.valid & self.record.ready),
@@ -148,7 +150,7 @@ class RecordReader(_Adapter):
     def _collect(
         self, m: Module, count: int, leaf: stream.Interface, taken: Value
     ) -> tuple[Value, Value]:
-        """Shift transfers through registers; return these, and whether all are there."""
+        """Shift transfers through registers; return these, and whether all have come."""
         incoming = _values(leaf)
         width = len(incoming)
         index = Signal(range(count + 1))
@@ -158,11 +160,11 @@ class RecordReader(_Adapter):
             m.d.sync += index.eq(0)
         with m.Elif(leaf.valid & ~full):
             m.d.sync += index.eq(index + 1)
-        # Lanes that are in no record make it wider than a record can be.
+        # Unused lanes of the last transfer may make this wider than a record can be.
         most = MAX_CELL_BITS // width
         parts: list[Signal] = []
         while count:
-            # From the end of the message on, where transfers come in.
+            # The last register comes first, because transfers enter there.
             parts.insert(0, kept := Signal(min(count, most) * width, name=f"kept_{len(parts)}"))
             with m.If(leaf.valid & ~full):
                 m.d.sync += kept.eq(Cat(kept[width:], incoming))
@@ -171,10 +173,10 @@ class RecordReader(_Adapter):
 
 
 class RecordWriter(_Adapter):
-    """Split a stream of records into leaves of a message: the mirror of :class:`RecordReader`.
+    """Split a stream of records into leaves of a message: the inverse of :class:`RecordReader`.
 
-    Every leaf is offered at once; the record is taken with the last of them. Latency 0;
-    `record.ready` depends combinationally on the leaves' `ready`.
+    All leaves are offered at the same time. The record is taken in the cycle in which the last of
+    them is taken. Latency 0; `record.ready` depends combinationally on the leaves' `ready`.
 
     Parameters
     ----------
@@ -185,7 +187,7 @@ class RecordWriter(_Adapter):
     -------
     record : In(stream.Signature(record_layout(message)))
     rest : In(Signature)
-        The leaves that are not in the record; absent if there are none.
+        The leaves that are not in the record, connected through; absent if the record has all.
     message : Out(MessageSignature(message, bus_bytes))
     """
 

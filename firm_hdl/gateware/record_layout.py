@@ -1,4 +1,4 @@
-"""Which fields of a message are in its record view, and where each transfer of a leaf goes."""
+"""Choose the fields of a record view, and map the transfers of leaves to bits of the record."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ from firm_hdl.wire import Wire, lay_out
 __all__ = ["Record", "Transfer", "record_layout"]
 
 Path: TypeAlias = "tuple[str, ...]"
-"""ROS names from the message down."""
+"""ROS field names, the outermost one first."""
 
 Place: TypeAlias = "tuple[str | int, ...]"
-"""Keys of a layout from the record down: names of fields, indexes of arrays."""
+"""Keys of a layout, the outermost one first: names of fields, indexes of arrays."""
 
 Shapes: TypeAlias = "Shape | data.StructLayout | data.ArrayLayout"
 
 Transfer: TypeAlias = "list[Place]"
-"""Where the values of one transfer go: one place, or for items those of all lanes in use."""
+"""The places of the values of one transfer: one for a scalar, one per used lane for items."""
 
 
 def record_layout(
@@ -48,33 +48,33 @@ def record_layout(
     wire : "ros1", "cdr" or None
         `None`: the wire of the message's dialect.
     fields : iterable of str, or None
-        Dotted names of what to include (``"header.stamp"``); `None`: everything of fixed size that
-        is not inside a sequence.
+        Dotted names of the fields to include (``"header.stamp"``). `None`: all fields of fixed size
+        that are not inside a sequence.
 
     Raises
     ------
     ValueError
-        If a name is not that of a field of fixed size, nothing is left, or the record has more than
-        65,535 bits.
+        If a name is not that of a field of fixed size, if the record would be empty, or if it has
+        more than 65,535 bits.
     """
     return Record(message, build_plan(lay_out(message, wire)), fields).layout
 
 
 class Record:
-    """What of a message is in the record.
+    """The layout of a record, and the place of each transfer in it.
 
     Parameters
     ----------
     message, fields
         As for :func:`record_layout`, errors included.
     plan : Plan
-        Of the message.
+        The plan of the message.
 
     Attributes
     ----------
     layout : StructLayout
     transfers : dict of path to list of Transfer
-        The transfers of each leaf in the record, in the order in which they come.
+        The transfers of each leaf of the record, in order.
     """
 
     def __init__(self, message: Message, plan: Plan, fields: Iterable[str] | None):
@@ -92,12 +92,12 @@ class Record:
         self._check_width("record", self.layout.size)
 
     def bits_of(self, transfer: Transfer) -> slice:
-        """Return which bits of the record a transfer has: items of an array are neighbours."""
+        """Return the bits of the record that a transfer fills; they are contiguous."""
         ends = [_bits_at(self.layout, place) for place in (transfer[0], transfer[-1])]
         return slice(ends[0].start, ends[1].stop)
 
     def _chosen(self, message: Message, path: Path) -> dict[str, Shapes]:
-        """Return the members of a message that are in the record, and of messages in it."""
+        """Return the members of the record for a message and the messages inside it."""
         members: dict[str, Shapes] = {}
         for item in message.fields:
             name = (*path, item.name)
@@ -116,12 +116,12 @@ class Record:
             )
 
     def _value(self, kind: FieldType, path: Path, place: Place) -> Shapes:
-        """Note where the transfers of a value go; return its shape."""
+        """Record the places of the transfers of a value; return its shape."""
         match kind:
             case Primitive():
                 return self._scalar(path, place)
             case Message(fields=()):
-                # On a wire where it has bytes there is one octet, and else one trigger.
+                # Its one leaf is an octet where the wire format gives it bytes, else a trigger.
                 (name,) = (leaf[-1] for leaf in self._leaves if leaf[:-1] == path)
                 return data.StructLayout({name: self._scalar((*path, name), (*place, name))})
             case Message(fields=fields):
@@ -156,7 +156,7 @@ class _Choice:
     """The fields that a user wants, by their paths; `None`: all of fixed size."""
 
     wanted: list[Path] | None
-    # Those that were not met.
+    # Wanted names that no field has matched so far.
     unknown: set[Path] = field(default_factory=set)
 
     @classmethod
@@ -169,7 +169,7 @@ class _Choice:
         return cls(wanted, set(wanted))
 
     def takes(self, path: Path, kind: FieldType) -> bool:
-        """Tell whether a field is in the record with all that is in it."""
+        """Return whether all of a field is in the record."""
         if not is_fixed_size(kind):
             return False
         if self.wanted is None:
@@ -193,7 +193,7 @@ def _bits(kind: FieldType) -> int:
 
 
 def _bits_at(layout: Shapes, place: Place) -> slice:
-    """Return which bits of a record a value has."""
+    """Return the bits of a layout that a value has."""
     bit = 0
     for key in place:
         assert isinstance(layout, data.Layout)

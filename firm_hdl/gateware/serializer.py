@@ -37,15 +37,16 @@ __all__ = ["Serializer"]
 class Serializer(wiring.Component):
     """Turn messages into packets.
 
-    Leaves are taken in wire order, several in one cycle if they are valid; none waits for a later
-    one. Lengths on the wire, padding and terminators are added. Latency from the last leaf of a
-    step to its beat: 2 cycles. The `ready` of a leaf depends combinationally on `packets.ready`
-    and on the `valid` of the leaves that stand before it in the same step.
-    One clock domain, `sync`; its reset empties everything.
+    Leaves are taken in wire order, several in one cycle if they are valid. No leaf waits for a
+    later one. The serializer adds the lengths on the wire, padding and terminators. Latency from
+    the last leaf of a step to its beat: 2 cycles. The `ready` of a leaf depends combinationally on
+    `packets.ready` and on the `valid` of the earlier leaves of the same step. One clock domain,
+    `sync`; its reset discards all messages and packets inside.
 
-    Each packet ends in one transfer on `status`. A length over its bound is written as it is, and
-    drains as many items as it promised; the packet is marked, so that the receiver can drop it.
-    `length` decides how many items are taken; an `items.last` that disagrees marks the packet.
+    Each packet ends in one transfer on `status`. A length over its bound is written unchanged, and
+    as many items are taken as it says. The packet is marked with an error, so that the receiver can
+    drop it. `length` decides how many items are taken; an `items.last` that disagrees marks the
+    packet with an error.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ class Serializer(wiring.Component):
     ----------
     plan : Plan
     tree : MemberTree
-        Which member is which leaf.
+        The members of the message, with their leaves.
     """
 
     def __init__(
@@ -97,7 +98,7 @@ class Serializer(wiring.Component):
 
 
 class _Circuit:
-    """The serializer's logic, in pieces."""
+    """The serializer's logic, built by one method for each part of it."""
 
     def __init__(self, component: Serializer):
         self.plan: Plan = component.plan
@@ -106,7 +107,7 @@ class _Circuit:
 
         self.module = m = Module()
         m.submodules.packer = self.packer = Packer(self.plan)
-        # Lengths are 32 bits, and a terminator may come on top.
+        # A length has 32 bits, and a terminator may add one to it.
         self.control = Control(self.plan, count_bits=33)
         steps = self.plan.steps
         self.slots = Slots(max(len(step.parts) + (step.take is not None) for step in steps))
@@ -114,7 +115,8 @@ class _Circuit:
         self.raised = Signal(Status)
         self.writable = Signal()
         self.complete = Signal()
-        # Whether the step, and the word that it made, are only what every packet begins with.
+        # The step (`leads`), or the word that it made (`led`), consists only of the constant bytes
+        # that every packet begins with.
         self.leads = Signal()
         self.led = Signal()
         self.held_count = Signal(self.control.bits)
@@ -156,7 +158,7 @@ class _Circuit:
                     self.module.d.comb += self.leads.eq(1)
         if isinstance(step.begin, BeginArray):
             self.module.d.comb += [self.control.count.eq(step.begin.count), self.control.some.eq(1)]
-        # The first slot's error counts, so it is the last to be assigned.
+        # The error of the first slot counts: it is assigned last, and so overrides the others.
         slots = len(step.parts)
         if step.take is not None:
             self._run(step.take, slots)
@@ -165,7 +167,7 @@ class _Circuit:
         self.control.add_step(self.module, step)
 
     def write(self, at: int, value: Value) -> None:
-        """Put bytes into the word, in the cycle that the enclosing condition holds."""
+        """Put bytes into the word, in a cycle in which the enclosing condition holds."""
         for k in range(len(value) // 8):
             self.module.d.comb += self.next_lanes[at + k].eq(value[8 * k : 8 * (k + 1)])
 
@@ -195,7 +197,7 @@ class _Circuit:
             self.write(part.at, value[8 * part.first : 8 * (part.first + part.bytes)])
 
     def _wire_length(self, length: Value, leaf: int) -> Value:
-        """Return a length as it stands on the wire."""
+        """Return a length as on the wire, which counts a terminator."""
         path = self.plan.leaves[leaf].path[:-1]
         terminated = any(
             run.terminated and self.plan.leaves[run.items].path[:-1] == path
@@ -208,7 +210,7 @@ class _Circuit:
         assert isinstance(begin, CountedBegin)
         count = Signal(33)
         m.d.comb += count.eq(length + self.plan.has_nul(begin))
-        # Once taken, the length is gone from its stream while the step may still wait for items.
+        # The length may be taken from its stream while the step still waits for items.
         m.d.comb += [
             self.control.count.eq(Mux(self.slots.served[slot], self.held_count, count)),
             self.control.some.eq(self.control.count.any()),
@@ -247,7 +249,8 @@ class _Circuit:
         m.d.comb += [
             packer.word.payload.eq(word),
             Value.cast(packer.word.payload.data).eq(Cat(self.lanes)),
-            # No packet begins before there is a message for it.
+            # A packet begins only when the first leaf of its message is valid.
+
             packer.word.valid.eq(full & (~self.led | self.streams[0].valid)),
             self.writable.eq(~full | (packer.word.valid & packer.word.ready)),
             self.complete.eq(self.writable & self.slots.all_served & (~control.ends | free)),

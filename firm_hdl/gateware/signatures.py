@@ -1,9 +1,9 @@
-"""Signatures of the streams between converters and the world.
+"""Signatures of the streams of converters.
 
 The packet side carries serialized messages, the message side one stream per leaf. All are streams
-of `amaranth.lib.stream`, whose four rules hold: a transfer happens when `valid` and `ready` are
-both high; `valid` does not wait for `ready`; once high, `valid` and the payload stay until the
-transfer.
+of `amaranth.lib.stream`, whose rules hold: a transfer happens when `valid` and `ready` are both
+high; `valid` does not wait for `ready`; once `valid` is high, it and the payload stay unchanged
+until the transfer.
 """
 
 from __future__ import annotations
@@ -33,30 +33,30 @@ __all__ = [
 ]
 
 LATENCY_CYCLES = 2
-"""From what comes in to what goes out: from the beat that completes a leaf to the leaf, and from
-the leaf that fills a beat, or ends a packet, to the beat. ``tests/gateware/test_latency.py``
-measures it."""
+"""Latency of both converters. Deserializer: from the beat that completes a leaf to the transfer of
+the leaf. Serializer: from the leaf that fills a beat or ends a packet to the beat.
+``tests/gateware/test_latency.py`` measures it."""
 
 
 class Status(enum.Enum, shape=3):  # type: ignore[call-arg]
-    """How a packet ended. The first error of a packet counts.
+    """The result of a packet. The first error of a packet, in wire order, counts.
 
     Members
     -------
     OK
-        Without an error.
+        No error.
     TRUNCATED
         The packet ended before the message (deserializer).
     TRAILING
-        The message ended before the packet, by more than the wire allows (deserializer).
+        More bytes follow the message than the wire format allows (deserializer).
     LENGTH
-        A length over its declared bound, or over what `max_message_bytes` leaves room for.
+        A length exceeds its declared bound, or what fits into `max_message_bytes`.
     ENCAPSULATION
-        A representation that the converter was not built for (deserializer).
+        The encapsulation header names a representation that is not supported (deserializer).
     STRING
-        A string without its terminator (deserializer).
+        A string has no terminator (deserializer).
     ITEMS
-        `items.last` not where `length` says (serializer).
+        `items.last` is not set in the transfer that `length` implies (serializer).
     """
 
     OK = 0
@@ -78,10 +78,10 @@ def packet_layout(bus_bytes: int) -> data.StructLayout:
     Members
     -------
     data : ArrayLayout(8, bus_bytes)
-        Bytes, the first one on the wire in lane 0.
+        Bytes; the first one on the wire is in lane 0.
     count : range(bus_bytes + 1)
-        Valid lanes. `bus_bytes` in every beat but the last of a packet; 0 only in the one beat of
-        an empty packet.
+        Number of valid lanes: `bus_bytes` in every beat but the last of a packet; 0 only in the
+        single beat of an empty packet.
     last : unsigned(1)
         Set in the last beat of a packet.
 
@@ -98,16 +98,16 @@ def packet_layout(bus_bytes: int) -> data.StructLayout:
 
 def PacketSignature(bus_bytes: int) -> stream.Signature:
     """Return the stream of packets, `bus_bytes` bytes a beat. See :func:`packet_layout`."""
-    # A function, as Amaranth's stream signature is final.
+    # A function, because Amaranth's stream signature cannot be subclassed.
     return stream.Signature(packet_layout(bus_bytes))
 
 
 def leaf_shape(leaf: Leaf) -> Shape | data.StructLayout:
     """Return the payload's shape of a leaf's stream.
 
-    An integer has its own shape, a `bool` is one bit, a float is its bits, unsigned. `items` is a
-    structure of `data`, an array of `lanes` items with the first one in lane 0 and lanes past the
-    end 0, and `last`.
+    An integer has its own width and sign, a `bool` is one bit, and a float is its bits as an
+    unsigned number. `items` is a structure of `data` and `last`. `data` is an array of `lanes`
+    items, the first one in lane 0; lanes past the last item are 0.
     """
     primitive = leaf.primitive
     bits = 1 if primitive.kind == "bool" else 8 * primitive.bytes
@@ -118,7 +118,7 @@ def leaf_shape(leaf: Leaf) -> Shape | data.StructLayout:
 
 
 class MessageSignature(wiring.Signature):
-    """A message as one stream per leaf, seen from where it comes from.
+    """A message as one stream per leaf, seen from the side that sends it.
 
     Two signatures are equal if their message, bus width and wire format are.
 
@@ -126,9 +126,10 @@ class MessageSignature(wiring.Signature):
     ----------
     message : Message
     bus_bytes : int
-        Width of the packets on the other side of the converter; it decides the lanes of `items`.
+        Bytes per beat of the packets on the other side of the converter. This width decides the
+        number of lanes of `items`.
     wire : "ros1", "cdr" or None
-        Decides what an empty message is; `None`: the wire of the message's own dialect.
+        Wire format; it decides the leaf of an empty message. `None`: that of the message's dialect.
 
     Attributes
     ----------
@@ -144,7 +145,7 @@ class MessageSignature(wiring.Signature):
 
     @classmethod
     def of_plan(cls, message: Message, plan: Plan, tree: MemberTree) -> MessageSignature:
-        """Make the signature of a message whose plan and names of members are known."""
+        """Make the signature of a message from its plan and the tree of its member names."""
         signature = cls.__new__(cls)
         signature._init(message, plan, tree)
         return signature
@@ -154,7 +155,7 @@ class MessageSignature(wiring.Signature):
         super().__init__(_members(plan.leaves, tree))
 
     def __eq__(self, other: object) -> bool:
-        # To `isinstance`, a flipped signature is of the class that it flips.
+        # `isinstance` would also accept a flipped signature.
         return type(other) is MessageSignature and self._key == other._key
 
     def __hash__(self) -> int:
@@ -169,7 +170,7 @@ class MessageSignature(wiring.Signature):
 
 
 def signature_of(leaves: Sequence[Leaf], tree: MemberTree) -> wiring.Signature:
-    """Return the signature with the leaves that are in a tree."""
+    """Return the signature that has exactly the leaves of a tree."""
     return wiring.Signature(_members(leaves, tree))
 
 

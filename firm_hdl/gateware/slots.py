@@ -1,9 +1,9 @@
 """Progress within a step: leaves are served in wire order, each as soon as it can be.
 
-A step may touch several leaves in one cycle. It must not insist on that: a consumer may hold one
-leaf until it has seen an earlier one, a producer may offer one only when the earlier one was
-taken. So each leaf of a step has a slot, slots are served in order, and those that were are
-remembered until the step completes.
+A step may touch several leaves in one cycle, but it must not require that. A consumer may take one
+leaf only after an earlier one, and a producer may offer one only after the earlier one was taken.
+So each leaf of a step has a slot. Slots are served in order, and each keeps until the end of the
+step whether it was served.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ class Slots:
     Parameters
     ----------
     count : int
-        Most leaves that a step touches.
+        Most leaves of one step.
 
     Attributes
     ----------
     able : list of Signal
-        Set by the user, per slot: whether the leaf can be served now. Slots that a step does not
+        Set by the user, per slot: the leaf can be served in this cycle. Slots that a step does not
         use stay 1.
     go : list of Signal
-        Per slot: serve the leaf in this cycle.
+        Per slot: the leaf is served in this cycle.
     all_served : Signal
-        Every slot was served or is being served.
+        Every slot has been served or is served in this cycle.
     fresh : Signal
         No slot was served before this cycle.
     """
@@ -47,9 +47,9 @@ class Slots:
         Parameters
         ----------
         enable : Value
-            Whether leaves can be served at all.
+            High if leaves can be served in this cycle.
         complete : Value
-            Whether the step completes in this cycle; implies `all_served`.
+            High if the step completes in this cycle; implies `all_served`.
         """
         before: Value = Const(1)
         for k, (able, go, served) in enumerate(zip(self.able, self.go, self.served, strict=True)):

@@ -1,4 +1,4 @@
-"""A window onto the bytes of a packet: beats where they arrived, a byte offset, one shifter."""
+"""A window onto the next bytes of a packet: slots that hold beats, a byte offset, one shifter."""
 
 from __future__ import annotations
 
@@ -16,14 +16,15 @@ __all__ = ["Window"]
 class Window(wiring.Component):
     """Show the next unread bytes of the packet at the head of a stream.
 
-    Beats stay in the slots where they arrived. The slots that a step can touch are brought in order
-    and shifted by the offset of the next unread byte, in multiples of the alignment that all steps
-    have: a plan whose steps all start at bus words has no shifter. There is at least one slot more
-    than a step can touch, so that `packets.ready` is a function of registers alone and the stream
-    moves one beat per cycle. Latency 1 cycle from `packets` to the window.
+    Beats stay in the slots where they arrived. The slots that a step can touch are put in order and
+    shifted by the offset of the next unread byte. The shift is a multiple of the alignment that all
+    steps have in common: a plan whose steps all start at bus words has no shifter. The number of
+    slots exceeds the beats that a step can touch, so that `packets.ready` is a function of
+    registers alone and the stream moves one beat per cycle. Latency 1 cycle from `packets` to the
+    window.
 
-    A beat whose bytes are all read frees its slot, except the last one of a packet: that one is
-    left to `finish` or `drop`, so the window never shows bytes of the next packet.
+    A beat whose bytes are all read frees its slot. The last beat of a packet is freed only by
+    `finish` or `drop`, so the window never shows bytes of the next packet.
 
     Parameters
     ----------
@@ -34,25 +35,31 @@ class Window(wiring.Component):
     -------
     packets : In(PacketSignature(bus_bytes))
     data : Out(ArrayLayout(8, window_bytes))
-        The next bytes, first one in lane 0. Bytes that are not there are not specified.
+        The next bytes; the first one is in lane 0. Bytes that are not present have no defined
+        value.
     have : Out
-        Bit k: byte k is there. Reaches `slack_bytes + 1` bytes further than `data`.
+        Bit k: byte k is present. Has at least `slack_bytes + 1` bits more than `data` has bytes.
     held : Out(1)
-        There is a beat, and the window stands.
+        A beat is present and the offset lies inside it.
     ended : Out(1)
-        The packet ends within what the window can see.
+        The last beat of the packet is among the beats that a step can touch.
     first_bytes : Out(range(bus_bytes + 1))
         Unread bytes of the first beat.
     first_last : Out(1)
         The first beat is the last one of its packet.
     count : In(range(skip_bytes + 1))
-        Bytes to go forward with `take`.
+        Bytes by which `take` advances the window.
     align : In(3)
-        Bits of the position behind the encapsulation header that must then be 0: padding is skipped
-        along, be it there or not.
-    take, finish, drop : In(1)
-        Go forward; remove all beats of the packet that the window can see, which are its rest when
-        `ended`; remove the first beat (when `held`). At most one at a time.
+        Mask of the low bits of the position, counted from behind the encapsulation header, that
+        must be 0 after `take`. The padding up to there is skipped in the same cycle, even if its
+        bytes are not present.
+    take : In(1)
+        Advance the window.
+    finish : In(1)
+        Remove all beats of the packet that a step can touch. When `ended`, these are all that is
+        left of the packet.
+    drop : In(1)
+        Remove the first beat; only when `held`. At most one of `take`, `finish` and `drop` is high.
     """
 
     def __init__(self, plan: Plan):
@@ -81,7 +88,7 @@ class Window(wiring.Component):
         m = Module()
         bus, most_beats = self.plan.bus_bytes, self.geometry.window_beats
         depth = 1 << most_beats.bit_length()
-        # A beat's bytes, which of them are there, and whether it is the last one.
+        # A beat's bytes, which of them are valid, and whether it is the last one.
         slot = data.StructLayout({"data": 8 * bus, "keep": bus, "last": 1})
         slots = [Signal(slot, name=f"slot_{i}") for i in range(depth)]
         first = Signal(range(depth))
@@ -90,7 +97,7 @@ class Window(wiring.Component):
         pops = Signal(range(most_beats + 1))
         self._write(m, slots, first, fill, pops)
 
-        # Beats of this packet that may be read: those up to the first `last`.
+        # Only beats up to the first `last` belong to this packet and may be read.
         beats = [Signal(slot, name=f"beat_{i}") for i in range(most_beats)]
         valid = [Signal(name=f"valid_{i}") for i in range(most_beats)]
         ends = [Signal(name=f"ends_{i}") for i in range(most_beats)]
@@ -110,7 +117,7 @@ class Window(wiring.Component):
         with m.If(self.finish | self.drop):
             m.d.sync += offset.eq(0)
         with m.Elif(self.take):
-            # Low bits that the plan proves to be zero are kept so, and cost nothing.
+            # Low bits that the plan proves to be zero are constants, and cost nothing.
             fixed = self.geometry.start_alignment_bytes.bit_length() - 1
             beats_over = past[low:] - pops
             m.d.sync += offset.eq(Cat(Const(0, fixed), past[fixed:low], beats_over))
@@ -158,7 +165,7 @@ class Window(wiring.Component):
             ),
             self.have.eq(self._shifted(m, keep, offset, 1, name="shifted")),
             self.ended.eq(Cat(ends).any()),
-            # An offset past the end of the last beat means padding that is not there.
+            # An offset past the end of the last beat skips padding that the packet does not have.
             self.held.eq(valid[0] & (inside | beats[0].last)),
             self.first_last.eq(ends[0]),
         ]
@@ -168,7 +175,7 @@ class Window(wiring.Component):
     def _shifted(
         self, m: Module, now: Value, offset: Signal, unit_bits: int, *, name: str
     ) -> Value:
-        """Return a value shifted down by the offset, in bytes of `unit_bits` bits."""
+        """Return a value shifted right by the offset, with `unit_bits` bits for each byte."""
         for bit in reversed(range(self.plan.bus_bytes.bit_length() - 1)):
             if 1 << bit < self.geometry.start_alignment_bytes:
                 break
@@ -179,8 +186,8 @@ class Window(wiring.Component):
         return now
 
     def _past(self, m: Module, offset: Signal) -> Signal:
-        """Return the offset behind the bytes that are taken, and the padding behind those."""
-        # An offset, a step, and the padding of both.
+        """Return the offset behind the bytes that are taken and the padding that follows them."""
+        # Wide enough for an offset, a step, and the padding of both.
         taken = Signal(range(self.plan.bus_bytes + 2 * self.geometry.skip_bytes + 16))
         past = Signal.like(taken)
         m.d.comb += taken.eq(offset + self.count)
@@ -192,7 +199,7 @@ class Window(wiring.Component):
         if self.plan.bus_bytes >= 8:
             m.d.comb += position.eq(taken - header)
         else:
-            # Bits of the position that the offset does not have.
+            # The offset has fewer bits than the position, so the position has a register.
             start = Signal(unsigned(3), init=-header % 8)
             m.d.comb += position.eq(start + self.count)
             with m.If(self.finish | self.drop):
@@ -211,7 +218,7 @@ class Window(wiring.Component):
         valid: list[Signal],
         ends: list[Signal],
     ) -> Value:
-        """Return the assignment of how many beats leave in this cycle."""
+        """Return the assignment of `pops`: the number of beats that leave in this cycle."""
         low = self.plan.bus_bytes.bit_length() - 1
         taken = Signal.like(pops, name="pops_taken")
         idle = Signal.like(pops, name="pops_idle")
