@@ -1,4 +1,4 @@
-"""Out: converters as files for FPGA tools."""
+"""Export: converters as files for FPGA tools."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""What back ends share: the options of a build, a type's converters, and what is made of them.
+"""What back ends share: the options of a build, a type's converters, and the output.
 
-A back end turns a type's converters into files. What it says of them becomes part of the manifest.
+A back end turns a type's converters into files and into entries of the manifest.
 """
 
 from __future__ import annotations
@@ -25,16 +25,17 @@ PORTS: tuple[Ports, ...] = ("records", "flat")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
-    """What a user may choose, besides the type.
+    """The options of a build.
 
     Attributes
     ----------
     wire : "ros1", "cdr" or None
-        `None`: that of the distribution.
+        Wire format; `None`: that of the distribution.
     bus_bytes, max_message_bytes, window_words : int
         As for the converters.
     ports : "records" or "flat"
-        Whether there is a layer with records and structs; "flat" is for tools that dislike them.
+        "records" adds entities with records and modules with structs; "flat" is for tools that do
+        not support them.
     """
 
     wire: Wire | None = None
@@ -52,16 +53,17 @@ class Converters:
     ----------
     message : Message
     plan : Plan
-        What the options have led to for this message.
+        The plan of the converters.
     name : str
-        Of the folder; names of modules and entities start with it.
+        Name of the folder; names of modules and entities start with it.
     options : Options
     inputs : mapping
-        All that decides what the files are; see :func:`firm_hdl.export.manifest.inputs_of`.
+        Everything that the content of the files depends on; see
+        :func:`firm_hdl.export.manifest.inputs_of`.
     stimuli : sequence of bytes
         Packets for test benches.
     tops : mapping of direction to Top
-        Circuits with named ports; none before there is need of them (:meth:`elaborated`).
+        Circuits with named ports; empty until :meth:`make_tops` has made them.
     """
 
     message: Message
@@ -90,12 +92,14 @@ class Converters:
         }
 
     def header(self, name: str, what: str) -> str:
-        """Write lines for a comment at the head of a file; empty without `inputs`.
+        """Write the lines of a comment at the head of a file; empty without `inputs`.
 
         Parameters
         ----------
-        name, what : str
-            What the file is of: a name, and what that is.
+        name : str
+            Name of the module, or of the folder.
+        what : str
+            What it is, such as ``"the serializer"``.
         """
         if not self.inputs:
             return ""
@@ -111,14 +115,14 @@ class Converters:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Output:
-    """What a back end has made.
+    """The output of a back end.
 
     Attributes
     ----------
     files : mapping of str to str
         Texts by path in the type's folder.
     manifest : mapping
-        Entries of the manifest about them, by their keys.
+        Entries of the manifest about the files, by key.
     """
 
     files: Mapping[str, str]

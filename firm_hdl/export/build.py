@@ -1,7 +1,7 @@
-"""From names of types to folders of files.
+"""Build folders of files from names of types.
 
-Everything that can be wrong with a definition or an option is found before the first file is
-written. A folder appears, or is replaced, as a whole; one that is current is left alone.
+All errors in definitions and options are found before the first file is written. A folder is
+created or replaced as a whole; a folder that is current stays unchanged.
 """
 
 from __future__ import annotations
@@ -34,29 +34,28 @@ from firm_hdl.wire import Wire, lay_out
 __all__ = ["BACK_ENDS", "BuildError", "Built", "build", "check_size", "plan_of"]
 
 BACK_ENDS: tuple[BackEnd, ...] = (Verilog(), Documents(), Vhdl(), SystemVerilog())
-"""What writes the files of a folder, in the order of their entries in the manifest."""
+"""The back ends that write a folder, in the order of their entries in the manifest."""
 
 
 class BuildError(UserError):
-    """Something that cannot be built, or cannot be written; the text says why."""
+    """A type cannot be built, or a folder cannot be written; the text says why."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Built:
-    """One type's folder.
+    """The folder of one type.
 
     Attributes
     ----------
     name : str
-        The type's.
+        The type.
     folder : Path
     was_current : bool
-        Whether there was nothing to do.
+        The folder was current, and nothing was written.
     description : str
-        What the converters cost, for people; see :func:`firm_hdl.plan.timing.describe`.
+        Size and timing of the converters, as text; see :func:`firm_hdl.plan.timing.describe`.
     renamed : mapping of str to str
-        What a user's own files in the folder are called now, where they had the name of one that
-        was written.
+        New names of user files that had the name of a generated file, by their old names.
     """
 
     name: str
@@ -73,7 +72,7 @@ class _Task:
 
     @property
     def name(self) -> str:
-        """The message's."""
+        """Name of the message type."""
         return self.converters.message.name
 
 
@@ -87,32 +86,33 @@ def build(
     stimuli: Callable[[Message, Plan], Sequence[bytes]] | None = None,
     report: Callable[[Built], None] | None = None,
 ) -> list[Built]:
-    """Write the converters of types, each into a folder of its own below ``out/distro``.
+    """Write the converters of types, each type into its own folder below ``out/distro``.
 
     Parameters
     ----------
     types : iterable of str
         As for `Library.interface`. All messages of services and actions are built.
     out : path
-        Made if need be.
+        Created if it does not exist.
     library : Library or None
-        What to take the types from; `None` for those of the default distribution.
+        Library that has the types; `None`: that of the default distribution.
     options : Options or None
-        What the converters are to be like; `None` for the defaults.
+        Options of the converters; `None`: the defaults.
     force : bool
-        Whether to write folders that are current, too.
+        Write folders that are current, too.
     stimuli : callable or None
-        Gives the packets for a type's test bench in VHDL; without it, users write their own.
+        Returns the packets for the VHDL test bench of a type. `None`: users write a file of packets
+        themselves.
     report : callable or None
         Called with each type when it is done.
 
     Raises
     ------
     DefinitionError
-        With what is wrong with any of the types. Nothing was written.
+        With all errors in the definitions. Nothing was written.
     BuildError
-        If a type cannot be built with these options, and nothing was written; or if writing fails,
-        and all folders are whole, old or new.
+        If a type cannot be built with these options; nothing was written then. If writing fails;
+        each folder is then complete, either the old or the new one.
     """
     library = Library() if library is None else library
     options = Options() if options is None else options
@@ -176,7 +176,7 @@ def plan_of(
     max_message_bytes: int,
     window_words: int = 1,
 ) -> Plan:
-    """Plan a type's converters; options that do not fit the type are a `BuildError`."""
+    """Plan a type's converters; raise a `BuildError` if the options do not fit the type."""
     try:
         return build_plan(
             lay_out(message, wire),
@@ -189,7 +189,7 @@ def plan_of(
 
 
 def check_size(plan: Plan) -> None:
-    """Refuse what Amaranth would stop at with an assertion."""
+    """Refuse converters with more input bits than Amaranth can elaborate."""
     for direction in DIRECTIONS:
         bits = sum(p.width for p in ports_of(plan, direction) if p.direction == "in")
         if bits > MAX_INPUT_BITS:
@@ -202,7 +202,7 @@ def check_size(plan: Plan) -> None:
 def _check_folders(tasks: list[_Task]) -> None:
     owners: dict[str, str] = {}
     for task in tasks:
-        # Some file systems do not tell upper from lower case.
+        # Some file systems do not distinguish upper and lower case.
         other = owners.setdefault(str(task.folder).lower(), task.name)
         if other != task.name:
             raise BuildError(
@@ -218,10 +218,10 @@ def _check_folders(tasks: list[_Task]) -> None:
 
 
 def _check_packages(tasks: list[_Task]) -> None:
-    """Refuse two types in ROS whose VHDL package has one name, in messages built side by side.
+    """Refuse messages in neighbouring folders that use one VHDL package name for two ROS types.
 
-    Within a message, the second one gets a number. A design with both messages compiles the files
-    of one name once, so the name has to mean the same in all folders.
+    Within a message, the second of the two gets a number. A design with both messages compiles each
+    file name once, so the name has to mean the same in all folders.
     """
     owners: dict[Path, tuple[str, Path]] = {}
     for task in (task for task in tasks if task.converters.options.ports == "records"):
@@ -239,12 +239,13 @@ def _check_packages(tasks: list[_Task]) -> None:
 
 
 def _owner(file: Path, tasks: list[_Task]) -> tuple[str, Path] | None:
-    """Find whose package it is in the folder of a message that is not built now."""
+    """Return the type that owns a package in a folder that is not built now, and that folder."""
     made_anew = {task.folder for task in tasks}
     for path in sorted(file.parent.glob(f"[!.]*/{FOLDER}/{file.name}.vhd")):
         folder = path.parent.parent
         found = None if folder in made_anew else read_manifest(folder)
-        with suppress(AttributeError, KeyError, TypeError):  # If that is no manifest of ours.
+        # The manifest may be damaged.
+        with suppress(AttributeError, KeyError, TypeError):
             for each in (found or {"vhdl": {"shared_packages": []}})["vhdl"]["shared_packages"]:
                 if each["name"] == file.name and each["message"]:
                     return str(each["message"]), folder

@@ -1,4 +1,4 @@
-"""Constants of a message type: what they are called in VHDL and SystemVerilog, and their bits."""
+"""Constants of a message type: their names in VHDL and SystemVerilog, and their bits."""
 
 from __future__ import annotations
 
@@ -16,14 +16,15 @@ __all__ = ["Named", "float_bits", "named_constants", "string_bytes"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Named:
-    """A constant, and what it is called.
+    """A constant with its name in the output.
 
     Attributes
     ----------
     owner : Message
-        Whose it is: the message's own, or that of a type that it contains.
+        The type that declares the constant: the message, or a type inside it.
+    constant : Constant
     name : str
-        The same in VHDL and SystemVerilog.
+        Name in VHDL and SystemVerilog.
     """
 
     owner: Message
@@ -32,12 +33,15 @@ class Named:
 
 
 def named_constants(message: Message, taken: Iterable[str], *, nested: bool = True) -> list[Named]:
-    """Name the constants of a message; with `nested`, those of all types in it.
+    """Name the constants of a message; with `nested`, those of all types in it, too.
 
-    `taken` is in lower case.
+    The message's own constants keep their names, unless these would hide names that VHDL code needs
+    (`ERROR` is a severity, and `NS` a unit). Names of other constants start with their type's name.
 
-    The message's own keep their names, as far as these do not hide what VHDL code needs (`ERROR` is
-    a severity, and `NS` a unit); the others start with the name of their type.
+    Parameters
+    ----------
+    taken : iterable of str
+        Names that no constant may get, in lower case.
     """
     found: dict[str, tuple[Message, Constant]] = {}
     hiding = {*USED, *PREDEFINED, *taken}
@@ -47,7 +51,7 @@ def named_constants(message: Message, taken: Iterable[str], *, nested: bool = Tr
             name = f"{prefix}{constant.name}"
             if name.lower() in hiding:
                 name = f"{name}_CONSTANT"
-            # Two packages may have a type of one name.
+            # Two packages may have types of the same name.
             while name in found:
                 name = f"{name}_{owner.package}"
             found[name] = (owner, constant)
@@ -59,7 +63,7 @@ def named_constants(message: Message, taken: Iterable[str], *, nested: bool = Tr
 
 
 def _types(message: Message) -> list[Message]:
-    """List a message and the types in it, each once, as fields name them."""
+    """List a message and the types in it, each once, in the order of the fields."""
     found: dict[str, Message] = {}
 
     def visit(kind: Message) -> None:
@@ -75,7 +79,7 @@ def _types(message: Message) -> list[Message]:
 
 
 def float_bits(value: float, size: int) -> int:
-    """Give the bits of a float of 4 or 8 bytes."""
+    """Return the bits of a float of 4 or 8 bytes."""
     if size == 8:
         return int(struct.unpack("<Q", struct.pack("<d", value))[0])
     try:
@@ -86,5 +90,5 @@ def float_bits(value: float, size: int) -> int:
 
 
 def string_bytes(value: object) -> bytes:
-    """Give the bytes of a string's value, as they are on a wire."""
+    """Return the bytes of a string constant, in UTF-8."""
     return value if isinstance(value, bytes) else str(value).encode("utf-8", "surrogatepass")

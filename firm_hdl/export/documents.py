@@ -1,4 +1,4 @@
-"""What people read of a type's converters: the plan as YAML, and a picture of the layout."""
+"""Documents about a type's converters: the plan as YAML, and a picture of the layout."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Two things that the standard library lacks: folders that change places, and one build at a time.
+"""Atomic exchange of two folders, and a lock on a folder, which the standard library lacks.
 
-Linux exchanges two paths in one step (``renameat2`` with ``RENAME_EXCHANGE``), on the file systems
-that have it; nobody sees one of them missing. Elsewhere there is nothing of the kind.
+Linux exchanges two paths in one step (``renameat2`` with ``RENAME_EXCHANGE``) on file systems that
+support it; at no time is one of them missing. Other systems have no such call.
 """
 
 from __future__ import annotations
@@ -19,25 +19,25 @@ __all__ = ["exchange", "locked"]
 
 _AT_FDCWD = -100
 _RENAME_EXCHANGE = 2
-# What a kernel or a file system says that cannot do it.
+# Errors of a kernel or a file system that does not support the exchange.
 _UNABLE = frozenset({errno.ENOSYS, errno.EINVAL, errno.ENOTSUP, errno.EPERM})
 
 LOCK_SECONDS = 60.0
-"""How long to wait for another build to write one folder, which takes a fraction of a second."""
+"""How long to wait for another build that writes the folder. Writing takes less than a second."""
 
 
 def exchange(one: Path, other: Path) -> bool:
-    """Make two paths change places, in one step.
+    """Exchange two paths in one step.
 
     Returns
     -------
     bool
-        Whether that was done; `False` if this system cannot do it.
+        `False` if this system or file system has no such call; nothing was changed then.
 
     Raises
     ------
     OSError
-        If it can, but not with these paths.
+        If the call exists and fails for these paths.
     """
     if not sys.platform.startswith("linux"):
         return False
@@ -56,15 +56,15 @@ def exchange(one: Path, other: Path) -> bool:
 
 @contextmanager
 def locked(folder: Path) -> Iterator[bool]:
-    """Keep others from writing in a folder meanwhile, as far as they ask.
+    """Hold an advisory lock on a folder: only one build at a time writes there.
 
-    The lock is on the folder itself, so that it leaves no file, and it ends with the process. Where
-    there are no such locks, there is none, and what is given is `False`.
+    The lock is on the folder itself. So it leaves no file, and it ends with the process. Yields
+    whether the lock is held: `False` on systems without such locks.
 
     Raises
     ------
     OSError
-        If another process holds it for a minute.
+        If another process holds the lock for a minute.
     """
     try:
         import fcntl

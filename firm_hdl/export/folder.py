@@ -1,13 +1,12 @@
-"""A type's folder: whole or not at all, and with what users have put there.
+"""Replace a type's folder as a whole, and keep the user files in it.
 
-A new folder is staged beside the old one, under a name that nothing else has, and then the two are
-exchanged in one step. So whoever looks sees the old one or the new one, and a build that is killed
-leaves one of them in place. What it leaves besides is cleared away by the next build, which holds a
-lock meanwhile.
+A new folder is staged beside the old one, under a unique name. Then the two are exchanged in one
+step. So other processes see either the old or the new folder, and a build that is killed leaves one
+of them in place. Other leftovers of a killed build are deleted by the next build, under a lock.
 
-Nothing is deleted that firm-hdl did not write: the manifest says what it did. All else is in the
-new folder, too, as a hard link where the file system has them, before the old one goes; what turns
-up in the old one after that is moved over.
+Only files that firm-hdl wrote are deleted; the manifest lists them. All other files are put into
+the new folder before the old one is deleted, as hard links where the file system has them. Files
+that are written to the old folder after that are moved to the new one.
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ from firm_hdl.files import read_file
 __all__ = ["clear_up", "is_current", "is_empty", "read_manifest", "replace"]
 
 _MOST_BYTES = 1 << 28
-"""No file of a folder that firm-hdl wrote is larger."""
+"""Size over which a file is not read; firm-hdl writes no larger files."""
 
 _NEW, _OLD = "new", "old"
 
@@ -51,12 +50,12 @@ def read_manifest(folder: Path) -> dict[str, Any] | None:
 
 
 def is_empty(folder: Path) -> bool:
-    """Tell whether there is a folder, with nothing in it."""
+    """Return whether a path is an empty folder."""
     return folder.is_dir() and next(folder.iterdir(), None) is None
 
 
 def is_current(folder: Path, inputs: Mapping[str, Any]) -> bool:
-    """Tell whether a folder was made of these inputs and has all its files as they were written."""
+    """Return whether a folder was made from these inputs and its files are unchanged."""
     found = read_manifest(folder)
     if found is None or found["inputs"] != inputs:
         return False
@@ -70,18 +69,18 @@ def is_current(folder: Path, inputs: Mapping[str, Any]) -> bool:
 
 
 def replace(folder: Path, files: Mapping[str, str]) -> dict[str, str]:
-    """Make a folder have these files, and what users have put there.
+    """Replace the generated files of a folder, and keep the user files in it.
 
     Returns
     -------
     dict of str to str
-        What a user's files are called now: those that have the name of one of these, and those that
-        were written while the folder was replaced.
+        New names of user files by their old names: of files that had the name of a generated file,
+        and of files that were written while the folder was replaced.
 
     Raises
     ------
     OSError
-        If that is not possible. The folder is as it was.
+        If that is not possible. The folder is unchanged.
     """
     folder = _behind_link(folder)
     folder.parent.mkdir(parents=True, exist_ok=True)
@@ -99,13 +98,13 @@ def replace(folder: Path, files: Mapping[str, str]) -> dict[str, str]:
             else:
                 staging.rename(folder)
         finally:
-            # Of the two, the one that is not in use, whichever that is.
+            # After an exchange, the old folder is at the path of the staging folder.
             late = _clear_up(folder, _leftovers(folder) if alone else made)
     return renamed | late
 
 
 def clear_up(folder: Path) -> None:
-    """Clear away what a killed build left of a folder; put the old one back if none is there."""
+    """Delete the leftovers of a killed build; put the old folder back if there is no folder."""
     folder = _behind_link(folder)
     if folder.parent.is_dir() and _leftovers(folder):
         with locked(folder.parent) as alone:
@@ -114,17 +113,17 @@ def clear_up(folder: Path) -> None:
 
 
 def _behind_link(folder: Path) -> Path:
-    """Where a link stands for a folder, it goes on to do so."""
+    """Return the folder that a symbolic link leads to, so that the link stays in place."""
     return Path(os.path.realpath(folder)) if folder.is_symlink() else folder
 
 
 def _prefix(folder: Path) -> str:
-    # A name of its own length may be as long as the file system lets it.
+    # A hash, because the folder's own name may already have the greatest length that is allowed.
     return f".firm-hdl.{hashlib.sha256(os.fsencode(folder.name)).hexdigest()[:16]}."
 
 
 def _make(folder: Path, what: str, made: list[Path]) -> Path:
-    """Make a folder beside a folder, of a name that nothing has; append it to those made."""
+    """Make a folder with a new name beside a folder; append it to `made`."""
     while True:
         path = folder.with_name(f"{_prefix(folder)}{secrets.token_hex(8)}.{what}")
         with suppress(FileExistsError):
@@ -137,12 +136,12 @@ def _leftovers(folder: Path) -> list[Path]:
     prefix = _prefix(folder)
     endings = f".{_OLD}", f".{_NEW}"
     names = [n for n in os.listdir(folder.parent) if n.startswith(prefix) and n.endswith(endings)]
-    # An old folder is put back before anything is moved there.
+    # Old folders come first: one of them may be put back, and files are then moved into it.
     return [folder.with_name(name) for name in sorted(names, key=lambda n: n.endswith(_NEW))]
 
 
 def _write_files(staging: Path, files: Mapping[str, str]) -> None:
-    """Write the manifest first: it says what may be deleted if this is as far as it goes."""
+    """Write the files, the manifest first: it lists what to delete if the build is killed."""
     for name in sorted(files, key=lambda name: name != MANIFEST):
         (staging / name).parent.mkdir(exist_ok=True)
         (staging / name).write_text(files[name], encoding="utf-8", newline="\n")
@@ -151,22 +150,23 @@ def _write_files(staging: Path, files: Mapping[str, str]) -> None:
 
 
 def _swap(folder: Path, staging: Path, made: list[Path]) -> None:
-    """Put the new folder where the old one is."""
+    """Put the new folder in the place of the old one."""
     if exchange(staging, folder):
         return
     old = _make(folder, _OLD, made)
-    # Here, for a moment, there is no folder; `_clear_up` puts it back if it stays so.
+    # Between these two calls there is no folder. If the build is killed here, `_clear_up` puts the
+    # old one back.
     folder.rename(old)
     staging.rename(folder)
 
 
-# What users have put there.
+# User files.
 
 
 def _walk(root: Path) -> list[tuple[str, bool]]:
-    """List what is in a folder, by its path there, and whether it is a folder.
+    """List the relative paths of all that is in a folder, and whether each is a folder.
 
-    What is in a folder comes before the folder.
+    The content of a folder comes before the folder itself.
     """
     found: list[tuple[str, bool]] = []
     pending = [""]
@@ -182,15 +182,15 @@ def _walk(root: Path) -> list[tuple[str, bool]]:
 
 
 def _ours(folder: Path) -> set[str]:
-    """List what firm-hdl wrote, or was about to write, in a folder."""
+    """Return the files of a folder that firm-hdl wrote or was about to write."""
     found = read_manifest(folder)
     return {MANIFEST, *(found["files"] if found is not None else ())}
 
 
 def _keep_others(folder: Path, staging: Path, files: Mapping[str, str]) -> dict[str, str]:
-    """Give a new folder all that the old one has and firm-hdl did not write.
+    """Put all user files of the old folder into the new one.
 
-    Returns new names by old ones where they differ.
+    Returns the new names of renamed files by their old names.
     """
     renamed: dict[str, str] = {}
     ours = _ours(folder)
@@ -217,7 +217,7 @@ def _keep_others(folder: Path, staging: Path, files: Mapping[str, str]) -> dict[
 
 
 def _free(name: str, is_folder: bool, files: Mapping[str, str]) -> str:
-    """Give what is a user's another name where firm-hdl now has a file or a folder of that name."""
+    """Return the name for a user file or folder; another one if a generated file has its name."""
     folders = {os.path.dirname(file) for file in files}
     path = ""
     for part in name.split("/"):
@@ -230,7 +230,7 @@ def _free(name: str, is_folder: bool, files: Mapping[str, str]) -> str:
 
 
 def _names(path: Path) -> Iterator[Path]:
-    """Yield a path, then others for what cannot have it."""
+    """Yield a path, then alternative names in case that it is taken."""
     name = path.name.removesuffix(".kept")
     yield path
     yield path.with_name(f"{name}.kept")
@@ -244,42 +244,42 @@ def _link(source: Path, target: Path) -> None:
     except FileExistsError:
         raise
     except OSError:
-        # No hard links here, or not of this file. What cannot be read cannot be kept.
+        # No hard link is possible here: copy. A file that cannot be read makes the build fail.
         if os.path.lexists(target):
             raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(target)) from None
         shutil.copy2(source, target, follow_symlinks=False)
 
 
-# What a build leaves.
+# Leftovers of a build.
 
 
 def _clear_up(folder: Path, leftovers: list[Path]) -> dict[str, str]:
-    """Delete leftovers, but for what is a user's; return new names of that by old ones."""
+    """Delete leftovers but keep user files; return new names of these by their old names."""
     renamed: dict[str, str] = {}
     for leftover in leftovers:
         is_missing = leftover.name.endswith(_OLD) and not os.path.lexists(folder)
         if is_missing and read_manifest(leftover) is not None:
             leftover.rename(folder)
         else:
-            # What cannot be deleted stays for the next time; the folder itself is whole.
+            # What cannot be deleted stays for the next build; the folder itself is complete.
             with suppress(OSError):
                 _discard(leftover, folder, renamed)
     return renamed
 
 
 def _discard(leftover: Path, folder: Path, renamed: dict[str, str]) -> None:
-    """Delete a folder; move what is a user's, and is nowhere else, to the one that is in use."""
+    """Delete a leftover folder; move user files that exist only there to the folder in use."""
     ours = _ours(leftover)
     linked = {_identity(folder / name) for name, _ in _walk(folder)} if folder.is_dir() else set()
     _permit(leftover)
     for name, is_folder in _walk(leftover):
         entry = leftover / name
         if is_folder:
-            # Of what was not moved, it still has something.
+            # A folder that still holds files that were not moved stays.
             with suppress(OSError):
                 entry.rmdir()
         elif name == MANIFEST:
-            continue  # To the last, it says what is ours.
+            continue  # Deleted last, because it lists our files.
         elif name in ours or _identity(entry) in linked or _is_copied(leftover, folder, name):
             entry.unlink()
         elif folder.is_dir():
@@ -294,7 +294,7 @@ def _discard(leftover: Path, folder: Path, renamed: dict[str, str]) -> None:
 
 
 def _permit(root: Path) -> None:
-    """Let us delete what is in folders that were made read-only."""
+    """Make read-only folders writable, so that their content can be deleted."""
     for name, is_folder in [("", True), *_walk(root)]:
         mode = (root / name).lstat().st_mode
         if is_folder and mode & stat.S_IRWXU != stat.S_IRWXU:
@@ -307,13 +307,13 @@ def _identity(path: Path) -> tuple[int, int]:
 
 
 def _is_copied(leftover: Path, folder: Path, name: str) -> bool:
-    """Whether a file without hard links is in the folder, too, under its name or the user's."""
+    """Return whether the folder has a copy of a file, under its new or its original name."""
     names = name, name.removesuffix(".kept")
     return any(_is_same(leftover / name, folder / other) for other in names)
 
 
 def _is_same(one: Path, other: Path) -> bool:
-    """Whether nothing is lost if one of two files goes."""
+    """Return whether two files have the same content."""
     try:
         a, b = one.lstat(), other.lstat()
         if os.path.samestat(a, b):
@@ -328,7 +328,7 @@ def _is_same(one: Path, other: Path) -> bool:
 
 
 def _move(entry: Path, folder: Path, name: str) -> Path:
-    """Move a user's file, over nothing that is there; return where it is."""
+    """Move a user file without overwriting anything; return its new path."""
     place = target = folder / name
     try:
         target.parent.mkdir(parents=True, exist_ok=True)

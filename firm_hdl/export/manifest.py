@@ -1,7 +1,8 @@
-"""The manifest: what is in a folder of generated files, for tools and for people.
+"""The manifest describes a folder of generated files, for tools and for people.
 
-Back ends and packagers read it instead of parsing hardware descriptions; `firm-hdl build` reads it
-to see whether a folder is current. It says nothing about the machine or the time it was made.
+Back ends and packagers read the manifest instead of parsing hardware descriptions. `firm-hdl build`
+reads it to see whether a folder is current. The manifest does not depend on the machine or the time
+of the build.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from firm_hdl.plan.timing import LINE_RATES, Cost, Timing, clock_mhz
 __all__ = ["FORMAT", "MANIFEST", "inputs_of", "make_manifest", "to_json"]
 
 FORMAT = 1
-"""Version of the manifest's form."""
+"""Version of the manifest's format."""
 
 MANIFEST = "manifest.json"
 
@@ -31,7 +32,7 @@ MANIFEST = "manifest.json"
 def inputs_of(
     message: Message, plan: Plan, *, distro: str, definition_sha256: str, ports: str = "records"
 ) -> dict[str, Any]:
-    """Return all that decides what generated files are."""
+    """Return everything that the content of the generated files depends on."""
     return {
         "message": message.name,
         "dialect": message.dialect,
@@ -67,11 +68,11 @@ def make_manifest(
     Parameters
     ----------
     inputs : mapping
-        As :func:`inputs_of` gives them.
+        As :func:`inputs_of` returns them.
     files : mapping of str to str
-        Text of every other file in it, by name.
+        Text of every other file in the folder, by name.
     sections : mapping
-        What back ends say of their files; see :class:`firm_hdl.export.backend.Output`.
+        Entries of the back ends; see :class:`firm_hdl.export.backend.Output`.
     """
     statuses: Any = Status
     return {
@@ -88,7 +89,7 @@ def make_manifest(
 
 
 def to_json(value: Any) -> str:
-    """Print the manifest, or a part of it, always in the same way."""
+    """Print the manifest or a part of it; the text is deterministic."""
     return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
@@ -145,7 +146,7 @@ def _leaves(message: Message, plan: Plan) -> Iterator[dict[str, Any]]:
 
 
 def _layout(leaf: Leaf) -> dict[str, int]:
-    """Return how items stand in ``data``: item k in bits k * item_bits and up."""
+    """Return the layout of ``data``: item k starts at bit k * item_bits."""
     bits = 1 if leaf.primitive.kind == "bool" else 8 * leaf.primitive.bytes
     return {"lanes": leaf.lanes, "item_bits": bits, "data_bits": leaf.lanes * bits}
 
@@ -162,7 +163,7 @@ def _constant(constant: Constant) -> dict[str, Any]:
 
 
 def _plain(value: object) -> object:
-    """Return a value as JSON has it: bytes as text, and no infinities."""
+    """Return a value that JSON can represent: bytes, infinities and NaN become text."""
     if isinstance(value, bytes):
         return value.decode("utf-8", "backslashreplace")
     return str(value) if isinstance(value, float) and not isfinite(value) else value

@@ -1,8 +1,8 @@
-"""What is the same for all messages: ROS's primitives, and the types that packages make of them.
+"""ROS's primitives, and the types of the packages that all messages share.
 
-Records in VHDL and structs in SystemVerilog have the same names. How many items go in one transfer
-depends on the primitive and on the width of the bus, and on nothing else; so one package per width
-has the strings, arrays and sequences of primitives of all messages.
+Records in VHDL and structs in SystemVerilog have the same names. The number of items in a transfer
+depends only on the primitive and on the width of the bus. So one package per bus width has the
+strings, arrays and sequences of primitives for all messages.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ __all__ = [
 ]
 
 TYPES_NAME = "firm_hdl_types_pkg"
-"""What the VHDL package of all messages is called."""
+"""Name of the VHDL package that all messages share."""
 
 PRIMITIVE_BITS = {
     "bool": 1,
@@ -35,10 +35,10 @@ PRIMITIVE_BITS = {
     **{f"{sign}int{bits}": bits for bits in (8, 16, 32, 64) for sign in ("", "u")},
 }
 PRIMITIVE_BYTES = {name: max(1, bits // 8) for name, bits in PRIMITIVE_BITS.items()}
-"""Primitives, and how many bytes they have on a wire."""
+"""Size of each primitive on the wire, in bytes."""
 
 TEXTS = {"string": "uint8", "wstring": "uint32"}
-"""Strings, and what their items are."""
+"""Strings, with the type of their items."""
 
 FORMS = ("sequence", "array")
 
@@ -48,7 +48,7 @@ SHARED_TYPES = frozenset(
         *(f"{kind}_{what}_t" for kind in PRIMITIVE_BITS for what in ("stream", "items")),
     ]
 )
-"""Types that records have members of, besides those of the message's own package."""
+"""Types of record members that are not declared in the message's own package, in lower case."""
 
 _STATUSES: Any = Status
 
@@ -61,7 +61,7 @@ SHARED_WORDS = frozenset(
         *("status_name", "to_slv", TYPES_NAME),
     ]
 )
-"""All that the package of all messages declares, and its name, in lower case."""
+"""All names that the shared package declares, and its own name, in lower case."""
 
 _RECORDS = (
     *TEXTS,
@@ -78,16 +78,16 @@ BUS_TYPES = frozenset(
         ),
     ]
 )
-"""All that the package of a bus width declares, in lower case."""
+"""All names that the package of a bus width declares, in lower case."""
 
 
 def bus_name(bus_bytes: int) -> str:
-    """Name the VHDL package of a bus width."""
+    """Return the name of the VHDL package of a bus width."""
     return f"firm_hdl_bus_{bus_bytes}_pkg"
 
 
 def primitive_name(leaf: Leaf) -> str:
-    """Name the primitive of a leaf as the types here are called: ``byte`` and ``char`` are 8 bits.
+    """Return the primitive of a leaf; ``byte`` and ``char`` become an integer of 8 bits.
 
     >>> primitive_name(Leaf(path=("a",), kind="scalar", type="byte", signed=True))
     'int8'

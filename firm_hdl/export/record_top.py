@@ -1,7 +1,7 @@
-"""Top levels with the record view: a message of fixed size as one vector, all of it valid at once.
+"""Top levels with the record view: a message of fixed size as one vector with one handshake.
 
-The vector is the record's layout as `gateware.record_layout` gives it, the first field lowest; the
-user's layer in VHDL makes a record of it (:mod:`firm_hdl.export.vhdl.values`).
+The vector has the layout of `gateware.record_layout`, with the first field in the lowest bits. The
+user's layer in VHDL converts it to a record (:mod:`firm_hdl.export.vhdl.values`).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from firm_hdl.plan import Plan
 __all__ = ["RecordTop", "record_ports", "why_no_record"]
 
 _RECORD = "msg"
-"""What the names of the record's ports start with."""
+"""Prefix of the names of the record's ports."""
 
 
 def why_no_record(message: Message, plan: Plan) -> str:
@@ -30,7 +30,7 @@ def why_no_record(message: Message, plan: Plan) -> str:
         layout = record_layout(message, wire=plan.wire)
     except ValueError as error:
         return str(error)
-    # The vector, and what else goes into a serializer.
+    # The vector and all other inputs of a serializer.
     inputs = [p.width for p in record_ports(plan, "serializer", layout.size) if p.direction == "in"]
     if sum(inputs) > MAX_INPUT_BITS:
         return (
@@ -53,8 +53,8 @@ def record_ports(plan: Plan, direction: Direction, bits: int) -> tuple[Port, ...
     to, fro = ("in", "out") if direction == "serializer" else ("out", "in")
     record = [
         (f"{_RECORD}_data", to, bits, f"{plan.message}, the first field in the lowest bits."),
-        (f"{_RECORD}_valid", to, 1, "message: offered, all of it."),
-        (f"{_RECORD}_ready", fro, 1, "message: taken."),
+        (f"{_RECORD}_valid", to, 1, "Valid: the whole message is offered."),
+        (f"{_RECORD}_ready", fro, 1, "Ready: the message is taken."),
     ]
     ports[status:status] = [
         Port(name=name, direction="in" if way == "in" else "out", width=width, meaning=meaning)
@@ -73,7 +73,7 @@ class RecordTop(Top):
     ----------
     core : Deserializer or Serializer
     message : Message
-        The converter's, of fixed size.
+        The converter's message; has a fixed size.
 
     Members
     -------
@@ -96,12 +96,12 @@ class RecordTop(Top):
 
     @classmethod
     def of(cls, message: Message, direction: Direction, **options: Any) -> RecordTop:
-        """Make a converter of a message, and a top level around it.
+        """Make a converter of a message and a top level around it.
 
         Parameters
         ----------
         options
-            The converter's.
+            Keyword arguments of the converter.
         """
         converter = Deserializer if direction == "deserializer" else Serializer
         return cls(converter(message, **options), message)

@@ -1,6 +1,6 @@
-"""Text of definitions as comments in VHDL and Verilog: printable ASCII, and no order to a tool.
+"""Text of definitions as comments in VHDL and Verilog: printable ASCII without tool directives.
 
-What a comment starts with is `mark`: ``--`` or ``//``.
+`mark` is the comment mark of the language: ``--`` or ``//``.
 """
 
 from __future__ import annotations
@@ -29,17 +29,18 @@ _PLAIN = str.maketrans(
 
 
 def remark(text: str, indent: str = "  ", mark: str = "//") -> Iterator[str]:
-    """Yield text as comment lines of at most 100 columns, in ASCII, which every tool reads."""
+    """Yield text as comment lines of at most 100 columns, in ASCII."""
     for line in text.splitlines():
         for part in _wrapped(line, 97 - len(indent)):
             yield f"{indent}{mark} {part}".rstrip() + "\n"
 
 
 def quoted(text: str, indent: str = "  ", mark: str = "//") -> Iterator[str]:
-    """Yield a comment of a definition, each line with the ``#`` that it has there.
+    """Yield a comment of a definition; each line keeps the ``#`` that it has in the definition.
 
-    Tools take what some comments begin with as an order to them, such as ``synthesis`` and ``psl``.
-    Which words these are, nobody can know; so no line of a definition begins a comment.
+    Tools take comments that begin with certain words, such as ``synthesis`` and ``psl``, as
+    directives. The ``#`` keeps the text of a definition from beginning a comment, whatever the
+    words of a tool are.
     """
     for line in text.splitlines():
         for part in _wrapped(line, 95 - len(indent)):
@@ -51,18 +52,18 @@ def _wrapped(line: str, columns: int) -> list[str]:
 
 
 def ascii_of(text: str) -> str:
-    """Give a line in printable ASCII."""
+    """Return a line in printable ASCII."""
     plain = text.translate(_PLAIN).encode("ascii", "backslashreplace").decode()
     return re.sub(r"[^ -~]", " ", plain.expandtabs(4))
 
 
 def origin(source: Field, name: str) -> str:
-    """Say what a member of a record is in ROS.
+    """Describe the ROS field of a record member: its type and unit, its name if it differs.
 
     Parameters
     ----------
     name : str
-        What it is called in the record.
+        Name of the member in the record.
     """
     what = str(source.type)
     if source.name != name:
@@ -71,5 +72,5 @@ def origin(source: Field, name: str) -> str:
 
 
 def unit_of(unit: str | None) -> str:
-    """Write a unit behind something; nothing if there is none."""
+    """Return a unit in brackets; empty if there is none."""
     return f" [{ascii_of(unit)}]" if unit else ""

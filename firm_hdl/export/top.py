@@ -1,8 +1,8 @@
 """Top levels: a converter behind ports that a design in VHDL or Verilog connects to.
 
-Packets are AXI4-Stream (Arm IHI 0051), the status too; each leaf of the message is a stream of its
-own under the field's name. Ports are plain vectors; what they mean is in :class:`Port`, which the
-manifest publishes.
+Packets and statuses are AXI4-Stream (Arm IHI 0051). Each leaf of the message is a stream of its own
+under the field's name. Ports are plain vectors. Each :class:`Port` has a description, which the
+manifest repeats.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ Direction: TypeAlias = Literal["deserializer", "serializer"]
 DIRECTIONS: tuple[Direction, ...] = ("deserializer", "serializer")
 
 MAX_INPUT_BITS = MAX_CELL_BITS
-"""Amaranth makes one cell of all inputs of a design."""
+"""Most input bits of a design: Amaranth makes one cell of all inputs."""
 
-# What no leaf may be called: its ports are its name and ``_data``, ``_last`` and so on.
+# No leaf may have these names: its ports are its name with ``_data``, ``_last`` and so on.
 _RESERVED = ("s_axis", "m_axis", "m_axis_status")
 
 
@@ -52,12 +52,12 @@ class Port:
     name : str
     direction : "in" or "out"
     width : int
-        In bits.
+        Width in bits.
     meaning : str
-        A sentence for people.
+        Description for people.
     signed : bool
     leaf : int or None
-        Index of the leaf that it belongs to.
+        Index of the leaf that the port belongs to; `None` for other ports.
     """
 
     name: str
@@ -69,12 +69,12 @@ class Port:
 
 
 def leaf_names(plan: Plan) -> dict[tuple[str, ...], str]:
-    """Give what the names of each leaf's ports start with, by the leaf's path."""
+    """Return the prefix of the port names of each leaf, by the leaf's path."""
     return flat_names((leaf.path for leaf in plan.leaves), _RESERVED)
 
 
 def field_of(message: Message, leaf: Leaf) -> Field | None:
-    """Find the field that a leaf belongs to, the innermost one."""
+    """Return the innermost field that a leaf belongs to."""
     found = None
     current: Message | None = message
     names = iter(leaf.path)
@@ -95,14 +95,14 @@ def ports_of(plan: Plan, direction: Direction) -> tuple[Port, ...]:
     """List the ports of a top level: clock, reset, packets, leaves in wire order, status."""
     names = leaf_names(plan)
     ports = [
-        Port(name="aclk", direction="in", width=1, meaning="Clock; its rising edge counts."),
+        Port(name="aclk", direction="in", width=1, meaning="Clock; the rising edge is active."),
         Port(name="aresetn", direction="in", width=1, meaning="Synchronous reset, active low."),
         *_packet_ports(plan.bus_bytes, direction),
     ]
     for index, leaf in enumerate(plan.leaves):
         ports += _leaf_ports(leaf, index, names[leaf.path], direction)
     # AXI4-Stream has whole bytes.
-    status = [("tdata", 8, "How the packet ended, once per packet; 0 is OK.")]
+    status = [("tdata", 8, "Status of a packet, one transfer per packet; 0 is OK.")]
     ports += _stream("m_axis_status", "t", status, "status", is_input=False)
     return tuple(ports)
 
@@ -110,8 +110,8 @@ def ports_of(plan: Plan, direction: Direction) -> tuple[Port, ...]:
 def _packet_ports(bus_bytes: int, direction: Direction) -> list[Port]:
     payload = [
         ("tdata", 8 * bus_bytes, "Bytes of the packet, the first one in bits 7 to 0."),
-        ("tkeep", bus_bytes, "Bytes that are there, from lane 0 on; all but in the last beat."),
-        ("tlast", 1, "The packet's last beat."),
+        ("tkeep", bus_bytes, "Valid bytes, from lane 0 on; all ones except in the last beat."),
+        ("tlast", 1, "Last beat of the packet."),
     ]
     if direction == "deserializer":
         return _stream("s_axis", "t", payload, "beat", is_input=True)
@@ -124,7 +124,7 @@ def _leaf_ports(leaf: Leaf, index: int, base: str, direction: Direction) -> list
     if isinstance(shape, data.StructLayout):
         payload = [
             ("data", shape["data"].width, _meaning(leaf)),
-            ("last", 1, f"{leaf}: the transfer ends its array."),
+            ("last", 1, f"{leaf}: last transfer of the array or sequence."),
         ]
         signed = False
     else:
@@ -148,8 +148,8 @@ def _stream(
     to, fro = ("in", "out") if is_input else ("out", "in")
     whole = [
         *((to, *entry) for entry in payload),
-        (to, f"{initial}valid", 1, f"{what}: offered."),
-        (fro, f"{initial}ready", 1, f"{what}: taken."),
+        (to, f"{initial}valid", 1, f"{what}: valid."),
+        (fro, f"{initial}ready", 1, f"{what}: ready."),
     ]
     return [
         Port(
@@ -166,9 +166,9 @@ def _stream(
 
 def _meaning(leaf: Leaf) -> str:
     if leaf.kind == "trigger":
-        return f"{leaf}: 1; that there is a message is all it says."
+        return f"{leaf}: always 1; marks one empty message."
     if leaf.kind == "length":
-        return f"{leaf}: how many follow."
+        return f"{leaf}: number of elements that follow."
     form = {
         "bool": "1 is true",
         "float": "IEEE 754 bits",
@@ -176,16 +176,17 @@ def _meaning(leaf: Leaf) -> str:
     }[leaf.primitive.kind]
     if leaf.kind == "items":
         lanes = f"{leaf.lanes} x {leaf.type}" if leaf.lanes > 1 else leaf.type
-        return f"{leaf}: {lanes} ({form}), the first item in the lowest bits."
+        return f"{leaf}: {lanes} ({form}), first item in the lowest bits."
     return f"{leaf}: {leaf.type} ({form})."
 
 
 class Top(wiring.Component):
     """A converter with AXI4-Stream on its packet side and named ports on its message side.
 
-    Adds neither register nor latency. `aresetn` is active low and synchronous to the rising edge of
-    `aclk`; one cycle of it empties everything. On the way in, ``tkeep`` is a run of ones from lane
-    0, looked at in a packet's last beat only; no ones at all there end an empty packet.
+    The top level adds neither registers nor latency. `aresetn` is active low and synchronous to the
+    rising edge of `aclk`; one cycle of reset discards all packets and messages inside. On the input
+    side, ``tkeep`` is a contiguous run of ones from lane 0, and only its value in the last beat of
+    a packet matters. A last beat without any ones adds no bytes, so it can end an empty packet.
 
     Parameters
     ----------
@@ -214,7 +215,7 @@ class Top(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        # The port is the clock: an assignment between the two would be a delta cycle in simulators.
+        # The port is the clock: an assignment between the two would cost a delta cycle.
         domain = ClockDomain("sync", local=True)
         domain.clk = self.aclk
         m.domains += domain
@@ -282,7 +283,7 @@ class Top(wiring.Component):
 def _ones(keep: Value) -> Value:
     """Return the number of ones from bit 0 up to the first zero."""
     lanes = len(keep)
-    # One-hot, whatever the bits above the first zero are.
+    # One-hot, independent of the bits above the first zero.
     found = {n: keep[:n].all() & ~keep[n] for n in range(1, lanes)} | {lanes: keep.all()}
     bits = range(lanes.bit_length())
     return Cat(Cat(here for n, here in found.items() if n >> bit & 1).any() for bit in bits)

@@ -1,9 +1,9 @@
-"""The records of a message type: what is nested in what, and what everything is called.
+"""The records of a message type: their nesting and all names.
 
-Decisions only; :mod:`firm_hdl.export.vhdl.package` prints them as records of VHDL, and
-:mod:`firm_hdl.export.systemverilog.package` as structs. A type in ROS has one package
-for each wire and bus width, whatever message it is in: names depend on nothing but the type itself.
-So all converters of a design share the packages, and a header goes from one message to another.
+:mod:`firm_hdl.export.vhdl.package` prints them as records of VHDL, and
+:mod:`firm_hdl.export.systemverilog.package` as structs. A ROS type has one package for each wire
+format and bus width. Its names depend only on the type, not on the message that contains it. So all
+converters of a design share the packages, and a header of one message can be assigned to another.
 """
 
 from __future__ import annotations
@@ -36,18 +36,18 @@ class Node:
     Attributes
     ----------
     name : str
-        As a field of the record that it is in.
+        Name of the member in the record that contains it.
     access : str
-        Dotted names from the message's record down; empty for the message itself.
+        Dotted names of the members from the message's record to this one; empty for the message.
     leaf : int or None
-        Index into `Plan.leaves`.
+        Index into `Plan.leaves`; `None` for records.
     source : Field or None
-        The definition's field, if it is one.
+        Field of the definition; `None` for members that are not a field.
     children : list of Node
     type : str
-        Its record type, forwards; ``_ready_t`` in place of ``_t`` gives the one backwards.
+        Type of data and valid. The type of ready has ``_ready_t`` instead of ``_t``.
     package : str
-        The package of a message type that declares `type`; empty: a package that all use.
+        The package of a message type that declares `type`; empty for types of a shared package.
     """
 
     name: str
@@ -60,12 +60,12 @@ class Node:
 
     @property
     def ready_type(self) -> str:
-        """Type of what goes backwards."""
+        """Type of ready."""
         return "std_logic" if self.leaf is not None else f"{self.type.removesuffix('_t')}_ready_t"
 
     def seen_from(self, package: str, name: str) -> str:
-        """Give a name that this node's package declares as another package says it."""
-        # A use clause would leave out what two types in different packages have in common.
+        """Return a name of this node's package, in full if `package` is another one."""
+        # With use clauses, equal names in two packages would hide each other.
         own = not self.package or self.package == package
         return name if own else f"work.{self.package}.{name}"
 
@@ -89,9 +89,9 @@ class Package:
     message : Message
     name : str
     base : str
-        What the names of its types start with.
+        Prefix of the names of its types.
     node : Node
-        The message, somewhere.
+        A node with this message type.
     needs : tuple of str
         Packages of the types of its fields.
     """
@@ -111,7 +111,7 @@ class Tree:
     ----------
     root : Node
     packages : tuple of Package
-        Of all message types in it, each after those that it needs; the message's own is the last.
+        Of all message types in it, each after those that it needs; the message's own comes last.
     """
 
     root: Node
@@ -119,7 +119,7 @@ class Tree:
 
 
 def snake(name: str) -> str:
-    """Give a message's name as VHDL writers write types.
+    """Return a message's name in snake case.
 
     >>> snake("PoseWithCovariance"), snake("PointCloud2"), snake("IMUData")
     ('pose_with_covariance', 'point_cloud2', 'imu_data')
@@ -129,12 +129,12 @@ def snake(name: str) -> str:
 
 
 def _member_names(names: Iterable[str]) -> dict[str, str]:
-    """Give the identifiers for the members of a record.
+    """Return the identifiers of the members of a record.
 
     >>> _member_names(["x", "range", "float64_stream_t"])
     {'x': 'x', 'range': 'range_field', 'float64_stream_t': 'float64_stream_t_2'}
     """
-    # A member that has the name of a type, or of the library, would hide it from its neighbours.
+    # A member with the name of a type or of the library would hide it in the same record.
     return scope_names(names, {*SHARED_TYPES, *BUS_TYPES, "work"})
 
 
@@ -149,7 +149,7 @@ def package_name(message: Message, wire: Wire, bus_bytes: int) -> str:
 
 
 def derived(base: str) -> tuple[str, ...]:
-    """Give all identifiers of a message's package but for constants of ROS, in lower case."""
+    """Return all identifiers of a message's package except constants of ROS, in lower case."""
     kinds = (base, f"{base}_sequence", f"{base}_array")
     return (
         *(f"{kind}_{what}" for kind in kinds for what in ("t", "ready_t", "all_ready", "idle")),
@@ -159,7 +159,7 @@ def derived(base: str) -> tuple[str, ...]:
 
 
 def taken_names(package: Package, plan: Plan) -> frozenset[str]:
-    """Give what no constant may hide: the package's own names, and those that it uses."""
+    """Return the names that no constant may hide: those that the package declares or uses."""
     own = {package.name, *derived(package.base)}
     return frozenset({*own, *SHARED_WORDS, *BUS_TYPES, bus_name(plan.bus_bytes)})
 
@@ -170,7 +170,7 @@ def tree_of(message: Message, plan: Plan, reserved: Collection[str] = ()) -> Tre
     Parameters
     ----------
     reserved : collection of str
-        What a language needs in all packages, besides what VHDL does; in lower case.
+        Names that a language needs in all packages, in addition to VHDL's; in lower case.
     """
     paths: _Paths = {}
     for index, leaf in enumerate(plan.leaves):
@@ -231,7 +231,7 @@ class _Maker:
         found = self.packages.get(message.name)
         if found is None:
             wanted = package_name(message, self.plan.wire, self.plan.bus_bytes)
-            # Of `a_b/C` and `a/b_C`, which are one name here, the second gets a number.
+            # `a_b/C` and `a/b_C` have one name here; the second gets a number.
             name = first_free(wanted.removesuffix("_pkg"), self.taken, lambda n: (f"{n}_pkg",))
             self.taken.add(f"{name}_pkg")
             wanted = snake(re.sub(r"[^A-Za-z0-9]+", "_", message.base_name)) or "message"
@@ -258,7 +258,7 @@ def _leaf_type(leaf: Leaf) -> str:
 
 
 def _below(kind: FieldType | None, name: str) -> tuple[Field | None, FieldType | None]:
-    """Give the field and the type of a member of a type."""
+    """Return the field and the type of a member of a type."""
     if isinstance(kind, Message):
         found = next((item for item in kind.fields if item.name == name), None)
         return (found, found.type) if found is not None else (None, None)

@@ -116,11 +116,11 @@ def test_ghdl_is_the_one_that_verification_takes(
 @pytest.mark.parametrize(
     ("program", "limit", "message"),
     [
-        ("-c", 6 << 30, "it sets 9.1 GB of address space aside, .*this process may have 6.4 GB"),
+        ("-c", 6 << 30, "it reserves 9.1 GB of address space, .*this process may have 6.4 GB"),
         (
             "-c",
             resource.RLIM_INFINITY,
-            r"it sets 9.1 GB of address space aside, .*\d+\.\d GB are free",
+            r"it reserves 9.1 GB of address space, .*\d+\.\d GB are free",
         ),
         ("yosys", 6 << 30, "this process may have 6.4 GB"),
     ],

@@ -218,12 +218,12 @@ def test_ports_and_their_meaning():
         if port.name.startswith(("stamp_sec", "frame_id_items"))
     ] == [
         "in stamp_sec_data 32 stamp.sec: int32 (two's complement).",
-        "in stamp_sec_valid 1 stamp.sec: offered.",
-        "out stamp_sec_ready 1 stamp.sec: taken.",
+        "in stamp_sec_valid 1 stamp.sec: valid.",
+        "out stamp_sec_ready 1 stamp.sec: ready.",
         "in frame_id_items_data 32 "
-        "frame_id.items: 4 x uint8 (unsigned), the first item in the lowest bits.",
-        "in frame_id_items_last 1 frame_id.items: the transfer ends its array.",
-        "in frame_id_items_valid 1 frame_id.items: offered.",
-        "out frame_id_items_ready 1 frame_id.items: taken.",
+        "frame_id.items: 4 x uint8 (unsigned), first item in the lowest bits.",
+        "in frame_id_items_last 1 frame_id.items: last transfer of the array or sequence.",
+        "in frame_id_items_valid 1 frame_id.items: valid.",
+        "out frame_id_items_ready 1 frame_id.items: ready.",
     ]
     assert MAX_INPUT_BITS == 65_535

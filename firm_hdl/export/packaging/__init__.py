@@ -1,7 +1,7 @@
-"""What tools want to be told of a folder's VHDL: lists of files, FuseSoC, Vivado, make, VUnit.
+"""Files for tools that compile a folder's VHDL: lists of files, FuseSoC, Vivado, make, VUnit.
 
-Everything comes from the manifest. The packages that are the same for all types are packaged apart,
-so that a project with several types has them once.
+All facts come from the manifest. The packages that are the same for all types are packaged
+separately, so that a project with several types has them once.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ __all__ = ["packaging"]
 
 
 def packaging(manifest: Manifest) -> dict[str, str]:
-    """Write all files, by name; they are to be in the folder of the VHDL.
+    """Return the texts of all files by name; the files belong into the folder of the VHDL.
 
-    ``files.txt`` lists what is to be synthesized, a file a line, in the order in which it compiles;
-    ``bench_files.txt`` the files of the test benches, which compile after the design.
+    ``files.txt`` lists the files to synthesize, one per line, in compile order. ``bench_files.txt``
+    lists the files of the test benches, which compile after the design.
     """
     vhdl = manifest["vhdl"]
     files = {

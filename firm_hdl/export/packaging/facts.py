@@ -1,4 +1,4 @@
-"""What all files of packaging take from the manifest."""
+"""Facts of the manifest that all packaging files need."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Manifest = Mapping[str, Any]
 
 
 def remark(manifest: Manifest) -> str:
-    """Name the message and its options in a comment."""
+    """Return the message and its options, for a comment."""
     inputs = manifest["inputs"]
     options = inputs["options"]
     return (
@@ -21,16 +21,16 @@ def remark(manifest: Manifest) -> str:
 
 
 def version(manifest: Manifest) -> str:
-    """Give the version of firm-hdl that makes the files."""
+    """Return the version of firm-hdl that made the files."""
     return str(manifest["inputs"]["generator"]["firm-hdl"])
 
 
 def shared_packages(manifest: Manifest) -> list[Manifest]:
-    """List the packages that are the same in the folders of all messages that need them."""
+    """Return the packages that have the same text in the folders of all messages that need them."""
     return list(manifest["vhdl"]["shared_packages"])
 
 
 def own_files(files: Iterable[str], section: Manifest) -> list[str]:
-    """Leave out what other folders have, too."""
+    """Return the files that no other folder has."""
     others = {*section["common_files"], *(p["file"] for p in section.get("shared_packages", ()))}
     return [file for file in files if file not in others]

@@ -1,6 +1,6 @@
 """Cores of FuseSoC: one for a type, one for each package that several types share.
 
-FuseSoC's CAPI2 is YAML behind a first line of its own.
+FuseSoC's CAPI2 format is YAML after a first line ``CAPI=2:``.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _SHARED = "that all converters of firm-hdl share"
 
 
 def cores(manifest: Manifest) -> dict[str, str]:
-    """Write all cores, by the names of their files."""
+    """Return the texts of all cores by file name."""
     vhdl = manifest["vhdl"]
     documents = {
         COMMON: _shared(
@@ -61,7 +61,7 @@ def _bench(manifest: Manifest) -> str:
 
 
 def _package_name(manifest: Manifest, name: str) -> str:
-    """Name the core of a shared package: types may differ from distribution to distribution."""
+    """Return the core of a shared package; types may differ between distributions."""
     [package] = [each for each in shared_packages(manifest) if each["name"] == name]
     library = manifest["inputs"]["distro"] if package["message"] else "vhdl"
     return f"firm-hdl:{library}:{name}:{version(manifest)}"
@@ -77,7 +77,7 @@ def _shared(name: str, description: str, files: dict[str, Any]) -> dict[str, Any
 
 
 def _package(manifest: Manifest, package: Manifest) -> dict[str, Any]:
-    """Describe a package that is the same in the folders of several messages."""
+    """Describe a package that the folders of several messages have."""
     what = f"Records of {package['message']}" if package["message"] else "Streams of one bus width"
     depends = [_common(manifest), *(_package_name(manifest, name) for name in package["needs"])]
     return _shared(
@@ -111,7 +111,7 @@ def _type(manifest: Manifest) -> dict[str, Any]:
         "targets": {"default": {"filesets": ["rtl"]}},
     }
     if stimuli is not None:
-        # Beside the simulation, where the bench looks for it.
+        # Copied to the folder of the simulation, where the bench looks for it.
         copied = {stimuli: {"file_type": "user", "copyto": stimuli}}
         document["filesets"]["stimuli"] = {"files": [copied]}
         document["targets"] |= {
@@ -119,7 +119,7 @@ def _type(manifest: Manifest) -> dict[str, Any]:
             for entity in bench["entities"]
         }
         document["parameters"] = {
-            "seed": _generic(1, "Of the random stalls"),
+            "seed": _generic(1, "Seed of the random stalls"),
             "stalls": _generic(40, "Percent of the cycles in which a stream stalls, 0 to 99"),
         }
     return document

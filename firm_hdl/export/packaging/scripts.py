@@ -1,4 +1,4 @@
-"""A script for Vivado, and a makefile for GHDL."""
+"""A script for Vivado and a makefile for GHDL."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ def vivado_script(manifest: Manifest) -> str:
 #
 #   source .../vivado.tcl
 #
-# In the order in which they compile, as VHDL-2008, into the library that is current. Test benches
-# are left out.
+# The files are read in compile order, as VHDL-2008, into the current library. Test benches are left
+# out.
 
 set firm_hdl_folder [file dirname [file normalize [info script]]]
 
-# The same in the folder of every type that needs them: a project has each of them once.
+# Every type that needs one of these files has it, with the same text: read each file once.
 foreach firm_hdl_file {{
 {common}}} {{
   if {{[llength [get_files -quiet "*/$firm_hdl_file"]] == 0}} {{
@@ -45,13 +45,13 @@ def makefile(manifest: Manifest) -> str:
 # Test benches of {remark(manifest)} in GHDL.
 #
 #   make                        run all benches
-#   make SEED=7 STALLS=0        with other stalls
+#   make SEED=7 STALLS=0        run them with other random stalls (percent)
 #   make lint                   analyse with GHDL's warnings as errors
 #   make clean
 
 SEED   ?= 1
 STALLS ?= 40
-# Its command; if not given, the script finds one.
+# The command of GHDL; empty: the script finds it.
 GHDL   ?=
 
 BENCHES := {" ".join(bench["entities"])}
@@ -64,7 +64,7 @@ STRICT  := --warn-error --warn-unused --warn-body
 
 all: $(BENCHES)
 
-# One after the other: they share a folder.
+# Benches run one after the other, because they share a folder.
 .NOTPARALLEL:
 
 $(BENCHES):

@@ -1,4 +1,4 @@
-"""A script for VUnit, and the entity that runs the benches as its test cases."""
+"""A script for VUnit, and an entity that runs the benches as test cases of VUnit."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ __all__ = ["vunit_bench", "vunit_script"]
 
 
 def vunit_script(manifest: Manifest) -> str:
-    """Write the script that runs the benches by VUnit."""
+    """Write the script that runs the benches with VUnit."""
     section = manifest["vhdl"]
     files = [*section["files"], *section["bench"]["files"], f"tb_{section['name']}_vunit.vhd"]
     listed = "".join(f'    "{file}",\n' for file in files)
     return f'''\
-"""Test benches of {remark(manifest)}, run by VUnit 4 (pip install vunit_hdl)."""
+"""Run the test benches of {remark(manifest)} with VUnit 4 (pip install vunit_hdl)."""
+
 
 from pathlib import Path
 

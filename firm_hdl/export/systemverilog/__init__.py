@@ -1,4 +1,4 @@
-"""The back end for SystemVerilog: a message's structs, and modules that speak them."""
+"""The back end for SystemVerilog: structs of a message, and modules whose ports are structs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The SystemVerilog folder of a message type: packages, modules with structs, a list of files."""
+"""The SystemVerilog folder of a message type: packages, modules with structs, and file list."""
 
 from __future__ import annotations
 
@@ -22,33 +22,33 @@ from firm_hdl.export.verilog import module_name
 __all__ = ["FOLDER", "LIST", "SystemVerilog", "wrapper_name"]
 
 FOLDER = "systemverilog"
-"""Where in a type's folder it is."""
+"""Subfolder of a type's folder."""
 
 LIST, WAIVERS = "files.f", "waivers.vlt"
 
 _WAIVERS = """\
-// Warnings of Verilator that do not matter here, each with the reason. To lint:
+// Warnings of Verilator that are harmless here, each with the reason. To lint:
 // $ verilator --lint-only -Wall ../waivers.vlt waivers.vlt -F files.f --top-module MODULE
 
 `verilator_config
 
-// A package has constants for whoever needs them.
+// A design need not use all constants of a package.
 lint_off -rule UNUSEDPARAM -file "*_sv_pkg.sv"
 
-// A field has its own name, also if that is a word of C++: Verilator renames it.
+// A field keeps its name even if that is a keyword of C++; Verilator renames it internally.
 lint_off -rule SYMRSVDWORD -file "*_sv_pkg.sv"
 """
 
 
 def wrapper_name(folder: str, direction: Direction) -> str:
-    """Name the module with structs."""
+    """Return the name of the module with structs."""
     return f"{folder}_{direction}_sv"
 
 
 class SystemVerilog(BackEnd):
-    """SystemVerilog of 2012 around the modules in Verilog; the manifest says it as `systemverilog`.
+    """SystemVerilog-2012 around the modules in Verilog; entry `systemverilog` of the manifest.
 
-    There is none if ports are to be flat.
+    With flat ports, the back end writes nothing.
     """
 
     def write(self, converters: Converters) -> Output:
@@ -88,7 +88,7 @@ def _module(converters: Converters, tree: Tree, way: Direction, name: str) -> st
 def _section(
     converters: Converters, tree: Tree, modules: dict[Direction, str], listed: list[str]
 ) -> dict[str, Any]:
-    """Return what the manifest says of the folder; files in the order in which they compile."""
+    """Return the folder's entry of the manifest; files are in compile order."""
     plan = converters.plan
     return {
         "folder": FOLDER,

@@ -1,7 +1,7 @@
-"""The SystemVerilog package of a message type: its structs, its constants, and what ties them off.
+"""The SystemVerilog package of a message type: its structs, tie-off constants, and ROS constants.
 
-The text depends on the type, the wire and the width of the bus alone. So it is the same in the
-folder of every message that has the type in it.
+The text depends only on the type, the wire format and the width of the bus. So the folders of all
+messages that contain the type have the same file.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from firm_hdl.plan import Plan
 
 __all__ = ["constants_of", "message_package", "package_name"]
 
-_LENGTH = Member(name="length", type="uint32_stream_t", remark="  // how many follow")
+_LENGTH = Member(name="length", type="uint32_stream_t", remark="  // number of elements")
 
 
 def package_name(package: str) -> str:
-    """Name the package of a message type, by the name that it has in VHDL.
+    """Return the name of a message type's package, given the name of its VHDL package.
 
-    Simulators of both languages may keep the two in one library.
+    The two differ, because simulators of both languages may keep them in one library.
 
     >>> package_name("std_msgs_msg_header_cdr_8_pkg")
     'std_msgs_msg_header_cdr_8_sv_pkg'
@@ -35,12 +35,12 @@ def package_name(package: str) -> str:
 
 
 def constants_of(package: Package, plan: Plan) -> list[Named]:
-    """Name the constants of a message's own."""
+    """Name the constants that a message itself declares."""
     return named_constants(package.message, _taken(package, plan), nested=False)
 
 
 def _taken(package: Package, plan: Plan) -> frozenset[str]:
-    """Give what no constant may hide: the package's own names, and those that it uses."""
+    """Return the names that no constant may hide: those that the package declares or uses."""
     return frozenset(
         {*taken_names(package, plan), *WORDS, bus_name(plan.bus_bytes), package_name(package.name)}
     )
@@ -56,13 +56,13 @@ def _head(package: Package, plan: Plan) -> Iterator[str]:
     base, message = package.base, package.message
     yield from remark(
         f"Structs of {message.name}: {base}_t has data and valid of every field, {base}_ready_t "
-        f"has ready, the other way. With {base.upper()}_ALL_READY everything is taken, with "
-        f"{base.upper()}_IDLE nothing is offered.",
+        f"has ready, in the opposite direction. {base.upper()}_ALL_READY takes every transfer; "
+        f"{base.upper()}_IDLE offers none.",
         "",
     )
     yield from remark(
-        f"The same for all converters, made by firm-hdl, with wire {plan.wire} and a bus of "
-        f"{plan.bus_bytes} bytes.",
+        f"Made by firm-hdl. All converters with wire {plan.wire} and a bus of "
+        f"{plan.bus_bytes} bytes share this file.",
         "",
     )
     if message.comment:
@@ -78,7 +78,7 @@ def _package(package: Package, plan: Plan, name: str) -> Iterator[str]:
     members = [_member(child, package.name) for child in package.node.children]
     yield from stream_structs(base, members)
     item = Member(name="item", type=f"{base}_t", ready_type=f"{base}_ready_t")
-    yield "\n  // Several of them: one after the other.\n"
+    yield "\n  // Sequences and arrays: all elements use the same streams, one after the other.\n"
     yield from stream_structs(f"{base}_sequence", [_LENGTH, item])
     yield from stream_structs(f"{base}_array", [item])
     yield from _constants(constants_of(package, plan), _taken(package, plan))
@@ -128,7 +128,7 @@ def _number(
         if isfinite(number):
             yield f"  localparam real {name} = {_real(number)};  // {kind}{unit_of(unit)}\n"
         if not kind.has_wire_format:
-            return  # Nobody knows its bits.
+            return  # Its bits are not defined.
         bits_name = first_free(f"{name}_BITS", used)
         used.add(bits_name.lower())
         image = float_bits(number, kind.bytes)
@@ -136,7 +136,7 @@ def _number(
 
 
 def _real(value: float) -> str:
-    """Write a real literal, which needs digits behind its point, or an exponent.
+    """Write a real literal; SystemVerilog needs digits behind the point, or an exponent.
 
     >>> _real(1e300), _real(-2.0), _real(2.5e-07)
     ('1e+300', '-2.0', '2.5e-07')
@@ -145,13 +145,13 @@ def _real(value: float) -> str:
 
 
 def _string(data: bytes) -> str:
-    """Write the bytes of a string as an expression, in lines that are not too long."""
+    """Write the bytes of a string as an expression, with at most 64 bytes per line."""
     pieces = [_literal(data[at : at + 64]) for at in range(0, max(len(data), 1), 64)]
     return pieces[0] if len(pieces) == 1 else "{" + ",\n     ".join(pieces) + "}"
 
 
 def _literal(data: bytes) -> str:
-    # What begins a comment, an order or a macro does so nowhere but in a literal, for most tools.
+    # Escaped, because some tools see comments, directives and macros even inside a literal.
     text = "".join(
         chr(byte) if 32 <= byte < 127 and chr(byte) not in '"\\/-*`' else f"\\{byte:03o}"
         for byte in data

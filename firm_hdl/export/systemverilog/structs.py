@@ -1,4 +1,4 @@
-"""Packed structs in SystemVerilog, forwards and backwards, and constants that tie them off."""
+"""Packed structs in SystemVerilog, for data and valid and for ready, and tie-off constants."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ class Member:
     ----------
     name, type, ready_type : str
     comment : tuple of str
-        Lines above it.
+        Comment lines above the member.
     remark : str
-        Behind it.
+        Comment behind the member, on the same line.
     """
 
     name: str
@@ -29,15 +29,15 @@ class Member:
 
 
 def guarded(package: str, text: Iterable[str]) -> str:
-    """Put the text of a package between guards: several folders have the same file."""
+    """Put the text of a package between include guards, as several folders have the same file."""
     macro = package.upper()
     return "".join([f"`ifndef {macro}\n`define {macro}\n\n", *text, "\n`endif\n"])
 
 
 def struct(name: str, members: Sequence[Member], *, ready: bool = False) -> Iterator[str]:
-    """Yield a typedef; with `ready`, of what goes backwards."""
+    """Yield the typedef of data and valid, or with `ready` that of ready."""
     kinds = [member.ready_type if ready else member.type for member in members]
-    # Types of other packages are long.
+    # Types of other packages are long, and do not count for the columns.
     width = max((len(kind) for kind in kinds if "::" not in kind), default=0)
     yield "\n  typedef struct packed {\n"
     for member, kind in zip(members, kinds, strict=True):
@@ -49,7 +49,7 @@ def struct(name: str, members: Sequence[Member], *, ready: bool = False) -> Iter
 
 
 def constant(kind: str, name: str, value: str) -> str:
-    """Write a constant of a type."""
+    """Write the declaration of a constant."""
     return f"  localparam {kind} {name} = {value};\n"
 
 

@@ -1,7 +1,7 @@
-"""The SystemVerilog packages that all messages share: of primitives, and of a width of the bus.
+"""The SystemVerilog packages that all messages share: one of primitives, one per bus width.
 
-Their texts do not depend on the type of a message, so a task for, say, a `float64_stream_t` serves
-all types, and designs with several converters name one status.
+Their texts do not depend on the message type. So a task for, say, a `float64_stream_t` works for
+all types, and all converters of a design have the same status type.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ __all__ = [
 ]
 
 TYPES_NAME = "firm_hdl_sv_pkg"
-"""The package of primitives."""
+"""Name of the package of primitives."""
 
 STATUS, STATUS_STREAM, BEAT = "packet_status_t", "packet_status_stream_t", "packet_beat_t"
-"""How a packet ended; that, offered; a beat of a packet, offered."""
+"""Names of types: the status of a packet, the stream of statuses, and the stream of beats."""
 
 _IDLES = {STATUS_STREAM: "PACKET_STATUS_STREAM_IDLE", BEAT: "PACKET_BEAT_IDLE"}
 
@@ -39,19 +39,19 @@ WORDS = frozenset(
         *(f"{primitive}_data_t" for primitive in PRIMITIVE_BITS),
     ]
 )
-"""What these packages declare and VHDL's do not, in lower case."""
+"""Names that these packages declare and the VHDL packages do not, in lower case."""
 
 _HEAD = """\
 // Streams of ROS's primitive types, for all message types and bus widths.
 //
-// A transfer happens at a rising clock edge at which valid and ready are both 1. Whoever offers
-// does not wait for ready, and keeps valid and the data until the transfer.
+// A transfer happens at a rising clock edge at which valid and ready are both 1. The source sets
+// valid without waiting for ready, and keeps valid and the data unchanged until the transfer.
 
 """
 
 
 def bus_name(bus_bytes: int) -> str:
-    """Name the package of a width of the bus."""
+    """Return the name of the package of a bus width."""
     return f"firm_hdl_bus_{bus_bytes}_sv_pkg"
 
 
@@ -63,7 +63,7 @@ def types_package() -> str:
 def _types() -> Iterator[str]:
     statuses: Any = Status
     width = max(len(status.name) for status in statuses) + 7
-    yield f"package {TYPES_NAME};\n\n  // How a packet ended, once per packet.\n"
+    yield f"package {TYPES_NAME};\n\n  // Status of a packet, one transfer per packet.\n"
     yield "  typedef enum logic [7:0] {\n"
     yield ",\n".join(
         f"    {'STATUS_' + status.name:{width}} = 8'h{status.value:02x}" for status in statuses
@@ -72,7 +72,7 @@ def _types() -> Iterator[str]:
     members = [Member(name="tdata", type=STATUS), Member(name="tvalid", type="logic")]
     yield from struct(STATUS_STREAM, members)
     yield "\n" + constant(STATUS_STREAM, _IDLES[STATUS_STREAM], "'0")
-    yield "\n  // Values. A float is its IEEE 754 bits, and of a bool 1 is true.\n"
+    yield "\n  // Values. A float is its IEEE 754 bits; a bool is 1 if true.\n"
     for name, bits in PRIMITIVE_BITS.items():
         signed = " signed" if name.startswith("int") else ""
         vector = f" [{bits - 1}:0]" if bits > 1 else ""
@@ -80,17 +80,17 @@ def _types() -> Iterator[str]:
     for name in PRIMITIVE_BITS:
         members = [Member(name="data", type=f"{name}_data_t"), Member(name="valid", type="logic")]
         yield from struct(f"{name}_stream_t", members)
-    yield "\n  // Nothing is offered.\n"
+    yield "\n  // Idle streams: valid is 0.\n"
     for name in PRIMITIVE_BITS:
         yield constant(f"{name}_stream_t", f"{name.upper()}_STREAM_IDLE", "'0")
     yield f"\nendpackage : {TYPES_NAME}\n"
 
 
-_LENGTH = Member(name="length", type="uint32_stream_t", remark="  // how many follow")
+_LENGTH = Member(name="length", type="uint32_stream_t", remark="  // number of elements")
 
 
 def bus_package(bus_bytes: int) -> str:
-    """Write the package of a width of the bus."""
+    """Write the package of a bus width."""
     head = (
         f"// Packets on a bus of {bus_bytes} bytes, and streams of strings, arrays and sequences "
         "on it,\n// for all message types.\n\n"
@@ -101,11 +101,11 @@ def bus_package(bus_bytes: int) -> str:
 def _bus(bus_bytes: int) -> Iterator[str]:
     name = bus_name(bus_bytes)
     yield f"package {name};\n\n  import {TYPES_NAME}::*;\n"
-    yield "\n  // AXI4-Stream. A deserializer does not look at tuser.\n"
+    yield "\n  // AXI4-Stream. A deserializer ignores tuser.\n"
     beat = [
         ("tdata", f"[{8 * bus_bytes - 1}:0]", "bytes of the packet, the first one in bits 7 to 0"),
-        ("tkeep", f"[{bus_bytes - 1}:0]", "bytes that are there, from lane 0 on"),
-        ("tlast", "", "the packet's last beat"),
+        ("tkeep", f"[{bus_bytes - 1}:0]", "valid bytes, from lane 0 on"),
+        ("tlast", "", "last beat of the packet"),
         ("tuser", "", "with tlast: the packet's status is not OK"),
         ("tvalid", "", ""),
     ]
@@ -140,9 +140,9 @@ def _items(primitive: str, lanes: int) -> Iterator[str]:
         Member(
             name="data",
             type=f"{primitive}_data_t [{lanes - 1}:0]",
-            remark="  // the first item at index 0; past the end: zeros",
+            remark="  // the first item at index 0; zeros behind the last item",
         ),
-        Member(name="last", type="logic", remark="  // the transfer ends its array"),
+        Member(name="last", type="logic", remark="  // last transfer of the array or sequence"),
         Member(name="valid", type="logic"),
     ]
     kind = f"{primitive}_items_stream"

@@ -1,4 +1,4 @@
-"""Modules in SystemVerilog whose ports are structs, around those with plain ports in Verilog."""
+"""Modules in SystemVerilog whose ports are structs, around the Verilog modules with plain ports."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ def wrapper(
     Parameters
     ----------
     name : str
-        Of the module.
+        Name of the module.
     core : str
-        The one in Verilog.
+        Name of the Verilog module inside.
     """
     head = remark(f"The {direction} of {message.name} with structs. {core} has plain ports.", "")
     return "".join(
@@ -48,14 +48,14 @@ def _ports(message: Message, plan: Plan, tree: Tree, direction: Direction) -> It
     to, fro = ("output", "input") if reads else ("input", "output")
     beats = "s_axis" if reads else "m_axis"
     lines = [
-        ("input", "logic", "aclk", "Clock; its rising edge counts."),
+        ("input", "logic", "aclk", "Clock; the rising edge is active."),
         ("input", "logic", "aresetn", "Synchronous reset, active low."),
         (fro, f"{bus}::{BEAT}", beats, "Packets."),
-        (to, "logic", f"{beats}_tready", "beat: taken."),
-        (to, f"{own}::{tree.root.type}", "msg", f"The fields of {message.name}."),
-        (fro, f"{own}::{tree.root.ready_type}", "rdy", "Which of them are taken."),
-        ("output", f"{TYPES_NAME}::{STATUS_STREAM}", _STATUS, "How packets ended."),
-        ("input", "logic", f"{_STATUS}_tready", "status: taken."),
+        (to, "logic", f"{beats}_tready", "beat: ready."),
+        (to, f"{own}::{tree.root.type}", "msg", f"Data and valid of the fields of {message.name}."),
+        (fro, f"{own}::{tree.root.ready_type}", "rdy", "Ready of the fields."),
+        ("output", f"{TYPES_NAME}::{STATUS_STREAM}", _STATUS, "Status of each packet."),
+        ("input", "logic", f"{_STATUS}_tready", "status: ready."),
     ]
     for number, (way, kind, name, meaning) in enumerate(lines):
         end = "," if number < len(lines) - 1 else ""
@@ -64,7 +64,7 @@ def _ports(message: Message, plan: Plan, tree: Tree, direction: Direction) -> It
 
 
 def _body(plan: Plan, tree: Tree, direction: Direction, core: str) -> Iterator[str]:
-    # An enumeration takes nothing but its own values, or what is cast to it.
+    # An assignment to an enumeration needs a cast.
     yield "\n  logic [7:0] status;\n\n"
     yield f"  assign {_STATUS}.tdata = {TYPES_NAME}::{STATUS}'(status);\n"
     if direction == "deserializer":
@@ -80,7 +80,7 @@ def _body(plan: Plan, tree: Tree, direction: Direction, core: str) -> Iterator[s
 def _actual(
     port: Port, plan: Plan, names: Mapping[tuple[str, ...], str], nodes: Mapping[int | None, Node]
 ) -> str:
-    """Say what a port of the core is connected to."""
+    """Return the expression that a port of the core is connected to."""
     if port.leaf is not None:
         node = nodes[port.leaf]
         member = port.name.removeprefix(f"{names[plan.leaves[port.leaf].path]}_")

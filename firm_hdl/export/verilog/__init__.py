@@ -1,4 +1,4 @@
-"""Verilog: a module per converter, what linters need not say of it, and a template to copy."""
+"""Verilog: a module per converter, waivers for linters, and an instantiation template."""
 
 from __future__ import annotations
 

@@ -14,18 +14,18 @@ from firm_hdl.plan import Plan
 __all__ = ["WAIVERS", "Verilog", "module_name", "waivers"]
 
 WAIVERS = "waivers.vlt"
-"""What Verilator need not warn of, in a file of its own language."""
+"""File with waivers of Verilator's warnings."""
 
 _WAIVED = {
     "WIDTH": "Amaranth relies on Verilog's own extension of the narrower operand.",
     "UNUSEDSIGNAL": "Amaranth names every field of a structure, used or not.",
-    "CASEOVERLAP": "No two of the patterns ever match at once: they are of one-hot selectors.",
-    "DECLFILENAME": "One file has a module and those within it.",
+    "CASEOVERLAP": "The selectors are one-hot, so only one pattern matches at a time.",
+    "DECLFILENAME": "A file has a module and its submodules.",
 }
 
 
 class Verilog(BackEnd):
-    """Verilog-2005 that means the same in SystemVerilog; the manifest says it as `converters`."""
+    """Verilog-2005 that means the same in SystemVerilog; entry `converters` of the manifest."""
 
     def write(self, converters: Converters) -> Output:
         name = converters.name
@@ -43,10 +43,10 @@ class Verilog(BackEnd):
 
 
 def module_name(folder: str, direction: Direction) -> str:
-    """Name the module of a converter in a folder.
+    """Return the name of a converter's module.
 
-    No entity in VHDL has that name, whatever its case: simulators of both languages keep modules
-    and entities in one library, and look in it without regard to case.
+    No VHDL entity has this name in any case, because simulators of both languages keep modules and
+    entities in one library and look them up regardless of case.
     """
     return f"{folder}_{direction}_verilog"
 
@@ -60,7 +60,7 @@ def waivers(modules: Iterable[str]) -> str:
         Each in the file ``module.v``.
     """
     lines = [
-        "// Warnings of Verilator that do not matter here, each with the reason. To lint:\n",
+        "// Warnings of Verilator that are harmless here, each with the reason. To lint:\n",
         f"// $ verilator --lint-only -Wall {WAIVERS} FILE.v\n\n",
         "`verilator_config\n",
     ]
@@ -72,7 +72,7 @@ def waivers(modules: Iterable[str]) -> str:
 
 
 def section(plan: Plan, folder: str) -> dict[str, Any]:
-    """Return what the manifest says of the modules in a folder."""
+    """Return the manifest's entry on the modules of a folder."""
     return {
         direction: {
             "module": module_name(folder, direction),

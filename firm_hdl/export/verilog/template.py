@@ -1,4 +1,4 @@
-"""Templates of instances in Verilog-2005, as FPGA vendors have them: to copy, with all tied off."""
+"""Instantiation templates in Verilog-2005, as FPGA vendors have them, with all fields tied off."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _STATUS_READY = "m_axis_status_tready"
 
 _ABOUT: dict[Direction, str] = {
     "deserializer": (
-        "Every field is tied off: it is taken as soon as it is there. To use one, change its line: "
-        "connect data and valid, and give ready."
+        "Every field is tied off: its transfers are taken at once. To use a field, change its "
+        "line: connect data and valid, and drive ready."
     ),
     "serializer": (
         "Every field is tied off: it is 0 in all packets, and strings and sequences are empty. To "
-        "use one, change its line: connect data and valid, and look at ready."
+        "use a field, change its line: drive data and valid, and connect ready."
     ),
 }
 
@@ -35,7 +35,7 @@ def template(
     ----------
     module : str
     header : str
-        Lines for the comment at the head.
+        Lines of the comment at the head of the file.
     """
     text = [
         *remark(header, ""),
@@ -66,7 +66,7 @@ def _range(port: Port) -> str:
 def _connections(
     message: Message, plan: Plan, direction: Direction, ports: tuple[Port, ...]
 ) -> Iterator[str]:
-    """Yield a line for each port that is no field's, and one for each field, with a remark."""
+    """Yield a line for each port that belongs to no field, and a commented line for each field."""
     names = leaf_names(plan)
     left = len(ports)
     for index, group in groupby(ports, key=lambda port: port.leaf):
@@ -74,7 +74,7 @@ def _connections(
         left -= len(of_leaf)
         end = "," if left else ""
         if index is None:
-            # Packets wait until their status is taken.
+            # A packet waits until its status is taken, so ready is 1.
             actuals = {port.name: port.name for port in of_leaf} | (
                 {_STATUS_READY: "1'b1"} if not left else {}
             )
@@ -92,7 +92,8 @@ def _connections(
 
 
 def _transfers(message: Message, plan: Plan, leaf: Leaf) -> int | None:
-    """Return how many transfers a leaf has for each element that it is in; `None` if they vary."""
+    """Return the number of transfers of a leaf per enclosing element; `None` if it varies."""
+
     if leaf.kind != "items":
         return 1
     if any(other.path == (*leaf.path[:-1], "length") for other in plan.leaves):
@@ -103,25 +104,25 @@ def _transfers(message: Message, plan: Plan, leaf: Leaf) -> int | None:
 
 
 def _what(leaf: Leaf, direction: Direction, transfers: int | None) -> str:
-    """Say what a leaf is."""
+    """Describe a leaf."""
     if leaf.kind == "length":
-        return f"{leaf}: how many follow"
+        return f"{leaf}: number of elements that follow"
     if leaf.kind == "trigger":
-        return f"{leaf}: there is one"
+        return f"{leaf}: always 1; marks one empty message"
     lanes = f"{leaf.lanes} x " if leaf.lanes > 1 else ""
     what = f"{leaf}: {lanes}{leaf.type}"
     if direction == "serializer" and transfers is None:
         return f"{what}; none, as the length is 0"
     if direction == "serializer" and transfers != 1:
-        return f"{what}; {transfers} transfers: packets wait for them, and for last with the final"
+        return f"{what}; {transfers} transfers, which packets wait for; set last with the final one"
     return what
 
 
 def _tied(leaf: Leaf, port: Port, member: str, transfers: int | None) -> str:
-    """Say what a port is tied to; empty for outputs."""
+    """Return the value that a port is tied to; empty for outputs."""
     if port.direction == "out":
         return ""
     if member == "data":
         return f"{port.width}'d{int(leaf.kind == 'trigger')}"
-    # Nothing constant ends an array of several transfers.
+    # A constant `last` cannot end an array of several transfers, so such an array is not offered.
     return "1'b1" if member == "ready" or transfers == 1 else "1'b0"

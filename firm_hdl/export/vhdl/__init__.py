@@ -1,4 +1,4 @@
-"""The back end for VHDL: a message's records, converters that speak them, and their benches."""
+"""The back end for VHDL: records of a message, converters with such ports, and test benches."""
 
 from __future__ import annotations
 

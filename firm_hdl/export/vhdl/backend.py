@@ -25,7 +25,7 @@ from firm_hdl.vhdl.package import PACKAGE_NAME
 __all__ = ["FOLDER", "Vhdl", "VhdlFolder", "to_vhdl"]
 
 FOLDER = "vhdl"
-"""Where in a type's folder the VHDL is."""
+"""Subfolder of a type's folder."""
 
 COMMON = (f"{TYPES_NAME}.vhd", f"{PACKAGE_NAME}.vhd")
 """Files that are the same for all types."""
@@ -33,14 +33,14 @@ COMMON = (f"{TYPES_NAME}.vhd", f"{PACKAGE_NAME}.vhd")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VhdlFolder:
-    """Files but for those of :mod:`firm_hdl.export.packaging`, and what the manifest says of them.
+    """Files of the folder, except those of :mod:`firm_hdl.export.packaging`, and their manifest.
 
     Attributes
     ----------
     files : dict of str to str
         Texts by file name.
     manifest : dict
-        Its section on VHDL.
+        The manifest's entry `vhdl`.
     """
 
     files: dict[str, str]
@@ -48,7 +48,7 @@ class VhdlFolder:
 
 
 class Vhdl(BackEnd):
-    """VHDL-2008; the manifest says it as `vhdl`."""
+    """VHDL-2008; entry `vhdl` of the manifest."""
 
     def write(self, converters: Converters) -> Output:
         made = to_vhdl(converters)
@@ -60,7 +60,7 @@ class Vhdl(BackEnd):
 
 @dataclass(slots=True, kw_only=True)
 class _Parts:
-    """What there is so far; `design` and `benches` are texts by file name, in compile order."""
+    """The parts made so far; `design` and `benches` are texts by file name, in compile order."""
 
     base: str
     header: str
@@ -107,7 +107,7 @@ def to_vhdl(converters: Converters) -> VhdlFolder:
     }
     stimuli = list(converters.stimuli)
     if stimuli:
-        remark = f"Packets of {message.name}, {plan.wire}, written by rosbags; one a line."
+        remark = f"Packets of {message.name}, {plan.wire}, serialized by rosbags; one per line."
         files[STIMULI] = packets_text(stimuli, remark)
     bench = {
         "entity": entities[0],
@@ -127,7 +127,7 @@ def _section(
     common: Sequence[str],
     bench: Mapping[str, Any],
 ) -> dict[str, Any]:
-    """Return what the manifest says of the folder; files in the order in which they compile."""
+    """Return the folder's entry of the manifest; files are in compile order."""
     return {
         "folder": FOLDER,
         "name": parts.base,
@@ -143,7 +143,7 @@ def _section(
 def _add_records(
     parts: _Parts, converters: Converters, cores: Mapping[Direction, Core]
 ) -> None:
-    """Add the layer with records, and its benches."""
+    """Add the layer with records and its benches."""
     message, plan = converters.message, converters.plan
     reason = why_no_record(message, plan)
     whole = {} if reason else _record_cores(parts, converters)
@@ -205,7 +205,7 @@ def _record_cores(parts: _Parts, converters: Converters) -> dict[Direction, Core
 
 
 def _add_flat(parts: _Parts, converters: Converters, cores: Mapping[Direction, Core]) -> None:
-    """Add a package without records, and a bench."""
+    """Add a package without records and a bench."""
     message, plan = converters.message, converters.plan
     package = f"{parts.base}_pkg"
     text, constants = flat_package(message, plan, name=package, cores=cores, header=parts.header)

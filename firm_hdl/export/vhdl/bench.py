@@ -1,8 +1,8 @@
 """Test benches in VHDL for each message type, and a script that runs them in GHDL.
 
 Packets from a file go through the deserializer, an accelerator that does nothing, and the
-serializer, all with random stalls; what comes out is compared byte for byte with another file.
-Everything that passes, leaf transfers included, is written down.
+serializer, all with random stalls. The packets that come out are compared byte for byte with
+another file. The bench writes all packets and all transfers of leaves to files.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from firm_hdl.export.vhdl.constants import comment
 __all__ = ["RUN_SCRIPT", "STIMULI", "bench", "run_script"]
 
 STIMULI = "stimuli.txt"
-"""The file with packets, beside the script."""
+"""The file with packets, in the folder of the script."""
 
 RUN_SCRIPT = "run_ghdl.sh"
 
@@ -29,13 +29,13 @@ def bench(
     Parameters
     ----------
     top : str
-        Its entity.
+        Name of the entity.
     what : str
-        What it tests, for the line that it ends with.
+        Description of the converters, for the last line that the bench prints.
     files : str
-        What the names of the files that it writes end in.
+        Suffix of the names of the files that the bench writes.
     header : str
-        Lines for a comment at its head.
+        Lines of a comment at the head of the file.
     """
     return "".join(
         [
@@ -59,7 +59,7 @@ def bench(
 
 _ENTITY = """\
 --
--- Ends by itself, with a line that starts with PASS, or with a failure.
+-- The bench ends by itself: it prints a line that starts with PASS, or ends with a failure.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -69,16 +69,16 @@ use std.textio.all;
 {uses}
 entity {top} is
   generic (
-    stimuli   : string  := "stimuli.txt";    -- packets to send, one a line, in hexadecimal
-    expected  : string  := "stimuli.txt";    -- packets that have to come out
+    stimuli   : string  := "stimuli.txt";    -- packets to send, one per line, in hexadecimal
+    expected  : string  := "stimuli.txt";    -- packets that must come out
     results   : string  := "results{files}.txt";    -- packets that came out
     transfers : string  := "transfers{files}.txt";  -- cycle, leaf and data of each leaf's transfer
     seed      : natural := 1;
     stalls    : natural range 0 to 99 := 40; -- percent of the cycles in which a stream stalls
-    patience  : positive := 100_000          -- cycles without a beat after which it has failed
+    patience  : positive := 100_000          -- cycles without a beat after which the bench fails
   );
   port (
-    over : out boolean := false  -- that it has passed
+    over : out boolean := false  -- the bench has passed
   );
 end entity;
 """
@@ -110,12 +110,12 @@ architecture sim of {top} is
   signal rx_tready, tx_tready : std_logic := '0';
   signal rx_count, tx_count   : natural := 0;
 
-  -- Per leaf: whether it may pass, whether it is offered, whether it would be taken.
+  -- Per leaf: the gate is open; the deserializer offers a transfer; the serializer is ready for it.
   signal gate    : std_logic_vector(LEAVES - 1 downto 0) := (others => '1');
   signal offered : std_logic_vector(LEAVES - 1 downto 0);
   signal taken   : std_logic_vector(LEAVES - 1 downto 0);
 
-  -- From the deserializer, and to the serializer.
+  -- Message of the deserializer (rx) and of the serializer (tx).
 {declarations}
 begin
 """
@@ -163,7 +163,7 @@ def _converters(view: View, bus_bytes: int) -> Iterator[str]:
 
 
 def _accelerator(view: View) -> Iterator[str]:
-    yield "\n  -- The accelerator: it does nothing, but stalls.\n"
+    yield "\n  -- The accelerator passes all data on, with stalls.\n"
     for k, channel in enumerate(view.channels):
         rx, tx = channel.rx, channel.tx
         yield f"\n  {tx['data']} <= {rx['data']};\n"
@@ -179,7 +179,7 @@ def _accelerator(view: View) -> Iterator[str]:
 
 
 _STALLING = """
-  -- What was offered stays offered until it is taken.
+  -- A gate that is open stays open while an offered transfer is not yet taken.
   stalling : process
     variable random : random_t := random_from(seed, 3);
     variable stall : boolean;
@@ -208,7 +208,7 @@ def _log(view: View) -> Iterator[str]:
 
 
 _LOGGING = """
-  -- Items are written with the first one to the right; a last transfer has an asterisk.
+  -- The first item of a transfer is rightmost; an asterisk marks a transfer with last set.
   logging : process (aclk)
     file record_of : text open write_mode is transfers;
 
@@ -278,7 +278,7 @@ _CONTROL = """
         integer'image(rx_count) & " and " & integer'image(tx_count) & " statuses"
       severity failure;
 
-    -- A while longer, in case that something comes that should not.
+    -- Wait 100 cycles more, in case that unexpected data comes.
     if i_done and o_packets = o_total and i_packets = o_total and rx_count = o_total and
         tx_count = o_total and idle > 100 then
       assert o_total > 0 report "FAIL there are no packets" severity failure;
@@ -302,16 +302,16 @@ def run_script(files: Iterable[str], top: str) -> str:
     Parameters
     ----------
     files : iterable of str
-        In compile order, beside the script.
+        Names of the files in compile order, in the folder of the script.
     top : str
-        The entity of the bench that runs unless the user names another one.
+        Entity of the bench that runs by default.
     """
     listed = " \\\n".join(f'  "$from/{name}"' for name in files)
     return f"""\
 #!/bin/sh
 # Run the test bench in GHDL. Arguments go to the simulation, such as -gseed=7 or --wave=tb.ghw.
-# What GHDL and the bench write is in work/ beside this script; WORK names another folder, GHDL
-# another command than the first that is found, and BENCH another bench of the folder.
+# Files of GHDL and of the bench are written to work/ beside this script. Environment variables:
+# WORK names another folder, GHDL the command of GHDL, and BENCH another bench of this folder.
 set -eu
 here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 work=${{WORK:-$here/work}}
@@ -326,13 +326,13 @@ if [ -z "$ghdl" ]; then
   exit 127
 fi
 if [ ! -f "$here/{STIMULI}" ]; then
-  echo "{RUN_SCRIPT}: write packets to $here/{STIMULI}, one a line, in hexadecimal" >&2
+  echo "{RUN_SCRIPT}: write packets to $here/{STIMULI}, one per line, in hexadecimal" >&2
   exit 2
 fi
 mkdir -p "$work"
 cd "$work"
 printf '*\\n' > .gitignore
-# GHDL gets no name that is not ours: it takes no folder whose name has a quotation mark.
+# GHDL gets relative names only: it does not accept a folder whose name has a quotation mark.
 from=..
 if [ -n "${{WORK:-}}" ]; then
   from=source

@@ -1,7 +1,7 @@
-"""What the test benches see of a pair of converters: streams that go from one to the other.
+"""Views of a pair of converters for test benches: the streams from one to the other.
 
-A bench is the same text whether the converters have records of streams, a record of values, or
-plain ports; a view says how to connect them and what each stream is called.
+The text of a bench does not depend on whether the converters have records of streams, a record of
+values, or plain ports. A view has the connections, and the names of the streams.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ class Channel:
     Attributes
     ----------
     label : str
-        What it is called in the file of transfers.
+        Name in the file of transfers.
     rx, tx : mapping of str to str
         Signals of the deserializer and of the serializer: ``data``, ``valid``, ``ready``, and for
         items ``last``.
     image : str
-        The data as a string.
+        VHDL expression of the data as a string.
     """
 
     label: str
@@ -41,22 +41,22 @@ class Channel:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class View:
-    """How a bench sees the converters.
+    """The converters as a bench connects them.
 
     Attributes
     ----------
     uses : str
         Use clauses.
     declarations : str
-        Signals, and what else stands in front of the architecture's ``begin``.
+        Declarations of the architecture, such as signals.
     instances : mapping of direction to str
-        What to instantiate.
+        The unit to instantiate.
     message_ports : mapping of direction to list of (str, str)
         Ports on the message side, and their signals.
     packet_names : mapping of direction to mapping of str to str
-        What the other ports are called that are not called as :func:`ports_of` says.
+        Names of other ports, where they differ from those of :func:`ports_of`.
     bit_keep : bool
-        Whether ``tkeep`` is a bit on a bus of one byte.
+        On a bus of one byte, ``tkeep`` is a bit instead of a vector.
     channels : list of Channel
     """
 
@@ -69,8 +69,8 @@ class View:
     channels: Sequence[Channel]
 
 
-# No name of a user's is used without its package, because constants may be called like something in
-# `std.textio`; the clause itself is for tools that look for the order of files.
+# Names of the message's package are written in full, because its constants may have names of
+# `std.textio`. The use clause is for tools that find the compile order of files.
 _USES = """\
 use work.firm_hdl_bench_pkg.all;
 use work.{types}.all;
@@ -88,7 +88,7 @@ _NO_NAMES: Mapping[Direction, Mapping[str, str]] = {way: {} for way in DIRECTION
 
 
 def stream_view(plan: Plan, layer: UserLayer) -> View:
-    """See the converters with a record of streams."""
+    """Return the view of converters with a record of streams."""
     root = layer.tree.root
     channels = []
     for node in root.leaves():
@@ -131,7 +131,7 @@ def _payload(leaf: Leaf) -> tuple[str, ...]:
 
 
 def record_view(layer: UserLayer) -> View:
-    """See the converters with a record of values: one stream of whole messages."""
+    """Return the view of converters with a record of values: one stream of whole messages."""
     assert layer.values is not None
     image = f"to_hstring(work.{layer.package}.to_slv(rx_msg))"
     sides = [
@@ -167,7 +167,7 @@ _STATUS = """
 
 
 def flat_view(plan: Plan, package: str, cores: Mapping[Direction, Core]) -> View:
-    """See the converters with plain ports; there is no record anywhere."""
+    """Return the view of converters with plain ports, without any record."""
     names = leaf_names(plan)
     ports = {
         way: [port for port in ports_of(plan, way) if port.leaf is not None] for way in DIRECTIONS

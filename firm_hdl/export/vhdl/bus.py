@@ -1,7 +1,7 @@
 """The VHDL package of a bus width: strings, arrays and sequences of primitives as streams.
 
-How many items go in one transfer depends on the primitive and on the width of the bus, and on
-nothing else; so these types are the same for all messages on a bus of one width.
+The number of items in a transfer depends only on the primitive and on the width of the bus. So all
+messages on a bus of one width have these types in common.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _LENGTH = Element(
     ready_type="std_logic",
     idle="UINT32_STREAM_IDLE",
     all_ready="'1'",
-    remark="  -- how many follow",
+    remark="  -- number of elements",
 )
 
 
@@ -66,8 +66,8 @@ def _items(primitive: str, lanes: int) -> Iterator[str]:
     zeros = "(others => '0')" if primitive == "bool" else "(others => (others => '0'))"
     yield (
         f"\n  type {primitive}_items_stream_t is record\n"
-        f"    data  : {primitive}_items_t(0 to {lanes - 1});  -- past the end: zeros\n"
-        "    last  : std_logic;  -- the transfer ends its array\n"
+        f"    data  : {primitive}_items_t(0 to {lanes - 1});  -- zeros behind the last item\n"
+        "    last  : std_logic;  -- last transfer of the array or sequence\n"
         "    valid : std_logic;\n"
         "  end record;\n"
         f"\n  constant {primitive.upper()}_ITEMS_STREAM_IDLE : {primitive}_items_stream_t := (\n"

@@ -1,7 +1,7 @@
 """Constants of a message type in VHDL, and text from definitions as VHDL comments.
 
-An integer becomes a vector of its own width and sign, so that it compares with a field as it is and
-64 bits are no matter; a float becomes a real and its bits; a string its bytes on the wire.
+An integer becomes a vector of its own width and sign, so that it can be compared with a field and
+may have 64 bits. A float becomes a real and its bits. A string becomes its bytes on the wire.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ __all__ = ["comment", "declarations", "origin", "quoted"]
 
 
 def comment(text: str, indent: str = "  ") -> Iterator[str]:
-    """Yield text as comment lines of at most 100 columns, in ASCII, which every tool reads."""
+    """Yield text as comment lines of at most 100 columns, in ASCII."""
     return remark(text, indent, "--")
 
 
@@ -30,12 +30,12 @@ def quoted(text: str, indent: str = "  ") -> Iterator[str]:
 
 
 def origin(source: Field, name: str) -> str:
-    """Say in a comment what a member of a record is in ROS; `name` is what VHDL calls it."""
+    """Return a comment that names the ROS field of a record member; `name` is the VHDL name."""
     return f"  -- {remarks.origin(source, name)}"
 
 
 def declarations(named: Iterable[Named], taken: Iterable[str]) -> Iterator[str]:
-    """Yield the declarations, type by type."""
+    """Yield the declarations, in the order of `named`."""
     owner: Message | None = None
     named = list(named)
     used = {*taken, *(entry.name.lower() for entry in named)}
@@ -73,7 +73,7 @@ def _number(name: str, kind: Primitive, value: object, unit: str, used: set[str]
         if isfinite(number_):
             yield f"  constant {name} : real := {_real(number_)};  -- {kind}{unit}\n"
         if not kind.has_wire_format:
-            return  # Nobody knows its bits.
+            return  # Its bits are not defined.
         bits_name = first_free(f"{name.rstrip()}_BITS", used)
         used.add(bits_name.lower())
         image = float_bits(number_, kind.bytes)
@@ -84,23 +84,23 @@ def _number(name: str, kind: Primitive, value: object, unit: str, used: set[str]
 
 
 def _real(value: float) -> str:
-    """Write a real literal, which needs a point and may have no exponent without one."""
+    """Write a real literal; VHDL requires a decimal point."""
     mantissa, _, exponent = repr(value).partition("e")
     point = mantissa if "." in mantissa else f"{mantissa}.0"
     return f"{point}e{int(exponent)}" if exponent else point
 
 
 def _string(value: object) -> str:
-    """Write the bytes of a string as an expression, in lines that are not too long."""
+    """Write the bytes of a string as an expression, with at most 80 characters per line."""
     data = string_bytes(value)
     parts = []
-    # No literal has `--`: what follows is for some tools a comment, also within quotation marks.
+    # No literal contains `--`, because some tools see a comment there, even in a string.
     for piece in re.findall(rb"(?:[ -,.-~]|-(?!-)){1,80}|-|[^ -~]", data):
         if len(piece) == 1 and not 32 <= piece[0] < 127:
             parts.append(f"character'val({piece[0]})")
         else:
             parts.append('"' + piece.decode("ascii").replace('"', '""') + '"')
-    # A lone character is no string.
+    # A single character is no string, so an empty string is put in front.
     if not parts or (len(parts) == 1 and parts[0].startswith("character")):
         parts.insert(0, '""')
     return " &\n    ".join(parts)

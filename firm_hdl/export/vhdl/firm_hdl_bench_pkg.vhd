@@ -6,7 +6,7 @@ use std.textio.all;
 
 package firm_hdl_bench_pkg is
 
-  -- The state of a random generator, never the same for two numbers.
+  -- The state of a random generator; one seed gives different states for different numbers.
   type random_t is record
     first  : positive;
     second : positive;
@@ -14,17 +14,17 @@ package firm_hdl_bench_pkg is
 
   function random_from (seed : natural; number : natural) return random_t;
 
-  -- Draw whether something happens that does so in some percent of all cases.
+  -- Draw an event that happens in the given percentage of all cases.
   procedure draw (variable random : inout random_t; percent : in natural; happens : out boolean);
 
   -- Draw a byte.
   procedure draw (variable random : inout random_t; octet : out natural);
 
-  -- A line with a packet; a file may have been written on Windows.
+  -- Size of the packet in a line. The line may end with CR, as files from Windows do.
   function packet_bytes (row : in string) return natural;
   function is_comment (row : string) return boolean;
 
-  -- The byte at some place of a line with a packet; -1 if it is not hexadecimal.
+  -- Byte number `place` of the packet in a line; -1 if it is not hexadecimal.
   function byte_at (row : string; place : natural) return integer;
 
   -- A byte as two hexadecimal digits.
@@ -38,7 +38,8 @@ package body firm_hdl_bench_pkg is
 
   function random_from (seed : natural; number : natural) return random_t is
   begin
-    -- What `uniform` takes: 1 to 2147483562 and 1 to 2147483398.
+    -- `uniform` accepts 1 to 2147483562 and 1 to 2147483398.
+
     return (first => (seed mod 1000003) * 2143 + 1, second => (number mod 1000003) * 2131 + 17);
   end function;
 

@@ -1,10 +1,10 @@
-"""The user's layer in VHDL: a message as nested records, and converters that speak them.
+"""The user's layer in VHDL: a message as nested records, and converters with such ports.
 
-For each message type: a package with the records of its fields and its constants, which all
-converters share; a package with components; and an entity per direction around the core, whose flat
-ports stay usable on their own. A message of fixed size also gets entities that give, and take, all
-of it at once. What the records are is decided in :mod:`firm_hdl.export.tree` and
-:mod:`firm_hdl.export.vhdl.values`.
+A message type gets a package with the records of its fields and its constants, which all converters
+share, a package with components, and an entity per direction around the core. The core with its
+flat ports can also be used directly. A message of fixed size also gets entities that transfer the
+whole message at once. :mod:`firm_hdl.export.tree` and :mod:`firm_hdl.export.vhdl.values` decide on
+the records.
 """
 
 from __future__ import annotations
@@ -40,15 +40,15 @@ __all__ = ["Shared", "UserLayer", "flat_package", "user_layer"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shared:
-    """A package that other message types' folders have, too, with the same text.
+    """A package that the folders of other message types have, too, with the same text.
 
     Attributes
     ----------
     name : str
     needs : tuple of str
-        Others that it uses; the packages of all bus widths are not among them.
+        Shared packages that it uses, except the package of primitives.
     message : str
-        The message type that it is of; empty for that of the bus width.
+        The message type that it declares; empty for the package of the bus width.
     """
 
     name: str
@@ -63,23 +63,23 @@ class UserLayer:
     Attributes
     ----------
     name : str
-        What the names of its entities start with.
+        Prefix of the names of its entities.
     package : str
-        With the message's own records.
+        Name of the package with the message's own records.
     entities : mapping of direction to str
-        With a record of streams.
+        Entities with a record of streams.
     record_entities : mapping of direction to str
-        With a record of values; empty if the message has none.
+        Entities with a record of values; empty if the message has no record view.
     tree : Tree
     values : ValueType or None
     constants : dict of str to list of Named
-        By package.
+        Constants by package.
     shared : tuple of Shared
         Packages that other messages' folders have, too, in compile order.
     packages : mapping of str to str
-        Texts by file name, in compile order, among them those of all messages.
+        Texts of all packages by file name, in compile order, including the shared ones.
     wrappers : mapping of str to str
-        Likewise; they need the packages and the cores.
+        Texts of the entities by file name; they compile after the packages and the cores.
     """
 
     name: str
@@ -113,9 +113,9 @@ def user_layer(
     cores : mapping of direction to Core
         The entities with flat ports.
     record_cores : mapping of direction to Core, or None
-        Those of the record view, if there is one.
+        The entities of the record view; `None` if the message has none.
     header : str
-        Lines for a comment at the head of every file that is the message's alone.
+        Lines of a comment at the head of every file that is not shared.
     """
     entities = {direction: f"{name}_{direction}" for direction in DIRECTIONS}
     whole = {way: f"{entity}_record" for way, entity in entities.items() if record_cores}
@@ -218,14 +218,19 @@ def flat_package(
     cores: Mapping[Direction, Core],
     header: str = "",
 ) -> tuple[str, list[Named]]:
-    """Write a package without any record: constants of a message, and the flat entities.
+    """Write a package without records: constants of a message, components of the flat entities.
 
     Parameters
     ----------
     name : str
-        The package.
+        Name of the package.
     cores, header
         As for :func:`user_layer`.
+
+    Returns
+    -------
+    text : str
+    constants : list of Named
     """
     taken = frozenset([name.lower(), *(core.entity.lower() for core in cores.values())])
     constants = named_constants(message, taken)

@@ -1,7 +1,7 @@
-"""The VHDL package of a message type: its records, its constants, and what ties them off.
+"""The VHDL package of a message type: its records, tie-off constants, and ROS constants.
 
-The text depends on the type, the wire and the width of the bus alone. So it is the same in the
-folder of every message that has the type in it, and a design compiles it once.
+The text depends only on the type, the wire format and the width of the bus. So the folders of all
+messages that contain the type have the same file, and a design compiles it once.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ __all__ = ["constants_of", "message_package"]
 
 
 def constants_of(package: Package, plan: Plan) -> list[Named]:
-    """Name the constants of a message's own."""
+    """Name the constants that a message itself declares."""
     return named_constants(package.message, taken_names(package, plan), nested=False)
 
 
 def message_package(package: Package, plan: Plan, values: ValueType | None) -> str:
-    """Write the package, and its body if it has values."""
+    """Write the package, and its body if the message has a record of values."""
     text = [*_head(package, plan), *_streams(package, plan)]
     if values is not None:
         text += values.declarations()
@@ -43,20 +43,20 @@ def _head(package: Package, plan: Plan) -> Iterator[str]:
     base, message = package.base, package.message
     yield from comment(
         f"Records of {message.name}: {base}_t has data and valid of every field, {base}_ready_t "
-        f"has ready, the other way. With {base.upper()}_ALL_READY everything is taken, with "
-        f"{base.upper()}_IDLE nothing is offered.",
+        f"has ready, in the opposite direction. {base.upper()}_ALL_READY takes every transfer; "
+        f"{base.upper()}_IDLE offers none.",
         "",
     )
     yield from comment(
-        f"The same for all converters, made by firm-hdl, with wire {plan.wire} and a bus of "
-        f"{plan.bus_bytes} bytes: compile it once.",
+        f"Made by firm-hdl. All converters with wire {plan.wire} and a bus of "
+        f"{plan.bus_bytes} bytes share this file: compile it once.",
         "",
     )
     if message.comment:
         yield "--\n"
         yield from quoted(message.comment, "")
-    # Tools that look for the order of files see these clauses. The names themselves are
-    # written in full below: what two types of one name declare would hide each other.
+    # These clauses are for tools that find the compile order of files. The names are written in
+    # full below, because types of the same name in two packages would hide each other.
     needs = "".join(f"use work.{name};\n" for name in package.needs)
     yield f"""
 library ieee;
@@ -88,9 +88,9 @@ def _streams(package: Package, plan: Plan) -> Iterator[str]:
         ready_type="std_logic",
         idle="UINT32_STREAM_IDLE",
         all_ready="'1'",
-        remark="  -- how many follow",
+        remark="  -- number of elements",
     )
-    yield "\n  -- Several of them: one after the other.\n"
+    yield "\n  -- Sequences and arrays: all elements use the same streams, one after the other.\n"
     yield from stream_record(f"{base}_sequence", [length, item])
     yield from stream_record(f"{base}_array", [item])
 

@@ -1,7 +1,7 @@
-"""What all test benches share, in VHDL: a source and a sink of packets that stall at random.
+"""Parts of all VHDL test benches: a source and a sink of packets that stall at random.
 
-Packets are in text files, one a line, their bytes in hexadecimal in the order of the wire; an empty
-line is an empty packet, and lines that start with ``#`` are comments. Simulation only.
+Packets are in text files, one per line, with their bytes in hexadecimal in wire order. An empty
+line is an empty packet, and a line that starts with ``#`` is a comment. Simulation only.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ PARTS = {
 
 
 def packets_text(packets: list[bytes], remark: str = "") -> str:
-    """Write packets as the source and the sink read them.
+    """Return the text of a file of packets, as the source and the sink read it.
 
     >>> packets_text([b"\\x00\\x1f", b""], "Two packets.")
     '# Two packets.\\n001f\\n\\n'

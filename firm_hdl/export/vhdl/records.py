@@ -1,4 +1,4 @@
-"""Records in VHDL, forwards and backwards, and constants that tie them off."""
+"""Records in VHDL, for data and valid and for ready, and tie-off constants."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ class Element:
     ----------
     name, type, ready_type : str
     idle, all_ready : str
-        Values with nothing offered, and with everything taken.
+        Values of `type` with valid 0, and of `ready_type` with ready 1.
     comment : tuple of str
-        Lines above it.
+        Comment lines above the element.
     remark : str
-        Behind it.
+        Comment behind the element, on the same line.
     """
 
     name: str
@@ -33,9 +33,9 @@ class Element:
 
 
 def record_elements(elements: Sequence[tuple[str, str, str, Iterable[str]]]) -> Iterator[str]:
-    """Yield elements of a record: name, type, what stands behind it, and lines above it."""
+    """Yield elements of a record, given by name, type, comment behind, and lines above."""
     width = max(len(name) for name, *_ in elements)
-    # Types of other packages are long.
+    # Types of other packages are long, and do not count for the columns.
     short = [len(kind) for _, kind, *_ in elements if not kind.startswith("work.")]
     kinds = max(short, default=0) + 1
     for name, kind, remark, above in elements:

@@ -1,7 +1,7 @@
-"""The VHDL package that all users' packages share: streams of primitives, and what packets end in.
+"""The VHDL package that all messages share: streams of primitives, and status codes.
 
-It is the same text whatever the message type, so that a procedure for, say, a `float64_stream_t`
-serves all types and bus widths, and designs with several converters name one status.
+Its text does not depend on the message type. So a procedure for, say, a `float64_stream_t` works
+for all types and bus widths, and all converters of a design have the same status codes.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ _DATA = {
 _HEAD = f"""\
 -- Streams of ROS's primitive types, for all message types and bus widths.
 --
--- A transfer happens at a rising clock edge at which valid and ready are both '1'. Whoever offers
--- does not wait for ready, and keeps valid and the data until the transfer.
+-- A transfer happens at a rising clock edge at which valid and ready are both '1'. The source sets
+-- valid without waiting for ready, and keeps valid and the data unchanged until the transfer.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -37,12 +37,12 @@ use ieee.numeric_std.all;
 
 package {TYPES_NAME} is
 
-  -- How a packet ended, once per packet, on m_axis_status_tdata.
+  -- Status of a packet on m_axis_status_tdata, one transfer per packet.
 """
 
 
 def data_type(primitive: str) -> str:
-    """Give the VHDL type of a primitive's value.
+    """Return the VHDL type of a primitive's value.
 
     >>> data_type("int16"), data_type("bool")
     ('signed(15 downto 0)', 'std_logic')
@@ -74,7 +74,7 @@ def _declarations() -> Iterator[str]:
             "    valid : std_logic;\n"
             "  end record;\n"
         )
-    yield "\n  -- Nothing is offered.\n"
+    yield "\n  -- Idle streams: valid is '0'.\n"
     width = max(map(len, _DATA))
     for name in _DATA:
         zero = "'0'" if name == "bool" else "(others => '0')"
@@ -83,10 +83,10 @@ def _declarations() -> Iterator[str]:
             f"  constant {constant} : {name + '_stream_t':{width + 9}} :="
             f" (data => {zero}, valid => '0');\n"
         )
-    yield "\n  -- Items that are transferred together, the first one at index 0.\n"
+    yield "\n  -- Items of one transfer, the first one at index 0.\n"
     for name, (data, _) in _DATA.items():
         yield f"  type {name}_items_t is array (natural range <>) of {data};\n"
-    yield "\n  -- Between items and the flat ports' vectors, the first item lowest.\n"
+    yield "\n  -- Conversion between items and vectors, with the first item in the lowest bits.\n"
     for name in _DATA:
         yield f"  {_TO_SLV.format(name=name)};\n  {_TO_ITEMS.format(name=name)};\n"
     yield f"\nend package {TYPES_NAME};\n"

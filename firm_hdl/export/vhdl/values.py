@@ -1,8 +1,8 @@
-"""Messages of fixed size as records of plain values in VHDL, and their way to a vector and back.
+"""Messages of fixed size as records of plain values in VHDL, and conversions to vectors and back.
 
-A record type for each message type of fixed size, with the same members as the record of streams;
-`to_slv` and `to_..._value` convert between a record and the vector that the circuit has, whose
-layout is that of :func:`firm_hdl.gateware.record_layout`: the first member lowest.
+Each message type of fixed size has a record type with the same members as the record of streams.
+`to_slv` and `to_..._value` convert between a record and the vector of the circuit. The vector has
+the layout of :func:`firm_hdl.gateware.record_layout`, with the first member in the lowest bits.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ class Member:
     Attributes
     ----------
     name, type : str
-        In VHDL.
+        Name and type in VHDL.
     first, bits : int
-        Where it is in the record's vector.
+        Lowest bit in the record's vector, and number of bits.
     to_slv, from_slv : str
-        Function that makes a vector of it, and that makes it of a vector; empty if it is one.
+        Functions that convert the member to a vector and back; empty if it is one.
     source : Field or None
-        The definition's field; none in a message without fields.
+        The definition's field; `None` in a message without fields.
     """
 
     name: str
@@ -54,10 +54,10 @@ class ValueType:
     Attributes
     ----------
     base : str
-        The record is ``base_t``, the function ``to_base``, the size ``BASE_BITS``; of an array of
-        them, `bases_t` and `to_bases`.
+        Stem of the names: the record is ``base_t``, its function ``to_base``, its size
+        ``BASE_BITS``; an array of records is ``bases_t``, and its function ``to_bases``.
     package : str
-        That declares it.
+        The package that declares them.
     bits : int
     members : tuple of Member
     """
@@ -73,24 +73,24 @@ class ValueType:
         return f"{self.base}_t"
 
     def declarations(self) -> Iterator[str]:
-        """Yield what a package declares."""
-        yield "\n  -- The message as values, without handshakes; the entities ..._record have it.\n"
+        """Yield the declarations of the package."""
+        yield "\n  -- The message as plain values; the ports of the entities ..._record have it.\n"
         yield from _record(self)
-        yield "\n  -- Between records and vectors, the first member lowest.\n"
+        yield "\n  -- Conversion between records and vectors, first member in the lowest bits.\n"
         yield f"  constant {self.base.upper()}_BITS : positive := {self.bits};\n"
         for head in (_to_slv(self), _from_slv(self), _all_to_slv(self), _all_from_slv(self)):
             yield f"{head};\n"
 
     def bodies(self) -> Iterator[str]:
-        """Yield what the package's body has."""
+        """Yield the bodies of the functions."""
         yield from _conversions(self)
         yield from _conversions_of_arrays(self)
 
 
 def values_of(tree: Tree, plan: Plan) -> dict[str, ValueType]:
-    """Decide on the records of a message and the types in it, by the name of the type.
+    """Return the records of values of a message and the types in it, by the name of the type.
 
-    Those that have no fixed size are left out, and those that are too wide to be had as a whole.
+    Types without a fixed size and types that are too wide for Amaranth are left out.
     """
     made: dict[str, ValueType] = {}
     for package in tree.packages:
@@ -115,7 +115,7 @@ def _value_type(package: Package, plan: Plan, made: Mapping[str, ValueType]) -> 
 def _member(
     node: Node, plan: Plan, made: Mapping[str, ValueType], package: str, first: int
 ) -> Member | None:
-    """Describe a member; `None` if it is too wide."""
+    """Describe a member; return `None` if it is too wide."""
     kind = node.source.type if node.source is not None else None
     element = kind.element if isinstance(kind, Array) else kind
     count = kind.count if isinstance(kind, Array) else None

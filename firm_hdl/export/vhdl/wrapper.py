@@ -50,7 +50,7 @@ class Core:
     ----------
     entity : str
     names : mapping of str to str
-        What ports are called that are not called as :func:`ports_of` says.
+        Names of ports, where they differ from those of :func:`ports_of`.
     """
 
     entity: str
@@ -63,8 +63,8 @@ def stream_lines(message: Message, plan: Plan, tree: Tree, direction: Direction)
     return _around(
         [port for port in ports_of(plan, direction) if port.leaf is None],
         [
-            ("msg", f"{forwards} {tree.root.type}", f"The fields of {message.name}."),
-            ("rdy", f"{backwards} {tree.root.ready_type}", "Which of them are taken."),
+            ("msg", f"{forwards} {tree.root.type}", f"Data and valid of {message.name}."),
+            ("rdy", f"{backwards} {tree.root.ready_type}", "Ready of the fields."),
         ],
     )
 
@@ -78,14 +78,14 @@ def record_lines(
         [port for port in ports_of(plan, direction) if port.leaf is None],
         [
             ("msg", f"{forwards} {values.name}", f"The fields of {message.name}."),
-            ("msg_valid", f"{forwards} std_logic", "message: offered, all of it."),
-            ("msg_ready", f"{backwards} std_logic", "message: taken."),
+            ("msg_valid", f"{forwards} std_logic", "Valid: the whole message is offered."),
+            ("msg_ready", f"{backwards} std_logic", "Ready: the message is taken."),
         ],
     )
 
 
 def plain_lines(ports: Iterable[Port], names: Mapping[str, str]) -> list[Line]:
-    """List ports as a circuit has them."""
+    """List the plain ports of a circuit."""
     return [
         (
             names.get(port.name, port.name),
@@ -97,7 +97,7 @@ def plain_lines(ports: Iterable[Port], names: Mapping[str, str]) -> list[Line]:
 
 
 def _around(ports: list[Port], message: list[Line]) -> list[Line]:
-    """Put a message's ports before those of the status."""
+    """Put the ports of the message before those of the status."""
     lines = [
         (
             port.name,
@@ -115,7 +115,7 @@ def _kind(width: int, *, vector: bool) -> str:
 
 
 def _is_vector(port: Port) -> bool:
-    """Tell whether a packet port is a vector whatever the bus: AXI4-Stream's ``tkeep`` is."""
+    """Return whether a port is a vector even if it has one bit, as ``tkeep`` of AXI4-Stream."""
     return port.name.endswith("_tkeep")
 
 
@@ -127,7 +127,7 @@ def component(entity: str, lines: list[Line]) -> Iterator[str]:
 
 
 def _port_clause(lines: list[Line], *, meanings: bool = True) -> Iterator[str]:
-    """Yield a port clause, a line each."""
+    """Yield the lines of a port clause."""
     names = max(len(name) for name, _, _ in lines)
     kinds = max(len(kind) for _, kind, _ in lines) + 1
     yield "  port (\n"
@@ -151,7 +151,7 @@ def _entity(
     signals: list[tuple[str, str]],
     assignments: list[str],
 ) -> Iterator[str]:
-    """Yield an entity around a core; `parts` says what the core's ports are connected to."""
+    """Yield an entity around a core; `parts` maps the core's ports to their actuals."""
     width = max(len(core.names.get(port, port)) for port in parts)
     names = max((len(name) for name, _ in signals), default=0)
     joined = ",\n".join(
@@ -189,9 +189,9 @@ def stream_wrapper(
 
 
 class _Conversions:
-    """What a core's ports are connected to; conversions get a signal of their own.
+    """The actuals of a core's ports; a conversion gets a signal of its own.
 
-    Some synthesis tools take no conversion in a port map.
+    Some synthesis tools do not support a conversion in a port map.
     """
 
     def __init__(self, plan: Plan, tree: Tree, direction: Direction) -> None:
@@ -234,8 +234,8 @@ class _Conversions:
 
 
 def _packet_actual(port: Port) -> str:
-    """Give what a port that is not the message's is connected to: that of the same name."""
-    # A vector of one bit is a bit to the core.
+    """Return the actual of a packet or status port: the port of the same name."""
+    # The core has a bit where the entity has a vector of one bit.
     return f"{port.name}(0)" if port.width == 1 and _is_vector(port) else port.name
 
 
@@ -248,7 +248,7 @@ def record_wrapper(
     package: str,
     core: Core,
 ) -> str:
-    """Write a converter with a record of values, all valid at once."""
+    """Write a converter with a record of values that has one handshake."""
     bits = values.bits
     parts = {port.name: _packet_actual(port) for port in record_ports(plan, direction, bits)}
     parts["msg_data"] = "msg_data" if bits > 1 else "msg_data(0)"

@@ -113,7 +113,7 @@ def test_missing_stimuli_and_missing_ghdl_are_told(tmp_path):
     assert (status, said.count("apt install ghdl")) == (127, 1)
     (tmp_path / "stimuli.txt").unlink()
     status, said = run(tmp_path, GHDL="true")
-    assert (status, said.count("stimuli.txt, one a line")) == (2, 1)
+    assert (status, said.count("stimuli.txt, one per line")) == (2, 1)
 
 
 def test_type_that_rosbags_cannot_write_has_no_stimuli(monkeypatch):

@@ -7,8 +7,8 @@
 // Copy what follows into a module that has aclk and aresetn. Leave out the declarations of nets
 // that your module has as ports.
 //
-// Every field is tied off: it is taken as soon as it is there. To use one, change its line: connect
-// data and valid, and give ready.
+// Every field is tied off: its transfers are taken at once. To use a field, change its line:
+// connect data and valid, and drive ready.
 
 wire [63:0] s_axis_tdata;
 wire [7:0] s_axis_tkeep;

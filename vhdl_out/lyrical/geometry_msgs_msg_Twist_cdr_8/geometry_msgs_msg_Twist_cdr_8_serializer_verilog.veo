@@ -7,8 +7,8 @@
 // Copy what follows into a module that has aclk and aresetn. Leave out the declarations of nets
 // that your module has as ports.
 //
-// Every field is tied off: it is 0 in all packets, and strings and sequences are empty. To use one,
-// change its line: connect data and valid, and look at ready.
+// Every field is tied off: it is 0 in all packets, and strings and sequences are empty. To use a
+// field, change its line: drive data and valid, and connect ready.
 
 wire [63:0] m_axis_tdata;
 wire [7:0] m_axis_tkeep;

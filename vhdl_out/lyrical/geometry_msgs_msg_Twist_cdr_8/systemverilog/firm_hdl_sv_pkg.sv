@@ -1,14 +1,14 @@
 // Streams of ROS's primitive types, for all message types and bus widths.
 //
-// A transfer happens at a rising clock edge at which valid and ready are both 1. Whoever offers
-// does not wait for ready, and keeps valid and the data until the transfer.
+// A transfer happens at a rising clock edge at which valid and ready are both 1. The source sets
+// valid without waiting for ready, and keeps valid and the data unchanged until the transfer.
 
 `ifndef FIRM_HDL_SV_PKG
 `define FIRM_HDL_SV_PKG
 
 package firm_hdl_sv_pkg;
 
-  // How a packet ended, once per packet.
+  // Status of a packet, one transfer per packet.
   typedef enum logic [7:0] {
     STATUS_OK            = 8'h00,
     STATUS_TRUNCATED     = 8'h01,
@@ -26,7 +26,7 @@ package firm_hdl_sv_pkg;
 
   localparam packet_status_stream_t PACKET_STATUS_STREAM_IDLE = '0;
 
-  // Values. A float is its IEEE 754 bits, and of a bool 1 is true.
+  // Values. A float is its IEEE 754 bits; a bool is 1 if true.
   typedef logic bool_data_t;
   typedef logic [31:0] float32_data_t;
   typedef logic [63:0] float64_data_t;
@@ -94,7 +94,7 @@ package firm_hdl_sv_pkg;
     logic         valid;
   } uint64_stream_t;
 
-  // Nothing is offered.
+  // Idle streams: valid is 0.
   localparam bool_stream_t BOOL_STREAM_IDLE = '0;
   localparam float32_stream_t FLOAT32_STREAM_IDLE = '0;
   localparam float64_stream_t FLOAT64_STREAM_IDLE = '0;

@@ -7,21 +7,21 @@
 // geometry_msgs_msg_Twist_cdr_8_serializer_verilog has plain ports.
 
 module geometry_msgs_msg_Twist_cdr_8_serializer_sv (
-  // Clock; its rising edge counts.
+  // Clock; the rising edge is active.
   input  logic aclk,
   // Synchronous reset, active low.
   input  logic aresetn,
   // Packets.
   output firm_hdl_bus_8_sv_pkg::packet_beat_t m_axis,
-  // beat: taken.
+  // beat: ready.
   input  logic m_axis_tready,
-  // The fields of geometry_msgs/msg/Twist.
+  // Data and valid of the fields of geometry_msgs/msg/Twist.
   input  geometry_msgs_msg_twist_cdr_8_sv_pkg::twist_t msg,
-  // Which of them are taken.
+  // Ready of the fields.
   output geometry_msgs_msg_twist_cdr_8_sv_pkg::twist_ready_t rdy,
-  // How packets ended.
+  // Status of each packet.
   output firm_hdl_sv_pkg::packet_status_stream_t m_axis_status,
-  // status: taken.
+  // status: ready.
   input  logic m_axis_status_tready
 );
 

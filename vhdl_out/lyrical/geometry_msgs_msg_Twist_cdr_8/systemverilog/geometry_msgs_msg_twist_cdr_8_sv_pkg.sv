@@ -1,7 +1,6 @@
 // Structs of geometry_msgs/msg/Twist: twist_t has data and valid of every field, twist_ready_t has
-// ready, the other way. With TWIST_ALL_READY everything is taken, with TWIST_IDLE nothing is
-// offered.
-// The same for all converters, made by firm-hdl, with wire cdr and a bus of 8 bytes.
+// ready, in the opposite direction. TWIST_ALL_READY takes every transfer; TWIST_IDLE offers none.
+// Made by firm-hdl. All converters with wire cdr and a bus of 8 bytes share this file.
 
 `ifndef GEOMETRY_MSGS_MSG_TWIST_CDR_8_SV_PKG
 `define GEOMETRY_MSGS_MSG_TWIST_CDR_8_SV_PKG
@@ -24,10 +23,10 @@ package geometry_msgs_msg_twist_cdr_8_sv_pkg;
   localparam twist_t TWIST_IDLE = '0;
   localparam twist_ready_t TWIST_ALL_READY = '1;
 
-  // Several of them: one after the other.
+  // Sequences and arrays: all elements use the same streams, one after the other.
 
   typedef struct packed {
-    uint32_stream_t length;  // how many follow
+    uint32_stream_t length;  // number of elements
     twist_t         item;
   } twist_sequence_t;
 

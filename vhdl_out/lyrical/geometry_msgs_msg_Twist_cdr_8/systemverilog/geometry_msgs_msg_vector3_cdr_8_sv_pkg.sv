@@ -1,7 +1,7 @@
 // Structs of geometry_msgs/msg/Vector3: vector3_t has data and valid of every field,
-// vector3_ready_t has ready, the other way. With VECTOR3_ALL_READY everything is taken, with
-// VECTOR3_IDLE nothing is offered.
-// The same for all converters, made by firm-hdl, with wire cdr and a bus of 8 bytes.
+// vector3_ready_t has ready, in the opposite direction. VECTOR3_ALL_READY takes every transfer;
+// VECTOR3_IDLE offers none.
+// Made by firm-hdl. All converters with wire cdr and a bus of 8 bytes share this file.
 
 `ifndef GEOMETRY_MSGS_MSG_VECTOR3_CDR_8_SV_PKG
 `define GEOMETRY_MSGS_MSG_VECTOR3_CDR_8_SV_PKG
@@ -26,10 +26,10 @@ package geometry_msgs_msg_vector3_cdr_8_sv_pkg;
   localparam vector3_t VECTOR3_IDLE = '0;
   localparam vector3_ready_t VECTOR3_ALL_READY = '1;
 
-  // Several of them: one after the other.
+  // Sequences and arrays: all elements use the same streams, one after the other.
 
   typedef struct packed {
-    uint32_stream_t length;  // how many follow
+    uint32_stream_t length;  // number of elements
     vector3_t       item;
   } vector3_sequence_t;
 

@@ -1,5 +1,5 @@
--- Takes packets on AXI4-Stream with random stalls, writes them to a file, and compares each byte
--- with another. Simulation only.
+-- Receives packets on AXI4-Stream with random stalls, writes them to a file, and compares each byte
+-- with that of another file. Simulation only.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -42,7 +42,9 @@ begin
     variable stall, comment : boolean;
     variable count, place, all_bytes, number : natural := 0;
 
-    -- Bytes are kept from lane 0 on, in all lanes but of the last beat, which alone may be marked.
+    -- tkeep is all ones except in the last beat, where it is a run of ones from lane 0. Only the
+    -- last beat may have tuser set.
+
     procedure check_beat is
     begin
       for lane in 0 to bus_bytes - 1 loop

@@ -38,7 +38,7 @@ begin
     variable stall : boolean;
     variable size, place, sent : natural := 0;
 
-    -- Lanes that are not kept carry noise, which nobody may look at.
+    -- Lanes with tkeep = '0' carry random bytes, which the receiver has to ignore.
     procedure offer is
       variable octet : integer;
     begin

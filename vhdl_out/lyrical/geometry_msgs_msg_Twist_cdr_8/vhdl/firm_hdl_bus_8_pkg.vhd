@@ -9,8 +9,8 @@ use work.firm_hdl_types_pkg.all;
 package firm_hdl_bus_8_pkg is
 
   type bool_items_stream_t is record
-    data  : bool_items_t(0 to 7);  -- past the end: zeros
-    last  : std_logic;  -- the transfer ends its array
+    data  : bool_items_t(0 to 7);  -- zeros behind the last item
+    last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
 
@@ -18,8 +18,8 @@ package firm_hdl_bus_8_pkg is
     data => (others => '0'), last => '0', valid => '0');
 
   type float32_items_stream_t is record
-    data  : float32_items_t(0 to 1);  -- past the end: zeros
-    last  : std_logic;  -- the transfer ends its array
+    data  : float32_items_t(0 to 1);  -- zeros behind the last item
+    last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
 
@@ -27,8 +27,8 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type float64_items_stream_t is record
-    data  : float64_items_t(0 to 0);  -- past the end: zeros
-    last  : std_logic;  -- the transfer ends its array
+    data  : float64_items_t(0 to 0);  -- zeros behind the last item
+    last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
 
@@ -36,8 +36,8 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type int8_items_stream_t is record
-    data  : int8_items_t(0 to 7);  -- past the end: zeros
-    last  : std_logic;  -- the transfer ends its array
+    data  : int8_items_t(0 to 7);  -- zeros behind the last item
+    last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
 
@@ -45,8 +45,8 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type uint8_items_stream_t is record
-    data  : uint8_items_t(0 to 7);  -- past the end: zeros
-    last  : std_logic;  -- the transfer ends its array
+    data  : uint8_items_t(0 to 7);  -- zeros behind the last item
+    last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
 
@@ -54,8 +54,8 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type int16_items_stream_t is record
-    data  : int16_items_t(0 to 3);  -- past the end: zeros
-    last  : std_logic;  -- the transfer ends its array
+    data  : int16_items_t(0 to 3);  -- zeros behind the last item
+    last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
 
@@ -63,8 +63,8 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type uint16_items_stream_t is record
-    data  : uint16_items_t(0 to 3);  -- past the end: zeros
-    last  : std_logic;  -- the transfer ends its array
+    data  : uint16_items_t(0 to 3);  -- zeros behind the last item
+    last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
 
@@ -72,8 +72,8 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type int32_items_stream_t is record
-    data  : int32_items_t(0 to 1);  -- past the end: zeros
-    last  : std_logic;  -- the transfer ends its array
+    data  : int32_items_t(0 to 1);  -- zeros behind the last item
+    last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
 
@@ -81,8 +81,8 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type uint32_items_stream_t is record
-    data  : uint32_items_t(0 to 1);  -- past the end: zeros
-    last  : std_logic;  -- the transfer ends its array
+    data  : uint32_items_t(0 to 1);  -- zeros behind the last item
+    last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
 
@@ -90,8 +90,8 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type int64_items_stream_t is record
-    data  : int64_items_t(0 to 0);  -- past the end: zeros
-    last  : std_logic;  -- the transfer ends its array
+    data  : int64_items_t(0 to 0);  -- zeros behind the last item
+    last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
 
@@ -99,8 +99,8 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type uint64_items_stream_t is record
-    data  : uint64_items_t(0 to 0);  -- past the end: zeros
-    last  : std_logic;  -- the transfer ends its array
+    data  : uint64_items_t(0 to 0);  -- zeros behind the last item
+    last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
 
@@ -108,7 +108,7 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type string_stream_t is record
-    length : uint32_stream_t;       -- how many follow
+    length : uint32_stream_t;       -- number of elements
     items  : uint8_items_stream_t;
   end record;
 
@@ -126,7 +126,7 @@ package firm_hdl_bus_8_pkg is
     items  => '1');
 
   type wstring_stream_t is record
-    length : uint32_stream_t;        -- how many follow
+    length : uint32_stream_t;        -- number of elements
     items  : uint32_items_stream_t;
   end record;
 
@@ -144,7 +144,7 @@ package firm_hdl_bus_8_pkg is
     items  => '1');
 
   type bool_sequence_stream_t is record
-    length : uint32_stream_t;      -- how many follow
+    length : uint32_stream_t;      -- number of elements
     items  : bool_items_stream_t;
   end record;
 
@@ -176,7 +176,7 @@ package firm_hdl_bus_8_pkg is
     items => '1');
 
   type float32_sequence_stream_t is record
-    length : uint32_stream_t;         -- how many follow
+    length : uint32_stream_t;         -- number of elements
     items  : float32_items_stream_t;
   end record;
 
@@ -208,7 +208,7 @@ package firm_hdl_bus_8_pkg is
     items => '1');
 
   type float64_sequence_stream_t is record
-    length : uint32_stream_t;         -- how many follow
+    length : uint32_stream_t;         -- number of elements
     items  : float64_items_stream_t;
   end record;
 
@@ -240,7 +240,7 @@ package firm_hdl_bus_8_pkg is
     items => '1');
 
   type int8_sequence_stream_t is record
-    length : uint32_stream_t;      -- how many follow
+    length : uint32_stream_t;      -- number of elements
     items  : int8_items_stream_t;
   end record;
 
@@ -272,7 +272,7 @@ package firm_hdl_bus_8_pkg is
     items => '1');
 
   type uint8_sequence_stream_t is record
-    length : uint32_stream_t;       -- how many follow
+    length : uint32_stream_t;       -- number of elements
     items  : uint8_items_stream_t;
   end record;
 
@@ -304,7 +304,7 @@ package firm_hdl_bus_8_pkg is
     items => '1');
 
   type int16_sequence_stream_t is record
-    length : uint32_stream_t;       -- how many follow
+    length : uint32_stream_t;       -- number of elements
     items  : int16_items_stream_t;
   end record;
 
@@ -336,7 +336,7 @@ package firm_hdl_bus_8_pkg is
     items => '1');
 
   type uint16_sequence_stream_t is record
-    length : uint32_stream_t;        -- how many follow
+    length : uint32_stream_t;        -- number of elements
     items  : uint16_items_stream_t;
   end record;
 
@@ -368,7 +368,7 @@ package firm_hdl_bus_8_pkg is
     items => '1');
 
   type int32_sequence_stream_t is record
-    length : uint32_stream_t;       -- how many follow
+    length : uint32_stream_t;       -- number of elements
     items  : int32_items_stream_t;
   end record;
 
@@ -400,7 +400,7 @@ package firm_hdl_bus_8_pkg is
     items => '1');
 
   type uint32_sequence_stream_t is record
-    length : uint32_stream_t;        -- how many follow
+    length : uint32_stream_t;        -- number of elements
     items  : uint32_items_stream_t;
   end record;
 
@@ -432,7 +432,7 @@ package firm_hdl_bus_8_pkg is
     items => '1');
 
   type int64_sequence_stream_t is record
-    length : uint32_stream_t;       -- how many follow
+    length : uint32_stream_t;       -- number of elements
     items  : int64_items_stream_t;
   end record;
 
@@ -464,7 +464,7 @@ package firm_hdl_bus_8_pkg is
     items => '1');
 
   type uint64_sequence_stream_t is record
-    length : uint32_stream_t;        -- how many follow
+    length : uint32_stream_t;        -- number of elements
     items  : uint64_items_stream_t;
   end record;
 
@@ -496,7 +496,7 @@ package firm_hdl_bus_8_pkg is
     items => '1');
 
   type string_sequence_stream_t is record
-    length : uint32_stream_t;  -- how many follow
+    length : uint32_stream_t;  -- number of elements
     item   : string_stream_t;
   end record;
 
@@ -528,7 +528,7 @@ package firm_hdl_bus_8_pkg is
     item => STRING_STREAM_ALL_READY);
 
   type wstring_sequence_stream_t is record
-    length : uint32_stream_t;   -- how many follow
+    length : uint32_stream_t;   -- number of elements
     item   : wstring_stream_t;
   end record;
 

@@ -1,7 +1,7 @@
 -- Streams of ROS's primitive types, for all message types and bus widths.
 --
--- A transfer happens at a rising clock edge at which valid and ready are both '1'. Whoever offers
--- does not wait for ready, and keeps valid and the data until the transfer.
+-- A transfer happens at a rising clock edge at which valid and ready are both '1'. The source sets
+-- valid without waiting for ready, and keeps valid and the data unchanged until the transfer.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -9,7 +9,7 @@ use ieee.numeric_std.all;
 
 package firm_hdl_types_pkg is
 
-  -- How a packet ended, once per packet, on m_axis_status_tdata.
+  -- Status of a packet on m_axis_status_tdata, one transfer per packet.
   constant STATUS_OK            : std_logic_vector(7 downto 0) := x"00";
   constant STATUS_TRUNCATED     : std_logic_vector(7 downto 0) := x"01";
   constant STATUS_TRAILING      : std_logic_vector(7 downto 0) := x"02";
@@ -76,7 +76,7 @@ package firm_hdl_types_pkg is
     valid : std_logic;
   end record;
 
-  -- Nothing is offered.
+  -- Idle streams: valid is '0'.
   constant BOOL_STREAM_IDLE    : bool_stream_t    := (data => '0', valid => '0');
   constant INT8_STREAM_IDLE    : int8_stream_t    := (data => (others => '0'), valid => '0');
   constant UINT8_STREAM_IDLE   : uint8_stream_t   := (data => (others => '0'), valid => '0');
@@ -89,7 +89,7 @@ package firm_hdl_types_pkg is
   constant FLOAT32_STREAM_IDLE : float32_stream_t := (data => (others => '0'), valid => '0');
   constant FLOAT64_STREAM_IDLE : float64_stream_t := (data => (others => '0'), valid => '0');
 
-  -- Items that are transferred together, the first one at index 0.
+  -- Items of one transfer, the first one at index 0.
   type bool_items_t is array (natural range <>) of std_logic;
   type int8_items_t is array (natural range <>) of signed(7 downto 0);
   type uint8_items_t is array (natural range <>) of unsigned(7 downto 0);
@@ -102,7 +102,7 @@ package firm_hdl_types_pkg is
   type float32_items_t is array (natural range <>) of std_logic_vector(31 downto 0);
   type float64_items_t is array (natural range <>) of std_logic_vector(63 downto 0);
 
-  -- Between items and the flat ports' vectors, the first item lowest.
+  -- Conversion between items and vectors, with the first item in the lowest bits.
   function to_slv (items : bool_items_t) return std_logic_vector;
   function to_bool_items (bits : std_logic_vector) return bool_items_t;
   function to_slv (items : int8_items_t) return std_logic_vector;

@@ -14,23 +14,24 @@ use work.geometry_msgs_msg_twist_cdr_8_pkg.all;
 
 entity geometry_msgs_msg_twist_cdr_8_deserializer_record is
   port (
-    aclk                 : in  std_logic;                      -- Clock; its rising edge counts.
+    aclk                 : in  std_logic;                      -- Clock; the rising edge is active.
     aresetn              : in  std_logic;                      -- Synchronous reset, active low.
     -- Bytes of the packet, the first one in bits 7 to 0.
     s_axis_tdata         : in  std_logic_vector(63 downto 0);
-    -- Bytes that are there, from lane 0 on; all but in the last beat.
+    -- Valid bytes, from lane 0 on; all ones except in the last beat.
     s_axis_tkeep         : in  std_logic_vector(7 downto 0);
-    s_axis_tlast         : in  std_logic;                      -- The packet's last beat.
-    s_axis_tvalid        : in  std_logic;                      -- beat: offered.
-    s_axis_tready        : out std_logic;                      -- beat: taken.
+    s_axis_tlast         : in  std_logic;                      -- Last beat of the packet.
+    s_axis_tvalid        : in  std_logic;                      -- beat: valid.
+    s_axis_tready        : out std_logic;                      -- beat: ready.
     -- The fields of geometry_msgs/msg/Twist.
     msg                  : out twist_value_t;
-    msg_valid            : out std_logic;                      -- message: offered, all of it.
-    msg_ready            : in  std_logic;                      -- message: taken.
-    -- How the packet ended, once per packet; 0 is OK.
+    -- Valid: the whole message is offered.
+    msg_valid            : out std_logic;
+    msg_ready            : in  std_logic;                      -- Ready: the message is taken.
+    -- Status of a packet, one transfer per packet; 0 is OK.
     m_axis_status_tdata  : out std_logic_vector(7 downto 0);
-    m_axis_status_tvalid : out std_logic;                      -- status: offered.
-    m_axis_status_tready : in  std_logic                       -- status: taken.
+    m_axis_status_tvalid : out std_logic;                      -- status: valid.
+    m_axis_status_tready : in  std_logic                       -- status: ready.
   );
 end entity;
 

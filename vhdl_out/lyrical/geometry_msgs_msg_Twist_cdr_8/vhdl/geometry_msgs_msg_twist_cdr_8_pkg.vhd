@@ -1,7 +1,6 @@
 -- Records of geometry_msgs/msg/Twist: twist_t has data and valid of every field, twist_ready_t has
--- ready, the other way. With TWIST_ALL_READY everything is taken, with TWIST_IDLE nothing is
--- offered.
--- The same for all converters, made by firm-hdl, with wire cdr and a bus of 8 bytes: compile it
+-- ready, in the opposite direction. TWIST_ALL_READY takes every transfer; TWIST_IDLE offers none.
+-- Made by firm-hdl. All converters with wire cdr and a bus of 8 bytes share this file: compile it
 -- once.
 
 library ieee;
@@ -32,10 +31,10 @@ package geometry_msgs_msg_twist_cdr_8_pkg is
     linear  => work.geometry_msgs_msg_vector3_cdr_8_pkg.VECTOR3_ALL_READY,
     angular => work.geometry_msgs_msg_vector3_cdr_8_pkg.VECTOR3_ALL_READY);
 
-  -- Several of them: one after the other.
+  -- Sequences and arrays: all elements use the same streams, one after the other.
 
   type twist_sequence_t is record
-    length : uint32_stream_t;  -- how many follow
+    length : uint32_stream_t;  -- number of elements
     item   : twist_t;
   end record;
 
@@ -66,7 +65,7 @@ package geometry_msgs_msg_twist_cdr_8_pkg is
   constant TWIST_ARRAY_ALL_READY : twist_array_ready_t := (
     item => TWIST_ALL_READY);
 
-  -- The message as values, without handshakes; the entities ..._record have it.
+  -- The message as plain values; the ports of the entities ..._record have it.
 
   type twist_value_t is record
     -- geometry_msgs/msg/Vector3
@@ -77,7 +76,7 @@ package geometry_msgs_msg_twist_cdr_8_pkg is
 
   type twist_values_t is array (natural range <>) of twist_value_t;
 
-  -- Between records and vectors, the first member lowest.
+  -- Conversion between records and vectors, first member in the lowest bits.
   constant TWIST_VALUE_BITS : positive := 384;
   function to_slv (value : twist_value_t) return std_logic_vector;
   function to_twist_value (bits : std_logic_vector) return twist_value_t;

@@ -5,7 +5,7 @@
 -- Test bench of the converters of geometry_msgs/msg/Twist record, cdr, bus of 8 bytes. Simulation
 -- only.
 --
--- Ends by itself, with a line that starts with PASS, or with a failure.
+-- The bench ends by itself: it prints a line that starts with PASS, or ends with a failure.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -19,16 +19,16 @@ use work.geometry_msgs_msg_twist_cdr_8_components_pkg.all;
 
 entity geometry_msgs_msg_twist_cdr_8_record_tb is
   generic (
-    stimuli   : string  := "stimuli.txt";    -- packets to send, one a line, in hexadecimal
-    expected  : string  := "stimuli.txt";    -- packets that have to come out
+    stimuli   : string  := "stimuli.txt";    -- packets to send, one per line, in hexadecimal
+    expected  : string  := "stimuli.txt";    -- packets that must come out
     results   : string  := "results_record.txt";    -- packets that came out
     transfers : string  := "transfers_record.txt";  -- cycle, leaf and data of each leaf's transfer
     seed      : natural := 1;
     stalls    : natural range 0 to 99 := 40; -- percent of the cycles in which a stream stalls
-    patience  : positive := 100_000          -- cycles without a beat after which it has failed
+    patience  : positive := 100_000          -- cycles without a beat after which the bench fails
   );
   port (
-    over : out boolean := false  -- that it has passed
+    over : out boolean := false  -- the bench has passed
   );
 end entity;
 
@@ -58,12 +58,12 @@ architecture sim of geometry_msgs_msg_twist_cdr_8_record_tb is
   signal rx_tready, tx_tready : std_logic := '0';
   signal rx_count, tx_count   : natural := 0;
 
-  -- Per leaf: whether it may pass, whether it is offered, whether it would be taken.
+  -- Per leaf: the gate is open; the deserializer offers a transfer; the serializer is ready for it.
   signal gate    : std_logic_vector(LEAVES - 1 downto 0) := (others => '1');
   signal offered : std_logic_vector(LEAVES - 1 downto 0);
   signal taken   : std_logic_vector(LEAVES - 1 downto 0);
 
-  -- From the deserializer, and to the serializer.
+  -- Message of the deserializer (rx) and of the serializer (tx).
   signal rx_msg, tx_msg     : work.geometry_msgs_msg_twist_cdr_8_pkg.twist_value_t;
   signal rx_valid, tx_valid : std_logic;
   signal rx_ready, tx_ready : std_logic;
@@ -123,7 +123,7 @@ begin
       m_axis_status_tready => tx_tready
     );
 
-  -- The accelerator: it does nothing, but stalls.
+  -- The accelerator passes all data on, with stalls.
 
   tx_msg <= rx_msg;
   tx_valid <= rx_valid and gate(0);
@@ -131,7 +131,7 @@ begin
   offered(0) <= rx_valid;
   taken(0) <= tx_ready;
 
-  -- What was offered stays offered until it is taken.
+  -- A gate that is open stays open while an offered transfer is not yet taken.
   stalling : process
     variable random : random_t := random_from(seed, 3);
     variable stall : boolean;
@@ -145,7 +145,7 @@ begin
     end loop;
   end process;
 
-  -- Items are written with the first one to the right; a last transfer has an asterisk.
+  -- The first item of a transfer is rightmost; an asterisk marks a transfer with last set.
   logging : process (aclk)
     file record_of : text open write_mode is transfers;
 
@@ -218,7 +218,7 @@ begin
         integer'image(rx_count) & " and " & integer'image(tx_count) & " statuses"
       severity failure;
 
-    -- A while longer, in case that something comes that should not.
+    -- Wait 100 cycles more, in case that unexpected data comes.
     if i_done and o_packets = o_total and i_packets = o_total and rx_count = o_total and
         tx_count = o_total and idle > 100 then
       assert o_total > 0 report "FAIL there are no packets" severity failure;

@@ -4,7 +4,7 @@
 -- What each port means: manifest.json.
 -- Test bench of the converters of geometry_msgs/msg/Twist, cdr, bus of 8 bytes. Simulation only.
 --
--- Ends by itself, with a line that starts with PASS, or with a failure.
+-- The bench ends by itself: it prints a line that starts with PASS, or ends with a failure.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -18,16 +18,16 @@ use work.geometry_msgs_msg_twist_cdr_8_components_pkg.all;
 
 entity geometry_msgs_msg_twist_cdr_8_tb is
   generic (
-    stimuli   : string  := "stimuli.txt";    -- packets to send, one a line, in hexadecimal
-    expected  : string  := "stimuli.txt";    -- packets that have to come out
+    stimuli   : string  := "stimuli.txt";    -- packets to send, one per line, in hexadecimal
+    expected  : string  := "stimuli.txt";    -- packets that must come out
     results   : string  := "results.txt";    -- packets that came out
     transfers : string  := "transfers.txt";  -- cycle, leaf and data of each leaf's transfer
     seed      : natural := 1;
     stalls    : natural range 0 to 99 := 40; -- percent of the cycles in which a stream stalls
-    patience  : positive := 100_000          -- cycles without a beat after which it has failed
+    patience  : positive := 100_000          -- cycles without a beat after which the bench fails
   );
   port (
-    over : out boolean := false  -- that it has passed
+    over : out boolean := false  -- the bench has passed
   );
 end entity;
 
@@ -57,12 +57,12 @@ architecture sim of geometry_msgs_msg_twist_cdr_8_tb is
   signal rx_tready, tx_tready : std_logic := '0';
   signal rx_count, tx_count   : natural := 0;
 
-  -- Per leaf: whether it may pass, whether it is offered, whether it would be taken.
+  -- Per leaf: the gate is open; the deserializer offers a transfer; the serializer is ready for it.
   signal gate    : std_logic_vector(LEAVES - 1 downto 0) := (others => '1');
   signal offered : std_logic_vector(LEAVES - 1 downto 0);
   signal taken   : std_logic_vector(LEAVES - 1 downto 0);
 
-  -- From the deserializer, and to the serializer.
+  -- Message of the deserializer (rx) and of the serializer (tx).
   signal rx_msg, tx_msg : work.geometry_msgs_msg_twist_cdr_8_pkg.twist_t;
   signal rx_rdy, tx_rdy : work.geometry_msgs_msg_twist_cdr_8_pkg.twist_ready_t;
 
@@ -119,7 +119,7 @@ begin
       m_axis_status_tready => tx_tready
     );
 
-  -- The accelerator: it does nothing, but stalls.
+  -- The accelerator passes all data on, with stalls.
 
   tx_msg.linear.x.data <= rx_msg.linear.x.data;
   tx_msg.linear.x.valid <= rx_msg.linear.x.valid and gate(0);
@@ -157,7 +157,7 @@ begin
   offered(5) <= rx_msg.angular.z.valid;
   taken(5) <= tx_rdy.angular.z;
 
-  -- What was offered stays offered until it is taken.
+  -- A gate that is open stays open while an offered transfer is not yet taken.
   stalling : process
     variable random : random_t := random_from(seed, 3);
     variable stall : boolean;
@@ -171,7 +171,7 @@ begin
     end loop;
   end process;
 
-  -- Items are written with the first one to the right; a last transfer has an asterisk.
+  -- The first item of a transfer is rightmost; an asterisk marks a transfer with last set.
   logging : process (aclk)
     file record_of : text open write_mode is transfers;
 
@@ -259,7 +259,7 @@ begin
         integer'image(rx_count) & " and " & integer'image(tx_count) & " statuses"
       severity failure;
 
-    -- A while longer, in case that something comes that should not.
+    -- Wait 100 cycles more, in case that unexpected data comes.
     if i_done and o_packets = o_total and i_packets = o_total and rx_count = o_total and
         tx_count = o_total and idle > 100 then
       assert o_total > 0 report "FAIL there are no packets" severity failure;

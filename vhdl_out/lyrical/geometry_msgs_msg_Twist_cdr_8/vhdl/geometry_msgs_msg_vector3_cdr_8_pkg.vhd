@@ -1,7 +1,7 @@
 -- Records of geometry_msgs/msg/Vector3: vector3_t has data and valid of every field,
--- vector3_ready_t has ready, the other way. With VECTOR3_ALL_READY everything is taken, with
--- VECTOR3_IDLE nothing is offered.
--- The same for all converters, made by firm-hdl, with wire cdr and a bus of 8 bytes: compile it
+-- vector3_ready_t has ready, in the opposite direction. VECTOR3_ALL_READY takes every transfer;
+-- VECTOR3_IDLE offers none.
+-- Made by firm-hdl. All converters with wire cdr and a bus of 8 bytes share this file: compile it
 -- once.
 
 library ieee;
@@ -35,10 +35,10 @@ package geometry_msgs_msg_vector3_cdr_8_pkg is
     y => '1',
     z => '1');
 
-  -- Several of them: one after the other.
+  -- Sequences and arrays: all elements use the same streams, one after the other.
 
   type vector3_sequence_t is record
-    length : uint32_stream_t;  -- how many follow
+    length : uint32_stream_t;  -- number of elements
     item   : vector3_t;
   end record;
 
@@ -69,7 +69,7 @@ package geometry_msgs_msg_vector3_cdr_8_pkg is
   constant VECTOR3_ARRAY_ALL_READY : vector3_array_ready_t := (
     item => VECTOR3_ALL_READY);
 
-  -- The message as values, without handshakes; the entities ..._record have it.
+  -- The message as plain values; the ports of the entities ..._record have it.
 
   type vector3_value_t is record
     x : std_logic_vector(63 downto 0);  -- float64
@@ -79,7 +79,7 @@ package geometry_msgs_msg_vector3_cdr_8_pkg is
 
   type vector3_values_t is array (natural range <>) of vector3_value_t;
 
-  -- Between records and vectors, the first member lowest.
+  -- Conversion between records and vectors, first member in the lowest bits.
   constant VECTOR3_VALUE_BITS : positive := 192;
   function to_slv (value : vector3_value_t) return std_logic_vector;
   function to_vector3_value (bits : std_logic_vector) return vector3_value_t;

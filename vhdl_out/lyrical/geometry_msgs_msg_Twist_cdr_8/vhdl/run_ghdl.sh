@@ -1,7 +1,7 @@
 #!/bin/sh
 # Run the test bench in GHDL. Arguments go to the simulation, such as -gseed=7 or --wave=tb.ghw.
-# What GHDL and the bench write is in work/ beside this script; WORK names another folder, GHDL
-# another command than the first that is found, and BENCH another bench of the folder.
+# Files of GHDL and of the bench are written to work/ beside this script. Environment variables:
+# WORK names another folder, GHDL the command of GHDL, and BENCH another bench of this folder.
 set -eu
 here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 work=${WORK:-$here/work}
@@ -16,13 +16,13 @@ if [ -z "$ghdl" ]; then
   exit 127
 fi
 if [ ! -f "$here/stimuli.txt" ]; then
-  echo "run_ghdl.sh: write packets to $here/stimuli.txt, one a line, in hexadecimal" >&2
+  echo "run_ghdl.sh: write packets to $here/stimuli.txt, one per line, in hexadecimal" >&2
   exit 2
 fi
 mkdir -p "$work"
 cd "$work"
 printf '*\n' > .gitignore
-# GHDL gets no name that is not ours: it takes no folder whose name has a quotation mark.
+# GHDL gets relative names only: it does not accept a folder whose name has a quotation mark.
 from=..
 if [ -n "${WORK:-}" ]; then
   from=source

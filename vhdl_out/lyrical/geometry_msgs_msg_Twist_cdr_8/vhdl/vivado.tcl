@@ -2,12 +2,12 @@
 #
 #   source .../vivado.tcl
 #
-# In the order in which they compile, as VHDL-2008, into the library that is current. Test benches
-# are left out.
+# The files are read in compile order, as VHDL-2008, into the current library. Test benches are left
+# out.
 
 set firm_hdl_folder [file dirname [file normalize [info script]]]
 
-# The same in the folder of every type that needs them: a project has each of them once.
+# Every type that needs one of these files has it, with the same text: read each file once.
 foreach firm_hdl_file {
   firm_hdl_types_pkg.vhd
   firm_hdl_pkg.vhd

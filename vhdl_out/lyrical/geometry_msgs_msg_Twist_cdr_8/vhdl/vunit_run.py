@@ -1,4 +1,5 @@
-"""Test benches of geometry_msgs/msg/Twist (lyrical, cdr, bus of 8 bytes), run by VUnit 4 (pip install vunit_hdl)."""
+"""Run the test benches of geometry_msgs/msg/Twist (lyrical, cdr, bus of 8 bytes) with VUnit 4 (pip install vunit_hdl)."""
+
 
 from pathlib import Path
 
