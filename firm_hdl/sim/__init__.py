@@ -1,7 +1,7 @@
-"""Simulation: what a user needs to test an accelerator in plain Amaranth.
+"""Simulation helpers to test accelerators in plain Amaranth.
 
-Functions for a user's own testbenches (`send_packets`, `receive_packets`, `MessagePort`, `watch`),
-and converters run as functions (`loopback`, `decode`, `encode`, and `Harness` for many runs).
+For a user's own testbenches: `send_packets`, `receive_packets`, `MessagePort`, `watch`. To run
+converters as functions: `loopback`, `decode`, `encode`, and `Harness` for many runs.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""The fast loop that runs whole designs: one testbench that drives and observes all streams.
+"""A fast bench for whole designs: one testbench that drives and observes all streams.
 
-A bench packs everything it drives into a few wide signals and everything it watches in every cycle
-into one, and moves the clock itself, so that the simulator settles once per clock edge and payloads
-are read only where something transfers or waits. That is several times faster than a testbench per
-stream, which is what matters for thousands of cases; users' own testbenches are served by
+A bench packs all signals that it drives into a few wide ones, and all that it watches in every
+cycle into one. It also drives the clock. So the simulator settles once per clock edge, and payloads
+are read only where a transfer happens or waits. This is several times faster than one testbench per
+stream, which matters for thousands of cases. For users' own testbenches, see
 :mod:`firm_hdl.sim.streams`.
 """
 
@@ -32,7 +32,7 @@ HALF_PERIOD = 5e-7
 
 
 class DeadlineError(AssertionError):
-    """Nothing more came although more was expected."""
+    """Expected transfers did not come before the deadline."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -44,21 +44,22 @@ class Job:
     sources : dict of str to iterable of int
         Payloads to send, as bits, by the name of the stream.
     takes : dict of str to callable
-        Called with the cycle and the payload's bits at each transfer of the stream of that name.
-    stalls : Stalls, mapping or None
+        By the name of a stream: called at each of its transfers, with the cycle and the payload's
+        bits.
+    stalls : StallPlan
     finished : callable
-        Whether all that was expected has come; asked after each cycle with a transfer.
+        Returns whether everything expected has come; called after each cycle with a transfer.
     outstanding : callable
-        What was still expected, for the error.
+        Returns a text of what has not come yet, for the error.
     deadline : int
         Most cycles in a row without any transfer.
     limit : int
         Most cycles in total.
     settle : int
-        Cycles without any transfer that end a finished run.
+        Cycles without any transfer after which a finished run ends.
     observe : callable or None
-        Called before the first clock edge and then in each cycle, when everything has settled, with
-        the values of the bench's probes.
+        Called with the values of the bench's probes, before the first clock edge and then in each
+        cycle after all signals have settled.
     """
 
     sources: dict[str, Iterable[int]]
@@ -74,7 +75,7 @@ class Job:
 
 @dataclass(slots=True)
 class _Source:
-    """Something to send: the payload on offer, and those after it."""
+    """A stream that the bench sends on: the payload that is offered, and those after it."""
 
     valid: int
     word: int
@@ -90,20 +91,21 @@ class Bench:
     Parameters
     ----------
     design : Elaboratable
-        Needs a clock domain ``sync`` only.
+        Has ``sync`` as its only clock domain.
     sources : mapping of str to stream.Interface
         Streams that the bench drives.
     sinks : mapping of str to stream.Interface
-        Streams that the bench takes from. Always ready unless stalled.
+        Streams that the bench receives from. Always ready unless stalled.
     taps : mapping of str to stream.Interface
         Streams inside the design that the bench only watches.
     gates : Signal or None
-        A bit for each tap, in order: the design lets the stream through while it is high. The bench
-        keeps it high while a transfer is offered behind it, as the rules of streams demand.
+        A bit for each tap, in order: the design connects the stream through while the bit is high.
+        The bench keeps the bit high while a transfer is offered behind the gate, as the rules of
+        streams demand.
     payloads : mapping of str to Value
-        What to see as the payload of a sink or tap, if that is more than its payload.
+        Values to observe in place of the payload of a sink or tap.
     probes : sequence of Value
-        What jobs may observe.
+        Values that jobs may observe.
     """
 
     def __init__(
@@ -131,7 +133,8 @@ class Bench:
         self.job: Job | None = None
         self.cycles = 0
         top = self._top(design)
-        # Signals, as the simulator compiles what drives those, and interprets expressions.
+        # Probes become signals: the simulator compiles what drives signals, but interprets
+        # expressions.
         self.probes = [_gathered(top, [value]) for value in probes]
         self.simulator = Simulator(top)
         self._used = False
@@ -141,7 +144,7 @@ class Bench:
         if self._used:
             self.simulator.reset()
         else:
-            # Not earlier: Python warns of a testbench that never starts.
+            # Added only here, because Python warns of a testbench that never starts.
             self.simulator.add_testbench(self._testbench)
         self._used = True
         self.job = job
@@ -158,7 +161,8 @@ class Bench:
         self.handshakes = Signal(2 * len(self.ports))
         bits = [port.valid for port in self.ports] + [port.ready for port in self.ports]
         m.d.comb += self.handshakes.eq(Cat(_gathered(m, chunk) for chunk in in_chunks(bits)))
-        # The first word holds everything of one bit, others what is left of the sources' payloads.
+        # The first word starts with all control bits. Payloads of the sources fill it and the
+        # other words.
         control = [port.ready for port in self.sinks.values()]
         control += [] if self.gates is None else [self.gates]
         control += [port.valid for port in self.sources.values()]
@@ -187,8 +191,8 @@ class Bench:
         if observe is not None:
             observe([ctx.get(probe) for probe in self.probes])
         fired = held = self.cycles = 0
-        # The clock and the first word change together. Words reach the design through assignments
-        # only, so registers still see what was there before the edge, as they do of each other.
+        # The clock and the first word change together. Words reach the design only through
+        # assignments, so registers still sample the values from before the edge.
         edge = Cat(self.clock, self.words[0])
         while True:
             changed = drive.next(fired, held)
@@ -214,7 +218,7 @@ class Bench:
 
 
 def in_chunks(items: Sequence[T]) -> Iterator[Sequence[T]]:
-    """Yield items in groups that are worth a module of their own.
+    """Yield items in groups of a good size for a module of their own.
 
     The simulator evaluates all combinational assignments of a module again whenever one of their
     inputs changes, so hundreds of them in one module are slow; so are hundreds of modules.
@@ -224,7 +228,7 @@ def in_chunks(items: Sequence[T]) -> Iterator[Sequence[T]]:
 
 
 def _gathered(m: Module, bits: Sequence[Value]) -> Signal:
-    """Return a signal of bits that come together in a module of their own."""
+    """Return a signal that a module of its own concatenates from bits."""
     part = Module()
     together = Cat(*bits)
     gathered = Signal(len(together))
@@ -234,7 +238,7 @@ def _gathered(m: Module, bits: Sequence[Value]) -> Signal:
 
 
 class _Drive:
-    """What a bench drives in a run: a value for each of its words, in each cycle."""
+    """The inputs of a run: a value for each word of the bench, in each cycle."""
 
     def __init__(self, bench: Bench, job: Job):
         self.words = [0] * len(bench.words)
@@ -263,14 +267,14 @@ class _Drive:
         self.control = 0
 
     def next(self, fired: int, held: int) -> int:
-        """Go to the next cycle; return which words change, as bits.
+        """Go to the next cycle; return the words that change, as a bit mask.
 
         Parameters
         ----------
         fired : int
-            Which ports transferred in this cycle, as bits.
+            Bit mask of the ports that transferred in this cycle.
         held : int
-            Which ports offered a transfer that was not taken.
+            Bit mask of the ports that offered a transfer that was not taken.
         """
         held &= self.gates & self.control
         control = self.control
@@ -295,7 +299,7 @@ class _Drive:
         return changed
 
     def _offer(self, control: int) -> tuple[int, int]:
-        """Let every source without an offer make one, unless it is stalled or has no more."""
+        """Let every idle source offer its next payload, unless it is stalled or has no more."""
         changed = 0
         idle = []
         for source in self.idle:
@@ -315,7 +319,7 @@ class _Drive:
 
 
 class _Watch:
-    """What a bench sees in a run."""
+    """The observations of a run: handshakes, payloads, stream rules, and deadlines."""
 
     def __init__(self, bench: Bench, job: Job, ctx: SimulatorContext):
         self.job = job
@@ -336,12 +340,12 @@ class _Watch:
         self.over = False
 
     def payload(self, number: int) -> int:
-        """Return the bits that a port carries now."""
+        """Return the bits of a port's payload in this cycle."""
         value: int = self.get(self.payloads[number])
         return value
 
     def next(self) -> tuple[int, int]:
-        """Look at one cycle; return which ports transfer in it, and which only offer, as bits."""
+        """Check one cycle; return bit masks of the ports that transfer, and that only offer."""
         both: int = self.get(self.handshakes)
         ready = both >> self.count
         valid = both & ((1 << self.count) - 1)
@@ -367,7 +371,7 @@ class _Watch:
         return fired, valid & ~ready
 
     def _rest(self, valid: int) -> None:
-        """Count a cycle without transfers; `valid`: who offers one."""
+        """Count a cycle without transfers; `valid`: bit mask of the ports that offer one."""
         self.quiet += 1
         self.settled = 0 if valid & self.watched else self.settled + 1
         self.over = self.finished and self.settled >= self.job.settle

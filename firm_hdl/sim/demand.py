@@ -1,7 +1,7 @@
-"""How many transfers of each leaf a message has, told by its lengths as they come.
+"""Count the transfers of each leaf of a message, from its lengths as they come.
 
-Each length says how many transfers of the leaves right below it follow; so one table, made from the
-layout, is enough to know at any time what is still to come, in whatever order the leaves move.
+Each length determines the number of transfers of the leaves directly below it. So one table, made
+from the layout, gives the transfers that are still to come, in whatever order the leaves move.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ __all__ = ["Demand", "DemandTable", "demand_table", "split_transfers"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DemandTable:
-    """What a message, and each length in it, calls for.
+    """The transfers that a message requires, and those that each length in it adds.
 
     Attributes
     ----------
     start : tuple of (leaf, count)
         Transfers that every message has.
     below : dict of int to tuple of (leaf, count)
-        By the leaf of a length: transfers for each of the elements that it counts.
+        By the leaf of a length: transfers for each element that the length counts.
     items : dict of int to (leaf, lanes)
-        By the leaf of a length: the items that it counts, so many a transfer.
+        By the leaf of a length: the leaf of the items that it counts, and its items per transfer.
     """
 
     start: tuple[tuple[int, int], ...]
@@ -37,13 +37,13 @@ class DemandTable:
 
 @dataclass(slots=True)
 class Demand:
-    """What one message still calls for.
+    """The transfers that one message still requires.
 
     Attributes
     ----------
     table : DemandTable
     left : dict of int to int
-        Transfers known to follow, by leaf; leaves without any are left out.
+        Transfers known to follow, by leaf; leaves without any are absent.
     """
 
     table: DemandTable
@@ -54,13 +54,13 @@ class Demand:
         self.add(self.table.start)
 
     def add(self, counts: Iterable[tuple[int, int]], factor: int = 1) -> None:
-        """Call for transfers."""
+        """Require more transfers: `factor` times the counts."""
         for leaf, count in counts:
             if count * factor:
                 self.left[leaf] = self.left.get(leaf, 0) + count * factor
 
     def take(self, leaf: int, payload: Payload) -> None:
-        """Note a transfer, which must have been called for."""
+        """Note a transfer, which must have been required."""
         left = self.left[leaf] - 1
         if left:
             self.left[leaf] = left
@@ -76,7 +76,7 @@ class Demand:
 
 
 def demand_table(plan: Plan, message: Message) -> DemandTable:
-    """Return what messages of a type call for, with the leaves of a plan."""
+    """Return the transfers that messages of a type require, with the leaves of a plan."""
     leaves = {leaf.path: number for number, leaf in enumerate(plan.leaves)}
     below: dict[int, tuple[tuple[int, int], ...]] = {}
     items: dict[int, tuple[int, int]] = {}
@@ -111,14 +111,14 @@ def demand_table(plan: Plan, message: Message) -> DemandTable:
 def split_transfers(
     table: DemandTable, transfers: Mapping[int, Iterable[Payload]]
 ) -> tuple[list[dict[int, list[Payload]]], Demand]:
-    """Cut the transfers of a number of messages, given by leaf, into those of each message.
+    """Split the transfers of several messages, given by leaf, into those of each message.
 
     Returns
     -------
     messages : list of dict
-        Transfers of the messages that are complete; leaves without any are left out.
+        Transfers of the messages that are complete; leaves without any are absent.
     demand : Demand
-        What the message after those still calls for.
+        The transfers that the next message still requires.
     """
     rest = {leaf: list(reversed(list(given))) for leaf, given in transfers.items()}
     messages: list[dict[int, list[Payload]]] = []

@@ -1,8 +1,8 @@
-"""Converters on a bench: circuits that stay elaborated, to be run many times.
+"""Converters on a bench: circuits that are elaborated once and run many times.
 
-Names of streams, as stalls and errors use them: ``packets_in``, ``packets_out``, ``status`` (of the
-deserializer; of the serializer if it is alone), ``sent_status`` (of the serializer behind a
-deserializer), and ``message.`` with the path of a leaf.
+Stalls and errors use these names of streams: ``packets_in``, ``packets_out``, ``status`` (of the
+deserializer, or of a serializer alone), ``sent_status`` (of a serializer behind a deserializer),
+and ``message.`` with the path of a leaf.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ __all__ = ["Harness"]
 
 
 class Harness:
-    """A deserializer, a serializer, or one connected with the other, on a bench.
+    """A deserializer, a serializer, or both connected, on a bench.
 
     Parameters
     ----------
     deserializer : Deserializer or None
     serializer : Serializer or None
-        With both, their messages are connected.
+        If both are given, their messages are connected.
     message : Message or None
-        Their message type, so that errors can name leaves that are missing.
+        Their message type, so that errors can name missing leaves.
     gated : bool
-        Whether leaf streams between the two can be stalled.
+        Leaf streams between the two can be stalled.
     probes : sequence of Value
-        What a run may observe.
+        Values that a run may observe.
     """
 
     def __init__(
@@ -76,28 +76,35 @@ class Harness:
         vcd: str | os.PathLike[str] | None = None,
         observe: Callable[[list[int]], None] | None = None,
     ) -> Seen:
-        """Send packets (with a deserializer) or transfers (without), and take what comes.
+        """Send packets (with a deserializer) or transfers (without), and record the results.
 
-        What a deserializer has to ignore is noise: bytes of lanes that are not valid, and `count`
-        in beats that are not the last.
+        Payload bits that a deserializer has to ignore are random: bytes of lanes that are not
+        valid, and `count` in beats that are not the last.
 
         Parameters
         ----------
+        packets : sequence of bytes or None
+        transfers : mapping of int to sequence of Payload, or None
+            Transfers by leaf.
         messages : int or None
-            How many messages `transfers` are; how many `packets` is known.
+            Number of messages in `transfers`; not needed with `packets`.
+        stalls : StallPlan
         deadline : int
-            Most cycles without any transfer, beside the longest stall.
+            Most cycles without any transfer, in addition to the longest stall.
         limit : int or None
-            Most cycles in total. `None`: much more than any legal packets take.
+            Most cycles in total. `None`: many more than any valid packets take.
+        vcd : path or None
+            Where to write a waveform.
         observe : callable or None
-            Gets the values of the probes in each cycle; see :class:`firm_hdl.sim.bench.Job`.
+            Called with the values of the probes in each cycle; see
+            :class:`firm_hdl.sim.bench.Job`.
 
         Raises
         ------
         DeadlineError
-            Naming what had not come.
+            If expected transfers do not come; the text names them.
         StreamRuleError
-            If a stream broke its rules.
+            If a stream breaks its rules.
         """
         if packets is None and messages is None:
             raise ValueError("Number of messages must be given with transfers")
@@ -132,7 +139,7 @@ class Harness:
         messages: int,
         stalls: StallPlan,
     ) -> int:
-        """Return much more cycles than any legal packets take."""
+        """Return a number of cycles that valid packets never reach."""
         size = sum(map(len, packets or ())) + sum(map(len, (transfers or {}).values()))
         longest = max(stalls_of(stalls, name).longest for name in self.bench.names)
         return 10_000 + 50 * (size + 8 * messages) * (1 + longest)
@@ -180,7 +187,7 @@ class Harness:
 
 
 class _Circuit(Elaboratable):
-    """The converters, and between them either plain connections or gates."""
+    """The converters, with plain connections or gates between them."""
 
     def __init__(self, rx: Deserializer | None, tx: Serializer | None, gated: bool):
         self.rx, self.tx = rx, tx
@@ -212,7 +219,7 @@ class _Circuit(Elaboratable):
 
 
 def _with_what_is_left(seen: Seen, transfers: Mapping[int, Sequence[Payload]]) -> Seen:
-    """Note how many transfers of each leaf were offered and not taken."""
+    """Record how many transfers of each leaf were offered and not taken."""
     for leaf, offered in transfers.items():
         if left := len(offered) - len(seen.transfers[leaf]):
             seen.left[leaf] = left

@@ -1,8 +1,8 @@
-"""Converters run as functions: packets in, packets out, with every stream in between watched.
+"""Converters run as functions: packets in, packets out; every stream in between is checked.
 
-`loopback` is the no-op accelerator: a deserializer connected with a serializer. `decode` and
-`encode` are one of the two alone. Each builds its circuit and runs it once; to run one circuit many
-times, keep a :class:`firm_hdl.sim.Harness`.
+`loopback` runs a deserializer connected to a serializer. `decode` and `encode` run one of the two
+alone. Each function builds its circuit and runs it once. To run one circuit many times, use
+:class:`firm_hdl.sim.Harness`.
 """
 
 from __future__ import annotations
@@ -26,23 +26,24 @@ __all__ = ["Decoding", "Encoding", "Loopback", "decode", "encode", "join_transfe
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loopback:
-    """What a loopback did. Unpacks as ``packets, statuses``.
+    """The result of a loopback. Unpacks as ``packets, statuses``.
 
     Attributes
     ----------
     packets : list of bytes
-        What came out.
+        Packets of the serializer.
     statuses : list of Status
-        The deserializer's.
+        Statuses of the deserializer.
     sent_statuses : list of Status
-        The serializer's.
+        Statuses of the serializer.
     marked : list of bool
-        For each packet that came out, whether `packet_error` marked it.
+        For each packet of the serializer, whether `packet_error` was set.
     transfers : dict of int to list
-        Payloads that each leaf's stream carried, by the index of the leaf, over all packets.
+        Payloads of each leaf's stream, by the index of the leaf, over all packets.
     cycles : int
-        From the first beat that went in to the last that came out, both included.
+        Cycles from the first beat in to the last beat out, both included.
     beats_in, beats_out : int
+        Beats of the packets in and out.
     """
 
     packets: list[bytes]
@@ -60,7 +61,7 @@ class Loopback:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Decoding:
-    """What a deserializer did. Unpacks as ``transfers, statuses``.
+    """The result of a deserializer. Unpacks as ``transfers, statuses``.
 
     Attributes are as for :class:`Loopback`; `cycles` ends with the last transfer of a leaf.
     """
@@ -76,10 +77,10 @@ class Decoding:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Encoding:
-    """What a serializer did. Unpacks as ``packets, statuses``.
+    """The result of a serializer. Unpacks as ``packets, statuses``.
 
     Attributes are as for :class:`Loopback`; `cycles` starts with the first transfer of a leaf.
-    `left` is how many transfers that were offered were never taken, by leaf.
+    `left` has the number of offered transfers that were never taken, by leaf.
     """
 
     packets: list[bytes]
@@ -115,19 +116,19 @@ def loopback(
     wire, bus_bytes, max_message_bytes
         As for the converters.
     stalls : Stalls, mapping or None
-        Of ``packets_in``, ``packets_out``, ``status``, ``sent_status`` and ``message`` with
-        everything below it (``message.header.frame_id.items``); one record is for all of them.
+        Stalls of ``packets_in``, ``packets_out``, ``status``, ``sent_status`` and ``message`` with
+        everything below it (``message.header.frame_id.items``). A single record is for all of them.
     deadline : int
-        Most cycles without a transfer anywhere, beside the longest stall.
+        Most cycles without a transfer on any stream, in addition to the longest stall.
     limit : int or None
-        Most cycles in total; `None`: much more than any legal packets take.
+        Most cycles in total; `None`: many more than any valid packets take.
     vcd : path or None
         Where to write a waveform. Slow.
 
     Raises
     ------
     DeadlineError
-        If something does not come; says what.
+        If expected transfers do not come; the text names them.
     StreamRuleError
         If a stream breaks a rule.
     """
@@ -162,7 +163,7 @@ def decode(
     limit: int | None = None,
     vcd: str | os.PathLike[str] | None = None,
 ) -> Decoding:
-    """Send packets through a deserializer, and take all that its leaves give.
+    """Send packets through a deserializer, and record all transfers of its leaves.
 
     Parameters and errors are those of :func:`loopback`.
     """
@@ -190,13 +191,13 @@ def encode(
     limit: int | None = None,
     vcd: str | os.PathLike[str] | None = None,
 ) -> Encoding:
-    """Send messages through a serializer, every leaf on its own.
+    """Send messages through a serializer; each leaf moves independently.
 
     Parameters
     ----------
     values : iterable
-        Messages as dicts, as objects (of rosbags, say), or as transfers (dicts of lists by the
-        index of the leaf), which may be wrong on purpose.
+        Messages as dicts, as objects (such as those of rosbags), or as transfers (dicts of lists by
+        the index of the leaf). Transfers may be invalid on purpose.
 
     Other parameters and errors are those of :func:`loopback`.
     """
@@ -221,14 +222,14 @@ def encode(
 
 
 def as_transfers(plan: Plan, message: Message, value: object) -> Mapping[int, list[Payload]]:
-    """Return a message's transfers, whether it is given as such or as a value."""
+    """Return the transfers of a message, which is given as transfers or as a value."""
     if isinstance(value, Mapping) and value and all(isinstance(key, int) for key in value):
         return value
     return to_transfers(plan, message, value)
 
 
 def join_transfers(messages: Iterable[Mapping[int, list[Payload]]]) -> dict[int, list[Payload]]:
-    """Return the transfers of messages one after the other."""
+    """Return the transfers of several messages, in the order of the messages."""
     joined: dict[int, list[Payload]] = {}
     for message in messages:
         for leaf, payloads in message.items():

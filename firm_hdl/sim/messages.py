@@ -1,8 +1,8 @@
 """Whole messages on message interfaces, for users' own testbenches.
 
-A :class:`MessagePort` knows which stream is which leaf. All leaves move on their own: when sending,
-every leaf offers its transfers as soon as it can; when receiving, every leaf is ready as long as it
-is known to have transfers to come, which lengths tell as they arrive, and no longer.
+A :class:`MessagePort` knows the leaf of each stream. All leaves move independently. When sending,
+every leaf offers its transfers as soon as it can. When receiving, a leaf is ready only while
+transfers of it are known to follow; lengths determine this as they arrive.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ __all__ = ["MessagePort"]
 
 
 @dataclass(slots=True)
-class _Lane:
+class _LeafSource:
     """A leaf that has transfers to send."""
 
     port: stream.Interface
@@ -42,22 +42,22 @@ class _Lane:
 
 
 class MessagePort:
-    """A message interface, seen from a testbench.
+    """A message interface as a testbench drives it.
 
     Parameters
     ----------
     interface : interface of a MessageSignature
-        ``rx.message`` of a converter, or the like in a design of your own.
+        Such as ``rx.message`` of a converter.
     message : Message
     bus_bytes : int
-        The width that the signature was made for.
+        As for the signature.
     wire : "ros1", "cdr" or None
         As for the signature.
 
     Attributes
     ----------
     plan : Plan
-        Gives the leaves by index.
+        Has the leaves by index.
     streams : dict of int to stream.Interface
     """
 
@@ -80,9 +80,10 @@ class MessagePort:
         Parameters
         ----------
         value : mapping or object
-            A dict by field names, or an object with such attributes (of rosbags, say).
+            A dict by field names, or an object with such attributes, such as those of rosbags.
         stalls : Stalls, mapping or None
-            When leaves do not offer their next transfer, by ``message.`` and the leaf's path.
+            Cycles in which leaves do not offer their next transfer, by ``message.`` and the leaf's
+            path.
         """
         transfers = to_transfers(self.plan, self.message, value)
         await self.send_transfers(ctx, transfers, stalls=stalls)
@@ -95,14 +96,14 @@ class MessagePort:
         Parameters
         ----------
         stalls : Stalls, mapping or None
-            When leaves are not ready, by ``message.`` and the leaf's path.
+            Cycles in which leaves are not ready, by ``message.`` and the leaf's path.
         deadline : int
-            Most cycles without any transfer, beside the longest stall.
+            Most cycles without any transfer, in addition to the longest stall.
 
         Raises
         ------
         DeadlineError
-            Naming the leaves that still had transfers to come.
+            If expected transfers do not come; the text names their leaves.
         """
         transfers = await self.receive_transfers(ctx, stalls=stalls, deadline=deadline)
         return from_transfers(self.plan, self.message, transfers)
@@ -114,21 +115,21 @@ class MessagePort:
         *,
         stalls: StallPlan = None,
     ) -> None:
-        """Send transfers given by leaf, which may be wrong on purpose, until all are taken."""
-        lanes = []
+        """Send transfers given by leaf until all are taken; they may be invalid on purpose."""
+        sources = []
         for leaf, payloads in transfers.items():
             port, name = self.streams[leaf], self._names[leaf]
             bits = map(self._encoders[leaf], payloads)
             stalled = stalls_of(stalls, name).cycles(name)
-            lanes.append(_Lane(port, Value.cast(port.payload), bits, stalled))
-        lanes = [lane for lane in lanes if _offer(ctx, lane)]
-        while lanes:
-            _, _, ready = await ctx.tick().sample(Cat(lane.port.ready for lane in lanes))
-            for number, lane in enumerate(lanes):
-                if lane.offered and ready >> number & 1:
-                    ctx.set(lane.port.valid, 0)
-                    lane.offered = False
-            lanes = [lane for lane in lanes if lane.offered or _offer(ctx, lane)]
+            sources.append(_LeafSource(port, Value.cast(port.payload), bits, stalled))
+        sources = [source for source in sources if _offer(ctx, source)]
+        while sources:
+            _, _, ready = await ctx.tick().sample(Cat(source.port.ready for source in sources))
+            for number, source in enumerate(sources):
+                if source.offered and ready >> number & 1:
+                    ctx.set(source.port.valid, 0)
+                    source.offered = False
+            sources = [source for source in sources if source.offered or _offer(ctx, source)]
 
     async def receive_transfers(
         self, ctx: SimulatorContext, *, stalls: StallPlan = None, deadline: int = 1000
@@ -162,7 +163,7 @@ class MessagePort:
     def _set_ready(
         self, ctx: SimulatorContext, demand: Demand, patterns: list[Iterator[bool]], before: int
     ) -> int:
-        """Make those leaves ready that have transfers to come; return them as bits."""
+        """Make the leaves ready that have transfers to come; return them as a bit mask."""
         ready = 0
         for leaf in demand.left:
             if not next(patterns[leaf]):
@@ -173,14 +174,14 @@ class MessagePort:
         return ready
 
 
-def _offer(ctx: SimulatorContext, lane: _Lane) -> bool:
-    """Offer the next transfer of a lane unless it is stalled; return whether there is one."""
-    if next(lane.stalled):
+def _offer(ctx: SimulatorContext, source: _LeafSource) -> bool:
+    """Offer the next transfer of a leaf unless it is stalled; return `False` after the last one."""
+    if next(source.stalled):
         return True
-    payload = next(lane.payloads, None)
+    payload = next(source.payloads, None)
     if payload is None:
         return False
-    ctx.set(lane.bits, payload)
-    ctx.set(lane.port.valid, 1)
-    lane.offered = True
+    ctx.set(source.bits, payload)
+    ctx.set(source.port.valid, 1)
+    source.offered = True
     return True

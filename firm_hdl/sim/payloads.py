@@ -1,11 +1,11 @@
 """Payloads of streams as plain integers, and packets as beats.
 
-Simulation is several times faster with integers than with structures, so everything in
-:mod:`firm_hdl.sim` moves payloads as the bits of a stream, and converts at its edges. The payload
-of a leaf is an integer (two's complement undone where the leaf is signed; a float's bits), that of
-`items` a tuple of its lanes, and whether the transfer is the last.
+Simulation is several times faster with integers than with structures. So :mod:`firm_hdl.sim` moves
+payloads as bits of a stream, and converts them only at its interfaces. The payload of a leaf is an
+integer, which is negative for a negative value of a signed leaf; a float is its bits. The payload
+of `items` is a tuple of the lanes, and whether `last` is set.
 
-What the contract says is ignored, is noise in simulation, so that a circuit that looks at it shows.
+Bits that a receiver has to ignore are random in simulation, so that a circuit that uses them fails.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def encoder_of(leaf: Leaf) -> Callable[[Payload], int]:
 
 
 def beats_of(packet_bytes: int, bus_bytes: int) -> int:
-    """Return how many beats a packet takes; an empty one takes one."""
+    """Return the number of beats of a packet; an empty packet has one."""
     return max(1, -(-packet_bytes // bus_bytes))
 
 
@@ -78,10 +78,10 @@ def packet_beats(
     Parameters
     ----------
     noise : random.Random or None
-        Gives the bytes of lanes that are not valid; `None`: they are 0.
+        Generator of the bytes of lanes that are not valid; `None`: they are 0.
     counts : bool
-        Whether `count` is noise as well, in beats that are not the last. A deserializer ignores it,
-        but no other component has to.
+        In beats that are not the last, `count` is random, too. A deserializer ignores it there;
+        other components need not.
     """
     count_at = 8 * bus_bytes
     last_at = count_at + bus_bytes.bit_length()
@@ -96,7 +96,7 @@ def packet_beats(
 
 @dataclass(slots=True)
 class PacketCollector:
-    """Put packets together from beats.
+    """Join beats to packets.
 
     Attributes
     ----------
@@ -112,7 +112,7 @@ class PacketCollector:
     _parts: list[bytes] = field(default_factory=list)
 
     def take(self, bits: int) -> bool:
-        """Take one beat; return whether it ended a packet."""
+        """Add one beat; return whether it ended a packet."""
         count_at = 8 * self.bus_bytes
         count = bits >> count_at & ((1 << self.bus_bytes.bit_length()) - 1)
         data = (bits & ((1 << count_at) - 1)).to_bytes(self.bus_bytes, "little")
@@ -126,12 +126,12 @@ class PacketCollector:
 
     @property
     def partial(self) -> bytes:
-        """Bytes of the packet that has begun and not ended."""
+        """Bytes of the packet that has begun and not yet ended."""
         return b"".join(self._parts)
 
 
 def all_beats(packets: Iterable[bytes], bus_bytes: int, *, counts: bool = False) -> Iterator[int]:
-    """Yield the beats of packets one after the other, with noise that is the same in each call.
+    """Yield the beats of packets, back to back; the noise is the same in each call.
 
     `counts` is that of :func:`packet_beats`.
     """

@@ -1,4 +1,4 @@
-"""What goes through converters in a run, put together from single transfers."""
+"""Record a run of converters: packets, statuses and payloads, joined from single transfers."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ __all__ = ["Recorder", "Seen", "leaf_name"]
 
 @dataclass(slots=True, kw_only=True)
 class Seen:
-    """What went through a harness in one run.
+    """The observations of one run of a harness.
 
-    Of a serializer alone, `statuses` are the serializer's, and `sent_statuses` is empty.
+    If the serializer is alone, `statuses` are those of the serializer, and `sent_statuses` is
+    empty.
 
     Attributes
     ----------
     packets : list of bytes
-        Packets that came out.
+        Packets of the serializer.
     marked : list of bool
-        For each of them, whether `packet_error` marked it.
+        For each of these packets, whether `packet_error` was set.
     statuses : list of Status
-        From ``status``.
+        Transfers of ``status``.
     sent_statuses : list of Status
-        From ``sent_status``.
+        Transfers of ``sent_status``.
     transfers : dict of int to list
-        Payloads by leaf, of all packets; every leaf is there.
+        Payloads by leaf, over all packets; every leaf has an entry.
     cycles : int
-        From the first beat (or leaf transfer) that went in to the last that came out, both
-        included.
+        Cycles from the first beat (or leaf transfer) in to the last one out, both included.
     left : dict of int to int
-        Transfers that were offered to a serializer and that it never took, by leaf.
+        Transfers that were offered to a serializer and never taken, by leaf.
     beats_in, beats_out : int
-        Beats of the packets that went in and came out.
+        Beats of the packets in and out.
     """
 
     packets: list[bytes] = field(default_factory=list)
@@ -54,7 +54,7 @@ class Seen:
 
     @property
     def cycles(self) -> int:
-        """Cycles from the first transfer in to the last one out, both included; 0 if none came."""
+        """Cycles from the first transfer in to the last one out, both included; 0 without any."""
         return self.last_cycle - self.first_cycle + 1 if self.last_cycle >= 0 else 0
 
 
@@ -64,17 +64,17 @@ def leaf_name(plan: Plan, leaf: int) -> str:
 
 
 class Recorder:
-    """Collects what one run shows.
+    """Records the transfers of one run.
 
     Parameters
     ----------
     plan : Plan
     expected : int
-        Packets (and statuses) that are to come.
+        Number of packets and of statuses that are expected.
     decodes, encodes : bool
-        Which converters there are.
+        The harness has a deserializer; it has a serializer.
     table : DemandTable or None
-        What messages call for, to name leaves that are missing.
+        Transfers that messages require, to name missing leaves.
     """
 
     def __init__(
@@ -104,7 +104,7 @@ class Recorder:
             self.counted["sent_status"] = self.seen.sent_statuses
 
     def takes(self) -> dict[str, Callable[[int, int], None]]:
-        """Return what is to be called at each transfer, by the stream's name."""
+        """Return the functions to call at each transfer, by the stream's name."""
         takes: dict[str, Callable[[int, int], None]] = {
             leaf_name(self.plan, leaf): self._leaf(bits) for leaf, bits in self.bits.items()
         }
@@ -125,6 +125,7 @@ class Recorder:
         if len(self.counted[name]) > self.expected:
             raise AssertionError(
                 f"Stream {name!r} has more than the {self.expected} expected, in cycle {cycle}"
+
             )
 
     def _leaf(self, values: list[int]) -> Callable[[int, int], None]:
@@ -164,11 +165,11 @@ class Recorder:
             )
 
     def finished(self) -> bool:
-        """Whether every stream has had all that is expected of it."""
+        """Return whether every stream has had its expected transfers or packets."""
         return all(len(got) >= self.expected for got in self.counted.values())
 
     def outstanding(self) -> str:
-        """Say what has not come."""
+        """Describe what has not come, for an error."""
         missing = [
             f"{name} ({len(got)} of {self.expected})"
             for name, got in self.counted.items()
@@ -179,7 +180,7 @@ class Recorder:
         return ", ".join(missing + self._missing_leaves()) or "nothing"
 
     def _missing_leaves(self) -> list[str]:
-        """Name the leaves that a message under way still calls for."""
+        """Return the leaves that an incomplete message still requires, as text."""
         if self.table is None:
             return []
         messages, demand = split_transfers(self.table, self._transfers())
@@ -192,7 +193,7 @@ class Recorder:
         return {leaf: [decoders[leaf](each) for each in bits] for leaf, bits in self.bits.items()}
 
     def result(self) -> Seen:
-        """Return what was seen, once the run is over; the start of one more packet is an error."""
+        """Return the observations after the run; an incomplete packet at the end is an error."""
         if self.out.partial:
             raise AssertionError(
                 f"Stream 'packets_out' begins a packet too many: {self.out.partial.hex()}"

@@ -1,8 +1,8 @@
-"""Stalls: when a stream is held up, as one frozen seeded record that fits any stream.
+"""Stalls: the cycles in which a stream may not transfer, as one frozen record with a seed.
 
-A record describes a pattern of cycles, not a stream; each stream that uses it gets a pattern of its
-own, which depends on the seed and on the stream's name only. So a run is reproducible from the
-record alone, and two streams with the same record do not move in step.
+A record can be used for any stream. Each stream gets a pattern of its own, which depends only on
+the seed and on the stream's name. So the record alone makes a run reproducible, and two streams
+with the same record have different patterns.
 """
 
 from __future__ import annotations
@@ -17,21 +17,22 @@ __all__ = ["StallPlan", "Stalls", "stalls_of"]
 
 @dataclass(frozen=True, slots=True)
 class Stalls:
-    """When a stream is stalled.
+    """The stalls of a stream.
 
-    A source that is stalled does not offer its next payload (a payload that is already offered
-    stays); a sink that is stalled is not ready.
+    A stalled source does not offer its next payload; a payload that is already offered stays. A
+    stalled sink is not ready.
 
     Attributes
     ----------
     probability : float
-        Chance, in front of every cycle that lets through, of a stall.
+        Probability of a stall before each cycle without a stall.
     min_cycles, max_cycles : int
-        Length of a stall, drawn evenly from this range (both ends included).
+        Length of a stall, drawn uniformly from this range (both ends included).
     seed : int
         Seed of the pattern.
     pattern : str
-        Bits used over and over instead of chance, one a cycle: ``1`` lets through, ``0`` stalls.
+        Bits that are repeated instead of random stalls, one per cycle: ``1`` does not stall, ``0``
+        stalls.
     """
 
     probability: float = 0.0
@@ -57,18 +58,18 @@ class Stalls:
 
     @classmethod
     def bits(cls, pattern: str) -> Stalls:
-        """Return the stalls of a bit string: ``1`` lets through, ``0`` stalls, repeated."""
+        """Return the stalls of a repeated bit string: ``1`` does not stall, ``0`` stalls."""
         if not pattern:
             raise ValueError("Pattern must not be empty")
         return cls(pattern=pattern)
 
     def __bool__(self) -> bool:
-        """Whether there is any stall at all."""
+        """Return whether a stall can happen."""
         return "0" in self.pattern if self.pattern else self.probability > 0
 
     @property
     def longest(self) -> int:
-        """Most cycles in a row that stall."""
+        """Most consecutive cycles of a stall."""
         if self.pattern:
             return max(map(len, (self.pattern * 2).split("1")))
         return self.max_cycles if self else 0
@@ -90,8 +91,8 @@ Stalls.none = Stalls()
 StallPlan: TypeAlias = "Stalls | Mapping[str, Stalls] | None"
 """Stalls of many streams: one record for all of them, or records by stream name.
 
-A name stands for all streams below it, too: ``message`` for every leaf, ``message.header`` for
-those of the header, unless a longer name is there. Streams that are not named are not stalled.
+A name also stands for all streams below it: ``message`` for every leaf, ``message.header`` for
+those of the header. The longest name that fits a stream counts. Other streams are not stalled.
 """
 
 

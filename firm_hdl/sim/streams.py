@@ -1,12 +1,12 @@
 """Drivers and monitors of single streams, for users' own testbenches.
 
-All are async functions to be awaited in a testbench of `amaranth.sim`; run what is to happen at the
-same time in testbenches of its own. Each starts with the cycle that is under way and returns right
-after the clock edge of its last transfer. Payloads are whatever `ctx.set` takes and `ctx.get` gives
+All are async functions to be awaited in a testbench of `amaranth.sim`. Functions that are to run at
+the same time need separate testbenches. Each function starts in the current cycle and returns right
+after the clock edge of its last transfer. Payloads are the values that `ctx.set` and `ctx.get` use
 for the stream.
 
-The receiving side owns the deadline: if nothing comes for so many cycles, it raises
-`DeadlineError`, which says what was still expected.
+The receiving side checks the deadline: if no transfer comes for that many cycles, it raises
+`DeadlineError`, which names the transfers that were still expected.
 """
 
 from __future__ import annotations
@@ -48,11 +48,11 @@ async def send(
     Parameters
     ----------
     payloads : iterable
-        Plain integers are taken as bits.
+        Payloads; an integer is taken as bits.
     stalls : Stalls
-        When not to offer the next payload.
+        Cycles in which the next payload is not offered.
     name : str
-        Whose pattern of stalls to use.
+        Name of the stream, for the pattern of stalls.
     """
     stalled = stalls.cycles(name)
     bits = Value.cast(port.payload)
@@ -64,7 +64,7 @@ async def send(
         else:
             ctx.set(port.payload, payload)
         ctx.set(port.valid, 1)
-        # Not `until`: its generator complains if a simulation ends with an error in the meantime.
+        # Not `until`: its generator raises if a simulation ends with an error in the meantime.
         taken = 0
         while not taken:
             _, _, taken = await ctx.tick().sample(port.ready)
@@ -85,11 +85,11 @@ async def receive(
     Parameters
     ----------
     count : int
-        How many.
+        Number of payloads.
     stalls : Stalls
-        When not to be ready.
+        Cycles in which the stream is not ready.
     deadline : int
-        Most cycles without a transfer, beside the longest stall.
+        Most cycles without a transfer, in addition to the longest stall.
     name : str
         Name of the stream, for errors and for the pattern of stalls.
 
@@ -117,7 +117,7 @@ async def send_packets(
 ) -> None:
     """Send packets on a packet stream, back to back. Parameters are those of :func:`send`.
 
-    Lanes that are not valid carry noise, at which nobody may look.
+    Lanes that are not valid carry random bytes, which a receiver has to ignore.
     """
     beats: Iterator[int] = all_beats(packets, len(port.payload.data))
     await send(ctx, port, beats, stalls=stalls, name=name)
@@ -147,7 +147,7 @@ async def receive_packets(
 
     def expected() -> str:
         left = count - len(collector.packets)
-        begun = f", {len(collector.partial)} bytes of one are there" if collector.partial else ""
+        begun = f", {len(collector.partial)} bytes of one have come" if collector.partial else ""
         return f"{left} of {count} packets{begun}" if left > 0 else ""
 
     def take(beat: int) -> None:
@@ -182,7 +182,7 @@ async def _receive(
     deadline: int,
     name: str,
 ) -> None:
-    """Receive for as long as `expected` says that something is; `take` gets each payload."""
+    """Receive until `expected` returns an empty text; call `take` with each payload."""
     stalled = stalls.cycles(name)
     ready = quiet = 0
     while expected():

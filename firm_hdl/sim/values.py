@@ -1,8 +1,8 @@
-"""Values of a message as people have them, and the transfers of its leaves.
+"""Convert values of a message to transfers of its leaves, and back.
 
-A value is a nested dict by ROS field names or an object with such attributes (a rosbags message
-above all). The walk here goes over the message model and knows leaves by their paths only, so that
-it shares nothing with the plan that it is used to test.
+A value is a nested dict by ROS field names, or an object with such attributes, such as a message of
+rosbags. The code here walks over the message model and finds leaves by their paths only. So it is
+independent of the plan that it is used to test.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from firm_hdl.wire import CDR, Path
 __all__ = ["from_transfers", "to_transfers"]
 
 FLOATS = {4: "<f", 8: "<d"}
-# rosbags calls the members of ROS 1 time and duration as ROS 2 does.
+# rosbags uses the member names of ROS 2 for time and duration of ROS 1, too.
 ALIASES = {"secs": "sec", "nsecs": "nanosec"}
 
 
 def to_transfers(
     plan: Plan, message: Message, value: object, *, check_bounds: bool = True
 ) -> dict[int, list[Payload]]:
-    """Return the transfers of every leaf that say a value.
+    """Return the transfers of every leaf for a value.
 
     Parameters
     ----------
@@ -36,25 +36,25 @@ def to_transfers(
         A plan of `message`.
     message : Message
     value : mapping or object
-        Mappings have the ROS field names as keys, objects as attributes (rosbags' spellings
-        ``from_`` and ``nanosec`` are understood). Numbers may be Python's or numpy's; a float's
-        bits are kept if it is a numpy scalar or array of its own width. Text is `str`, or bytes as
-        they are (`wstring`: UTF-16 units as numbers). A ``byte`` may be -128 to 255, or one byte of
-        `bytes`.
+        Mappings have the ROS field names as keys, objects have them as attributes (rosbags'
+        spellings ``from_`` and ``nanosec`` are accepted). Numbers may be Python's or numpy's. The
+        bits of a float are kept if it is a numpy scalar or array of the field's own width. Text is
+        `str`, or `bytes` without conversion (`wstring`: UTF-16 units as numbers). A ``byte`` may be
+        -128 to 255, or one byte of `bytes`.
     check_bounds : bool
-        Whether more elements than a declared bound are refused.
+        Raise an error for more elements than a declared bound.
 
     Returns
     -------
     dict
-        Payloads by index of the leaf, in order; all leaves are there.
+        Payloads by index of the leaf, in order; every leaf has an entry.
 
     Raises
     ------
     TypeError
-        If something is not of the kind that its field has.
+        If a value has the wrong type for its field.
     ValueError
-        If a number, a count or a set of fields is not what the type allows.
+        If a number, a count or a set of fields is not allowed by the message type.
     """
     splitter = _Splitter(plan, check_bounds)
     splitter.message(message, value, (), "")
@@ -68,7 +68,7 @@ def from_transfers(
     *,
     exact: bool = False,
 ) -> dict[str, Any]:
-    """Return the value that the transfers of one message say.
+    """Return the value that the transfers of one message carry.
 
     Numbers become `int`, `float` and `bool`, text `str` (or `bytes` if it is not UTF-8, a list of
     numbers if a `wstring` has units over 0xFFFF), arrays and sequences lists, messages dicts.
@@ -76,13 +76,13 @@ def from_transfers(
     Parameters
     ----------
     exact : bool
-        Give floats as the numbers of their bits, since a Python float does not keep each NaN, text
-        always as `bytes`, and wide text always as a list of numbers.
+        Return floats as their bits, because a Python float does not keep every NaN, text always as
+        `bytes`, and wide text always as a list of numbers.
 
     Raises
     ------
     ValueError
-        If transfers are missing or left over, or `last` is not exactly on the last one.
+        If transfers are missing or left over, or if `last` is not set in exactly the last one.
     """
     joiner = _Joiner(plan, transfers, exact)
     value = joiner.message(message, ())
@@ -106,7 +106,7 @@ class _Leaves:
         return number, self.plan.leaves[number]
 
     def empty(self, path: Path) -> tuple[int, int]:
-        """Return the leaf that stands for an empty message, and its payload."""
+        """Return the leaf of an empty message, and its payload."""
         trigger = (*path, "trigger")
         if trigger in self.indices:
             return self.indices[trigger], 1
@@ -241,10 +241,10 @@ def _members(message: Message, value: object, where: str) -> list[Any]:
     for item in message.fields:
         names = [name for name in _spellings(item) if name in given]
         if not names:
-            raise ValueError(f"{what} has no field {item.name!r}, which {message.name} has")
+            raise ValueError(f"{what} lacks the field {item.name!r} of {message.name}")
         members.append(given.pop(names[0]))
     if given:
-        raise ValueError(f"{what} has a field {next(iter(given))!r}, which {message.name} has not")
+        raise ValueError(f"{what} has a field {next(iter(given))!r} that {message.name} lacks")
     return members
 
 
@@ -254,7 +254,7 @@ def _spellings(item: Field) -> list[str]:
 
 
 def _bits(kind: Primitive, value: Any, where: str, *, either: bool = False) -> int:
-    """Return the number that a leaf of a type transfers; `either`: take any signedness."""
+    """Return the number that a leaf transfers; `either`: accept signed and unsigned values."""
     if kind.kind == "float":
         return _float_bits(kind, value, where)
     if kind.kind == "bool":
@@ -283,7 +283,7 @@ def _signed(bits: int, width: int) -> int:
 
 def _float_bits(kind: Primitive, value: Any, where: str) -> int:
     if getattr(value, "dtype", None) == f"float{8 * kind.bytes}":
-        # Bytes as numpy has them: a trip through a Python float may change a NaN.
+        # Taken from the array's bytes, because conversion to a Python float may change a NaN.
         return int.from_bytes(value.astype(value.dtype.newbyteorder("<")).tobytes(), "little")
     if isinstance(value, bool) or not hasattr(value, "__float__"):
         raise TypeError(f"{where} must be a number, not {value!r}")
@@ -294,7 +294,7 @@ def _float_bits(kind: Primitive, value: Any, where: str) -> int:
 
 
 def _array_items(kind: Primitive, value: Any, where: str) -> list[int]:
-    """Return what the items of an array transfer; numpy arrays of the right type at once."""
+    """Return the numbers that the items of an array transfer; fast for matching numpy arrays."""
     dtype = getattr(value, "dtype", None)
     if isinstance(value, bytes | bytearray) and kind.bytes == 1 and kind.kind == "int":
         value = list(value) if not kind.signed else [_signed(byte, 8) for byte in value]

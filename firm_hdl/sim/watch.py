@@ -1,12 +1,12 @@
-"""Watching the rules of streams.
+"""Check the rules of streams.
 
-Rules 1 and 2 are those of `amaranth.lib.stream` that can be seen from outside in every cycle, rules
-3 and 4 are those of packets (:func:`firm_hdl.gateware.packet_layout`):
+Rules 1 and 2 are those rules of `amaranth.lib.stream` that can be observed in every cycle. Rules 3
+and 4 are those of packets (:func:`firm_hdl.gateware.signatures.packet_layout`):
 
 1. Once `valid` is high, it stays high until the transfer.
 2. Once `valid` is high, the payload stays the same until the transfer.
 3. A beat that is not the last of its packet is full: `count` is the width of the bus.
-4. `count` is at most the width of the bus, and 0 only in the one beat of an empty packet.
+4. `count` is at most the width of the bus, and 0 only in the single beat of an empty packet.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class StreamRuleError(AssertionError):
     rule : int
         Number of the rule; see :mod:`firm_hdl.sim.watch`.
     cycle : int
-        Cycle in which that was seen, from 0.
+        Cycle in which the rule was broken, counted from 0.
     """
 
     def __init__(self, stream: str, rule: int, cycle: int, what: str):
@@ -44,16 +44,16 @@ class StreamRuleError(AssertionError):
 
 @dataclass(slots=True)
 class StreamRules:
-    """Rules 1 and 2 for a set of streams, told in each cycle what the streams do.
+    """Rules 1 and 2 for a set of streams, checked in each cycle.
 
-    Streams are bits of integers, so that a cycle in which nothing waits costs next to nothing.
+    Streams are bits of integers, so that a cycle in which no transfer waits is checked quickly.
 
     Attributes
     ----------
     names : list of str
         Name of the stream of each bit.
     held : dict of int to int
-        Payload of each stream that offered a transfer and did not get it.
+        Payload of each stream whose offered transfer was not taken.
     """
 
     names: list[str]
@@ -61,7 +61,7 @@ class StreamRules:
     _waiting: int = 0
 
     def check(self, cycle: int, valid: int, ready: int, payload: Callable[[int], int]) -> None:
-        """Check one cycle; `payload` gives the payload of a stream by its number, as bits."""
+        """Check one cycle; `payload` returns the payload of a stream by its number, as bits."""
         if dropped := self._waiting & ~valid:
             name = self.names[dropped.bit_length() - 1]
             raise StreamRuleError(name, 1, cycle, "valid fell before the transfer")
@@ -84,7 +84,7 @@ class StreamRules:
 
 @dataclass(slots=True)
 class PacketRules:
-    """Rules 3 and 4 for one packet stream, told of each transfer."""
+    """Rules 3 and 4 for one packet stream, checked at each transfer."""
 
     name: str
     bus_bytes: int
@@ -105,20 +105,20 @@ class PacketRules:
 
 
 def _is_packet_stream(port: Any) -> bool:
-    """Whether a stream carries packets."""
+    """Return whether a stream carries packets."""
     shape = port.payload.shape()
     return isinstance(shape, data.StructLayout) and list(shape.members) == ["data", "count", "last"]
 
 
 def watch(streams: Mapping[str, stream.Interface]) -> Callable[[SimulatorContext], Awaitable[None]]:
-    """Return a testbench that watches streams for as long as the simulation runs.
+    """Return a testbench that checks streams while the simulation runs.
 
     Use as ``sim.add_testbench(watch({"packets": rx.packets}), background=True)``.
 
     Parameters
     ----------
     streams : mapping of str to stream.Interface
-        Streams by the name that an error is to give. Packet streams are watched as such.
+        Streams by name, for errors. Streams of packets are also checked for rules 3 and 4.
 
     Raises
     ------
@@ -143,7 +143,8 @@ def watch(streams: Mapping[str, stream.Interface]) -> Callable[[SimulatorContext
         while True:
             _, reset, valid, ready, *bits = await ctx.tick().sample(valids, readies, *payloads)
             if reset:
-                # What was offered is gone, and so is a packet that had begun.
+                # A reset discards offered transfers and incomplete packets.
+
                 rules = StreamRules(names)
                 for rule in packets.values():
                     rule._inside = False

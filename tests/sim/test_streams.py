@@ -90,7 +90,7 @@ def test_deadline_of_packets_says_what_has_begun():
 
     message = (
         r"^No transfer on stream 'packets_out' in 10 cycles; "
-        r"outstanding: 1 of 2 packets, 12 bytes of one are there$"
+        r"outstanding: 1 of 2 packets, 12 bytes of one have come$"
     )
     with pytest.raises(DeadlineError, match=message):
         run_testbenches(dut, sink, background=[source])
