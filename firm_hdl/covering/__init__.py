@@ -1,4 +1,4 @@
-"""Few types that have every feature of many, and the command that chooses them."""
+"""Covering sets: a few types that have every feature of many, and the command that chooses them."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""Which branches the generator takes for a type: layout, plan and elaboration.
+"""The branches that the generator takes for a type, in layout, plan and elaboration.
 
 A branch is a step from one line of the generator's code to the next one within a function, as
-Python's own tracing shows it. Their names have numbers of lines, so they mean something only within
-one run, on one version of Python: they are for comparing types with each other. What exports text
-is left out; it transcribes what has been elaborated, and takes ten times as long.
+Python's tracing reports it. The names contain line numbers. So they are valid only within one run
+on one version of Python, to compare types with each other. The code of the export is left out: it
+transcribes the elaborated circuit, and takes ten times as long.
 """
 
 from __future__ import annotations
@@ -25,18 +25,19 @@ from firm_hdl.wire import lay_out
 __all__ = ["PARTS", "branches", "traced"]
 
 PARTS = ("wire", "plan", "gateware")
-"""The parts of the package that are looked at."""
+"""The parts of the package whose branches are counted."""
 
 _ROOT = Path(__file__).parents[1]
 
 
 def branches(message: Message, plan: Plan) -> frozenset[str]:
-    """Make a type's converters up to Amaranth's fragments, and name the branches that it took.
+    """Elaborate a type's converters to Amaranth's fragments; return the names of the branches.
 
     Parameters
     ----------
+    message : Message
     plan : Plan
-        The type's; its wire, bus and limit are what the converters are made for.
+        A plan of the message; the converters get its wire format, bus width and limit.
     """
 
     def make() -> None:
@@ -66,7 +67,7 @@ def _elaborate(design: Any) -> None:
 
 
 def traced(work: Callable[[], object], folders: Iterable[Path]) -> frozenset[str]:
-    """Call a function, and return the branches that it took in the code of some folders."""
+    """Call a function, and return the branches that it took in the code of the folders."""
     prefixes = tuple(f"{folder}{os.sep}" for folder in folders)
     wanted: dict[CodeType, bool] = {}
     found: set[tuple[CodeType, int, int]] = set()
@@ -89,7 +90,7 @@ def traced(work: Callable[[], object], folders: Iterable[Path]) -> frozenset[str
 
         return step
 
-    # Somebody may be measuring already.
+    # Another tool, such as one for coverage, may be tracing already.
     before = sys.gettrace()
     sys.settrace(enter)
     try:

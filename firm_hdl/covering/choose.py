@@ -1,9 +1,9 @@
-"""Which types are worth testing: a small set with everything in it that the whole set has.
+"""Choose a small set of types that has every feature of all types.
 
-Features of a type are of five families: the productions of the grammar that its text uses, what
-its definition means, the constructs of its layout and of its plan, and the branches that the
-generator takes for it (:mod:`firm_hdl.covering.branches`). The subset is chosen greedily: each time
-the type that adds most, the cheaper of two; that is within a logarithmic factor of the smallest set
+Features of a type belong to five families: the productions of the grammar that its text uses, the
+constructs of its definition, of its layout and of its plan, and the branches that the generator
+takes for it (:mod:`firm_hdl.covering.branches`). The set is chosen greedily: each time the type
+that adds most features per cost. The result is within a logarithmic factor of the smallest set
 (Chvatal, 1979), and the same on every run.
 """
 
@@ -25,7 +25,7 @@ from firm_hdl.wire.layout import Gap, LoopNode, Node, RunNode, Scalar, walk
 __all__ = ["FAMILIES", "Chosen", "all_features", "choose", "cost", "features"]
 
 FAMILIES = ("grammar", "definition", "layout", "plan", "branch")
-"""Which families of features there are; ``family: `` is in front of what `all_features` gives."""
+"""The families of features. The names that `all_features` returns begin with ``family: ``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,21 +44,22 @@ class Chosen:
 
 
 def features(message: Message, plan: Plan) -> frozenset[str]:
-    """Name what a type is made of: in its definition and in its plan."""
+    """Return the features of a type's definition and plan."""
     return frozenset(_meaning(message)) | constructs(plan)
 
 
 def all_features(
     library: Library, message: Message, plan: Plan, *, with_branches: bool = False
 ) -> frozenset[str]:
-    """Name what a type has of every family.
+    """Return the features of a type, of all families.
 
     Parameters
     ----------
     library : Library
-        What the message is from: it knows what definitions are written in.
+        The library of the message; it knows the language of each definition.
     with_branches : bool
-        Whether to elaborate the type's converters, which takes some tenths of a second.
+        Include branches. This elaborates the type's converters, which takes some tenths of a
+        second.
     """
     found = {f"grammar: {name}" for name in _grammar(library, message)}
     found |= {f"definition: {name}" for name in _meaning(message)}
@@ -70,12 +71,12 @@ def all_features(
 
 
 def cost(plan: Plan) -> float:
-    """Estimate what a type costs to simulate: its set-up, then about as much as there are steps."""
+    """Estimate the cost of simulating a type: a constant for the set-up, and 1 for each step."""
     return 20.0 + len(plan.steps)
 
 
 def _all_messages(message: Message) -> Iterator[Message]:
-    """Yield a message and all that are in it, each once."""
+    """Yield a message and all messages inside it, each once."""
     pending = [message]
     seen = {message.name}
     while pending:
@@ -177,8 +178,8 @@ def choose(types: Mapping[str, Iterable[str]], costs: Mapping[str, float]) -> li
     types : mapping of str to iterable of str
         Features by name of type.
     costs : mapping of str to float
-        What each costs to test, above zero: of types that add equally much per cost, the first by
-        name is taken.
+        Cost of testing each type, above zero. Of types that add equally many features per cost, the
+        first by name is taken.
     """
     left = {name: set(found) for name, found in types.items()}
     missing = set().union(*left.values()) if left else set()

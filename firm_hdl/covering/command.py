@@ -1,4 +1,4 @@
-"""``firm-hdl cover``: few types that have every feature of all, chosen or checked."""
+"""``firm-hdl cover``: choose or check a few types that have every feature of all."""
 
 from __future__ import annotations
 
@@ -22,27 +22,27 @@ __all__ = ["add_cover_arguments", "read_chosen", "run_cover"]
 
 _HEAD = """\
 # Types that together have every feature that any of {where} has; bus of {bus_bytes} bytes.
-# Written by `firm-hdl cover`, which --check FILE compares with today's features.
+# Written by `firm-hdl cover`; `firm-hdl cover --check FILE` compares it with today's features.
 """
 
 
 def add_cover_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare what ``firm-hdl cover`` takes, beside ``--distro``, ``--path`` and the options."""
+    """Add the arguments of ``firm-hdl cover``, besides ``--distro``, ``--path`` and the options."""
     parser.add_argument(
         "types",
         nargs="*",
         metavar="TYPE",
-        help="to choose from; default: all; with --path, all in those folders",
+        help="types to choose from; default: all; with --path, all in those folders",
     )
     parser.add_argument(
         "--branches",
         action="store_true",
-        help="count the generator's branches as features, too (some tenths of a second per type)",
+        help="also count the generator's branches as features (some tenths of a second per type)",
     )
     do = parser.add_mutually_exclusive_group()
     do.add_argument("--out", metavar="FILE", help="write the names of the chosen types to a file")
     do.add_argument(
-        "--check", metavar="FILE", help="choose nothing; say what the types of such a file lack"
+        "--check", metavar="FILE", help="choose nothing; list the features that FILE's types lack"
     )
 
 
@@ -52,7 +52,7 @@ def read_chosen(path: str | Path) -> list[str]:
     Raises
     ------
     BuildError
-        If it names none.
+        If the file names no types or is not UTF-8 text.
     """
     try:
         lines = read_file(path, 1 << 24).decode("utf-8").splitlines()
@@ -65,7 +65,7 @@ def read_chosen(path: str | Path) -> list[str]:
 
 
 def run_cover(given: argparse.Namespace) -> int:
-    """Run ``firm-hdl cover``; return 1 if types that are checked lack something."""
+    """Run ``firm-hdl cover``; return 1 if the checked types lack a feature."""
     library = open_library(given.distro, given.path, given.bag, depends=given.depends)
     kept = None if given.check is None else read_chosen(given.check)
     messages = load_all(library, given.types) if given.types else _usable(library, given.path)
@@ -99,11 +99,11 @@ def run_cover(given: argparse.Namespace) -> int:
 
 
 def _usable(library: Library, paths: Sequence[str]) -> list[Message]:
-    """Return all types of folders, or of a library, and say what is wrong with the others."""
+    """Return all types of folders, or of a library; print errors of types that are left out."""
     found = []
-    # Of folders, services and actions as well, which the distributions do not have.
-    there = Library(library.distro, paths, origins=()) if paths else library
-    for name in there.interfaces():
+    # Folders may also have services and actions, which the embedded distributions do not have.
+    named = Library(library.distro, paths, origins=()) if paths else library
+    for name in named.interfaces():
         try:
             found += load_all(library, [name])
         except DefinitionError as error:
@@ -117,7 +117,7 @@ def _check(types: Mapping[str, frozenset[str]], kept: list[str], path: str) -> i
         raise BuildError(f"'{path}' names {', '.join(unknown)}, not among the types")
     missing = _union(types.values()) - _union(types[name] for name in kept)
     for feature in sorted(missing):
-        # The smallest one shows it best.
+        # The type with the fewest features shows the missing one best.
         having = [name for name in types if feature in types[name]]
         least = min(having, key=lambda name: (len(types[name]), name))
         print(f"missing: {feature} (in {least})")
@@ -126,7 +126,7 @@ def _check(types: Mapping[str, frozenset[str]], kept: list[str], path: str) -> i
 
 
 def _share(types: Mapping[str, frozenset[str]], names: list[str]) -> str:
-    """Say how many features of all types some of them have, by family."""
+    """Describe how many features of all types the named types have, by family."""
     all_of = Counter(feature.partition(":")[0] for feature in _union(types.values()))
     some_of = Counter(
         feature.partition(":")[0] for feature in _union(types[name] for name in names)
@@ -135,7 +135,7 @@ def _share(types: Mapping[str, frozenset[str]], names: list[str]) -> str:
         f"{family} {some_of[family]} of {all_of[family]}" for family in FAMILIES if all_of[family]
     )
     have, all_ = some_of.total(), all_of.total()
-    # Rounded down: 100 % is all of them.
+    # Rounded down, so that 100 % means all of them.
     share = 100 * have // all_ if all_ else 100
     return f"{len(names)} of {len(types)} types have {share} % of the {all_} features ({families})"
 

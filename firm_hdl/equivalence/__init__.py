@@ -1,4 +1,4 @@
-"""Proof that VHDL is the circuit that Amaranth elaborated."""
+"""Formal equivalence proofs between the VHDL and the RTLIL of an Amaranth design."""
 
 from __future__ import annotations
 

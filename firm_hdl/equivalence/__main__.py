@@ -1,4 +1,4 @@
-"""``python -m firm_hdl.equivalence``: proofs for types that have everything there is.
+"""``python -m firm_hdl.equivalence``: proofs for types that have every feature of a plan.
 
 ``make prove`` runs this. ``firm-hdl prove`` is the command for chosen types.
 """
@@ -19,7 +19,7 @@ from firm_hdl.terminal import printable_streams
 
 @printable_streams()
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the proofs; return 0 if all are found."""
+    """Run the proofs; return 0 if all succeed."""
     parser = argparse.ArgumentParser(prog="python -m firm_hdl.equivalence", description=__doc__)
     parser.add_argument("--bus-bytes", type=int, default=8)
     parser.add_argument("--jobs", type=int, help="processes; default: one per processor")

@@ -1,8 +1,7 @@
-"""One side of a proof: a flat netlist of bits, with its registers set apart.
+"""One side of a proof: a flat netlist of bits, with its registers kept separately.
 
-Both sides become this: the VHDL through GHDL, the RTLIL through Yosys. The cells are those of
-Yosys, which works out what they do. Neither side is read by code that the VHDL back end has a part
-in.
+Both sides are converted to this form: the VHDL through GHDL, the RTLIL through Yosys. The cells are
+those of Yosys, which defines their function. No code of the VHDL back end reads either side.
 """
 
 from __future__ import annotations
@@ -16,11 +15,11 @@ __all__ = ["Bit", "Bits", "Cell", "Circuit", "Flop", "ProofError"]
 Bit: TypeAlias = int | str
 """A net, by number, or a constant: ``"0"`` or ``"1"``."""
 Bits: TypeAlias = tuple[Bit, ...]
-"""Least significant first."""
+"""Bits, the least significant one first."""
 
 
 class ProofError(Exception):
-    """Something that a proof cannot be made of; the text says what. Nothing is known then."""
+    """A proof is not possible; the text says why. The circuits may be equal or not."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,18 +34,22 @@ class Cell:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Flop:
-    """What happens to one bit of a register.
+    """One bit of a register.
 
     Attributes
     ----------
     data, clock : Bit
-        Its next state, and what that is taken at an edge of.
+        Next state, and clock.
     rising : bool
-        Whether at the rising edge.
+        The register changes at the rising edge of the clock; otherwise at the falling edge.
     init : str
-        ``0``, ``1``, or ``x`` if anything may be there at the start.
+        Initial value: ``0``, ``1``, or ``x`` for any value.
     reset : Bit or None
-        What sets it to `reset_value` at any time, if it is `reset_level`.
+        Asynchronous reset; `None` if there is none.
+    reset_level : bool
+        Level at which the reset is active.
+    reset_value : str
+        Value after a reset: ``0`` or ``1``.
     """
 
     data: Bit
@@ -60,18 +63,20 @@ class Flop:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Circuit:
-    """A flat netlist without its registers.
+    """A flat netlist; its registers are kept apart from the combinational cells.
 
     Attributes
     ----------
     inputs, outputs : mapping of str to Bits
         Ports by name.
     signals : mapping of tuple to Bits
-        Signals by path: the instances that lead to one, and its own name. On the side of the RTLIL,
-        registers only.
+        Signals by path: the names of the enclosing instances, and the signal's own name. On the
+        RTLIL side, registers only.
     cells : list of Cell
     flops : mapping of int to Flop
-        By the net that a register drives.
+        Registers by the net that they drive.
+    driven : frozenset of int
+        All nets that have a driver.
     """
 
     inputs: Mapping[str, Bits]

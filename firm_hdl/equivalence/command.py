@@ -1,4 +1,4 @@
-"""``firm-hdl prove``: one line for each converter, and a summary of many."""
+"""``firm-hdl prove``: prove converters, with a line for each of them and a summary."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ __all__ = ["add_prove_arguments", "run_proofs", "run_prove"]
 
 
 def add_prove_arguments(command: argparse.ArgumentParser) -> None:
-    """Add what is this command's own."""
-    add_types_or_all(command, "all types that there are")
+    """Add the arguments that only this command has."""
+    add_types_or_all(command, "all types")
     add_jobs(command)
     command.add_argument(
         "--timeout",
         type=positive,
         default=int(DEFAULT_TIMEOUT),
         metavar="SECONDS",
-        help="for each of two solvers; default: %(default)s",
+        help="time limit of each of two solvers; default: %(default)s",
     )
 
 
@@ -38,7 +38,7 @@ def run_prove(given: argparse.Namespace) -> int:
     Raises
     ------
     DefinitionError, BuildError
-        If types cannot be used, or options do not fit them. Nothing was proved.
+        If a type is invalid, or the options do not fit it. Nothing was proved.
     """
     if given.all == bool(given.types):
         given.usage_error("name either types or --all")
@@ -69,7 +69,7 @@ def run_prove(given: argparse.Namespace) -> int:
 
 
 def run_proofs(tasks: Sequence[ProofTask], jobs: int | None, *, bar: bool) -> int:
-    """Do tasks, and print what comes of each; return the exit status.
+    """Run tasks, and print the result of each; return the exit status.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def run_proofs(tasks: Sequence[ProofTask], jobs: int | None, *, bar: bool) -> in
     if bar:
         print(_summary(results))
     if not results:
-        print("no converter was looked at: nothing is proved")
+        print("there was no converter to prove")
     proved = sum(attempt.result == "equal" for _, attempt in results)
     return 0 if 0 < proved == len(tasks) else 1
 

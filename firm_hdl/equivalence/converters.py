@@ -1,4 +1,4 @@
-"""Proofs for the converters of message types, many at once."""
+"""Proofs for the converters of message types, in several processes."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProofTask:
-    """One converter.
+    """The proof of one converter.
 
     Attributes
     ----------
     distro, paths, bags
         As for `open_library`.
     name : str
-        The type.
+        Name of the type.
     direction : "deserializer" or "serializer"
     wire, bus_bytes, max_message_bytes
         As for the converters.
@@ -62,14 +62,14 @@ class ProofTask:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Attempt:
-    """What came of a task; with no proof, `problem` says why there is none."""
+    """The result of a task. Without a proof, `problem` says why."""
 
     proof: Proof | None
     problem: str = ""
 
     @property
     def result(self) -> str:
-        """One word."""
+        """The result in one word."""
         return self.proof.result if self.proof is not None else "failed"
 
 
@@ -81,14 +81,14 @@ def converter_vhdl(
     bus_bytes: int = 8,
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
 ) -> tuple[str, Vhdl]:
-    """Give a converter as RTLIL, and as the VHDL that ``firm-hdl build`` makes of it.
+    """Return a converter as RTLIL, and as the VHDL that ``firm-hdl build`` writes for it.
 
-    The VHDL is that of the entity with plain ports, without the remarks at the head of the files.
+    The VHDL is that of the entity with flat ports, without the comments at the head of the files.
 
     Raises
     ------
     BuildError
-        It cannot be built with these options.
+        If the converter cannot be built with these options.
     """
     plan = plan_of(message, wire, bus_bytes, max_message_bytes)
     check_size(plan)
@@ -121,7 +121,7 @@ def prove_converter(
     Raises
     ------
     BuildError
-        It cannot be built with these options.
+        If the converter cannot be built with these options.
     ProofError
         As for `prove`.
     """
@@ -136,7 +136,7 @@ def prove_converter(
 
 
 def attempt(task: ProofTask) -> Attempt:
-    """Do a task, whatever comes."""
+    """Run a task; errors become a result without a proof."""
     try:
         message = open_library(task.distro, task.paths, task.bags).message(task.name)
         return Attempt(
@@ -156,7 +156,7 @@ def attempt(task: ProofTask) -> Attempt:
 def run_tasks(
     tasks: Sequence[ProofTask], jobs: int | None = None
 ) -> Iterator[tuple[ProofTask, Attempt]]:
-    """Run tasks in `jobs` processes (`None`: one per processor), and yield results as they come."""
+    """Run tasks in `jobs` processes (`None`: one per processor); yield results as they finish."""
     work = [(task, (task,)) for task in tasks]
     for task, result in in_processes(attempt, work, jobs):
         if isinstance(result, Exception):
@@ -166,7 +166,7 @@ def run_tasks(
 
 
 def both(name: str, **options: object) -> list[ProofTask]:
-    """Give the tasks for both converters of a type."""
+    """Return the tasks for both converters of a type."""
     return [
         ProofTask(name=name, direction=direction, **options)  # type: ignore[arg-type]
         for direction in DIRECTIONS

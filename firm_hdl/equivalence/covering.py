@@ -1,7 +1,7 @@
-"""Types whose converters have everything that a converter can have.
+"""Types to prove: together, their converters have every feature that a converter can have.
 
-The embedded types are chosen by what their plans have; definitions of our own have what no embedded
-type has. A few types that everybody knows are there, too.
+Embedded types are chosen by the features of their definitions and plans. Definitions of our own
+have features that no embedded type has. A few popular types are added.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
 __all__ = ["DISTROS", "covering_tasks", "write_definitions"]
 
 DISTROS = ("noetic", "lyrical")
-"""One of each wire format."""
+"""One distribution for each wire format."""
 
-_KNOWN = {
+_POPULAR = {
     "noetic": ("geometry_msgs/Twist", "nav_msgs/Odometry", "sensor_msgs/PointCloud2"),
     "lyrical": (
         "geometry_msgs/msg/Twist",
@@ -69,12 +69,12 @@ def covering_tasks(folder: Path, *, bus_bytes: int = 8, timeout: float) -> list[
     Parameters
     ----------
     folder : Path
-        Where `write_definitions` has written to.
+        Folder of `write_definitions`.
     """
     tasks: list[ProofTask] = []
     for distro in DISTROS:
         own = str(folder / distro)
-        names = [*_chosen(distro, bus_bytes), *_KNOWN[distro]]
+        names = [*_chosen(distro, bus_bytes), *_POPULAR[distro]]
         for name in dict.fromkeys(names):
             tasks += both(name, distro=distro, bus_bytes=bus_bytes, timeout=timeout)
         for name in Library(distro, [own], origins=()).names():
@@ -83,7 +83,7 @@ def covering_tasks(folder: Path, *, bus_bytes: int = 8, timeout: float) -> list[
 
 
 def _chosen(distro: str, bus_bytes: int) -> list[str]:
-    """Choose types of a distribution that have all that any of them has, the small ones first."""
+    """Choose types of a distribution that together have every feature of all its types."""
     library = Library(distro)
     types, costs = {}, {}
     for name in library.names():

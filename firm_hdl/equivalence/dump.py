@@ -1,8 +1,8 @@
-"""Read what ``ghdl --synth --out=dump`` prints: GHDL's own netlist, gate by gate.
+"""Read the output of ``ghdl --synth --out=dump``: GHDL's own netlist, gate by gate.
 
-GHDL can print a netlist as Verilog and as VHDL, too. Both are texts that another tool has to make
-sense of again, and GHDL 2.0's Verilog drops the last arm of a `case`. The dump says what is there,
-in one statement for each gate. Anything that is not known here is an error.
+GHDL can also print a netlist as Verilog and as VHDL. Another tool would have to interpret these
+texts, and GHDL 2.0's Verilog drops the last arm of a `case`. The dump has one statement for each
+gate. Any unknown statement is an error.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ class Instance:
     Attributes
     ----------
     inputs : mapping of str to Net
-        In order; by name, or by position where a gate has any number of them.
+        Inputs in order, by name; by position if the gate has a variable number of inputs.
     parameters : tuple of int
-        In order.
+        Parameters in order.
     """
 
     name: str
@@ -56,10 +56,10 @@ class Module:
     Attributes
     ----------
     ports : mapping of str to int or None
-        Widths of all ports; `None` is any.
+        Widths of all ports; `None` is any width.
     own : Instance or None
-        Itself seen from inside: its inputs are what drives its output ports, its outputs are what
-        its input ports drive.
+        The module's ports as an instance inside it: its inputs drive the module's output ports, and
+        its outputs are driven by the module's input ports.
     """
 
     name: str
@@ -79,7 +79,7 @@ def parse_dump(text: str) -> dict[str, Module]:
     Raises
     ------
     ProofError
-        The text has something that is not known.
+        If the text has an unknown statement.
     """
     lines = [line.strip() for line in text.splitlines()]
     lines = [line for line in lines if line and not line.startswith("#")]
@@ -113,15 +113,15 @@ def _module(block: list[str]) -> Module:
     while place < len(block) and not block[place].startswith("instance "):
         line = block[place]
         place += 1
-        # What gates are like is known; and the last lines tell who reads a net, once more.
+        # Declarations of gates are not needed. The last lines only repeat connections.
         if name.startswith("$") or line.startswith("connect "):
             continue
         port = _PORT.match(line) or _unknown(line)
         if port[1] == "inout":
-            raise ProofError(f"{name} has a port of mode inout, which no proof can be made of")
+            raise ProofError(f"{name} has a port of mode inout, which a proof does not support")
         ports[_plain(port[2])] = int(port[3] or 0) + 1
     instances = [_instance(lines) for lines in _blocks(block[place:], "instance ")]
-    # What encloses all modules stands behind the last one.
+    # The instance that encloses all modules is printed behind the last module.
     instances = [i for i in instances if i.kind != "$top"]
     own = [i for i in instances if i.kind == name and i.name == name]
     others = tuple(i for i in instances if i is not own[0]) if own else tuple(instances)
@@ -162,7 +162,7 @@ def _add(nets: dict[str, Net], port: str, net: Net, line: str) -> None:
 
 
 def _net(text: str, instance: str | None) -> tuple[str, Net]:
-    """Read ``name.port{n12w3}``; the port, if the name is that of the instance."""
+    """Read ``name.port{n12w3}``; the port is empty if `instance` is `None`."""
     match = _NET.match(text) or _unknown(text)
     port = _port_of(match[1], instance) if instance is not None else ""
     return port, Net(int(match[2]), int(match[3] or match[4]))
@@ -179,4 +179,4 @@ def _plain(name: str) -> str:
 
 
 def _unknown(line: str) -> re.Match[str]:
-    raise ProofError(f"GHDL's netlist has a line that is not known: {line!r}")
+    raise ProofError(f"GHDL's netlist has an unknown line: {line!r}")

@@ -1,8 +1,8 @@
-"""GHDL's gates as cells of Yosys.
+"""Convert GHDL's gates to cells of Yosys.
 
-What a gate does is what GHDL's own writer of VHDL prints for it. Gates that only rename bits
-(signals, concatenations, slices, extensions) leave no cell behind. Where GHDL says that a value is
-unknown ('X'), any value may be there: a proof then has to hold for all of them.
+The function of a gate is taken from the VHDL that GHDL itself writes for the gate. Gates that only
+rename bits (signals, concatenations, slices, extensions) become no cells. An unknown value ('X') of
+GHDL may be any value, and a proof has to hold for all of them.
 """
 
 from __future__ import annotations
@@ -59,14 +59,14 @@ _CONCATENATIONS = frozenset("$concat2 $concat3 $concat4 $concatn".split())
 
 
 class Gate:
-    """A gate and what it is connected to.
+    """A gate and its connections.
 
     Parameters
     ----------
     instance : Instance
     inputs : mapping of str to Bits
     width : int
-        Of its output.
+        Width of the output.
     fresh : callable
         Makes nets that may have any value.
     """
@@ -82,20 +82,20 @@ class Gate:
         self.fresh = fresh
 
     def parameter(self) -> int:
-        """Give the only parameter."""
+        """Return the only parameter."""
         if len(self.parameters) != 1:
             count = len(self.parameters)
             raise ProofError(f"GHDL's {self.kind} {self.name} has {count} parameters")
         return self.parameters[0]
 
     def check(self, holds: bool) -> None:
-        """Complain about a gate that is not of the form that is known."""
+        """Raise an error unless the gate has the expected form."""
         if not holds:
-            raise ProofError(f"GHDL's {self.kind} {self.name} has a form that is not known")
+            raise ProofError(f"GHDL's {self.kind} {self.name} has an unknown form")
 
 
 def renamed(gate: Gate) -> Bits | None:
-    """Give the bits that a gate's output is, if it does nothing but name them."""
+    """Return the bits of a gate's output if the gate only renames bits; otherwise `None`."""
     kind, width = gate.kind, gate.width
     values = list(gate.inputs.values())
     if kind in _SAME:
@@ -128,7 +128,7 @@ def _constant(gate: Gate) -> Bits:
         value = gate.parameter()
     elif gate.kind == "$const_SB32":
         value = gate.parameter()
-        # Printed as an unsigned number, whatever it is.
+        # GHDL prints negative numbers as unsigned ones.
         value -= value >> 31 << 32
     elif gate.kind == "$const_UL32":
         gate.check(len(words) == 2)
@@ -141,8 +141,8 @@ def _constant(gate: Gate) -> Bits:
         value = sum(word << 32 * place for place, word in enumerate(words[::2]))
         unknown = sum(word << 32 * place for place, word in enumerate(words[1::2]))
     else:
-        raise ProofError(f"GHDL's netlist has {gate.kind}, which no proof can be made of")
-    # 2 is 'Z' and 3 is 'X'; neither says anything about the value.
+        raise ProofError(f"GHDL's netlist has {gate.kind}, which a proof does not support")
+    # 2 is 'Z' and 3 is 'X'; either may be any value.
     return tuple(
         gate.fresh(1)[0] if unknown >> place & 1 else "01"[value >> place & 1]
         for place in range(width)
@@ -150,7 +150,7 @@ def _constant(gate: Gate) -> Bits:
 
 
 def gate_cells(gate: Gate, output: tuple[int, ...]) -> list[Cell]:
-    """Give the cells that drive a gate's output."""
+    """Return the cells that drive a gate's output."""
     kind = gate.kind
     values = list(gate.inputs.values())
     if kind in _BINARY:
@@ -174,7 +174,7 @@ def gate_cells(gate: Gate, output: tuple[int, ...]) -> list[Cell]:
         return _mux4(gate, values, output)
     if kind == "$pmux":
         return _pmux(gate, values, output)
-    raise ProofError(f"GHDL's netlist has {kind}, which no proof can be made of")
+    raise ProofError(f"GHDL's netlist has {kind}, which a proof does not support")
 
 
 def _binary(gate: Gate, values: list[Bits], output: tuple[int, ...]) -> list[Cell]:
@@ -188,7 +188,7 @@ def _binary(gate: Gate, values: list[Bits], output: tuple[int, ...]) -> list[Cel
         gate.check(len(left) == gate.width)
     signed = gate.kind in _SIGNED
     if kind in ("$shl", "$shr", "$sshr"):
-        # Only what is shifted can be signed.
+        # Only the value that is shifted can be signed, not the amount.
         return [_cell(kind, output, signed=signed, second_signed=False, A=left, B=right)]
     if kind not in ("$div", "$mod", "$modfloor"):
         return [_cell(kind, output, signed=signed, A=left, B=right)]
@@ -198,7 +198,7 @@ def _binary(gate: Gate, values: list[Bits], output: tuple[int, ...]) -> list[Cel
 def divided(
     kind: str, signed: bool, left: Bits, right: Bits, output: tuple[int, ...], fresh: _Fresh
 ) -> list[Cell]:
-    """Give a division whose result is anything if the divisor is 0."""
+    """Return the cells of a division whose result may be any value if the divisor is 0."""
     result, by_zero = fresh(len(output)), fresh(1)
     return [
         _cell(kind, result, signed=signed, A=left, B=right),
@@ -219,7 +219,7 @@ def _mux4(gate: Gate, values: list[Bits], output: tuple[int, ...]) -> list[Cell]
 
 
 def _pmux(gate: Gate, values: list[Bits], output: tuple[int, ...]) -> list[Cell]:
-    """Give a chain of choices: at most one bit of the selector is 1, as choices exclude another."""
+    """Return a chain of multiplexers; at most one bit of the selector is 1."""
     select, default, *choices = values
     gate.check(len(select) == len(choices))
     gate.check(all(len(value) == gate.width for value in values[1:]))

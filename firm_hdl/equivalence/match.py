@@ -1,8 +1,8 @@
-"""Which register of the VHDL is which of Amaranth's.
+"""Match the registers of the VHDL with those of the RTLIL.
 
-The back end tells what it has called everything. That is taken as a guess: a wrong one makes a
-proof fail, never succeed, because a proof that assumes two registers equal also proves that they
-start equal and stay so.
+The back end reports the names that it has given. They are only a guess: a wrong one makes a proof
+fail, never succeed, because a proof that assumes two registers to be equal also proves that they
+start equal and stay equal.
 """
 
 from __future__ import annotations
@@ -18,50 +18,50 @@ _CELL = re.compile(r"cell \\(\S+) \\(\S+)$")
 
 
 class Names(Protocol):
-    """What one module's things are called in VHDL; see `firm_hdl.vhdl.convert.EntityNames`."""
+    """The names of one module in VHDL; see `firm_hdl.vhdl.convert.EntityNames`."""
 
     @property
     def signals(self) -> Mapping[str, str]:
-        """Signals by wire."""
+        """Names of signals, by wire of the RTLIL."""
 
     @property
     def instances(self) -> Mapping[str, str]:
-        """Labels by cell."""
+        """Labels of instances, by cell of the RTLIL."""
 
 
 def vhdl_paths(
     rtlil: str, top: str, entities: Mapping[str, Names]
 ) -> Mapping[tuple[str, ...], tuple[str, ...]]:
-    """Give paths of signals in VHDL by paths in the flattened RTLIL; both without the top.
+    """Return paths of signals in VHDL by paths in the flattened RTLIL; both without the top.
 
     Parameters
     ----------
     rtlil : str
-        Its modules and instances are all that is looked at.
+        RTLIL text; only its modules and instances are read.
     top : str
         The outermost module.
     entities : mapping of str to Names
-        By module.
+        Names in VHDL by module.
     """
     cells = _instances(rtlil)
     paths: dict[tuple[str, ...], tuple[str, ...]] = {}
     stack: list[tuple[str, tuple[str, ...], tuple[str, ...]]] = [(top, (), ())]
     while stack:
-        module, here, there = stack.pop()
+        module, rtlil_path, vhdl_path = stack.pop()
         names = entities.get(module)
         if names is None:
             continue
         for wire, signal in names.signals.items():
-            paths[(*here, wire)] = (*there, signal.lower())
+            paths[(*rtlil_path, wire)] = (*vhdl_path, signal.lower())
         for cell, kind in cells.get(module, {}).items():
             label = names.instances.get(cell)
             if label is not None:
-                stack.append((kind, (*here, cell), (*there, label.lower())))
+                stack.append((kind, (*rtlil_path, cell), (*vhdl_path, label.lower())))
     return paths
 
 
 def _instances(rtlil: str) -> dict[str, dict[str, str]]:
-    """Find the modules that each module has instances of, by the instance's name."""
+    """Return, for each module, the modules of its instances by the instance's name."""
     found: dict[str, dict[str, str]] = {}
     inside: dict[str, str] = {}
     for line in rtlil.split("\n"):

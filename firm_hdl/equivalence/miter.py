@@ -1,9 +1,9 @@
-"""Two circuits as one whose outputs say where they differ.
+"""The miter: two circuits combined to one whose outputs are 1 where the two differ.
 
-Induction over clock cycles: if all registers are equal, then all outputs are, and so are all
-registers after the next edge; and they are equal at the start. Registers become inputs that both
-circuits share, their next states become outputs. So one combinational question is left: can any of
-the outputs of the combined circuit ever be 1?
+The proof is by induction over clock edges: the registers start equal; and if all registers are
+equal, then all outputs and all next states are equal. Registers become inputs that both circuits
+share, and their next states become outputs. So one combinational question is left: can any output
+of the combined circuit ever be 1?
 """
 
 from __future__ import annotations
@@ -26,8 +26,9 @@ class Claim:
     Attributes
     ----------
     what : str
-        For people, such as ``output m_axis_tvalid`` or ``next state of core.step``.
+        Description, such as ``output m_axis_tvalid`` or ``next state of core.step``.
     amaranth, vhdl : Bits
+        The values on the two sides.
     """
 
     what: str
@@ -42,16 +43,16 @@ class Miter:
     Attributes
     ----------
     differences : tuple of str
-        What differs without any question: a register that is none, another initial value.
+        Differences that need no solver, such as a missing register or another initial value.
     claims : tuple of Claim
-        What is to be proved.
+        The claims to be proved.
     inputs : mapping of str to Bits
-        Inputs and registers by name, and ``anything``: what neither side defines.
+        Inputs and registers by name, and ``anything``: nets that neither side drives.
     cells : list of Cell
     unmatched : tuple of str
         Registers that only one side has. They may have any value at any time.
     registers : int
-        How many bits of registers both sides have.
+        Number of register bits that both sides have.
     """
 
     differences: tuple[str, ...]
@@ -62,14 +63,14 @@ class Miter:
     registers: int
 
     def netlist(self, *, values: bool) -> dict[str, Any]:
-        """Write the circuit as Yosys reads JSON.
+        """Return the circuit in the JSON format of Yosys.
 
         The inputs are called ``in0`` and so on; claim n is bit n of the output ``differs``.
 
         Parameters
         ----------
         values : bool
-            Have outputs for the values of both sides of each claim, ``amaranth0`` and ``vhdl0``.
+            Add outputs with the values of both sides of each claim, ``amaranth0`` and ``vhdl0``.
         """
         cells: dict[str, Any] = {}
         net = max(
@@ -94,7 +95,7 @@ class Miter:
         return {"creator": "firm-hdl", "modules": {"miter": module}}
 
     def _all_bits(self) -> Iterator[Bits]:
-        # Whatever a cell reads is one of these.
+        # Every net that a cell reads is one of these.
         yield from self.inputs.values()
         for cell in self.cells:
             yield from cell.outputs.values()
@@ -151,9 +152,9 @@ class _Maker:
             (bit for bit in _all_nets(amaranth) if isinstance(bit, int)), default=1
         )
         self._vhdl = _shifted(vhdl, self._offset)
-        self._ports = {name: there.lower() for name, there in ports.items()}
+        self._ports = {name: vhdl_name.lower() for name, vhdl_name in ports.items()}
         self._signals = signals
-        # What a net of either side is called in the combined circuit.
+        # Nets of either side that the combined circuit replaces, with their replacement.
         self._same: dict[int, Bit] = {}
         self._inputs: dict[str, Bits] = {}
         self._claims: list[tuple[str, Bits, Bits]] = []
@@ -193,22 +194,22 @@ class _Maker:
                     self._differences.append(f"only one side has the {what} {name}")
                 elif len(named[name][1]) != len(theirs[name]):
                     self._differences.append(f"the {what} {name} has two widths")
-            for there, (name, bits) in named.items():
-                if len(theirs.get(there, ())) != len(bits):
+            for vhdl_name, (name, bits) in named.items():
+                if len(theirs.get(vhdl_name, ())) != len(bits):
                     continue
                 if what == "input":
                     self._inputs[f"input {name}"] = bits
-                    self._same.update(zip(_nets(theirs[there]), bits, strict=True))
+                    self._same.update(zip(_nets(theirs[vhdl_name]), bits, strict=True))
                 else:
-                    self._claims.append((f"output {name}", bits, theirs[there]))
+                    self._claims.append((f"output {name}", bits, theirs[vhdl_name]))
 
     def _match_registers(self) -> set[int]:
         """Match registers bit by bit; return the nets of those that have a partner."""
         paired: set[int] = set()
         for path, bits in self._amaranth.signals.items():
             name = ".".join(path)
-            there = self._signals.get(path)
-            found = self._vhdl.signals.get(there) if there is not None else None
+            vhdl_path = self._signals.get(path)
+            found = self._vhdl.signals.get(vhdl_path) if vhdl_path is not None else None
             if found is None or len(found) != len(bits):
                 continue
             self._register(name, _nets(bits), found, paired)
@@ -225,7 +226,7 @@ class _Maker:
                 if ours[bit].init not in ("x", other):
                     self._differences.append(f"{name} starts with another value")
                 if ours[bit].reset is not None and ours[bit].reset_value != other:
-                    self._differences.append(f"the asynchronous reset of {name} is another")
+                    self._differences.append(f"{name} has another asynchronous reset")
                 self._same[bit] = other
                 right.append(other)
             elif other in theirs:
@@ -235,7 +236,7 @@ class _Maker:
                 shared += [] if bit in paired else [bit]
                 right.append(theirs[other].data)
             else:
-                self._differences.append(f"{name} is no register in the VHDL")
+                self._differences.append(f"{name} is not a register in the VHDL")
                 return
             left.append(ours[bit].data)
             self._registers += bit not in paired
@@ -253,11 +254,11 @@ class _Maker:
             self._differences.append(f"{name} has an asynchronous reset on one side only")
         elif ours.reset is not None and theirs.reset is not None:
             if (ours.reset_value, ours.reset_level) != (theirs.reset_value, theirs.reset_level):
-                self._differences.append(f"the asynchronous reset of {name} is another")
+                self._differences.append(f"{name} has another asynchronous reset")
             self._claims.append((f"reset of {name}", (ours.reset,), (theirs.reset,)))
 
     def _unpaired_registers(self, paired: set[int]) -> dict[str, Bits]:
-        """Let registers without a partner have any value: what does not matter cannot differ."""
+        """Return registers without a partner; they may have any value, as if they were inputs."""
         unpaired: dict[str, Bits] = {}
         for side, circuit in (("Amaranth", self._amaranth), ("VHDL", self._vhdl)):
             rest = dict.fromkeys(bit for bit in circuit.flops if bit not in paired)
@@ -289,7 +290,7 @@ class _Maker:
         )
 
     def _undriven(self, cells: list[Cell], claims: tuple[Claim, ...]) -> Bits:
-        """Find what is read and never defined; any value may be there."""
+        """Return the nets that are read and have no driver; they may have any value."""
         driven = {bit for bits in self._inputs.values() for bit in bits}
         for cell in cells:
             for bits in cell.outputs.values():
@@ -315,7 +316,7 @@ def _all_nets(circuit: Circuit) -> Iterator[Bit]:
 def _nets(bits: Bits) -> tuple[int, ...]:
     result = tuple(bit for bit in bits if isinstance(bit, int))
     if len(result) != len(bits):
-        raise ProofError("a port or register is a constant from outside")
+        raise ProofError("a port or register has a constant in place of a net")
     return result
 
 

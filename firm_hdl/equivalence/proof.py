@@ -1,4 +1,4 @@
-"""Prove that a design's VHDL is the design: `prove`."""
+"""Prove that the VHDL of a design is equivalent to the design: `prove`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from firm_hdl.vhdl.convert import Vhdl, convert
 __all__ = ["DEFAULT_TIMEOUT", "Proof", "Result", "prove"]
 
 DEFAULT_TIMEOUT = 300.0
-"""Seconds that each solver may take."""
+"""Time limit of each solver in seconds."""
 
 Result: TypeAlias = Literal["equal", "unequal", "undecided"]
 _RESULTS: Mapping[bool | None, Result] = {True: "equal", False: "unequal", None: "undecided"}
@@ -30,25 +30,26 @@ _RESULTS: Mapping[bool | None, Result] = {True: "equal", False: "unequal", None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Proof:
-    """What came of an attempt to prove the VHDL of a design equal to its RTLIL.
+    """The result of an attempt to prove the VHDL of a design equal to its RTLIL.
 
     Attributes
     ----------
     result : "equal", "unequal" or "undecided"
-        Undecided: the solvers gave up. Nothing is known then.
+        Undecided: the solvers gave up; the circuits may be equal or not.
     differences : tuple of str
-        What differs, if `result` is unequal; what is open, if it is undecided.
+        The differences, if `result` is unequal; the open claims, if it is undecided.
     counterexample : mapping of str to int
-        Inputs and registers for which it does; those that are not named are 0. Empty if a glance
-        was enough, as at another initial value. The registers may have values that they never
-        reach; then the circuits may still do the same, but are not proved to.
+        Inputs and registers for which the sides differ; those that are not named are 0. Empty if no
+        solver was needed, as for another initial value. The registers may have values that they
+        never reach; then the circuits may be equivalent, but this is not proved.
     unmatched : tuple of str
-        Registers that only one side has, because what they hold is never used.
+        Registers that only one side has. If their values are never used, the proof can succeed.
     registers : int
-        Bits of registers that both sides have.
+        Number of register bits that both sides have.
     claims : int
-        How many outputs, next states and so on were compared by a solver.
+        Number of outputs, next states and so on that a solver compared.
     seconds : float
+        Duration of the attempt.
     """
 
     result: Result
@@ -88,21 +89,21 @@ def prove(
     design : elaboratable or str
         An Amaranth component or other elaboratable, or RTLIL text of `amaranth.back.rtlil`.
     vhdl : Vhdl or None
-        What `firm_hdl.vhdl.convert.convert` has made of it; made here by default.
+        Its VHDL, from `firm_hdl.vhdl.convert.convert`; `None`: converted here.
     name, ports, platform
         As for `convert`.
     timeout : float
         Seconds for each solver.
     tools : Tools or None
-        GHDL and Yosys; looked for by default.
+        GHDL and Yosys; `None`: those that `find_tools` finds.
 
     Raises
     ------
     MissingToolError
-        GHDL or Yosys is not installed.
+        If GHDL or Yosys is not installed.
     ProofError
-        The design has something that no proof can be made of, such as a foreign instance, or a
-        tool failed.
+        If the design has a construct that a proof does not support, such as a foreign instance, or
+        if a tool failed.
     """
     began = time.perf_counter()
     found = tools or find_tools()

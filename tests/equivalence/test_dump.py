@@ -67,11 +67,11 @@ def test_registers_are_cut_out_with_their_initial_values() -> None:
     ("old", "new", "message"),
     [
         ("$not\n      input", "$gate\n      input", r"GHDL's netlist has \$gate, which no proof"),
-        ("    # top.vhd:1:1", "    something else", "has a line that is not known: 'something"),
-        ("<- \\top.\\a{n1w4}", "<- ?", "has a line that is not known"),
+        ("    # top.vhd:1:1", "    something else", "has an unknown line: 'something"),
+        ("<- \\top.\\a{n1w4}", "<- ?", "has an unknown line"),
         ("%3.$o{n5w4}\n    instance %4", "%3.$o{n6w4}\n    instance %4", "drives a net twice"),
         ("<- %2.$o{n4w1}", "<- \\top.\\clk{n2w1}", "a register of the VHDL has no clock edge"),
-        ("%1.$i{p2} <- \\top.\\a{n1w4}", "%1.$i{p2} <- %5.$o{n9w3}", "form that is not known"),
+        ("%1.$i{p2} <- \\top.\\a{n1w4}", "%1.$i{p2} <- %5.$o{n9w3}", "an unknown form"),
         ("\\r.$i{p7} <- %4.$q{n6w4}", "\\r.$i{p7} <- \\r.$o{n7w4}", "is defined by itself"),
     ],
 )

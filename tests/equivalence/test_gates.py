@@ -24,9 +24,9 @@ def test_constants_of_one_word(width):
     assert constant("$const_bit", width, top) == bits
     assert constant("$const_log", width, top, 0) == bits
     for words in (0, 2):
-        with pytest.raises(ProofError, match="form that is not known"):
+        with pytest.raises(ProofError, match="an unknown form"):
             constant("$const_bit", width, *[0] * words)
-        with pytest.raises(ProofError, match="form that is not known"):
+        with pytest.raises(ProofError, match="an unknown form"):
             constant("$const_log", width, *[0] * (2 * words))
 
 
@@ -36,7 +36,7 @@ def test_constants_of_two_words(width):
     bits = tuple("01"[(high << 32 | low) >> place & 1] for place in range(width))
     assert constant("$const_bit", width, low, high) == bits
     assert constant("$const_log", width, low, 0, high, 0) == bits
-    with pytest.raises(ProofError, match="form that is not known"):
+    with pytest.raises(ProofError, match="an unknown form"):
         constant("$const_log", width, low, 0)
 
 

@@ -87,7 +87,7 @@ def test_a_register_that_vhdl_makes_a_wire_is_found(tools: Tools) -> None:
     broken = without.replace("\nend architecture", "\n  late <= go;\nend architecture")
     proof = prove(text, replace(vhdl, files={**vhdl.files, "little.vhd": broken}), tools=tools)
     assert proof.result == "unequal"
-    assert proof.differences == ("late is no register in the VHDL",)
+    assert proof.differences == ("late is not a register in the VHDL",)
 
 
 def test_a_port_that_is_missing_is_found(tools: Tools) -> None:
