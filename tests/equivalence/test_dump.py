@@ -66,7 +66,7 @@ def test_registers_are_cut_out_with_their_initial_values() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("$not\n      input", "$gate\n      input", r"GHDL's netlist has \$gate, which no proof"),
+        ("$not\n      input", "$gate\n      input", r"GHDL's netlist has \$gate, which a proof"),
         ("    # top.vhd:1:1", "    something else", "has an unknown line: 'something"),
         ("<- \\top.\\a{n1w4}", "<- ?", "has an unknown line"),
         ("%3.$o{n5w4}\n    instance %4", "%3.$o{n6w4}\n    instance %4", "drives a net twice"),

@@ -193,5 +193,5 @@ def test_memories_are_refused(tools: Tools) -> None:
     out = Signal(4, name="out")
     m.d.comb += out.eq(read.data)
     ports = [port.en, port.data, port.addr, read.addr, out]
-    with pytest.raises(ProofError, match=r"the design has \$mem\w+, which no proof"):
+    with pytest.raises(ProofError, match=r"the design has \$mem\w+, which a proof"):
         prove(m, ports=ports, tools=tools)
