@@ -83,19 +83,14 @@ class Harness:
 
         Parameters
         ----------
-        packets : sequence of bytes or None
-        transfers : mapping of int to sequence of Payload, or None
-            Transfers by leaf.
         messages : int or None
             Number of messages in `transfers`; not needed with `packets`.
-        stalls : StallPlan
         deadline : int
             Most cycles without any transfer, in addition to the longest stall.
         limit : int or None
             Most cycles in total. `None`: many more than any valid packets take.
-        vcd : path or None
-            Where to write a waveform.
         observe : callable or None
+
             Called with the values of the probes in each cycle; see
             :class:`firm_hdl.sim.bench.Job`.
 
