@@ -78,8 +78,7 @@ class Harness:
     ) -> Seen:
         """Send packets (with a deserializer) or transfers (without), and record the results.
 
-        Payload bits that a deserializer has to ignore are random: bytes of lanes that are not
-        valid, and `count` in beats that are not the last.
+        Bytes of lanes that are not valid, and `count` in beats that are not the last, are random.
 
         Parameters
         ----------
@@ -90,9 +89,7 @@ class Harness:
         limit : int or None
             Most cycles in total. `None`: many more than any valid packets take.
         observe : callable or None
-
-            Called with the values of the probes in each cycle; see
-            :class:`firm_hdl.sim.bench.Job`.
+            Called in each cycle with the values of the probes; see :class:`.bench.Job`.
 
         Raises
         ------
