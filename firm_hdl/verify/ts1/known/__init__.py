@@ -7,15 +7,13 @@ somebody's.
 
 from __future__ import annotations
 
-from firm_hdl.verify.ts1.known.idl import IDL
-from firm_hdl.verify.ts1.known.idl_fit import IDL_FIT
-from firm_hdl.verify.ts1.known.idl_values import IDL_VALUES
-from firm_hdl.verify.ts1.known.lenient import LENIENT
-from firm_hdl.verify.ts1.known.ros import ROS
-from firm_hdl.verify.ts1.known.rosbags import ROSBAGS
+from firm_hdl.verify.ts1.known import idl, idl_fit, idl_values, lenient, ros, rosbags
 from firm_hdl.verify.ts1.known.rule import KnownRule
 
 __all__ = ["KNOWN"]
 
-KNOWN: tuple[KnownRule, ...] = (*ROSBAGS, *LENIENT, *ROS, *IDL_FIT, *IDL, *IDL_VALUES)
+KNOWN: tuple[KnownRule, ...] = (
+    *(*rosbags.RULES, *lenient.RULES, *ros.MISTAKES, *ros.RULES),
+    *(*idl_fit.RULES, *idl.RULES, *idl_values.RULES),
+)
 """All entries, in the order in which they are applied."""

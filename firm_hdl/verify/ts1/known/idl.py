@@ -8,17 +8,23 @@ from typing import Any
 
 from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
-from firm_hdl.verify.ts1.known.idl_text import blanked, changed, entry, in_code, modules_of
-from firm_hdl.verify.ts1.known.rule import KnownRule
+from firm_hdl.verify.ts1.known.idl_text import blanked, changed, in_code, modules_of
+from firm_hdl.verify.ts1.known.rule import Rules, mend_values, without_hash
 from firm_hdl.verify.ts1.known.texts import renamed
 
-__all__ = ["IDL"]
+__all__ = ["RULES"]
+
+RULES = Rules("rosidl_parser", language="idl")
+"""What is known of rosidl_parser and IDL."""
 
 # Names.
 
 _PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
 
 
+@RULES.facts(
+    "idl-names", "A type in IDL is called by its package and its file, whatever its modules say."
+)
 def _named_as_file(facts: Facts, case: DefinitionCase) -> Facts:
     """Give the message its package and folder, where other modules are around it."""
     if "names" not in facts:
@@ -54,6 +60,11 @@ def _parts_named_as_file(facts: Facts, case: DefinitionCase) -> Facts:
     return {**facts, "structure": mended}
 
 
+@RULES.text(
+    "idl-file-names",
+    "A file in IDL must declare what it is called; rosidl_parser does not see file names.",
+    is_mistake=True,
+)
 def _called_as_file(case: DefinitionCase) -> str:
     """Call what a file declares as the file is called."""
     found = re.findall(r"\bstruct\s+(\w+)", blanked(case.text))
@@ -70,6 +81,10 @@ def _called_as_file(case: DefinitionCase) -> str:
 _DECLARED = re.compile(r"\bconst\s+[\w :<>,]*?\b(\w+)\s*=\s*([^;]*);")
 
 
+@RULES.text(
+    "idl-bounds-by-name",
+    "rosidl_parser keeps the name of a constant that bounds a wstring; we have its value.",
+)
 def _bounds_by_value(case: DefinitionCase) -> str:
     """Write the value of a constant that bounds a wstring in place of its name."""
     values = dict(_DECLARED.findall(blanked(case.text)))
@@ -81,35 +96,31 @@ def _bounds_by_value(case: DefinitionCase) -> str:
     return in_code(case.text, r"(\bwstring\s*<\s*)([A-Za-z_][\w:]*)", bound)
 
 
-def _floats(facts: Facts, case: DefinitionCase) -> Facts:
+def _as_float(kind: str, value: Any) -> Any:
     """Make floating-point numbers of integers that are given for such."""
-
-    def number(kind: str, value: Any) -> Any:
-        if re.split(r"[\[<]", kind, maxsplit=1)[0] not in ("float32", "float64", "long double"):
-            return value
-        if isinstance(value, list):
-            return [number(kind, each) for each in value]
-        return float(value) if type(value) is int else value
-
-    def members(items: list[dict[str, Any]], key: str) -> list[dict[str, Any]]:
-        return [{**each, key: number(each["type"], each[key])} for each in items]
-
-    mended = {
-        name: {
-            **message,
-            "fields": members(message.get("fields", []), "default"),
-            "constants": members(message.get("constants", []), "value"),
-        }
-        for name, message in facts.get("structure", {}).items()
-    }
-    return {**facts, "structure": mended}
+    if re.split(r"[\[<]", kind, maxsplit=1)[0] not in ("float32", "float64", "long double"):
+        return value
+    if isinstance(value, list):
+        return [_as_float(kind, each) for each in value]
+    return float(value) if type(value) is int else value
 
 
+RULES.add(
+    "idl-whole-numbers",
+    "rosidl_parser keeps an integer that is given for a floating-point number an integer.",
+    theirs=mend_values(_as_float),
+)
+
+
+@RULES.facts(
+    "idl-long-double-hash",
+    "rosidl_generator_type_description raises KeyError for a long double; we have a hash.",
+)
 def _without_long_double_hash(facts: Facts, case: DefinitionCase) -> Facts:
     """Take away what rosidl raises in place of the hash of a long double; it has no other."""
     if facts.get("hash") != "raises KeyError: 'long double'":
         return facts
-    return {name: fact for name, fact in facts.items() if name != "hash"}
+    return without_hash(facts)
 
 
 # What C++ would have twice.
@@ -127,6 +138,11 @@ _NAMES = re.compile(
 )
 
 
+@RULES.text(
+    "idl-twice",
+    "rosidl_parser takes constants and members that are declared twice, which C++ does not.",
+    is_mistake=True,
+)
 def _declared_once(case: DefinitionCase) -> str:
     """Give what is declared again in the same braces another name."""
     # As long as the text, so that places in it are those in the text.
@@ -150,8 +166,24 @@ def _declared_once(case: DefinitionCase) -> str:
 # What rosidl_parser does not look at.
 
 
+@RULES.text("idl-lengths", "rosidl_parser takes arrays of negative lengths.", is_mistake=True)
 def _positive_lengths(case: DefinitionCase) -> str:
     return in_code(case.text, r"(\[\s*)-\s*\d+(?=\s*\])", r"\g<1>1")
+
+
+_TYPES = "octet|boolean|float|double|w?char|w?string|unsigned|short|long|u?int(?:8|16|32|64)"
+
+
+_GLUED = (
+    rf"((?:[{{;]|\btypedef\b)\s*)({_TYPES})(?=\w+\s*(?:\[[^\]]*\]\s*)?;)"
+    r"|(\b)(unsigned)(?=(?:short|long)\b)"
+)
+
+
+@RULES.text("idl-words", "rosidl_parser takes words that run together.", is_mistake=True)
+def _words_apart(case: DefinitionCase) -> str:
+    """Write a blank behind a type that a name, or a part of its own name, follows at once."""
+    return in_code(case.text, _GLUED, lambda m: f"{m[1] or m[3] or ''}{m[2] or m[4]} ")
 
 
 _SCOPED = r"(?<![\w:])(?:\w+\s*::\s*)+\w+(?=\s+\w+\s*(?:[;,]|\[))"
@@ -159,6 +191,11 @@ _SCOPED = r"(?<![\w:])(?:\w+\s*::\s*)+\w+(?=\s+\w+\s*(?:[;,]|\[))"
 _SCOPED_ELEMENT = r"(\bsequence\s*<\s*)((?:\w+\s*::\s*)+\w+)(?=\s*[,>])"
 
 
+@RULES.text(
+    "idl-type-scopes",
+    "rosidl_parser takes types that are not written package::msg::Name.",
+    is_mistake=True,
+)
 def _types_of_ros(case: DefinitionCase) -> str:
     """Write a builtin type in place of one whose scopes are none of ROS."""
 
@@ -173,27 +210,24 @@ def _types_of_ros(case: DefinitionCase) -> str:
     return in_code(text, _SCOPED_ELEMENT, element)
 
 
-_TYPES = "octet|boolean|float|double|w?char|w?string|unsigned|short|long|u?int(?:8|16|32|64)"
-_GLUED = (
-    rf"((?:[{{;]|\btypedef\b)\s*)({_TYPES})(?=\w+\s*(?:\[[^\]]*\]\s*)?;)"
-    r"|(\b)(unsigned)(?=(?:short|long)\b)"
-)
-
-
-def _words_apart(case: DefinitionCase) -> str:
-    """Write a blank behind a type that a name, or a part of its own name, follows at once."""
-    return in_code(case.text, _GLUED, lambda m: f"{m[1] or m[3] or ''}{m[2] or m[4]} ")
-
-
 # What we refuse by name.
 
 _UNSUPPORTED = r"@(?:optional|mutable)\b(?:\s*\([^()]*\))?|@extensibility\s*\(\s*MUTABLE\s*\)"
 
 
+@RULES.text(
+    "idl-unsupported",
+    "Annotations that change the bytes on the wire are refused; rosidl_parser ignores them.",
+    is_mistake=True,
+)
 def _without_unsupported(case: DefinitionCase) -> str:
     return in_code(case.text, _UNSUPPORTED, "")
 
 
+@RULES.spoils(
+    "idl-lists-of-lists",
+    "Lists of lists by typedefs are refused; rosidl_parser takes some, and nothing behind it.",
+)
 def _has_lists_of_lists(case: DefinitionCase) -> bool:
     """Whether a list of a type that is a list itself, by a typedef, is declared."""
     code = blanked(case.text)
@@ -202,69 +236,3 @@ def _has_lists_of_lists(case: DefinitionCase) -> bool:
     named = "|".join(map(re.escape, sorted(lists | arrays)))
     pattern = rf"sequence\s*<\s*(?:\w+::)*(?:{named})\b|\b(?:{named})\s+\w+\s*\["
     return bool(named) and re.search(pattern, code) is not None
-
-
-IDL: tuple[KnownRule, ...] = (
-    entry(
-        "idl-names",
-        "A type in IDL is called by its package and its file, whatever its modules say.",
-        theirs=_named_as_file,
-    ),
-    entry(
-        "idl-file-names",
-        "A file in IDL must declare what it is called; rosidl_parser does not see file names.",
-        rewrite=_called_as_file,
-        is_mistake=True,
-    ),
-    entry(
-        "idl-bounds-by-name",
-        "rosidl_parser keeps the name of a constant that bounds a wstring; we have its value.",
-        rewrite=_bounds_by_value,
-    ),
-    entry(
-        "idl-whole-numbers",
-        "rosidl_parser keeps an integer that is given for a floating-point number an integer.",
-        theirs=_floats,
-    ),
-    entry(
-        "idl-long-double-hash",
-        "rosidl_generator_type_description raises KeyError for a long double; we have a hash.",
-        theirs=_without_long_double_hash,
-    ),
-    entry(
-        "idl-twice",
-        "rosidl_parser takes constants and members that are declared twice, which C++ does not.",
-        rewrite=_declared_once,
-        is_mistake=True,
-    ),
-    entry(
-        "idl-lengths",
-        "rosidl_parser takes arrays of negative lengths.",
-        rewrite=_positive_lengths,
-        is_mistake=True,
-    ),
-    entry(
-        "idl-words",
-        "rosidl_parser takes words that run together.",
-        rewrite=_words_apart,
-        is_mistake=True,
-    ),
-    entry(
-        "idl-type-scopes",
-        "rosidl_parser takes types that are not written package::msg::Name.",
-        rewrite=_types_of_ros,
-        is_mistake=True,
-    ),
-    entry(
-        "idl-unsupported",
-        "Annotations that change the bytes on the wire are refused; rosidl_parser ignores them.",
-        rewrite=_without_unsupported,
-        is_mistake=True,
-    ),
-    entry(
-        "idl-lists-of-lists",
-        "Lists of lists by typedefs are refused; rosidl_parser takes some, and nothing behind it.",
-        spoils=_has_lists_of_lists,
-    ),
-)
-"""What is known of rosidl_parser and IDL."""

@@ -19,13 +19,15 @@ from firm_hdl.verify.ts1.known.idl_text import (
     TYPEDEF,
     blanked,
     changed,
-    entry,
     modules_of,
 )
 from firm_hdl.verify.ts1.known.idl_values import integer_of, integers_of
-from firm_hdl.verify.ts1.known.rule import KnownRule, mend_members
+from firm_hdl.verify.ts1.known.rule import Rules, mend_members, without_hash
 
-__all__ = ["IDL_FIT"]
+__all__ = ["RULES"]
+
+RULES = Rules("rosidl_parser", language="idl")
+"""What is known of rosidl_parser, values and included files."""
 
 _RANGES: Mapping[str, tuple[int, int]] = {
     **{
@@ -57,6 +59,7 @@ _WORD = re.compile(r"[A-Za-z_]\w*")
 # What another file declares.
 
 
+@RULES.text("idl-includes", "rosidl_parser does not look at included files.")
 def _without_includes(case: DefinitionCase) -> str:
     """Write what included files declare in place of its names."""
     values: dict[str, int] = {}
@@ -86,6 +89,46 @@ def _without_includes(case: DefinitionCase) -> str:
 
 
 # Values that do not fit.
+
+
+_NOTE = r"@\s*[\w:]+\s*(?:\((?:[^()]|\([^()]*\))*\)\s*)?"
+
+
+_MEMBER = re.compile(
+    rf"(?P<notes>(?:{_NOTE})+)(?P<type>\w[\w: ]*?\s*(?:<[^;{{}}]*?>)?)\s+(?P<name>\w+)\s*"
+    r"(?:\[(?P<size>[^\]]*)\]\s*)?(?=[;,])"
+)
+
+
+_DEFAULT = re.compile(r"@\s*default\s*\(\s*value\s*=(?P<value>(?:[^()]|\([^()]*\))*)\)")
+
+
+@dataclass(frozen=True, slots=True)
+class _Default:
+    """A default, and where it stands: at `start` up to `end`."""
+
+    start: int
+    end: int
+    text: str
+
+
+def _members(case: DefinitionCase) -> Iterator[tuple[re.Match[str], list[_Default]]]:
+    """Yield the members that have defaults."""
+    code = blanked(case.text)
+    for member in _MEMBER.finditer(code):
+        found = [
+            _Default(*match.span(), case.text[match.start("value") : match.end("value")].strip())
+            for match in _DEFAULT.finditer(code, *member.span("notes"))
+        ]
+        if found:
+            yield member, found
+
+
+@RULES.text("idl-defaults", "rosidl_parser takes several defaults of a member.", is_mistake=True)
+def _one_default(case: DefinitionCase) -> str:
+    """Leave all defaults of a member out but the first."""
+    further = [each for _, defaults in _members(case) for each in defaults[1:]]
+    return changed(case.text, [(each.start, each.end, "") for each in further])
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,35 +201,9 @@ def _literal(item: Any) -> str:
     return f'"{item}"' if isinstance(item, str) else repr(item)
 
 
-_NOTE = r"@\s*[\w:]+\s*(?:\((?:[^()]|\([^()]*\))*\)\s*)?"
-_MEMBER = re.compile(
-    rf"(?P<notes>(?:{_NOTE})+)(?P<type>\w[\w: ]*?\s*(?:<[^;{{}}]*?>)?)\s+(?P<name>\w+)\s*"
-    r"(?:\[(?P<size>[^\]]*)\]\s*)?(?=[;,])"
+@RULES.text(
+    "idl-values", "rosidl_parser takes values that are none of their types.", is_mistake=True
 )
-_DEFAULT = re.compile(r"@\s*default\s*\(\s*value\s*=(?P<value>(?:[^()]|\([^()]*\))*)\)")
-
-
-@dataclass(frozen=True, slots=True)
-class _Default:
-    """A default, and where it stands: at `start` up to `end`."""
-
-    start: int
-    end: int
-    text: str
-
-
-def _members(case: DefinitionCase) -> Iterator[tuple[re.Match[str], list[_Default]]]:
-    """Yield the members that have defaults."""
-    code = blanked(case.text)
-    for member in _MEMBER.finditer(code):
-        found = [
-            _Default(*match.span(), case.text[match.start("value") : match.end("value")].strip())
-            for match in _DEFAULT.finditer(code, *member.span("notes"))
-        ]
-        if found:
-            yield member, found
-
-
 def _fitting_values(case: DefinitionCase) -> str:
     """Write a value that fits in place of one that does not, and leave such defaults out."""
     names = _Names.of(case)
@@ -222,12 +239,10 @@ def _is_default(
     return _is_value(kind, text, names)
 
 
-def _one_default(case: DefinitionCase) -> str:
-    """Leave all defaults of a member out but the first."""
-    further = [each for _, defaults in _members(case) for each in defaults[1:]]
-    return changed(case.text, [(each.start, each.end, "") for each in further])
-
-
+@RULES.text(
+    "idl-lists-of-one",
+    "Generators fail at a list that is written (1); rosidl_adapter writes (1, ).",
+)
 def _lists_of_one(case: DefinitionCase) -> str:
     """Write a comma behind the only element of a list, as rosidl_adapter does."""
     changes = [
@@ -244,6 +259,12 @@ def _lists_of_one(case: DefinitionCase) -> str:
 _WIDE = re.compile(r"\bsequence\s*<\s*wstring\s*<[^<>]*>\s*>\s+(\w+)|\bwstring<=\d+\[\] +(\w+)")
 
 
+@RULES.facts(
+    "ros2-wstring-sequences",
+    "rosidl_parser takes the bound of the texts in a sequence of wstring for the sequence's.",
+    language=None,
+    dialect="ros2",
+)
 def _own_bounds(facts: Facts, case: DefinitionCase) -> Facts:
     """Take the bound of texts away from a sequence of them that has none."""
     code = blanked(case.text) if case.language == "idl" else case.text
@@ -258,38 +279,4 @@ def _own_bounds(facts: Facts, case: DefinitionCase) -> Facts:
     if mended == facts:
         return facts
     # It is that of another type.
-    return {name: fact for name, fact in mended.items() if name != "hash"}
-
-
-IDL_FIT: tuple[KnownRule, ...] = (
-    entry(
-        "idl-includes",
-        "rosidl_parser does not look at included files.",
-        rewrite=_without_includes,
-    ),
-    entry(
-        "idl-defaults",
-        "rosidl_parser takes several defaults of a member.",
-        rewrite=_one_default,
-        is_mistake=True,
-    ),
-    entry(
-        "idl-values",
-        "rosidl_parser takes values that are none of their types.",
-        rewrite=_fitting_values,
-        is_mistake=True,
-    ),
-    entry(
-        "idl-lists-of-one",
-        "Generators fail at a list that is written (1); rosidl_adapter writes (1, ).",
-        rewrite=_lists_of_one,
-    ),
-    entry(
-        "ros2-wstring-sequences",
-        "rosidl_parser takes the bound of the texts in a sequence of wstring for the sequence's.",
-        language=None,
-        dialect="ros2",
-        theirs=_own_bounds,
-    ),
-)
-"""What is known of rosidl_parser, values and included files."""
+    return without_hash(mended)

@@ -6,9 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from firm_hdl.verify.ts1.known.rule import KnownRule
-
-__all__ = ["DECLARED", "TYPEDEF", "blanked", "changed", "entry", "in_code", "modules_of"]
+__all__ = ["DECLARED", "TYPEDEF", "blanked", "changed", "in_code", "modules_of"]
 
 # Texts and comments.
 _QUIET = re.compile(r'("(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/)', re.DOTALL)
@@ -42,9 +40,3 @@ def changed(text: str, changes: Iterable[tuple[int, int, str]]) -> str:
     for start, end, new in sorted(changes, reverse=True):
         text = text[:start] + new + text[end:]
     return text
-
-
-def entry(key: str, text: str, **more: Any) -> KnownRule:
-    """Return a difference to rosidl_parser, of what is written in IDL."""
-    more = {"language": "idl", **more}
-    return KnownRule(key=key, oracles=frozenset({"rosidl_parser"}), text=text, **more)

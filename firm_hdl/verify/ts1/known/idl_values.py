@@ -17,13 +17,15 @@ from firm_hdl.verify.ts1.known.idl_text import (
     TYPEDEF,
     blanked,
     changed,
-    entry,
     modules_of,
 )
-from firm_hdl.verify.ts1.known.rule import KnownRule, mend_constants, whole_bool
+from firm_hdl.verify.ts1.known.rule import Rules, mend_constants, whole_bool
 from firm_hdl.verify.ts1.known.texts import renamed, renamed_back
 
-__all__ = ["IDL_VALUES", "integer_of", "integers_of"]
+__all__ = ["RULES", "integer_of", "integers_of"]
+
+RULES = Rules("rosidl_parser", language="idl")
+"""What is known of rosidl_parser and values in IDL."""
 
 # Expressions.
 
@@ -92,45 +94,8 @@ def _worked_out(node: ast.expr, names: Mapping[str, int]) -> int:
     return found
 
 
-_PLACES = re.compile(
-    r"(?P<const>\bconst\s+[\w :]+?\s+\w+\s*=\s*)(?P<a>[^;]*?)(?=\s*;)"
-    r"|(?P<size>\[\s*)(?P<b>[^\]]*?)(?=\s*\])"
-    r"|(?P<text>\bw?string\s*<\s*)(?P<c>[^<>]*?)(?=\s*>)"
-    r"|(?P<list>\bsequence\s*<[^;{}]*?,\s*)(?P<d>[^<>,;]*?)(?=\s*>)"
-    r"|(?P<default>@default\s*\(\s*value\s*=\s*)(?P<e>[^\"]*?)(?=\s*\)\s*(?:@|[\w:]))"
-)
-
-
-def integers_of(code: str) -> dict[str, int]:
-    """Work out the integers that a text declares."""
-    names: dict[str, int] = {}
-    modules = modules_of(code)
-    for _, name, expression in DECLARED.findall(code):
-        value = integer_of(expression, names, modules)
-        if value is not None:
-            names[name] = value
-    return names
-
-
-def _literals(case: DefinitionCase) -> str:
-    """Write the value of each integer expression in its place."""
-    code = blanked(case.text)
-    names, modules = integers_of(code), modules_of(code)
-    changes: list[tuple[int, int, str]] = []
-    for match in _PLACES.finditer(code):
-        which = next(name for name in "abcde" if match[name] is not None)
-        expression = match[which]
-        if not expression or re.fullmatch(r"-?\s*(?:0|[1-9]\d*)", expression):
-            continue
-        if which in "bcd" and "'" in expression:  # A character is no length.
-            continue
-        value = integer_of(expression, names, modules)
-        if value is not None:
-            changes.append((*match.span(which), str(value)))
-    return changed(case.text, changes)
-
-
 # Typedefs.
+
 
 def _paths(code: str) -> list[str]:
     """List the full names that typedefs declare."""
@@ -146,6 +111,10 @@ def _paths(code: str) -> list[str]:
     return found
 
 
+@RULES.text(
+    "idl-typedefs",
+    "rosidl_parser does not know typedefs of typedefs, and typedefs with their scopes.",
+)
 def _plain_typedefs(case: DefinitionCase) -> str:
     """Write what a typedef of a typedef means, and typedefs without their scopes."""
     code = blanked(case.text)
@@ -168,9 +137,73 @@ def _plain_typedefs(case: DefinitionCase) -> str:
     return changed(case.text, changes)
 
 
-# Constants of services.
+_PLACES = re.compile(
+    r"(?P<const>\bconst\s+[\w :]+?\s+\w+\s*=\s*)(?P<a>[^;]*?)(?=\s*;)"
+    r"|(?P<size>\[\s*)(?P<b>[^\]]*?)(?=\s*\])"
+    r"|(?P<text>\bw?string\s*<\s*)(?P<c>[^<>]*?)(?=\s*>)"
+    r"|(?P<list>\bsequence\s*<[^;{}]*?,\s*)(?P<d>[^<>,;]*?)(?=\s*>)"
+    r"|(?P<default>@default\s*\(\s*value\s*=\s*)(?P<e>[^\"]*?)(?=\s*\)\s*(?:@|[\w:]))"
+)
 
 
+def integers_of(code: str) -> dict[str, int]:
+    """Work out the integers that a text declares."""
+    names: dict[str, int] = {}
+    modules = modules_of(code)
+    for _, name, expression in DECLARED.findall(code):
+        value = integer_of(expression, names, modules)
+        if value is not None:
+            names[name] = value
+    return names
+
+
+@RULES.text(
+    "idl-expressions",
+    "rosidl_parser knows decimal numbers and no expressions, names of constants or characters.",
+)
+def _literals(case: DefinitionCase) -> str:
+    """Write the value of each integer expression in its place."""
+    code = blanked(case.text)
+    names, modules = integers_of(code), modules_of(code)
+    changes: list[tuple[int, int, str]] = []
+    for match in _PLACES.finditer(code):
+        which = next(name for name in "abcde" if match[name] is not None)
+        expression = match[which]
+        if not expression or re.fullmatch(r"-?\s*(?:0|[1-9]\d*)", expression):
+            continue
+        if which in "bcd" and "'" in expression:  # A character is no length.
+            continue
+        value = integer_of(expression, names, modules)
+        if value is not None:
+            changes.append((*match.span(which), str(value)))
+    return changed(case.text, changes)
+
+
+RULES.add(
+    "idl-booleans",
+    "rosidl_parser keeps a boolean constant that is written as a number a number.",
+    theirs=mend_constants(whole_bool),
+)
+
+
+@RULES.text("idl-long-names", "rosidl_parser reads 'long longitude' as a long long called itude.")
+def _long_names(case: DefinitionCase) -> str:
+    """Call a long int32, where the name behind it begins like the second word of a type."""
+    code = blanked(case.text)
+    pattern = r"\b(unsigned\s+)?long(?=\s+(?:long|double)\w+\s*[;,\[])"
+    changes = [
+        (*match.span(), "uint32" if match[1] else "int32")
+        for match in re.finditer(pattern, code)
+        if re.search(r"\blong\s+$", code[: match.start()]) is None
+    ]
+    return changed(case.text, changes)
+
+
+@RULES.text(
+    "idl-service-constants",
+    "rosidl_parser gives the request what request and response both declare, twice.",
+    theirs=mend_constants(renamed_back),
+)
 def _own_constants(case: DefinitionCase) -> str:
     """Give constants that another part has, too, names of their own."""
     code = blanked(case.text)
@@ -184,46 +217,3 @@ def _own_constants(case: DefinitionCase) -> str:
                 changes.append((*match.span(2), renamed(match[2])))
         seen |= mine
     return changed(case.text, changes)
-
-
-def _long_names(case: DefinitionCase) -> str:
-    """Call a long int32, where the name behind it begins like the second word of a type."""
-    code = blanked(case.text)
-    pattern = r"\b(unsigned\s+)?long(?=\s+(?:long|double)\w+\s*[;,\[])"
-    changes = [
-        (*match.span(), "uint32" if match[1] else "int32")
-        for match in re.finditer(pattern, code)
-        if re.search(r"\blong\s+$", code[: match.start()]) is None
-    ]
-    return changed(case.text, changes)
-
-
-IDL_VALUES: tuple[KnownRule, ...] = (
-    entry(
-        "idl-typedefs",
-        "rosidl_parser does not know typedefs of typedefs, and typedefs with their scopes.",
-        rewrite=_plain_typedefs,
-    ),
-    entry(
-        "idl-expressions",
-        "rosidl_parser knows decimal numbers and no expressions, names of constants or characters.",
-        rewrite=_literals,
-    ),
-    entry(
-        "idl-booleans",
-        "rosidl_parser keeps a boolean constant that is written as a number a number.",
-        theirs=mend_constants(whole_bool),
-    ),
-    entry(
-        "idl-long-names",
-        "rosidl_parser reads 'long longitude' as a long long called itude.",
-        rewrite=_long_names,
-    ),
-    entry(
-        "idl-service-constants",
-        "rosidl_parser gives the request what request and response both declare, twice.",
-        rewrite=_own_constants,
-        theirs=mend_constants(renamed_back),
-    ),
-)
-"""What is known of rosidl_parser and values in IDL."""

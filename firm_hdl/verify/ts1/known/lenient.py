@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import Any
 
 from firm_hdl.verify.ts1.case import DefinitionCase
-from firm_hdl.verify.ts1.known.rule import KnownRule, Line, by_lines
+from firm_hdl.verify.ts1.known.rule import Line, Rules, by_lines
 from firm_hdl.verify.ts1.known.texts import FLOATS, INTEGERS, TEXTS, float_of, integer_of, limits
 
-__all__ = ["LENIENT"]
+__all__ = ["RULES"]
 
+RULES = Rules("rosbags", is_mistake=True)
+"""What rosbags takes."""
 _PRIMITIVES = {*INTEGERS, *FLOATS, *TEXTS, "bool"}
 
 # Names of ROS 2.
@@ -26,6 +27,11 @@ _TYPE_NAME = re.compile(r"(?:[a-z][a-z0-9_]*/(?:msg/)?)?[A-Z][A-Za-z0-9]*")
 _WORD = re.compile(r"[A-Za-z]\w*", re.ASCII)
 
 
+@RULES.lines(
+    "rosbags-names",
+    "rosbags takes names of fields and constants that ROS 2 refuses.",
+    dialect="ros2",
+)
 def _legal_names(line: Line, case: DefinitionCase) -> Line:
     pattern = _CONSTANT_NAME if line.equals else _FIELD_NAME
     if pattern.fullmatch(line.name) or not _WORD.fullmatch(line.name):
@@ -34,6 +40,11 @@ def _legal_names(line: Line, case: DefinitionCase) -> Line:
     return replace(line, name=f"RENAMED{code.upper()}" if line.equals else f"renamed{code}")
 
 
+@RULES.spoils(
+    "rosbags-type-names",
+    "rosbags takes names of messages that ROS 2 refuses, which no other text can mend.",
+    dialect="ros2",
+)
 def _has_illegal_type(case: DefinitionCase) -> bool:
     """Whether a message, or one that it needs, is called as ROS 2 does not let it be."""
     if case.dialect != "ros2":
@@ -52,6 +63,7 @@ def _has_illegal_type(case: DefinitionCase) -> bool:
 # What is declared twice.
 
 
+@RULES.text("rosbags-twice", "rosbags takes what is declared twice.")
 def _distinct(case: DefinitionCase) -> str:
     seen: dict[str, int] = {}
 
@@ -104,6 +116,7 @@ def _is_short(value: str, bound: str | None) -> bool:
     return bound is None or len(value.strip("\"'")) <= int(bound)
 
 
+@RULES.lines("rosbags-values", "rosbags takes values that do not fit their types.")
 def _fitting_values(line: Line, case: DefinitionCase) -> Line:
     if line.equals:
         is_legal = line.type not in _PRIMITIVES or _is_value(line.type, line.value, case)
@@ -119,6 +132,9 @@ def _fitting_values(line: Line, case: DefinitionCase) -> Line:
 # Forms of types.
 
 
+@RULES.lines(
+    "rosbags-sizes", "rosbags takes arrays and bounds of 0, and in ROS 1 sizes with a sign."
+)
 def _legal_sizes(line: Line, case: DefinitionCase) -> Line:
     def size(match: re.Match[str]) -> str:
         is_legal = int(match[2]) > 0 and (case.dialect == "ros2" or match[2].isdecimal())
@@ -127,70 +143,23 @@ def _legal_sizes(line: Line, case: DefinitionCase) -> Line:
     return replace(line, type=re.sub(r"(\[(?:<=)?|<=)([+-]?\d+)", size, line.type))
 
 
+@RULES.lines("rosbags-ros2-forms", "rosbags takes bounds and defaults in ROS 1.", dialect="ros1")
 def _own_forms(line: Line, case: DefinitionCase) -> Line:
     """Take away bounds and defaults, which ROS 1 does not have."""
     plain = replace(line, type=re.sub(r"<=\d+", "", line.type))
     return plain.without_value() if line.value and not line.equals else plain
 
 
+@RULES.lines(
+    "rosbags-blanks",
+    "rosbags takes blanks in front of a line in ROS 2, and tabs between words in ROS 1.",
+)
 def _plain_blanks(line: Line, case: DefinitionCase) -> Line:
     if case.dialect == "ros2":
         return replace(line, indent="")
     return replace(line, gap=line.gap.replace("\t", " "))
 
 
+@RULES.text("rosbags-annotations", "rosbags takes lines like @key.")
 def _without_annotations(case: DefinitionCase) -> str:
     return re.sub(r"(?m)^[ \t]*@[a-z]+[ \t]*(?:\n|$)", "", case.text)
-
-
-def _entry(key: str, text: str, **more: Any) -> KnownRule:
-    more = {"is_mistake": "rewrite" in more, **more}
-    return KnownRule(key=key, oracles=frozenset({"rosbags"}), text=text, **more)
-
-
-LENIENT: tuple[KnownRule, ...] = (
-    _entry(
-        "rosbags-names",
-        "rosbags takes names of fields and constants that ROS 2 refuses.",
-        dialect="ros2",
-        rewrite=by_lines(_legal_names),
-    ),
-    _entry(
-        "rosbags-type-names",
-        "rosbags takes names of messages that ROS 2 refuses, which no other text can mend.",
-        dialect="ros2",
-        spoils=_has_illegal_type,
-    ),
-    _entry(
-        "rosbags-twice",
-        "rosbags takes what is declared twice.",
-        rewrite=_distinct,
-    ),
-    _entry(
-        "rosbags-values",
-        "rosbags takes values that do not fit their types.",
-        rewrite=by_lines(_fitting_values),
-    ),
-    _entry(
-        "rosbags-sizes",
-        "rosbags takes arrays and bounds of 0, and in ROS 1 sizes with a sign.",
-        rewrite=by_lines(_legal_sizes),
-    ),
-    _entry(
-        "rosbags-ros2-forms",
-        "rosbags takes bounds and defaults in ROS 1.",
-        dialect="ros1",
-        rewrite=by_lines(_own_forms),
-    ),
-    _entry(
-        "rosbags-blanks",
-        "rosbags takes blanks in front of a line in ROS 2, and tabs between words in ROS 1.",
-        rewrite=by_lines(_plain_blanks),
-    ),
-    _entry(
-        "rosbags-annotations",
-        "rosbags takes lines like @key.",
-        rewrite=_without_annotations,
-    ),
-)
-"""What it takes."""

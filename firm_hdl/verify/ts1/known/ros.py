@@ -11,69 +11,30 @@ from itertools import groupby
 from typing import Any
 
 from firm_hdl.verify.ts1.case import DefinitionCase
-from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.known.rule import (
-    KnownRule,
     Line,
+    Rules,
     by_lines,
     each_line,
     mend_members,
+    mend_messages,
     mend_values,
 )
 from firm_hdl.verify.ts1.known.texts import FLOATS, TEXTS, float_of, hidden, renamed, shown
 
-__all__ = ["ROS"]
+__all__ = ["MISTAKES", "RULES"]
 
-# What genmsg does not look at.
-
-_CONSTANT = re.compile(r"(\s*)(\w+)( +)(.*?)( *=.*)", re.DOTALL)
-_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
-
-
-def _legal_constant_names(case: DefinitionCase) -> str:
-    # The name may have blanks in it, so that it is no `Line`.
-    def legal(line: str) -> str:
-        match = _CONSTANT.fullmatch(line)
-        if match is None or "=" not in line.partition("#")[0] or _NAME.fullmatch(match[4]):
-            return line
-        indent, kind, gap, name, rest = match.groups()
-        return f"{indent}{kind}{gap}{renamed(name)}{rest}"
-
-    return each_line(case.text, legal)
+MISTAKES = Rules("genmsg", is_mistake=True)
+"""What readers of ROS take although it is a mistake."""
+RULES = Rules("rosidl_parser")
+"""What rosidl reads otherwise."""
 
 
-def _plain_bools(line: Line, case: DefinitionCase) -> Line:
-    """Write truth values as such."""
-    if line.type != "bool" or not line.equals or line.value in ("True", "False"):
-        return line
-    try:
-        value = ast.literal_eval(line.value)
-    except (ValueError, SyntaxError, MemoryError, RecursionError):
-        return line
-    return line.with_value(str(bool(value)))
-
-
+@MISTAKES.lines(
+    "ros1-indented-texts", "genmsg takes an indented string constant for one called 'string X'."
+)
 def _no_indent(line: Line, case: DefinitionCase) -> Line:
     return replace(line, indent="") if line.type == "string" and line.equals else line
-
-
-def _within_64_bits(line: Line, case: DefinitionCase) -> Line:
-    limits = {"int64": 1 << 63, "uint64": 1 << 64}
-    if not line.equals or line.type not in limits:
-        return line
-    try:
-        number = int(line.value)
-    except ValueError:
-        return line
-    # One more than fits is what the rounded limits let through.
-    return line.with_value(str(number - 1)) if number == limits[line.type] else line
-
-
-def _arrays_of_one(line: Line, case: DefinitionCase) -> Line:
-    return replace(line, type=re.sub(r"\[0+\]$", "[1]", line.type))
-
-
-# What all of them take in any script.
 
 
 def _ascii(text: str) -> str:
@@ -91,6 +52,11 @@ def _ascii(text: str) -> str:
     return "".join(map(sign, text))
 
 
+@MISTAKES.text(
+    "ascii-only",
+    "Names and numbers are written in ASCII.",
+    oracles="genmsg rosidl_adapter rosidl_parser",
+)
 def _ascii_lines(case: DefinitionCase) -> str:
     if case.language == "idl":
         parts = re.split(r'("(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/)', case.text, flags=re.DOTALL)
@@ -105,9 +71,64 @@ def _ascii_lines(case: DefinitionCase) -> str:
     return each_line(case.text, line)
 
 
+_CONSTANT = re.compile(r"(\s*)(\w+)( +)(.*?)( *=.*)", re.DOTALL)
+_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+
+
+@MISTAKES.text("ros1-constant-names", "genmsg takes anything for the name of a constant.")
+def _legal_constant_names(case: DefinitionCase) -> str:
+    # The name may have blanks in it, so that it is no `Line`.
+    def legal(line: str) -> str:
+        match = _CONSTANT.fullmatch(line)
+        if match is None or "=" not in line.partition("#")[0] or _NAME.fullmatch(match[4]):
+            return line
+        indent, kind, gap, name, rest = match.groups()
+        return f"{indent}{kind}{gap}{renamed(name)}{rest}"
+
+    return each_line(case.text, legal)
+
+
+@MISTAKES.lines("ros1-bool-literals", "genmsg takes any literal of Python for a truth value.")
+def _plain_bools(line: Line, case: DefinitionCase) -> Line:
+    """Write truth values as such."""
+    if line.type != "bool" or not line.equals or line.value in ("True", "False"):
+        return line
+    try:
+        value = ast.literal_eval(line.value)
+    except (ValueError, SyntaxError, MemoryError, RecursionError):
+        return line
+    return line.with_value(str(bool(value)))
+
+
+@MISTAKES.lines(
+    "ros1-64-bit-limits",
+    "genmsg compares with rounded limits, and takes one more than 64 bits hold.",
+)
+def _within_64_bits(line: Line, case: DefinitionCase) -> Line:
+    limits = {"int64": 1 << 63, "uint64": 1 << 64}
+    if not line.equals or line.type not in limits:
+        return line
+    try:
+        number = int(line.value)
+    except ValueError:
+        return line
+    # One more than fits is what the rounded limits let through.
+    return line.with_value(str(number - 1)) if number == limits[line.type] else line
+
+
+@MISTAKES.lines("ros1-empty-arrays", "genmsg takes arrays of no elements.")
+def _arrays_of_one(line: Line, case: DefinitionCase) -> Line:
+    return replace(line, type=re.sub(r"\[0+\]$", "[1]", line.type))
+
+
 _LARGEST = 2**32 - 1
 
 
+@MISTAKES.text(
+    "sizes-of-32-bits",
+    "Every wire format counts elements in 32 bits, and so do we.",
+    oracles="genmsg rosidl_adapter rosidl_parser",
+)
 def _sizes(case: DefinitionCase) -> str:
     """Write sizes and bounds that take more than 32 bits as the largest that takes no more."""
 
@@ -126,6 +147,28 @@ def _sizes(case: DefinitionCase) -> str:
 # rosidl.
 
 
+def _unquoted(element: Any) -> Any:
+    if not isinstance(element, str):
+        return element
+    text = shown(element)
+    is_quoted = text != element and text[:1] == text[-1:] and text[:1] in ("'", '"')
+    return text[1:-1] if is_quoted else text
+
+
+def _unquoted_default(field: dict[str, Any]) -> dict[str, Any]:
+    """Put quotes back, and take those around an element away, as rosidl_adapter does to all."""
+    default = field["default"]
+    if not isinstance(default, list):
+        return field
+    return {**field, "default": [_unquoted(each) for each in default]}
+
+
+@RULES.lines(
+    "ros2-escaped-quotes",
+    "rosidl_adapter loses count of escaped quotes in a list of strings.",
+    oracles="rosidl_adapter rosidl_parser",
+    theirs=mend_members("fields", _unquoted_default),
+)
 def _no_escaped_quotes(line: Line, case: DefinitionCase) -> Line:
     """Write escaped quotes in lists as characters that stand for them."""
     if line.equals or line.base not in TEXTS or not line.value.startswith("["):
@@ -140,22 +183,11 @@ def _no_escaped_quotes(line: Line, case: DefinitionCase) -> Line:
 _QUOTED = re.compile(r"""\"(?:[^"\\]|\\.)*\"|'(?:[^'\\]|\\.)*'""")
 
 
-def _unquoted_default(field: dict[str, Any]) -> dict[str, Any]:
-    """Put quotes back, and take those around an element away, as rosidl_adapter does to all."""
-    default = field["default"]
-    if not isinstance(default, list):
-        return field
-    return {**field, "default": [_unquoted(each) for each in default]}
-
-
-def _unquoted(element: Any) -> Any:
-    if not isinstance(element, str):
-        return element
-    text = shown(element)
-    is_quoted = text != element and text[:1] == text[-1:] and text[:1] in ("'", '"')
-    return text[1:-1] if is_quoted else text
-
-
+@RULES.lines(
+    "ros2-backslashes",
+    "rosidl_adapter copies backslashes into IDL, where rosidl_parser takes them for escapes.",
+    theirs=mend_values(lambda _, value: shown(value)),
+)
 def _no_backslashes(line: Line, case: DefinitionCase) -> Line:
     """Write backslashes that escape nothing as characters that stand for them."""
     if line.base not in TEXTS:
@@ -169,6 +201,20 @@ def _no_backslashes(line: Line, case: DefinitionCase) -> Line:
 _INFINITE, _NO_NUMBER = "1.25e300", "1.75e300"
 
 
+def _float_back(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_float_back(each) for each in value]
+    if not isinstance(value, float):
+        return value
+    stand_ins = {float(_INFINITE): math.inf, float(_NO_NUMBER): math.nan}
+    return math.copysign(stand_ins.get(abs(value), abs(value)), value)
+
+
+@RULES.lines(
+    "ros2-infinite-numbers",
+    "rosidl_adapter writes inf and nan into IDL, where they are names.",
+    theirs=mend_values(lambda _, value: _float_back(value)),
+)
 def _plain_floats(line: Line, case: DefinitionCase) -> Line:
     """Write what is no finite number as one that stands for it."""
     if line.base not in FLOATS:
@@ -184,15 +230,6 @@ def _plain_floats(line: Line, case: DefinitionCase) -> Line:
     return line.with_code(lambda code: re.sub(r"[^][, ]+", word, code))
 
 
-def _float_back(value: Any) -> Any:
-    if isinstance(value, list):
-        return [_float_back(each) for each in value]
-    if not isinstance(value, float):
-        return value
-    stand_ins = {float(_INFINITE): math.inf, float(_NO_NUMBER): math.nan}
-    return math.copysign(stand_ins.get(abs(value), abs(value)), value)
-
-
 def _without_blanks(comment: str) -> str:
     lines = [line.rstrip() for line in comment.split("\n")]
     kept: list[str] = []
@@ -201,95 +238,11 @@ def _without_blanks(comment: str) -> str:
     return "\n".join(kept).strip("\n")
 
 
-def _comments(facts: Facts, case: DefinitionCase) -> Facts:
-    messages = facts.get("structure", {})
-    mended = {
-        name: {**message, "comment": _without_blanks(message.get("comment", ""))}
-        for name, message in messages.items()
-    }
-    return {**facts, "structure": mended}
-
-
-def _entry(key: str, oracles: str, text: str, **more: Any) -> KnownRule:
-    return KnownRule(key=key, oracles=frozenset(oracles.split()), text=text, **more)
-
-
-ROS: tuple[KnownRule, ...] = (
-    _entry(
-        "ros1-indented-texts",
-        "genmsg",
-        "genmsg takes an indented string constant for one called 'string X'.",
-        rewrite=by_lines(_no_indent),
-        is_mistake=True,
-    ),
-    _entry(
-        "ascii-only",
-        "genmsg rosidl_adapter rosidl_parser",
-        "Names and numbers are written in ASCII.",
-        rewrite=_ascii_lines,
-        is_mistake=True,
-    ),
-    _entry(
-        "ros1-constant-names",
-        "genmsg",
-        "genmsg takes anything for the name of a constant.",
-        rewrite=_legal_constant_names,
-        is_mistake=True,
-    ),
-    _entry(
-        "ros1-bool-literals",
-        "genmsg",
-        "genmsg takes any literal of Python for a truth value.",
-        rewrite=by_lines(_plain_bools),
-        is_mistake=True,
-    ),
-    _entry(
-        "ros1-64-bit-limits",
-        "genmsg",
-        "genmsg compares with rounded limits, and takes one more than 64 bits hold.",
-        rewrite=by_lines(_within_64_bits),
-        is_mistake=True,
-    ),
-    _entry(
-        "ros1-empty-arrays",
-        "genmsg",
-        "genmsg takes arrays of no elements.",
-        rewrite=by_lines(_arrays_of_one),
-        is_mistake=True,
-    ),
-    _entry(
-        "sizes-of-32-bits",
-        "genmsg rosidl_adapter rosidl_parser",
-        "Every wire format counts elements in 32 bits, and so do we.",
-        rewrite=_sizes,
-        is_mistake=True,
-    ),
-    _entry(
-        "ros2-escaped-quotes",
-        "rosidl_adapter rosidl_parser",
-        "rosidl_adapter loses count of escaped quotes in a list of strings.",
-        rewrite=by_lines(_no_escaped_quotes),
-        theirs=mend_members("fields", _unquoted_default),
-    ),
-    _entry(
-        "ros2-backslashes",
-        "rosidl_parser",
-        "rosidl_adapter copies backslashes into IDL, where rosidl_parser takes them for escapes.",
-        rewrite=by_lines(_no_backslashes),
-        theirs=mend_values(shown),
-    ),
-    _entry(
-        "ros2-infinite-numbers",
-        "rosidl_parser",
-        "rosidl_adapter writes inf and nan into IDL, where they are names.",
-        rewrite=by_lines(_plain_floats),
-        theirs=mend_values(_float_back),
-    ),
-    _entry(
-        "ros2-comment-blanks",
-        "rosidl_adapter",
-        "Blanks at the end of a comment's lines, and empty lines, do not count for us.",
-        theirs=_comments,
+RULES.add(
+    "ros2-comment-blanks",
+    "Blanks at the end of a comment's lines, and empty lines, do not count for us.",
+    oracles="rosidl_adapter",
+    theirs=mend_messages(
+        lambda message: {**message, "comment": _without_blanks(message.get("comment", ""))}
     ),
 )
-"""What is known of genmsg and of rosidl."""

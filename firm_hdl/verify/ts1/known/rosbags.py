@@ -22,12 +22,12 @@ from firm_hdl.model import (
 from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.known.rule import (
-    KnownRule,
     Line,
-    by_lines,
+    Rules,
     mend_constants,
     mend_members,
     whole_bool,
+    without_hash,
 )
 from firm_hdl.verify.ts1.known.texts import (
     FLOATS,
@@ -41,20 +41,18 @@ from firm_hdl.verify.ts1.known.texts import (
     shown,
 )
 
-__all__ = ["ROSBAGS"]
+__all__ = ["RULES"]
 
-_ROSBAGS = frozenset({"rosbags"})
+RULES = Rules("rosbags")
+"""What rosbags refuses or reads otherwise."""
 
 
+@RULES.text("rosbags-crlf", "rosbags refuses lines that end in CR LF.")
 def _line_ends(case: DefinitionCase) -> str:
     return case.text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 # wstring.
-
-
-def _narrow_lines(line: Line, case: DefinitionCase) -> Line:
-    return replace(line, type=line.type[1:]) if line.base == "wstring" else line
 
 
 def _narrow(interface: Interface) -> Interface:
@@ -89,12 +87,35 @@ def _typed(item: Any, kind: Any) -> Any:
     return replace(item, type=kind)
 
 
+@RULES.lines("rosbags-wstring", "rosbags does not know wstring.", dialect="ros2", ours=_narrow)
+def _narrow_lines(line: Line, case: DefinitionCase) -> Line:
+    return replace(line, type=line.type[1:]) if line.base == "wstring" else line
+
+
 # Names of constants: in ROS 1 they are any names.
 
 _UPPER = re.compile(r"[A-Z](?:_?[A-Z0-9]+)*")
 _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
+@RULES.lines(
+    "rosbags-special-types",
+    "rosbags takes time, duration and Header for builtin types where ROS does not.",
+)
+def _own_types(line: Line, case: DefinitionCase) -> Line:
+    """Write out the package of what is no special type to ROS."""
+    is_special = line.base in ("time", "duration", "Header")
+    if case.dialect == "ros1":
+        is_special = line.base == "Header" and line.type != "Header"
+    return replace(line, type=f"{case.package}/{line.type}") if is_special else line
+
+
+@RULES.lines(
+    "rosbags-constant-names",
+    "rosbags takes constants with lower-case letters for fields, or refuses them.",
+    dialect="ros1",
+    theirs=mend_constants(renamed_back),
+)
 def _upper_lines(line: Line, case: DefinitionCase) -> Line:
     is_legal = line.equals and _NAME.fullmatch(line.name)
     if not is_legal or _UPPER.fullmatch(line.name):
@@ -107,11 +128,6 @@ def _upper_lines(line: Line, case: DefinitionCase) -> Line:
 _PLACEHOLDER, _STAND_IN = "structure_needs_at_least_one_member", "structure_has_one_more_member"
 
 
-def _plain_placeholders(line: Line, case: DefinitionCase) -> Line:
-    is_one = line.name == _PLACEHOLDER and not line.equals
-    return replace(line, name=_STAND_IN) if is_one else line
-
-
 def _placeholders_back(facts: Facts, case: DefinitionCase) -> Facts:
     def back(field: dict[str, Any]) -> dict[str, Any]:
         return {**field, "name": _PLACEHOLDER} if field["name"] == _STAND_IN else field
@@ -119,7 +135,17 @@ def _placeholders_back(facts: Facts, case: DefinitionCase) -> Facts:
     facts = mend_members("fields", back)(facts, case)
     # It is that of another name.
     is_named = _PLACEHOLDER in (case.text if case.before is None else case.before)
-    return {name: fact for name, fact in facts.items() if name != "hash" or not is_named}
+    return without_hash(facts) if is_named else facts
+
+
+@RULES.lines(
+    "rosbags-placeholders",
+    "rosbags takes a field of this name for the one that messages without fields get.",
+    theirs=_placeholders_back,
+)
+def _plain_placeholders(line: Line, case: DefinitionCase) -> Line:
+    is_one = line.name == _PLACEHOLDER and not line.equals
+    return replace(line, name=_STAND_IN) if is_one else line
 
 
 # Texts: it looks for numbers in them, for quotes, and never for what ends them.
@@ -139,6 +165,15 @@ def _text_of(line: Line, case: DefinitionCase) -> str | None:
     return inner.replace(f"\\{quote}", quote)
 
 
+def _show_text(constant: dict[str, Any]) -> dict[str, Any]:
+    return {**constant, "value": shown(constant["value"])}
+
+
+@RULES.lines(
+    "rosbags-texts",
+    "rosbags takes texts without quotes for numbers, and knows neither escapes nor comments.",
+    theirs=mend_constants(_show_text),
+)
 def _quoted_lines(line: Line, case: DefinitionCase) -> Line:
     is_field = not line.equals and case.dialect == "ros2" and line.value and "[" not in line.type
     if line.base not in TEXTS or not (line.equals or is_field):
@@ -150,16 +185,20 @@ def _quoted_lines(line: Line, case: DefinitionCase) -> Line:
     return replace(line, rest=quoted if line.equals else f" {quoted}")
 
 
+RULES.add(
+    "rosbags-constant-bool",
+    "rosbags keeps a bool constant that is written as a number as a number.",
+    theirs=mend_constants(whole_bool),
+)
+
+
 _SIGNS = "\"'\\"
-
-
-def _show_text(constant: dict[str, Any]) -> dict[str, Any]:
-    return {**constant, "value": shown(constant["value"])}
 
 
 # Numbers.
 
 
+@RULES.lines("rosbags-integers", "rosbags reads 010 as 8, and does not know 1_000 and 0o17.")
 def _decimal_lines(line: Line, case: DefinitionCase) -> Line:
     """Write integers without leading zeros and underscores, and without bases that ROS 1 lacks."""
     if "[" in line.type or line.base not in INTEGERS or "x" in line.value.lower():
@@ -173,14 +212,6 @@ _FRACTION = re.compile(
 )
 
 
-def _fraction_lines(line: Line, case: DefinitionCase) -> Line:
-    """Write floating-point numbers with digits and a point, or an exponent."""
-    if "[" in line.type or line.base not in FLOATS or _FRACTION.fullmatch(line.value):
-        return line
-    number = float_of(line.value)
-    return line if number is None else line.with_value(repr(number))
-
-
 def _float_constant(constant: dict[str, Any]) -> dict[str, Any]:
     # Infinities and what is no number have no other form.
     number = float_of(constant["value"]) if isinstance(constant["value"], str) else None
@@ -189,84 +220,24 @@ def _float_constant(constant: dict[str, Any]) -> dict[str, Any]:
     return {**constant, "value": number}
 
 
-# Types.
+@RULES.lines(
+    "rosbags-floats",
+    "rosbags takes floating-point numbers for such only if they have digits and a point.",
+    theirs=mend_constants(_float_constant),
+)
+def _fraction_lines(line: Line, case: DefinitionCase) -> Line:
+    """Write floating-point numbers with digits and a point, or an exponent."""
+    if "[" in line.type or line.base not in FLOATS or _FRACTION.fullmatch(line.value):
+        return line
+    number = float_of(line.value)
+    return line if number is None else line.with_value(repr(number))
 
 
-def _own_types(line: Line, case: DefinitionCase) -> Line:
-    """Write out the package of what is no special type to ROS."""
-    is_special = line.base in ("time", "duration", "Header")
-    if case.dialect == "ros1":
-        is_special = line.base == "Header" and line.type != "Header"
-    return replace(line, type=f"{case.package}/{line.type}") if is_special else line
-
-
+@RULES.lines(
+    "rosbags-char-hash",
+    "rosbags hashes char of a .msg as a character, and rosidl as a uint8.",
+    dialect="ros2",
+    alike={"char": "uint8"},
+)
 def _uint8_lines(line: Line, case: DefinitionCase) -> Line:
     return replace(line, type=f"uint8{line.type[4:]}") if line.base == "char" else line
-
-
-def _entry(key: str, text: str, **more: Any) -> KnownRule:
-    return KnownRule(key=key, oracles=_ROSBAGS, text=text, **more)
-
-
-ROSBAGS: tuple[KnownRule, ...] = (
-    _entry(
-        "rosbags-crlf",
-        "rosbags refuses lines that end in CR LF.",
-        rewrite=_line_ends,
-    ),
-    _entry(
-        "rosbags-wstring",
-        "rosbags does not know wstring.",
-        dialect="ros2",
-        rewrite=by_lines(_narrow_lines),
-        ours=_narrow,
-    ),
-    _entry(
-        "rosbags-special-types",
-        "rosbags takes time, duration and Header for builtin types where ROS does not.",
-        rewrite=by_lines(_own_types),
-    ),
-    _entry(
-        "rosbags-constant-names",
-        "rosbags takes constants with lower-case letters for fields, or refuses them.",
-        dialect="ros1",
-        rewrite=by_lines(_upper_lines),
-        theirs=mend_constants(renamed_back),
-    ),
-    _entry(
-        "rosbags-placeholders",
-        "rosbags takes a field of this name for the one that messages without fields get.",
-        rewrite=by_lines(_plain_placeholders),
-        theirs=_placeholders_back,
-    ),
-    _entry(
-        "rosbags-texts",
-        "rosbags takes texts without quotes for numbers, and knows neither escapes nor comments.",
-        rewrite=by_lines(_quoted_lines),
-        theirs=mend_constants(_show_text),
-    ),
-    _entry(
-        "rosbags-constant-bool",
-        "rosbags keeps a bool constant that is written as a number as a number.",
-        theirs=mend_constants(whole_bool),
-    ),
-    _entry(
-        "rosbags-integers",
-        "rosbags reads 010 as 8, and does not know 1_000 and 0o17.",
-        rewrite=by_lines(_decimal_lines),
-    ),
-    _entry(
-        "rosbags-floats",
-        "rosbags takes floating-point numbers for such only if they have digits and a point.",
-        rewrite=by_lines(_fraction_lines),
-        theirs=mend_constants(_float_constant),
-    ),
-    _entry(
-        "rosbags-char-hash",
-        "rosbags hashes char of a .msg as a character, and rosidl as a uint8.",
-        dialect="ros2",
-        rewrite=by_lines(_uint8_lines),
-        alike={"char": "uint8"},
-    ),
-)
-"""What it refuses or reads otherwise."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 from firm_hdl.frontend.sources import Language
 from firm_hdl.model import Dialect, Interface
@@ -20,15 +20,20 @@ from firm_hdl.verify.ts1.facts import Facts
 __all__ = [
     "KnownRule",
     "Line",
+    "Rules",
     "by_lines",
     "each_line",
     "mend_constants",
     "mend_members",
+    "mend_messages",
     "mend_values",
     "whole_bool",
+    "without_hash",
 ]
 
+F = TypeVar("F", bound=Callable[..., Any])
 _Rewrite: TypeAlias = "Callable[[DefinitionCase], str]"
+Mend: TypeAlias = "Callable[[Facts, DefinitionCase], Facts]"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,7 +80,7 @@ class KnownRule:
     language: Language | None = None
     rewrite: _Rewrite | None = None
     is_mistake: bool = False
-    theirs: Callable[[Facts, DefinitionCase], Facts] | None = None
+    theirs: Mend | None = None
     ours: Callable[[Interface], Interface] | None = None
     alike: Mapping[str, str] = field(default_factory=dict)
     spoils: Callable[[DefinitionCase], bool] | None = None
@@ -96,6 +101,55 @@ class KnownRule:
         if text == case.text:
             return case
         return replace(case, text=text, before=case.text if case.before is None else case.before)
+
+
+class Rules(list[KnownRule]):
+    """The known differences of a module, in the order in which they are applied.
+
+    Each is declared by a decorator of the function that takes it out of the way.
+
+    Parameters
+    ----------
+    oracles : str
+        Names of those that they are differences to, with blanks between them.
+    **common
+        Attributes of `KnownRule` that all of them have, where nothing else is said.
+    """
+
+    def __init__(self, oracles: str, **common: Any) -> None:
+        super().__init__()
+        self._common = {"oracles": oracles, **common}
+
+    def add(self, key: str, text: str, **more: Any) -> None:
+        """Declare a difference by attributes of `KnownRule`; `oracles` as in the constructor."""
+        values = {**self._common, **more}
+        oracles = frozenset(values.pop("oracles").split())
+        self.append(KnownRule(key=key, oracles=oracles, text=text, **values))
+
+    def text(self, key: str, text: str, **more: Any) -> Callable[[F], F]:
+        """Declare a difference whose `rewrite` is the function."""
+        return self._declared(lambda rewrite: {"rewrite": rewrite}, key, text, more)
+
+    def lines(self, key: str, text: str, **more: Any) -> Callable[[F], F]:
+        """Declare a difference whose `rewrite` does to each line what the function does."""
+        return self._declared(lambda change: {"rewrite": by_lines(change)}, key, text, more)
+
+    def facts(self, key: str, text: str, **more: Any) -> Callable[[F], F]:
+        """Declare a difference whose `theirs` is the function."""
+        return self._declared(lambda mend: {"theirs": mend}, key, text, more)
+
+    def spoils(self, key: str, text: str, **more: Any) -> Callable[[F], F]:
+        """Declare a difference that nothing can be done about, which the function finds."""
+        return self._declared(lambda has: {"spoils": has, "is_mistake": False}, key, text, more)
+
+    def _declared(
+        self, parts: Callable[[Any], dict[str, Any]], key: str, text: str, more: dict[str, Any]
+    ) -> Callable[[F], F]:
+        def declare(function: F) -> F:
+            self.add(key, text, **more, **parts(function))
+            return function
+
+        return declare
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -176,35 +230,47 @@ def each_line(text: str, change: Callable[[str], str]) -> str:
     return "".join(pieces)
 
 
-def mend_members(
-    part: str, change: Callable[[dict[str, Any]], dict[str, Any]]
-) -> Callable[[Facts, DefinitionCase], Facts]:
-    """Make a mending of facts of one that knows a field (``fields``) or a constant."""
+def mend_messages(change: Callable[[dict[str, Any]], dict[str, Any]]) -> Mend:
+    """Make a mending of facts of one that knows a message."""
 
     def mend(facts: Facts, case: DefinitionCase) -> Facts:
-        messages = facts.get("structure", {})
-        mended = {
-            name: {**message, part: [change(each) for each in message[part]]}
-            if part in message
-            else message
-            for name, message in messages.items()
-        }
-        return {**facts, "structure": mended} if messages else facts
+        messages = facts.get("structure")
+        if not messages:
+            return facts
+        return {**facts, "structure": {name: change(each) for name, each in messages.items()}}
 
     return mend
 
 
-def mend_constants(
-    change: Callable[[dict[str, Any]], dict[str, Any]],
-) -> Callable[[Facts, DefinitionCase], Facts]:
+def mend_members(part: str, change: Callable[[dict[str, Any]], dict[str, Any]]) -> Mend:
+    """Make a mending of facts of one that knows a field (``fields``) or a constant."""
+    return mend_messages(
+        lambda message: (
+            {**message, part: [change(each) for each in message[part]]}
+            if part in message
+            else message
+        )
+    )
+
+
+def mend_constants(change: Callable[[dict[str, Any]], dict[str, Any]]) -> Mend:
     """Make a mending of facts of one that knows a constant."""
     return mend_members("constants", change)
 
 
-def mend_values(change: Callable[[Any], Any]) -> Callable[[Facts, DefinitionCase], Facts]:
-    """Make a mending of facts of one that knows the value of a constant, or a default."""
-    constants = mend_constants(lambda each: {**each, "value": change(each["value"])})
-    defaults = mend_members("fields", lambda each: {**each, "default": change(each["default"])})
+def mend_values(change: Callable[[str, Any], Any]) -> Mend:
+    """Make a mending of facts of one that knows the value of a constant, or a default.
+
+    Parameters
+    ----------
+    change : callable
+        Is given the type of a member, and its value.
+    """
+
+    def part(name: str) -> Callable[[dict[str, Any]], dict[str, Any]]:
+        return lambda member: {**member, name: change(member["type"], member[name])}
+
+    constants, defaults = mend_constants(part("value")), mend_members("fields", part("default"))
     return lambda facts, case: defaults(constants(facts, case), case)
 
 
@@ -213,3 +279,8 @@ def whole_bool(constant: dict[str, Any]) -> dict[str, Any]:
     value = constant["value"]
     is_number = constant["type"] == "bool" and type(value) is int
     return {**constant, "value": bool(value)} if is_number else constant
+
+
+def without_hash(facts: Facts) -> Facts:
+    """Give facts without the hash, where it is that of another type."""
+    return {name: fact for name, fact in facts.items() if name != "hash"}
