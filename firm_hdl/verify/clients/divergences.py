@@ -68,254 +68,153 @@ def _replaced(kind: FieldType, value: Plain) -> Plain:
     return value
 
 
-_GENPY = ("genpy", "mcap-ros1")
-_PYTHON = ("rosbags", "cyclonedds", "mcap-ros2", *_GENPY)
-_FAST_CDR = ("fastcdr", "fastcdr-2.2", "fastcdr-2.3")
+class _Entries:
+    """Adds to `KNOWN` what is known of some libraries on some wires."""
+
+    def __init__(self, *libraries: str, wires: str = "cdr"):
+        self.libraries, self.wires = libraries, wires
+
+    def add(self, key: str, text: str, **more: Any) -> None:
+        """Add a difference by attributes of `KnownDivergence`."""
+        found = KnownDivergence(
+            key=key, libraries=self.libraries, wires=self.wires, text=text, **more
+        )
+        KNOWN.append(found)
+
+    def takes(self, key: str, text: str, *whats: str) -> None:
+        """Add oddities that the others refuse."""
+        self.add(key, text, whats=whats, answer="takes")
+
+    def refuses(self, key: str, text: str, *whats: str) -> None:
+        """Add oddities that the others take."""
+        self.add(key, text, whats=whats, answer="refuses")
+
+
+KNOWN: list[KnownDivergence] = []
+"""All entries, in the order in which they are tried."""
+
+_CYCLONEDDS, _FIRM_HDL = _Entries("cyclonedds"), _Entries("firm-hdl")
+_FASTCDR, _FASTCDR_2_3 = _Entries("fastcdr"), _Entries("fastcdr-2.3")
+_ALL_FASTCDR = _Entries("fastcdr", "fastcdr-2.2", "fastcdr-2.3")
+_GENPY = _Entries("genpy", "mcap-ros1", wires="ros1")
+_MCAP_ROS2, _ROSBAGS = _Entries("mcap-ros2"), _Entries("rosbags")
 _CUTS = ("cut-1", "cut-half", "cut-all", "long-text", "long-items")
 
+# What they make of values.
 
-def _entry(
-    key: str, libraries: str | tuple[str, ...], wires: str, text: str, **more: Any
-) -> KnownDivergence:
-    names = (libraries,) if isinstance(libraries, str) else libraries
-    return KnownDivergence(key=key, libraries=names, wires=wires, text=text, **more)
+_Entries(*("rosbags", "cyclonedds", "mcap-ros2"), *_GENPY.libraries, wires="ros1 cdr").add(
+    "python-signalling-nan",
+    "A signalling NaN of 4 bytes becomes a quiet one, as any Python float.",
+    take_out=_quiet,
+    same=_quiet,
+)
+_Entries("rosbags", "cyclonedds", "mcap-ros2", wires="ros1 cdr").refuses(
+    "python-not-utf8", "A string that is not UTF-8 is refused.", "not-utf8", "encode not-utf8"
+)
+_ROSBAGS.add(
+    "rosbags-byte-signed",
+    "A byte is -128 to 127; in ROS 2 it is 0 to 255.",
+    take_out=_number("byte", 0x7F),
+    same=_number("byte", 0xFF),
+)
+_Entries("rosbags", wires="ros1 cdr").add(
+    "rosbags-time-signs",
+    "Seconds of a ROS 1 time are signed, nanoseconds of a duration are not; in ROS 1 it is the "
+    "other way round.",
+    take_out=_tame_times,
+    same=_same_times,
+)
+_MCAP_ROS2.add(
+    "mcap-ros2-char-signed",
+    "A char is -128 to 127; in ROS 2 it is 0 to 255.",
+    take_out=_number("char", 0x7F),
+    same=_number("char", 0xFF),
+)
+_Entries("fastcdr", "fastcdr-2.2").add(
+    "fastcdr-cut-at-nul", "A string and a wstring are written up to the first NUL.", take_out=_cut
+)
+_FASTCDR_2_3.refuses(
+    "fastcdr-no-nul-inside", "A string with a NUL inside cannot be written.", "encode nul-inside"
+)
+_FASTCDR.add(
+    "fastcdr-wide-characters",
+    "Of the four bytes of a wchar, two are read.",
+    same=_number("wchar", 0xFFFF),
+)
+_FASTCDR_2_3.refuses(
+    "fastcdr-options",
+    "A packet has as many bytes less as the last two bits of its options say.",
+    "options",
+)
+_ALL_FASTCDR.refuses(
+    "fastcdr-bools",
+    "In a sequence without a bound, a bool that is neither 0 nor 1 is refused.",
+    "bool-2",
+)
+_ALL_FASTCDR.add(
+    "fastcdr-bool-arrays",
+    "In an array, a bool that is neither 0 nor 1 is not read.",
+    whats=("bool-2",),
+)
+_GENPY.add(
+    "genpy-time-normalized",
+    "Nanoseconds of a second and more are carried over when a time is read.",
+    same=_canonical,
+)
+_GENPY.add("genpy-not-utf8", "What is not UTF-8 in a string is read as U+FFFD.", same=_replaced)
+_GENPY.refuses(
+    "genpy-not-utf8-written", "A string that is not UTF-8 cannot be written.", "encode not-utf8"
+)
 
+# Packets that are not as they are to be.
 
-KNOWN: tuple[KnownDivergence, ...] = (
-    # What they make of values.
-    _entry(
-        "python-signalling-nan",
-        _PYTHON,
-        "ros1 cdr",
-        "A signalling NaN of 4 bytes becomes a quiet one, as any Python float.",
-        take_out=_quiet,
-        same=_quiet,
-    ),
-    _entry(
-        "python-not-utf8",
-        ("rosbags", "cyclonedds", "mcap-ros2"),
-        "ros1 cdr",
-        "A string that is not UTF-8 is refused.",
-        whats=("not-utf8", "encode not-utf8"),
-        answer="refuses",
-    ),
-    _entry(
-        "rosbags-byte-signed",
-        "rosbags",
-        "cdr",
-        "A byte is -128 to 127; in ROS 2 it is 0 to 255.",
-        take_out=_number("byte", 0x7F),
-        same=_number("byte", 0xFF),
-    ),
-    _entry(
-        "rosbags-time-signs",
-        "rosbags",
-        "ros1 cdr",
-        "Seconds of a ROS 1 time are signed, nanoseconds of a duration are not; in ROS 1 it is the "
-        "other way round.",
-        take_out=_tame_times,
-        same=_same_times,
-    ),
-    _entry(
-        "mcap-ros2-char-signed",
-        "mcap-ros2",
-        "cdr",
-        "A char is -128 to 127; in ROS 2 it is 0 to 255.",
-        take_out=_number("char", 0x7F),
-        same=_number("char", 0xFF),
-    ),
-    _entry(
-        "fastcdr-cut-at-nul",
-        ("fastcdr", "fastcdr-2.2"),
-        "cdr",
-        "A string and a wstring are written up to the first NUL.",
-        take_out=_cut,
-    ),
-    _entry(
-        "fastcdr-no-nul-inside",
-        "fastcdr-2.3",
-        "cdr",
-        "A string with a NUL inside cannot be written.",
-        whats=("encode nul-inside",),
-        answer="refuses",
-    ),
-    _entry(
-        "fastcdr-wide-characters",
-        "fastcdr",
-        "cdr",
-        "Of the four bytes of a wchar, two are read.",
-        same=_number("wchar", 0xFFFF),
-    ),
-    _entry(
-        "fastcdr-options",
-        "fastcdr-2.3",
-        "cdr",
-        "A packet has as many bytes less as the last two bits of its options say.",
-        whats=("options",),
-        answer="refuses",
-    ),
-    _entry(
-        "fastcdr-bools",
-        _FAST_CDR,
-        "cdr",
-        "In a sequence without a bound, a bool that is neither 0 nor 1 is refused.",
-        whats=("bool-2",),
-        answer="refuses",
-    ),
-    _entry(
-        "fastcdr-bool-arrays",
-        _FAST_CDR,
-        "cdr",
-        "In an array, a bool that is neither 0 nor 1 is not read.",
-        whats=("bool-2",),
-    ),
-    _entry(
-        "genpy-time-normalized",
-        _GENPY,
-        "ros1",
-        "Nanoseconds of a second and more are carried over when a time is read.",
-        same=_canonical,
-    ),
-    _entry(
-        "genpy-not-utf8",
-        _GENPY,
-        "ros1",
-        "What is not UTF-8 in a string is read as U+FFFD.",
-        same=_replaced,
-    ),
-    _entry(
-        "genpy-not-utf8-written",
-        _GENPY,
-        "ros1",
-        "A string that is not UTF-8 cannot be written.",
-        whats=("encode not-utf8",),
-        answer="refuses",
-    ),
-    # Packets that are not as they are to be.
-    _entry(
-        "genpy-cut",
-        _GENPY,
-        "ros1",
-        "A string or an array of bytes at the end of a packet may be cut short.",
-        whats=_CUTS,
-        answer="takes",
-    ),
-    _entry(
-        "genpy-trailing",
-        _GENPY,
-        "ros1",
-        "What follows a message is ignored.",
-        whats=("trailing-1", "trailing-4"),
-        answer="takes",
-    ),
-    _entry(
-        "rosbags-bare-string",
-        "rosbags",
-        "cdr",
-        "An empty string whose length is 0 is refused.",
-        whats=("bare-string",),
-        answer="refuses",
-    ),
-    _entry(
-        "rosbags-no-nul",
-        "rosbags",
-        "cdr",
-        "A string without a NUL is refused.",
-        whats=("no-nul",),
-        answer="refuses",
-    ),
-    _entry(
-        "rosbags-trailing",
-        "rosbags",
-        "cdr",
-        "More than 3 bytes behind a message are refused.",
-        whats=("trailing-4",),
-        answer="refuses",
-    ),
-    _entry(
-        "rosbags-bounds",
-        "rosbags",
-        "cdr",
-        "Bounds of sequences are not checked.",
-        whats=("bound-items", "encode bound-items"),
-        answer="takes",
-    ),
-    _entry(
-        "cyclonedds-no-nul",
-        "cyclonedds",
-        "cdr",
-        "A string without a NUL loses its last byte.",
-        whats=("no-nul",),
-    ),
-    _entry(
-        "cyclonedds-cut",
-        "cyclonedds",
-        "cdr",
-        "No packet at all, and one that ends in an array of bytes, is read as far as it goes.",
-        whats=_CUTS,
-        answer="takes",
-    ),
-    _entry(
-        "cyclonedds-bounds",
-        "cyclonedds",
-        "cdr",
-        "Bounds of sequences are not checked when a packet is read.",
-        whats=("bound-items",),
-        answer="takes",
-    ),
-    _entry(
-        "cyclonedds-text-bounds",
-        "cyclonedds",
-        "cdr",
-        "A string that is longer than its bound is not written.",
-        whats=("encode bound-text",),
-        answer="refuses",
-    ),
-    _entry(
-        "mcap-ros2-no-nul",
-        "mcap-ros2",
-        "cdr",
-        "A string without a NUL loses its last byte.",
-        whats=("no-nul",),
-    ),
-    _entry(
-        "mcap-ros2-cut",
-        "mcap-ros2",
-        "cdr",
-        "A string or an array of bytes is read as far as the packet goes.",
-        whats=_CUTS,
-        answer="takes",
-    ),
-    _entry(
-        "mcap-ros2-bounds",
-        "mcap-ros2",
-        "cdr",
-        "Bounds of sequences are not checked in packets; what exceeds them is not written.",
-        whats=("bound-items", "encode bound-items"),
-        answer="takes",
-    ),
-    _entry(
-        "firm-hdl-no-nul",
-        "firm-hdl",
-        "cdr",
-        "A string without a NUL is refused.",
-        whats=("no-nul",),
-        answer="refuses",
-    ),
-    _entry(
-        "firm-hdl-trailing",
-        "firm-hdl",
-        "cdr",
-        "More than 3 bytes behind a message are refused.",
-        whats=("trailing-4",),
-        answer="refuses",
-    ),
-    _entry(
-        "firm-hdl-bounds",
-        "firm-hdl",
-        "cdr",
-        "Bounds of strings are checked as those of sequences are.",
-        whats=("bound-text", "encode bound-text"),
-        answer="refuses",
-    ),
+_GENPY.takes(
+    "genpy-cut", "A string or an array of bytes at the end of a packet may be cut short.", *_CUTS
+)
+_GENPY.takes("genpy-trailing", "What follows a message is ignored.", "trailing-1", "trailing-4")
+_ROSBAGS.refuses(
+    "rosbags-bare-string", "An empty string whose length is 0 is refused.", "bare-string"
+)
+_ROSBAGS.refuses("rosbags-no-nul", "A string without a NUL is refused.", "no-nul")
+_ROSBAGS.refuses(
+    "rosbags-trailing", "More than 3 bytes behind a message are refused.", "trailing-4"
+)
+_ROSBAGS.takes(
+    "rosbags-bounds", "Bounds of sequences are not checked.", "bound-items", "encode bound-items"
+)
+_CYCLONEDDS.add(
+    "cyclonedds-no-nul", "A string without a NUL loses its last byte.", whats=("no-nul",)
+)
+_CYCLONEDDS.takes(
+    "cyclonedds-cut",
+    "No packet at all, and one that ends in an array of bytes, is read as far as it goes.",
+    *_CUTS,
+)
+_CYCLONEDDS.takes(
+    "cyclonedds-bounds", "Bounds of sequences are not checked when a packet is read.", "bound-items"
+)
+_CYCLONEDDS.refuses(
+    "cyclonedds-text-bounds",
+    "A string that is longer than its bound is not written.",
+    "encode bound-text",
+)
+_MCAP_ROS2.add("mcap-ros2-no-nul", "A string without a NUL loses its last byte.", whats=("no-nul",))
+_MCAP_ROS2.takes(
+    "mcap-ros2-cut", "A string or an array of bytes is read as far as the packet goes.", *_CUTS
+)
+_MCAP_ROS2.takes(
+    "mcap-ros2-bounds",
+    "Bounds of sequences are not checked in packets; what exceeds them is not written.",
+    "bound-items",
+    "encode bound-items",
+)
+_FIRM_HDL.refuses("firm-hdl-no-nul", "A string without a NUL is refused.", "no-nul")
+_FIRM_HDL.refuses(
+    "firm-hdl-trailing", "More than 3 bytes behind a message are refused.", "trailing-4"
+)
+_FIRM_HDL.refuses(
+    "firm-hdl-bounds",
+    "Bounds of strings are checked as those of sequences are.",
+    "bound-text",
+    "encode bound-text",
 )
