@@ -64,7 +64,7 @@ VERIFY_MAY_IMPORT = {
     "references": {"results", "ros2_wheels", "ros_python"},
     "cases": {"references", "results"},
     "simulators": {"results"},
-    "systems": {"references", "results"},
+    "systems": {"choices", "references", "results"},
     "clients": {"cases", "references", "results", "systems"},
     "ts1": {"results", "ros2_wheels", "ros_python", "systems"},
     "ts2": {"cases", "results", "systems"},
@@ -74,7 +74,7 @@ VERIFY_MAY_IMPORT = {
     "bench": {"cases", "references", "results", "systems", "ts3"},
     "report": {"results"},
 }
-VERIFY_MAY_IMPORT["request"] = {"choices", "systems", "ts3"}
+VERIFY_MAY_IMPORT["request"] = {"systems", "ts3"}
 VERIFY_MAY_IMPORT["run"] = {
     *("bench", "clients", "references", "report", "request", "results"),
     *("systems", "ts1", "ts2", "ts3"),

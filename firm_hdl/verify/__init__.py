@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from firm_hdl.verify.cases.make import Case, make_cases
     from firm_hdl.verify.references.oracle import RosbagsOracle, distro_oracle
+    from firm_hdl.verify.systems.options import Options
     from firm_hdl.verify.systems.tasks import TypeUnderTest, collect_tasks
     from firm_hdl.verify.ts3.acceptance import accept, accept_message
-    from firm_hdl.verify.ts3.options import Options, Result
+    from firm_hdl.verify.ts3.result import Result
     from firm_hdl.verify.ts3.runner import run_tasks
 
 __all__ = [
@@ -33,9 +34,9 @@ __all__ = [
 # NumPy, Amaranth and simulators take seconds to import, and a wrong argument needs none of them.
 _HOME = {
     "Case": "cases.make",
-    "Options": "ts3.options",
+    "Options": "systems.options",
     "RosbagsOracle": "references.oracle",
-    "Result": "ts3.options",
+    "Result": "ts3.result",
     "TypeUnderTest": "systems.tasks",
     "accept": "ts3.acceptance",
     "accept_message": "ts3.acceptance",

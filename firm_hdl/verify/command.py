@@ -27,7 +27,8 @@ from firm_hdl.verify.choices import (
     SYSTEM_NAMES,
     WRITER_NAMES,
 )
-from firm_hdl.verify.request import Request, Workload
+from firm_hdl.verify.request import Workload
+from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 
 __all__ = ["add_verify_arguments", "run_verify"]

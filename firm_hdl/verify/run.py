@@ -16,7 +16,6 @@ from firm_hdl.jobs.processes import unwound_when_terminated
 from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.verify.bench.system import Benches
 from firm_hdl.verify.clients.command import run_sut
-from firm_hdl.verify.clients.run import SutOptions
 from firm_hdl.verify.references.client import ClientMissingError
 from firm_hdl.verify.report.command import write_report
 from firm_hdl.verify.request import Workload
@@ -26,9 +25,8 @@ from firm_hdl.verify.systems.ending import concluded, is_well
 from firm_hdl.verify.systems.system import Judged, Recorder, System
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1 import Ts1, selections_of
-from firm_hdl.verify.ts2.system import Ts2, Ts2Options
-from firm_hdl.verify.ts3.options import Options
-from firm_hdl.verify.ts3.system import How, Ts3
+from firm_hdl.verify.ts2.system import Ts2
+from firm_hdl.verify.ts3.system import Ts3
 
 __all__ = ["SYSTEMS", "run_workload"]
 
@@ -45,7 +43,7 @@ def run_workload(work: Workload) -> int:
     request = work.request
     try:
         with unwound_when_terminated():
-            found = _run_clients(work) if request.libraries else _run_systems(work)
+            found = run_sut(work.tasks, request) if request.libraries else _run_systems(work)
         for line in concluded(found, is_named=request.is_named):
             print(line)
         if request.report is not None and request.results is not None:
@@ -64,20 +62,6 @@ def run_workload(work: Workload) -> int:
     for problem in work.problems:
         print(problem, file=sys.stderr)
     return 0 if is_well(found, is_named=request.is_named) and not work.problems else 1
-
-
-def _run_clients(work: Workload) -> list[Judged]:
-    """Judge client libraries; return what came of it."""
-    request = work.request
-    options = SutOptions(
-        libraries=request.libraries,
-        wire=request.wire,
-        seed=request.seed,
-        most_cases=request.most_cases,
-        paths=request.paths,
-        names_wires=bool(request.distros or request.wire),
-    )
-    return run_sut(work.tasks, options, request.jobs)
 
 
 def _run_systems(work: Workload) -> list[Judged]:
@@ -131,56 +115,10 @@ def _ts1(work: Workload) -> System:
     return Ts1(selections, request.oracles, request.jobs)
 
 
-def _ts2(work: Workload) -> System:
-    request = work.request
-    options = Ts2Options(
-        paths=request.paths, wire=request.wire, widths=request.widths, golden=request.golden
-    )
-    return Ts2(work.tasks, options, jobs=request.jobs, executor=request.executor)
-
-
-def _ts3(work: Workload) -> System:
-    request = work.request
-    options = [
-        Options(
-            bus_bytes=bus_bytes,
-            wire=request.wire,
-            seed=request.seed,
-            stalled=request.stalled,
-            broken=request.broken,
-            most_cases=request.most_cases,
-            simulator=request.simulator,
-            paths=request.paths,
-            bags=request.bags,
-            longest=request.longest,
-            references=request.references,
-            vcd=request.vcd,
-        )
-        for bus_bytes in request.widths
-    ]
-    shares = request.share_circuits
-    if shares is None:
-        # Of a type that is named, people want to see a run, and of a recording its own messages.
-        shares = not request.types and not request.bags
-    how = How(jobs=request.jobs, executor=request.executor, share_circuits=shares)
-    return Ts3(work.tasks, options, how)
-
-
-def _bench(work: Workload) -> System:
-    request = work.request
-    return Benches(
-        work.tasks,
-        paths=request.paths,
-        wire=request.wire,
-        widths=request.widths,
-        jobs=request.jobs,
-    )
-
-
 SYSTEMS: dict[str, Callable[[Workload], System]] = {
     "ts1": _ts1,
-    "ts2": _ts2,
-    "ts3": _ts3,
-    "bench": _bench,
+    "ts2": lambda work: Ts2(work.tasks, work.request),
+    "ts3": lambda work: Ts3(work.tasks, work.request),
+    "bench": lambda work: Benches(work.tasks, work.request),
 }
 """By the name that ``--systems`` takes."""

@@ -12,8 +12,8 @@ import pytest
 import firm_hdl.verify.run as run
 from firm_hdl.cli import main
 from firm_hdl.verify.__main__ import main as alias
-from firm_hdl.verify.request import Request
 from firm_hdl.verify.results.verdict import Failed, Passed
+from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Judged, System
 from tests.verify.samples import own_package
 

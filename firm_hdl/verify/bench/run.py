@@ -11,17 +11,14 @@ from __future__ import annotations
 
 import json
 import tempfile
-import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
-from firm_hdl.errors import described
-from firm_hdl.export.backend import Options
+from firm_hdl.export import backend
 from firm_hdl.export.build import BuildError, Built, build, check_size, plan_of
 from firm_hdl.export.manifest import MANIFEST
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT
-from firm_hdl.jobs.processes import ToolError, cpu_seconds, made_by, run_tool
+from firm_hdl.jobs.processes import ToolError, made_by, run_tool
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
 from firm_hdl.sim.payloads import encoder_of
@@ -30,127 +27,68 @@ from firm_hdl.verify.cases.stimuli import stimulus_cases
 from firm_hdl.verify.references.choice import WIDE_REFERENCES, may_stand_in
 from firm_hdl.verify.references.user_oracle import check_wire, judge_of
 from firm_hdl.verify.references.wide_oracle import WideOracle
-from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Passed, Verdict
-from firm_hdl.verify.systems.again import command_again
+from firm_hdl.verify.results.records import Record, Test
+from firm_hdl.verify.results.verdict import Failed, NotJudgedError, Passed
 from firm_hdl.verify.systems.libraries import library_of
+from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.system import Stopwatch, recorded
 from firm_hdl.verify.ts3.confirm import confirm
-from firm_hdl.wire import Wire
 
-__all__ = ["BenchResult", "BenchRun", "run_bench"]
+__all__ = ["run_bench"]
 
 WARNINGS = ("--warn-error", "--warn-unused", "--warn-body", "--warn-default-binding")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BenchRun:
-    """What to run a bench with.
+def run_bench(given: tuple[Options, str], test: Test) -> Record:
+    """Build a type and run its bench. Nothing is raised: what goes wrong is in the record.
 
-    Attributes
+    Parameters
     ----------
-    paths : tuple of str
-        Folders with ROS packages, searched before the distribution's own types.
-    wire : "ros1", "cdr" or None
-    bus_bytes : int
-    ghdl : str
-        Its command.
+    given : Options, str
+        How to build the type (its paths and wire), and the command of GHDL.
     """
-
-    paths: tuple[str, ...] = ()
-    wire: Wire | None = None
-    bus_bytes: int = 8
-    ghdl: str
-
-    def command(self, distro: str, name: str) -> str:
-        """Return the command that runs one type again."""
-        return command_again(
-            name,
-            systems="bench",
-            distro=distro,
-            path=self.paths,
-            wire=self.wire,
-            bus_bytes=self.bus_bytes,
-        )
+    options, ghdl = given
+    return recorded(test, lambda watch: _run_bench(test, options, ghdl, watch))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BenchResult:
-    """What became of a type's bench.
-
-    Attributes
-    ----------
-    verdict : Verdict
-        Cases are packets that came out as the oracle has them.
-    packets, transfers : int
-        Packets and leaf transfers that were right.
-    seconds, cpu_seconds : float
-        By the clock on the wall, and of all processors.
-    setup_seconds, simulation_seconds : float
-        Until GHDL had analysed everything, and while it ran.
-    """
-
-    verdict: Verdict
-    packets: int = 0
-    transfers: int = 0
-    seconds: float = 0.0
-    cpu_seconds: float = 0.0
-    setup_seconds: float = 0.0
-    simulation_seconds: float = 0.0
-
-
-def run_bench(distro: str, name: str, run: BenchRun) -> BenchResult:
-    """Build a type and run its bench. Nothing is raised: what goes wrong is in the result."""
-    began, began_cpu = time.perf_counter(), cpu_seconds()
-    verdict: Verdict
-    packets = transfers = 0
-    simulation: list[tuple[float, float]] = []
+def _run_bench(test: Test, options: Options, ghdl: str, watch: Stopwatch) -> Record:
+    """Return a record whose cases are packets that came out as the oracle has them."""
     try:
         with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
-            packets, transfers = _run_bench(distro, name, run, Path(folder), simulation)
-        verdict = Passed(packets)
-    except NotJudgedError as error:
-        verdict = NotJudged(str(error) or type(error).__name__)
+            packets, transfers = _packets_and_transfers(test, options, ghdl, Path(folder), watch)
     except (AssertionError, ToolError) as error:
-        verdict = Failed((str(error),))
-    except Exception as error:  # Whatever it is, the other types are to go on.
-        verdict = Failed((described(error),))
-    return BenchResult(
-        verdict=verdict,
-        packets=packets,
-        transfers=transfers,
-        seconds=time.perf_counter() - began,
-        cpu_seconds=cpu_seconds() - began_cpu,
-        setup_seconds=(simulation[0][0] if simulation else time.perf_counter()) - began,
-        simulation_seconds=sum(end - start for start, end in simulation),
-    )
+        return Record(test=test, verdict=Failed((str(error),)))
+    metrics = {"transfers": float(transfers)}
+    return Record(test=test, verdict=Passed(packets), packets=packets, metrics=metrics)
 
 
-def _run_bench(
-    distro: str, name: str, run: BenchRun, folder: Path, simulation: list[tuple[float, float]]
+def _packets_and_transfers(
+    test: Test, options: Options, ghdl: str, folder: Path, watch: Stopwatch
 ) -> tuple[int, int]:
-    """Return numbers of packets and transfers; add when each simulation began and ended."""
-    library = library_of(distro, run.paths)
-    message = library.message(name)
+    """Return how many packets and transfers of leaves were right."""
+    library = library_of(test.distro, options.paths)
+    message = library.message(test.type)
     check_wire(message)
-    plan = plan_of(message, run.wire, run.bus_bytes, DEFAULT_MAX_MESSAGE_BYTES)
+    plan = plan_of(message, options.wire, test.bus_bytes, DEFAULT_MAX_MESSAGE_BYTES)
     try:
         check_size(plan)
     except BuildError as error:
         raise NotJudgedError(str(error)) from None
-    cases = _cases(message, plan, None if run.paths else distro)
+    cases = _cases(message, plan, None if options.paths else test.distro)
     built = build(
-        [name],
+        [test.type],
         folder,
         library=library,
-        options=Options(wire=run.wire, bus_bytes=run.bus_bytes),
+        options=backend.Options(wire=options.wire, bus_bytes=test.bus_bytes),
         stimuli=lambda *_: [case.packet for case in cases],
     )
-    vhdl, entities = _analyse(built[0], run.ghdl)
+    vhdl, entities = _analyse(built[0], ghdl)
     right = "".join(f"{case.packet.hex()}\n" for case in cases)
     transfers = 0
     for entity in entities:
-        began = time.perf_counter()
-        work = _simulate(entity, vhdl, run.ghdl)
-        simulation.append((began, time.perf_counter()))
+        watch.enter("simulation")
+        work = _simulate(entity, vhdl, ghdl)
+        watch.enter("testing")
         _compare("packets that came out", made_by(entity, work / "results.txt").read_text(), right)
         if entity == entities[0]:
             transfers = _check_transfers(

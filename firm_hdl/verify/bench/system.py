@@ -4,24 +4,33 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Generator, Iterable, Mapping, Sequence
-from contextlib import closing
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
-from tqdm import tqdm
-
 from firm_hdl.frontend import DISTROS
-from firm_hdl.jobs.executors import run_each
 from firm_hdl.jobs.programs import find_ghdl
-from firm_hdl.verify.bench.run import BenchResult, BenchRun, run_bench
-from firm_hdl.verify.results.records import Record, Seconds, Test, clipped_verdict
+from firm_hdl.verify.bench.run import run_bench
+from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
-from firm_hdl.verify.systems.system import Judged, Recorder, System, judged, wire_of
+from firm_hdl.verify.systems.again import command_again
+from firm_hdl.verify.systems.options import Request
+from firm_hdl.verify.systems.system import (
+    Judged,
+    Made,
+    Recorder,
+    System,
+    judged,
+    kept,
+    run_tests,
+    wire_of,
+)
 from firm_hdl.verify.systems.tasks import TypeUnderTest
-from firm_hdl.wire import Wire
 
 __all__ = ["Benches"]
+
+MOST_CHARACTERS = 2000
+"""Of a failure, so many are printed."""
 
 
 class Benches(System):
@@ -29,14 +38,9 @@ class Benches(System):
 
     Parameters
     ----------
-    tasks : sequence of Task
-    paths : iterable of str
-        Folders with ROS packages, searched first.
-    wire : "ros1", "cdr" or None
-    widths : iterable of int
-        Buses, in bytes.
-    jobs : int or None
-        Processes; `None`: one per processor.
+    tasks : sequence of TypeUnderTest
+    request : Request
+        Of it: `paths`, `wire`, `widths`, `jobs`.
 
     Raises
     ------
@@ -45,28 +49,31 @@ class Benches(System):
 
     name = "bench"
 
-    def __init__(
-        self,
-        tasks: Sequence[TypeUnderTest],
-        *,
-        paths: Iterable[str] = (),
-        wire: Wire | None = None,
-        widths: Iterable[int] = (8,),
-        jobs: int | None = None,
-    ):
-        ghdl = find_ghdl()
+    def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
+        self._request, self._ghdl = request, find_ghdl()
         # Each distribution's bench of its own, even if another has the same type: its header
         # differs.
-        self._work = [(distro, task.name) for task in tasks for distro in task.same]
-        self._runs = [
-            BenchRun(paths=tuple(paths), wire=wire, bus_bytes=width, ghdl=ghdl) for width in widths
-        ]
-        self._jobs = jobs
+        self._types = [(distro, task.name) for task in tasks for distro in task.same]
 
     @cached_property
     def tests(self) -> Sequence[Test]:
         """All types with all buses."""
-        return [_test(run, *work) for run in self._runs for work in self._work]
+        return [each for width in self._request.widths for each in self._tests(width)]
+
+    def _tests(self, bus_bytes: int) -> list[Test]:
+        return [
+            Test(
+                system=self.name,
+                simulator="ghdl",
+                distro=distro,
+                type=name,
+                same=(distro,),
+                wire=wire_of(distro, self._request.wire),
+                bus_bytes=bus_bytes,
+                options=",".join(f"path={path}" for path in self._request.paths),
+            )
+            for distro, name in self._types
+        ]
 
     @property
     def options(self) -> Mapping[str, Any]:
@@ -75,76 +82,49 @@ class Benches(System):
 
     def run(self, recorder: Recorder) -> list[Judged]:
         """Run all benches, and print a table for each bus."""
-        return [each for run in self._runs for each in self._run(run, recorder)]
+        return [each for width in self._request.widths for each in self._run(width, recorder)]
 
-    def _run(self, run: BenchRun, recorder: Recorder) -> list[Judged]:
+    def _run(self, bus_bytes: int, recorder: Recorder) -> list[Judged]:
         """Run the benches with one bus."""
         began = time.perf_counter()
-        records = recorder.resume({work: _test(run, *work) for work in self._work}, "types")
-        left = [work for work in self._work if work not in records]
-        total, known = len(self._work), len(records)
-        label = f"{run.bus_bytes}-byte bus"
-        bar = tqdm(total=total, initial=known, unit="type", desc=label, disable=None)
-        with bar, closing(_results(left, run, self._jobs)) as results:
-            for (distro, name), result in results:
-                records[distro, name] = record = _record(run, distro, name, result)
-                recorder.add(record)
-                if isinstance(result.verdict, Failed):
-                    tqdm.write(
-                        f"FAIL {name} ({distro})\n    {result.verdict.failures[0][:2000]}\n"
-                        f"    again: {record.command}"
-                    )
-                bar.update()
-        _table(records, run.bus_bytes)
+        label = f"{bus_bytes}-byte bus"
+        tests = {test: test for test in self._tests(bus_bytes)}
+        records = kept(tests, recorder, self._records, label=label).values()
+        _table(list(records), label)
         print(f"{time.perf_counter() - began:.0f} s")
-        return judged(records.values())
+        return judged(records)
+
+    def _records(self, left: Sequence[Test]) -> Made[Test]:
+        given = self._request, self._ghdl
+        jobs = self._request.jobs
+        return run_tests(run_bench, given, left, self._command, _said, jobs=jobs)
+
+    def _command(self, test: Test) -> str:
+        """Return the command that runs one type again."""
+        return command_again(
+            test.type,
+            systems=self.name,
+            distro=test.distro,
+            path=self._request.paths,
+            wire=self._request.wire,
+            bus_bytes=test.bus_bytes,
+        )
 
 
-def _test(run: BenchRun, distro: str, name: str) -> Test:
-    return Test(
-        system=Benches.name,
-        simulator="ghdl",
-        distro=distro,
-        type=name,
-        same=(distro,),
-        wire=wire_of(distro, run.wire),
-        bus_bytes=run.bus_bytes,
-        options=",".join(f"path={path}" for path in run.paths),
-    )
+def _said(record: Record) -> list[str]:
+    if not isinstance(record.verdict, Failed):
+        return []
+    return [
+        f"FAIL {record.test.type} ({record.test.distro})\n"
+        f"    {record.verdict.failures[0][:MOST_CHARACTERS]}\n    again: {record.command}"
+    ]
 
 
-def _record(run: BenchRun, distro: str, name: str, result: BenchResult) -> Record:
-    testing = result.seconds - result.setup_seconds - result.simulation_seconds
-    return Record(
-        test=_test(run, distro, name),
-        verdict=clipped_verdict(result.verdict),
-        seconds=Seconds(
-            generation=result.setup_seconds,
-            simulation=result.simulation_seconds,
-            testing=max(0.0, testing),
-        ),
-        cpu_seconds=result.cpu_seconds,
-        packets=result.packets,
-        metrics={"transfers": float(result.transfers)},
-        command=run.command(distro, name),
-    )
-
-
-def _results(
-    work: Sequence[tuple[str, str]], run: BenchRun, jobs: int | None
-) -> Generator[tuple[tuple[str, str], BenchResult], None, None]:
-    tasks = [((distro, name), (distro, name, run)) for distro, name in work]
-    for key, result in run_each(run_bench, tasks, jobs=jobs):
-        if isinstance(result, Exception):
-            result = BenchResult(verdict=Failed((f"{type(result).__name__}: {result}",)))
-        yield key, result
-
-
-def _table(records: Mapping[tuple[str, str], Record], bus_bytes: int) -> None:
+def _table(records: Sequence[Record], label: str) -> None:
     columns = ("types", "pass", "fail", "not judged", "packets", "transfers", "seconds")
-    print(f"{f'{bus_bytes}-byte bus':12} " + " ".join(f"{name:>10}" for name in columns))
+    print(f"{label:12} " + " ".join(f"{name:>10}" for name in columns))
     for distro in DISTROS:
-        mine = [record for key, record in records.items() if key[0] == distro]
+        mine = [record for record in records if record.test.distro == distro]
         if not mine:
             continue
         counts = Counter(each.verdict.name for each in mine)

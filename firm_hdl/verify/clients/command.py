@@ -6,7 +6,6 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import closing
-from dataclasses import replace
 from typing import Any
 
 from tqdm import tqdm
@@ -14,13 +13,14 @@ from tqdm import tqdm
 from firm_hdl.frontend import DISTROS
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.clients.judge import Trial
-from firm_hdl.verify.clients.run import SutOptions, contest_of, judge_types, reference_of
+from firm_hdl.verify.clients.run import command_of, contest_of, judge_types, reference_of
 from firm_hdl.verify.clients.shrink import shrunk
 from firm_hdl.verify.references.client import ClientMissingError, Refusal
 from firm_hdl.verify.references.clients import CLIENTS, REFERENCES, client, close_clients
 from firm_hdl.verify.references.objects import full_text
 from firm_hdl.verify.references.values import shown
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Judged
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.wire import Wire
@@ -58,15 +58,8 @@ def find_clients(names: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
     return versions, missing
 
 
-def run_sut(
-    tasks: Sequence[TypeUnderTest], options: SutOptions, jobs: int | None = None
-) -> list[Judged]:
+def run_sut(tasks: Sequence[TypeUnderTest], options: Request) -> list[Judged]:
     """Judge libraries on types, print what came of it, and return it.
-
-    Parameters
-    ----------
-    options : SutOptions
-        `here` is found out.
 
     Raises
     ------
@@ -81,13 +74,12 @@ def run_sut(
         if name in missing:
             raise ClientMissingError(missing[name])
     here = tuple(name for name in CLIENTS if name in references and name in versions)
-    options = replace(options, here=here)
-    for line in _judges(_wires(tasks, options), options, versions, missing):
+    for line in _judges(_wires(tasks, options), options, versions, missing, here):
         print(line)
     trials: list[tuple[TypeUnderTest, Trial]] = []
     with (
         tqdm(total=len(tasks), unit="type", desc="client libraries", disable=None) as bar,
-        closing(judge_types(tasks, options, jobs)) as run,
+        closing(judge_types(tasks, options, here)) as run,
     ):
         for task, found in run:
             trials += [(task, trial) for trial in found]
@@ -106,7 +98,7 @@ def run_sut(
     ]
 
 
-def _wires(tasks: Sequence[TypeUnderTest], options: SutOptions) -> list[Wire]:
+def _wires(tasks: Sequence[TypeUnderTest], options: Request) -> list[Wire]:
     if options.wire is not None:
         return [options.wire]
     dialects = {DISTROS[task.distro].dialect for task in tasks}
@@ -117,7 +109,11 @@ _WIRES: tuple[tuple[str, Wire], ...] = (("ros1", "ros1"), ("ros2", "cdr"))
 
 
 def _judges(
-    wires: Sequence[Wire], options: SutOptions, versions: dict[str, str], missing: dict[str, str]
+    wires: Sequence[Wire],
+    options: Request,
+    versions: dict[str, str],
+    missing: dict[str, str],
+    here: Sequence[str],
 ) -> Iterator[str]:
     """Say who judges whom."""
     for wire in wires:
@@ -126,14 +122,12 @@ def _judges(
             yield f"{ros}, which is ROS's own on {wire}, is not here: {missing[ros]}"
         for library in options.libraries:
             if wire in CLIENTS[library].wires:
-                judge = reference_of(library, wire, options.here)
+                judge = reference_of(library, wire, here)
                 said = f"{judge} {versions[judge]}" if judge else "nobody"
                 yield f"{library} {versions[library]} on {wire}: judged by {said}"
 
 
-def _differences(
-    trials: Sequence[tuple[TypeUnderTest, Trial]], options: SutOptions
-) -> Iterator[str]:
+def _differences(trials: Sequence[tuple[TypeUnderTest, Trial]], options: Request) -> Iterator[str]:
     """Print what is new, the first few of each library with the smallest case."""
     shown_of: Counter[tuple[str, str]] = Counter()
     for task, trial in sorted(trials, key=lambda each: (each[1].library, each[1].type)):
@@ -141,7 +135,7 @@ def _differences(
             key = trial.library, finding.what
             shown_of[key] += 1
             head = f"DIFFERS {trial.library}, {finding.what}: {trial.type} ({task.distro})"
-            again = options.command(task.distro, task.name, trial.library)
+            again = command_of(options, task.distro, task.name, trial.library)
             if shown_of[key] == 1 and len(shown_of) <= MOST_SHOWN * len(options.libraries):
                 small = shrunk(finding, contest_of(trial, finding.wire).again)
                 yield "\n".join([head, *described(small), f"    again: {again}"])
@@ -188,9 +182,7 @@ def _clip(text: str) -> str:
     return f"{text[:MOST_CHARACTERS]}... ({len(text)} characters)"
 
 
-def _summary(
-    trials: Sequence[Trial], options: SutOptions, versions: dict[str, str]
-) -> Iterator[str]:
+def _summary(trials: Sequence[Trial], options: Request, versions: dict[str, str]) -> Iterator[str]:
     head = "".join(f"{name:>11}" for name in _SAID.values())
     yield f"{'types':24}{head}{'comparisons':>13}"
     for library in options.libraries:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.jobs.processes import in_processes
@@ -19,55 +18,27 @@ from firm_hdl.verify.references.values import Plain, from_objects
 from firm_hdl.verify.results.verdict import NotJudged, NotJudgedError
 from firm_hdl.verify.systems.again import command_again
 from firm_hdl.verify.systems.libraries import library_of
+from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.wire import Wire, lay_out
 
-__all__ = ["SutOptions", "contest_of", "judge_type", "judge_types", "reference_of"]
+__all__ = ["command_of", "contest_of", "judge_type", "judge_types", "reference_of"]
 
 BUS_BYTES = 8
 """Lengths of sequences and texts are chosen as for a bus of so many bytes."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SutOptions:
-    """What to judge, and how.
-
-    Attributes
-    ----------
-    libraries : tuple of str
-        Systems under test.
-    here : tuple of str
-        References that can be used.
-    wire : Wire or None
-        `None`: that of the distribution.
-    seed : int
-    most_cases : int or None
-    paths : tuple of str
-        Folders with ROS packages, searched first.
-    names_wires : bool
-        Whether the user has said on which wires, or of which distributions: then a library that
-        does not speak one of them has not judged what it was asked to.
-    """
-
-    libraries: tuple[str, ...]
-    here: tuple[str, ...] = ()
-    wire: Wire | None = None
-    seed: int = 0
-    most_cases: int | None = None
-    paths: tuple[str, ...] = ()
-    names_wires: bool = True
-
-    def command(self, distro: str, name: str, library: str) -> str:
-        """Return the command that judges one library on one type again."""
-        return command_again(
-            name,
-            sut=library,
-            distro=distro,
-            path=self.paths,
-            wire=self.wire,
-            seed=self.seed or None,
-            cases=self.most_cases,
-        )
+def command_of(request: Request, distro: str, name: str, library: str) -> str:
+    """Return the command that judges one library on one type again."""
+    return command_again(
+        name,
+        sut=library,
+        distro=distro,
+        path=request.paths,
+        wire=request.wire,
+        seed=request.seed or None,
+        cases=request.most_cases,
+    )
 
 
 def reference_of(library: str, wire: Wire, here: Sequence[str]) -> str | None:
@@ -87,8 +58,17 @@ def contest_of(trial: Trial, wire: Wire) -> Contest:
     return Contest(client(trial.library), client(trial.reference), wire)
 
 
-def judge_type(distro: str, name: str, options: SutOptions) -> list[Trial]:
-    """Judge all libraries on one type. Nothing is raised: what goes wrong is in the trials."""
+def judge_type(distro: str, name: str, options: Request, here: Sequence[str]) -> list[Trial]:
+    """Judge all libraries on one type. Nothing is raised: what goes wrong is in the trials.
+
+    Parameters
+    ----------
+    options : Request
+        Of it: `libraries`, `wire`, `seed`, `most_cases`, `paths`, `names_wires`. A library that
+        does not speak a wire which the user named has not judged what it was asked to.
+    here : sequence of str
+        References that can be used.
+    """
     try:
         message = library_of(distro, options.paths).message(name)
         wire = options.wire or message.wire
@@ -96,18 +76,18 @@ def judge_type(distro: str, name: str, options: SutOptions) -> list[Trial]:
     # Whatever it is, the other types are to go on.
     except (NotJudgedError, DefinitionError, ValueError) as error:
         return [_not_judged(library, name, str(error)) for library in options.libraries]
-    trials = [_judged(library, message, wire, values, options) for library in options.libraries]
+    trials = [_judged(library, message, wire, values, here) for library in options.libraries]
     for trial in trials:
         trial.is_asked = options.names_wires or wire in client(trial.library).wires
     return trials
 
 
 def _judged(
-    library: str, message: Message, wire: Wire, values: Sequence[Plain], options: SutOptions
+    library: str, message: Message, wire: Wire, values: Sequence[Plain], here: Sequence[str]
 ) -> Trial:
     """Judge a library by the first reference that has the type."""
     first: Trial | None = None
-    for reference in _references(library, wire, options.here):
+    for reference in _references(library, wire, here):
         trial = Contest(client(library), client(reference), wire).judge(message, values)
         if not isinstance(trial.obstacle, NotJudged):
             return trial
@@ -119,7 +99,7 @@ def _not_judged(library: str, name: str, why: str) -> Trial:
     return Trial(library=library, reference="", type=name, obstacle=NotJudged(why))
 
 
-def _values(distro: str, name: str, wire: Wire, options: SutOptions) -> list[Plain]:
+def _values(distro: str, name: str, wire: Wire, options: Request) -> list[Plain]:
     """Choose values as TS3 does: all lengths and extremes, and what decisions of a plan need."""
     message = library_of(distro, options.paths).message(name)
     judge = judge_of(message, None if options.paths else distro, stand_in=True)
@@ -139,11 +119,11 @@ def _values(distro: str, name: str, wire: Wire, options: SutOptions) -> list[Pla
 
 
 def judge_types(
-    tasks: Sequence[TypeUnderTest], options: SutOptions, jobs: int | None
+    tasks: Sequence[TypeUnderTest], options: Request, here: Sequence[str]
 ) -> Generator[tuple[TypeUnderTest, list[Trial]], None, None]:
     """Judge all libraries on types, and yield what comes of each, as it comes."""
-    work = [(task, (task.distro, task.name, options)) for task in tasks]
-    for task, trials in in_processes(judge_type, work, jobs):
+    work = [(task, (task.distro, task.name, options, here)) for task in tasks]
+    for task, trials in in_processes(judge_type, work, options.jobs):
         if isinstance(trials, Exception):
             # In one process: an exception of our own code. Such a run is no result.
             raise trials

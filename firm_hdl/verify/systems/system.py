@@ -1,28 +1,51 @@
 """What a test system is, and how its results get to the disk.
 
-A system knows its tests before it runs any, so that a file of results can say what is missing. It
-asks a recorder for what an earlier session found out, runs the rest, and hands over each record as
-soon as it is there. Printing is the system's own business.
+A system knows its tests before it runs any, so that a file of results can say what is missing.
+`kept` asks a recorder for what an earlier session found out, has the rest run behind a progress
+bar, and hands over each record as soon as it is there. What else is printed is the system's own
+business.
 """
 
 from __future__ import annotations
 
+import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
-from typing import Any, ClassVar, TypeVar
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, TypeAlias, TypeVar
 
+from tqdm import tqdm
+
+from firm_hdl.errors import described
 from firm_hdl.frontend import DISTROS
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, run_each
+from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.verify.results.file import ResultsWriter
-from firm_hdl.verify.results.records import Record, Test, settled
-from firm_hdl.verify.results.verdict import Verdict
+from firm_hdl.verify.results.records import STAGES, Record, Seconds, Test, clipped_verdict, settled
+from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Verdict
 
-__all__ = ["Judged", "Recorder", "System", "judged", "run_shares", "shares_of", "wire_of"]
+__all__ = [
+    "Judged",
+    "Made",
+    "Recorder",
+    "Stopwatch",
+    "System",
+    "failure_of",
+    "judged",
+    "kept",
+    "recorded",
+    "run_shares",
+    "run_tests",
+    "shares_of",
+    "wire_of",
+]
 
 K = TypeVar("K")
 R = TypeVar("R")
+Made: TypeAlias = "Generator[Sequence[tuple[K, Record, Iterable[str]]], None, None]"
+"""Yields keys of tests, their records, and what is printed of them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -119,6 +142,122 @@ class System(ABC):
 def wire_of(distro: str, wire: str | None) -> str:
     """Return the name of a wire format; `None`: that of the distribution."""
     return wire or ("ros1" if DISTROS[distro].dialect == "ros1" else "cdr")
+
+
+class Stopwatch:
+    """Times the stages of a test by the clock on the wall, and the test by the processor's."""
+
+    def __init__(self) -> None:
+        self._began_cpu = cpu_seconds()
+        self._spent: dict[str, float] = defaultdict(float)
+        self._stage, self._began = "generation", time.perf_counter()
+
+    def enter(self, stage: str) -> None:
+        """End a stage and begin another one, of `STAGES`; the first is ``generation``."""
+        now = time.perf_counter()
+        self._spent[self._stage] += now - self._began
+        self._stage, self._began = stage, now
+
+    def stop(self, record: Record) -> Record:
+        """Return a record with all times."""
+        self.enter("")
+        seconds = Seconds(**{stage: self._spent[stage] for stage in STAGES})
+        return replace(record, seconds=seconds, cpu_seconds=cpu_seconds() - self._began_cpu)
+
+
+def recorded(test: Test, run: Callable[[Stopwatch], Record]) -> Record:
+    """Run a test, and return its record. Nothing is raised: what goes wrong is in the record."""
+    watch = Stopwatch()
+    try:
+        record = run(watch)
+    except NotJudgedError as error:
+        record = Record(test=test, verdict=NotJudged(str(error) or type(error).__name__))
+    except Exception as error:  # Whatever it is, the other types are to go on.
+        record = Record(test=test, verdict=Failed((described(error),)))
+    return watch.stop(record)
+
+
+def failure_of(what: str, record: Record, most: int | None = None) -> Iterator[str]:
+    """Yield what is printed of a test that failed, with at most so many failures."""
+    if isinstance(record.verdict, Failed):
+        failures = record.verdict.failures
+        yield "\n".join([f"FAIL {what}", *(f"    {line}" for line in failures[:most])])
+
+
+def kept(
+    tests: Mapping[K, Test],
+    recorder: Recorder,
+    run: Callable[[list[K]], Made[K]],
+    *,
+    label: str,
+    unit: str = "type",
+) -> dict[K, Record]:
+    """Have the tests run that have no record yet; keep and return the records of all, in order.
+
+    Parameters
+    ----------
+    tests : mapping
+        All tests, by keys of the system's own.
+    run : callable
+        Is given the keys of those to run. What it yields at a time is synced together.
+    label, unit : str
+        What the progress bar is called, and what it counts.
+    """
+    records = recorder.resume(tests, f"{unit}s")
+    left = [key for key in tests if key not in records]
+    bar = tqdm(total=len(tests), initial=len(records), unit=unit, desc=label, disable=None)
+    with bar, closing(run(left)) as shares:
+        for share in shares:
+            recorder.add(*(record for _, record, _ in share))
+            for key, record, lines in share:
+                records[key] = record
+                for line in lines:
+                    tqdm.write(line)
+            bar.update(len(share))
+    return {key: records[key] for key in tests}
+
+
+def run_tests(
+    work: Callable[[Any, Test], Record],
+    context: object,
+    tests: Sequence[Test],
+    command: Callable[[Test], str],
+    said: Callable[[Record], Iterable[str]],
+    *,
+    most: int = 1,
+    executor: str = PROCESSES,
+    jobs: int | None = None,
+) -> Made[Test]:
+    """Call ``work(context, test)`` for each test, and yield records as they come.
+
+    Parameters
+    ----------
+    command : callable
+        Gives the command that repeats a test.
+    said : callable
+        Gives what is printed of a record.
+    most : int
+        How many tests one process is given at a time; their records come together.
+    """
+    shares = shares_of(tests, most)
+    run = run_shares(_work_share, (work, context), shares, executor=executor, jobs=jobs)
+    with closing(run):
+        for share, result in run:
+            if isinstance(result, Exception):
+                died = Failed((f"{type(result).__name__}: {result}",))
+                result = [Record(test=test, verdict=died) for test in share]
+            records = [
+                replace(each, verdict=clipped_verdict(each.verdict), command=command(each.test))
+                for each in result
+            ]
+            yield [(each.test, each, said(each)) for each in records]
+
+
+def _work_share(
+    given: tuple[Callable[[Any, Test], Record], object], share: tuple[Test, ...]
+) -> list[Record]:
+    work, context = given
+    return [work(context, test) for test in share]
 
 
 def shares_of(items: Sequence[K], most: int, parts: int = 64) -> list[tuple[K, ...]]:

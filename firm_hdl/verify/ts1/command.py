@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
-
-from tqdm import tqdm
 
 from firm_hdl.verify.results.records import (
     OracleVerdict,
@@ -19,8 +17,8 @@ from firm_hdl.verify.results.records import (
     clipped_verdict,
 )
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
-from firm_hdl.verify.systems.system import Judged, Recorder, System
-from firm_hdl.verify.ts1.judge import Judgement, Outcome
+from firm_hdl.verify.systems.system import Judged, Made, Recorder, System, kept
+from firm_hdl.verify.ts1.judge import Judgement
 from firm_hdl.verify.ts1.run import Selection, Tally, Ts1Run
 
 __all__ = ["Ts1"]
@@ -94,27 +92,21 @@ class Ts1(System):
     def judge(self, run: Ts1Run, recorder: Recorder) -> list[Judged]:
         """Judge the definitions of one run; an oracle that was asked for and is not here fails."""
         began = time.perf_counter()
-        selection = run.selection
-        numbers = run.numbers
-        what = "mutation" if selection.mutations else "definition"
-        known = recorder.resume({n: self._test(run, n) for n in numbers}, f"{what}s")
-        tally = run.tally((number, record.verdicts) for number, record in known.items())
-        verdicts = {number: record.verdict for number, record in known.items()}
-        left = [number for number in numbers if number not in known]
-        label = f"ts1 {selection.distro}"
-        with (
-            tqdm(total=run.total, initial=len(known), unit=what, desc=label, disable=None) as bar,
-            closing(run.judgements(left)) as shares,
-        ):
-            for share in shares:
-                recorder.add(*(self._record(run, number, each) for number, each in share))
-                for number, each in share:
-                    verdicts[number] = _verdict(run.case(number).language, each.said)
-                part = run.tally((number, each.said) for number, each in share)
-                for outcome, mutated in part.differing:
-                    tqdm.write(_difference(selection, outcome, mutated))
-                tally.update(part)
-                bar.update(len(share))
+        what = "mutation" if run.selection.mutations else "definition"
+        tests = {number: self._test(run, number) for number in run.numbers}
+        judged: dict[int, Sequence[OracleVerdict]] = {}
+
+        def work(left: Sequence[int]) -> Made[int]:
+            with closing(run.judgements(left)) as shares:
+                for share in shares:
+                    judged.update((number, each.said) for number, each in share)
+                    yield [
+                        (number, self._record(run, number, each), _differences(run, number, each))
+                        for number, each in share
+                    ]
+
+        records = kept(tests, recorder, work, label=f"ts1 {run.selection.distro}", unit=what)
+        tally = run.tally((n, judged.get(n, record.verdicts)) for n, record in records.items())
         for line in _summary(run, tally):
             print(line)
         what += "s" * (run.total != 1)
@@ -122,7 +114,7 @@ class Ts1(System):
         print(f"{run.total} {what}, {seconds:.0f} s, {len(tally.differing)} differences")
         asked = run.missing.items() if self._oracles else ()
         return [
-            *(Judged(what=self._test(run, n).title, verdict=v) for n, v in verdicts.items()),
+            *(Judged(what=each.test.title, verdict=each.verdict) for each in records.values()),
             *(Judged(what=f"oracle {n}", verdict=Failed((f"is not here: {w}",))) for n, w in asked),
         ]
 
@@ -184,15 +176,21 @@ def _verdict(language: str, said: Sequence[OracleVerdict]) -> Verdict:
     return NotJudged("; ".join(reasons))
 
 
-def _difference(selection: Selection, outcome: Outcome, number: int | None) -> str:
-    lines = [f"DIFFERS {outcome.case.full_name}.{outcome.case.language}, {outcome.oracle}"]
-    if number is not None:
-        lines += [f"    {line}" for line in outcome.case.changes]
-    details = outcome.verdict.details
-    lines += [f"    {detail}" for detail in details[:_MOST_DETAILS]]
-    if len(details) > _MOST_DETAILS:
-        lines.append(f"    and {len(details) - _MOST_DETAILS} more")
-    return "\n".join([*lines, f"    again: {selection.command(outcome.case, number)}"])
+def _differences(run: Ts1Run, number: int, found: Judgement) -> Iterator[str]:
+    """Yield what is printed of a definition, for each oracle that differs."""
+    case, is_mutated = run.case(number), run.selection.mutations > 0
+    for said in found.said:
+        if not isinstance(said.verdict, Failed):
+            continue
+        lines = [f"DIFFERS {case.full_name}.{case.language}, {said.oracle}"]
+        if is_mutated:
+            lines += [f"    {line}" for line in case.changes]
+        details = said.verdict.details
+        lines += [f"    {detail}" for detail in details[:_MOST_DETAILS]]
+        if len(details) > _MOST_DETAILS:
+            lines.append(f"    and {len(details) - _MOST_DETAILS} more")
+        again = run.selection.command(case, number if is_mutated else None)
+        yield "\n".join([*lines, f"    again: {again}"])
 
 
 def _summary(run: Ts1Run, tally: Tally) -> list[str]:

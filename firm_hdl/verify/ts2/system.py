@@ -7,140 +7,64 @@ given, those of the types that were asked for must mean the same as today's.
 
 from __future__ import annotations
 
-import time
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import closing
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 from tqdm import tqdm
 
-from firm_hdl.errors import DefinitionError, described
+from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
-from firm_hdl.jobs.executors import PROCESSES
-from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, check, from_yaml, to_yaml
 from firm_hdl.verify.cases.figures import digest, figures
-from firm_hdl.verify.results.records import Record, Seconds, Test, clipped_verdict
-from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed, Verdict
+from firm_hdl.verify.results.records import Record, Test, clipped_verdict
+from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.systems.again import command_again
 from firm_hdl.verify.systems.libraries import library_of
+from firm_hdl.verify.systems.options import Options, Request
 from firm_hdl.verify.systems.system import (
     Judged,
+    Made,
     Recorder,
+    Stopwatch,
     System,
+    failure_of,
     judged,
-    run_shares,
-    shares_of,
+    kept,
+    recorded,
+    run_tests,
     wire_of,
 )
 from firm_hdl.verify.systems.tasks import TypeUnderTest
-from firm_hdl.verify.ts2.golden import Checked, Golden, check_golden, read_golden
+from firm_hdl.verify.ts2.golden import Golden, check_golden, read_golden
 from firm_hdl.wire import Wire, lay_out, refusals
 
-__all__ = ["Ts2", "Ts2Options", "check_plan"]
+__all__ = ["Ts2", "check_plan"]
 
 YAML_STEPS = 2000
 """Longer plans are not printed and read back: it takes a second per some thousand steps."""
-
 MOST_IN_A_SHARE = 16
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Invariants:
-    """What was found out about the plan of a type.
-
-    Attributes
-    ----------
-    verdict : Verdict
-        A case is a plan.
-    shape : str
-        Digest of the plan without names.
-    metrics : dict of str to float
-        Figures of the type and of its plan.
-    planning_seconds, checking_seconds, cpu_seconds : float
-        From the definition to the plan; for everything that is checked; of the processor.
-    """
-
-    verdict: Verdict
-    shape: str = ""
-    metrics: Mapping[str, float] = field(default_factory=dict)
-    planning_seconds: float = 0.0
-    checking_seconds: float = 0.0
-    cpu_seconds: float = 0.0
-
-
-def check_plan(message: Message, wire: Wire | None, bus_bytes: int) -> Invariants:
-    """Plan a type, and check the plan. Nothing is raised for what is wrong with it."""
+def check_plan(message: Message, test: Test, wire: Wire | None, watch: Stopwatch) -> Record:
+    """Plan a type for the bus of a test, and check the plan, which is the record's only case."""
     if wrong := refusals(message):
-        return Invariants(verdict=NotJudged(wrong[0].message))
-    began = time.perf_counter()
+        return Record(test=test, verdict=NotJudged(wrong[0].message))
     try:
-        plan = plan_of(message, wire, bus_bytes, DEFAULT_MAX_MESSAGE_BYTES)
+        plan = plan_of(message, wire, test.bus_bytes, DEFAULT_MAX_MESSAGE_BYTES)
     except (BuildError, DefinitionError) as error:
-        return Invariants(verdict=Failed((str(error),)))
-    planned = time.perf_counter()
+        return Record(test=test, verdict=Failed((str(error),)))
+    watch.enter("testing")
     problems = list(check(plan, lay_out(message, wire)))
     if len(plan.steps) <= YAML_STEPS and from_yaml(to_yaml(plan)) != plan:
         problems.append("the plan in YAML, read back, is another one")
-    checked = time.perf_counter()
     metrics = figures(message, plan, ())
     # There are no cases.
     metrics.pop("case_bytes", None)
-    return Invariants(
-        verdict=Failed(tuple(problems)) if problems else Passed(1),
-        shape=digest(plan),
-        metrics=metrics,
-        planning_seconds=planned - began,
-        checking_seconds=checked - planned,
-    )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Ts2Options:
-    """How to plan types.
-
-    Attributes
-    ----------
-    paths : tuple of str
-        Folders with ROS packages, searched first.
-    wire : "ros1", "cdr" or None
-        `None`: that of the distribution.
-    widths : tuple of int
-        Buses, in bytes.
-    golden : str or None
-        Folder of golden plans.
-    """
-
-    paths: tuple[str, ...] = ()
-    wire: Wire | None = None
-    widths: tuple[int, ...] = (8,)
-    golden: str | None = None
-
-    def command(
-        self, distro: str, name: str, *, bus_bytes: int | None = None, golden: str | None = None
-    ) -> str:
-        """Return the command that checks one type again."""
-        return command_again(
-            name,
-            systems="ts2",
-            distro=distro,
-            path=self.paths,
-            wire=self.wire,
-            bus_bytes=bus_bytes,
-            golden=golden,
-        )
-
-
-@dataclass(frozen=True, slots=True)
-class _Item:
-    """A plan to check."""
-
-    task: TypeUnderTest
-    bus_bytes: int
+    verdict = Failed(tuple(problems)) if problems else Passed(1)
+    return Record(test=test, verdict=verdict, shape=digest(plan), metrics=metrics)
 
 
 class Ts2(System):
@@ -148,12 +72,9 @@ class Ts2(System):
 
     Parameters
     ----------
-    tasks : sequence of Task
-    options : Ts2Options
-    jobs : int or None
-        Processes; `None`: one per processor.
-    executor : str
-        See :func:`firm_hdl.jobs.executors.run_each`.
+    tasks : sequence of TypeUnderTest
+    request : Request
+        Of it: `paths`, `wire`, `widths`, `golden`, `jobs`, `executor`.
 
     Raises
     ------
@@ -163,109 +84,71 @@ class Ts2(System):
 
     name = "ts2"
 
-    def __init__(
-        self,
-        tasks: Sequence[TypeUnderTest],
-        options: Ts2Options | None = None,
-        *,
-        jobs: int | None = None,
-        executor: str = PROCESSES,
-    ):
-        self._how = options or Ts2Options()
-        self._items = [_Item(task, width) for task in tasks for width in self._how.widths]
-        self._tasks, self._jobs, self._executor = tasks, jobs, executor
+    def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
+        self._request, self._tasks = request, tasks
+        self._plans = [self._test(task, width) for task in tasks for width in request.widths]
 
     @cached_property
     def tests(self) -> Sequence[Test]:
         """Those of plans, and those of golden plans."""
-        return [*map(self._test, self._items), *map(self._golden_test, self._goldens)]
+        return [*self._plans, *map(self._golden_test, self._goldens)]
 
     @property
     def options(self) -> Mapping[str, Any]:
         """Where golden plans are."""
-        return {"golden": self._how.golden}
+        return {"golden": self._request.golden}
 
     def run(self, recorder: Recorder) -> list[Judged]:
         """Check all plans, and compare golden ones."""
         # Before the first plan is made.
         goldens = self._goldens
-        records = recorder.resume({item: self._test(item) for item in self._items}, "plans")
-        self._check(records, recorder)
-        self._count(records)
+        tests = {test: test for test in self._plans}
+        records = kept(tests, recorder, self._records, label="TS2", unit="plan")
+        _count(list(records.values()))
         found = judged(records.values())
-        if self._how.golden is not None:
+        if self._request.golden is not None:
             found += self._compare(goldens, recorder)
         return found
 
-    def _check(self, records: dict[_Item, Record], recorder: Recorder) -> None:
-        """Check the plans that have no record yet, and add their records."""
-        left = [item for item in self._items if item not in records]
-        shares = shares_of(left, MOST_IN_A_SHARE)
-        run = run_shares(_check_share, self._how, shares, executor=self._executor, jobs=self._jobs)
-        total, known = len(self._items), len(records)
-        bar = tqdm(total=total, initial=known, unit="plan", desc="TS2", disable=None)
-        with bar, closing(run):
-            for share, result in run:
-                if isinstance(result, Exception):
-                    why = f"{type(result).__name__}: {result}"
-                    result = [Invariants(verdict=Failed((why,)))] * len(share)
-                found = result
-                made = {i: self._record(i, each) for i, each in zip(share, found, strict=True)}
-                recorder.add(*made.values())
-                records |= made
-                for item, record in made.items():
-                    _say(item, record)
-                bar.update(len(share))
+    def _records(self, left: Sequence[Test]) -> Made[Test]:
+        request = self._request
+        return run_tests(
+            _checked,
+            request,
+            left,
+            lambda test: self._command(test, bus_bytes=test.bus_bytes),
+            _said,
+            most=MOST_IN_A_SHARE,
+            executor=request.executor,
+            jobs=request.jobs,
+        )
 
-    def _count(self, records: Mapping[_Item, Record]) -> None:
-        good: Counter[tuple[str, int]] = Counter()
-        total: Counter[tuple[str, int]] = Counter()
-        for item in self._items:
-            keys = [(distro, item.bus_bytes) for distro in item.task.same]
-            if not isinstance(records[item].verdict, NotJudged):
-                total.update(keys)
-            if isinstance(records[item].verdict, Passed):
-                good.update(keys)
-        for key in total:
-            print(f"{key[0]:8} {good[key]:4} of {total[key]:4} plans are sound ({key[1]}-byte bus)")
-        verdicts = [record.verdict for record in records.values()]
-        shapes = {each.shape for each in records.values() if isinstance(each.verdict, Passed)}
-        if silent := sum(isinstance(verdict, NotJudged) for verdict in verdicts):
-            print(f"{silent} of {len(records)} plans not judged")
-        print(f"{len(shapes)} different circuits")
+    def _command(self, test: Test, **more: object) -> str:
+        """Return the command that checks one type again."""
+        paths, wire = self._request.paths, self._request.wire
+        distro = test.distro
+        return command_again(
+            test.type, systems=self.name, distro=distro, path=paths, wire=wire, **more
+        )
 
-    def _test(self, item: _Item) -> Test:
-        task = item.task
+    def _test(self, task: TypeUnderTest, bus_bytes: int) -> Test:
         return Test(
             system=self.name,
             distro=task.distro,
             type=task.name,
             same=task.same,
-            wire=wire_of(task.distro, self._how.wire),
-            bus_bytes=item.bus_bytes,
-            options=",".join(f"path={path}" for path in self._how.paths),
-        )
-
-    def _record(self, item: _Item, found: Invariants) -> Record:
-        return Record(
-            test=self._test(item),
-            verdict=clipped_verdict(found.verdict),
-            seconds=Seconds(generation=found.planning_seconds, testing=found.checking_seconds),
-            cpu_seconds=found.cpu_seconds,
-            metrics=found.metrics,
-            shape=found.shape,
-            command=self._how.command(
-                item.task.distro, item.task.name, bus_bytes=item.bus_bytes
-            ),
+            wire=wire_of(task.distro, self._request.wire),
+            bus_bytes=bus_bytes,
+            options=",".join(f"path={path}" for path in self._request.paths),
         )
 
     @cached_property
     def _goldens(self) -> list[Golden]:
         """The golden plans of the types that were asked for."""
-        if self._how.golden is None:
+        if self._request.golden is None:
             return []
         try:
-            goldens = read_golden(self._how.golden)
+            goldens = read_golden(self._request.golden)
         except ValueError as error:
             raise BuildError(str(error)) from None
         wanted = {(distro, _plain(task.name)) for task in self._tasks for distro in task.same}
@@ -278,16 +161,20 @@ class Ts2(System):
             for golden in goldens
             if (record := recorder.known(self._golden_test(golden))) is not None
         }
-        for result in check_golden([g for g in goldens if g.path not in known], self._how.paths):
-            known[result.golden.path] = record = self._golden_record(result)
+        left = [golden for golden in goldens if golden.path not in known]
+        for result in check_golden(left, self._request.paths):
+            path, test = result.golden.path, self._golden_test(result.golden)
+            verdict = clipped_verdict(result.verdict)
+            command = self._command(test, golden=self._request.golden)
+            known[path] = record = Record(test=test, verdict=verdict, command=command)
             recorder.add(record)
-            if isinstance(record.verdict, Failed):
-                _report(str(result.golden.path), record.verdict.failures)
+            for text in failure_of(str(path), record):
+                tqdm.write(text)
         found = [Judged(what=str(path), verdict=known[path].verdict) for path in known]
         differing = sum(isinstance(each.verdict, Failed) for each in found)
         print(f"golden plans: {len(goldens)} compared, {differing} differ")
         none = NotJudged("none of them is of a type that was asked for")
-        return found or [Judged(what=f"golden plans of {self._how.golden}", verdict=none)]
+        return found or [Judged(what=f"golden plans of {self._request.golden}", verdict=none)]
 
     def _golden_test(self, golden: Golden) -> Test:
         return Test(
@@ -299,46 +186,39 @@ class Ts2(System):
             options=f"golden={golden.path}",
         )
 
-    def _golden_record(self, result: Checked) -> Record:
-        test = self._golden_test(result.golden)
-        return Record(
-            test=test,
-            verdict=clipped_verdict(result.verdict),
-            command=self._how.command(test.distro, test.type, golden=self._how.golden),
-        )
+
+def _checked(options: Options, test: Test) -> Record:
+    """Read, plan and check one type. Nothing is raised: what goes wrong is in the record."""
+
+    def run(watch: Stopwatch) -> Record:
+        message = library_of(test.distro, options.paths).message(test.type)
+        return check_plan(message, test, options.wire, watch)
+
+    return recorded(test, run)
 
 
-def _check_share(options: Ts2Options, share: tuple[_Item, ...]) -> list[Invariants]:
-    return [_checked(options, item) for item in share]
+def _said(record: Record) -> Iterable[str]:
+    test = record.test
+    return failure_of(f"{test.type} ({test.distro}), {test.bus_bytes}-byte bus", record)
 
 
-def _checked(options: Ts2Options, item: _Item) -> Invariants:
-    """Read, plan and check one type. Nothing is raised: what goes wrong is in the result."""
-    began, began_cpu = time.perf_counter(), cpu_seconds()
-    try:
-        message = library_of(item.task.distro, options.paths).message(item.task.name)
-        read = time.perf_counter() - began
-        found = check_plan(message, options.wire, item.bus_bytes)
-    except Exception as error:  # Whatever it is, the other types are to go on.
-        verdict = Failed((described(error),))
-        return Invariants(verdict=verdict, cpu_seconds=cpu_seconds() - began_cpu)
-    return replace(
-        found,
-        planning_seconds=read + found.planning_seconds,
-        cpu_seconds=cpu_seconds() - began_cpu,
-    )
+def _count(records: Sequence[Record]) -> None:
+    good: Counter[tuple[str, int]] = Counter()
+    total: Counter[tuple[str, int]] = Counter()
+    for record in records:
+        keys = [(distro, record.test.bus_bytes) for distro in record.test.distros]
+        if not isinstance(record.verdict, NotJudged):
+            total.update(keys)
+        if isinstance(record.verdict, Passed):
+            good.update(keys)
+    for key in total:
+        print(f"{key[0]:8} {good[key]:4} of {total[key]:4} plans are sound ({key[1]}-byte bus)")
+    shapes = {each.shape for each in records if isinstance(each.verdict, Passed)}
+    if silent := sum(isinstance(each.verdict, NotJudged) for each in records):
+        print(f"{silent} of {len(records)} plans not judged")
+    print(f"{len(shapes)} different circuits")
 
 
 def _plain(name: str) -> str:
     """Return a name as both ROS 1 and rosbags may write it."""
     return name.replace("/msg/", "/")
-
-
-def _say(item: _Item, record: Record) -> None:
-    task = item.task
-    if isinstance(record.verdict, Failed):
-        _report(f"{task.name} ({task.distro}), {item.bus_bytes}-byte bus", record.verdict.failures)
-
-
-def _report(what: str, lines: Iterable[str]) -> None:
-    tqdm.write("\n".join([f"FAIL {what}", *(f"    {line}" for line in lines)]))

@@ -34,10 +34,11 @@ from firm_hdl.verify.references.user_oracle import Judge, judge_of
 from firm_hdl.verify.references.wide_oracle import WideOracle
 from firm_hdl.verify.results.verdict import NotJudged, NotJudgedError
 from firm_hdl.verify.systems.libraries import library_of
+from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.ts3.checks import Checks
 from firm_hdl.verify.ts3.circuit import Circuit
 from firm_hdl.verify.ts3.confirm import confirm
-from firm_hdl.verify.ts3.options import Options, Result
+from firm_hdl.verify.ts3.result import Result, command_of
 from firm_hdl.verify.ts3.selection import affordable, all_cases, disturbed, is_large
 from firm_hdl.wire import Wire, lay_out
 
@@ -73,7 +74,7 @@ def measured(
     run : callable
         Adds to the result. It may raise anything, which goes to the result as well.
     """
-    result = Result(distro=distro, name=name, command=options.command(distro, name))
+    result = Result(distro=distro, name=name, command=command_of(options, distro, name))
     began, began_cpu = time.perf_counter(), cpu_seconds()
     try:
         message = library_of(distro, options.paths, options.bags).message(name)

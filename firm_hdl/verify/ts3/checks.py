@@ -18,7 +18,7 @@ from firm_hdl.verify.ts3.compare import (
     run_differences,
     transfer_differences,
 )
-from firm_hdl.verify.ts3.options import Result
+from firm_hdl.verify.ts3.result import Result
 
 __all__ = ["Checks"]
 

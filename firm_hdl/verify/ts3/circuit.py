@@ -17,7 +17,8 @@ from firm_hdl.sim.stalls import Stalls
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.simulators import simulator
 from firm_hdl.verify.simulators.crosscheck import Crosscheck
-from firm_hdl.verify.ts3.options import Options, Result
+from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.ts3.result import Result
 
 __all__ = ["Circuit"]
 

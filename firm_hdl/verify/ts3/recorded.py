@@ -13,9 +13,10 @@ from firm_hdl.verify.cases.figures import digest
 from firm_hdl.verify.choices import LONGEST
 from firm_hdl.verify.results.records import PlanCoverage, Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.systems.libraries import library_of
+from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.system import wire_of
 from firm_hdl.verify.systems.tasks import TypeUnderTest
-from firm_hdl.verify.ts3.options import Options, Result
+from firm_hdl.verify.ts3.result import Result, command_of
 from firm_hdl.wire import lay_out
 
 __all__ = ["record_of", "same_circuits", "test_of"]
@@ -80,7 +81,7 @@ def record_of(task: TypeUnderTest, result: Result, options: Options, same_as: st
         same_as=same_as,
         written_by=("rosbags", *result.written_by) if result.cases else (),
         command=result.command,
-        waveform_command=waveform.command(task.distro, task.name),
+        waveform_command=command_of(waveform, task.distro, task.name),
     )
 
 

@@ -7,10 +7,11 @@ from dataclasses import replace
 
 from firm_hdl.errors import described
 from firm_hdl.jobs.executors import PROCESSES, run_each
+from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts3.acceptance import accept
-from firm_hdl.verify.ts3.options import Options, Result
 from firm_hdl.verify.ts3.replay import replay
+from firm_hdl.verify.ts3.result import Result, command_of
 
 __all__ = ["run_tasks"]
 
@@ -42,7 +43,7 @@ def run_tasks(
         if isinstance(result, Exception):
             failed = Result(distro=task.distro, name=task.name)
             failed.failures.append(described(result))
-            failed.command = options.command(task.distro, task.name)
+            failed.command = command_of(options, task.distro, task.name)
             yield task, failed
         else:
             yield task, result

@@ -18,7 +18,7 @@ from firm_hdl.verify.cases.effort import (
 )
 from firm_hdl.verify.cases.make import Case, make_cases
 from firm_hdl.verify.references.oracle import RosbagsOracle
-from firm_hdl.verify.ts3.options import Options
+from firm_hdl.verify.systems.options import Options
 
 __all__ = ["affordable", "all_cases", "disturbed", "is_large"]
 

@@ -6,43 +6,29 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
 from typing import Any
 
-from tqdm import tqdm
-
 from firm_hdl.frontend import DISTROS
-from firm_hdl.jobs.executors import PROCESSES
 from firm_hdl.verify.references.choice import find_references
 from firm_hdl.verify.results.records import Record, Test, settled
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.simulators import simulator
-from firm_hdl.verify.systems.system import Judged, Recorder, System, judged, wire_of
+from firm_hdl.verify.systems.options import Options, Request
+from firm_hdl.verify.systems.system import (
+    Judged,
+    Made,
+    Recorder,
+    System,
+    judged,
+    kept,
+    wire_of,
+)
 from firm_hdl.verify.systems.tasks import TypeUnderTest
-from firm_hdl.verify.ts3.options import Options, Result
 from firm_hdl.verify.ts3.recorded import record_of, same_circuits, test_of
+from firm_hdl.verify.ts3.result import Result
 from firm_hdl.verify.ts3.runner import run_tasks
 
-__all__ = ["How", "Ts3"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class How:
-    """Where tests run.
-
-    Attributes
-    ----------
-    jobs : int or None
-        Processes; `None`: one per processor.
-    executor : str
-        See :func:`firm_hdl.jobs.executors.run_each`.
-    share_circuits : bool
-        Whether types with the same circuit are simulated once.
-    """
-
-    jobs: int | None = None
-    executor: str = PROCESSES
-    share_circuits: bool = False
+__all__ = ["Ts3"]
 
 
 class Ts3(System):
@@ -50,9 +36,8 @@ class Ts3(System):
 
     Parameters
     ----------
-    tasks : sequence of Task
-    options : sequence of Options
-        Which differ in the width of the bus.
+    tasks : sequence of TypeUnderTest
+    request : Request
 
     Raises
     ------
@@ -62,19 +47,16 @@ class Ts3(System):
 
     name = "ts3"
 
-    def __init__(
-        self, tasks: Sequence[TypeUnderTest], options: Sequence[Options], how: How | None = None
-    ):
-        self._tasks, self._options, self._how = tasks, options, how or How()
+    def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
+        self._tasks, self._request, self._options = tasks, request, request.each_width
 
     def __enter__(self) -> Ts3:
-        for each in self._options:
-            # Before the first type is run, and once: not by each type.
-            simulator(each.simulator)
-        first = self._options[0]
-        if not first.bags:
-            wires = [wire_of(task.distro, first.wire) for task in self._tasks]
-            for line in find_references(first.references, wires):
+        request = self._request
+        # Before the first type is run, and once: not by each type.
+        simulator(request.simulator)
+        if not request.bags:
+            wires = [wire_of(task.distro, request.wire) for task in self._tasks]
+            for line in find_references(request.references, wires):
                 print(line)
         return self
 
@@ -86,17 +68,17 @@ class Ts3(System):
     @property
     def options(self) -> Mapping[str, Any]:
         """What cases there are, and what becomes of them."""
-        first = self._options[0]
+        request = self._request
         return {
-            "simulator": first.simulator,
-            "seed": first.seed,
-            "cases": first.most_cases,
-            "stalls": first.stalled,
-            "broken": first.broken,
-            "share_circuits": self._how.share_circuits,
-            "bags": list(first.bags),
-            "longest": first.longest,
-            "references": None if first.references is None else list(first.references),
+            "simulator": request.simulator,
+            "seed": request.seed,
+            "cases": request.most_cases,
+            "stalls": request.stalled,
+            "broken": request.broken,
+            "share_circuits": request.shares_circuits,
+            "bags": list(request.bags),
+            "longest": request.longest,
+            "references": None if request.references is None else list(request.references),
         }
 
     def run(self, recorder: Recorder) -> list[Judged]:
@@ -114,31 +96,27 @@ class Ts3(System):
 
     def _run(self, options: Options, recorder: Recorder) -> list[Judged]:
         """Run all tasks with one set of options."""
-        tasks, how = self._tasks, self._how
-        records = recorder.resume({task: test_of(task, options) for task in tasks}, "types")
-        left = [task for task in tasks if task not in records]
-        same = same_circuits(tasks, options) if how.share_circuits else {}
+        tasks = {task: test_of(task, options) for task in self._tasks}
+        same = same_circuits(self._tasks, options) if self._request.shares_circuits else {}
         results: list[Result] = []
         notes: Counter[str] = Counter()
-        label = f"{options.bus_bytes}-byte bus"
-        bar = tqdm(total=len(tasks), initial=len(records), unit="type", desc=label, disable=None)
-        run = run_tasks(left, options, how.jobs, executor=how.executor, golden_only=same)
-        with bar, closing(run):
-            for task, result in run:
-                results.append(result)
-                other = same.get(task)
-                same_as = "" if other is None else test_of(other, options).key
-                records[task] = record = record_of(task, result, options, same_as)
-                recorder.add(record)
-                notes[result.note] += 1
-                # A replay says of each type how many messages there were.
-                is_new = notes[result.note] == 1 or bool(options.bags)
-                for line in _said(task, result, is_new=is_new):
-                    tqdm.write(line)
-                bar.update()
+
+        def run(left: Sequence[TypeUnderTest]) -> Made[TypeUnderTest]:
+            jobs, executor = self._request.jobs, self._request.executor
+            found = run_tasks(left, options, jobs, executor=executor, golden_only=same)
+            with closing(found):
+                for task, result in found:
+                    results.append(result)
+                    same_as = tasks[same[task]].key if task in same else ""
+                    notes[result.note] += 1
+                    # A replay says of each type how many messages there were.
+                    is_new = notes[result.note] == 1 or bool(options.bags)
+                    record = record_of(task, result, options, same_as)
+                    yield [(task, record, _said(task, result, is_new=is_new))]
+
+        records = kept(tasks, recorder, run, label=f"{options.bus_bytes}-byte bus")
         if not options.bags:
             _repeat(notes)
-        records = {task: records[task] for task in tasks}
         _count(records, options)
         _summarize([result for result in results if result.simulated_cycles], options)
         return judged(records.values())

@@ -9,11 +9,12 @@ import firm_hdl.verify.references.choice as references
 from firm_hdl.cli import main
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT
 from firm_hdl.frontend import Library
-from firm_hdl.verify.bench.run import BenchRun, run_bench
 from firm_hdl.verify.bench.system import Benches
 from firm_hdl.verify.references import client
 from firm_hdl.verify.results.file import read_results
+from firm_hdl.verify.results.records import Test
 from firm_hdl.verify.results.verdict import Failed, NotJudged
+from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Recorder
 from firm_hdl.verify.systems.tasks import collect_tasks
 from tests.tools import need
@@ -21,6 +22,12 @@ from tests.verify.judged import assert_passed
 from tests.verify.samples import own_package
 
 HEADER = "std_msgs/msg/Header"
+
+
+def run_bench(ghdl, name, distro="lyrical", bus_bytes=8, **options):
+    test = Test(system="bench", distro=distro, type=name, bus_bytes=bus_bytes)
+    return benches.run_bench((Request(**options), ghdl), test)
+
 
 # Those of tests/export/vhdl/test_bench.py have no loops and no arrays but of floats.
 SAMPLE = [
@@ -39,15 +46,14 @@ SAMPLE = [
 
 @pytest.mark.parametrize(("distro", "name", "bus_bytes"), SAMPLE)
 def test_bench_passes_with_the_bytes_and_transfers_of_rosbags(ghdl, distro, name, bus_bytes):
-    result = run_bench(distro, name, BenchRun(bus_bytes=bus_bytes, ghdl=ghdl))
+    result = run_bench(ghdl, name, distro, bus_bytes)
     assert assert_passed(result) == result.packets >= 3
-    assert result.transfers >= result.packets
+    assert result.metrics["transfers"] >= result.packets
 
 
 @pytest.mark.parametrize("name", ["own_msgs/msg/Deep", "own_msgs/srv/Ask_Response"])
 def test_types_of_ones_own_pass_as_well(ghdl, tmp_path, name):
-    run = BenchRun(paths=(str(own_package(tmp_path)),), ghdl=ghdl)
-    result = run_bench("lyrical", name, run)
+    result = run_bench(ghdl, name, paths=(str(own_package(tmp_path)),))
     assert assert_passed(result) == result.packets
 
 
@@ -55,7 +61,7 @@ def wide(folder, ghdl):
     """Run the bench of a type with wide text."""
     own_package(folder)
     (folder / "own_msgs" / "msg" / "Wide.msg").write_text("wstring[] text\nuint8 x\n")
-    return run_bench("lyrical", "own_msgs/msg/Wide", BenchRun(paths=(str(folder),), ghdl=ghdl))
+    return run_bench(ghdl, "own_msgs/msg/Wide", paths=(str(folder),))
 
 
 def test_wide_text_is_not_judged_unless_somebody_has_it(ghdl, tmp_path, monkeypatch):
@@ -69,7 +75,7 @@ def test_wide_text_is_confirmed(ghdl, tmp_path, monkeypatch):
         need(f"fastcdr ({missing})", None)
     result = wide(tmp_path, ghdl)
     assert assert_passed(result) == result.packets >= 3
-    assert result.transfers > result.packets
+    assert result.metrics["transfers"] > result.packets
     codec = client("fastcdr").open(Library("lyrical").message("std_msgs/msg/Bool"), "cdr")
     monkeypatch.setattr(type(codec), "encode_all", lambda self, values: [b"\0"] * len(values))
     (failure,) = wide(tmp_path, ghdl).verdict.failures
@@ -109,33 +115,32 @@ def change(monkeypatch, file: str, before: str, after: str) -> None:
 )
 def test_what_is_wrong_is_found(ghdl, monkeypatch, file, before, after, said):
     change(monkeypatch, file, before, after)
-    result = run_bench("lyrical", HEADER, BenchRun(ghdl=ghdl))
+    result = run_bench(ghdl, HEADER)
     (failure,) = result.verdict.failures
     assert said in failure
     assert not result.packets
 
 
 def test_bench_of_the_record_view_is_run_as_well(ghdl, monkeypatch):
-    run = BenchRun(ghdl=ghdl)
-    alone = run_bench("lyrical", HEADER, run)
-    both = run_bench("lyrical", "geometry_msgs/msg/Vector3", run)
+    alone = run_bench(ghdl, HEADER)
+    both = run_bench(ghdl, "geometry_msgs/msg/Vector3")
     assert assert_passed(alone) and assert_passed(both) == both.packets
     # Three leaves, in the first bench; each packet is sent in both.
-    assert 2 * both.transfers == 3 * both.packets
+    assert 2 * both.metrics["transfers"] == 3 * both.packets
     change(monkeypatch, "8_serializer_record.vhd", "<= to_slv(msg", "<= not to_slv(msg")
-    (failure,) = run_bench("lyrical", "geometry_msgs/msg/Vector3", run).verdict.failures
+    (failure,) = run_bench(ghdl, "geometry_msgs/msg/Vector3").verdict.failures
     assert "FAIL packet 0" in failure
 
 
 def test_table_and_status_say_what_failed_and_how_to_repeat(ghdl, monkeypatch, capsys):
     tasks = collect_tasks(["lyrical"], ["std_msgs/msg/Bool"])
-    (found,) = Benches(tasks, jobs=1).run(Recorder())
+    (found,) = Benches(tasks, Request(jobs=1)).run(Recorder())
     assert_passed(found)
     rows = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert rows[0][:4] == ["8-byte", "bus", "types", "pass"]
     assert rows[1][:5] == ["lyrical", "1", "1", "0", "0"]
     change(monkeypatch, "_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ")
-    (found,) = Benches(tasks, wire="ros1", widths=[4], jobs=1).run(Recorder())
+    (found,) = Benches(tasks, Request(wire="ros1", widths=(4,), jobs=1)).run(Recorder())
     assert isinstance(found.verdict, Failed)
     said = capsys.readouterr().out
     assert "FAIL std_msgs/msg/Bool (lyrical)\n" in said

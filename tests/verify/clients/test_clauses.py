@@ -15,10 +15,11 @@ from firm_hdl.verify.clients.finding import Finding, KnownDivergence, changed
 from firm_hdl.verify.clients.judge import Contest, Trial
 from firm_hdl.verify.clients.known import known_keys
 from firm_hdl.verify.clients.odd import ODDITIES, odd_packet, odd_value, odd_values, plain_packet
-from firm_hdl.verify.clients.run import SutOptions, reference_of
+from firm_hdl.verify.clients.run import command_of, reference_of
 from firm_hdl.verify.command import add_verify_arguments
 from firm_hdl.verify.references import Client, Codec, Refusal, client
 from firm_hdl.verify.references.values import as_float, bits_of, is_nan
+from firm_hdl.verify.systems.options import Request
 
 UINT8 = PRIMITIVES["ros2"]["uint8"]
 REFUSED = Refusal("no")
@@ -447,8 +448,8 @@ def test_a_trial_is_worth_what_was_found_in_it():
     ],
 )
 def test_the_command_that_repeats_says_all_that_was_asked_for(options):
-    made = SutOptions(libraries=("rosbags",), **options)
-    words = shlex.split(made.command("humble", "p/msg/A", "rosbags"))
+    made = Request(libraries=("rosbags",), **options)
+    words = shlex.split(command_of(made, "humble", "p/msg/A", "rosbags"))
     assert words[:2] == ["firm-hdl", "verify"]
     parser = argparse.ArgumentParser()
     add_verify_arguments(parser)

@@ -13,12 +13,13 @@ import pytest
 
 import firm_hdl
 from firm_hdl.model import IDL_PRIMITIVES, Field, Message, Sequence, String, idl_primitives
-from firm_hdl.verify.clients.run import SutOptions, judge_type
+from firm_hdl.verify.clients.run import judge_type
 from firm_hdl.verify.references import CLIENTS, Refusal, UnsupportedError
 from firm_hdl.verify.references.client import ClientDiedError
 from firm_hdl.verify.references.fastcdr import FastCdr
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, Passed
 from firm_hdl.verify.ros2_wheels import RELEASES as ROS2_RELEASES
+from firm_hdl.verify.systems.options import Request
 from tests.frontend.workspace import make_files
 from tests.plan.test_wire_facts import FACTS, WIDE, data
 from tests.strategies import make
@@ -112,10 +113,8 @@ def test_who_has_a_type_judges_it(library_here, tmp_path, distro, judge):
     for name in RELEASES:
         library_here(name)
     root = make_files(tmp_path, {"p/msg/W.idl": WIDE_IDL})
-    options = SutOptions(
-        libraries=("firm-hdl",), here=(*RELEASES, "rosbags"), most_cases=2, paths=(str(root),)
-    )
-    (trial,) = judge_type(distro, "p/msg/W", options)
+    options = Request(libraries=("firm-hdl",), most_cases=2, paths=(str(root),))
+    (trial,) = judge_type(distro, "p/msg/W", options, (*RELEASES, "rosbags"))
     assert trial.reference == judge and isinstance(trial.verdict, Passed | KnownDifference)
 
 
@@ -125,8 +124,8 @@ def test_a_judge_that_dies_is_not_replaced(library_here, make_message, monkeypat
 
     library_here("fastcdr")
     monkeypatch.setattr(CLIENTS["fastcdr"], "open", dies)
-    options = SutOptions(libraries=("firm-hdl",), here=("fastcdr", "rosbags"), most_cases=1)
-    (trial,) = judge_type("lyrical", "std_msgs/msg/Bool", options)
+    options = Request(libraries=("firm-hdl",), most_cases=1)
+    (trial,) = judge_type("lyrical", "std_msgs/msg/Bool", options, ("fastcdr", "rosbags"))
     assert trial.reference == "fastcdr" and trial.verdict == Failed(("it died",))
 
 

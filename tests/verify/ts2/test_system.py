@@ -10,19 +10,26 @@ import pytest
 from firm_hdl import load_message
 from firm_hdl.cli import main
 from firm_hdl.export.build import plan_of
+from firm_hdl.frontend import DEFAULT_DISTRO
 from firm_hdl.plan import to_yaml
+from firm_hdl.verify.results.records import Test
 from firm_hdl.verify.results.verdict import Failed
+from firm_hdl.verify.systems.system import Stopwatch
 from firm_hdl.verify.ts2 import system as ts2
-from firm_hdl.verify.ts2.system import check_plan
 from tests.verify.judged import assert_passed
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 
 
+def checked(name, distro=DEFAULT_DISTRO, *, wire=None, bus_bytes=8):
+    test = Test(system="ts2", distro=distro, type=name, bus_bytes=bus_bytes)
+    return ts2.check_plan(load_message(name, distro=distro), test, wire, Stopwatch())
+
+
 @pytest.mark.parametrize("bus_bytes", [1, 8, 64])
 def test_plans_of_real_types_are_sound(bus_bytes):
     for name in ("sensor_msgs/msg/Imu", "rcl_interfaces/msg/ParameterEvent", "std_msgs/msg/Empty"):
-        found = check_plan(load_message(name), None, bus_bytes)
+        found = checked(name, bus_bytes=bus_bytes)
         assert assert_passed(found) == 1
         assert found.metrics["steps"] > 0
 
@@ -33,19 +40,19 @@ def test_a_plan_that_breaks_an_invariant_is_found(monkeypatch):
         return replace(plan, steps=tuple(replace(step, align=1) for step in plan.steps))
 
     monkeypatch.setattr(ts2, "plan_of", misaligned)
-    (problem, *_) = check_plan(load_message("sensor_msgs/msg/JointState"), None, 8).verdict.failures
+    (problem, *_) = checked("sensor_msgs/msg/JointState").verdict.failures
     assert "bytes of padding in front" in problem
 
 
 def test_a_printed_form_that_loses_something_is_found(monkeypatch):
     monkeypatch.setattr(ts2, "to_yaml", lambda plan: to_yaml(replace(plan, message="x/y")))
-    found = check_plan(load_message("std_msgs/msg/Int8"), None, 8)
+    found = checked("std_msgs/msg/Int8")
     assert found.verdict == Failed(("the plan in YAML, read back, is another one",))
 
 
 def test_types_are_planned_for_either_wire():
-    assert_passed(check_plan(load_message("sensor_msgs/msg/Imu"), "ros1", 8))
-    assert_passed(check_plan(load_message("sensor_msgs/Imu", distro="noetic"), "cdr", 8))
+    assert_passed(checked("sensor_msgs/msg/Imu", wire="ros1"))
+    assert_passed(checked("sensor_msgs/Imu", "noetic", wire="cdr"))
 
 
 @pytest.mark.snapshot

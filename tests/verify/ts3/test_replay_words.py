@@ -12,8 +12,8 @@ from firm_hdl.plan import build_plan
 from firm_hdl.plan.interpret import decode
 from firm_hdl.verify.cases.effort import MAX_MESSAGE_BYTES
 from firm_hdl.verify.cases.make import Case
+from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.ts3 import replay
-from firm_hdl.verify.ts3.options import Options
 from firm_hdl.verify.ts3.recording import Selection
 from firm_hdl.wire import lay_out
 

@@ -1,4 +1,4 @@
-"""How acceptance runs the cases of a type, and what becomes of it."""
+"""What becomes of a type in acceptance, and how to run it again."""
 
 from __future__ import annotations
 
@@ -9,74 +9,9 @@ from firm_hdl.verify.choices import LONGEST
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 from firm_hdl.verify.simulators.crosscheck import Comparison
 from firm_hdl.verify.systems.again import command_again
+from firm_hdl.verify.systems.options import Options
 
-__all__ = ["Options", "Result"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """How to run the cases of a type.
-
-    Attributes
-    ----------
-    bus_bytes : int
-    wire : "ros1", "cdr" or None
-        `None`: that of the distribution.
-    seed : int
-    stalled, broken : bool
-        Whether to run with stalls, and with broken packets, as well.
-    most_cases : int or None
-    simulator : str
-        ``python``, or the simulator of exported text that everything is replayed in as well; see
-        :data:`firm_hdl.verify.simulators.SIMULATORS`.
-    paths : tuple of str
-        Folders with ROS packages, searched before the distribution's own types.
-    bags : tuple of str
-        Recordings whose messages are replayed; definitions come from nowhere else then.
-    longest : int
-        Longest recorded message to replay, in bytes.
-    references : tuple of str or None
-        Libraries that have to write the same bytes as rosbags; `None`: all that are here.
-    vcd : str or None
-        Folder for a waveform of each run.
-    simulated : bool
-        Whether to run the circuit at all, and not only the golden model: the same circuit may have
-        been simulated for another type.
-    """
-
-    bus_bytes: int = 8
-    wire: str | None = None
-    seed: int = 0
-    stalled: bool = True
-    broken: bool = True
-    most_cases: int | None = None
-    simulator: str = "python"
-    paths: tuple[str, ...] = ()
-    bags: tuple[str, ...] = ()
-    longest: int = LONGEST
-    references: tuple[str, ...] | None = None
-    vcd: str | None = None
-    simulated: bool = True
-
-    def command(self, distro: str, name: str) -> str:
-        """Return the command that runs one type again."""
-        references = self.references
-        return command_again(
-            name,
-            distro=distro,
-            path=self.paths,
-            bag=self.bags,
-            max_message_bytes=None if self.longest == LONGEST else self.longest,
-            simulator=None if self.simulator == "python" else self.simulator,
-            bus_bytes=self.bus_bytes,
-            wire=self.wire,
-            seed=self.seed,
-            no_stalls=not self.stalled,
-            no_broken=not self.broken,
-            cases=self.most_cases,
-            reference=("none",) if references == () else references,
-            vcd=self.vcd,
-        )
+__all__ = ["Result", "command_of"]
 
 
 @dataclass(slots=True, kw_only=True)
@@ -161,3 +96,24 @@ class Result:
         if self.known:
             return KnownDifference(self.known, self.judged)
         return Passed(self.judged)
+
+
+def command_of(options: Options, distro: str, name: str) -> str:
+    """Return the command that runs one type again."""
+    references = options.references
+    return command_again(
+        name,
+        distro=distro,
+        path=options.paths,
+        bag=options.bags,
+        max_message_bytes=None if options.longest == LONGEST else options.longest,
+        simulator=None if options.simulator == "python" else options.simulator,
+        bus_bytes=options.bus_bytes,
+        wire=options.wire,
+        seed=options.seed,
+        no_stalls=not options.stalled,
+        no_broken=not options.broken,
+        cases=options.most_cases,
+        reference=("none",) if references == () else references,
+        vcd=options.vcd,
+    )

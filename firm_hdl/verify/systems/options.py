@@ -1,0 +1,136 @@
+"""What test systems are asked for: how types are tested, which ones, and by which systems."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from firm_hdl.jobs.executors import PROCESSES
+from firm_hdl.verify.choices import LONGEST
+from firm_hdl.wire import Wire
+
+__all__ = ["Options", "Request"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """How to run the cases of a type.
+
+    Attributes
+    ----------
+    bus_bytes : int
+    wire : "ros1", "cdr" or None
+        `None`: that of the distribution.
+    seed : int
+    stalled, broken : bool
+        Whether to run with stalls, and with broken packets, as well.
+    most_cases : int or None
+    simulator : str
+        ``python``, or the simulator of exported text that everything is replayed in as well; see
+        :data:`firm_hdl.verify.simulators.SIMULATORS`.
+    paths : tuple of str
+        Folders with ROS packages, searched before the distribution's own types.
+    bags : tuple of str
+        Recordings whose messages are replayed; definitions come from nowhere else then.
+    longest : int
+        Longest recorded message to replay, in bytes.
+    references : tuple of str or None
+        Libraries that have to write the same bytes as rosbags; `None`: all that are here.
+    vcd : str or None
+        Folder for a waveform of each run.
+    simulated : bool
+        Whether to run the circuit at all, and not only the golden model: the same circuit may have
+        been simulated for another type.
+    """
+
+    bus_bytes: int = 8
+    wire: Wire | None = None
+    seed: int = 0
+    stalled: bool = True
+    broken: bool = True
+    most_cases: int | None = None
+    simulator: str = "python"
+    paths: tuple[str, ...] = ()
+    bags: tuple[str, ...] = ()
+    longest: int = LONGEST
+    references: tuple[str, ...] | None = None
+    vcd: str | None = None
+    simulated: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Request(Options):
+    """The arguments of ``firm-hdl verify``, which go together.
+
+    Attributes
+    ----------
+    types : tuple of str
+        Empty: all types.
+    distros : tuple of str
+        Empty: see ``--distro``.
+    depends : tuple of str
+        Those of `paths`, at their end, whose types are not meant by all.
+    systems : tuple of str
+        Names of test systems, in the order in which they run.
+    libraries : tuple of str
+        Client libraries under test; then no test system runs.
+    widths : tuple of int
+        Buses, in bytes; see `each_width`.
+    jobs : int or None
+        Processes; `None`: one per processor.
+    executor : str
+        See :func:`firm_hdl.jobs.executors.run_each`.
+    oracles : tuple of str
+        Oracles of TS1; empty: all that are here.
+    mutations : int
+        How many changed texts TS1 judges instead of the types' own; 0: none.
+    golden : str or None
+        Folder of golden plans.
+    share_circuits : bool or None
+        Whether types with the same circuit are simulated once; `None`: if all types are tested,
+        and no recording.
+    results, report : str or None
+        Files to write.
+    """
+
+    types: tuple[str, ...] = ()
+    distros: tuple[str, ...] = ()
+    depends: tuple[str, ...] = ()
+    systems: tuple[str, ...] = ("ts3",)
+    libraries: tuple[str, ...] = ()
+    widths: tuple[int, ...] = (8,)
+    jobs: int | None = None
+    executor: str = PROCESSES
+    oracles: tuple[str, ...] = ()
+    mutations: int = 0
+    golden: str | None = None
+    share_circuits: bool | None = None
+    results: str | None = None
+    report: str | None = None
+
+    @property
+    def is_ts1_alone(self) -> bool:
+        """Whether TS1 alone is to run, which looks types up by itself."""
+        return self.systems == ("ts1",) and not self.libraries
+
+    @property
+    def is_named(self) -> bool:
+        """Whether what is tested was asked for by name: changed texts are nobody's by name."""
+        return bool(self.types) and not self.mutations
+
+    @property
+    def names_wires(self) -> bool:
+        """Whether the user has said on which wires, or of which distributions, types are tested."""
+        return bool(self.distros or self.wire)
+
+    @property
+    def shares_circuits(self) -> bool:
+        """Whether types with the same circuit are simulated once."""
+        if self.share_circuits is not None:
+            return self.share_circuits
+        # Of a type that is named, people want to see a run, and of a recording its own messages.
+        return not self.types and not self.bags
+
+    @property
+    def each_width(self) -> list[Options]:
+        """How types are tested on each of the buses."""
+        return [replace(self, bus_bytes=width) for width in self.widths]
