@@ -6,11 +6,14 @@ it down, not in what is there.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import wraps
+from typing import TypeAlias, TypeVar
 
 from firm_hdl.verify.report.charts import law_text, line_text
 from firm_hdl.verify.report.outcomes import Counts, NotRun, Outcome, failures_of
+from firm_hdl.verify.report.stats import Fit
 from firm_hdl.verify.report.summary import LIMITS, Curve, Group, Summary, Trend
 from firm_hdl.verify.report.svg import number, seconds
 from firm_hdl.verify.results.records import STAGES
@@ -36,6 +39,8 @@ __all__ = [
     "within_table",
     "writer_table",
 ]
+
+T = TypeVar("T")
 
 MOST_ROWS = 1000
 """How long a table of tests or packages may be on a page; JSON has all of them."""
@@ -73,6 +78,10 @@ class TableCell:
     counts: Counts | None = None
 
 
+Row: TypeAlias = "Iterable[TableCell | str | float]"
+"""Cells; a text, or a number with three digits, stands for itself."""
+
+
 @dataclass(frozen=True, slots=True)
 class Table:
     """A table; the headings of numbers end in ``#``."""
@@ -81,17 +90,9 @@ class Table:
     rows: tuple[tuple[TableCell, ...], ...]
 
 
-def _count(value: float) -> TableCell:
-    return TableCell(number(value), value)
-
-
-def _time(value: float) -> TableCell:
-    return TableCell(seconds(value) if value else "-", value)
-
-
-def _of(headings: str, rows: Iterable[Iterable[TableCell]]) -> Table:
+def _of(headings: str, rows: Iterable[Row]) -> Table:
     """Make a table, without columns that are empty."""
-    names, made = headings.split("|"), [tuple(row) for row in rows]
+    names, made = headings.split("|"), [tuple(map(_cell, row)) for row in rows]
     kept = [
         column
         for column in range(len(names))
@@ -101,6 +102,33 @@ def _of(headings: str, rows: Iterable[Iterable[TableCell]]) -> Table:
         tuple(names[column] for column in kept),
         tuple(tuple(row[column] for column in kept) for row in made),
     )
+
+
+def _cell(value: TableCell | str | float) -> TableCell:
+    if isinstance(value, TableCell):
+        return value
+    return TableCell(value) if isinstance(value, str) else TableCell(number(value), value)
+
+
+def _with(headings: str) -> Callable[[Callable[[T], Iterator[Row]]], Callable[[T], Table]]:
+    """Make a function that yields rows one that returns a table."""
+
+    def decorate(rows: Callable[[T], Iterator[Row]]) -> Callable[[T], Table]:
+        @wraps(rows)
+        def table(given: T) -> Table:
+            return _of(headings, rows(given))
+
+        return table
+
+    return decorate
+
+
+def _time(value: float) -> TableCell:
+    return TableCell(seconds(value) if value else "-", value)
+
+
+def _result(verdict: str) -> TableCell:
+    return TableCell(SIGNS[verdict], verdict=verdict)
 
 
 def cut(table: Table, most: int = MOST_ROWS) -> tuple[Table, str]:
@@ -124,107 +152,69 @@ def title_of(outcome: Outcome) -> str:
 
 def group_table(groups: Iterable[Group], names: str) -> Table:
     """List groups of tests with their counts."""
-
-    def rows() -> Iterator[Iterable[TableCell]]:
-        for group in groups:
-            counts = group.counts
-            yield (
-                *map(TableCell, group.labels),
-                TableCell(SIGNS[counts.verdict], verdict=counts.verdict),
-                TableCell("", (counts.passed + counts.known) / max(1, counts.total), counts=counts),
-                *map(_count, (counts.passed, counts.known, counts.failed)),
-                *map(_count, (counts.not_judged, counts.not_run)),
-                _time(group.cpu_seconds),
-            )
-
     columns = "Passed#|Known difference#|Failed#|Not judged#|Not run#|CPU time#"
-    return _of(f"{names}|Result|Share|{columns}", rows())
+    return _of(f"{names}|Result|Share|{columns}", map(_group_row, groups))
 
 
-def writer_table(summary: Summary) -> Table:
+def _group_row(group: Group) -> Row:
+    counts = group.counts
+    share = (counts.passed + counts.known) / max(1, counts.total)
+    return (
+        *group.labels,
+        _result(counts.verdict),
+        TableCell("", share, counts=counts),
+        *(counts.passed, counts.known, counts.failed, counts.not_judged, counts.not_run),
+        _time(group.cpu_seconds),
+    )
+
+
+@_with("Test system|Library|Tests#")
+def writer_table(summary: Summary) -> Iterator[Row]:
     """Count tests by the libraries that wrote their packets."""
-    return _of(
-        "Test system|Library|Tests#",
-        (
-            (TableCell(suite), TableCell(name), _count(tests))
-            for suite, writers in summary.writers.items()
-            for name, tests in writers.items()
-        ),
-    )
+    for suite, writers in summary.writers.items():
+        for name, tests in writers.items():
+            yield suite, name, tests
 
 
-def circuits_table(summary: Summary) -> Table:
+@_with("Test system|Different circuits#|Tested with that of another type#")
+def circuits_table(summary: Summary) -> Iterator[Row]:
     """Count different circuits by suite."""
-    return _of(
-        "Test system|Different circuits#|Tested with that of another type#",
-        (
-            (TableCell(suite), _count(shapes), _count(shared))
-            for suite, (shapes, shared) in summary.circuits.items()
-        ),
-    )
+    for suite, (shapes, shared) in summary.circuits.items():
+        yield suite, shapes, shared
 
 
-def oracle_table(summary: Summary) -> Table:
+@_with("Distribution|Oracle|Agree#|Of these, both refuse#|Known difference#|Differ#|Not judged#")
+def oracle_table(summary: Summary) -> Iterator[Row]:
     """Count what oracles said of definitions."""
-    return _of(
-        "Distribution|Oracle|Agree#|Of these, both refuse#|Known difference#|Differ#|Not judged#",
-        (
-            (
-                TableCell(each.distro),
-                TableCell(each.oracle),
-                *map(_count, (each.agree, each.refused, each.known)),
-                TableCell(
-                    number(each.differ), each.differ, verdict=Failed.name if each.differ else ""
-                ),
-                _count(each.not_judged),
-            )
-            for each in summary.oracles
-        ),
-    )
+    for each in summary.oracles:
+        verdict = Failed.name if each.differ else ""
+        differ = TableCell(number(each.differ), each.differ, verdict=verdict)
+        agreed = each.agree, each.refused, each.known
+        yield each.distro, each.oracle, *agreed, differ, each.not_judged
 
 
-def said_table(summary: Summary) -> Table:
+@_with("Oracle|Verdict|Key or reason|Definitions#|Such as")
+def said_table(summary: Summary) -> Iterator[Row]:
     """List known differences from oracles, and why they did not judge."""
-    return _of(
-        "Oracle|Verdict|Key or reason|Definitions#|Such as",
-        (
-            (
-                *map(TableCell, (each.oracle, each.verdict, each.what)),
-                _count(each.count),
-                TableCell(each.example),
-            )
-            for each in summary.said
-        ),
-    )
+    for each in summary.said:
+        yield each.oracle, each.verdict, each.what, each.count, each.example
 
 
-def failure_table(outcomes: Iterable[Outcome]) -> Table:
+@_with("Test|Failure|Repeat it")
+def failure_table(outcomes: Iterable[Outcome]) -> Iterator[Row]:
     """List failed tests in a line each."""
-
-    def rows() -> Iterator[Iterable[TableCell]]:
-        for outcome in outcomes:
-            text = failures_of(outcome)[0]
-            shown = text if len(text) <= MOST_TEXT else f"{text[:MOST_TEXT]}..."
-            command = outcome.record.command if outcome.record is not None else ""
-            yield TableCell(title_of(outcome)), TableCell(shown), TableCell(command)
-
-    return _of("Test|Failure|Repeat it", rows())
+    for outcome in outcomes:
+        text = failures_of(outcome)[0]
+        shown = text if len(text) <= MOST_TEXT else f"{text[:MOST_TEXT]}..."
+        yield title_of(outcome), shown, outcome.record.command if outcome.record else ""
 
 
-def within_table(curves: Iterable[Curve]) -> Table:
+@_with("|".join(["Test system", "Tests#", *(f"{limit:g} s#" for limit in LIMITS)]))
+def within_table(curves: Iterable[Curve]) -> Iterator[Row]:
     """List the shares of tests that were completed within some times."""
-    limits = "|".join(f"{limit:g} s#" for limit in LIMITS)
-    return _of(
-        f"Test system|Tests#|{limits}",
-        (
-            (
-                TableCell(curve.suite),
-                _count(0 if curve.seconds is None else curve.seconds.count),
-                *(TableCell(_percent(share), share) for share in curve.within.values()),
-            )
-            for curve in curves
-        ),
-    )
+    for curve in curves:
+        shares = (TableCell(_percent(share), share) for share in curve.within.values())
+        yield curve.suite, 0 if curve.seconds is None else curve.seconds.count, *shares
 
 
 def _percent(share: float) -> str:
@@ -233,73 +223,63 @@ def _percent(share: float) -> str:
     return "99.9%" if text == "100.0%" and share < 1 else text
 
 
-def stage_table(curves: Iterable[Curve]) -> Table:
+@_with("Test system|Stage|Least#|Quartile 1#|Median#|Quartile 3#|95 %#|Most#|Sum#")
+def stage_table(curves: Iterable[Curve]) -> Iterator[Row]:
     """List quartiles of the times of stages."""
-
-    def rows() -> Iterator[Iterable[TableCell]]:
-        for curve in curves:
-            boxes = [(stage, curve.stages[stage]) for stage in STAGES if stage in curve.stages]
-            boxes += [("all stages", curve.seconds)] if curve.seconds else []
-            boxes += [("processor", curve.cpu_seconds)] if curve.cpu_seconds else []
-            for name, box in boxes:
-                times = (box.least, box.q1, box.median, box.q3, box.p95, box.most, box.total)
-                yield (TableCell(curve.suite), TableCell(name), *map(_time, times))
-
-    columns = "Least#|Quartile 1#|Median#|Quartile 3#|95 %#|Most#|Sum#"
-    return _of(f"Test system|Stage|{columns}", rows())
+    for curve in curves:
+        boxes = [(stage, curve.stages[stage]) for stage in STAGES if stage in curve.stages]
+        boxes += [("all stages", curve.seconds)] if curve.seconds else []
+        boxes += [("processor", curve.cpu_seconds)] if curve.cpu_seconds else []
+        for name, box in boxes:
+            times = (box.least, box.q1, box.median, box.q3, box.p95, box.most, box.total)
+            yield curve.suite, name, *map(_time, times)
 
 
-def trend_table(trends: Iterable[Trend]) -> Table:
+@_with("Test system|Figure x|Time|Tests#|Spearman#|Pearson r#|Power law, in s|R²#|Line, in s|R²#")
+def trend_table(trends: Iterable[Trend]) -> Iterator[Row]:
     """List how figures go with times."""
-
-    def rows() -> Iterator[Iterable[TableCell]]:
-        for trend in trends:
-            found = trend.correlation
-            yield (
-                TableCell(trend.suite),
-                TableCell(trend.metric.replace("_", " ")),
-                TableCell(trend.time),
-                _count(found.count),
-                *(TableCell(f"{value:+.2f}", value) for value in (found.spearman, found.pearson)),
-                TableCell(law_text(found.power)),
-                _r2(found.power.r2 if found.power else None),
-                TableCell(line_text(found.linear)),
-                _r2(found.linear.r2 if found.linear else None),
-            )
-
-    columns = "Spearman#|Pearson r#|Power law, in s|R²#|Line, in s|R²#"
-    return _of(f"Test system|Figure x|Time|Tests#|{columns}", rows())
+    for trend in trends:
+        found = trend.correlation
+        yield (
+            trend.suite,
+            trend.metric.replace("_", " "),
+            trend.time,
+            found.count,
+            *(TableCell(f"{value:+.2f}", value) for value in (found.spearman, found.pearson)),
+            law_text(found.power),
+            _r2(found.power),
+            line_text(found.linear),
+            _r2(found.linear),
+        )
 
 
-def _r2(value: float | None) -> TableCell:
-    return TableCell("-", -1.0) if value is None else TableCell(f"{value:.2f}", value)
+def _r2(fit: Fit | None) -> TableCell:
+    return TableCell("-", -1.0) if fit is None else TableCell(f"{fit.r2:.2f}", fit.r2)
 
 
-def every_table(outcomes: Iterable[Outcome]) -> Table:
+@_with(
+    "Type|Distributions|Test system|Wire|Result|"
+    "Time#|CPU#|Leaves#|Steps#|Packets#|Cycles#|Plan coverage#|Circuit of"
+)
+def every_table(outcomes: Iterable[Outcome]) -> Iterator[Row]:
     """List tests one by one."""
-
-    def rows() -> Iterator[Iterable[TableCell]]:
-        for outcome in outcomes:
-            test, record = outcome.test, outcome.record
-            metrics = record.metrics if record is not None else {}
-            circuit = f"{test.wire} {test.bus_bytes or ''}".strip()
-            yield (
-                TableCell(test.type),
-                TableCell(" ".join(test.distros)),
-                TableCell(" ".join(part for part in (test.system, test.simulator) if part)),
-                TableCell(circuit),
-                TableCell(SIGNS[outcome.verdict.name], verdict=outcome.verdict.name),
-                _time(record.seconds.total if record else 0),
-                _time(record.cpu_seconds if record else 0),
-                *(_count(metrics.get(name, 0)) for name in ("leaves", "steps")),
-                _count(record.packets if record else 0),
-                _count(record.cycles if record else 0),
-                _covered(outcome),
-                TableCell(outcome.circuit_of),
-            )
-
-    columns = "Time#|CPU#|Leaves#|Steps#|Packets#|Cycles#|Plan coverage#|Circuit of"
-    return _of(f"Type|Distributions|Test system|Wire|Result|{columns}", rows())
+    for outcome in outcomes:
+        test, record = outcome.test, outcome.record
+        metrics = record.metrics if record is not None else {}
+        times = (record.seconds.total, record.cpu_seconds) if record is not None else (0.0, 0.0)
+        counts = (record.packets, record.cycles) if record is not None else (0, 0)
+        yield (
+            test.type,
+            " ".join(test.distros),
+            f"{test.system} {test.simulator}".strip(),
+            f"{test.wire} {test.bus_bytes or ''}".strip(),
+            _result(outcome.verdict.name),
+            *map(_time, times),
+            *(metrics.get(name, 0) for name in ("leaves", "steps")),
+            *counts,
+            _covered(outcome),
+            outcome.circuit_of,
+        )
 
 
 def _covered(outcome: Outcome) -> TableCell:
@@ -310,28 +290,19 @@ def _covered(outcome: Outcome) -> TableCell:
     return TableCell(f"{coverage.taken} of {coverage.possible}", share)
 
 
-def coverage_table(summary: Summary) -> Table:
+@_with("Test system|Tests#|All decisions taken#|Decisions taken#|Of#|Coverage#")
+def coverage_table(summary: Summary) -> Iterator[Row]:
     """List plan coverage by suite."""
-    return _of(
-        "Test system|Tests#|All decisions taken#|Decisions taken#|Of#|Coverage#",
-        (
-            (
-                TableCell(each.suite),
-                *map(_count, (each.types, each.full, each.taken, each.possible)),
-                TableCell(_percent(share := each.taken / max(1, each.possible)), share),
-            )
-            for each in summary.coverage
-        ),
-    )
+    for each in summary.coverage:
+        share = each.taken / max(1, each.possible)
+        counts = each.types, each.full, each.taken, each.possible
+        yield each.suite, *counts, TableCell(_percent(share), share)
 
 
-def missing_table(outcomes: Iterable[Outcome]) -> Table:
+@_with("Test|Plan coverage#|Not taken")
+def missing_table(outcomes: Iterable[Outcome]) -> Iterator[Row]:
     """List decisions that no packet took."""
-
-    def rows() -> Iterator[Iterable[TableCell]]:
-        for outcome in outcomes:
-            assert outcome.record is not None and outcome.record.coverage is not None
-            names = "; ".join(outcome.record.coverage.missing)
-            yield TableCell(title_of(outcome)), _covered(outcome), TableCell(names or "not named")
-
-    return _of("Test|Plan coverage#|Not taken", rows())
+    for outcome in outcomes:
+        assert outcome.record is not None and outcome.record.coverage is not None
+        names = "; ".join(outcome.record.coverage.missing)
+        yield title_of(outcome), _covered(outcome), names or "not named"
