@@ -61,7 +61,7 @@ def code_digest() -> str:
     root = Path(firm_hdl.__file__).parent
     digest = hashlib.sha256()
     for path in sorted(root.rglob("*")):
-        if path.suffix in (".py", ".lark", ".cpp", ".h"):
+        if path.suffix in (".py", ".lark", ".cpp", ".h", ".j2", ".vhd"):
             digest.update(f"{path.relative_to(root).as_posix()}\0".encode())
             digest.update(path.read_bytes() + b"\0")
     return digest.hexdigest()[:12]

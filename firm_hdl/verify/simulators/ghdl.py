@@ -8,7 +8,7 @@ from pathlib import Path
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import made_by, run_tool
 from firm_hdl.jobs.programs import find_ghdl
-from firm_hdl.verify.simulators.replay_bench import replay_bench
+from firm_hdl.verify.simulators.benches import RESULTS, STIMULI, written
 from firm_hdl.verify.simulators.trace import Trace
 from firm_hdl.vhdl.convert import convert
 
@@ -38,10 +38,10 @@ class Ghdl:
             files.update(vhdl.files)
             # The outermost entity is the last one.
             ports.append(list(vhdl.entities.values())[-1].ports)
-        files["replay.vhd"] = replay_bench(trace, ports)
+        files["replay.vhd"] = written("replay.vhd", trace, ports=ports)
         for name, text in files.items():
             (folder / name).write_text(text, encoding="utf-8")
-        (folder / "stimuli.txt").write_text("".join(f"{row}\n" for row in trace.stimuli))
+        (folder / STIMULI).write_text("".join(f"{row}\n" for row in trace.stimuli))
         run_tool([self.path, "-a", "--std=08", *files], folder)
         run_tool([self.path, "--elab-run", "--std=08", "replay", *RUN], folder)
-        return made_by(self.title, folder / "results.txt").read_text().splitlines()
+        return made_by(self.title, folder / RESULTS).read_text().splitlines()

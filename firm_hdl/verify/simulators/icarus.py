@@ -4,59 +4,19 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import made_by, run_tool
 from firm_hdl.jobs.programs import ProgramMissingError, find_program
-from firm_hdl.verify.simulators.trace import ARESETN, Trace
-from firm_hdl.verify.simulators.verilog import (
-    RESULTS,
-    STIMULI,
-    instances,
-    vector,
-    write_inputs,
-)
+from firm_hdl.verify.simulators.benches import RESULTS, written
+from firm_hdl.verify.simulators.trace import Trace
+from firm_hdl.verify.simulators.verilog import modules_of, write_inputs
 
 __all__ = ["Icarus"]
 
 PACKAGE = "iverilog"
-
-_LOOP = f"""\
-  integer stimuli, results, count, is_compared, number, got;
-  reg is_first = 1;
-  initial begin
-    stimuli = $fopen("{STIMULI}", "r");
-    results = $fopen("{RESULTS}", "w");
-    while ($fscanf(stimuli, "%d %d", count, is_compared) == 2) begin
-      repeat (count) begin
-        got = $fscanf(stimuli, "%d", number);
-        case (number)
-          {ARESETN}: got = $fscanf(stimuli, "%b", aresetn);
-"""
-
-_SETTLE = """\
-          default: begin $display("no input %0d", number); $finish_and_return(1); end
-        endcase
-      end
-      #5;
-      if (is_compared) begin
-"""
-
-_END = """\
-        $fwrite(results, "\\n");
-        is_first = 0;
-      end
-      aclk = 1;
-      #5;
-      aclk = 0;
-    end
-    $fclose(results);
-    $finish;
-  end
-endmodule
-"""
 
 
 class Icarus:
@@ -87,7 +47,8 @@ class Icarus:
 
     def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:
         files = write_inputs(trace, tops(), folder)
-        (folder / "replay.v").write_text("".join(_bench(trace)), encoding="utf-8")
+        text = written("replay_icarus.v", trace, modules=modules_of(trace))
+        (folder / "replay.v").write_text(text, encoding="utf-8")
         return self.run([*files, "replay.v"], self.standard, folder)
 
     def run(self, files: Sequence[str], standard: str, folder: Path) -> list[str]:
@@ -97,26 +58,3 @@ class Icarus:
         made_by(self.title, folder / "replay.vvp")
         run_tool([self.run_path, "-n", "replay.vvp"], folder)
         return made_by("vvp", folder / RESULTS).read_text().upper().splitlines()
-
-
-def _bench(trace: Trace) -> Iterator[str]:
-    """Write a bench that knows nothing but ports: rows of inputs in, rows of outputs out."""
-    yield "module replay;\n  reg aclk = 0, aresetn = 0;\n"
-    for pin in trace.inputs:
-        yield f"  reg {vector(pin)}i{pin.number} = 0;\n"
-    for pin in trace.outputs:
-        yield f"  wire {vector(pin)}o{pin.number};\n  reg {vector(pin)}was{pin.number};\n"
-    yield from instances(trace)
-    yield _LOOP
-    for pin in trace.inputs:
-        yield f'          {pin.number}: got = $fscanf(stimuli, "%b", i{pin.number});\n'
-    yield _SETTLE
-    for pin in trace.outputs:
-        n = pin.number
-        yield f"""\
-        if (is_first || o{n} !== was{n}) begin
-          was{n} = o{n};
-          $fwrite(results, "{n} %b ", o{n});
-        end
-"""
-    yield _END

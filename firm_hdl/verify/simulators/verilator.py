@@ -13,20 +13,15 @@ import re
 import shlex
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import ToolError, made_by, run_tool
 from firm_hdl.jobs.programs import ProgramMissingError, find_program
-from firm_hdl.verify.simulators.trace import ARESETN, Trace
-from firm_hdl.verify.simulators.verilog import (
-    RESULTS,
-    STIMULI,
-    instances,
-    vector,
-    write_inputs,
-)
+from firm_hdl.verify.simulators.benches import RESULTS, written
+from firm_hdl.verify.simulators.trace import Trace
+from firm_hdl.verify.simulators.verilog import modules_of, write_inputs
 
 __all__ = ["Verilator"]
 
@@ -43,32 +38,6 @@ VERILATE = (
     *("--x-initial", "unique", "--x-assign", "unique"),
     *("--prefix", "Vreplay", "--top-module", "replay", "--Mdir", MODELS),
 )
-
-_MAIN = """
-#include "replay.h"
-
-static Vreplay* copies[COPIES];
-
-static void tick(int level) {
-    for (Vreplay* copy : copies) {
-        copy->aclk = level;
-        copy->eval();
-    }
-}
-
-template <class T> static void* at(T& port) { return &port; }
-
-int main() {
-    for (int copy = 0; copy < COPIES; ++copy) {
-        // What the text does not define is all zeros in one, and all ones in the other: what
-        // variables hold initially, and undefined values that are assigned.
-        Verilated::randReset(copy);
-        copies[copy] = new Vreplay;
-        copies[copy]->aclk = 0;
-        copies[copy]->eval();
-    }
-    Vreplay &a = *copies[0], &b = *copies[1];
-"""
 
 
 class Verilator:
@@ -87,14 +56,15 @@ class Verilator:
 
     def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:
         files = write_inputs(trace, tops(), folder)
-        (folder / "replay.v").write_text("".join(_wrapper(trace)), encoding="utf-8")
+        text = written("replay_verilator.v", trace, modules=modules_of(trace))
+        (folder / "replay.v").write_text(text, encoding="utf-8")
         run_tool([self.path, *VERILATE, "replay.v", *files], folder)
         models = folder / MODELS
         made_by(self.title, models / PARTS)
         # As one file, since most of what the compiler reads are Verilator's headers.
         sources = sorted(path.name for path in models.glob("*.cpp"))
-        text = "".join(f'#include "{name}"\n' for name in sources)
-        (models / "main.cc").write_text("".join([text, *_main(trace)]), encoding="utf-8")
+        text = written("replay_main.cc", trace, sources=sources)
+        (models / "main.cc").write_text(text, encoding="utf-8")
         runtime = _runtime(self.path, self.compiler, _runtime_parts(models))
         command = [*self.compiler, *COMPILE, *runtime.includes, f"{MODELS}/main.cc"]
         run_tool([*command, *runtime.objects, "-pthread", "-o", "replay"], folder)
@@ -113,30 +83,6 @@ def _find_compiler() -> tuple[str, ...]:
     raise ProgramMissingError(
         "Verilator needs a C++ compiler, and none is installed (Debian, Ubuntu: apt install g++)"
     )
-
-
-def _wrapper(trace: Trace) -> Iterator[str]:
-    """Write a module of both devices, whose ports have names that C++ takes as they are."""
-    ports = ["input aclk", "input aresetn"]
-    ports += [f"input {vector(pin)}i{pin.number}" for pin in trace.inputs]
-    ports += [f"output {vector(pin)}o{pin.number}" for pin in trace.outputs]
-    yield f"module replay({', '.join(ports)});\n"
-    yield from instances(trace)
-    yield "endmodule\n"
-
-
-def _main(trace: Trace) -> Iterator[str]:
-    """Write a program that knows nothing but ports: rows of inputs in, rows of outputs out."""
-    inputs = {ARESETN: ("aresetn", 1)}
-    inputs.update((pin.number, (f"i{pin.number}", pin.port.width)) for pin in trace.inputs)
-    outputs = {pin.number: (f"o{pin.number}", pin.port.width) for pin in trace.outputs}
-    yield _MAIN
-    for name, ports in (("inputs", inputs), ("outputs", outputs)):
-        yield f"    const std::vector<Pin> {name} = {{\n"
-        for number, (port, width) in sorted(ports.items()):
-            yield f"        {{{number}, {width}, {{at(a.{port}), at(b.{port})}}}},\n"
-        yield "    };\n"
-    yield f'    return replay("{STIMULI}", "{RESULTS}", inputs, outputs, tick);\n}}\n'
 
 
 class _Runtime:
