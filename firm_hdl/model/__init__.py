@@ -6,7 +6,7 @@ attributes that are computed when first read and then cached, as in a reference 
 each attribute is an equation over the node and its children.
 """
 
-from firm_hdl.model.closure import closure
+from firm_hdl.model.closure import closure, rebuilt
 from firm_hdl.model.interfaces import Action, Interface, Service
 from firm_hdl.model.message import Constant, Field, Message, is_fixed_size
 from firm_hdl.model.types import (
@@ -24,6 +24,7 @@ from firm_hdl.model.types import (
     Wire,
     element_of,
     idl_primitives,
+    spelled,
 )
 
 __all__ = [
@@ -49,4 +50,6 @@ __all__ = [
     "element_of",
     "idl_primitives",
     "is_fixed_size",
+    "rebuilt",
+    "spelled",
 ]

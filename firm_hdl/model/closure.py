@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 
 from firm_hdl.model.message import Message
+from firm_hdl.model.types import Array, FieldType, Sequence, element_of
 
-__all__ = ["closure"]
+__all__ = ["closure", "rebuilt"]
 
 
 def closure(roots: Iterable[Message]) -> list[Message]:
@@ -29,3 +31,26 @@ def closure(roots: Iterable[Message]) -> list[Message]:
             else:
                 stack.append((child, iter(child.children)))
     return list(done.values())
+
+
+def rebuilt(message: Message, change: Callable[[Message], Message]) -> Message:
+    """Return a message type with all that it is made of changed: each once, and parts first.
+
+    Parameters
+    ----------
+    change : callable
+        Is given each message with the parts that it has after the change.
+    """
+    made: dict[str, Message] = {}
+
+    def changed(kind: FieldType) -> FieldType:
+        inner = element_of(kind)
+        if not isinstance(inner, Message):
+            return kind
+        new = made[inner.name]
+        return replace(kind, element=new) if isinstance(kind, Array | Sequence) else new
+
+    for part in closure([message]):
+        fields = tuple(replace(item, type=changed(item.type)) for item in part.fields)
+        made[part.name] = change(replace(part, fields=fields))
+    return made[message.name]

@@ -23,6 +23,7 @@ __all__ = [
     "Wire",
     "element_of",
     "idl_primitives",
+    "spelled",
 ]
 
 Dialect: TypeAlias = Literal["ros1", "ros2"]
@@ -152,7 +153,7 @@ class Array:
     count: int
 
     def __str__(self) -> str:
-        return f"{self.element}[{self.count}]"
+        return spelled(self, str(self.element))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -163,7 +164,7 @@ class Sequence:
     bound: int | None = None
 
     def __str__(self) -> str:
-        return f"{self.element}[{'' if self.bound is None else f'<={self.bound}'}]"
+        return spelled(self, str(self.element))
 
 
 FieldType: TypeAlias = "Primitive | String | Array | Sequence | Message"
@@ -176,3 +177,14 @@ EMPTY_MEMBER = "structure_needs_at_least_one_member"
 def element_of(kind: FieldType) -> Primitive | String | Message:
     """Give the type of an array's or a sequence's elements, and any other type as it is."""
     return kind.element if isinstance(kind, Array | Sequence) else kind
+
+
+def spelled(kind: FieldType, name: str) -> str:
+    """Write a type as ``.msg`` files do, with some name for that of its elements."""
+    match kind:
+        case Array(count=count):
+            return f"{name}[{count}]"
+        case Sequence(bound=bound):
+            return f"{name}[{'' if bound is None else f'<={bound}'}]"
+        case _:
+            return name

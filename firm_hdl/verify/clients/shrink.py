@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from firm_hdl.model import Array, Field, FieldType, Message, Primitive, String, closure
+from firm_hdl.model import Array, Field, FieldType, Message, Primitive, String, closure, rebuilt
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.references.objects import full_text
@@ -102,7 +102,7 @@ def _smaller_field(kind: FieldType, value: Plain) -> Iterator[tuple[FieldType, P
         case Array(element=element) | SequenceType(element=element) if value:
             # One at a time: what all have at once, is not minimal.
             for n, each in enumerate(value[:8]):
-                for inner, changed in _smaller_element(element, each):
+                for inner, changed in _smaller_field(element, each):
                     if inner == element:
                         yield kind, [*value[:n], changed, *value[n + 1 :]]
         case Message() if kind.package:
@@ -112,42 +112,23 @@ def _smaller_field(kind: FieldType, value: Plain) -> Iterator[tuple[FieldType, P
                         yield kind, {**value, item.name: changed}
 
 
-def _smaller_element(kind: FieldType, value: Plain) -> Iterator[tuple[FieldType, Plain]]:
-    yield from _smaller_field(kind, value)
-
-
 def _without(message: Message, value: Plain, owner: Message, item: Field) -> tuple[Message, Plain]:
     """Take a field out of a nested message type, wherever that is."""
-    made: dict[str, Message] = {}
 
-    def kind_of(kind: FieldType) -> FieldType:
-        match kind:
-            case Message():
-                if kind.name not in made:
-                    kept = [f for f in kind.fields if not (kind == owner and f.name == item.name)]
-                    fields = tuple(replace(f, type=kind_of(f.type)) for f in kept)
-                    made[kind.name] = replace(kind, fields=fields)
-                return made[kind.name]
-            case Array(element=Message()) | SequenceType(element=Message()):
-                element = kind_of(kind.element)
-                assert isinstance(element, Message)
-                return replace(kind, element=element)
-            case _:
-                return kind
+    def is_kept(kind: Message, name: str) -> bool:
+        return kind.name != owner.name or name != item.name
 
     def value_of(kind: FieldType, given: Plain) -> Plain:
         match kind:
             case Message():
-                return {
-                    f.name: value_of(f.type, given[f.name])
-                    for f in kind.fields
-                    if not (kind == owner and f.name == item.name)
-                }
+                kept = [f for f in kind.fields if is_kept(kind, f.name)]
+                return {f.name: value_of(f.type, given[f.name]) for f in kept}
             case Array(element=Message() as element) | SequenceType(element=Message() as element):
                 return [value_of(element, each) for each in given]
             case _:
                 return given
 
-    changed = kind_of(message)
-    assert isinstance(changed, Message)
-    return changed, value_of(message, value)
+    def change(kind: Message) -> Message:
+        return replace(kind, fields=tuple(f for f in kind.fields if is_kept(kind, f.name)))
+
+    return rebuilt(message, change), value_of(message, value)

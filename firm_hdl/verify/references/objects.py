@@ -8,9 +8,21 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import replace
+from itertools import count
 from typing import Any
 
-from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, String, closure
+from firm_hdl.model import (
+    Array,
+    FieldType,
+    Message,
+    Primitive,
+    Sequence,
+    String,
+    closure,
+    element_of,
+    rebuilt,
+    spelled,
+)
 from firm_hdl.verify.references.client import Codec, Refusal, UnsupportedError
 from firm_hdl.verify.references.values import Plain, as_float, bits_of
 
@@ -127,16 +139,10 @@ def definition_text(message: Message) -> str:
 
 
 def _spelled(kind: FieldType) -> str:
-    match kind:
-        case Message():
-            return f"{kind.package}/{kind.base_name}" if kind.package else kind.name
-        case Array():
-            return f"{_spelled(kind.element)}[{kind.count}]"
-        case Sequence():
-            bound = "" if kind.bound is None else f"<={kind.bound}"
-            return f"{_spelled(kind.element)}[{bound}]"
-        case _:
-            return str(kind)
+    inner = element_of(kind)
+    if isinstance(inner, Message) and inner.package:
+        return spelled(kind, f"{inner.package}/{inner.base_name}")
+    return str(kind)
 
 
 def plainly_named(message: Message) -> Message:
@@ -144,23 +150,15 @@ def plainly_named(message: Message) -> Message:
 
     No name stands on a wire, and some parsers take no ``_``.
     """
-    made: dict[str, Message] = {}
+    numbers = count()
 
-    def renamed(kind: FieldType) -> Any:
-        match kind:
-            case Message() if kind.package:
-                return made[kind.name]
-            case Array(element=Message()) | Sequence(element=Message()):
-                return replace(kind, element=renamed(kind.element))
-            case _:
-                return kind
-
-    for number, kind in enumerate(closure([message])):
-        fields = tuple(replace(item, type=renamed(item.type)) for item in kind.fields)
+    def renamed(kind: Message) -> Message:
+        number = next(numbers)
         head, _, base = kind.name.rpartition("/")
         plain = base if "_" not in base else f"T{number}{base.replace('_', '')}"
-        made[kind.name] = replace(kind, name=f"{head}/{plain}" if head else base, fields=fields)
-    return made[message.name]
+        return replace(kind, name=f"{head}/{plain}" if head else base)
+
+    return rebuilt(message, renamed)
 
 
 def full_text(message: Message) -> str:

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-from firm_hdl.model import Array, FieldType, Message, Sequence, String
+from firm_hdl.model import FieldType, Message, String, spelled
 from firm_hdl.verify.references.oracle import RosbagsOracle, Transfers
 
 __all__ = ["STAND_IN_NOTE", "WIDE_MEMBER", "WideOracle", "fit_units", "stand_in_type", "stand_ins"]
@@ -27,14 +27,7 @@ _PACKAGE = "firm_hdl_wide"
 
 def stand_in_type(kind: FieldType, text: String) -> str:
     """Return what stands for a wide text, or for an array or a sequence of such."""
-    name = f"{_PACKAGE}/{_base_name(text)}"
-    match kind:
-        case Array(count=count):
-            return f"{name}[{count}]"
-        case Sequence(bound=bound):
-            return f"{name}[]" if bound is None else f"{name}[<={bound}]"
-        case _:
-            return name
+    return spelled(kind, f"{_PACKAGE}/{_base_name(text)}")
 
 
 def stand_ins(messages: Iterable[Message]) -> dict[str, str]:

@@ -26,7 +26,16 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
-from firm_hdl.model import Array, Constant, Field, FieldType, Interface, Message, Sequence, Value
+from firm_hdl.model import (
+    Constant,
+    Field,
+    FieldType,
+    Interface,
+    Message,
+    Value,
+    element_of,
+    spelled,
+)
 
 __all__ = ["Difference", "Facts", "count_facts", "differences", "structure"]
 
@@ -148,16 +157,8 @@ def _constant(constant: Constant, alike: Mapping[str, str]) -> dict[str, Any]:
 
 
 def _type(kind: FieldType, alike: Mapping[str, str]) -> str:
-    match kind:
-        case Array():
-            return f"{_type(kind.element, alike)}[{kind.count}]"
-        case Sequence():
-            bound = "" if kind.bound is None else f"<={kind.bound}"
-            return f"{_type(kind.element, alike)}[{bound}]"
-        case Message():
-            return kind.name
-        case _:
-            return alike.get(str(kind), str(kind))
+    name = str(element_of(kind))
+    return spelled(kind, alike.get(name, name))
 
 
 def _value(value: Value) -> Any:

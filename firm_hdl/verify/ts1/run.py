@@ -16,7 +16,7 @@ from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.verify.results.records import OracleVerdict
 from firm_hdl.verify.results.verdict import Failed
-from firm_hdl.verify.systems.again import command_again
+from firm_hdl.verify.systems.options import command_again
 from firm_hdl.verify.systems.system import run_shares, shares_of
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1.case import DefinitionCase

@@ -7,17 +7,17 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 from firm_hdl.model import (
     Array,
     Constant,
     Field,
-    FieldType,
     Interface,
     Message,
     Sequence,
     String,
+    rebuilt,
 )
 from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
@@ -43,6 +43,8 @@ from firm_hdl.verify.ts1.known.texts import (
 
 __all__ = ["RULES"]
 
+Member = TypeVar("Member", Field, Constant)
+
 RULES = Rules("rosbags")
 """What rosbags refuses or reads otherwise."""
 
@@ -57,34 +59,24 @@ def _line_ends(case: DefinitionCase) -> str:
 
 def _narrow(interface: Interface) -> Interface:
     assert isinstance(interface, Message)
-    made: dict[str, Message] = {}
 
-    def kind_of(kind: FieldType) -> Any:
+    def narrow(item: Member) -> Member:
+        kind: Any = item.type
         match kind:
             case String():
-                return replace(kind, wide=False)
-            case Array() | Sequence():
-                return replace(kind, element=kind_of(kind.element))
-            case Message():
-                return message_of(kind)
-            case _:
-                return kind
+                kind = replace(kind, wide=False)
+            case Array(element=String() as text) | Sequence(element=String() as text):
+                kind = replace(kind, element=replace(text, wide=False))
+        return replace(item, type=kind)
 
-    def message_of(message: Message) -> Message:
-        if message.name not in made:
-            made[message.name] = replace(
-                message,
-                fields=tuple(_typed(each, kind_of(each.type)) for each in message.fields),
-                constants=tuple(_typed(each, kind_of(each.type)) for each in message.constants),
-            )
-        return made[message.name]
-
-    return message_of(interface)
-
-
-def _typed(item: Any, kind: Any) -> Any:
-    assert isinstance(item, Field | Constant)
-    return replace(item, type=kind)
+    return rebuilt(
+        interface,
+        lambda message: replace(
+            message,
+            fields=tuple(map(narrow, message.fields)),
+            constants=tuple(map(narrow, message.constants)),
+        ),
+    )
 
 
 @RULES.lines("rosbags-wstring", "rosbags does not know wstring.", dialect="ros2", ours=_narrow)
