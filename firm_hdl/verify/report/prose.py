@@ -13,7 +13,6 @@ from firm_hdl.verify.report.tables import SIGNS
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 
 __all__ = [
-    "SECTIONS",
     "caption_of_fit",
     "facts",
     "headline",
@@ -25,61 +24,6 @@ __all__ = [
     "sources",
     "trends_by_suite",
 ]
-
-SECTIONS = {
-    "failures": ("Failures", ""),
-    "results": (
-        "Results",
-        "A type that is the same in several distributions is tested once, and counts in each.",
-    ),
-    "oracles": (
-        "Definitions and oracles",
-        "TS1: each oracle reads the definitions with code of its own. A known difference is one "
-        "that docs/errata.md explains under its key.",
-    ),
-    "rest": (
-        "Not judged, and notes",
-        "A test that there is no result of is not counted as passed. Reasons and notes that differ "
-        "in names and numbers only are one.",
-    ),
-    "circuits": (
-        "Different circuits",
-        "Plans that differ in names only are the same circuit.",
-    ),
-    "writers": (
-        "Wire bytes",
-        "Libraries that wrote the packets of a test, each from the same values. Other bytes than "
-        "those of the first one fail the test, but for what docs/divergences.md explains.",
-    ),
-    "packages": ("Results by package", ""),
-    "coverage": (
-        "Plan coverage",
-        "A plan lists every decision that a packet can make in a converter: each step that may "
-        "follow a step, each padding, each end of a loop. Coverage is the share of them that the "
-        "packets of a test took.",
-    ),
-    "time": (
-        "Time",
-        "By the clock on the wall, per test, on one processor. Generation: from the definition to "
-        "the model (TS1), to the plan (TS2), or to test cases and a circuit that is ready to run. "
-        "Simulation: running it. Testing: asking oracles and comparing the model with what they "
-        "say, the plan with its layout, or what came out with the oracle and the golden model.",
-    ),
-    "trends": (
-        "What makes a test slow",
-        "Figures of types against the time of their tests, with the power law and the line that "
-        "fit best by least squares. R² of a power law is that of the logarithms. Leaves are fields "
-        "of all levels; dynamic leaves are of no fixed size; streams are those of the message side "
-        "of a converter; steps and decisions are those of its plan; shifting counts places on the "
-        "wire whose padding differs from message to message; case bytes are those of all cases; "
-        "characters and fields are those of the file of a definition.",
-    ),
-    "extremes": ("Slowest and most complex", ""),
-    "tests": ("All tests", ""),
-    "environment": ("Environment and options", ""),
-}
-"""Titles of the sections, and what is to be known to read them."""
-
 
 _ORDER = (Failed.name, NotRun.name, NotJudged.name, KnownDifference.name, Passed.name)
 
