@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from firm_hdl.verify.systems.tasks import TypeUnderTest, collect_tasks
     from firm_hdl.verify.ts3.acceptance import accept, accept_message
     from firm_hdl.verify.ts3.result import Result
-    from firm_hdl.verify.ts3.runner import run_tasks
+    from firm_hdl.verify.ts3.system import run_tasks
 
 __all__ = [
     "Case",
@@ -43,7 +43,7 @@ _HOME = {
     "collect_tasks": "systems.tasks",
     "distro_oracle": "references.oracle",
     "make_cases": "cases.make",
-    "run_tasks": "ts3.runner",
+    "run_tasks": "ts3.system",
 }
 
 

@@ -189,7 +189,7 @@ def test_what_has_a_record_is_not_tested_again(tmp_path, monkeypatch, capsys):
     def never(*arguments):
         raise AssertionError("it was tested before")
 
-    for where in ("ts2.system._checked", "ts1.run.judge_case", "ts3.runner.accept"):
+    for where in ("ts2.system._checked", "ts1.run.judge_case", "ts3.system.accept"):
         monkeypatch.setattr(f"firm_hdl.verify.{where}", never)
     assert verify(*ALL, "--results", path, BOOL, CHAR) == 0
     again = capsys.readouterr().out

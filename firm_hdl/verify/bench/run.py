@@ -28,10 +28,11 @@ from firm_hdl.verify.references.choice import WIDE_REFERENCES, may_stand_in
 from firm_hdl.verify.references.user_oracle import check_wire, judge_of
 from firm_hdl.verify.references.wide_oracle import WideOracle
 from firm_hdl.verify.results.records import Record, Test
+from firm_hdl.verify.results.texts import first_difference
 from firm_hdl.verify.results.verdict import Failed, NotJudgedError, Passed
-from firm_hdl.verify.systems.libraries import library_of
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.system import Stopwatch, recorded
+from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.confirm import confirm
 
 __all__ = ["run_bench"]
@@ -166,8 +167,7 @@ def _compare(what: str, got: str, right: str) -> None:
     if got == right:
         return
     mine, wanted = got.splitlines(), right.splitlines()
-    pairs = enumerate(zip(mine, wanted, strict=False))
-    at = next((n for n, (a, b) in pairs if a != b), min(len(mine), len(wanted)))
+    at = first_difference(mine, wanted)
     raise AssertionError(
         f"{what}: number {at} of {len(wanted)} is {mine[at : at + 1]} "
         f"instead of {wanted[at : at + 1]}"

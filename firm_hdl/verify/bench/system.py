@@ -13,8 +13,7 @@ from firm_hdl.jobs.programs import find_ghdl
 from firm_hdl.verify.bench.run import run_bench
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
-from firm_hdl.verify.systems.again import command_again
-from firm_hdl.verify.systems.options import Request
+from firm_hdl.verify.systems.options import Request, command_again
 from firm_hdl.verify.systems.system import (
     Judged,
     Made,

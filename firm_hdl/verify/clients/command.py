@@ -19,6 +19,7 @@ from firm_hdl.verify.references.client import ClientMissingError, Refusal
 from firm_hdl.verify.references.clients import CLIENTS, REFERENCES, client, close_clients
 from firm_hdl.verify.references.objects import full_text
 from firm_hdl.verify.references.values import shown
+from firm_hdl.verify.results.texts import clipped
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Judged
@@ -153,14 +154,14 @@ def _differences(trials: Sequence[tuple[TypeUnderTest, Trial]], options: Request
 def described(finding: Finding) -> list[str]:
     """Describe a difference in lines: definition, value, packet, and both answers."""
     lines = [f"    {line}" for line in full_text(finding.message).splitlines()]
-    lines.append(f"    value: {_clip(shown(finding.message, finding.value))}")
+    lines.append(f"    value: {clipped(shown(finding.message, finding.value), MOST_CHARACTERS)}")
     if not finding.what.startswith("encode"):
-        lines.append(f"    packet: {_clip(finding.packet.hex() or 'no bytes')}")
+        lines.append(f"    packet: {clipped(finding.packet.hex() or 'no bytes', MOST_CHARACTERS)}")
     for name, answer in (
         (finding.reference, finding.expected),
         (finding.library, finding.got),
     ):
-        lines.append(f"    {name}: {_clip(_answer(finding, answer))}")
+        lines.append(f"    {name}: {clipped(_answer(finding, answer), MOST_CHARACTERS)}")
     return lines
 
 
@@ -174,12 +175,6 @@ def _answer(finding: Finding, answer: Any) -> str:
     # A library may give values that do not fit the type.
     except (TypeError, ValueError, KeyError, IndexError):
         return repr(answer)
-
-
-def _clip(text: str) -> str:
-    if len(text) <= MOST_CHARACTERS:
-        return text
-    return f"{text[:MOST_CHARACTERS]}... ({len(text)} characters)"
 
 
 def _summary(trials: Sequence[Trial], options: Request, versions: dict[str, str]) -> Iterator[str]:

@@ -16,10 +16,8 @@ from firm_hdl.verify.references.clients import REFERENCES, client
 from firm_hdl.verify.references.user_oracle import judge_of
 from firm_hdl.verify.references.values import Plain, from_objects
 from firm_hdl.verify.results.verdict import NotJudged, NotJudgedError
-from firm_hdl.verify.systems.again import command_again
-from firm_hdl.verify.systems.libraries import library_of
-from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.systems.tasks import TypeUnderTest
+from firm_hdl.verify.systems.options import Request, command_again
+from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["command_of", "contest_of", "judge_type", "judge_types", "reference_of"]

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, get_args, get_origin, get_type_hints
 
+from firm_hdl.verify.results.texts import clipped
 from firm_hdl.verify.results.verdict import (
     Failed,
     KnownDifference,
@@ -282,12 +283,7 @@ class Record:
 
 def _clipped(failures: Sequence[str]) -> tuple[str, ...]:
     """Return failures as a record keeps them: not too many, and none too long."""
-    found = [
-        text
-        if len(text) <= MOST_CHARACTERS
-        else f"{text[:MOST_CHARACTERS]}... ({len(text)} characters)"
-        for text in failures[:MOST_FAILURES]
-    ]
+    found = [clipped(text, MOST_CHARACTERS) for text in failures[:MOST_FAILURES]]
     if len(failures) > MOST_FAILURES:
         found.append(f"and {len(failures) - MOST_FAILURES} more")
     return tuple(found)

@@ -10,6 +10,7 @@ from firm_hdl.gateware.signatures import Status
 from firm_hdl.plan import Plan
 from firm_hdl.sim.payloads import decoder_of
 from firm_hdl.sim.record import Seen
+from firm_hdl.verify.results.texts import first_difference
 from firm_hdl.verify.simulators.trace import Trace, read_row
 
 __all__ = ["Traffic", "traffic"]
@@ -64,8 +65,7 @@ def _bits(statuses: Sequence[Status]) -> list[str]:
 
 
 def _first(mine: Sequence[object], right: Sequence[object]) -> str:
-    pairs = enumerate(zip(mine, right, strict=False))
-    at = next((n for n, (a, b) in pairs if a != b), min(len(mine), len(right)))
+    at = first_difference(mine, right)
     return (
         f"number {at} of {len(right)} is {list(mine[at : at + 1])} "
         f"instead of {list(right[at : at + 1])}"

@@ -1,14 +1,17 @@
-"""What test systems are asked for: how types are tested, which ones, and by which systems."""
+"""What test systems are asked for: how types are tested, which ones, and by which systems;
+and the command that asks for one test again.
+"""
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass, replace
 
 from firm_hdl.jobs.executors import PROCESSES
 from firm_hdl.verify.choices import LONGEST
 from firm_hdl.wire import Wire
 
-__all__ = ["Options", "Request"]
+__all__ = ["Options", "Request", "command_again"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -134,3 +137,23 @@ class Request(Options):
     def each_width(self) -> list[Options]:
         """How types are tested on each of the buses."""
         return [replace(self, bus_bytes=width) for width in self.widths]
+
+
+def command_again(*names: str, **options: object) -> str:
+    """Return a call of ``firm-hdl verify``.
+
+    Parameters
+    ----------
+    *names : str
+        What is tested, at the end.
+    **options
+        By their names, with underscores for dashes, in the order in which they are to stand. `None`
+        and `False` leave one out; `True` is one without a value; a tuple repeats it.
+    """
+    words = ["firm-hdl", "verify"]
+    for option, value in options.items():
+        for each in value if isinstance(value, tuple) else (value,):
+            if each is not None and each is not False:
+                words.append(f"--{option.replace('_', '-')}")
+                words += [] if each is True else [str(each)]
+    return shlex.join([*words, *names])

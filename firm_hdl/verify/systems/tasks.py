@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 from firm_hdl.errors import DefinitionError, Diagnostic
-from firm_hdl.frontend import Library
+from firm_hdl.frontend import Library, open_library
 from firm_hdl.model import Message, closure
-from firm_hdl.verify.systems.libraries import library_of
 from firm_hdl.wire import too_large
 
-__all__ = ["TypeUnderTest", "UnknownTypeError", "collect_own", "collect_tasks"]
+__all__ = ["TypeUnderTest", "UnknownTypeError", "collect_own", "collect_tasks", "library_of"]
 
 
 class UnknownTypeError(ValueError):
@@ -37,6 +37,16 @@ class TypeUnderTest:
     distro: str
     name: str
     same: tuple[str, ...]
+
+
+@cache
+def library_of(distro: str, paths: tuple[str, ...], bags: tuple[str, ...] = ()) -> Library:
+    """Return a library, which is opened once in a process.
+
+    Without folders and recordings it has the distribution's own types, whatever workspace is
+    active: rosbags knows these without being told. Behind folders comes the workspace.
+    """
+    return open_library(distro, paths, bags) if paths or bags else Library(distro)
 
 
 def collect_tasks(

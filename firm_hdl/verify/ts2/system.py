@@ -21,9 +21,7 @@ from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, check, from_yaml, to_yaml
 from firm_hdl.verify.cases.figures import digest, figures
 from firm_hdl.verify.results.records import Record, Test, clipped_verdict
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
-from firm_hdl.verify.systems.again import command_again
-from firm_hdl.verify.systems.libraries import library_of
-from firm_hdl.verify.systems.options import Options, Request
+from firm_hdl.verify.systems.options import Options, Request, command_again
 from firm_hdl.verify.systems.system import (
     Judged,
     Made,
@@ -37,7 +35,7 @@ from firm_hdl.verify.systems.system import (
     run_tests,
     wire_of,
 )
-from firm_hdl.verify.systems.tasks import TypeUnderTest
+from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
 from firm_hdl.verify.ts2.golden import Golden, check_golden, read_golden
 from firm_hdl.wire import Wire, lay_out, refusals
 

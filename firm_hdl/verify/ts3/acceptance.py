@@ -33,8 +33,8 @@ from firm_hdl.verify.references.oracle import RosbagsOracle
 from firm_hdl.verify.references.user_oracle import Judge, judge_of
 from firm_hdl.verify.references.wide_oracle import WideOracle
 from firm_hdl.verify.results.verdict import NotJudged, NotJudgedError
-from firm_hdl.verify.systems.libraries import library_of
 from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.checks import Checks
 from firm_hdl.verify.ts3.circuit import Circuit
 from firm_hdl.verify.ts3.confirm import confirm

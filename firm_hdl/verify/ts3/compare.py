@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from firm_hdl.plan import Payload, Plan
 from firm_hdl.sim.record import Seen
 from firm_hdl.verify.references.oracle import Transfers
+from firm_hdl.verify.results.texts import first_difference
 
 __all__ = [
     "Expected",
@@ -76,8 +77,7 @@ def packet_differences(
     """Say which packet is the first that differs, if one does, and where."""
     for number, (one, other) in enumerate(zip(got, wanted, strict=False)):
         if one != other:
-            pairs = enumerate(zip(one, other, strict=False))
-            at = next((n for n, (a, b) in pairs if a != b), min(len(one), len(other)))
+            at = first_difference(one, other)
             yield (
                 f"{where}: packet {number} of {len(wanted)} differs at byte {at}: "
                 f"{one.hex()} instead of {other.hex()}{_name(names, number)}"
@@ -111,8 +111,7 @@ def transfer_differences(
         mine, right = list(got.get(number, [])), joined.pop(leaf.path, [])
         if mine == right:
             continue
-        pairs = enumerate(zip(mine, right, strict=False))
-        at = next((n for n, (a, b) in pairs if a != b), min(len(mine), len(right)))
+        at = first_difference(mine, right)
         yield (
             f"{where}: leaf {leaf}, transfer {at} of {len(right)}: "
             f"{mine[at : at + 1]} instead of {right[at : at + 1]}"

@@ -12,10 +12,9 @@ from firm_hdl.verify.cases.effort import message_limit
 from firm_hdl.verify.cases.figures import digest
 from firm_hdl.verify.choices import LONGEST
 from firm_hdl.verify.results.records import PlanCoverage, Record, Seconds, Test, clipped_verdict
-from firm_hdl.verify.systems.libraries import library_of
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.system import wire_of
-from firm_hdl.verify.systems.tasks import TypeUnderTest
+from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
 from firm_hdl.verify.ts3.result import Result, command_of
 from firm_hdl.wire import lay_out
 

@@ -30,8 +30,8 @@ from firm_hdl.verify.choices import MOST_MESSAGES
 from firm_hdl.verify.references.oracle import Transfers
 from firm_hdl.verify.references.user_oracle import Judge
 from firm_hdl.verify.results.verdict import NotJudgedError
-from firm_hdl.verify.systems.libraries import library_of
 from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.acceptance import Acceptance, measured
 from firm_hdl.verify.ts3.recording import RecordedMessage, Selection, Topic, select, topics_of
 from firm_hdl.verify.ts3.result import Result

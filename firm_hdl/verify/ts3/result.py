@@ -8,8 +8,7 @@ from firm_hdl.verify.cases.directed import Coverage
 from firm_hdl.verify.choices import LONGEST
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 from firm_hdl.verify.simulators.crosscheck import Comparison
-from firm_hdl.verify.systems.again import command_again
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import Options, command_again
 
 __all__ = ["Result", "command_of"]
 

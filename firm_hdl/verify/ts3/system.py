@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Generator, Iterator, Mapping, Sequence
 from contextlib import closing
+from dataclasses import replace
 from typing import Any
 
+from firm_hdl.errors import described
 from firm_hdl.frontend import DISTROS
+from firm_hdl.jobs.executors import PROCESSES, run_each
 from firm_hdl.verify.references.choice import find_references
 from firm_hdl.verify.results.records import Record, Test, settled
+from firm_hdl.verify.results.texts import clipped
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.simulators import simulator
 from firm_hdl.verify.systems.options import Options, Request
@@ -24,11 +28,15 @@ from firm_hdl.verify.systems.system import (
     wire_of,
 )
 from firm_hdl.verify.systems.tasks import TypeUnderTest
+from firm_hdl.verify.ts3.acceptance import accept
 from firm_hdl.verify.ts3.recorded import record_of, same_circuits, test_of
-from firm_hdl.verify.ts3.result import Result
-from firm_hdl.verify.ts3.runner import run_tasks
+from firm_hdl.verify.ts3.replay import replay
+from firm_hdl.verify.ts3.result import Result, command_of
 
-__all__ = ["Ts3"]
+__all__ = ["Ts3", "run_tasks"]
+
+MOST_CHARACTERS = 600
+"""Of a failure, so many are printed."""
 
 
 class Ts3(System):
@@ -122,6 +130,39 @@ class Ts3(System):
         return judged(records.values())
 
 
+def run_tasks(
+    tasks: Sequence[TypeUnderTest],
+    options: Options,
+    jobs: int | None = None,
+    *,
+    executor: str = PROCESSES,
+    golden_only: Container[TypeUnderTest] = (),
+) -> Generator[tuple[TypeUnderTest, Result], None, None]:
+    """Run tasks in `jobs` processes (`None`: one per processor), and yield results as they come.
+
+    Parameters
+    ----------
+    executor : str
+        See :func:`firm_hdl.jobs.executors.run_each`.
+    golden_only : container of TypeUnderTest
+        Those whose circuit is not to be simulated.
+    """
+    without = replace(options, simulated=False)
+    work = [
+        (task, (task.distro, task.name, without if task in golden_only else options))
+        for task in tasks
+    ]
+    run = replay if options.bags else accept
+    for task, result in run_each(run, work, executor=executor, jobs=jobs):
+        if isinstance(result, Exception):
+            failed = Result(distro=task.distro, name=task.name)
+            failed.failures.append(described(result))
+            failed.command = command_of(options, task.distro, task.name)
+            yield task, failed
+        else:
+            yield task, result
+
+
 def _said(task: TypeUnderTest, result: Result, *, is_new: bool) -> Iterator[str]:
     """Say what is to be known of a type; what is said of many types, of the first one only."""
     if isinstance(result.verdict, Failed):
@@ -194,11 +235,7 @@ def _summarize(results: Sequence[Result], options: Options) -> None:
 
 def _describe(task: TypeUnderTest, result: Result, failed: Failed) -> str:
     lines = [f"FAIL {task.name} ({', '.join(task.same)})"]
-    lines += [f"    {_clip(failure)}" for failure in failed.failures[:8]]
+    lines += [f"    {clipped(failure, MOST_CHARACTERS)}" for failure in failed.failures[:8]]
     if len(failed.failures) > 8:
         lines.append(f"    and {len(failed.failures) - 8} more")
     return "\n".join([*lines, f"    again: {result.command}"])
-
-
-def _clip(text: str, most: int = 600) -> str:
-    return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"

@@ -1,0 +1,18 @@
+"""Texts about what was found out: cut to a length, and where two sequences differ first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+__all__ = ["clipped", "first_difference"]
+
+
+def clipped(text: str, most: int) -> str:
+    """Return a text with at most so many characters, and how many it had if they are more."""
+    return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
+
+
+def first_difference(mine: Sequence[object], right: Sequence[object]) -> int:
+    """Return the index of the first item that differs; their common length if none does."""
+    pairs = enumerate(zip(mine, right, strict=False))
+    return next((n for n, (a, b) in pairs if a != b), min(len(mine), len(right)))
