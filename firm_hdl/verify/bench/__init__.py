@@ -1,5 +1,3 @@
 """The generated VHDL test benches as a test system."""
 
-from __future__ import annotations
-
 __all__ = []

@@ -147,14 +147,6 @@ class Tally:
             for detail in verdict.details:
                 self.details[outcome.oracle, verdict.name, detail] += 1
 
-    def update(self, other: Tally) -> None:
-        """Count what another one has counted."""
-        self.verdicts.update(other.verdicts)
-        self.refused.update(other.refused)
-        self.details.update(other.details)
-        self.differing += other.differing
-        self.shown += other.shown
-
 
 class Ts1Run:
     """One run; a context manager, because definitions lie in a folder while it lasts.
@@ -273,12 +265,6 @@ class Ts1Run:
                 if not is_mutated and len(self.cases) <= _MOST_SHOWN:
                     tally.shown.append(outcome)
         return tally
-
-    def tallies(self) -> Generator[tuple[int, Tally], None, None]:
-        """Judge everything; yield numbers of definitions, and what came of them, as they come."""
-        with closing(self.judgements()) as run:
-            for share in run:
-                yield len(share), self.tally((number, found.said) for number, found in share)
 
 
 @dataclass(frozen=True, slots=True)

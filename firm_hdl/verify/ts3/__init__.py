@@ -1,5 +1,3 @@
 """TS3: do the converters of a type do as ROS's libraries, with chosen and recorded messages?"""
 
-from __future__ import annotations
-
 __all__ = []

@@ -11,14 +11,17 @@ from firm_hdl.verify.clients import command
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 
-OPTIONS = SimpleNamespace(
-    libraries=("mine", "yours"), command=lambda distro, name, library: f"{library} {name} {distro}"
-)
+OPTIONS = SimpleNamespace(libraries=("mine", "yours"))
+
+
+def again(options, distro, name, library):
+    return f"{library} {name} {distro}"
 
 
 @pytest.fixture(autouse=True)
 def small(monkeypatch):
     """Let the smallest case of a difference be itself."""
+    monkeypatch.setattr(command, "command_of", again)
     monkeypatch.setattr(command, "shrunk", lambda finding, again: finding)
     monkeypatch.setattr(command, "contest_of", lambda *_: SimpleNamespace(again=None))
     monkeypatch.setattr(command, "described", lambda finding: [f"    small {finding.what}"])
@@ -140,5 +143,5 @@ def test_a_difference_is_described_by_all_that_one_needs(make_message, monkeypat
 
 def test_long_answers_are_cut():
     most = command.MOST_CHARACTERS
-    assert command._clip("x" * most) == "x" * most
-    assert command._clip("x" * (most + 1)) == f"{'x' * most}... ({most + 1} characters)"
+    assert command.clipped("x" * most, most) == "x" * most
+    assert command.clipped("x" * (most + 1), most) == f"{'x' * most}... ({most + 1} characters)"

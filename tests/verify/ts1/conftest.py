@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from itertools import count
 
 import pytest
@@ -12,6 +12,12 @@ from firm_hdl.verify.ts1.judge import judge
 from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.universe import Universe, write_definitions
 from tests.frontend.workspace import make_files
+
+
+def tally_of(run):
+    """Judge everything; return what came of it."""
+    with closing(run.judgements()) as shares:
+        return run.tally((number, found.said) for share in shares for number, found in share)
 
 
 class Court:

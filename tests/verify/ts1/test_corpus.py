@@ -6,7 +6,7 @@ import pytest
 
 from firm_hdl.verify.ts1 import Selection, Ts1Run
 from firm_hdl.verify.ts1.universe import Universe
-from tests.verify.ts1.conftest import need
+from tests.verify.ts1.conftest import need, tally_of
 
 JUDGED = ("passed", "failed", "known difference")
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
@@ -16,17 +16,9 @@ def differing(selection, oracle):
     """Judge; list what differs, and count what both refuse and what was judged."""
     with Ts1Run(selection, [oracle], 1) as run:
         need(oracle, run.missing.get(oracle))
-        tallies = [tally for _, tally in run.tallies()]
-    wrong = [
-        (outcome.case.full_name, outcome.verdict.failures)
-        for t in tallies
-        for outcome, _ in t.differing
-    ]
-    return (
-        wrong,
-        sum(tally.refused[oracle] for tally in tallies),
-        sum(tally.verdicts[oracle, verdict] for tally in tallies for verdict in JUDGED),
-    )
+        tally = tally_of(run)
+    wrong = [(each.case.full_name, each.verdict.failures) for each, _ in tally.differing]
+    return wrong, tally.refused[oracle], sum(tally.verdicts[oracle, each] for each in JUDGED)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from firm_hdl.verify.ts1 import Selection, Ts1Run
 from firm_hdl.verify.ts1 import mutate as rules
 from firm_hdl.verify.ts1.mutate import mutation
 from tests.frontend.workspace import make_files
-from tests.verify.ts1.conftest import need
+from tests.verify.ts1.conftest import need, tally_of
 
 ROS1 = {
     "p/msg/A.msg": "# All.\nint8 LOW=-5\nfloat32 F = 1.5  # f\nbool ON=True\nstring S= x # y \n"
@@ -44,15 +44,11 @@ def test_oracles_and_we_agree_on_mistakes(tmp_path, distro, oracle, count):
     selection = Selection(distro=distro, paths=(str(root),), mutations=count)
     with Ts1Run(selection, [oracle], 1) as run:
         need(oracle, run.missing.get(oracle))
-        differing, judged, refused = [], 0, 0
-        for _, tally in run.tallies():
-            differing += [(number, outcome.verdict.details) for outcome, number in tally.differing]
-            judged += sum(tally.verdicts.values()) - tally.verdicts[oracle, "not judged"]
-            refused += tally.refused[oracle]
-    assert differing == []
-    assert judged == count
+        tally = tally_of(run)
+    assert [(number, outcome.verdict.details) for outcome, number in tally.differing] == []
+    assert sum(tally.verdicts.values()) - tally.verdicts[oracle, "not judged"] == count
     # Neither are all mistakes, nor none.
-    assert count / 5 < refused < count * 9 / 10
+    assert count / 5 < tally.refused[oracle] < count * 9 / 10
 
 
 def test_a_mutation_is_decided_by_its_number(court):

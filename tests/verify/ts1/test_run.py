@@ -25,7 +25,7 @@ from firm_hdl.verify.ts1.oracles.oracle import Refused
 from firm_hdl.verify.ts1.run import Tally
 from firm_hdl.verify.ts1.universe import Universe
 from tests.frontend.workspace import make_files
-from tests.verify.ts1.conftest import need
+from tests.verify.ts1.conftest import need, tally_of
 
 FILES = {
     "src/p/msg/A.msg": "q/B b\n",
@@ -53,10 +53,7 @@ def judged(selection, oracles=(), jobs=1):
     with Ts1Run(selection, oracles, jobs) as run:
         for name in oracles:
             need(name, run.missing.get(name))
-        tallies = [tally for _, tally in run.tallies()]
-        for tally in tallies[1:]:
-            tallies[0].update(tally)
-        return tallies[0], run
+        return tally_of(run), run
 
 
 @pytest.mark.parametrize("distro", DISTROS)
@@ -219,12 +216,9 @@ def test_verdicts_are_counted_by_oracle_and_name():
         ("two", "known difference", "l"): 1,
         ("two", "not judged", "because"): 1,
     }
-    both = Tally(shown=[failed])
-    both.update(tally)
-    both.update(tally)
-    assert both.verdicts["one", "passed"] == 4 and both.refused["one"] == 2
-    assert both.details["two", "known difference", "l"] == 2
-    assert both.differing == [(failed, 7)] * 2 and both.shown == [failed]
+    tally.add(failed, 8)
+    assert tally.verdicts["one", "failed"] == 2 and tally.refused["one"] == 1
+    assert tally.differing == [(failed, 7), (failed, 8)]
 
 
 def test_a_crash_of_ours_ends_no_run(source, monkeypatch):

@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from firm_hdl.plan import build_plan
-from firm_hdl.verify import Options, Oracle, Result, accept_message
+from firm_hdl.verify import Options, Result, RosbagsOracle, accept_message
 from firm_hdl.verify.cases.effort import work_of
 from firm_hdl.wire import lay_out
 from tests.strategies import BUS_WIDTHS, definitions
@@ -36,7 +36,7 @@ def test_random_types_pass(wire, definition, bus_bytes, seed):
     assume(work_of(build_plan(layout, bus_bytes=bus_bytes), layout.min_bytes) <= MOST_WORK)
     options = Options(bus_bytes=bus_bytes, wire=wire, seed=seed, most_cases=8)
     result = Result(distro="", name=message.name)
-    oracle = Oracle(definition.store(), message.dialect)
+    oracle = RosbagsOracle(definition.store(), message.dialect)
     accept_message(message, oracle, definition.rosbags_name, options, result)
     assert set(result.known) <= {NAN_KEY, TIME_KEY}
     assert_passed(result, result.known)

@@ -9,7 +9,7 @@ import pytest
 from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.simulators.crosscheck import Comparison
 from firm_hdl.verify.ts3 import system
-from firm_hdl.verify.ts3.options import Result
+from firm_hdl.verify.ts3.result import Result
 
 
 def result(name, took, **more):
@@ -92,5 +92,5 @@ def test_eight_failures_are_told_and_how_to_see_them_again(count, more):
 
 
 def test_long_failures_are_cut():
-    assert system._clip("x" * 600) == "x" * 600
-    assert system._clip("x" * 601) == "x" * 600 + "... (601 characters)"
+    assert system.clipped("x" * 600, system.MOST_CHARACTERS) == "x" * 600
+    assert system.clipped("x" * 601, system.MOST_CHARACTERS) == "x" * 600 + "... (601 characters)"
