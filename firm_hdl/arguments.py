@@ -100,8 +100,8 @@ def add_depends(command: argparse._ActionsContainer) -> None:
         action="append",
         default=[],
         metavar="DIR",
-        help="folder with ROS packages that others need, searched behind --path; no part of --all; "
-        "repeatable",
+        help="folder with ROS packages that others depend on, searched after --path; not part of "
+        "--all; repeatable",
     )
 
 

@@ -48,8 +48,8 @@ def _run(arguments: Sequence[str] | None) -> int:
 def _dispatch(arguments: list[str]) -> int:
     parser = _parser(arguments)
     if any("\0" in argument for argument in arguments):
-        parser.error("an argument has a NUL, which no name and no path has")
-    given = parser.parse_args(arguments)
+        parser.error("an argument contains a NUL character")
+    args = parser.parse_args(arguments)
     from firm_hdl.errors import DefinitionError, UserError
 
     reconfigure = getattr(sys.stdout, "reconfigure", None)
@@ -57,7 +57,7 @@ def _dispatch(arguments: list[str]) -> int:
         # A comment in a definition may have characters that the terminal cannot encode.
         reconfigure(errors="backslashreplace")
     try:
-        return given.run(given) or 0
+        return args.run(args) or 0
     except DefinitionError as error:
         _print_error(str(error))
     except UserError as error:

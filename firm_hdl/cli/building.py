@@ -32,16 +32,16 @@ def add_build(command: argparse.ArgumentParser) -> None:
         default="records",
         help="whether the VHDL has records, or plain vectors only; default: %(default)s",
     )
-    command.add_argument("--force", action="store_true", help="write even what is current")
+    command.add_argument("--force", action="store_true", help="also write folders that are current")
     command.set_defaults(run=_build)
 
 
-def _build(given: argparse.Namespace) -> None:
+def _build(args: argparse.Namespace) -> None:
     from firm_hdl.frontend import load_all
 
-    library = library_of(given)
-    # A definition that cannot be used is told before Amaranth is imported.
-    load_all(library, given.types)
+    library = library_of(args)
+    # Errors in definitions are reported before Amaranth is imported, which takes time.
+    load_all(library, args.types)
     from firm_hdl.export.backend import Options
     from firm_hdl.export.build import build
 
@@ -55,20 +55,20 @@ def _build(given: argparse.Namespace) -> None:
         state = "current" if built.was_current else "wrote"
         print(f"{state:8}{built.folder}{os.sep}", flush=True)
         for old, new in sorted(built.renamed.items()):
-            print(f"        your own {old} there is {new} now", flush=True)
+            print(f"        your file {old} is now {new}", flush=True)
 
     done = build(
-        given.types,
-        given.out,
+        args.types,
+        args.out,
         library=library,
         options=Options(
-            wire=given.wire,
-            bus_bytes=given.bus_bytes,
-            max_message_bytes=given.max_message_bytes,
-            window_words=given.window_words,
-            ports=given.ports,
+            wire=args.wire,
+            bus_bytes=args.bus_bytes,
+            max_message_bytes=args.max_message_bytes,
+            window_words=args.window_words,
+            ports=args.ports,
         ),
-        force=given.force,
+        force=args.force,
         stimuli=packets_of,
         report=report,
     )
@@ -84,12 +84,12 @@ def add_plan(command: argparse.ArgumentParser) -> None:
     command.set_defaults(run=_plan)
 
 
-def _plan(given: argparse.Namespace) -> None:
+def _plan(args: argparse.Namespace) -> None:
     from firm_hdl.frontend import load_all
     from firm_hdl.plan import to_yaml
 
-    for index, message in enumerate(load_all(library_of(given), [given.type])):
-        plan = _planned(message, given)
+    for index, message in enumerate(load_all(library_of(args), [args.type])):
+        plan = _planned(message, args)
         print("---\n" * bool(index) + to_yaml(plan), end="")
 
 
@@ -101,20 +101,20 @@ def add_info(command: argparse.ArgumentParser) -> None:
     command.set_defaults(run=_info)
 
 
-def _info(given: argparse.Namespace) -> None:
+def _info(args: argparse.Namespace) -> None:
     from firm_hdl.frontend import load_all
     from firm_hdl.plan.timing import describe, timing
 
-    for message in load_all(library_of(given), given.types):
-        plan = _planned(message, given)
+    for message in load_all(library_of(args), args.types):
+        plan = _planned(message, args)
         print(describe(message.name, plan, timing(plan)))
 
 
-def _planned(message: Message, given: argparse.Namespace) -> Plan:
+def _planned(message: Message, args: argparse.Namespace) -> Plan:
     from firm_hdl.export.build import plan_of
 
     return plan_of(
-        message, given.wire, given.bus_bytes, given.max_message_bytes, given.window_words
+        message, args.wire, args.bus_bytes, args.max_message_bytes, args.window_words
     )
 
 

@@ -15,8 +15,8 @@ def add_list(command: argparse.ArgumentParser) -> None:
     command.set_defaults(run=_list)
 
 
-def _list(given: argparse.Namespace) -> None:
-    for name in library_of(given).interfaces():
+def _list(args: argparse.Namespace) -> None:
+    for name in library_of(args).interfaces():
         print(name)
 
 
@@ -26,10 +26,10 @@ def add_show(command: argparse.ArgumentParser) -> None:
     command.set_defaults(run=_show)
 
 
-def _show(given: argparse.Namespace) -> None:
+def _show(args: argparse.Namespace) -> None:
     from firm_hdl.frontend import show
 
-    print(show(library_of(given), given.type), end="")
+    print(show(library_of(args), args.type), end="")
 
 
 def add_md5(command: argparse.ArgumentParser) -> None:
@@ -38,12 +38,12 @@ def add_md5(command: argparse.ArgumentParser) -> None:
     command.set_defaults(run=_md5)
 
 
-def _md5(given: argparse.Namespace) -> None:
+def _md5(args: argparse.Namespace) -> None:
     from firm_hdl.identity.command import md5_lines
 
-    if given.distro is None and not given.bag:
-        given.distro = "noetic"
-    _print_all(*md5_lines(library_of(given), names_of(given)))
+    if args.distro is None and not args.bag:
+        args.distro = "noetic"
+    _print_all(*md5_lines(library_of(args), names_of(args)))
 
 
 def add_hash(command: argparse.ArgumentParser) -> None:
@@ -52,10 +52,10 @@ def add_hash(command: argparse.ArgumentParser) -> None:
     command.set_defaults(run=_hash)
 
 
-def _hash(given: argparse.Namespace) -> None:
+def _hash(args: argparse.Namespace) -> None:
     from firm_hdl.identity.command import hash_lines
 
-    _print_all(*hash_lines(library_of(given), names_of(given)))
+    _print_all(*hash_lines(library_of(args), names_of(args)))
 
 
 def add_proto(command: argparse.ArgumentParser) -> None:
@@ -65,11 +65,11 @@ def add_proto(command: argparse.ArgumentParser) -> None:
     command.set_defaults(run=_proto)
 
 
-def _proto(given: argparse.Namespace) -> None:
+def _proto(args: argparse.Namespace) -> None:
     from firm_hdl.identity.command import proto_texts
 
-    texts, wrong = proto_texts(library_of(given), names_of(given), quotes=not given.no_quotes)
-    if len(texts) == 1 and not given.all:
+    texts, wrong = proto_texts(library_of(args), names_of(args), quotes=not args.no_quotes)
+    if len(texts) == 1 and not args.all:
         print(*texts.values(), sep="", end="")
     else:
         print("\n".join(f"# {name}\n{text}" for name, text in texts.items()), end="")
@@ -89,16 +89,16 @@ def add_metrics(command: argparse.ArgumentParser) -> None:
     command.set_defaults(run=_metrics)
 
 
-def _metrics(given: argparse.Namespace) -> None:
+def _metrics(args: argparse.Namespace) -> None:
     from firm_hdl.frontend import open_library
     from firm_hdl.metrics.command import metrics_text
 
-    if given.all and not given.types:
+    if args.all and not args.types:
         # The distribution's types, too: a user compares his own types with them.
-        names = open_library(given.distro, given.path, given.bag).interfaces()
+        names = open_library(args.distro, args.path, args.bag).interfaces()
     else:
-        names = names_of(given)
-    text, wrong = metrics_text(library_of(given), names, given.format, given.wire, bar=given.all)
+        names = names_of(args)
+    text, wrong = metrics_text(library_of(args), names, args.format, args.wire, bar=args.all)
     print(text, end="")
     if wrong is not None:
         raise wrong

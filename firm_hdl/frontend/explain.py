@@ -135,7 +135,7 @@ def _wrong_part(line: str, start: int, expected: frozenset[str], dialect: Dialec
     if start or not line.startswith("---"):
         return None
     if dialect == "ros2" and line != "---":
-        return len(line), "what separates two parts is a line '---' and nothing else"
+        return len(line), "a line that separates two parts must be '---' and nothing else"
     return len(line), "a message has one part; '---' is for services and actions"
 
 

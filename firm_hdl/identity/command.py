@@ -32,10 +32,10 @@ def md5_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defini
     _require(library, "ros1", "md5 sums are of ROS 1; for ROS 2 there is 'firm-hdl hash'")
     summed: list[Message | Service] = []
 
-    def found(interface: Interface) -> None:
+    def on_loaded(interface: Interface) -> None:
         summed.extend(interface.messages if isinstance(interface, Action) else (interface,))
 
-    wrong = _each(library, names, found)
+    wrong = _each(library, names, on_loaded)
     return [f"{md5sum(item)}  {item.name}" for item in summed], wrong
 
 
@@ -55,14 +55,14 @@ def hash_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defin
     _require(library, "ros2", "type hashes are of ROS 2; for ROS 1 there is 'firm-hdl md5'")
     lines: list[str] = []
 
-    def found(interface: Interface) -> None:
+    def on_loaded(interface: Interface) -> None:
         try:
             lines.append(f"{type_hash(interface)}  {interface.name}")
         except ValueError as error:
             problem = Diagnostic(message=f"{library.distro}: {error}")
             raise DefinitionError([problem]) from None
 
-    wrong = _each(library, names, found)
+    wrong = _each(library, names, on_loaded)
     return lines, wrong
 
 
@@ -79,21 +79,21 @@ def proto_texts(
     """
     texts: dict[str, str] = {}
 
-    def found(interface: Interface) -> None:
+    def on_loaded(interface: Interface) -> None:
         try:
             texts[interface.name] = proto(interface, quotes=quotes) + "\n"
         except TooLargeError as error:
             raise DefinitionError([Diagnostic(message=str(error))]) from None
 
-    wrong = _each(library, names, found)
+    wrong = _each(library, names, on_loaded)
     return texts, wrong
 
 
 def _each(
-    library: Library, names: Iterable[str], found: Callable[[Interface], None]
+    library: Library, names: Iterable[str], on_loaded: Callable[[Interface], None]
 ) -> DefinitionError | None:
     try:
-        load_interfaces(library, names, found=found)
+        load_interfaces(library, names, on_loaded=on_loaded)
     except DefinitionError as error:
         return error
     return None
@@ -103,7 +103,7 @@ def load_interfaces(
     library: Library,
     names: Iterable[str],
     *,
-    found: Callable[[Interface], None] | None = None,
+    on_loaded: Callable[[Interface], None] | None = None,
 ) -> list[Interface]:
     """Load messages, services and actions, each once.
 
@@ -112,9 +112,8 @@ def load_interfaces(
     library : Library
     names : iterable of str
         As for `Library.interface`; also the services that ROS 2 derives from an action.
-    found : callable or None
-        Called with each interface that was loaded, also if others fail. It may raise
-        DefinitionError, too.
+    on_loaded : callable or None
+        Called with each interface that could be loaded. It may raise DefinitionError, too.
 
     Raises
     ------
@@ -128,8 +127,8 @@ def load_interfaces(
             interface = _interface(library, name)
             # In ROS 1, a message and a service may have the same name.
             key = type(interface), interface.name
-            if key not in interfaces and found is not None:
-                found(interface)
+            if key not in interfaces and on_loaded is not None:
+                on_loaded(interface)
         except DefinitionError as error:
             problems.update((str(problem), problem) for problem in error.diagnostics)
         else:

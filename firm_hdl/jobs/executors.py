@@ -49,7 +49,7 @@ class ExecutorError(ValueError):
 
 
 def check_executor(name: str) -> str:
-    """Return the name of an executor.
+    """Check the name of an executor, and return it.
 
     Raises
     ------
@@ -95,15 +95,15 @@ def run_each(
     """
     check_executor(executor)
     if executor != PROCESSES:
-        with _dask(executor.removeprefix(DASK), jobs) as place:
-            yield from _at(place, work, tasks)
+        with _dask(executor.removeprefix(DASK), jobs) as source:
+            yield from _run_on(source, work, tasks)
     elif jobs == 1:
         for key, arguments in tasks:
             yield key, _called(work, arguments)
     else:
         number = jobs or multiprocessing.cpu_count()
-        place = _Place(worker_pool, BrokenExecutor, number, TASKS_PER_WORKER * number)
-        yield from _at(place, work, tasks)
+        source = _PoolSource(worker_pool, BrokenExecutor, number, TASKS_PER_WORKER * number)
+        yield from _run_on(source, work, tasks)
 
 
 def _called(work: Callable[..., R], arguments: tuple[Any, ...]) -> R | Exception:
@@ -114,8 +114,8 @@ def _called(work: Callable[..., R], arguments: tuple[Any, ...]) -> R | Exception
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
-    """An executor as the scheduling here needs it.
+class _PoolSource:
+    """Opens pools of workers, on this machine or on a cluster.
 
     Attributes
     ----------
@@ -137,28 +137,28 @@ class _Place:
     is_busy: Callable[[], bool] = lambda: True
 
 
-def _at(
-    place: _Place, work: Callable[..., R], tasks: Sequence[tuple[K, tuple[Any, ...]]]
+def _run_on(
+    source: _PoolSource, work: Callable[..., R], tasks: Sequence[tuple[K, tuple[Any, ...]]]
 ) -> Iterator[tuple[K, R | Exception]]:
     remaining = deque(tasks)
     while remaining:
         before = len(remaining)
-        with place.open(place.workers) as pool:
-            suspects = yield from _distribute(pool, place, place.window, work, remaining)
+        with source.open(source.workers) as pool:
+            suspects = yield from _distribute(pool, source, source.window, work, remaining)
         for key, arguments in suspects:
             # One of these ended a worker. In a process of its own, it cannot lose other results.
-            with place.open(1) as pool:
+            with source.open(1) as pool:
                 again = deque([(key, arguments)])
-                dead = yield from _distribute(pool, place, 1, work, again)
+                dead = yield from _distribute(pool, source, 1, work, again)
             if dead or again:
-                yield key, ExecutorError("the process that ran it died, and died again")
+                yield key, ExecutorError("the process that ran it died, also when it was repeated")
         if len(remaining) == before:
-            raise ExecutorError("processes die before they are given anything")
+            raise ExecutorError("processes die before they get a task")
 
 
 def _distribute(
     pool: Executor,
-    place: _Place,
+    source: _PoolSource,
     window: int,
     work: Callable[..., R],
     remaining: deque[tuple[K, tuple[Any, ...]]],
@@ -181,12 +181,12 @@ def _distribute(
             running[future] = remaining.popleft()
         if not running:
             return suspects
-        finished = _finished(running, place)
+        finished = _finished(running, source)
         for future in finished:
             key, arguments = running.pop(future)
             try:
                 result: R | Exception = future.result()
-            except place.broken:
+            except source.broken:
                 suspects.append((key, arguments))
                 continue
             except CancelledError:
@@ -196,22 +196,22 @@ def _distribute(
             yield key, result
 
 
-def _finished(running: Collection[Future[R]], place: _Place) -> set[Future[R]]:
+def _finished(running: Collection[Future[R]], source: _PoolSource) -> set[Future[R]]:
     """Wait for results while a worker is busy."""
     idle = 0
     while True:
         finished, _ = wait(running, timeout=CHECK_SECONDS, return_when=FIRST_COMPLETED)
         if finished:
             return finished
-        idle = 0 if place.is_busy() else idle + CHECK_SECONDS
+        idle = 0 if source.is_busy() else idle + CHECK_SECONDS
         if idle >= MAX_IDLE_SECONDS:
             raise ExecutorError(
-                f"nobody has worked on any test for {idle} s; the results so far are kept"
+                f"no process has worked on a test for {idle} s; the results so far are kept"
             )
 
 
 @contextmanager
-def _dask(address: str, jobs: int | None) -> Iterator[_Place]:
+def _dask(address: str, jobs: int | None) -> Iterator[_PoolSource]:
     try:
         # Not a plain import: Dask is optional, and mypy must not depend on its types.
         distributed: Any = importlib.import_module("distributed")
@@ -245,4 +245,4 @@ def _dask(address: str, jobs: int | None) -> Iterator[_Place]:
 
         threads = max(1, sum(client.nthreads().values()))
         window = jobs or TASKS_PER_WORKER * threads
-        yield _Place(pool, distributed.KilledWorker, threads, window, is_busy)
+        yield _PoolSource(pool, distributed.KilledWorker, threads, window, is_busy)

@@ -55,7 +55,7 @@ class ToolError(Exception):
     """
 
     def __init__(self, output: str):
-        super().__init__(output.strip() or "it failed without a word")
+        super().__init__(output.strip() or "it failed without any output")
 
 
 def made_by(tool: str, file: Path) -> Path:
@@ -114,7 +114,7 @@ def run_tool(
 def hang_up(process: subprocess.Popen[Any], seconds: float = 0.0) -> None:
     """Close the pipes of a process, and kill the process if it has not ended `seconds` later."""
     assert process.stdin is not None and process.stdout is not None
-    with suppress(OSError):  # The process may be dead, with unread input in the pipe.
+    with suppress(OSError):  # The process may be dead, with input not yet written to the pipe.
         process.stdin.close()
     process.stdout.close()
     with suppress(subprocess.TimeoutExpired):

@@ -47,7 +47,7 @@ def metrics_text(
     analyses = Analyses(wire or ("ros1" if library.dialect == "ros1" else "cdr"))
     rows: dict[str, Metrics] = {}
 
-    def found(interface: Interface) -> None:
+    def on_loaded(interface: Interface) -> None:
         for message in interface.messages:
             if message.name not in rows:
                 rows[message.name] = analyses.metrics(message)
@@ -57,7 +57,7 @@ def metrics_text(
     # `None` shows no bar where standard error is no terminal.
     shown = tqdm(chosen, unit="type", leave=False, disable=None if bar else True)
     try:
-        load_interfaces(library, shown, found=found)
+        load_interfaces(library, shown, on_loaded=on_loaded)
     except DefinitionError as error:
         wrong = error
     return report(rows.values(), form), wrong

@@ -26,7 +26,7 @@ _Key = TypeVar("_Key")
 
 
 def plain(name: str, initial: str) -> str:
-    """Make a name a basic identifier of VHDL (IEEE Std 1076-2008, 15.4), keywords included.
+    """Make a name a basic identifier of VHDL (IEEE Std 1076-2008, 15.4) or a keyword.
 
     Parameters
     ----------

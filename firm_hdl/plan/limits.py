@@ -40,7 +40,7 @@ def check_max_message_bytes(layout: Layout, max_message_bytes: int) -> None:
     ValueError
         If no message of the type has so few bytes, or the size is above 2**32 - 1.
     """
-    # To Python, a truth value is an integer, too.
+    # In Python, a bool is an integer, too.
     if not isinstance(max_message_bytes, int) or isinstance(max_message_bytes, bool):
         raise TypeError(f"Maximum message size must be an integer, not {max_message_bytes!r}")
     if layout.min_bytes >= 1 << 32:

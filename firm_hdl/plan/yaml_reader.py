@@ -163,7 +163,7 @@ class _Reader:
         # Without the word "signed", the type decides the sign; `byte` and `char` are unsigned.
         is_signed = bool(signed) or (name, False) not in PRIMITIVE_OF
         if (name, is_signed) not in PRIMITIVE_OF:
-            raise _error(node, f"{name!r} has no sign")
+            raise _error(node, f"{name!r} cannot be signed")
         if lanes is None:
             return Leaf(path=names, kind="scalar", type=name, signed=is_signed)
         return Leaf(path=names, kind="items", type=name, signed=is_signed, lanes=int(lanes))
@@ -313,7 +313,7 @@ class _Reader:
             return self.part(at, size, node)
         data = bytes.fromhex(fixed[1])
         if len(data) != size:
-            raise _error(node, f"{len(data)} fixed bytes stand where {size} are needed")
+            raise _error(node, f"{len(data)} fixed bytes do not fill a slice of {size}")
         return Fixed(at=at, data=data, check=fixed[2] == "checked")
 
     def part(self, at: int, size: int, node: yaml.Node) -> Part:
@@ -321,7 +321,7 @@ class _Reader:
         path, items, first, end, whole, last, level = found.groups()
         index = self.index(self.indices, path, node)
         if first is not None and int(end or first) - int(first) + 1 != size:
-            raise _error(node, f"the bytes of {path!r} are not as many as those of the window")
+            raise _error(node, f"the bytes of {path!r} are not as many as those of the slice")
         natural = int(items or 1) * self.leaves[index].item_bytes
         if whole is None and natural != size:
             raise _error(node, f"{path!r} has {natural} bytes, not {size}")

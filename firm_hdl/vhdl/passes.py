@@ -33,7 +33,7 @@ def graph_of(module: Module, modules: Mapping[str, Module]) -> Graph:
     graph = Graph(
         module=module,
         modules=modules,
-        cells=tuple(i for i in module.items if isinstance(i, Cell) and _is_real(i)),
+        cells=tuple(i for i in module.items if isinstance(i, Cell) and _has_bits(i)),
         processes=tuple(i for i in module.items if isinstance(i, Process) and target_of(i)),
         width={name: wire.width for name, wire in module.wires.items()},
     )
@@ -302,7 +302,7 @@ def _in_order(candidates: dict[str, Cell]) -> Iterator[str]:
                     )
 
 
-def _is_real(cell: Cell) -> bool:
+def _has_bits(cell: Cell) -> bool:
     """Tell whether the result of a cell has any bits."""
     for port in ("Y", "Q"):
         if cell.kind.startswith("$") and port in cell.ports and not cell.ports[port]:

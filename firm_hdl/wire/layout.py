@@ -280,11 +280,11 @@ class _Builder:
         )
 
     def run(self, kind: Array | Sequence, item: Primitive, path: Path, at: int) -> RunNode:
-        counted = isinstance(kind, Array)
-        start = at if counted else self.past(LENGTH, at)
+        is_array = isinstance(kind, Array)
+        start = at if is_array else self.past(LENGTH, at)
         return RunNode(
             path=path,
-            gap=None if counted else self.gap(LENGTH, at),
+            gap=None if is_array else self.gap(LENGTH, at),
             item_gap=self.gap(item, start),
             item=_number(item),
             count=kind.count if isinstance(kind, Array) else None,
@@ -293,13 +293,13 @@ class _Builder:
         )
 
     def loop(self, kind: Array | Sequence, path: Path, at: int) -> LoopNode:
-        counted = isinstance(kind, Array)
+        is_array = isinstance(kind, Array)
         count = kind.count if isinstance(kind, Array) else None
-        start = at if counted else self.past(LENGTH, at)
+        start = at if is_array else self.past(LENGTH, at)
         entry, _ = rs.repeat(start, lambda now: self.after(kind.element, now), count)
         return LoopNode(
             path=path,
-            gap=None if counted else self.gap(LENGTH, at),
+            gap=None if is_array else self.gap(LENGTH, at),
             count=count,
             bound=kind.bound if isinstance(kind, Sequence) else None,
             body=self.field(kind.element, (*path, "item"), entry),

@@ -186,8 +186,8 @@ def test_the_command_says_what_got_another_name(monkeypatch, capsys):
     monkeypatch.setattr(sys.modules["firm_hdl.export.build"], "build", build)
     main(["build", "std_msgs/msg/Bool"])
     assert capsys.readouterr().out.splitlines()[1:3] == [
-        "        your own a there is a.kept now",
-        "        your own mine.txt there is mine.txt.kept now",
+        "        your file a is now a.kept",
+        "        your file mine.txt is now mine.txt.kept",
     ]
 
 

@@ -55,7 +55,7 @@ def test_who_is_dead_already_is_no_error():
 
 def test_a_tool_that_says_nothing_says_so():
     assert str(ToolError(" what \n")) == "what"
-    assert str(ToolError(" \n")) == "it failed without a word"
+    assert str(ToolError(" \n")) == "it failed without any output"
 
 
 def test_a_tool_has_made_what_is_there(tmp_path):

@@ -62,7 +62,7 @@ def test_exceptions_are_results(jobs):
 def test_process_that_dies_is_blamed_alone():
     found = dict(run_each(square_or_die, TASKS, jobs=2))
     for key in ("task 5", "task 20"):
-        assert str(found.pop(key)) == "the process that ran it died, and died again"
+        assert str(found.pop(key)) == "the process that ran it died, also when it was repeated"
     assert found == {k: v for k, v in SQUARES.items() if k not in ("task 5", "task 20")}
 
 

@@ -12,7 +12,7 @@ from firm_hdl.jobs import executors
 from firm_hdl.jobs.executors import ExecutorError, check_executor, run_each
 
 LOST = r"^the executor was lost; results so far are kept$"
-TWICE = "the process that ran it died, and died again"
+TWICE = "the process that ran it died, also when it was repeated"
 
 
 class DeadError(Exception):
@@ -156,7 +156,7 @@ def test_a_task_whose_own_pool_takes_nothing_is_blamed(cluster):
 
 def test_pools_that_take_nothing_at_all_end_the_run(cluster):
     cluster.pools = [Pool(breaks_at=0)]
-    with pytest.raises(ExecutorError, match=r"^processes die before they are given anything$"):
+    with pytest.raises(ExecutorError, match=r"^processes die before they get a task$"):
         list(cluster.run(tasks(1, 2)))
 
 
@@ -181,7 +181,7 @@ def test_idle_clusters_are_given_up(cluster, monkeypatch, busy):
     monkeypatch.setattr(executors, "CHECK_SECONDS", 0.01)
     monkeypatch.setattr(executors, "MAX_IDLE_SECONDS", 0.02)
     cluster.pools, cluster.busy = [Pool({(2,): Future})], busy
-    said = r"^nobody has worked on any test for 0\.02 s; the results so far are kept$"
+    said = r"^no process has worked on a test for 0\.02 s; the results so far are kept$"
     with pytest.raises(ExecutorError, match=said):
         list(cluster.run(tasks(1, 2)))
 

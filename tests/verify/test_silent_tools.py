@@ -93,7 +93,7 @@ def test_comparison_of_no_cycle_is_no_pass():
 
 
 def test_error_of_a_tool_has_a_text():
-    assert str(ToolError(" \n")) == "it failed without a word"
+    assert str(ToolError(" \n")) == "it failed without any output"
 
 
 @ANY

@@ -117,7 +117,7 @@ def _wrong_character(text: str, start: int, before: str, expected: frozenset[str
     if rest.startswith("#"):
         directive = _group(_DIRECTIVE, text, start)
         if directive == "#include":
-            return len(directive), "'#include' needs a file in quotes or in angles"
+            return len(directive), "'#include' needs a path in quotes or angle brackets"
         message = f"'{clip(directive)}' is not supported: ROS 2 knows '#include' alone"
         return len(directive), message
     if rest.startswith("/**/"):
@@ -132,7 +132,7 @@ def _wrong_character(text: str, start: int, before: str, expected: frozenset[str
     if number and "DECIMAL" in expected:
         return len(number), f"'{clip(number)}' is not a number"
     if rest.startswith(("'", "L'")):
-        return 1, "this is not a character: one of them, or an escape, stands between two quotes"
+        return 1, "a character literal must have one character, or one escape, between its quotes"
     escaped = _group(_ESCAPED, text, start)
     if escaped:
         rule = "letters, digits and underscores, a letter first"

@@ -209,7 +209,7 @@ def _unescape(text: str, wide: bool, span: Span) -> str:
             raise IdlError(message, span)
         code = int(digits, 16)
         if 0xD800 <= code < 0xE000:
-            raise IdlError(f"escape '{match.group()}' is half a character", span)
+            raise IdlError(f"escape '{match.group()}' is half of a surrogate pair", span)
         return chr(code)
 
     return _ESCAPE.sub(character, text)
@@ -256,7 +256,7 @@ def _binary(left: Value, sign: str, right: Value, span: Span) -> Value:
         if kind not in ("integer", "float"):
             raise IdlError(f"'{clip(sign)}' is for numbers, not for {_KINDS[kind]}", span)
     if sign not in _INTEGERS:
-        raise IdlError(f"'{clip(sign)}' must be written without a gap", span)
+        raise IdlError(f"'{clip(sign)}' must be written without blanks", span)
     if b == 0 and sign in "/%":
         raise IdlError("division by zero", span)
     if left.kind == right.kind == "integer":

@@ -165,7 +165,7 @@ class Machine(ABC):
         return begin.body
 
     def take(self, take: Take) -> None:
-        """Run one cycle of a run: take its rest if that fits in the head, else all lanes."""
+        """Process one cycle of a run: take its rest if that fits in the head, else all lanes."""
         run = self.plan.runs[take.run]
         leaf = self.plan.leaves[run.items]
         left = self.counters[RUN_COUNTER]

@@ -20,7 +20,7 @@ def said(marked):
 
 
 CASES = [
-    ("«#include» x", "'#include' needs a file in quotes or in angles"),
+    ("«#include» x", "'#include' needs a path in quotes or angle brackets"),
     ("«#define» X", "'#define' is not supported: ROS 2 knows '#include' alone"),
     ("«# pragma» X", "'# pragma' is not supported: ROS 2 knows '#include' alone"),
     ("«/**/»", "an empty comment is not allowed: ROS 2 takes its end for its contents"),
@@ -31,10 +31,10 @@ CASES = [
     ("module m {\n«\ufeff»", "a byte order mark is not allowed"),
     ("const long N = «0x»;", "'0x' is not a number"),
     ("const long N = «1e+»;", "'1e+' is not a number"),
-    ("const char C = «'»ab';", "this is not a character: one of them, or an escape, stands "
-     "between two quotes"),
-    ("const wchar C = L«'»ab';", "this is not a character: one of them, or an escape, stands "
-     "between two quotes"),
+    ("const char C = «'»ab';", "a character literal must have one character, or one escape, "
+     "between its quotes"),
+    ("const wchar C = L«'»ab';", "a character literal must have one character, or one escape, "
+     "between its quotes"),
     ("struct «_a» { long b; };", f"'_a' is not a legal name: {RULE}"),
     ("@annotation «a» { };", "annotations cannot be declared, only used"),
     ("struct S { struct T «{» long a; }; };",
