@@ -39,7 +39,7 @@ class Benches(System):
     ----------
     tasks : sequence of TypeUnderTest
     request : Request
-        Of it: `paths`, `wire`, `widths`, `jobs`.
+        `paths`, `wire`, `widths` and `jobs` are used.
 
     Raises
     ------
@@ -50,8 +50,8 @@ class Benches(System):
 
     def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
         self._request, self._ghdl = request, find_ghdl()
-        # Each distribution's bench of its own, even if another has the same type: its header
-        # differs.
+        # Each distribution has its own bench, even if another has the same type: the headers of
+        # the files differ.
         self._types = [(distro, task.name) for task in tasks for distro in task.same]
 
     @cached_property
@@ -76,7 +76,7 @@ class Benches(System):
 
     @property
     def options(self) -> Mapping[str, Any]:
-        """Nothing but what all systems have."""
+        """No options beside those of all systems."""
         return {}
 
     def run(self, recorder: Recorder) -> list[Judged]:

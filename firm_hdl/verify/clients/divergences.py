@@ -69,7 +69,7 @@ def _replaced(kind: FieldType, value: Plain) -> Plain:
 
 
 class _Entries:
-    """Adds to `KNOWN` what is known of some libraries on some wires."""
+    """Adds differences of some libraries on some wire formats to `KNOWN`."""
 
     def __init__(self, *libraries: str, wires: str = "cdr"):
         self.libraries, self.wires = libraries, wires
@@ -82,11 +82,11 @@ class _Entries:
         KNOWN.append(found)
 
     def takes(self, key: str, text: str, *whats: str) -> None:
-        """Add oddities that the others refuse."""
+        """Add oddities that the libraries accept and the others refuse."""
         self.add(key, text, whats=whats, answer="takes")
 
     def refuses(self, key: str, text: str, *whats: str) -> None:
-        """Add oddities that the others take."""
+        """Add oddities that the libraries refuse and the others accept."""
         self.add(key, text, whats=whats, answer="refuses")
 
 
@@ -100,7 +100,7 @@ _GENPY = _Entries("genpy", "mcap-ros1", wires="ros1")
 _MCAP_ROS2, _ROSBAGS = _Entries("mcap-ros2"), _Entries("rosbags")
 _CUTS = ("cut-1", "cut-half", "cut-all", "long-text", "long-items")
 
-# What they make of values.
+# Values that they write or read in another way.
 
 _Entries(*("rosbags", "cyclonedds", "mcap-ros2"), *_GENPY.libraries, wires="ros1 cdr").add(
     "python-signalling-nan",
@@ -166,7 +166,7 @@ _GENPY.refuses(
     "genpy-not-utf8-written", "A string that is not UTF-8 cannot be written.", "encode not-utf8"
 )
 
-# Packets that are not as they are to be.
+# Packets that are malformed or unusual.
 
 _GENPY.takes(
     "genpy-cut", "A string or an array of bytes at the end of a packet may be cut short.", *_CUTS

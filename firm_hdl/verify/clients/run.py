@@ -62,8 +62,8 @@ def judge_type(distro: str, name: str, options: Request, here: Sequence[str]) ->
     Parameters
     ----------
     options : Request
-        Of it: `libraries`, `wire`, `seed`, `most_cases`, `paths`, `names_wires`. A library that
-        does not speak a wire which the user named has not judged what it was asked to.
+        `libraries`, `wire`, `seed`, `most_cases`, `paths` and `names_wires` are used. If the user
+        chose wires, a library that lacks one of them is not judged.
     here : sequence of str
         References that can be used.
     """

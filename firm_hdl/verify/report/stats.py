@@ -77,17 +77,9 @@ def box_of(values: Sequence[float]) -> Box | None:
     if not values:
         return None
     at = np.quantile(np.asarray(values, dtype=float), (0, 0.25, 0.5, 0.75, 0.95, 1))
-    least, q1, median, q3, p95, most = (float(value) for value in at)
-    return Box(
-        count=len(values),
-        least=least,
-        q1=q1,
-        median=median,
-        q3=q3,
-        p95=p95,
-        most=most,
-        total=float(sum(values)),
-    )
+    names = ("least", "q1", "median", "q3", "p95", "most")
+    quantiles = dict(zip(names, at.tolist(), strict=True))
+    return Box(count=len(values), total=float(sum(values)), **quantiles)
 
 
 def curve_of(values: Sequence[float]) -> list[tuple[float, float]]:

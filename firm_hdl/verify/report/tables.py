@@ -79,7 +79,7 @@ class TableCell:
 
 
 Row: TypeAlias = "Iterable[TableCell | str | float]"
-"""Cells; a text, or a number with three digits, stands for itself."""
+"""Cells of a row. A plain text or number becomes a cell of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +111,7 @@ def _cell(value: TableCell | str | float) -> TableCell:
 
 
 def _with(headings: str) -> Callable[[Callable[[T], Iterator[Row]]], Callable[[T], Table]]:
-    """Make a function that yields rows one that returns a table."""
+    """Decorate a function that yields rows: it returns a table with the headings."""
 
     def decorate(rows: Callable[[T], Iterator[Row]]) -> Callable[[T], Table]:
         @wraps(rows)

@@ -1,7 +1,7 @@
-"""Benches that know nothing but ports: rows of inputs in, rows of outputs out.
+"""Benches that replay a trace: they read rows of inputs, and write rows of outputs.
 
-Each is a template beside this file, filled with the pins of a trace; what the rows are, see
-:mod:`firm_hdl.verify.simulators.trace`.
+Each bench is a template beside this file, and knows nothing of the devices but their ports.
+:mod:`firm_hdl.verify.simulators.trace` describes the rows.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def written(name: str, trace: Trace, **more: Any) -> str:
     name : str
         Of the template, without ``.j2``.
     **more
-        What else the template is to be told.
+        Other variables of the template.
     """
     text = _templates().get_template(f"{name}.j2")
     files = {"STIMULI": STIMULI, "RESULTS": RESULTS}

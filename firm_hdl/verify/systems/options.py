@@ -1,6 +1,4 @@
-"""What test systems are asked for: how types are tested, which ones, and by which systems;
-and the command that asks for one test again.
-"""
+"""Options of test systems, the whole request of a user, and the command that repeats a test."""
 
 from __future__ import annotations
 
@@ -16,7 +14,7 @@ __all__ = ["Options", "Request", "command_again"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
-    """How to run the cases of a type.
+    """How a type is tested.
 
     Attributes
     ----------
@@ -28,21 +26,21 @@ class Options:
         Whether to run with stalls, and with broken packets, as well.
     most_cases : int or None
     simulator : str
-        ``python``, or the simulator of exported text that everything is replayed in as well; see
+        ``python``, or the simulator of exported text in which every run is replayed: a key of
         :data:`firm_hdl.verify.simulators.SIMULATORS`.
     paths : tuple of str
-        Folders with ROS packages, searched before the distribution's own types.
+        Folders with ROS packages. They are searched before the distribution's own types.
     bags : tuple of str
-        Recordings whose messages are replayed; definitions come from nowhere else then.
+        Recordings whose messages are replayed. All definitions come from the recordings then.
     longest : int
-        Longest recorded message to replay, in bytes.
+        Size of the longest recorded message to replay, in bytes.
     references : tuple of str or None
         Libraries that have to write the same bytes as rosbags; `None`: all that are here.
     vcd : str or None
         Folder for a waveform of each run.
     simulated : bool
-        Whether to run the circuit at all, and not only the golden model: the same circuit may have
-        been simulated for another type.
+        Whether the circuit is simulated, and not the golden model alone. The same circuit may
+        have been simulated for another type.
     """
 
     bus_bytes: int = 8
@@ -62,20 +60,20 @@ class Options:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request(Options):
-    """The arguments of ``firm-hdl verify``, which go together.
+    """The checked arguments of ``firm-hdl verify``.
 
     Attributes
     ----------
     types : tuple of str
         Empty: all types.
     distros : tuple of str
-        Empty: see ``--distro``.
+        Empty: the default of ``--distro``.
     depends : tuple of str
-        Those of `paths`, at their end, whose types are not meant by all.
+        The last entries of `paths`: their types are not tested if no type is named.
     systems : tuple of str
         Names of test systems, in the order in which they run.
     libraries : tuple of str
-        Client libraries under test; then no test system runs.
+        Client libraries under test. If there are any, no test system runs.
     widths : tuple of int
         Buses, in bytes; see `each_width`.
     jobs : int or None
@@ -83,14 +81,14 @@ class Request(Options):
     executor : str
         See :func:`firm_hdl.jobs.executors.run_each`.
     oracles : tuple of str
-        Oracles of TS1; empty: all that are here.
+        Oracles of TS1; empty: all that are installed.
     mutations : int
-        How many changed texts TS1 judges instead of the types' own; 0: none.
+        Number of mutated definitions that TS1 judges instead of the original ones; 0: none.
     golden : str or None
         Folder of golden plans.
     share_circuits : bool or None
-        Whether types with the same circuit are simulated once; `None`: if all types are tested,
-        and no recording.
+        Whether one type is simulated for all that have the same circuit. `None`: only if all
+        types are tested, and no recording.
     results, report : str or None
         Files to write.
     """
@@ -112,30 +110,30 @@ class Request(Options):
 
     @property
     def is_ts1_alone(self) -> bool:
-        """Whether TS1 alone is to run, which looks types up by itself."""
+        """Whether only TS1 runs, which looks up types by itself."""
         return self.systems == ("ts1",) and not self.libraries
 
     @property
     def is_named(self) -> bool:
-        """Whether what is tested was asked for by name: changed texts are nobody's by name."""
+        """Whether the user named what is tested. Mutations have no names."""
         return bool(self.types) and not self.mutations
 
     @property
     def names_wires(self) -> bool:
-        """Whether the user has said on which wires, or of which distributions, types are tested."""
+        """Whether the user chose the wire formats, by name or by distributions."""
         return bool(self.distros or self.wire)
 
     @property
     def shares_circuits(self) -> bool:
-        """Whether types with the same circuit are simulated once."""
+        """Whether one type is simulated for all that have the same circuit."""
         if self.share_circuits is not None:
             return self.share_circuits
-        # Of a type that is named, people want to see a run, and of a recording its own messages.
+        # Who names a type wants to see it run; a recording has messages of each type.
         return not self.types and not self.bags
 
     @property
     def each_width(self) -> list[Options]:
-        """How types are tested on each of the buses."""
+        """The options for each of the buses."""
         return [replace(self, bus_bytes=width) for width in self.widths]
 
 

@@ -1,9 +1,8 @@
-"""What a test system is, and how its results get to the disk.
+"""What a test system is, and how its tests are run and their records kept.
 
-A system knows its tests before it runs any, so that a file of results can say what is missing.
-`kept` asks a recorder for what an earlier session found out, has the rest run behind a progress
-bar, and hands over each record as soon as it is there. What else is printed is the system's own
-business.
+A system lists all its tests before it runs one, so that a file of results can say what is missing.
+:func:`kept` takes the records of earlier sessions from a recorder, runs the other tests with a
+progress bar, and writes each record to the file at once. Each system prints its own summary.
 """
 
 from __future__ import annotations
@@ -45,17 +44,17 @@ __all__ = [
 K = TypeVar("K")
 R = TypeVar("R")
 Made: TypeAlias = "Generator[Sequence[tuple[K, Record, Iterable[str]]], None, None]"
-"""Yields keys of tests, their records, and what is printed of them."""
+"""Yields shares of results: the key of each test, its record, and the lines to print about it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Judged:
-    """What was asked of a test system, and what it says.
+    """A test, and its verdict.
 
     Attributes
     ----------
     what : str
-        For people: a type, where it is from, and how it was tested.
+        The test as people read it: the type, its distributions, and how it was tested.
     verdict : Verdict
     """
 
@@ -64,7 +63,7 @@ class Judged:
 
 
 def judged(records: Iterable[Record]) -> list[Judged]:
-    """Return what the tests of some records are worth, all of one system."""
+    """Return the tests of some records of one system with the verdicts that count."""
     by_key = {record.test.key: record for record in records}
     return [
         Judged(what=record.test.title, verdict=settled(record, by_key))
@@ -73,19 +72,19 @@ def judged(records: Iterable[Record]) -> list[Judged]:
 
 
 class Recorder:
-    """Where records go, and where those of earlier sessions are.
+    """The file that records are written to, with the records of earlier sessions.
 
     Parameters
     ----------
     writer : ResultsWriter or None
-        `None`: nothing is kept, and nothing is known.
+        `None`: there is no file, and no earlier session.
     """
 
     def __init__(self, writer: ResultsWriter | None = None):
         self._writer = writer
 
     def known(self, test: Test) -> Record | None:
-        """Return what an earlier session found out."""
+        """Return the record of an earlier session; `None` if there is none."""
         return None if self._writer is None else self._writer.before.records.get(test.key)
 
     def add(self, *records: Record) -> None:
@@ -94,12 +93,12 @@ class Recorder:
             self._writer.add(*records)
 
     def resume(self, tests: Mapping[K, Test], what: str) -> dict[K, Record]:
-        """Return what an earlier session found out, by the keys of `tests`; print how much it is.
+        """Return the records of earlier sessions, by the keys of `tests`; print how many there are.
 
         Parameters
         ----------
         what : str
-            The tests, in the plural.
+            What a test is called, in the plural.
         """
         found = {key: record for key, test in tests.items() if (record := self.known(test))}
         if self._writer is not None and found:
@@ -108,7 +107,7 @@ class Recorder:
 
 
 class System(ABC):
-    """A test system with all that it is to test; a context manager.
+    """A test system with all its tests; a context manager.
 
     Attributes
     ----------
@@ -132,11 +131,11 @@ class System(ABC):
     @property
     @abstractmethod
     def options(self) -> Mapping[str, Any]:
-        """What results depend on, as JSON can say it; the same name means the same everywhere."""
+        """What results depend on, in values that JSON has; a name means the same in all systems."""
 
     @abstractmethod
     def run(self, recorder: Recorder) -> list[Judged]:
-        """Run what has no record, print what came of all, and return it."""
+        """Run the tests without a record; print a summary of all tests, and return them."""
 
 
 def wire_of(distro: str, wire: str | None) -> str:
@@ -145,7 +144,7 @@ def wire_of(distro: str, wire: str | None) -> str:
 
 
 class Stopwatch:
-    """Times the stages of a test by the clock on the wall, and the test by the processor's."""
+    """Measures the stages of a test in wall-clock time, and the whole test in processor time."""
 
     def __init__(self) -> None:
         self._began_cpu = cpu_seconds()
@@ -153,20 +152,20 @@ class Stopwatch:
         self._stage, self._began = "generation", time.perf_counter()
 
     def enter(self, stage: str) -> None:
-        """End a stage and begin another one, of `STAGES`; the first is ``generation``."""
+        """End the current stage and begin another one of `STAGES`. The first is ``generation``."""
         now = time.perf_counter()
         self._spent[self._stage] += now - self._began
         self._stage, self._began = stage, now
 
     def stop(self, record: Record) -> Record:
-        """Return a record with all times."""
+        """End the test; return its record with the times."""
         self.enter("")
         seconds = Seconds(**{stage: self._spent[stage] for stage in STAGES})
         return replace(record, seconds=seconds, cpu_seconds=cpu_seconds() - self._began_cpu)
 
 
 def recorded(test: Test, run: Callable[[Stopwatch], Record]) -> Record:
-    """Run a test, and return its record. Nothing is raised: what goes wrong is in the record."""
+    """Run a test, and return its record. An exception becomes the verdict."""
     watch = Stopwatch()
     try:
         record = run(watch)
@@ -177,11 +176,10 @@ def recorded(test: Test, run: Callable[[Stopwatch], Record]) -> Record:
     return watch.stop(record)
 
 
-def failure_of(what: str, record: Record, most: int | None = None) -> Iterator[str]:
-    """Yield what is printed of a test that failed, with at most so many failures."""
+def failure_of(what: str, record: Record) -> Iterator[str]:
+    """Yield the text to print if a test failed: what it tests, and its failures."""
     if isinstance(record.verdict, Failed):
-        failures = record.verdict.failures
-        yield "\n".join([f"FAIL {what}", *(f"    {line}" for line in failures[:most])])
+        yield "\n".join([f"FAIL {what}", *(f"    {line}" for line in record.verdict.failures)])
 
 
 def kept(
@@ -192,16 +190,16 @@ def kept(
     label: str,
     unit: str = "type",
 ) -> dict[K, Record]:
-    """Have the tests run that have no record yet; keep and return the records of all, in order.
+    """Run the tests that have no record, and write their records; return all records, in order.
 
     Parameters
     ----------
     tests : mapping
-        All tests, by keys of the system's own.
+        All tests, by keys that the system chooses.
     run : callable
-        Is given the keys of those to run. What it yields at a time is synced together.
+        Takes the keys of the tests to run. Records that it yields together are synced together.
     label, unit : str
-        What the progress bar is called, and what it counts.
+        The title of the progress bar, and its unit.
     """
     records = recorder.resume(tests, f"{unit}s")
     left = [key for key in tests if key not in records]
@@ -233,11 +231,11 @@ def run_tests(
     Parameters
     ----------
     command : callable
-        Gives the command that repeats a test.
+        Returns the command that repeats a test.
     said : callable
-        Gives what is printed of a record.
+        Returns the lines to print about a record.
     most : int
-        How many tests one process is given at a time; their records come together.
+        The largest number of tests that a process gets at a time; their records come together.
     """
     shares = shares_of(tests, most)
     run = run_shares(_work_share, (work, context), shares, executor=executor, jobs=jobs)
@@ -261,9 +259,9 @@ def _work_share(
 
 
 def shares_of(items: Sequence[K], most: int, parts: int = 64) -> list[tuple[K, ...]]:
-    """Deal out items in order, at most `most` in a share, in at least `parts` shares if it can be.
+    """Divide items into shares of at most `most`, and at least `parts` shares where possible.
 
-    Records of a share are synced together, which costs some milliseconds each time.
+    The order is kept. Records of a share are synced together: each sync takes some milliseconds.
     """
     size = min(most, max(1, len(items) // parts))
     return [tuple(items[at : at + size]) for at in range(0, len(items), size)]
@@ -279,7 +277,7 @@ def run_shares(
 ) -> Generator[tuple[tuple[K, ...], R | Exception], None, None]:
     """Call ``work(context, share)`` for each share, and yield shares with results as they come.
 
-    A share that ends its process is run again item by item, so that one item alone is blamed.
+    If a process dies of a share, the share is run again item by item, to find the item at fault.
 
     Raises
     ------

@@ -47,7 +47,7 @@ MOST_IN_A_SHARE = 16
 
 
 def check_plan(message: Message, test: Test, wire: Wire | None, watch: Stopwatch) -> Record:
-    """Plan a type for the bus of a test, and check the plan, which is the record's only case."""
+    """Plan a type for the bus of a test, and check the plan. The plan is the only case."""
     if wrong := refusals(message):
         return Record(test=test, verdict=NotJudged(wrong[0].message))
     try:
@@ -72,7 +72,7 @@ class Ts2(System):
     ----------
     tasks : sequence of TypeUnderTest
     request : Request
-        Of it: `paths`, `wire`, `widths`, `golden`, `jobs`, `executor`.
+        `paths`, `wire`, `widths`, `golden`, `jobs` and `executor` are used.
 
     Raises
     ------
@@ -186,7 +186,7 @@ class Ts2(System):
 
 
 def _checked(options: Options, test: Test) -> Record:
-    """Read, plan and check one type. Nothing is raised: what goes wrong is in the record."""
+    """Read, plan and check one type. An exception becomes the verdict."""
 
     def run(watch: Stopwatch) -> Record:
         message = library_of(test.distro, options.paths).message(test.type)

@@ -1,8 +1,8 @@
-"""What one entry of the table of known differences is.
+"""A known difference between an oracle and firm-hdl.
 
-An entry takes one thing that it knows out of the way, and nothing else: out of the text that the
-oracle is given, out of the text that both are given, or out of what either of them says. All the
-rest is then compared. So a known difference hides no other.
+A rule removes one difference, and nothing else: from the text that the oracle reads, from the text
+that both read, or from what either of them says. Everything else is then compared, so that a known
+difference hides no other.
 """
 
 from __future__ import annotations
@@ -106,14 +106,14 @@ class KnownRule:
 class Rules(list[KnownRule]):
     """The known differences of a module, in the order in which they are applied.
 
-    Each is declared by a decorator of the function that takes it out of the way.
+    A difference is declared by a decorator of the function that removes it.
 
     Parameters
     ----------
     oracles : str
-        Names of those that they are differences to, with blanks between them.
+        Names of the oracles that differ, separated by blanks.
     **common
-        Attributes of `KnownRule` that all of them have, where nothing else is said.
+        Default values of attributes of `KnownRule`.
     """
 
     def __init__(self, oracles: str, **common: Any) -> None:
@@ -121,25 +121,25 @@ class Rules(list[KnownRule]):
         self._common = {"oracles": oracles, **common}
 
     def add(self, key: str, text: str, **more: Any) -> None:
-        """Declare a difference by attributes of `KnownRule`; `oracles` as in the constructor."""
+        """Declare a difference by attributes of `KnownRule`, with `oracles` as one text."""
         values = {**self._common, **more}
         oracles = frozenset(values.pop("oracles").split())
         self.append(KnownRule(key=key, oracles=oracles, text=text, **values))
 
     def text(self, key: str, text: str, **more: Any) -> Callable[[F], F]:
-        """Declare a difference whose `rewrite` is the function."""
+        """Declare a difference; the function is its `rewrite`."""
         return self._declared(lambda rewrite: {"rewrite": rewrite}, key, text, more)
 
     def lines(self, key: str, text: str, **more: Any) -> Callable[[F], F]:
-        """Declare a difference whose `rewrite` does to each line what the function does."""
+        """Declare a difference; its `rewrite` applies the function to each `Line`."""
         return self._declared(lambda change: {"rewrite": by_lines(change)}, key, text, more)
 
     def facts(self, key: str, text: str, **more: Any) -> Callable[[F], F]:
-        """Declare a difference whose `theirs` is the function."""
+        """Declare a difference; the function is its `theirs`."""
         return self._declared(lambda mend: {"theirs": mend}, key, text, more)
 
     def spoils(self, key: str, text: str, **more: Any) -> Callable[[F], F]:
-        """Declare a difference that nothing can be done about, which the function finds."""
+        """Declare a difference that cannot be removed; the function is its `spoils`."""
         return self._declared(lambda has: {"spoils": has, "is_mistake": False}, key, text, more)
 
     def _declared(
@@ -208,7 +208,7 @@ _LINE = re.compile(
 
 
 def by_lines(change: Callable[[Line, DefinitionCase], Line]) -> _Rewrite:
-    """Make a rewriting of one that knows lines of ``.msg``, ``.srv`` and ``.action`` files."""
+    """Return a function of ``.msg``, ``.srv`` and ``.action`` texts that changes each line."""
 
     def rewrite(case: DefinitionCase) -> str:
         def line(text: str) -> str:
@@ -231,7 +231,7 @@ def each_line(text: str, change: Callable[[str], str]) -> str:
 
 
 def mend_messages(change: Callable[[dict[str, Any]], dict[str, Any]]) -> Mend:
-    """Make a mending of facts of one that knows a message."""
+    """Return a function of facts that changes each message."""
 
     def mend(facts: Facts, case: DefinitionCase) -> Facts:
         messages = facts.get("structure")
@@ -243,7 +243,7 @@ def mend_messages(change: Callable[[dict[str, Any]], dict[str, Any]]) -> Mend:
 
 
 def mend_members(part: str, change: Callable[[dict[str, Any]], dict[str, Any]]) -> Mend:
-    """Make a mending of facts of one that knows a field (``fields``) or a constant."""
+    """Return a function of facts that changes each item of ``fields`` or ``constants``."""
     return mend_messages(
         lambda message: (
             {**message, part: [change(each) for each in message[part]]}
@@ -254,17 +254,17 @@ def mend_members(part: str, change: Callable[[dict[str, Any]], dict[str, Any]]) 
 
 
 def mend_constants(change: Callable[[dict[str, Any]], dict[str, Any]]) -> Mend:
-    """Make a mending of facts of one that knows a constant."""
+    """Return a function of facts that changes each constant."""
     return mend_members("constants", change)
 
 
 def mend_values(change: Callable[[str, Any], Any]) -> Mend:
-    """Make a mending of facts of one that knows the value of a constant, or a default.
+    """Return a function of facts that changes the values of constants, and defaults.
 
     Parameters
     ----------
     change : callable
-        Is given the type of a member, and its value.
+        Takes the type and the value of a field or of a constant.
     """
 
     def part(name: str) -> Callable[[dict[str, Any]], dict[str, Any]]:
@@ -282,5 +282,5 @@ def whole_bool(constant: dict[str, Any]) -> dict[str, Any]:
 
 
 def without_hash(facts: Facts) -> Facts:
-    """Give facts without the hash, where it is that of another type."""
+    """Return facts without the hash, which is that of another type."""
     return {name: fact for name, fact in facts.items() if name != "hash"}
