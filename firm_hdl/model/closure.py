@@ -34,12 +34,12 @@ def closure(roots: Iterable[Message]) -> list[Message]:
 
 
 def rebuilt(message: Message, change: Callable[[Message], Message]) -> Message:
-    """Return a message type with all that it is made of changed: each once, and parts first.
+    """Return a message type with every message in it changed, each once and the nested ones first.
 
     Parameters
     ----------
     change : callable
-        Is given each message with the parts that it has after the change.
+        Called with each message, whose nested messages have been changed already.
     """
     made: dict[str, Message] = {}
 

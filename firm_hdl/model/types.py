@@ -180,7 +180,7 @@ def element_of(kind: FieldType) -> Primitive | String | Message:
 
 
 def spelled(kind: FieldType, name: str) -> str:
-    """Write a type as ``.msg`` files do, with some name for that of its elements."""
+    """Write a type as ``.msg`` files do, with `name` for the type of its elements."""
     match kind:
         case Array(count=count):
             return f"{name}[{count}]"

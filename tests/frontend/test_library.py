@@ -23,7 +23,7 @@ def refused(function, *args):
 def test_public_names():
     assert firm_hdl.frontend.__all__ == [
         "DEFAULT_DISTRO", "DISTROS", "Distro", "Library", "RecordingOrigin", "all_names",
-        "load_message", "open_library", "show",
+        "load_all", "load_message", "open_library", "show",
     ]  # fmt: skip
 
 
