@@ -50,6 +50,8 @@ def stimulus_cases(judge: Judge, plan: Plan) -> Iterator[Case]:
             if size <= plan.max_message_bytes:
                 sizes.append(size)
                 yield case
+    except NotJudgedError:
+        raise
     # What rosbags raises for what it cannot write has no common base.
     except Exception as error:
         raise NotJudgedError(f"rosbags cannot write it: {type(error).__name__}: {error}") from None

@@ -19,7 +19,17 @@ from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.base import normalize_fieldname
 from rosbags.typesys.store import Typestore
 
-__all__ = ["DISTRO_STORES", "FieldType", "RosbagsOracle", "Transfers", "distro_oracle"]
+from firm_hdl.verify.results.verdict import NotJudgedError
+from firm_hdl.wire import Wire
+
+__all__ = [
+    "DISTRO_STORES",
+    "ROSBAGS_WIRES",
+    "FieldType",
+    "RosbagsOracle",
+    "Transfers",
+    "distro_oracle",
+]
 
 DISTRO_STORES = {
     "noetic": Stores.ROS1_NOETIC,
@@ -37,6 +47,9 @@ FieldType: TypeAlias = "tuple[Nodetype, Any]"
 
 Transfers: TypeAlias = "dict[tuple[str, ...], list[int | tuple[tuple[int, ...], bool]]]"
 """Payloads of each leaf, in order, by the leaf's path."""
+
+ROSBAGS_WIRES: frozenset[Wire] = frozenset({"ros1", "cdr"})
+"""What rosbags writes and reads; of any other wire, it can say nothing."""
 
 SIZES = {"bool": 1, "byte": 1, "octet": 1, "char": 1, "float32": 4, "float64": 8}
 SIZES |= {f"{sign}int{8 * size}": size for sign in ("", "u") for size in (1, 2, 4, 8)}
@@ -82,16 +95,22 @@ class RosbagsOracle:
         return (self.dialect, tuple((field, expand(kind)) for field, kind in self.fields(name)))
 
     def write(self, value: object, name: str, wire: str) -> bytes:
-        """Serialize an object."""
+        """Serialize an object; `NotJudgedError` if rosbags does not know the wire."""
+        self._check(wire)
         if wire == "ros1":
             return bytes(self.store.serialize_ros1(value, name))
         return bytes(self.store.serialize_cdr(value, name, little_endian=True))
 
     def read(self, packet: bytes, name: str, wire: str) -> object:
-        """Deserialize a packet."""
+        """Deserialize a packet; `NotJudgedError` if rosbags does not know the wire."""
+        self._check(wire)
         if wire == "ros1":
             return self.store.deserialize_ros1(packet, name)
         return self.store.deserialize_cdr(packet, name)
+
+    def _check(self, wire: str) -> None:
+        if wire not in ROSBAGS_WIRES:
+            raise NotJudgedError(f"rosbags does not write {wire}")
 
     def transfers(self, value: object, name: str, wire: str, bus_bytes: int) -> Transfers:
         """Return what the leaves of a deserializer transfer for an object."""

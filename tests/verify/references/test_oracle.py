@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from firm_hdl.frontend import Library
+from firm_hdl.plan import build_plan
+from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.verify.references.oracle import DISTRO_STORES, RosbagsOracle, distro_oracle
+from firm_hdl.verify.results.verdict import NotJudgedError
+from firm_hdl.wire import lay_out
 
 INNER = "string name\nuint16[] numbers\n"
 OUTER = """
@@ -107,3 +114,20 @@ def test_structures_tell_types_apart():
 def test_builtin_times_of_ros1_are_no_types_of_their_own():
     assert "builtin_interfaces/msg/Time" not in distro_oracle("noetic").names()
     assert "builtin_interfaces/msg/Time" in distro_oracle("humble").names()
+
+
+def test_a_wire_that_rosbags_does_not_have_is_not_judged():
+    said = "^rosbags does not write can$"
+    oracle = distro_oracle("lyrical")
+    value = oracle.store.types["std_msgs/msg/Bool"](data=True)
+    with pytest.raises(NotJudgedError, match=said):
+        oracle.write(value, "std_msgs/msg/Bool", "can")
+    with pytest.raises(NotJudgedError, match=said):
+        oracle.read(b"\0\1\0\0\1", "std_msgs/msg/Bool", "can")
+
+
+def test_there_are_no_packets_for_the_bench_of_such_a_wire():
+    message = Library("lyrical").message("std_msgs/msg/Bool")
+    plan = build_plan(lay_out(message))
+    assert stimuli(message, plan)
+    assert stimuli(message, replace(plan, wire="can")) == []
