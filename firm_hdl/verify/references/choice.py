@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from firm_hdl.model import Message, closure
 from firm_hdl.verify.references.client import ClientMissingError
-from firm_hdl.verify.references.clients import client, close_clients
+from firm_hdl.verify.references.clients import CLIENTS, client, close_clients
 from firm_hdl.verify.references.fastcdr import NEWER
 from firm_hdl.verify.references.wide_oracle import stand_ins
 from firm_hdl.wire import Wire
@@ -19,11 +19,8 @@ __all__ = [
     "references_here",
 ]
 
-WRITERS: dict[str, tuple[Wire, ...]] = {
-    "genpy": ("ros1",),
-    "fastcdr": ("cdr",),
-    **{kind.name: ("cdr",) for kind in NEWER},
-    "cyclonedds": ("cdr",),
+WRITERS: dict[str, frozenset[Wire]] = {
+    name: kind.wires for name, kind in CLIENTS.items() if kind.may_confirm
 }
 """Libraries that may confirm what rosbags writes, and on which wires."""
 
@@ -53,7 +50,7 @@ def find_references(wanted: Sequence[str] | None, wires: Sequence[str]) -> list[
     """
     said = []
     for name in WRITERS if wanted is None else wanted:
-        if wanted is None and not set(wires) & set(WRITERS[name]):
+        if wanted is None and not set(wires) & WRITERS[name]:
             continue
         why = client(name).missing()
         if why is not None and wanted is not None:

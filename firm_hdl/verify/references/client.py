@@ -141,11 +141,14 @@ class Client(ABC):
         What it speaks.
     byte_orders : tuple of "little" and "big"
         Which byte orders of CDR it is meant to read.
+    may_confirm : bool
+        Whether TS3 asks it to write what rosbags writes, on its wires (``--reference``).
     """
 
     name: ClassVar[str]
     wires: ClassVar[frozenset[Wire]]
     byte_orders: ClassVar[tuple[str, ...]] = ("little",)
+    may_confirm: ClassVar[bool] = False
 
     @abstractmethod
     def missing(self) -> str | None:

@@ -55,6 +55,7 @@ class FastCdr(Client):
     name: ClassVar[str] = "fastcdr"
     wires: ClassVar = frozenset({"cdr"})
     byte_orders = ("little", "big")
+    may_confirm = True
     release: ClassVar[Release | None] = None
     wchar_bytes: ClassVar[int] = 4
 

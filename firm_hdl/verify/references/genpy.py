@@ -47,6 +47,7 @@ class Genpy(Client):
 
     name = "genpy"
     wires: ClassVar = frozenset({"ros1"})
+    may_confirm = True
 
     @cached_property
     def _worker(self) -> worker.Worker:

@@ -146,6 +146,7 @@ class CycloneDds(_Imported):
     module = "cyclonedds.idl"
     wires: ClassVar = frozenset({"cdr"})
     byte_orders = ("little", "big")
+    may_confirm = True
 
     def open(self, message: Message, wire: Wire) -> Codec:
         refuse_wide(message, self.name)
