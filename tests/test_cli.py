@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import importlib
+import json
 import os
 import subprocess
 import sys
@@ -283,7 +284,10 @@ def test_build_that_is_interrupted_leaves_whole_folders(here, capsys, monkeypatc
     assert [path.name for path in here.glob("vhdl_out/lyrical/*")] == [
         "std_msgs_msg_Bool_cdr_8"
     ] * (calls // 2)
-    assert all(len(list(path.iterdir())) == 10 for path in here.glob("vhdl_out/lyrical/*"))
+    for path in here.glob("vhdl_out/lyrical/*"):
+        listed = json.loads((path / "manifest.json").read_text())["files"]
+        found = {each.relative_to(path).as_posix() for each in path.rglob("*") if each.is_file()}
+        assert found == {*listed, "manifest.json"}
     assert not list(here.glob("vhdl_out/lyrical/.*"))
     # The converters that were not used complain when they are collected.
     gc.collect()

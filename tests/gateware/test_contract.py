@@ -8,6 +8,7 @@ from amaranth.sim import Simulator
 
 from firm_hdl import Deserializer, Serializer, Status
 from firm_hdl.sim import Stalls, encode, loopback, receive_packets, send_packets
+from firm_hdl.wire import RULES
 from tests.strategies import make
 
 PAIR = make("ros1", {"x": "uint8", "y": "uint8"})
@@ -225,7 +226,7 @@ def test_a_cdr_string_of_length_zero_is_empty():
     ("argument", "value", "error"),
     [
         ("bus_bytes", 3, "Bus width must be one of 1, 2, 4, 8, 16, 32, 64 bytes, not 3"),
-        ("wire", "xcdr2", "Wire must be one of 'ros1', 'cdr', not 'xcdr2'"),
+        ("wire", "can", f"Wire must be one of {', '.join(map(repr, RULES))}, not 'can'"),
         ("window_words", 3, "Window must have 1 or 2 bus words, not 3"),
         (
             "max_message_bytes",

@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from firm_hdl.plan import build_plan, from_yaml, to_yaml
-from firm_hdl.wire import lay_out
+from firm_hdl.wire import RULES, lay_out
 from tests.steps import calls_at_most
 from tests.strategies import BUS_WIDTHS, make
 
@@ -143,7 +143,7 @@ MISTAKES = [
     ("", "", "Line 1: a plan must be a mapping, not empty"),
     (BODY, "[1, 2]", "Line 1: a plan must be a mapping"),
     ("wire: cdr\n", "", "Line 1: the plan has no 'wire'"),
-    ("wire: cdr", "wire: can", "Line 2: wire must be 'ros1' or 'cdr', not 'can'"),
+    ("wire: cdr", "wire: can", f"Line 2: wire must be {' or '.join(map(repr, RULES))}, not 'can'"),
     ("wire: cdr", "wire: cdr\nwires: 2", "Line 3: a plan has no 'wires'"),
     ("bus_bytes: 8", "bus_bytes: wide", "Line 3: bus_bytes must be a number, not 'wide'"),
     ("bus_bytes: 8", "bus_bytes: [8]", "Line 3: bus_bytes must be a single value"),
