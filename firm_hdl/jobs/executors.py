@@ -182,7 +182,8 @@ def _distribute(
         if not running:
             return suspects
         finished = _finished(running, source)
-        for future in finished:
+        # In the order of the tasks: a set of futures has none.
+        for future in [each for each in running if each in finished]:
             key, arguments = running.pop(future)
             try:
                 result: R | Exception = future.result()

@@ -7,7 +7,7 @@ from collections import defaultdict
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from firm_hdl.verify import Oracle, distro_oracle, make_cases
+from firm_hdl.verify import RosbagsOracle, distro_oracle, make_cases
 from firm_hdl.verify.cases.make import run_lengths
 
 DEEP = """
@@ -25,7 +25,7 @@ def deep():
     store = get_typestore(Stores.EMPTY)
     store.register(get_types_from_msg(POINT, "test_msgs/msg/Point"))
     store.register(get_types_from_msg(DEEP, "test_msgs/msg/Deep"))
-    return Oracle(store, "ros2")
+    return RosbagsOracle(store, "ros2")
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8, 16, 32, 64])
