@@ -1,7 +1,7 @@
-"""Cycles per beat of messages long and short, on buses of several widths.
+"""Measure cycles per beat of long and short messages, on buses of several widths.
 
-One word per cycle would be 1.000. Packets go back to back through deserializer and serializer,
-simulated; nothing stalls. This is what ``make bench`` runs.
+One word per cycle would be 1.000. Packets go back to back through a simulated deserializer and
+serializer, without stalls. ``make bench`` runs this.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def new(type_: str, /, **fields: Any) -> Any:
 
 
 def header() -> Any:
-    """Make a header with the length of a usual frame's name."""
+    """Make a header with a frame name of common length."""
     stamp = new("builtin_interfaces/msg/Time", sec=1, nanosec=2)
     return new("std_msgs/msg/Header", stamp=stamp, frame_id="camera_link")
 
@@ -77,7 +77,7 @@ MESSAGES: dict[str, tuple[int, Callable[[], Any]]] = {
 
 
 def main() -> int:
-    """Run the bench; return 1 if a byte came out wrong."""
+    """Run the bench; return 1 if a byte is wrong."""
     row = "{:<28}{:>6}{:>10}{:>9}{:>9}{:>9}{:>13}{:>10}"
     heads = ("type", "bus", "messages", "bytes", "beats", "cycles", "cycles/beat", "seconds")
     print(row.format(*heads), flush=True)

@@ -1,8 +1,8 @@
-"""Real ROS messages through hardware that was generated from their definitions.
+"""Send real ROS messages through hardware that is generated from their definitions.
 
-Builds three types, then sends messages that rosbags serialized through their deserializer and
-serializer, simulated, and compares what comes out byte for byte. Then the test benches of the
-generated VHDL do so in GHDL, where that is installed. This is what ``make demo`` runs.
+The demo builds three types. It sends messages that rosbags serialized through their simulated
+deserializer and serializer, and compares the packets that come out byte for byte. If GHDL is
+installed, the test benches of the generated VHDL do the same there. ``make demo`` runs this.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ GHDLS = ("ghdl", "ghdl-mcode", "ghdl-llvm", "ghdl-gcc")
 
 @dataclass(frozen=True, kw_only=True)
 class Example:
-    """A type, and messages of it."""
+    """A type, and a function that makes its messages."""
 
     type: str
     distro: str
@@ -44,7 +44,7 @@ class Example:
 
 
 def stamp(types: dict[str, Any], k: int) -> Any:
-    """Make the time of the k-th message, 100 Hz after some day in 2026."""
+    """Make the time of the k-th message, at 100 Hz, from a day in 2026 on."""
     return types["builtin_interfaces/msg/Time"](
         sec=1_767_225_600 + k // 100, nanosec=k % 100 * 10_000_000
     )
@@ -63,7 +63,7 @@ def turned(types: dict[str, Any], angle: float) -> Any:
 
 
 def imu(types: dict[str, Any], k: int) -> Any:
-    """Make what an IMU sees that turns slowly and shakes a little."""
+    """Make the data of an IMU that turns slowly and shakes a little."""
     header = types["std_msgs/msg/Header"](stamp=stamp(types, k), frame_id="imu_link"[: k % 9])
     return types["sensor_msgs/msg/Imu"](
         header=header,
@@ -100,7 +100,7 @@ def cloud(types: dict[str, Any], k: int) -> Any:
 
 
 def odometry(types: dict[str, Any], k: int) -> Any:
-    """Make what a robot says of itself that drives in a circle."""
+    """Make the odometry of a robot that drives in a circle."""
     geometry = {name.rpartition("/")[2]: kind for name, kind in types.items() if "geometry" in name}
     position = geometry["Point"](x=math.cos(0.1 * k), y=math.sin(0.1 * k), z=0.0)
     pose = geometry["Pose"](position=position, orientation=turned(types, 0.1 * k))
@@ -124,7 +124,7 @@ EXAMPLES = (
 
 
 def main() -> int:
-    """Run the demo; return 1 if a byte came out wrong."""
+    """Run the demo; return 1 if a byte is wrong."""
     for distro in dict.fromkeys(example.distro for example in EXAMPLES):
         types = [example.type for example in EXAMPLES if example.distro == distro]
         options = ["--distro", distro, "--bus-bytes", str(BUS_BYTES), "--out", OUT, "--force"]
@@ -145,7 +145,7 @@ def main() -> int:
 
 
 def run_vhdl() -> int:
-    """Run the benches of the VHDL; return how many failed."""
+    """Run the benches of the VHDL; return the number of failures."""
     if not any(map(shutil.which, GHDLS)):
         print("\nGHDL is not installed, so the VHDL's test benches did not run (apt install ghdl).")
         return 0
@@ -163,7 +163,7 @@ def run_vhdl() -> int:
 
 
 def run(example: Example) -> tuple[Iterator[str], bool]:
-    """Send messages through a type's converters; return figures, and whether all is well."""
+    """Send messages through a type's converters; return figures, and whether all are equal."""
     message = load_message(example.type, distro=example.distro)
     sent = serialize(example)
     seen = loopback(message, sent, bus_bytes=BUS_BYTES)
@@ -176,7 +176,7 @@ def run(example: Example) -> tuple[Iterator[str], bool]:
 
 
 def serialize(example: Example) -> list[bytes]:
-    """Serialize an example's messages, without any code of ours."""
+    """Serialize an example's messages with rosbags, without code of firm-hdl."""
     store = get_typestore(example.store)
     package, _, name = example.type.replace("/msg/", "/").partition("/")
     full_name = f"{package}/msg/{name}"

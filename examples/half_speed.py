@@ -1,7 +1,7 @@
 """An accelerator between a deserializer and a serializer: it halves every velocity of a Twist.
 
-Shows the record view, what to do with `status`, and a simulation with `firm_hdl.sim`. Run it with
-``python examples/half_speed.py``.
+The example shows the record view, the use of `status`, and a simulation with `firm_hdl.sim`. Run it
+with ``python examples/half_speed.py``.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ TWIST = load_message("geometry_msgs/msg/Twist")
 
 
 def half(bits: Value) -> Value:
-    """Halve a float64: its exponent less one. What would become subnormal becomes zero."""
+    """Halve a float64 by subtracting 1 from its exponent. Subnormal results become zero."""
     exponent, sign = bits[52:63], bits[63]
     halved = Cat(bits[:52], (exponent - 1)[:11], sign)
     kept = Mux(exponent == 0x7FF, bits, halved)
@@ -40,7 +40,7 @@ def half(bits: Value) -> Value:
 
 
 class HalfSpeed(wiring.Component):
-    """Halve every velocity of Twist messages, and drop packets that are not in order."""
+    """Halve every velocity of Twist messages, and drop damaged packets."""
 
     def __init__(self) -> None:
         packets = PacketSignature(8)
@@ -58,8 +58,8 @@ class HalfSpeed(wiring.Component):
         connect(m, tx.packets, flipped(self.packets_out))
 
         # One record and one status come for each packet. They are taken together, and the record
-        # goes on only if all of its packet was good. It waits for the serializer in a register, so
-        # that the deserializer can fill its own with the next message in the meantime.
+        # is passed on only if its packet was good. It waits for the serializer in a register, so
+        # that the deserializer can fill its own registers with the next message meanwhile.
         good = rx.status.payload == Status.OK
         both = reader.record.valid & rx.status.valid
         free = ~writer.record.valid | writer.record.ready
@@ -78,7 +78,7 @@ class HalfSpeed(wiring.Component):
 
 
 def main() -> int:
-    """Send three messages and a packet that is cut short; return 1 if the wrong bytes come out."""
+    """Send three messages and a truncated packet; return 1 if a byte is wrong."""
     store = get_typestore(Stores.ROS2_LYRICAL)
     twist, vector = (store.types[f"geometry_msgs/msg/{name}"] for name in ("Twist", "Vector3"))
 

@@ -1,8 +1,8 @@
-"""A filter over the ranges of a LaserScan: what is farther than a limit becomes infinite.
+"""A filter over the ranges of a LaserScan: ranges over a limit become infinite.
 
-Shows an accelerator that changes the items of a sequence on their way, while all other fields
-pass, and how to drop a message of any size whose packet was damaged: what is known only at its end
-decides whether the new packet leaves. Run it with ``python examples/range_filter.py``.
+The example shows an accelerator that changes the items of a sequence, while all other fields pass.
+It also shows how to drop a damaged message of any size: the new packet is held back until the
+status is known. Run it with ``python examples/range_filter.py``.
 """
 
 from __future__ import annotations
@@ -30,21 +30,23 @@ INFINITE = 0x7F800000
 
 
 class PacketBuffer(wiring.Component):
-    """Hold packets back until it is known whether they are good, and drop those that are not.
+    """Hold packets back until their verdict is known, and drop those that are not good.
 
-    A packet longer than the memory is dropped as well. Two cycles from a verdict to the first beat.
+    A packet longer than the memory is dropped, too. Latency from a verdict to the first beat: 2
+    cycles.
 
     Parameters
     ----------
     bus_bytes : int
     depth : int
-        How many beats the memory has, a power of two.
+        Size of the memory in beats, a power of two.
 
     Members
     -------
-    i, o : packets
+    i : In(PacketSignature(bus_bytes))
+    o : Out(PacketSignature(bus_bytes))
     verdict : In(stream.Signature(1))
-        Once per packet, whether it may leave; taken behind its last beat.
+        One transfer per packet: 1 if the packet may leave. Taken after the last beat.
     """
 
     def __init__(self, bus_bytes: int, depth: int) -> None:
@@ -58,8 +60,8 @@ class PacketBuffer(wiring.Component):
         m.submodules.memory = memory = Memory(shape=shape, depth=self.depth, init=[])
         write, read = memory.write_port(), memory.read_port()
 
-        # One bit more than an address has, so that full and empty differ. Beats from `taken` up to
-        # `good` may leave; those from there up to `written` wait for their verdict.
+        # Pointers have one bit more than an address, so that full and empty differ. Beats from
+        # `taken` to `good` may leave; beats from `good` to `written` wait for their verdict.
         taken, good, written = (
             Signal(range(2 * self.depth), name=name) for name in ("taken", "good", "written")
         )
@@ -95,14 +97,14 @@ class PacketBuffer(wiring.Component):
 
 
 class RangeFilter(wiring.Component):
-    """Make ranges of LaserScan messages infinite that are farther than a limit.
+    """Make ranges of LaserScan messages that exceed a limit infinite.
 
-    Packets that are not in order are dropped, as are those of more than `depth` beats.
+    Damaged packets and packets of more than `depth` beats are dropped.
 
     Parameters
     ----------
     limit : float
-        In metres, not negative.
+        Limit in metres, not negative.
     """
 
     def __init__(self, limit: float, *, bus_bytes: int = 8, depth: int = 256) -> None:
@@ -120,7 +122,7 @@ class RangeFilter(wiring.Component):
         connect(m, tx.packets, held.i)
         connect(m, held.o, flipped(self.packets_out))
 
-        # All fields pass; of the ranges, their number does, and each item is looked at.
+        # All fields pass, and so does the length of the ranges. Only their items are filtered.
         for field in LASER_SCAN.fields:
             if field.name != "ranges":
                 connect(m, getattr(rx.message, field.name), getattr(tx.message, field.name))
@@ -134,8 +136,8 @@ class RangeFilter(wiring.Component):
         for lane in range(len(items.payload.data)):
             m.d.comb += filtered.payload.data[lane].eq(self.filtered(items.payload.data[lane]))
 
-        # The fields were on their way before the end of the packet was seen. So the new packet
-        # waits for the statuses of both converters, and all three are taken together.
+        # The fields pass before the end of the packet is seen. So the new packet waits for the
+        # statuses of both converters, and all three are taken together.
         statuses = rx.status, tx.status
         good = (rx.status.payload == Status.OK) & (tx.status.payload == Status.OK)
         m.d.comb += [
@@ -146,12 +148,12 @@ class RangeFilter(wiring.Component):
         return m
 
     def filtered(self, bits: Value) -> Value:
-        """Filter a float32: those that are not negative are in the order of their bits."""
+        """Filter a float32; numbers that are not negative have the same order as their bits."""
         return Mux((bits > self.limit_bits) & (bits < INFINITE), INFINITE, bits)
 
 
 def main() -> int:
-    """Send scans, damaged ones among them; return 1 if the wrong bytes come out."""
+    """Send good and damaged scans; return 1 if a byte is wrong."""
     store = get_typestore(Stores.ROS2_LYRICAL)
 
     def packet(ranges: list[float], frame: str = "laser") -> bytes:
@@ -170,7 +172,7 @@ def main() -> int:
     sent = [
         packet([near, far, edge, beyond, math.inf, math.nan, -far]),
         good[:-1],  # The last byte is missing.
-        good[:70],  # So are most of the ranges.
+        good[:70],  # Most of the ranges are missing.
         packet([far], "another frame"),
         good + bytes(8),
         packet([near] * 600),  # More than the buffer holds.

@@ -1,7 +1,7 @@
-// The speed of a motor from geometry_msgs/msg/Twist: that of the last packet that was in order.
+// The speed of a motor from geometry_msgs/msg/Twist: that of the last good packet.
 //
-// The same as ../sv_motor/motor.sv, for tools that read no structs: the instance is a copy of the
-// template, ..._deserializer_verilog.veo, in which the line of the one field that is used changed.
+// The same as ../sv_motor/motor.sv, for tools without structs. The instance is a copy of the
+// template ..._deserializer_verilog.veo, in which only the line of linear.x is changed.
 
 module motor (
   input             aclk,

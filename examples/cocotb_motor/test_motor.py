@@ -1,4 +1,4 @@
-"""A bench in cocotb: packets from rosbags, by cocotbext-axi with random pauses, into the motor."""
+"""A cocotb bench: cocotbext-axi sends packets from rosbags to the motor, with random pauses."""
 
 import random
 import struct

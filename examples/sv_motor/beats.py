@@ -1,6 +1,7 @@
-"""Write the beats of the bench, and the speeds that the motor is to have, one after the other.
+"""Write the beats for the bench, and the speeds that the motor must have, in order.
 
-rosbags serializes the messages. Some are damaged on the way; their speed, 9 m/s, is none.
+rosbags serializes the messages. Some packets are damaged; the motor must never have their speed of
+9 m/s.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ def packet(speed: float) -> bytes:
 
 
 def beats(data: bytes) -> Iterator[str]:
-    """Yield `tdata` in hexadecimal, and `tkeep` and `tlast` in binary; the first byte is lowest."""
+    """Yield `tdata` in hexadecimal, first byte lowest, and `tkeep` and `tlast` in binary."""
     for place in range(0, len(data), BUS_BYTES):
         part = data[place : place + BUS_BYTES]
         is_last = place + BUS_BYTES >= len(data)

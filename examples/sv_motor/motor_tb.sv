@@ -25,7 +25,7 @@ module motor_tb;
     aresetn = 1;
     while ($fscanf(beats, "%h %b %b", data, keep, last) == 3) begin
       beat = '{tdata: data, tkeep: keep, tlast: last, tuser: 1'b0, tvalid: 1'b1};
-      // All changes are half a cycle away from the edge that counts.
+      // Signals change at the falling edge, half a cycle before they are sampled.
       #1 while (!tready) @(negedge aclk) #1;
       @(negedge aclk) beat.tvalid = 0;
       if (last) sent += 1;

@@ -1,8 +1,9 @@
--- The speed of a motor from geometry_msgs/msg/Twist: that of the last packet that was in order.
+-- The speed of a motor from geometry_msgs/msg/Twist: that of the last good packet.
 --
--- The fields of a damaged packet are offered like those of a good one; what is behind the damage is
--- 0. Only the status tells them apart. It comes once per packet, when all of the message is there.
--- So the message waits for it, both are taken together, and the speed changes on OK alone.
+-- The message of a damaged packet becomes valid like that of a good one; fields behind the damage
+-- are 0. Only the status reports the damage. It comes once per packet, not before the message. So
+-- the message waits for the status, both are taken together, and the speed changes only if the
+-- status is OK.
 
 library ieee;
 use ieee.std_logic_1164.all;

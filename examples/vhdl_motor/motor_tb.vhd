@@ -1,5 +1,5 @@
 -- Sends the packets of a file, with random stalls, and compares each new speed of the motor with
--- another file: one speed a line, in hexadecimal.
+-- another file: one speed per line, in hexadecimal.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -29,7 +29,7 @@ begin
   aclk <= not aclk after 5 ns;
   aresetn <= '1' after 22 ns;
 
-  -- `firm-hdl build` writes this one next to its own test benches.
+  -- `firm-hdl build` writes this entity next to its own test benches.
   source : entity work.firm_hdl_axis_source
     generic map (bus_bytes => 4, stimuli => packets, seed => seed, stalls => 40)
     port map (

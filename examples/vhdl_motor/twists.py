@@ -1,6 +1,7 @@
-"""Write the packets of the bench, and the speeds that the motor is to have, one after the other.
+"""Write the packets for the bench, and the speeds that the motor must have, in order.
 
-rosbags serializes the messages. Some are damaged on the way; their speed, 9 m/s, is none.
+rosbags serializes the messages. Some packets are damaged; the motor must never have their speed of
+9 m/s.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Write scans and clouds for the bench, and the clouds that are to come out.
+"""Write scans and clouds for the bench, and the clouds that must come out.
 
-rosbags serializes the messages. Some are damaged on the way: neither they nor the messages that
-come together with them leave anything behind.
+rosbags serializes the messages. Some packets are damaged: neither they nor the packets that are
+paired with them may lead to an output.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def scan(number: int, frame: str) -> bytes:
 
 
 def cloud(number: int, frame: str, points: int) -> bytes:
-    """Serialize a cloud; what is in it but the header depends on the number of points alone."""
+    """Serialize a cloud; apart from the header, it depends only on the number of points."""
     field = STORE.types["sensor_msgs/msg/PointField"]
     fields = [field(name=name, offset=4 * k, datatype=7, count=1) for k, name in enumerate("xyz")]
     data = np.arange(12 * points, dtype=np.uint32).astype(np.uint8)
@@ -42,14 +42,14 @@ def header(number: int, frame: str) -> Any:
 
 
 def main(folder: Path) -> None:
-    """Write `scans.txt`, `clouds.txt` and `expected.txt`: a packet a line, in hexadecimal."""
+    """Write `scans.txt`, `clouds.txt` and `expected.txt`: one packet per line, in hexadecimal."""
     good_scan, good_cloud = scan(9, "broken"), cloud(9, "broken", 7)
     pairs = [
         (scan(1, "laser"), cloud(50, "lidar", 3)),
         (good_scan[:20], good_cloud),  # The scan ends within its header.
         (good_scan, good_cloud[:-1]),  # The last byte of the cloud is missing.
         (scan(2, "another laser"), cloud(51, "", 0)),
-        (good_scan + bytes(8), good_cloud),  # The scan goes on behind its end.
+        (good_scan + bytes(8), good_cloud),  # Bytes follow the scan.
         (good_scan, cloud(52, "lidar", 100)),  # More than the buffer holds.
         (good_scan, b"\0\2" + good_cloud[2:]),  # Another encapsulation.
         (scan(3, ""), cloud(53, "a longer name than that", 20)),

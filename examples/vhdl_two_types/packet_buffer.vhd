@@ -1,7 +1,7 @@
--- Holds packets back until it is known whether they are good, and drops those that are not.
+-- Holds packets back until their verdict is known, and drops those that are not good.
 --
--- Each packet comes with one verdict, which is taken behind its last beat. A packet that is longer
--- than the memory is dropped as well.
+-- Each packet has one verdict, which is taken after its last beat. A packet that is longer than the
+-- memory is dropped, too.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -37,14 +37,14 @@ architecture rtl of packet_buffer is
   type memory_t is array (0 to 2 ** address_bits - 1) of beat_t;
   signal memory : memory_t;
 
-  -- One bit more than an address has, so that full and empty differ. Beats from `taken` up to
-  -- `good` may leave; those from there up to `written` wait for their verdict.
+  -- Pointers have one bit more than an address, so that full and empty differ. Beats from `taken` to
+  -- `good` may leave; beats from `good` to `written` wait for their verdict.
   subtype place_t is unsigned(address_bits downto 0);
   signal taken, good, written : place_t;
 
   signal is_full  : std_logic;
-  signal too_long : std_logic;  -- what is left of the packet is not kept
-  signal is_over  : std_logic;  -- the packet's last beat was taken, and its verdict was not
+  signal too_long : std_logic;  -- the packet does not fit; its rest is dropped
+  signal is_over  : std_logic;  -- the packet's last beat was taken, but not yet its verdict
   signal accept   : std_logic;
 
   signal beat       : beat_t;
@@ -74,7 +74,7 @@ begin
         is_over <= s_axis_tlast;
       end if;
 
-      -- Full of one packet that has not ended: it never fits.
+      -- The memory is full of one packet that has not ended: the packet does not fit.
       if (is_full and not is_over) = '1' and taken = good then
         too_long <= '1';
       end if;

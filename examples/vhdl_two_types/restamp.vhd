@@ -1,8 +1,8 @@
--- Takes a LaserScan and a PointCloud2 at a time, and gives the cloud the header of the scan.
+-- Takes pairs of a LaserScan and a PointCloud2, and gives the cloud the header of the scan.
 --
--- A header has a string, and a cloud has any size: neither waits in registers until the status of
--- its packet is known. So the new packet waits instead, in a buffer, and leaves if the scan, the
--- cloud and the new message are OK. If one of them is not, all three are dropped.
+-- A header has a string, and a cloud has any size: neither can wait in registers until the status of
+-- its packet is known. So the new packet waits in a buffer, and leaves only if the statuses of the
+-- scan, the cloud and the new message are all OK. Otherwise it is dropped.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -46,7 +46,7 @@ architecture rtl of restamp is
   signal scan_status, cloud_status, made_status : status_t;
   signal scan_ended, cloud_ended, made_ended    : std_logic;
 
-  -- The new packet on its way to the buffer, and whether it may leave it.
+  -- The new packet on its way to the buffer, and the verdict on it.
   signal tdata                : std_logic_vector(31 downto 0);
   signal tkeep                : std_logic_vector(3 downto 0);
   signal tlast, tvalid, tready : std_logic;
@@ -70,7 +70,8 @@ begin
       m_axis_status_tvalid => cloud_ended, m_axis_status_tready => judged
     );
 
-  -- The scan's header and the cloud's other fields go into the new message; the rest is taken.
+  -- The scan's header and the cloud's other fields go into the new message. The other fields of the
+  -- scan and the header of the cloud are taken and dropped.
   process (all)
   begin
     made <= cloud;
@@ -89,7 +90,7 @@ begin
       m_axis_status_tvalid => made_ended, m_axis_status_tready => judged
     );
 
-  -- Each message has one status. All three are taken at once, when the buffer has the packet.
+  -- Each message has one status. All three are taken together, when the buffer has the whole packet.
   all_ended <= scan_ended and cloud_ended and made_ended;
   judged <= all_ended and judge;
   good <= '1' when scan_status = STATUS_OK and cloud_status = STATUS_OK and

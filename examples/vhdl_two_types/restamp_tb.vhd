@@ -1,5 +1,5 @@
--- Sends scans and clouds from two files, with random stalls, and compares what comes out with a
--- third one, byte by byte.
+-- Sends scans and clouds from two files, with random stalls, and compares the packets that come out
+-- with a third file, byte by byte.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -32,7 +32,7 @@ begin
   aclk <= not aclk after 5 ns;
   aresetn <= '1' after 22 ns;
 
-  -- `firm-hdl build` writes these two next to its own test benches. The sink fails with a packet
+  -- `firm-hdl build` writes these entities next to its own test benches. The sink fails at a packet
   -- that it does not expect.
   scan_source : entity work.firm_hdl_axis_source
     generic map (bus_bytes => 4, stimuli => folder & "/scans.txt", seed => seed, stalls => 40)
@@ -75,7 +75,8 @@ begin
   watch : process
   begin
     wait until scans_sent and clouds_sent for 200 us;
-    -- A while longer, in case that something comes that should not.
+    -- Wait 20 us more, in case that an unexpected packet comes.
+
     wait for 20 us;
     assert scans_sent and clouds_sent and came = total
       report "FAIL " & integer'image(scans) & " scans and " & integer'image(clouds) &
