@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from tqdm import tqdm
 
 from firm_hdl.arguments import add_jobs, add_types_or_all, positive
-from firm_hdl.equivalence.converters import Attempt, ProofTask, both, run_tasks
+from firm_hdl.equivalence.converters import Attempt, ProofTask, both_directions, run_tasks
 from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT
 from firm_hdl.equivalence.tools import MissingToolError, ToolError, find_tools
 from firm_hdl.export.build import plan_of
@@ -54,7 +54,7 @@ def run_prove(given: argparse.Namespace) -> int:
     tasks = [
         task
         for name in names
-        for task in both(
+        for task in both_directions(
             name,
             distro=library.distro,
             paths=(*given.path, *given.depends),

@@ -25,7 +25,7 @@ __all__ = [
     "Attempt",
     "ProofTask",
     "attempt",
-    "both",
+    "both_directions",
     "converter_vhdl",
     "prove_converter",
     "run_tasks",
@@ -165,7 +165,7 @@ def run_tasks(
             yield task, result
 
 
-def both(name: str, **options: object) -> list[ProofTask]:
+def both_directions(name: str, **options: object) -> list[ProofTask]:
     """Return the tasks for both converters of a type."""
     return [
         ProofTask(name=name, direction=direction, **options)  # type: ignore[arg-type]

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from firm_hdl.covering.choose import choose, cost, features
-from firm_hdl.equivalence.converters import ProofTask, both
+from firm_hdl.equivalence.converters import ProofTask, both_directions
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
@@ -76,9 +76,11 @@ def covering_tasks(folder: Path, *, bus_bytes: int = 8, timeout: float) -> list[
         own = str(folder / distro)
         names = [*_chosen(distro, bus_bytes), *_POPULAR[distro]]
         for name in dict.fromkeys(names):
-            tasks += both(name, distro=distro, bus_bytes=bus_bytes, timeout=timeout)
+            tasks += both_directions(name, distro=distro, bus_bytes=bus_bytes, timeout=timeout)
         for name in Library(distro, [own], origins=()).names():
-            tasks += both(name, distro=distro, paths=(own,), bus_bytes=bus_bytes, timeout=timeout)
+            tasks += both_directions(
+                name, distro=distro, paths=(own,), bus_bytes=bus_bytes, timeout=timeout
+            )
     return tasks
 
 

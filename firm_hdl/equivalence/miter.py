@@ -155,7 +155,7 @@ class _Maker:
         self._ports = {name: vhdl_name.lower() for name, vhdl_name in ports.items()}
         self._signals = signals
         # Nets of either side that the combined circuit replaces, with their replacement.
-        self._same: dict[int, Bit] = {}
+        self._aliases: dict[int, Bit] = {}
         self._inputs: dict[str, Bits] = {}
         self._claims: list[tuple[str, Bits, Bits]] = []
         self._differences: list[str] = []
@@ -199,7 +199,7 @@ class _Maker:
                     continue
                 if what == "input":
                     self._inputs[f"input {name}"] = bits
-                    self._same.update(zip(_nets(theirs[vhdl_name]), bits, strict=True))
+                    self._aliases.update(zip(_nets(theirs[vhdl_name]), bits, strict=True))
                 else:
                     self._claims.append((f"output {name}", bits, theirs[vhdl_name]))
 
@@ -227,10 +227,10 @@ class _Maker:
                     self._differences.append(f"{name} starts with another value")
                 if ours[bit].reset is not None and ours[bit].reset_value != other:
                     self._differences.append(f"{name} has another asynchronous reset")
-                self._same[bit] = other
+                self._aliases[bit] = other
                 right.append(other)
             elif other in theirs:
-                self._same[other] = bit
+                self._aliases[other] = bit
                 paired.add(other)
                 self._compare(name, ours[bit], theirs[other])
                 shared += [] if bit in paired else [bit]
@@ -277,8 +277,8 @@ class _Maker:
         return tuple(self._root(bit) for bit in bits)
 
     def _root(self, bit: Bit) -> Bit:
-        while isinstance(bit, int) and bit in self._same:
-            bit = self._same[bit]
+        while isinstance(bit, int) and bit in self._aliases:
+            bit = self._aliases[bit]
         return bit
 
     def _renamed(self, cell: Cell) -> Cell:

@@ -38,7 +38,7 @@ class _Flattener:
         self._numbers = count(2)
         # The bits of each net of the dump, by path and number; nets that are aliases of others.
         self._nets: dict[tuple[tuple[str, ...], int], tuple[int, ...]] = {}
-        self._same: dict[int, Bit] = {}
+        self._aliases: dict[int, Bit] = {}
         self._cells: list[Cell] = []
         self._signals: dict[tuple[str, ...], Bits] = {}
         self._edges: dict[int, tuple[Bit, bool]] = {}
@@ -70,7 +70,7 @@ class _Flattener:
                 for cell in self._cells
             ],
         )
-        if not circuit.driven.isdisjoint(self._same):
+        if not circuit.driven.isdisjoint(self._aliases):
             raise ProofError("GHDL's netlist drives a net twice")
         return circuit
 
@@ -95,22 +95,22 @@ class _Flattener:
     def _root(self, bit: Bit) -> Bit:
         """Follow aliases to the driven net or constant."""
         seen: list[int] = []
-        while isinstance(bit, int) and bit in self._same:
+        while isinstance(bit, int) and bit in self._aliases:
             seen.append(bit)
-            bit = self._same[bit]
-            if len(seen) > len(self._same):
+            bit = self._aliases[bit]
+            if len(seen) > len(self._aliases):
                 raise ProofError("a signal of the VHDL is defined by itself")
         for name in seen:
-            self._same[name] = bit
+            self._aliases[name] = bit
         return bit
 
     def _alias(self, names: tuple[int, ...], bits: Bits) -> None:
         if len(names) != len(bits):
             raise ProofError("GHDL's netlist connects nets of different widths")
         for name, bit in zip(names, bits, strict=True):
-            if name in self._same:
+            if name in self._aliases:
                 raise ProofError(f"GHDL's netlist drives a net twice ({name})")
-            self._same[name] = bit
+            self._aliases[name] = bit
 
     def _module(self, module: Module, path: tuple[str, ...]) -> None:
         for instance in module.instances:

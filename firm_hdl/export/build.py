@@ -132,11 +132,11 @@ def build(
         tasks.append(_Task(converters=converters, folder=folder))
     _check_folders(tasks)
     _check_packages(tasks)
-    return [_done(task, force, report) for task in tasks]
+    return [_build_and_report(task, force, report) for task in tasks]
 
 
-def _done(task: _Task, force: bool, report: Callable[[Built], None] | None) -> Built:
-    built = _do(task, force)
+def _build_and_report(task: _Task, force: bool, report: Callable[[Built], None] | None) -> Built:
+    built = _build_one(task, force)
     if report is not None:
         report(built)
     return built
@@ -252,16 +252,16 @@ def _owner(file: Path, tasks: list[_Task]) -> tuple[str, Path] | None:
     return None
 
 
-def _do(task: _Task, force: bool) -> Built:
+def _build_one(task: _Task, force: bool) -> Built:
     figures = timing(task.converters.plan)
     try:
-        return _written(task, figures, force)
+        return _write_folder(task, figures, force)
     except OSError as error:
         where = error.filename or task.folder
         raise BuildError(f"'{where}' cannot be written: {error.strerror}") from None
 
 
-def _written(task: _Task, figures: Timing, force: bool) -> Built:
+def _write_folder(task: _Task, figures: Timing, force: bool) -> Built:
     clear_up(task.folder)
     converters = task.converters
     built = Built(

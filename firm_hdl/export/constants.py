@@ -11,11 +11,11 @@ from firm_hdl.model import Constant, Message
 from firm_hdl.names.identifiers import scope_names
 from firm_hdl.vhdl.names import PREDEFINED, USED
 
-__all__ = ["Named", "float_bits", "named_constants", "string_bytes"]
+__all__ = ["NamedConstant", "float_bits", "named_constants", "string_bytes"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Named:
+class NamedConstant:
     """A constant with its name in the output.
 
     Attributes
@@ -32,7 +32,10 @@ class Named:
     name: str
 
 
-def named_constants(message: Message, taken: Iterable[str], *, nested: bool = True) -> list[Named]:
+def named_constants(
+    message: Message, taken: Iterable[str], *, nested: bool = True
+) -> list[NamedConstant]:
+
     """Name the constants of a message; with `nested`, those of all types in it, too.
 
     The message's own constants keep their names, unless these would hide names that VHDL code needs
@@ -57,7 +60,7 @@ def named_constants(message: Message, taken: Iterable[str], *, nested: bool = Tr
             found[name] = (owner, constant)
     given: Mapping[str, str] = scope_names(found, hiding)
     return [
-        Named(owner=owner, constant=constant, name=given[name])
+        NamedConstant(owner=owner, constant=constant, name=given[name])
         for name, (owner, constant) in found.items()
     ]
 

@@ -20,7 +20,7 @@ __all__ = ["exchange", "locked"]
 _AT_FDCWD = -100
 _RENAME_EXCHANGE = 2
 # Errors of a kernel or a file system that does not support the exchange.
-_UNABLE = frozenset({errno.ENOSYS, errno.EINVAL, errno.ENOTSUP, errno.EPERM})
+_UNSUPPORTED = frozenset({errno.ENOSYS, errno.EINVAL, errno.ENOTSUP, errno.EPERM})
 
 LOCK_SECONDS = 60.0
 """How long to wait for another build that writes the folder. Writing takes less than a second."""
@@ -49,7 +49,7 @@ def exchange(one: Path, other: Path) -> bool:
     if renameat2(_AT_FDCWD, paths[0], _AT_FDCWD, paths[1], _RENAME_EXCHANGE) == 0:
         return True
     code = ctypes.get_errno()
-    if code in _UNABLE:
+    if code in _UNSUPPORTED:
         return False
     raise OSError(code, os.strerror(code), os.fspath(other))
 

@@ -82,7 +82,7 @@ def replace(folder: Path, files: Mapping[str, str]) -> dict[str, str]:
     OSError
         If that is not possible. The folder is unchanged.
     """
-    folder = _behind_link(folder)
+    folder = _resolve_link(folder)
     folder.parent.mkdir(parents=True, exist_ok=True)
     with locked(folder.parent) as alone:
         made: list[Path] = []
@@ -93,7 +93,7 @@ def replace(folder: Path, files: Mapping[str, str]) -> dict[str, str]:
             staging = _make(folder, _NEW, made)
             _write_files(staging, files)
             if os.path.lexists(folder):
-                renamed = _keep_others(folder, staging, files)
+                renamed = _keep_user_files(folder, staging, files)
                 _swap(folder, staging, made)
             else:
                 staging.rename(folder)
@@ -105,14 +105,14 @@ def replace(folder: Path, files: Mapping[str, str]) -> dict[str, str]:
 
 def clear_up(folder: Path) -> None:
     """Delete the leftovers of a killed build; put the old folder back if there is no folder."""
-    folder = _behind_link(folder)
+    folder = _resolve_link(folder)
     if folder.parent.is_dir() and _leftovers(folder):
         with locked(folder.parent) as alone:
             if alone:
                 _clear_up(folder, _leftovers(folder))
 
 
-def _behind_link(folder: Path) -> Path:
+def _resolve_link(folder: Path) -> Path:
     """Return the folder that a symbolic link leads to, so that the link stays in place."""
     return Path(os.path.realpath(folder)) if folder.is_symlink() else folder
 
@@ -181,31 +181,31 @@ def _walk(root: Path) -> list[tuple[str, bool]]:
     return found[::-1]
 
 
-def _ours(folder: Path) -> set[str]:
+def _generated_files(folder: Path) -> set[str]:
     """Return the files of a folder that firm-hdl wrote or was about to write."""
     found = read_manifest(folder)
     return {MANIFEST, *(found["files"] if found is not None else ())}
 
 
-def _keep_others(folder: Path, staging: Path, files: Mapping[str, str]) -> dict[str, str]:
+def _keep_user_files(folder: Path, staging: Path, files: Mapping[str, str]) -> dict[str, str]:
     """Put all user files of the old folder into the new one.
 
     Returns the new names of renamed files by their old names.
     """
     renamed: dict[str, str] = {}
-    ours = _ours(folder)
+    ours = _generated_files(folder)
     folders = {os.path.dirname(name) for name in ours}
     copies: dict[Path, Path] = {}
     for name, is_folder in _walk(folder):
         if name in (folders if is_folder else ours):
             continue
-        kept = staging / _free(name, is_folder, files)
+        kept = staging / _free_name(name, is_folder, files)
         if is_folder:
             kept.mkdir(parents=True, exist_ok=True)
             copies[folder / name] = kept
             continue
         kept.parent.mkdir(parents=True, exist_ok=True)
-        for target in _names(kept):
+        for target in _candidate_paths(kept):
             if not os.path.lexists(target):
                 _link(folder / name, target)
                 if target != staging / name:
@@ -216,7 +216,7 @@ def _keep_others(folder: Path, staging: Path, files: Mapping[str, str]) -> dict[
     return renamed
 
 
-def _free(name: str, is_folder: bool, files: Mapping[str, str]) -> str:
+def _free_name(name: str, is_folder: bool, files: Mapping[str, str]) -> str:
     """Return the name for a user file or folder; another one if a generated file has its name."""
     folders = {os.path.dirname(file) for file in files}
     path = ""
@@ -229,7 +229,7 @@ def _free(name: str, is_folder: bool, files: Mapping[str, str]) -> str:
     return path.removesuffix("/")
 
 
-def _names(path: Path) -> Iterator[Path]:
+def _candidate_paths(path: Path) -> Iterator[Path]:
     """Yield a path, then alternative names in case that it is taken."""
     name = path.name.removesuffix(".kept")
     yield path
@@ -269,7 +269,7 @@ def _clear_up(folder: Path, leftovers: list[Path]) -> dict[str, str]:
 
 def _discard(leftover: Path, folder: Path, renamed: dict[str, str]) -> None:
     """Delete a leftover folder; move user files that exist only there to the folder in use."""
-    ours = _ours(leftover)
+    ours = _generated_files(leftover)
     linked = {_identity(folder / name) for name, _ in _walk(folder)} if folder.is_dir() else set()
     _permit(leftover)
     for name, is_folder in _walk(leftover):
@@ -334,7 +334,7 @@ def _move(entry: Path, folder: Path, name: str) -> Path:
         target.parent.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):
         target = folder / name.replace("/", "_")
-    for place in _names(target):
+    for place in _candidate_paths(target):
         # Unlike `rename`, a link never replaces anything.
         with suppress(FileExistsError):
             if not _is_same(entry, place):

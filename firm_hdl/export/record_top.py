@@ -50,11 +50,11 @@ def record_ports(plan: Plan, direction: Direction, bits: int) -> tuple[Port, ...
     """
     ports = [port for port in ports_of(plan, direction) if port.leaf is None]
     status = next(k for k, port in enumerate(ports) if port.name.startswith("m_axis_status"))
-    to, fro = ("in", "out") if direction == "serializer" else ("out", "in")
+    forward, backward = ("in", "out") if direction == "serializer" else ("out", "in")
     record = [
-        (f"{_RECORD}_data", to, bits, f"{plan.message}, the first field in the lowest bits."),
-        (f"{_RECORD}_valid", to, 1, "Valid: the whole message is offered."),
-        (f"{_RECORD}_ready", fro, 1, "Ready: the message is taken."),
+        (f"{_RECORD}_data", forward, bits, f"{plan.message}, first field in the lowest bits."),
+        (f"{_RECORD}_valid", forward, 1, "Valid: the whole message is offered."),
+        (f"{_RECORD}_ready", backward, 1, "Ready: the message is taken."),
     ]
     ports[status:status] = [
         Port(name=name, direction="in" if way == "in" else "out", width=width, meaning=meaning)

@@ -145,11 +145,11 @@ def _stream(
     leaf: int | None = None,
 ) -> list[Port]:
     """List the ports of a stream; `signed` is that of ``data``."""
-    to, fro = ("in", "out") if is_input else ("out", "in")
+    forward, backward = ("in", "out") if is_input else ("out", "in")
     whole = [
-        *((to, *entry) for entry in payload),
-        (to, f"{initial}valid", 1, f"{what}: valid."),
-        (fro, f"{initial}ready", 1, f"{what}: ready."),
+        *((forward, *entry) for entry in payload),
+        (forward, f"{initial}valid", 1, f"{what}: valid."),
+        (backward, f"{initial}ready", 1, f"{what}: ready."),
     ]
     return [
         Port(

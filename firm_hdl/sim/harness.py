@@ -122,7 +122,7 @@ class Harness:
         )
         run.seen.beats_in = sum(beats_of(len(p), self.plan.bus_bytes) for p in packets or ())
         self.bench.run(job, vcd=vcd)
-        return _with_what_is_left(run.result(), transfers or {})
+        return _with_untaken(run.result(), transfers or {})
 
     def _limit(
         self,
@@ -210,7 +210,7 @@ class _Circuit(Elaboratable):
         return m
 
 
-def _with_what_is_left(seen: Seen, transfers: Mapping[int, Sequence[Payload]]) -> Seen:
+def _with_untaken(seen: Seen, transfers: Mapping[int, Sequence[Payload]]) -> Seen:
     """Record how many transfers of each leaf were offered and not taken."""
     for leaf, offered in transfers.items():
         if left := len(offered) - len(seen.transfers[leaf]):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from math import isfinite
 
-from firm_hdl.export.constants import Named, float_bits, named_constants, string_bytes
+from firm_hdl.export.constants import NamedConstant, float_bits, named_constants, string_bytes
 from firm_hdl.export.remarks import origin, quoted, remark, unit_of
 from firm_hdl.export.systemverilog.structs import Member, guarded, stream_structs
 from firm_hdl.export.systemverilog.types import TYPES_NAME, WORDS, bus_name
@@ -34,7 +34,7 @@ def package_name(package: str) -> str:
     return f"{package.removesuffix('_pkg')}_sv_pkg"
 
 
-def constants_of(package: Package, plan: Plan) -> list[Named]:
+def constants_of(package: Package, plan: Plan) -> list[NamedConstant]:
     """Name the constants that a message itself declares."""
     return named_constants(package.message, _taken(package, plan), nested=False)
 
@@ -98,7 +98,7 @@ def _member(node: Node, package: str) -> Member:
     )
 
 
-def _constants(named: list[Named], taken: Iterable[str]) -> Iterator[str]:
+def _constants(named: list[NamedConstant], taken: Iterable[str]) -> Iterator[str]:
     used = {*taken, *(entry.name.lower() for entry in named)}
     if named:
         yield f"\n  // Constants of {named[0].owner.name}.\n"

@@ -120,16 +120,16 @@ def _bus(bus_bytes: int) -> Iterator[str]:
     for text, primitive in TEXTS.items():
         yield from stream_structs(f"{text}_stream", [_LENGTH, _of_items(primitive)])
     for primitive in PRIMITIVE_BYTES:
-        yield from _several(f"{primitive}", _of_items(primitive))
+        yield from _sequence_and_array(f"{primitive}", _of_items(primitive))
     for text in TEXTS:
         item = Member(
             name="item", type=f"{text}_stream_t", ready_type=f"{text}_stream_ready_t"
         )
-        yield from _several(text, item)
+        yield from _sequence_and_array(text, item)
     yield f"\nendpackage : {name}\n"
 
 
-def _several(what: str, item: Member) -> Iterator[str]:
+def _sequence_and_array(what: str, item: Member) -> Iterator[str]:
     for form in FORMS:
         members = [_LENGTH, item] if form == "sequence" else [item]
         yield from stream_structs(f"{what}_{form}_stream", members)

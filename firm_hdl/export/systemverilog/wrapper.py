@@ -45,15 +45,15 @@ def wrapper(
 def _ports(message: Message, plan: Plan, tree: Tree, direction: Direction) -> Iterator[str]:
     own, bus = package_name(tree.packages[-1].name), bus_name(plan.bus_bytes)
     reads = direction == "deserializer"
-    to, fro = ("output", "input") if reads else ("input", "output")
+    forward, backward = ("output", "input") if reads else ("input", "output")
     beats = "s_axis" if reads else "m_axis"
     lines = [
         ("input", "logic", "aclk", "Clock; the rising edge is active."),
         ("input", "logic", "aresetn", "Synchronous reset, active low."),
-        (fro, f"{bus}::{BEAT}", beats, "Packets."),
-        (to, "logic", f"{beats}_tready", "beat: ready."),
-        (to, f"{own}::{tree.root.type}", "msg", f"Data and valid of the fields of {message.name}."),
-        (fro, f"{own}::{tree.root.ready_type}", "rdy", "Ready of the fields."),
+        (backward, f"{bus}::{BEAT}", beats, "Packets."),
+        (forward, "logic", f"{beats}_tready", "beat: ready."),
+        (forward, f"{own}::{tree.root.type}", "msg", f"Data and valid of {message.name}."),
+        (backward, f"{own}::{tree.root.ready_type}", "rdy", "Ready of the fields."),
         ("output", f"{TYPES_NAME}::{STATUS_STREAM}", _STATUS, "Status of each packet."),
         ("input", "logic", f"{_STATUS}_tready", "status: ready."),
     ]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from firm_hdl.export.backend import BackEnd, Converters, Output
-from firm_hdl.export.constants import Named
+from firm_hdl.export.constants import NamedConstant
 from firm_hdl.export.packaging import packaging
 from firm_hdl.export.primitives import TYPES_NAME
 from firm_hdl.export.record_top import RecordTop, why_no_record
@@ -220,7 +220,7 @@ def _add_flat(parts: _Parts, converters: Converters, cores: Mapping[Direction, C
     }
 
 
-def _constants(named: Iterable[Named], package: str) -> list[dict[str, str]]:
+def _constants(named: Iterable[NamedConstant], package: str) -> list[dict[str, str]]:
     return [
         {
             "type": entry.owner.name,

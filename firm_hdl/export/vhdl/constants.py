@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from math import isfinite
 
 from firm_hdl.export import remarks
-from firm_hdl.export.constants import Named, float_bits, string_bytes
+from firm_hdl.export.constants import NamedConstant, float_bits, string_bytes
 from firm_hdl.export.remarks import remark, unit_of
 from firm_hdl.model import Field, Message, Primitive
 from firm_hdl.names.identifiers import first_free
@@ -34,7 +34,7 @@ def origin(source: Field, name: str) -> str:
     return f"  -- {remarks.origin(source, name)}"
 
 
-def declarations(named: Iterable[Named], taken: Iterable[str]) -> Iterator[str]:
+def declarations(named: Iterable[NamedConstant], taken: Iterable[str]) -> Iterator[str]:
     """Yield the declarations, in the order of `named`."""
     owner: Message | None = None
     named = list(named)

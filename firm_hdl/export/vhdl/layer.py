@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from firm_hdl.export.constants import Named, named_constants
+from firm_hdl.export.constants import NamedConstant, named_constants
 from firm_hdl.export.primitives import TYPES_NAME, bus_name
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
 from firm_hdl.export.tree import Tree, tree_of
@@ -72,7 +72,7 @@ class UserLayer:
         Entities with a record of values; empty if the message has no record view.
     tree : Tree
     values : ValueType or None
-    constants : dict of str to list of Named
+    constants : dict of str to list of NamedConstant
         Constants by package.
     shared : tuple of Shared
         Packages that other messages' folders have, too, in compile order.
@@ -88,7 +88,7 @@ class UserLayer:
     record_entities: Mapping[Direction, str]
     tree: Tree
     values: ValueType | None
-    constants: Mapping[str, list[Named]]
+    constants: Mapping[str, list[NamedConstant]]
     shared: tuple[Shared, ...]
     packages: Mapping[str, str]
     wrappers: Mapping[str, str]
@@ -217,7 +217,7 @@ def flat_package(
     name: str,
     cores: Mapping[Direction, Core],
     header: str = "",
-) -> tuple[str, list[Named]]:
+) -> tuple[str, list[NamedConstant]]:
     """Write a package without records: constants of a message, components of the flat entities.
 
     Parameters
@@ -230,7 +230,7 @@ def flat_package(
     Returns
     -------
     text : str
-    constants : list of Named
+    constants : list of NamedConstant
     """
     taken = frozenset([name.lower(), *(core.entity.lower() for core in cores.values())])
     constants = named_constants(message, taken)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from firm_hdl.export.constants import Named, named_constants
+from firm_hdl.export.constants import NamedConstant, named_constants
 from firm_hdl.export.primitives import TYPES_NAME, bus_name
 from firm_hdl.export.tree import Node, Package, taken_names
 from firm_hdl.export.vhdl.constants import comment, declarations, origin, quoted
@@ -20,7 +20,7 @@ from firm_hdl.vhdl.text import wrap
 __all__ = ["constants_of", "message_package"]
 
 
-def constants_of(package: Package, plan: Plan) -> list[Named]:
+def constants_of(package: Package, plan: Plan) -> list[NamedConstant]:
     """Name the constants that a message itself declares."""
     return named_constants(package.message, taken_names(package, plan), nested=False)
 

@@ -60,7 +60,7 @@ class Core:
 def stream_lines(message: Message, plan: Plan, tree: Tree, direction: Direction) -> list[Line]:
     """List the ports of a converter with a record of streams."""
     forwards, backwards = ("out", "in ") if direction == "deserializer" else ("in ", "out")
-    return _around(
+    return _with_message_ports(
         [port for port in ports_of(plan, direction) if port.leaf is None],
         [
             ("msg", f"{forwards} {tree.root.type}", f"Data and valid of {message.name}."),
@@ -74,7 +74,7 @@ def record_lines(
 ) -> list[Line]:
     """List the ports of a converter with a record of values."""
     forwards, backwards = ("out", "in ") if direction == "deserializer" else ("in ", "out")
-    return _around(
+    return _with_message_ports(
         [port for port in ports_of(plan, direction) if port.leaf is None],
         [
             ("msg", f"{forwards} {values.name}", f"The fields of {message.name}."),
@@ -96,7 +96,7 @@ def plain_lines(ports: Iterable[Port], names: Mapping[str, str]) -> list[Line]:
     ]
 
 
-def _around(ports: list[Port], message: list[Line]) -> list[Line]:
+def _with_message_ports(ports: list[Port], message: list[Line]) -> list[Line]:
     """Put the ports of the message before those of the status."""
     lines = [
         (

@@ -15,7 +15,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_sv (
   input  firm_hdl_bus_8_sv_pkg::packet_beat_t s_axis,
   // beat: ready.
   output logic s_axis_tready,
-  // Data and valid of the fields of geometry_msgs/msg/Twist.
+  // Data and valid of geometry_msgs/msg/Twist.
   output geometry_msgs_msg_twist_cdr_8_sv_pkg::twist_t msg,
   // Ready of the fields.
   input  geometry_msgs_msg_twist_cdr_8_sv_pkg::twist_ready_t rdy,

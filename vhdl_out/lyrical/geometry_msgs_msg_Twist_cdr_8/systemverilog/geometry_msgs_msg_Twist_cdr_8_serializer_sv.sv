@@ -15,7 +15,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_sv (
   output firm_hdl_bus_8_sv_pkg::packet_beat_t m_axis,
   // beat: ready.
   input  logic m_axis_tready,
-  // Data and valid of the fields of geometry_msgs/msg/Twist.
+  // Data and valid of geometry_msgs/msg/Twist.
   input  geometry_msgs_msg_twist_cdr_8_sv_pkg::twist_t msg,
   // Ready of the fields.
   output geometry_msgs_msg_twist_cdr_8_sv_pkg::twist_ready_t rdy,
