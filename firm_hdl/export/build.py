@@ -206,13 +206,13 @@ def _check_folders(tasks: list[_Task]) -> None:
         other = owners.setdefault(str(task.folder).lower(), task.name)
         if other != task.name:
             raise BuildError(
-                f"{task.name}: its folder '{task.folder}' is that of {other}, too"
+                f"{task.name}: its folder '{task.folder}' is also that of {other}"
             )
         found = read_manifest(task.folder)
         if found is not None:
             other = str(found["inputs"].get("message"))
             if other != task.name:
-                raise BuildError(f"{task.name}: '{task.folder}' holds {other}")
+                raise BuildError(f"{task.name}: '{task.folder}' is the folder of {other}")
         elif task.folder.exists() and not is_empty(task.folder):
             raise BuildError(f"'{task.folder}' is not a folder that firm-hdl made; move it away")
 
@@ -233,8 +233,9 @@ def _check_packages(tasks: list[_Task]) -> None:
             if other != owner:
                 raise BuildError(
                     f"{task.name}: the VHDL package '{package.name}' would be that of "
-                    f"{owner}, and in '{folder}' it is that of {other}; build one of them into "
+                    f"{owner}, but in '{folder}' it is that of {other}; build one of them into "
                     "another folder (--out), and compile it into another library"
+
                 )
 
 

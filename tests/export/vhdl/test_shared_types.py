@@ -234,7 +234,7 @@ def test_two_types_whose_package_has_one_name_are_not_built_side_by_side(
     similar, tmp_path, one, other, package, types
 ):
     options = {"library": Library("noetic", [similar])}
-    said = f"{other}: the VHDL package '{package}' would be that of {types[0]}, and in .* it is "
+    said = f"{other}: the VHDL package '{package}' would be that of {types[0]}, but in .* it is "
     with pytest.raises(BuildError, match=f"^{said}that of {types[1]}; build one of them"):
         build([one, other], tmp_path / "at once", **options)
     assert not (tmp_path / "at once").exists()
@@ -243,7 +243,7 @@ def test_two_types_whose_package_has_one_name_are_not_built_side_by_side(
 def test_what_was_built_before_counts(similar, tmp_path):
     options = {"out": tmp_path / "out", "library": Library("noetic", [similar])}
     (before,) = build(["p/A"], **options)
-    with pytest.raises(BuildError, match=r"that of p/INNER, and in '.*p_A_ros1_8' it is that"):
+    with pytest.raises(BuildError, match=r"that of p/INNER, but in '.*p_A_ros1_8' it is that"):
         build(["p/B"], **options)
     assert [before.folder] == list(before.folder.parent.glob("[!.]*"))
     # What is no manifest says nothing.
