@@ -1,5 +1,7 @@
 """Signatures of messages: what they are made for, and which are equal."""
 
+# amaranth: UnusedElaboratable=no
+
 from __future__ import annotations
 
 import pytest
