@@ -1,6 +1,5 @@
-"""A small design in which everything matters, and ways to break a circuit, chosen by rule."""
-
 # amaranth: UnusedElaboratable=no
+"""A small design in which everything matters, and ways to break a circuit, chosen by rule."""
 
 from __future__ import annotations
 

@@ -1,9 +1,8 @@
+# amaranth: UnusedElaboratable=no
 """Proofs: circuits that are equal, and broken ones that must not be.
 
 ``FIRM_HDL_BROKEN=1`` tries every broken circuit, not one in five.
 """
-
-# amaranth: UnusedElaboratable=no
 
 from __future__ import annotations
 

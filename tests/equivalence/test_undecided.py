@@ -1,6 +1,5 @@
-"""Solvers that give up: nothing is known then, and that is no proof."""
-
 # amaranth: UnusedElaboratable=no
+"""Solvers that give up: nothing is known then, and that is no proof."""
 
 from __future__ import annotations
 

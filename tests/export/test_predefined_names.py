@@ -1,9 +1,8 @@
+# amaranth: UnusedElaboratable=no
 """Constants may be called as VHDL's own packages call something; nobody is confused by them.
 
 What these packages declare is read from GHDL's sources of them.
 """
-
-# amaranth: UnusedElaboratable=no
 
 from __future__ import annotations
 

@@ -1,6 +1,5 @@
-"""Signatures of messages: what they are made for, and which are equal."""
-
 # amaranth: UnusedElaboratable=no
+"""Signatures of messages: what they are made for, and which are equal."""
 
 from __future__ import annotations
 

@@ -1,6 +1,5 @@
-"""The reader of RTLIL: all that Amaranth prints, and errors for what it does not."""
-
 # amaranth: UnusedElaboratable=no
+"""The reader of RTLIL: all that Amaranth prints, and errors for what it does not."""
 
 from __future__ import annotations
 

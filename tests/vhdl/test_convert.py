@@ -1,6 +1,5 @@
-"""VHDL of small designs that show one thing each, and of our own converters."""
-
 # amaranth: UnusedElaboratable=no
+"""VHDL of small designs that show one thing each, and of our own converters."""
 
 from __future__ import annotations
 

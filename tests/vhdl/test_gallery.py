@@ -1,11 +1,10 @@
+# amaranth: UnusedElaboratable=no
 """Small designs beside the VHDL that an engineer would write for them, each showing one rule.
 
 Which operator gets a name, which condition is repeated, what becomes an `if`, a `case` or a
 conditional assignment: all of it does the same in hardware, and decides whether anybody can read
 it. The texts were read line by line before they came here, and nothing writes them anew.
 """
-
-# amaranth: UnusedElaboratable=no
 
 from __future__ import annotations
 

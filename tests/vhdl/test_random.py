@@ -1,9 +1,8 @@
+# amaranth: UnusedElaboratable=no
 """Random designs: VHDL in GHDL against `amaranth.sim`, step by step.
 
 ``FIRM_HDL_DESIGNS=500`` runs more of them, ``FIRM_HDL_DESIGNS=1000:1500`` others.
 """
-
-# amaranth: UnusedElaboratable=no
 
 from __future__ import annotations
 

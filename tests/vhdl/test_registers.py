@@ -1,6 +1,5 @@
-"""Registers: which share a process, what their reset is, and what of a process is no more said."""
-
 # amaranth: UnusedElaboratable=no
+"""Registers: which share a process, what their reset is, and what of a process is no more said."""
 
 from __future__ import annotations
 

@@ -1,6 +1,5 @@
-"""The user's layer: records under the message's own names, legal in VHDL whatever they are."""
-
 # amaranth: UnusedElaboratable=no
+"""The user's layer: records under the message's own names, legal in VHDL whatever they are."""
 
 from __future__ import annotations
 

@@ -1,6 +1,5 @@
-"""The README's pieces of code, with what they leave out, are designs that act on good packets."""
-
 # amaranth: UnusedElaboratable=no
+"""The README's pieces of code, with what they leave out, are designs that act on good packets."""
 
 from __future__ import annotations
 
