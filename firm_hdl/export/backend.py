@@ -1,3 +1,5 @@
+# amaranth: UnusedElaboratable=no
+# A build that fails leaves converters that nobody elaborated; its message is enough.
 """What back ends share: the options of a build, a type's converters, and the output.
 
 A back end turns a type's converters into files and into entries of the manifest.

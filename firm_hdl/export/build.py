@@ -205,9 +205,7 @@ def _check_folders(tasks: list[_Task]) -> None:
         # Some file systems do not distinguish upper and lower case.
         other = owners.setdefault(str(task.folder).lower(), task.name)
         if other != task.name:
-            raise BuildError(
-                f"{task.name}: its folder '{task.folder}' is also that of {other}"
-            )
+            raise BuildError(f"{task.name}: its folder '{task.folder}' is also that of {other}")
         found = read_manifest(task.folder)
         if found is not None:
             other = str(found["inputs"].get("message"))
@@ -235,7 +233,6 @@ def _check_packages(tasks: list[_Task]) -> None:
                     f"{task.name}: the VHDL package '{package.name}' would be that of "
                     f"{owner}, but in '{folder}' it is that of {other}; build one of them into "
                     "another folder (--out), and compile it into another library"
-
                 )
 
 
