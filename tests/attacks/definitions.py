@@ -115,6 +115,8 @@ def definition_attacks() -> Iterator[Attack]:
         yield Attack(name=f"idl_{name}", argv=("plan", "p/A", *PATH), make=files({IDL: text}))
     yield from _trees()
     yield from _folders()
+    yield from _packages()
+    yield from _paths()
 
 
 def _trees() -> Iterator[Attack]:
@@ -190,6 +192,9 @@ def _folders() -> Iterator[Attack]:
     yield sparse("src/p/package.xml")
     for target in ("/dev/zero", "/dev/null", "/proc/self/mem", ".", "A.msg", "nowhere"):
         yield linked(MSG, target)
+
+
+def _packages() -> Iterator[Attack]:
     for name, text in {
         "unknown_encoding": b'<?xml version="1.0" encoding="klingon"?>' + NAMED,
         "wide_encoding": b'<?xml version="1.0" encoding="utf-32"?>' + NAMED,
@@ -223,6 +228,9 @@ def _folders() -> Iterator[Attack]:
         ),
         fails=False,
     )
+
+
+def _paths() -> Iterator[Attack]:
     yield Attack(
         name="path_is_file", argv=("list", "--path", "x"), make=files({"x": ""}), fails=True
     )

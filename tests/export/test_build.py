@@ -80,6 +80,65 @@ def test_folder_is_complete(tmp_path):
     found = {*tree(built[0].folder)}
     assert {*files(SAMPLE)} - found == with_packets
     assert found <= {*files(SAMPLE)}
+    # Whoever takes one of these away has to say so here, and not only in the sample.
+    assert {
+        "geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.v",
+        "geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.veo",
+        "geometry_msgs_msg_Twist_cdr_8_serializer_verilog.v",
+        "geometry_msgs_msg_Twist_cdr_8_serializer_verilog.veo",
+        "layout.svg",
+        "manifest.json",
+        "plan.yaml",
+        "systemverilog/files.f",
+        "systemverilog/firm_hdl_bus_8_sv_pkg.sv",
+        "systemverilog/firm_hdl_sv_pkg.sv",
+        "systemverilog/geometry_msgs_msg_Twist_cdr_8_deserializer_sv.sv",
+        "systemverilog/geometry_msgs_msg_Twist_cdr_8_serializer_sv.sv",
+        "systemverilog/geometry_msgs_msg_twist_cdr_8_sv_pkg.sv",
+        "systemverilog/geometry_msgs_msg_vector3_cdr_8_sv_pkg.sv",
+        "systemverilog/waivers.vlt",
+        "vhdl/Makefile",
+        "vhdl/bench_files.txt",
+        "vhdl/files.txt",
+        "vhdl/firm_hdl_axis_sink.vhd",
+        "vhdl/firm_hdl_axis_source.vhd",
+        "vhdl/firm_hdl_bench.core",
+        "vhdl/firm_hdl_bench_pkg.vhd",
+        "vhdl/firm_hdl_bus_8_pkg.core",
+        "vhdl/firm_hdl_bus_8_pkg.vhd",
+        "vhdl/firm_hdl_common.core",
+        "vhdl/firm_hdl_pkg.vhd",
+        "vhdl/firm_hdl_types_pkg.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8.core",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_components_pkg.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_window.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_window.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_record.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_pkg.core",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_pkg.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_record_tb.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_serializer.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_flat.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_flat_core.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_packer.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_tb.vhd",
+        "vhdl/geometry_msgs_msg_vector3_cdr_8_pkg.core",
+        "vhdl/geometry_msgs_msg_vector3_cdr_8_pkg.vhd",
+        "vhdl/run_ghdl.sh",
+        "vhdl/vivado.tcl",
+        "waivers.vlt",
+    } - found == set()
 
 
 def test_vhdl_compiles_in_the_order_of_the_manifest_and_stimuli_are_the_callers(tmp_path):
@@ -336,6 +395,8 @@ def test_output_is_the_same_everywhere(tmp_path):
         trees.append(tree(home / "out"))
     folders = ("sensor_msgs_msg_JointState_cdr_8", "std_msgs_msg_Empty_cdr_8")
     assert {name.split("/")[1] for name in trees[0]} == {*folders}
+    # Another output language adds files, and none takes any away.
+    assert len(trees[0]) >= 90
     assert trees[0] == trees[1]
     for text in trees[0].values():
         assert str(ROOT).encode() not in text

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from firm_hdl.model import PRIMITIVES
 from firm_hdl.plan import build_plan, encode
 from firm_hdl.sim.values import to_transfers
-from firm_hdl.wire import Gap, LoopNode, RunNode, Scalar, Trigger, lay_out, walk
+from firm_hdl.wire import RULES, Gap, LoopNode, RunNode, Scalar, Trigger, lay_out, walk
 from tests.plan.reference import Reference
 from tests.strategies import definitions, make, values
 
@@ -118,5 +118,6 @@ def test_min_bytes_is_the_size_of_the_emptiest_packet_without_padding(wire, fiel
 
 
 def test_an_unknown_wire_is_refused():
-    with pytest.raises(ValueError, match=r"^Wire must be one of 'ros1', 'cdr'.*, not 'can'$"):
+    wires = ", ".join(map(repr, RULES))
+    with pytest.raises(ValueError, match=rf"^Wire must be one of {wires}, not 'can'$"):
         lay_out(make("ros2", {}), "can")

@@ -7,9 +7,10 @@ import pytest
 from firm_hdl.verify.clients.judge import Contest
 from firm_hdl.verify.clients.odd import ODDITIES, odd_packet, odd_packets
 from firm_hdl.verify.clients.shrink import shrunk
-from firm_hdl.verify.references import Client, Codec, Refusal
+from firm_hdl.verify.references import Refusal
 from firm_hdl.verify.references.objects import full_text
 from firm_hdl.verify.results.verdict import Failed, NotJudged
+from tests.verify.clients.twins import Same, Twin
 from tests.verify.judged import assert_known, assert_passed
 
 TEXT = "uint8 a\nfloat64 b\nuint16 c\nuint16 d\nstring s\nB[] list\nbool t\n"
@@ -18,38 +19,6 @@ VALUES = [
     {"a": 1, "b": 2, "c": 3, "d": 4, "s": b"ab", "list": [{"x": 1, "y": 2}], "t": True},
     {"a": 0, "b": 0, "c": 7, "d": 7, "s": b"", "list": [], "t": False},
 ]
-
-
-class Twin(Client):
-    """rosbags with something wrong."""
-
-    name = "twin"
-    wires = frozenset({"cdr"})
-
-    def __init__(self, right, fault):
-        self.right, self.fault = right, fault
-
-    def missing(self):
-        return None
-
-    def version(self):
-        return "0"
-
-    def open(self, message, wire):
-        return self.fault(self.right.open(message, wire))
-
-
-class Same(Codec):
-    """Nothing wrong."""
-
-    def __init__(self, right):
-        self.right = right
-
-    def encode(self, value):
-        return self.right.encode(value)
-
-    def decode(self, packet):
-        return self.right.decode(packet)
 
 
 class Unaligned(Same):

@@ -1,0 +1,40 @@
+"""Client libraries that are like another one, or broken on purpose."""
+
+from __future__ import annotations
+
+from firm_hdl.verify.references import Client, Codec
+
+__all__ = ["Same", "Twin"]
+
+
+class Twin(Client):
+    """A library that is right, with something wrong."""
+
+    name = "twin"
+    wires = frozenset({"cdr", "ros1"})
+
+    def __init__(self, right, fault, byte_orders=("little",)):
+        self.right, self.fault = right, fault
+        self.byte_orders = byte_orders
+
+    def missing(self):
+        return None
+
+    def version(self):
+        return "0"
+
+    def open(self, message, wire):
+        return self.fault(self.right.open(message, wire))
+
+
+class Same(Codec):
+    """Nothing wrong."""
+
+    def __init__(self, right):
+        self.right = right
+
+    def encode(self, value):
+        return self.right.encode(value)
+
+    def decode(self, packet):
+        return self.right.decode(packet)
