@@ -48,7 +48,7 @@ class Body:
         position = 0
         for chunk in target:
             assert isinstance(chunk, Slice)
-            declared = self._names.aliases.get(chunk.wire) or self._names.declared[chunk.wire]
+            declared = self._names.declared[chunk.wire]
             yield chunk, declared, cut(value, position, chunk.width)
             position += chunk.width
 

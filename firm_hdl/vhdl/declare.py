@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Literal, TypeAlias
 
 from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Value, Wire
 from firm_hdl.vhdl.expr import Declared
@@ -12,7 +13,10 @@ from firm_hdl.vhdl.names import Scope, legal
 from firm_hdl.vhdl.text import bit_literal, literal
 from firm_hdl.vhdl.uses import INLINE, output
 
-__all__ = ["Names", "Port", "declare", "enumeration", "initial_value", "part_names"]
+__all__ = ["Names", "Port", "Signal", "declare", "enumeration", "initial_value", "part_names"]
+
+Role: TypeAlias = Literal["register", "logic", "alias"]
+DriverKind: TypeAlias = Literal["register", "logic", "submodule", "foreign"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,18 +30,34 @@ class Port:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Signal:
+    """A signal of an architecture.
+
+    Attributes
+    ----------
+    wire : str
+        The wire of the module that it declares.
+    declared : Declared
+    role : "register", "logic" or "alias"
+        A register has an initial value; an alias only gives a value another name.
+    """
+
+    wire: str
+    declared: Declared
+    role: Role
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Names:
     """All declarations of a module.
 
     Attributes
     ----------
     ports : tuple of Port
+    signals : tuple of Signal
+        Signals of the architecture, in order.
     declared : dict of str to Declared
-        Signal or port to read and to assign, for each wire that has a driver.
-    signals : dict of str to Declared
-        Those that are signals of the architecture, in order.
-    aliases : dict of str to Declared
-        Signals that only give a value another name.
+        Signal or port to read and to assign, for each wire that has a driver or is an alias.
     memories, labels : dict of str to str
         Identifiers of memories and instances.
     scope : Scope
@@ -45,12 +65,30 @@ class Names:
     """
 
     ports: tuple[Port, ...]
+    signals: tuple[Signal, ...]
     declared: dict[str, Declared]
-    signals: dict[str, Declared]
-    aliases: dict[str, Declared]
     memories: dict[str, str]
     labels: dict[str, str]
     scope: Scope
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Driver:
+    """The driver of a wire, and an identifier for the wire if the design does not name it."""
+
+    kind: DriverKind
+    name: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Request:
+    """A signal without its identifier. `generated`: `name` is not a name of the design."""
+
+    wire: str
+    name: str
+    role: Role
+    generated: bool = False
+    vector: bool = False
 
 
 def declare(
@@ -73,115 +111,89 @@ def declare(
         Whether ports are `std_logic_vector`.
     """
     scope = Scope([entity, "rtl", *port_names.values()])
-    instances = [cell for cell in graph.cells if graph.is_instance(cell)]
-    foreign = _foreign_outputs(graph, instances)
-    driven = _driven(graph, child_names)
-    hints = part_names(graph.module)
-    ports, taken = _ports(graph, port_names, driven, foreign, scope, vectors=vectors)
-    declared: dict[str, Declared] = {}
-    for port in ports:
-        declared[port.wire] = port.inner or port.outer
-    named: dict[str, str] = {}
-    generated: dict[str, str] = {}
-    for wire, fallback in driven.items():
+    drivers = _drivers(graph, child_names)
+    ports, signals = _ports(graph, port_names, drivers, scope, vectors=vectors)
+    declared = {port.wire: port.inner or port.outer for port in ports}
+    requests: list[_Request] = []
+    for wire, driver in drivers.items():
         owner = graph.name_of.get(wire, wire)
         if owner in declared:
             declared[wire] = declared[owner]
-        elif wire not in declared and owner.startswith("$"):
-            generated[wire] = hints.get(wire, fallback)
         elif wire not in declared:
-            named[wire] = owner
-    aliases = [chunk.wire for (chunk, *_), _ in graph.aliases if isinstance(chunk, Slice)]
-    # Names of the design take precedence over generated ones.
-    given = scope.give_all({**named, **{wire: wire for wire in aliases}})
-    given |= scope.give_all(generated)
-    signals = dict(taken)
-    for wire in driven:
-        if wire in named or wire in generated:
-            signals[wire] = Declared(
-                name=given[wire], width=graph.width[wire], vector=wire in foreign
-            )
-    declared.update(signals)
+            requests.append(_request(graph, wire, owner, driver))
+    for (chunk, *_), _value in graph.aliases:
+        if isinstance(chunk, Slice):
+            requests.append(_Request(wire=chunk.wire, name=chunk.wire, role="alias"))
+    signals += _signals(graph, requests, scope)
+    instances = [cell.name for cell in graph.cells if graph.is_instance(cell)]
     return Names(
         ports=tuple(ports),
-        declared=declared,
-        signals=signals,
-        aliases={wire: Declared(name=given[wire], width=graph.width[wire]) for wire in aliases},
+        signals=tuple(signals),
+        declared=declared | {signal.wire: signal.declared for signal in signals},
         memories=scope.give_all({name: name for name in graph.module.memories}),
-        labels=scope.give_all({cell.name: cell.name for cell in instances}),
+        labels=scope.give_all({name: name for name in instances}),
         scope=scope,
     )
+
+
+def _request(graph: Graph, wire: str, owner: str, driver: _Driver) -> _Request:
+    """Ask for a signal of a driven wire, with the name of its owner if that is of the design."""
+    generated = owner.startswith("$")
+    return _Request(
+        wire=wire,
+        name=driver.name if generated else owner,
+        role="register" if driver.kind == "register" else "logic",
+        generated=generated,
+        vector=driver.kind == "foreign",
+    )
+
+
+def _signals(graph: Graph, requests: list[_Request], scope: Scope) -> Iterator[Signal]:
+    """Give the requested signals their identifiers; names of the design come first."""
+    given: dict[str, str] = {}
+    for generated in (False, True):
+        given |= scope.give_all({r.wire: r.name for r in requests if r.generated is generated})
+    for each in requests:
+        declared = Declared(
+            name=given[each.wire], width=graph.width[each.wire], vector=each.vector
+        )
+        yield Signal(wire=each.wire, declared=declared, role=each.role)
 
 
 def _ports(
     graph: Graph,
     port_names: dict[str, str],
-    driven: dict[str, str],
-    foreign: frozenset[str],
+    drivers: Mapping[str, _Driver],
     scope: Scope,
     *,
     vectors: bool,
-) -> tuple[list[Port], dict[str, Declared]]:
+) -> tuple[list[Port], list[Signal]]:
     """List the ports, and the inner signals of those that logic cannot assign to.
 
     A register needs an inner signal for its initial value, as not all tools use that of a port. An
     instance's output needs one if its type differs from that of the port.
     """
-    from_submodule = _submodule_outputs(graph)
     source_of = {owner: wire for wire, owner in graph.name_of.items()}
+    # Ports of submodules are `unsigned`, those of foreign components `std_logic_vector`.
+    other_type = {True: "submodule", False: "foreign"}
     ports: list[Port] = []
-    signals: dict[str, Declared] = {}
+    signals: list[Signal] = []
     for wire, name in port_names.items():
         declaration = graph.module.wires[wire]
-        direction = declaration.direction or ""
+        width, direction = declaration.width, declaration.direction or ""
         vector = vectors or direction == "inout"
-        outer = Declared(name=name, width=declaration.width, vector=vector)
-        inner = None
         source = source_of.get(wire, wire)
-        if direction == "output" and (source in driven or wire in driven):
-            register = source in graph.register_of or source in _read_registers(graph)
-            if register:
-                inner = Declared(name=scope.give(f"{name}_q"), width=declaration.width)
-            elif source in foreign and not vector and declaration.width > 1:
-                inner = Declared(name=scope.give(f"{name}_i"), width=declaration.width, vector=True)
-            elif source in from_submodule and vector and declaration.width > 1:
-                inner = Declared(name=scope.give(f"{name}_i"), width=declaration.width)
-        if inner is not None:
-            signals[source] = inner
+        driver = drivers.get(source) if direction == "output" else None
+        inner = None
+        if driver is not None and driver.kind == "register":
+            inner = Declared(name=scope.give(f"{name}_q"), width=width)
+            signals.append(Signal(wire=source, declared=inner, role="register"))
+        elif driver is not None and width > 1 and driver.kind == other_type[vector]:
+            inner = Declared(name=scope.give(f"{name}_i"), width=width, vector=not vector)
+            signals.append(Signal(wire=source, declared=inner, role="logic"))
+        outer = Declared(name=name, width=width, vector=vector)
         ports.append(Port(wire=wire, direction=direction, outer=outer, inner=inner))
     return ports, signals
-
-
-def _read_registers(graph: Graph) -> frozenset[str]:
-    return frozenset(
-        output(cell)
-        for cell in graph.cells
-        if cell.kind == "$memrd_v2" and cell.parameters.get("CLK_ENABLE") == 1
-    )
-
-
-def _submodule_outputs(graph: Graph) -> frozenset[str]:
-    return frozenset(
-        chunk.wire
-        for cell in graph.cells
-        if graph.is_submodule(cell)
-        for port, spec in cell.ports.items()
-        if graph.is_output(cell, port)
-        for chunk in spec
-        if isinstance(chunk, Slice)
-    )
-
-
-def _foreign_outputs(graph: Graph, instances: list[Cell]) -> frozenset[str]:
-    return frozenset(
-        chunk.wire
-        for cell in instances
-        if not graph.is_submodule(cell)
-        for port, spec in cell.ports.items()
-        if graph.is_output(cell, port)
-        for chunk in spec
-        if isinstance(chunk, Slice)
-    )
 
 
 def part_names(module: Module) -> dict[str, str]:
@@ -204,30 +216,41 @@ def part_names(module: Module) -> dict[str, str]:
     return names
 
 
-def _driven(graph: Graph, child_names: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
-    """List the wires that this module drives, with a name for wires that have none."""
-    driven: dict[str, str] = {}
+def _drivers(graph: Graph, child_names: Mapping[str, Mapping[str, str]]) -> dict[str, _Driver]:
+    """List the wires that this module drives, with their drivers."""
+    drivers: dict[str, _Driver] = {}
+    hints = part_names(graph.module)
+
+    def add(kind: DriverKind, wire: str, name: str) -> None:
+        drivers[wire] = _Driver(kind=kind, name=hints.get(wire, name))
+
     for cell in graph.cells:
         if graph.is_instance(cell):
+            kind: DriverKind = "submodule" if graph.is_submodule(cell) else "foreign"
             for port, spec in cell.ports.items():
-                if graph.is_output(cell, port):
-                    name = child_names.get(cell.kind, {}).get(port, port)
-                    driven.update(
-                        (chunk.wire, legal(f"{cell.name}_{name}"))
-                        for chunk in spec
-                        if isinstance(chunk, Slice)
-                    )
-        elif cell.kind in ("$dff", "$adff", "$memrd_v2") or cell.kind in INLINE:
+                name = child_names.get(cell.kind, {}).get(port, port)
+                for chunk in spec if graph.is_output(cell, port) else ():
+                    if isinstance(chunk, Slice):
+                        add(kind, chunk.wire, legal(f"{cell.name}_{name}"))
+        elif cell.kind in INLINE or _is_register(cell) or cell.kind == "$memrd_v2":
             wire = output(cell)
             if wire not in graph.folded:
-                driven[wire] = _generated_name(cell.kind, wire)
+                kind = "register" if _is_register(cell) else "logic"
+                add(kind, wire, _generated_name(cell.kind, wire))
     for process in graph.processes:
         wire = graph.target(process)
-        driven[wire] = _generated_name("$choice", wire)
+        add("logic", wire, _generated_name("$choice", wire))
     for (chunk, *_), _value in graph.drives:
         if isinstance(chunk, Slice) and graph.module.wires[chunk.wire].direction is None:
-            driven[chunk.wire] = _generated_name("$pad", chunk.wire)
-    return driven
+            add("logic", chunk.wire, _generated_name("$pad", chunk.wire))
+    return drivers
+
+
+def _is_register(cell: Cell) -> bool:
+    """Tell whether a cell holds its output: a flip-flop, or a memory port that reads at a clock."""
+    if cell.kind == "$memrd_v2":
+        return cell.parameters.get("CLK_ENABLE") == 1
+    return cell.kind in ("$dff", "$adff")
 
 
 def _generated_name(kind: str, wire: str) -> str:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Spec, Value
 from firm_hdl.vhdl.body import Body
-from firm_hdl.vhdl.declare import declare, enumeration, initial_value
-from firm_hdl.vhdl.expr import Declared, Values
+from firm_hdl.vhdl.declare import Role, declare, enumeration, initial_value
+from firm_hdl.vhdl.expr import Values
 from firm_hdl.vhdl.instance import component, foreign_instance, instance
 from firm_hdl.vhdl.memory import MemoryText, memory_id
 from firm_hdl.vhdl.messages import message
@@ -22,6 +22,13 @@ from firm_hdl.vhdl.uses import output
 __all__ = ["EntityNames", "ModuleWriter"]
 
 _INTERNAL = ("init", "src", "generator", "top", "enum_base_type")
+
+_TITLES: Mapping[Role, str] = {
+    "register": "Registers.",
+    "logic": "Combinational signals.",
+    "alias": "More names of values, for whoever looks at a simulation.",
+}
+"""Comments above the declarations of signals."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,7 +91,7 @@ class ModuleWriter:
     def names(self) -> EntityNames:
         """Give all identifiers of the module."""
         names, graph = self._names, self._graph
-        signals = {wire: item.name for wire, item in (names.declared | names.aliases).items()}
+        signals = {wire: item.name for wire, item in names.declared.items()}
         signals.update(
             (owner, names.declared[wire].name)
             for wire, owner in graph.name_of.items()
@@ -158,15 +165,9 @@ class ModuleWriter:
         yield "end architecture;"
 
     def _declarations(self) -> Iterator[str]:
-        graph, names = self._graph, self._names
-        registers = {wire: item for wire, item in names.signals.items() if self._holds(wire)}
-        others = {wire: item for wire, item in names.signals.items() if wire not in registers}
-        yield from _titled("Registers.", self._signals(registers, initial=True))
-        yield from _titled("Combinational signals.", self._signals(others))
-        yield from _titled(
-            "More names of values, for whoever looks at a simulation.",
-            self._signals(names.aliases),
-        )
+        graph = self._graph
+        for role, title in _TITLES.items():
+            yield from _titled(title, self._signals(role))
         for memory in self._memories():
             yield ""
             yield from memory.declarations()
@@ -184,21 +185,15 @@ class ModuleWriter:
             yield from lines
         yield from self._attributes()
 
-    def _holds(self, wire: str) -> bool:
-        return wire in self._graph.register_of or any(
-            cell.kind == "$memrd_v2"
-            and cell.parameters.get("CLK_ENABLE") == 1
-            and output(cell) == wire
-            for cell in self._graph.cells
-        )
-
-    def _signals(self, signals: Mapping[str, Declared], *, initial: bool = False) -> list[str]:
-        size = max((len(item.name) for item in signals.values()), default=0)
+    def _signals(self, role: Role) -> list[str]:
+        signals = [each for each in self._names.signals if each.role == role]
+        size = max((len(each.declared.name) for each in signals), default=0)
         lines = []
-        for wire, item in signals.items():
-            owner = self._graph.name_of.get(wire, wire)
-            start = f" := {initial_value(self._module.wires[wire], item.width)}" if initial else ""
-            remark = self._remark(owner)
+        for each in signals:
+            item, start = each.declared, ""
+            if role == "register":
+                start = f" := {initial_value(self._module.wires[each.wire], item.width)}"
+            remark = self._remark(self._graph.name_of.get(each.wire, each.wire))
             lines.append(f"signal {item.name:<{size}} : {item.type}{start};{remark}")
         return lines
 
@@ -206,10 +201,10 @@ class ModuleWriter:
         """Yield the attributes of signals, such as ``keep``, for tools."""
         types: dict[str, str] = {}
         uses: list[str] = []
-        for wire, item in {**self._names.signals, **self._names.aliases}.items():
-            owner = self._graph.name_of.get(wire, wire)
+        for signal in self._names.signals:
+            owner = self._graph.name_of.get(signal.wire, signal.wire)
             attributes: dict[str, Value] = {
-                **self._module.wires[wire].attributes,
+                **self._module.wires[signal.wire].attributes,
                 **self._module.wires[owner].attributes,
             }
             for name, value in attributes.items():
@@ -218,7 +213,7 @@ class ModuleWriter:
                 kind, text = _attribute(value)
                 if types.setdefault(name, kind) != kind:
                     raise ValueError(f"attribute {name!r} has values of different types")
-                uses.append(f"attribute {name} of {item.name} : signal is {text};")
+                uses.append(f"attribute {name} of {signal.declared.name} : signal is {text};")
         if uses:
             yield ""
             yield from (f"attribute {name} : {kind};" for name, kind in types.items())
