@@ -1,7 +1,8 @@
 """Simulation helpers to test accelerators in plain Amaranth.
 
 For a user's own testbenches: `send_packets`, `receive_packets`, `MessagePort`, `watch`. To run
-converters as functions: `loopback`, `decode`, `encode`, and `Harness` for many runs.
+converters as functions: `loopback`, `decode`, `encode`. To run a circuit many times: `Harness` with
+`RunOptions`.
 """
 
 from __future__ import annotations
@@ -9,9 +10,10 @@ from __future__ import annotations
 from firm_hdl.gateware.signatures import leaf_streams
 from firm_hdl.sim.bench import DeadlineError
 from firm_hdl.sim.harness import Harness
+from firm_hdl.sim.job import RunOptions
 from firm_hdl.sim.loopback import Decoding, Encoding, Loopback, decode, encode, loopback
 from firm_hdl.sim.messages import MessagePort
-from firm_hdl.sim.record import Seen, leaf_name
+from firm_hdl.sim.record import RunResult, leaf_name
 from firm_hdl.sim.stalls import StallPlan, Stalls
 from firm_hdl.sim.streams import (
     receive,
@@ -30,7 +32,8 @@ __all__ = [
     "Harness",
     "Loopback",
     "MessagePort",
-    "Seen",
+    "RunOptions",
+    "RunResult",
     "StallPlan",
     "Stalls",
     "StreamRuleError",

@@ -10,67 +10,58 @@ stream, which matters for thousands of cases. For users' own testbenches, see
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeVar
 
 from amaranth.hdl import Cat, ClockDomain, Elaboratable, Module, Signal, Value
 from amaranth.lib import stream
 from amaranth.sim import Simulator, SimulatorContext
 
-from firm_hdl.sim.stalls import StallPlan, stalls_of
+from firm_hdl.sim.job import Job
+from firm_hdl.sim.stalls import stalls_of
 from firm_hdl.sim.watch import StreamRules
 
-__all__ = ["Bench", "DeadlineError", "Job", "in_chunks"]
+__all__ = ["Bench", "DeadlineError", "Ports", "in_chunks"]
 
 T = TypeVar("T")
 
 WORD_BITS = 2048
 CHUNK = 24
 HALF_PERIOD = 5e-7
+LIMIT = 1_000_000
 
 
 class DeadlineError(AssertionError):
     """Expected transfers did not come before the deadline."""
 
 
-@dataclass(slots=True, kw_only=True)
-class Job:
-    """One run of a bench.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ports:
+    """The streams of a design that a bench drives and observes. All names differ.
 
     Attributes
     ----------
-    sources : dict of str to iterable of int
-        Payloads to send, as bits, by the name of the stream.
-    takes : dict of str to callable
-        By the name of a stream: called at each of its transfers, with the cycle and the payload's
-        bits.
-    stalls : StallPlan
-    finished : callable
-        Returns whether everything expected has come; called after each cycle with a transfer.
-    outstanding : callable
-        Returns a text of what has not come yet, for the error.
-    deadline : int
-        Most cycles in a row without any transfer.
-    limit : int
-        Most cycles in total.
-    settle : int
-        Cycles without any transfer after which a finished run ends.
-    observe : callable or None
-        Called with the values of the bench's probes, before the first clock edge and then in each
-        cycle after all signals have settled.
+    sources : mapping of str to stream.Interface
+        Streams that the bench drives.
+    sinks : mapping of str to stream.Interface
+        Streams that the bench receives from. Always ready unless stalled.
+    taps : mapping of str to stream.Interface
+        Streams inside the design that the bench only watches.
+    gates : Signal or None
+        A bit for each tap, in order: the design connects the stream through while the bit is high.
+        The bench keeps the bit high while a transfer is offered behind the gate, as the rules of
+        streams demand.
+    payloads : mapping of str to Value
+        Values to observe in place of the payload of a sink or tap.
     """
 
-    sources: dict[str, Iterable[int]]
-    takes: dict[str, Callable[[int, int], None]]
-    finished: Callable[[], bool]
-    outstanding: Callable[[], str]
-    stalls: StallPlan = None
-    deadline: int = 1000
-    limit: int = 1_000_000
-    settle: int = 4
-    observe: Callable[[list[int]], None] | None = None
+    sources: Mapping[str, stream.Interface] = field(default_factory=dict)
+    sinks: Mapping[str, stream.Interface] = field(default_factory=dict)
+    taps: Mapping[str, stream.Interface] = field(default_factory=dict)
+    gates: Signal | None = None
+    payloads: Mapping[str, Value] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -92,42 +83,29 @@ class Bench:
     ----------
     design : Elaboratable
         Has ``sync`` as its only clock domain.
-    sources : mapping of str to stream.Interface
-        Streams that the bench drives.
-    sinks : mapping of str to stream.Interface
-        Streams that the bench receives from. Always ready unless stalled.
-    taps : mapping of str to stream.Interface
-        Streams inside the design that the bench only watches.
-    gates : Signal or None
-        A bit for each tap, in order: the design connects the stream through while the bit is high.
-        The bench keeps the bit high while a transfer is offered behind the gate, as the rules of
-        streams demand.
-    payloads : mapping of str to Value
-        Values to observe in place of the payload of a sink or tap.
+    ports : Ports
+        Its streams.
     probes : sequence of Value
-        Values that jobs may observe.
+        Values that runs may observe.
+
+    Attributes
+    ----------
+    names : list of str
+        Names of all streams.
+    cycles : int
+        Number of cycles of the last run, also if that run failed.
     """
 
-    def __init__(
-        self,
-        design: Elaboratable,
-        *,
-        sources: Mapping[str, stream.Interface],
-        sinks: Mapping[str, stream.Interface],
-        taps: Mapping[str, stream.Interface] | None = None,
-        gates: Signal | None = None,
-        payloads: Mapping[str, Value] | None = None,
-        probes: Sequence[Value] = (),
-    ):
-        self.sources, self.sinks = dict(sources), dict(sinks)
-        self.taps, self.gates = dict(taps or {}), gates
+    def __init__(self, design: Elaboratable, ports: Ports, *, probes: Sequence[Value] = ()):
+        self.sources, self.sinks = ports.sources, ports.sinks
+        self.taps, self.gates = ports.taps, ports.gates
         # Sinks and taps first, as only they are watched.
         self.ports = [*self.sinks.values(), *self.taps.values(), *self.sources.values()]
         self.names = [*self.sinks, *self.taps, *self.sources]
         if len(set(self.names)) != len(self.names):
             raise ValueError(f"Names of streams must differ, not {', '.join(self.names)}")
         self.payloads = [Value.cast(port.payload) for port in self.ports]
-        for name, value in (payloads or {}).items():
+        for name, value in ports.payloads.items():
             self.payloads[self.names.index(name)] = value
         self.words: list[Signal] = []
         self.job: Job | None = None
@@ -139,7 +117,7 @@ class Bench:
         self.simulator = Simulator(top)
         self._used = False
 
-    def run(self, job: Job, *, vcd: str | os.PathLike[str] | None = None) -> int:
+    def run(self, job: Job) -> int:
         """Run a job from reset; return the number of cycles, the settling included."""
         if self._used:
             self.simulator.reset()
@@ -148,6 +126,7 @@ class Bench:
             self.simulator.add_testbench(self._testbench)
         self._used = True
         self.job = job
+        vcd = job.options.vcd
         self._delay = HALF_PERIOD if vcd is not None else 0.0
         with nullcontext() if vcd is None else self.simulator.write_vcd(os.fspath(vcd)):
             self.simulator.run()
@@ -187,7 +166,7 @@ class Bench:
         assert self.job is not None
         drive = _Drive(self, self.job)
         watch = _Watch(self, self.job, ctx)
-        observe = self.job.observe
+        observe = self.job.options.observe
         if observe is not None:
             observe([ctx.get(probe) for probe in self.probes])
         fired = held = self.cycles = 0
@@ -246,14 +225,14 @@ class _Drive:
         inputs = [*bench.sinks, *(bench.taps if bench.gates is not None else ())]
         self.gates = (1 << len(inputs)) - (1 << len(bench.sinks))
         for index, name in enumerate(inputs):
-            if stalls := stalls_of(job.stalls, name):
+            if stalls := stalls_of(job.options.stalls, name):
                 self.changing.append((1 << index, stalls.cycles(name)))
             else:
                 self.always |= 1 << index
         self.first = len(bench.ports) - len(bench.sources)
         self.sources = []
         for index, name in enumerate(bench.sources):
-            stalls = stalls_of(job.stalls, name)
+            stalls = stalls_of(job.options.stalls, name)
             word, at = bench.places[index]
             source = _Source(
                 valid=1 << (len(inputs) + index),
@@ -331,8 +310,9 @@ class _Watch:
         self.watched = (1 << (self.count - len(bench.sources))) - 1
         self.takes = [job.takes.get(name) for name in bench.names]
         self.rules = StreamRules(bench.names)
-        stalls = [stalls_of(job.stalls, name) for name in bench.names]
-        self.deadline = job.deadline + max(each.longest for each in stalls)
+        stalls = [stalls_of(job.options.stalls, name) for name in bench.names]
+        self.deadline = job.options.deadline + max(each.longest for each in stalls)
+        self.limit = LIMIT if job.options.limit is None else job.options.limit
         self.cycle = 0
         self.quiet = 0
         self.settled = 0
@@ -364,9 +344,9 @@ class _Watch:
         else:
             self._rest(valid)
         self.cycle += 1
-        if self.cycle > self.job.limit:
+        if self.cycle > self.limit:
             raise DeadlineError(
-                f"No end after {self.job.limit} cycles; outstanding: {self.job.outstanding()}"
+                f"No end after {self.limit} cycles; outstanding: {self.job.outstanding()}"
             )
         return fired, valid & ~ready
 
@@ -374,7 +354,7 @@ class _Watch:
         """Count a cycle without transfers; `valid`: bit mask of the ports that offer one."""
         self.quiet += 1
         self.settled = 0 if valid & self.watched else self.settled + 1
-        self.over = self.finished and self.settled >= self.job.settle
+        self.over = self.finished and self.settled >= self.job.options.settle
         if self.quiet > self.deadline and not self.over:
             waiting = [name for bit, name in enumerate(self.names) if valid >> bit & 1]
             raise DeadlineError(

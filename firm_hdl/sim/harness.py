@@ -7,8 +7,8 @@ and ``message.`` with the path of a leaf.
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 from amaranth.hdl import Cat, Elaboratable, Module, Signal, Value
 from amaranth.lib import stream, wiring
@@ -17,13 +17,16 @@ from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.signatures import leaf_streams
 from firm_hdl.model import Message
 from firm_hdl.plan import Payload, Plan
-from firm_hdl.sim.bench import Bench, Job, in_chunks
-from firm_hdl.sim.demand import demand_table
+from firm_hdl.sim.bench import Bench, Ports, in_chunks
+from firm_hdl.sim.job import Job, RunOptions
 from firm_hdl.sim.payloads import all_beats, beats_of, encoder_of
-from firm_hdl.sim.record import Recorder, Seen, leaf_name
+from firm_hdl.sim.record import Recorder, RunResult, leaf_name
 from firm_hdl.sim.stalls import StallPlan, stalls_of
+from firm_hdl.sim.transfers import join_transfers, transfer_table
 
 __all__ = ["Harness"]
+
+DEFAULTS = RunOptions()
 
 
 class Harness:
@@ -55,41 +58,19 @@ class Harness:
         if component is None:
             raise ValueError("A harness needs a deserializer or a serializer")
         self.plan: Plan = component.plan
-        self.table = None if message is None else demand_table(self.plan, message)
+        self.table = None if message is None else transfer_table(self.plan, message)
         self.deserializer, self.serializer = deserializer, serializer
         names = [leaf_name(self.plan, leaf) for leaf in range(len(self.plan.leaves))]
         leaves = leaf_streams(component.message, component.tree)
         self.leaf_ports = {names[leaf]: port for leaf, port in leaves.items()}
         self.gated = gated and deserializer is not None and serializer is not None
         circuit = _Circuit(deserializer, serializer, self.gated)
-        self.bench = self._bench(circuit, probes)
+        self.bench = Bench(circuit, self._ports(circuit.gates), probes=probes)
 
-    def run(
-        self,
-        *,
-        packets: Sequence[bytes] | None = None,
-        transfers: Mapping[int, Sequence[Payload]] | None = None,
-        messages: int | None = None,
-        stalls: StallPlan = None,
-        deadline: int = 1000,
-        limit: int | None = None,
-        vcd: str | os.PathLike[str] | None = None,
-        observe: Callable[[list[int]], None] | None = None,
-    ) -> Seen:
-        """Send packets (with a deserializer) or transfers (without), and record the results.
+    def run_packets(self, packets: Sequence[bytes], options: RunOptions = DEFAULTS) -> RunResult:
+        """Send packets to the deserializer, back to back, and record the results.
 
         Bytes of lanes that are not valid, and `count` in beats that are not the last, are random.
-
-        Parameters
-        ----------
-        messages : int or None
-            Number of messages in `transfers`; not needed with `packets`.
-        deadline : int
-            Most cycles without any transfer, in addition to the longest stall.
-        limit : int or None
-            Most cycles in total. `None`: many more than any valid packets take.
-        observe : callable or None
-            Called in each cycle with the values of the probes; see :class:`.bench.Job`.
 
         Raises
         ------
@@ -97,42 +78,70 @@ class Harness:
             If expected transfers do not come; the text names them.
         StreamRuleError
             If a stream breaks its rules.
+        ValueError
+            If the harness has no deserializer.
         """
-        if packets is None and messages is None:
-            raise ValueError("Number of messages must be given with transfers")
+        if self.deserializer is None:
+            raise ValueError("Packets need a harness with a deserializer")
+        sources: dict[str, Iterable[int]] = {
+            "packets_in": all_beats(packets, self.plan.bus_bytes, counts=True)
+        }
+        result = self._run(sources, len(packets), sum(map(len, packets)), options)
+        result.beats_in = sum(beats_of(len(packet), self.plan.bus_bytes) for packet in packets)
+        return result
+
+    def run_messages(
+        self, messages: Sequence[Mapping[int, Sequence[Payload]]], options: RunOptions = DEFAULTS
+    ) -> RunResult:
+        """Send messages to a serializer alone, and record the results.
+
+        Each message is given as payloads by the index of the leaf. All leaves move independently: a
+        leaf offers its payloads of all messages back to back.
+
+        Errors are those of :meth:`run_packets`, and `ValueError` if the harness has a deserializer.
+        """
+        if self.deserializer is not None:
+            raise ValueError("Messages need a harness without a deserializer")
+        transfers = join_transfers(messages)
+        sources: dict[str, Iterable[int]] = {
+            leaf_name(self.plan, leaf): map(encoder_of(self.plan.leaves[leaf]), payloads)
+            for leaf, payloads in transfers.items()
+        }
+        size = sum(map(len, transfers.values()))
+        result = self._run(sources, len(messages), size, options)
+        for leaf, offered in transfers.items():
+            if left := len(offered) - len(result.transfers[leaf]):
+                result.not_taken[leaf] = left
+        return result
+
+    def _run(
+        self, sources: dict[str, Iterable[int]], messages: int, size: int, options: RunOptions
+    ) -> RunResult:
+        """Run until `messages` messages have come; `size`: bytes or transfers that are sent."""
         if self.deserializer is not None and self.serializer is not None and not self.gated:
-            self._refuse_leaf_stalls(stalls)
-        expected = len(packets) if packets is not None else messages or 0
-        run = Recorder(
+            self._refuse_leaf_stalls(options.stalls)
+        if options.limit is None:
+            options = replace(options, limit=self._limit(messages, size, options.stalls))
+        recorder = Recorder(
             self.plan,
-            expected,
+            messages,
             decodes=self.deserializer is not None,
             encodes=self.serializer is not None,
             table=self.table,
         )
-        job = Job(
-            sources=self._sources(packets or (), transfers or {}),
-            takes=run.takes(),
-            finished=run.finished,
-            outstanding=run.outstanding,
-            stalls=stalls,
-            deadline=deadline,
-            limit=self._limit(packets, transfers, expected, stalls) if limit is None else limit,
-            observe=observe,
+        self.bench.run(
+            Job(
+                sources=sources,
+                takes=recorder.takes(),
+                finished=recorder.finished,
+                outstanding=recorder.outstanding,
+                options=options,
+            )
         )
-        run.seen.beats_in = sum(beats_of(len(p), self.plan.bus_bytes) for p in packets or ())
-        self.bench.run(job, vcd=vcd)
-        return _with_untaken(run.result(), transfers or {})
+        return recorder.finish()
 
-    def _limit(
-        self,
-        packets: Sequence[bytes] | None,
-        transfers: Mapping[int, Sequence[Payload]] | None,
-        messages: int,
-        stalls: StallPlan,
-    ) -> int:
+    def _limit(self, messages: int, size: int, stalls: StallPlan) -> int:
         """Return a number of cycles that valid packets never reach."""
-        size = sum(map(len, packets or ())) + sum(map(len, (transfers or {}).values()))
         longest = max(stalls_of(stalls, name).longest for name in self.bench.names)
         return 10_000 + 50 * (size + 8 * messages) * (1 + longest)
 
@@ -142,7 +151,7 @@ class Harness:
                 if stalls_of(stalls, name):
                     raise ValueError(f"Stream {name!r} can be stalled in a gated harness only")
 
-    def _bench(self, circuit: _Circuit, probes: Sequence[Value]) -> Bench:
+    def _ports(self, gates: Signal | None) -> Ports:
         rx, tx = self.deserializer, self.serializer
         sources: dict[str, stream.Interface] = {}
         sinks: dict[str, stream.Interface] = {}
@@ -157,25 +166,7 @@ class Harness:
             payloads["packets_out"] = Cat(Value.cast(tx.packets.payload), tx.packet_error)
         target = sources if rx is None else sinks if tx is None else taps
         target.update(self.leaf_ports)
-        return Bench(
-            circuit,
-            sources=sources,
-            sinks=sinks,
-            taps=taps,
-            gates=circuit.gates,
-            payloads=payloads,
-            probes=probes,
-        )
-
-    def _sources(
-        self, packets: Sequence[bytes], transfers: Mapping[int, Sequence[Payload]]
-    ) -> dict[str, Iterable[int]]:
-        if self.deserializer is not None:
-            return {"packets_in": all_beats(packets, self.plan.bus_bytes, counts=True)}
-        return {
-            leaf_name(self.plan, leaf): map(encoder_of(self.plan.leaves[leaf]), payloads)
-            for leaf, payloads in transfers.items()
-        }
+        return Ports(sources=sources, sinks=sinks, taps=taps, gates=gates, payloads=payloads)
 
 
 class _Circuit(Elaboratable):
@@ -208,11 +199,3 @@ class _Circuit(Elaboratable):
                     outputs[leaf].ready.eq(inputs[leaf].ready & self.gates[leaf]),
                 ]
         return m
-
-
-def _with_untaken(seen: Seen, transfers: Mapping[int, Sequence[Payload]]) -> Seen:
-    """Record how many transfers of each leaf were offered and not taken."""
-    for leaf, offered in transfers.items():
-        if left := len(offered) - len(seen.transfers[leaf]):
-            seen.left[leaf] = left
-    return seen

@@ -9,19 +9,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import TypeVar
 
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Payload, Plan
 from firm_hdl.sim.harness import Harness
-from firm_hdl.sim.record import leaf_name
+from firm_hdl.sim.job import RunOptions
+from firm_hdl.sim.record import RunResult, leaf_name
 from firm_hdl.sim.stalls import StallPlan, stalls_of
 from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import Wire
 
-__all__ = ["Decoding", "Encoding", "Loopback", "decode", "encode", "join_transfers", "loopback"]
+__all__ = ["Decoding", "Encoding", "Loopback", "decode", "encode", "loopback"]
+
+T = TypeVar("T", "Loopback", "Decoding", "Encoding")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +40,7 @@ class Loopback:
         Statuses of the deserializer.
     sent_statuses : list of Status
         Statuses of the serializer.
-    marked : list of bool
+    packet_errors : list of bool
         For each packet of the serializer, whether `packet_error` was set.
     transfers : dict of int to list
         Payloads of each leaf's stream, by the index of the leaf, over all packets.
@@ -49,7 +53,7 @@ class Loopback:
     packets: list[bytes]
     statuses: list[Status]
     sent_statuses: list[Status]
-    marked: list[bool]
+    packet_errors: list[bool]
     transfers: dict[int, list[Payload]]
     cycles: int
     beats_in: int
@@ -80,15 +84,16 @@ class Encoding:
     """The result of a serializer. Unpacks as ``packets, statuses``.
 
     Attributes are as for :class:`Loopback`; `cycles` starts with the first transfer of a leaf.
-    `left` has the number of offered transfers that were never taken, by leaf.
+    `not_taken` has the number of offered transfers that were never taken, by leaf; other leaves are
+    absent.
     """
 
     packets: list[bytes]
     statuses: list[Status]
-    marked: list[bool]
+    packet_errors: list[bool]
     cycles: int
     beats_out: int
-    left: dict[int, int]
+    not_taken: dict[int, int]
 
     def __iter__(self) -> Iterator[list[bytes] | list[Status]]:
         return iter((self.packets, self.statuses))
@@ -136,19 +141,9 @@ def loopback(
     tx = Serializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
     names = [leaf_name(rx.plan, leaf) for leaf in range(len(rx.plan.leaves))]
     gated = any(stalls_of(stalls, name) for name in names)
-    seen = Harness(rx, tx, message=message, gated=gated).run(
-        packets=list(packets), stalls=stalls, deadline=deadline, limit=limit, vcd=vcd
-    )
-    return Loopback(
-        packets=seen.packets,
-        statuses=seen.statuses,
-        sent_statuses=seen.sent_statuses,
-        marked=seen.marked,
-        transfers=seen.transfers,
-        cycles=seen.cycles,
-        beats_in=seen.beats_in,
-        beats_out=seen.beats_out,
-    )
+    options = RunOptions(stalls=stalls, deadline=deadline, limit=limit, vcd=vcd)
+    harness = Harness(rx, tx, message=message, gated=gated)
+    return _select(Loopback, harness.run_packets(list(packets), options))
 
 
 def decode(
@@ -168,15 +163,9 @@ def decode(
     Parameters and errors are those of :func:`loopback`.
     """
     rx = Deserializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
-    seen = Harness(rx, None, message=message).run(
-        packets=list(packets), stalls=stalls, deadline=deadline, limit=limit, vcd=vcd
-    )
-    return Decoding(
-        transfers=seen.transfers,
-        statuses=seen.statuses,
-        cycles=seen.cycles,
-        beats_in=seen.beats_in,
-    )
+    options = RunOptions(stalls=stalls, deadline=deadline, limit=limit, vcd=vcd)
+    harness = Harness(rx, None, message=message)
+    return _select(Decoding, harness.run_packets(list(packets), options))
 
 
 def encode(
@@ -202,36 +191,19 @@ def encode(
     Other parameters and errors are those of :func:`loopback`.
     """
     tx = Serializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
-    given = [as_transfers(tx.plan, message, value) for value in values]
-    seen = Harness(None, tx, message=message).run(
-        transfers=join_transfers(given),
-        messages=len(given),
-        stalls=stalls,
-        deadline=deadline,
-        limit=limit,
-        vcd=vcd,
-    )
-    return Encoding(
-        packets=seen.packets,
-        statuses=seen.statuses,
-        marked=seen.marked,
-        cycles=seen.cycles,
-        beats_out=seen.beats_out,
-        left=seen.left,
-    )
+    options = RunOptions(stalls=stalls, deadline=deadline, limit=limit, vcd=vcd)
+    harness = Harness(None, tx, message=message)
+    messages = [_as_transfers(tx.plan, message, value) for value in values]
+    return _select(Encoding, harness.run_messages(messages, options))
 
 
-def as_transfers(plan: Plan, message: Message, value: object) -> Mapping[int, list[Payload]]:
+def _select(kind: type[T], result: RunResult) -> T:
+    """Return those observations of a run that a function returns."""
+    return kind(**{item.name: getattr(result, item.name) for item in fields(kind)})
+
+
+def _as_transfers(plan: Plan, message: Message, value: object) -> Mapping[int, list[Payload]]:
     """Return the transfers of a message, which is given as transfers or as a value."""
     if isinstance(value, Mapping) and value and all(isinstance(key, int) for key in value):
         return value
     return to_transfers(plan, message, value)
-
-
-def join_transfers(messages: Iterable[Mapping[int, list[Payload]]]) -> dict[int, list[Payload]]:
-    """Return the transfers of several messages, in the order of the messages."""
-    joined: dict[int, list[Payload]] = {}
-    for message in messages:
-        for leaf, payloads in message.items():
-            joined.setdefault(leaf, []).extend(payloads)
-    return joined

@@ -20,10 +20,10 @@ from firm_hdl.gateware.signatures import leaf_streams
 from firm_hdl.model import Message
 from firm_hdl.plan import Payload, build_plan
 from firm_hdl.sim.bench import DeadlineError
-from firm_hdl.sim.demand import Demand, demand_table
 from firm_hdl.sim.payloads import decoder_of, encoder_of
 from firm_hdl.sim.record import leaf_name
 from firm_hdl.sim.stalls import StallPlan, stalls_of
+from firm_hdl.sim.transfers import PendingTransfers, transfer_table
 from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.wire import Wire, lay_out
 
@@ -69,7 +69,7 @@ class MessagePort:
         self.plan = build_plan(layout, bus_bytes=bus_bytes, max_message_bytes=(1 << 32) - 1)
         tree = member_tree(leaf.path for leaf in self.plan.leaves)
         self.streams = leaf_streams(interface, tree)
-        self._table = demand_table(self.plan, message)
+        self._table = transfer_table(self.plan, message)
         self._encoders = [encoder_of(leaf) for leaf in self.plan.leaves]
         self._decoders = [decoder_of(leaf) for leaf in self.plan.leaves]
         self._names = [leaf_name(self.plan, leaf) for leaf in self.streams]
@@ -135,7 +135,7 @@ class MessagePort:
         self, ctx: SimulatorContext, *, stalls: StallPlan = None, deadline: int = 1000
     ) -> dict[int, list[Payload]]:
         """Receive the transfers of one message. Parameters and errors as for :meth:`receive`."""
-        demand = Demand(self._table)
+        pending = PendingTransfers(self._table)
         got: dict[int, list[Payload]] = {leaf: [] for leaf in self.streams}
         kinds = [stalls_of(stalls, name) for name in self._names]
         patterns = [kind.cycles(name) for kind, name in zip(kinds, self._names, strict=True)]
@@ -145,8 +145,8 @@ class MessagePort:
         payloads = [Value.cast(port.payload) for port in ports]
         ready = quiet = 0
         while True:
-            ready = self._set_ready(ctx, demand, patterns, ready)
-            if not demand.left:
+            ready = self._set_ready(ctx, pending, patterns, ready)
+            if not pending.counts:
                 return got
             _, _, valid, *bits = await ctx.tick().sample(valids, *payloads)
             quiet = 0 if valid & ready else quiet + 1
@@ -154,18 +154,22 @@ class MessagePort:
                 if (valid & ready) >> leaf & 1:
                     payload = self._decoders[leaf](bits[leaf])
                     got[leaf].append(payload)
-                    demand.take(leaf, payload)
+                    pending.take(leaf, payload)
             if quiet > deadline:
-                left = (f"{self._names[leaf]} ({n})" for leaf, n in sorted(demand.left.items()))
+                left = (f"{self._names[leaf]} ({n})" for leaf, n in sorted(pending.counts.items()))
                 what = f"No transfer of a message in {quiet} cycles; outstanding"
                 raise DeadlineError(f"{what}: {', '.join(left)}")
 
     def _set_ready(
-        self, ctx: SimulatorContext, demand: Demand, patterns: list[Iterator[bool]], before: int
+        self,
+        ctx: SimulatorContext,
+        pending: PendingTransfers,
+        patterns: list[Iterator[bool]],
+        before: int,
     ) -> int:
         """Make the leaves ready that have transfers to come; return them as a bit mask."""
         ready = 0
-        for leaf in demand.left:
+        for leaf in pending.counts:
             if not next(patterns[leaf]):
                 ready |= 1 << leaf
         for leaf, port in self.streams.items():

@@ -7,15 +7,15 @@ from dataclasses import dataclass, field
 
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.plan import Payload, Plan
-from firm_hdl.sim.demand import DemandTable, split_transfers
 from firm_hdl.sim.payloads import PacketCollector, decoder_of
+from firm_hdl.sim.transfers import TransferTable, split_transfers
 from firm_hdl.sim.watch import PacketRules
 
-__all__ = ["Recorder", "Seen", "leaf_name"]
+__all__ = ["Recorder", "RunResult", "leaf_name"]
 
 
 @dataclass(slots=True, kw_only=True)
-class Seen:
+class RunResult:
     """The observations of one run of a harness.
 
     If the serializer is alone, `statuses` are those of the serializer, and `sent_statuses` is
@@ -25,7 +25,7 @@ class Seen:
     ----------
     packets : list of bytes
         Packets of the serializer.
-    marked : list of bool
+    packet_errors : list of bool
         For each of these packets, whether `packet_error` was set.
     statuses : list of Status
         Transfers of ``status``.
@@ -35,18 +35,19 @@ class Seen:
         Payloads by leaf, over all packets; every leaf has an entry.
     cycles : int
         Cycles from the first beat (or leaf transfer) in to the last one out, both included.
-    left : dict of int to int
-        Transfers that were offered to a serializer and never taken, by leaf.
+    not_taken : dict of int to int
+        Transfers that were offered to a serializer and never taken, by leaf; other leaves are
+        absent.
     beats_in, beats_out : int
         Beats of the packets in and out.
     """
 
     packets: list[bytes] = field(default_factory=list)
-    marked: list[bool] = field(default_factory=list)
+    packet_errors: list[bool] = field(default_factory=list)
     statuses: list[Status] = field(default_factory=list)
     sent_statuses: list[Status] = field(default_factory=list)
     transfers: dict[int, list[Payload]] = field(default_factory=dict)
-    left: dict[int, int] = field(default_factory=dict)
+    not_taken: dict[int, int] = field(default_factory=dict)
     beats_in: int = 0
     beats_out: int = 0
     first_cycle: int = -1
@@ -73,7 +74,7 @@ class Recorder:
         Number of packets and of statuses that are expected.
     decodes, encodes : bool
         The harness has a deserializer; it has a serializer.
-    table : DemandTable or None
+    table : TransferTable or None
         Transfers that messages require, to name missing leaves.
     """
 
@@ -84,7 +85,7 @@ class Recorder:
         *,
         decodes: bool,
         encodes: bool,
-        table: DemandTable | None = None,
+        table: TransferTable | None = None,
     ):
         self.plan = plan
         self.table = table
@@ -94,14 +95,14 @@ class Recorder:
         self.bits: dict[int, list[int]] = {leaf: [] for leaf in range(len(plan.leaves))}
         self.out = PacketCollector(plan.bus_bytes)
         self.rules = PacketRules("packets_out", plan.bus_bytes)
-        self.seen = Seen(packets=self.out.packets)
+        self.result = RunResult(packets=self.out.packets)
         self.error_at = 8 * plan.bus_bytes + plan.bus_bytes.bit_length() + 1
         # Streams with one transfer or packet for each packet that goes in.
-        self.counted: dict[str, list[Status] | list[bytes]] = {"status": self.seen.statuses}
+        self.counted: dict[str, list[Status] | list[bytes]] = {"status": self.result.statuses}
         if encodes:
             self.counted["packets_out"] = self.out.packets
         if encodes and decodes:
-            self.counted["sent_status"] = self.seen.sent_statuses
+            self.counted["sent_status"] = self.result.sent_statuses
 
     def takes(self) -> dict[str, Callable[[int, int], None]]:
         """Return the functions to call at each transfer, by the stream's name."""
@@ -110,8 +111,8 @@ class Recorder:
         }
         takes["packets_in"] = self._packet_in
         takes["packets_out"] = self._packet_out
-        takes["status"] = self._status("status", self.seen.statuses)
-        takes["sent_status"] = self._status("sent_status", self.seen.sent_statuses)
+        takes["status"] = self._status("status", self.result.statuses)
+        takes["sent_status"] = self._status("sent_status", self.result.sent_statuses)
         return takes
 
     def _status(self, name: str, statuses: list[Status]) -> Callable[[int, int], None]:
@@ -125,7 +126,6 @@ class Recorder:
         if len(self.counted[name]) > self.expected:
             raise AssertionError(
                 f"Stream {name!r} has more than the {self.expected} expected, in cycle {cycle}"
-
             )
 
     def _leaf(self, values: list[int]) -> Callable[[int, int], None]:
@@ -140,13 +140,13 @@ class Recorder:
 
             def take(cycle: int, bits: int) -> None:
                 values.append(bits)
-                self.seen.last_cycle = cycle
+                self.result.last_cycle = cycle
 
         return take
 
     def _time_in(self, cycle: int) -> None:
-        if self.seen.first_cycle < 0:
-            self.seen.first_cycle = cycle
+        if self.result.first_cycle < 0:
+            self.result.first_cycle = cycle
 
     def _packet_in(self, cycle: int, bits: int) -> None:
         self._time_in(cycle)
@@ -154,12 +154,12 @@ class Recorder:
     def _packet_out(self, cycle: int, bits: int) -> None:
         beat = bits & ((1 << self.error_at) - 1)
         self.rules.check(cycle, beat)
-        self.seen.last_cycle = cycle
-        is_marked = bool(bits >> self.error_at)
+        self.result.last_cycle = cycle
+        has_error = bool(bits >> self.error_at)
         if self.out.take(beat):
-            self.seen.marked.append(is_marked)
+            self.result.packet_errors.append(has_error)
             self._limit("packets_out", cycle)
-        elif is_marked:
+        elif has_error:
             raise AssertionError(
                 f"packet_error is high in cycle {cycle}, with a beat that is not the last"
             )
@@ -183,21 +183,22 @@ class Recorder:
         """Return the leaves that an incomplete message still requires, as text."""
         if self.table is None:
             return []
-        messages, demand = split_transfers(self.table, self._transfers())
+        messages, pending = split_transfers(self.table, self._transfers())
         if len(messages) >= self.expected:
             return []
-        return [f"{leaf_name(self.plan, n)} ({count})" for n, count in sorted(demand.left.items())]
+        counts = sorted(pending.counts.items())
+        return [f"{leaf_name(self.plan, leaf)} ({count})" for leaf, count in counts]
 
     def _transfers(self) -> dict[int, list[Payload]]:
         decoders = [decoder_of(leaf) for leaf in self.plan.leaves]
         return {leaf: [decoders[leaf](each) for each in bits] for leaf, bits in self.bits.items()}
 
-    def result(self) -> Seen:
+    def finish(self) -> RunResult:
         """Return the observations after the run; an incomplete packet at the end is an error."""
         if self.out.partial:
             raise AssertionError(
                 f"Stream 'packets_out' begins a packet too many: {self.out.partial.hex()}"
             )
-        self.seen.transfers = self._transfers()
-        self.seen.beats_out = self.out.beats
-        return self.seen
+        self.result.transfers = self._transfers()
+        self.result.beats_out = self.out.beats
+        return self.result

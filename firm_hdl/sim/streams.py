@@ -12,6 +12,7 @@ The receiving side checks the deadline: if no transfer comes for that many cycle
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from typing import Any
 
 from amaranth.hdl import Value
@@ -103,7 +104,10 @@ async def receive(
         left = count - len(payloads)
         return f"{left} of {count} transfers" if left > 0 else ""
 
-    await _receive(ctx, port, port.payload, payloads.append, expected, stalls, deadline, name)
+    receiver = _Receiver(
+        port=port, payload=port.payload, stalls=stalls, deadline=deadline, name=name
+    )
+    await receiver.run(ctx, payloads.append, expected)
     return payloads
 
 
@@ -155,7 +159,8 @@ async def receive_packets(
         collector.take(beat)
 
     bits = Value.cast(port.payload)
-    await _receive(ctx, port, bits, take, expected, stalls, deadline, name)
+    receiver = _Receiver(port=port, payload=bits, stalls=stalls, deadline=deadline, name=name)
+    await receiver.run(ctx, take, expected)
     return collector.packets
 
 
@@ -172,30 +177,41 @@ async def receive_statuses(
     return await receive(ctx, port, count, stalls=stalls, deadline=deadline, name=name)
 
 
-async def _receive(
-    ctx: SimulatorContext,
-    port: stream.Interface,
-    payload: Any,
-    take: Callable[[Any], object],
-    expected: Callable[[], str],
-    stalls: Stalls,
-    deadline: int,
-    name: str,
-) -> None:
-    """Receive until `expected` returns an empty text; call `take` with each payload."""
-    stalled = stalls.cycles(name)
-    ready = quiet = 0
-    while expected():
-        if ready == (stall := next(stalled)):
-            ready = not stall
-            ctx.set(port.ready, ready)
-        _, _, valid, seen = await ctx.tick().sample(port.valid, payload)
-        if valid and ready:
-            take(seen)
-            quiet = 0
-        else:
-            quiet += 1
-        if quiet > deadline + stalls.longest:
-            what = f"No transfer on stream {name!r} in {quiet} cycles"
-            raise DeadlineError(f"{what}; outstanding: {expected()}")
-    ctx.set(port.ready, 0)
+@dataclass(slots=True, kw_only=True)
+class _Receiver:
+    """A stream that a testbench receives from.
+
+    Attributes
+    ----------
+    payload : value
+        What to read at each transfer.
+    stalls, deadline, name
+        As for :func:`receive`.
+    """
+
+    port: stream.Interface
+    payload: Any
+    stalls: Stalls
+    deadline: int
+    name: str
+
+    async def run(
+        self, ctx: SimulatorContext, take: Callable[[Any], object], expected: Callable[[], str]
+    ) -> None:
+        """Receive until `expected` returns an empty text; call `take` with each payload."""
+        stalled = self.stalls.cycles(self.name)
+        ready = quiet = 0
+        while expected():
+            if ready == (stall := next(stalled)):
+                ready = not stall
+                ctx.set(self.port.ready, ready)
+            _, _, valid, payload = await ctx.tick().sample(self.port.valid, self.payload)
+            if valid and ready:
+                take(payload)
+                quiet = 0
+            else:
+                quiet += 1
+            if quiet > self.deadline + self.stalls.longest:
+                what = f"No transfer on stream {self.name!r} in {quiet} cycles"
+                raise DeadlineError(f"{what}; outstanding: {expected()}")
+        ctx.set(self.port.ready, 0)

@@ -153,7 +153,7 @@ def test_a_length_over_its_bound_is_sent_as_promised_and_marked():
     good = {0: [1], 1: [((7, 0, 0, 0, 0, 0, 0, 0), True)], 2: [8]}
     sent = encode(message, [five, good])
     assert sent.statuses == [Status.LENGTH, Status.OK]
-    assert sent.marked == [True, False]
+    assert sent.packet_errors == [True, False]
     assert sent.packets == [
         b"\0\1\0\0\6\0\0\0\1\2\3\4\5\0\x09",
         b"\0\1\0\0\2\0\0\0\7\0\x08",

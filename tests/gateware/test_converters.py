@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from firm_hdl import Deserializer, Serializer, Status
 from firm_hdl.plan import decode, encode
-from firm_hdl.sim import Harness, Stalls, to_transfers
-from firm_hdl.sim.loopback import join_transfers
+from firm_hdl.sim import Harness, RunOptions, Stalls, to_transfers
+from firm_hdl.sim.transfers import join_transfers
 from tests.plan.test_random_messages import damaged, serialize, typed_values
 from tests.strategies import BUS_WIDTHS, values
 
@@ -49,11 +49,13 @@ def test_messages_come_through_byte_for_byte(wire, data, case, options, stalls):
     packets = [serialize(definition, item, wire)[1] for item in (value, *more)]
     rx = Deserializer(definition.message, wire=wire, **options)
     tx = Serializer(definition.message, wire=wire, **options)
-    seen = Harness(rx, tx, gated=stalls is not None).run(packets=packets, stalls=stalls)
+    seen = Harness(rx, tx, gated=stalls is not None).run_packets(
+        packets, RunOptions(stalls=stalls)
+    )
     assert seen.packets == packets
     assert carried(seen.transfers) == expected(rx.plan, packets)[0]
     assert set(seen.statuses) | set(seen.sent_statuses) == {Status.OK}
-    assert not any(seen.marked)
+    assert not any(seen.packet_errors)
 
 
 @pytest.mark.parametrize("wire", WIRES)
@@ -67,7 +69,7 @@ def test_bad_packets_are_reported_and_forgotten(wire, data, case, options, stall
     for packet in data.draw(st.lists(damaged(good), min_size=1, max_size=6)):
         packets += [packet, good]
     transfers, statuses = expected(rx.plan, packets)
-    seen = Harness(rx, None).run(packets=packets, stalls=stalls, limit=2_000_000)
+    seen = Harness(rx, None).run_packets(packets, RunOptions(stalls=stalls, limit=2_000_000))
     assert list(seen.statuses) == statuses
     assert carried(seen.transfers) == transfers
 
@@ -89,9 +91,7 @@ def test_wrong_streams_are_marked_and_forgotten(wire, data, case, options, stall
                     bad[leaf][index] = (lanes, not last)
         messages += [bad, good]
     want = [encode(tx.plan, {k: iter(v) for k, v in message.items()}) for message in messages]
-    seen = Harness(None, tx).run(
-        transfers=join_transfers(messages), messages=len(messages), stalls=stalls
-    )
+    seen = Harness(None, tx).run_messages(messages, RunOptions(stalls=stalls))
     assert seen.packets == [packet for packet, _ in want]
     assert [status.name for status in seen.statuses] == [str(status) for _, status in want]
-    assert seen.marked == [status != Status.OK for status in seen.statuses]
+    assert seen.packet_errors == [status != Status.OK for status in seen.statuses]

@@ -15,7 +15,7 @@ from firm_hdl.export.build import build
 from firm_hdl.gateware.signatures import LATENCY_CYCLES
 from firm_hdl.plan import decode
 from firm_hdl.sim import Harness, Stalls, leaf_name
-from firm_hdl.sim.bench import Job
+from firm_hdl.sim.job import Job, RunOptions
 from firm_hdl.sim.payloads import all_beats, encoder_of
 
 GAP = Stalls.bits("0" * 15 + "1")
@@ -40,7 +40,7 @@ def events(harness, sources, packets):
         takes={name: lambda cycle, bits, to=to: to.append(cycle) for name, to in found.items()},
         finished=lambda: len(found["status"]) == packets,
         outstanding=lambda: "",
-        stalls=dict.fromkeys(sources, GAP),
+        options=RunOptions(stalls=dict.fromkeys(sources, GAP)),
     )
     harness.bench.run(job)
     return found

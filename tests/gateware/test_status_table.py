@@ -12,9 +12,8 @@ import random
 import pytest
 
 from firm_hdl import Deserializer, Serializer
-from firm_hdl.sim import Harness, Stalls, from_transfers
-from firm_hdl.sim.demand import demand_table, split_transfers
-from firm_hdl.sim.loopback import join_transfers
+from firm_hdl.sim import Harness, RunOptions, Stalls, from_transfers
+from firm_hdl.sim.transfers import split_transfers, transfer_table
 from tests.strategies import BUS_WIDTHS, make
 
 some_buses = pytest.mark.parametrize("bus_bytes", [1, 4, 16])
@@ -167,8 +166,8 @@ def check_reading(message, table, bus_bytes, **options):
     rx = Deserializer(message, bus_bytes=bus_bytes, **options)
     harness = Harness(rx, None, message=message)
     for stalls in STALLS:
-        seen = harness.run(packets=[packet(text) for text, _, _ in rows], stalls=stalls)
-        messages, _ = split_transfers(demand_table(rx.plan, message), seen.transfers)
+        seen = harness.run_packets([packet(text) for text, _, _ in rows], RunOptions(stalls=stalls))
+        messages, _ = split_transfers(transfer_table(rx.plan, message), seen.transfers)
         assert len(messages) == len(rows)
         for (text, status, value), got, said in zip(rows, messages, seen.statuses, strict=True):
             assert (said.name, from_transfers(rx.plan, message, got)) == (status, value), text
@@ -303,11 +302,11 @@ def test_first_error_of_a_message_is_reported_and_marks_its_packet(bus_bytes, wi
     ]
     harness = Harness(None, tx, message=SENT)
     for stalls in STALLS:
-        seen = harness.run(transfers=join_transfers(messages), messages=len(rows), stalls=stalls)
+        seen = harness.run_messages(messages, RunOptions(stalls=stalls))
         assert seen.packets == [packet(text) for *_, text in rows]
         assert [status.name for status in seen.statuses] == [row[5] for row in rows]
-        assert seen.marked == [row[5] != "OK" for row in rows]
-        assert not seen.left
+        assert seen.packet_errors == [row[5] != "OK" for row in rows]
+        assert not seen.not_taken
 
 
 # With the last word of a message, or as its only one.
@@ -325,18 +324,15 @@ def test_error_in_the_last_word_of_a_message_marks_it(bus_bytes, wire):
         (b"abc", LATE, "LENGTH"),
         (b"ab", NO, "OK"),
     ]
-    seen = Harness(None, tx).run(
-        transfers=join_transfers(
-            {0: [len(text)], 1: lanes_of(text, bus_bytes, last, noise)} for text, last, _ in rows
-        ),
-        messages=len(rows),
+    seen = Harness(None, tx).run_messages(
+        [{0: [len(text)], 1: lanes_of(text, bus_bytes, last, noise)} for text, last, _ in rows]
     )
     head, nul = (b"\0\1\0\0", b"\0") if wire == "cdr" else (b"", b"")
     assert seen.packets == [
         head + bytes((len(text) + len(nul), 0, 0, 0)) + text + nul for text, _, _ in rows
     ]
     assert [each.name for each in seen.statuses] == [status for _, _, status in rows]
-    assert seen.marked == [status != "OK" for _, _, status in rows]
+    assert seen.packet_errors == [status != "OK" for _, _, status in rows]
 
 
 # What `max_message_bytes` leaves room for; 9 bytes are those of the shortest message.
@@ -357,14 +353,14 @@ def test_limit_of_a_serializer_is_exact(bus_bytes, count, status):
         }
         for each in (text, b"ab")
     ]
-    seen = Harness(None, tx, message=message).run(transfers=join_transfers(messages), messages=2)
+    seen = Harness(None, tx, message=message).run_messages(messages)
     rest = b"\1\0\0\0t\7"
     assert seen.packets == [
         bytes((count, 0, 0, 0)) + text + rest,
         b"\2\0\0\0ab" + rest,
     ]
     assert [each.name for each in seen.statuses] == [status, "OK"]
-    assert seen.marked == [status != "OK", False]
+    assert seen.packet_errors == [status != "OK", False]
 
 
 @pytest.mark.parametrize("bus_bytes", [2, 8, 64])
@@ -372,6 +368,7 @@ def test_packets_shorter_than_a_beat_stay_apart_while_none_is_taken(bus_bytes):
     message = make("ros1", {"x": "uint8"})
     tx = Serializer(message, bus_bytes=bus_bytes)
     stalls = {"packets_out": Stalls.bits("0" * 9 + "1"), "status": Stalls.bits("001")}
-    seen = Harness(None, tx).run(transfers={0: list(range(20))}, messages=20, stalls=stalls)
+    messages = [{0: [number]} for number in range(20)]
+    seen = Harness(None, tx).run_messages(messages, RunOptions(stalls=stalls))
     assert seen.packets == [bytes((number,)) for number in range(20)]
-    assert not any(seen.marked) and {each.name for each in seen.statuses} == {"OK"}
+    assert not any(seen.packet_errors) and {each.name for each in seen.statuses} == {"OK"}

@@ -17,9 +17,8 @@ DISTROS = ("noetic", "foxy", "humble", "iron", "jazzy", "kilted", "lyrical")
 
 
 def run(message, packets, **options):
-    seen = Harness(Deserializer(message, **options), Serializer(message, **options)).run(
-        packets=packets
-    )
+    harness = Harness(Deserializer(message, **options), Serializer(message, **options))
+    seen = harness.run_packets(packets)
     assert seen.packets == packets
     return seen
 

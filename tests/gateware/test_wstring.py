@@ -77,7 +77,7 @@ def test_a_wide_string_over_its_bound_is_sent_as_promised_and_marked(bus_bytes):
     words = [tuple(units[i : i + lanes]) for i in range(0, len(units), lanes)]
     items = [(word, n == len(words) - 1) for n, word in enumerate(words)]
     sent = encode(BOUNDED, [{0: [4], 1: items, 2: [9]}], bus_bytes=bus_bytes)
-    assert (sent.statuses, sent.marked) == ([Status.LENGTH], [True])
+    assert (sent.statuses, sent.packet_errors) == ([Status.LENGTH], [True])
     assert sent.packets == [packet("04000000 61000000 62000000 63000000 64000000 09")]
 
 

@@ -12,33 +12,40 @@ from amaranth.hdl import Cat, Module, Signal
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.sim import DeadlineError, StreamRuleError
-from firm_hdl.sim.bench import WORD_BITS, Bench, Job
+from firm_hdl.sim.bench import WORD_BITS, Bench, Ports
 from firm_hdl.sim.harness import Harness
+from firm_hdl.sim.job import Job, RunOptions
 from firm_hdl.sim.stalls import Stalls
 from tests.sim.components import Relay
+from tests.strategies import make
 
 
 class Run:
     """A run of relays side by side, and what was taken from each, by cycle."""
 
-    def __init__(self, given, *, shapes=8, expected=None, fault="", **options):
+    def __init__(
+        self,
+        given,
+        *,
+        shapes=8,
+        expected=None,
+        fault="",
+        probes=lambda relays: (),
+        payloads=lambda relays: {},
+        **options,
+    ):
         relays = [Relay(shapes, fault) for _ in given]
         top = Module()
         top.submodules += relays
         self.taken = {f"o{n}": [] for n in range(len(given))}
-        known = {name: options.pop(name) for name in ("probes", "payloads") if name in options}
-        if "probes" in known:
-            known["probes"] = known["probes"](relays)
-        if "payloads" in known:
-            known["payloads"] = known["payloads"](relays)
-        bench = Bench(
-            top,
+        ports = Ports(
             sources={f"i{n}": relay.i for n, relay in enumerate(relays)},
             sinks={f"o{n}": relay.o for n, relay in enumerate(relays)},
-            **known,
+            payloads=payloads(relays),
         )
-        self.bench = bench
+        self.bench = Bench(top, ports, probes=probes(relays))
         wanted = sum(map(len, given)) if expected is None else expected
         self.job = Job(
             sources={f"i{n}": each for n, each in enumerate(given)},
@@ -48,11 +55,11 @@ class Run:
             },
             finished=lambda: sum(map(len, self.taken.values())) >= wanted,
             outstanding=lambda: "something",
-            **options,
+            options=RunOptions(**options),
         )
 
-    def go(self, **options):
-        return self.bench.run(self.job, **options)
+    def go(self):
+        return self.bench.run(self.job)
 
 
 def test_what_comes_in_goes_out_in_the_next_cycle():
@@ -230,8 +237,7 @@ class Tapped(wiring.Component):
 )
 def test_taps_are_watched_and_held_up_by_their_gates(stalls, times):
     design = Tapped()
-    bench = Bench(
-        design,
+    ports = Ports(
         sources={"i": design.i},
         sinks={"o": design.o},
         taps={"tap": design.between},
@@ -246,24 +252,40 @@ def test_taps_are_watched_and_held_up_by_their_gates(stalls, times):
         takes=takes,
         finished=lambda: len(taken["o"]) == 3,
         outstanding=lambda: "",
-        stalls={name: Stalls.bits(bits) for name, bits in stalls.items()},
+        options=RunOptions(stalls={name: Stalls.bits(bits) for name, bits in stalls.items()}),
     )
-    bench.run(job)
+    Bench(design, ports).run(job)
     assert taken["o"] == taken["tap"] == list(zip(times, [7, 8, 9], strict=True))
 
 
 @pytest.mark.parametrize("name", ["a", "b", "c"])
 def test_a_limit_leaves_time_for_the_stalls_of_every_stream(name):
     harness = SimpleNamespace(bench=SimpleNamespace(names=["a", "b", "c"]))
-    packets, transfers = [b"12345", b"678"], {0: [1, 2], 3: [4]}
 
-    def limit(stalls, packets=packets, transfers=transfers):
-        return Harness._limit(harness, packets, transfers, 2, stalls)
+    def limit(stalls, messages=2, size=11):
+        return Harness._limit(harness, messages, size, stalls)
 
-    assert limit(None) == 10_000 + 50 * (8 + 3 + 16)
-    assert limit({name: Stalls.bits("1000")}) == 10_000 + 50 * (8 + 3 + 16) * 4
-    assert limit(None, packets=None) == 10_000 + 50 * (3 + 16)
-    assert limit(None, transfers=None) == 10_000 + 50 * (8 + 16)
+    assert limit(None) == 10_000 + 50 * (11 + 16)
+    assert limit({name: Stalls.bits("1000")}) == 10_000 + 50 * (11 + 16) * 4
+    assert limit(None, size=3) == 10_000 + 50 * (3 + 16)
+    assert limit(None, messages=0) == 10_000 + 50 * 11
+
+
+def test_a_limit_counts_the_bytes_of_packets_or_the_transfers_of_messages():
+    counted = []
+
+    class Counted(Harness):
+        def _limit(self, messages, size, stalls):
+            counted.append((messages, size))
+            return super()._limit(messages, size, stalls)
+
+    message = make("ros1", {"x": "uint8", "s": "string"})
+    packet = bytes.fromhex("07 03000000 616263")
+    received = Counted(Deserializer(message, bus_bytes=2), None).run_packets([packet] * 2)
+    transfers = {leaf: sent[: len(sent) // 2] for leaf, sent in received.transfers.items()}
+    Counted(None, Serializer(message, bus_bytes=2)).run_messages([transfers] * 3)
+    # A number, a length, and two transfers of three characters.
+    assert counted == [(2, 16), (3, 12)]
 
 
 @pytest.mark.parametrize("name", ["a", "b", "c"])

@@ -15,6 +15,7 @@ from firm_hdl.plan import build_plan
 from firm_hdl.sim import (
     DeadlineError,
     Harness,
+    RunOptions,
     Stalls,
     StreamRuleError,
     decode,
@@ -24,9 +25,10 @@ from firm_hdl.sim import (
     loopback,
     to_transfers,
 )
-from firm_hdl.sim.bench import Bench, Job
-from firm_hdl.sim.demand import Demand, demand_table, split_transfers
+from firm_hdl.sim.bench import Bench, Ports
+from firm_hdl.sim.job import Job
 from firm_hdl.sim.record import Recorder
+from firm_hdl.sim.transfers import PendingTransfers, split_transfers, transfer_table
 from firm_hdl.wire import lay_out
 from tests.sim.components import Relay
 
@@ -75,7 +77,7 @@ def test_loopback_tells_all_that_it_saw():
     once = to_transfers(plan, IMAGE, VALUE)
     assert seen.transfers == {leaf: payloads * 2 for leaf, payloads in once.items()}
     assert seen.sent_statuses == [Status.OK, Status.OK]
-    assert seen.marked == [False, False]
+    assert seen.packet_errors == [False, False]
     assert seen.beats_in == seen.beats_out == 2 * -(-len(PACKET) // 8)
     assert seen.beats_out <= seen.cycles <= seen.beats_out + 16
 
@@ -101,9 +103,9 @@ def test_stalls_change_nothing_but_the_time(stalls):
 
 def test_runs_of_a_harness_do_not_depend_on_each_other():
     harness = Harness(Deserializer(IMAGE), Serializer(IMAGE), gated=True)
-    first = harness.run(packets=[PACKET])
-    harness.run(packets=[PACKET[:9]], stalls=Stalls(0.5, 1, 2))
-    again = harness.run(packets=[PACKET])
+    first = harness.run_packets([PACKET])
+    harness.run_packets([PACKET[:9]], RunOptions(stalls=Stalls(0.5, 1, 2)))
+    again = harness.run_packets([PACKET])
     assert again == first
 
 
@@ -111,7 +113,7 @@ def test_decode_gives_transfers_and_statuses():
     transfers, statuses = decode(IMAGE, [PACKET[:20], PACKET], stalls=Stalls(0.4, 1, 3))
     assert statuses == [Status.TRUNCATED, Status.OK]
     plan = plan_of(IMAGE)
-    messages, _ = split_transfers(demand_table(plan, IMAGE), transfers)
+    messages, _ = split_transfers(transfer_table(plan, IMAGE), transfers)
     assert len(messages) == 2
     assert messages[1] == {
         leaf: payloads for leaf, payloads in to_transfers(plan, IMAGE, VALUE).items() if payloads
@@ -132,9 +134,9 @@ def test_encode_takes_transfers_that_are_wrong():
     transfers[items][0] = (lanes, True)
     result = encode(IMAGE, [transfers, VALUE])
     assert result.statuses == [Status.ITEMS, Status.OK]
-    assert result.marked == [True, False]
+    assert result.packet_errors == [True, False]
     assert result.packets[1] == PACKET
-    assert not result.left
+    assert not result.not_taken
 
 
 def test_nested_sequences_are_split_into_messages():
@@ -143,9 +145,9 @@ def test_nested_sequences_are_split_into_messages():
     seen = loopback(JOINTS, packets, stalls=Stalls(0.2, 1, 3))
     assert seen.packets == packets
     one = {leaf: p for leaf, p in to_transfers(plan, JOINTS, TRAJECTORY).items() if p}
-    messages, rest = split_transfers(demand_table(plan, JOINTS), seen.transfers)
+    messages, rest = split_transfers(transfer_table(plan, JOINTS), seen.transfers)
     assert messages == [one] * 3
-    assert rest == Demand(demand_table(plan, JOINTS))
+    assert rest == PendingTransfers(transfer_table(plan, JOINTS))
 
 
 def test_missing_transfers_hit_the_deadline_with_names():
@@ -173,12 +175,21 @@ def test_leaf_stalls_need_gates():
     harness = Harness(Deserializer(IMAGE), Serializer(IMAGE))
     name = leaf_name(harness.plan, 0)
     with pytest.raises(ValueError, match=rf"^Stream '{name}' can be stalled in a gated harness"):
-        harness.run(packets=[PACKET], stalls={name: Stalls.bits("01")})
+        harness.run_packets([PACKET], RunOptions(stalls={name: Stalls.bits("01")}))
 
 
 def test_harness_needs_a_converter():
     with pytest.raises(ValueError, match=r"^A harness needs a deserializer or a serializer$"):
         Harness(None, None)
+
+
+def test_a_harness_takes_what_its_first_converter_takes():
+    with pytest.raises(ValueError, match=r"^Packets need a harness with a deserializer$"):
+        Harness(None, Serializer(IMAGE)).run_packets([PACKET])
+    for serializer in (None, Serializer(IMAGE)):
+        harness = Harness(Deserializer(IMAGE), serializer)
+        with pytest.raises(ValueError, match=r"^Messages need a harness without a deserializer$"):
+            harness.run_messages([])
 
 
 def test_no_packets_are_no_packets():
@@ -224,7 +235,7 @@ class Faulty(wiring.Component):
 
 def test_deadline_of_a_decoder_names_the_leaves_that_are_missing():
     plan = plan_of(IMAGE)
-    table = demand_table(plan, IMAGE)
+    table = transfer_table(plan, IMAGE)
     recorder = Recorder(plan, 1, decodes=True, encodes=False, table=table)
     recorder.bits[0].append(1)
     assert recorder.outstanding().startswith(
@@ -244,25 +255,27 @@ def test_deadline_of_a_decoder_names_the_leaves_that_are_missing():
 def test_faults_are_found_by_name(fault, error):
     harness = Harness(Deserializer(IMAGE), Faulty(fault, IMAGE))
     with pytest.raises(AssertionError, match=error):
-        harness.run(packets=[PACKET], stalls={"packets_out": Stalls.bits("001")}, deadline=60)
+        harness.run_packets(
+            [PACKET], RunOptions(stalls={"packets_out": Stalls.bits("001")}, deadline=60)
+        )
 
 
 def test_streams_must_have_different_names():
     port = stream.Signature(8).create(path=("p",))
     with pytest.raises(ValueError, match=r"^Names of streams must differ, not a, a$"):
-        Bench(Relay(8), sources={"a": port}, sinks={"a": port})
+        Bench(Relay(8), Ports(sources={"a": port}, sinks={"a": port}))
 
 
 def test_dropped_valid_is_found_in_a_bench():
     dut = Relay(8, "drop")
-    bench = Bench(dut, sources={"i": dut.i}, sinks={"o": dut.o})
+    bench = Bench(dut, Ports(sources={"i": dut.i}, sinks={"o": dut.o}))
     got = []
     job = Job(
         sources={"i": range(1, 9)},
         takes={"o": lambda cycle, bits: got.append(bits)},
         finished=lambda: len(got) == 8,
         outstanding=lambda: "some",
-        stalls={"o": Stalls.bits("00001")},
+        options=RunOptions(stalls={"o": Stalls.bits("00001")}),
     )
     with pytest.raises(StreamRuleError, match=r"^Stream 'o' breaks rule 1 in cycle \d+"):
         bench.run(job)
@@ -300,26 +313,26 @@ def test_what_comes_after_the_end_is_seen(stalls):
         takes={"o": lambda cycle, bits: got.append(bits)},
         finished=lambda: len(got) >= 1,
         outstanding=lambda: "some",
-        stalls=stalls,
+        options=RunOptions(stalls=stalls),
     )
-    Bench(dut, sources={"i": dut.i}, sinks={"o": dut.o}).run(job)
+    Bench(dut, Ports(sources={"i": dut.i}, sinks={"o": dut.o})).run(job)
     assert got == [7, 7]
 
 
 def test_cycles_of_a_run_that_fails_are_counted():
     harness = Harness(Deserializer(IMAGE), None)
     with pytest.raises(DeadlineError):
-        harness.run(packets=[PACKET] * 9, limit=20)
+        harness.run_packets([PACKET] * 9, RunOptions(limit=20))
     assert harness.bench.cycles == 21
 
 
 def test_one_transfer_too_many_is_left_over():
     transfers = to_transfers(plan_of(IMAGE), IMAGE, VALUE)
     result = encode(IMAGE, [{leaf: list(each) for leaf, each in transfers.items()}])
-    assert result.left == {}
+    assert result.not_taken == {}
     last = max(transfers)
     transfers[last].append(transfers[last][-1])
-    assert encode(IMAGE, [transfers]).left == {last: 1}
+    assert encode(IMAGE, [transfers]).not_taken == {last: 1}
 
 
 def test_gates_stay_open_behind_what_is_offered():
@@ -339,6 +352,6 @@ def test_gates_stay_open_behind_what_is_offered():
         waiting = valid & ~ready
 
     stalls = {"message": Stalls(0.5, 1, 2, seed=3), "packets_out": Stalls.bits("0001")}
-    seen = harness.run(packets=[PACKET] * 4, stalls=stalls, observe=observe)
+    seen = harness.run_packets([PACKET] * 4, RunOptions(stalls=stalls, observe=observe))
     assert seen.packets == [PACKET] * 4
     assert waited > 20 and not fell

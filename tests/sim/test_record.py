@@ -9,7 +9,7 @@ import pytest
 from firm_hdl.gateware.signatures import packet_layout
 from firm_hdl.plan import build_plan
 from firm_hdl.sim.payloads import all_beats, packet_beats
-from firm_hdl.sim.record import Recorder, Seen
+from firm_hdl.sim.record import Recorder, RunResult
 from firm_hdl.sim.watch import StreamRuleError
 from firm_hdl.wire import lay_out
 from tests.strategies import make
@@ -32,7 +32,7 @@ def test_packets_and_marks_are_collected():
     take = run.takes()["packets_out"]
     take(5, beat(b"abcd", last=False))
     take(6, beat(b"e", mark=True))
-    assert (run.seen.packets, run.seen.marked) == ([b"abcde"], [True])
+    assert (run.result.packets, run.result.packet_errors) == ([b"abcde"], [True])
     assert not run.finished()
 
 
@@ -64,7 +64,7 @@ def test_start_of_another_packet_is_an_error():
     take(1, beat(b"ab"))
     take(2, beat(b"abcd", last=False))
     with pytest.raises(AssertionError, match=r"begins a packet too many: 61626364$"):
-        run.result()
+        run.finish()
 
 
 def test_beats_that_no_packet_has_are_an_error():
@@ -98,7 +98,7 @@ def test_every_transfer_is_kept_whether_it_is_expected_or_not():
     for cycle, value in enumerate((1, 2, 0)):
         takes["message.x"](cycle, value)
     takes["message.y.items"](3, 0x1_00_03_02_01)
-    assert run.result().transfers == {0: [1, 2, 0], 1: [((1, 2, 3, 0), True)]}
+    assert run.finish().transfers == {0: [1, 2, 0], 1: [((1, 2, 3, 0), True)]}
 
 
 def test_cycles_are_counted_from_the_first_in_to_the_last_out():
@@ -108,7 +108,7 @@ def test_cycles_are_counted_from_the_first_in_to_the_last_out():
     takes["packets_in"](4, 0)
     takes["packets_out"](9, beat(b"ab"))
     takes["status"](12, 0)
-    assert run.result().cycles == 7
+    assert run.finish().cycles == 7
 
 
 # What a deserializer has to ignore, and that it is there.
@@ -150,10 +150,10 @@ def test_noise_leaves_the_bytes_of_a_packet_as_they_are():
     ("first", "last", "cycles"), [(-1, -1, 0), (0, -1, 0), (0, 0, 1), (3, 3, 1), (3, 7, 5)]
 )
 def test_cycles_are_counted_with_the_first_and_the_last(first, last, cycles):
-    assert Seen(first_cycle=first, last_cycle=last).cycles == cycles
+    assert RunResult(first_cycle=first, last_cycle=last).cycles == cycles
 
 
 def test_nothing_is_seen_at_first():
-    run = recorder().seen
-    assert (run.packets, run.marked, run.statuses, run.sent_statuses) == ([], [], [], [])
+    run = recorder().result
+    assert (run.packets, run.packet_errors, run.statuses, run.sent_statuses) == ([], [], [], [])
     assert (run.beats_in, run.beats_out, run.cycles) == (0, 0, 0)

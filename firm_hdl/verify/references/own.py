@@ -70,7 +70,7 @@ class _Converters(Codec):
         harness = self._serializer
         numbers = to_numbers(self._message, value)
         transfers = to_transfers(harness.plan, self._message, numbers, check_bounds=False)
-        seen = harness.run(transfers=transfers, messages=1)
+        seen = harness.run_messages([transfers])
         (status,) = seen.statuses
         if status.name != "OK":
             raise Refusal(f"status {status.name}")
@@ -78,7 +78,7 @@ class _Converters(Codec):
 
     def decode(self, packet: bytes) -> Plain:
         harness = self._deserializer
-        seen = harness.run(packets=[packet])
+        seen = harness.run_packets([packet])
         (status,) = seen.statuses
         if status.name != "OK":
             raise Refusal(f"status {status.name}")

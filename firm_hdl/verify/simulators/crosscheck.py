@@ -19,7 +19,7 @@ from firm_hdl.export.build import BuildError, check_size
 from firm_hdl.export.top import Top
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.jobs.processes import ToolError
-from firm_hdl.sim.record import Seen
+from firm_hdl.sim.record import RunResult
 from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Passed, Verdict
 from firm_hdl.verify.simulators import TextSimulator
 from firm_hdl.verify.simulators.semantics import Traffic, traffic
@@ -83,7 +83,7 @@ class Crosscheck:
     make: Callable[[], Sequence[Deserializer | Serializer]]
     message: str
     trace: Trace = field(init=False)
-    seen: list[Seen | None] = field(init=False, default_factory=list)
+    seen: list[RunResult | None] = field(init=False, default_factory=list)
 
     def __post_init__(self) -> None:
         try:
@@ -98,7 +98,7 @@ class Crosscheck:
         self.seen.append(None)
         return self.trace.observe
 
-    def done(self, seen: Seen) -> None:
+    def done(self, seen: RunResult) -> None:
         """Note what the run that was begun last has shown, if it came to its end."""
         self.seen[-1] = seen
 

@@ -9,7 +9,7 @@ from firm_hdl.export.top import leaf_names
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.plan import Plan
 from firm_hdl.sim.payloads import decoder_of
-from firm_hdl.sim.record import Seen
+from firm_hdl.sim.record import RunResult
 from firm_hdl.verify.results.texts import first_difference
 from firm_hdl.verify.simulators.trace import Trace, read_row
 
@@ -24,8 +24,8 @@ class Traffic:
     ----------
     name : str
         The run's.
-    packets, marked, statuses, sent_statuses
-        As in :class:`firm_hdl.sim.record.Seen`; statuses as bits.
+    packets, packet_errors, statuses, sent_statuses
+        As in :class:`firm_hdl.sim.record.RunResult`; statuses as bits.
     transfers : dict of int to list of str
         Bits that each leaf of the deserializer transferred, with ``last`` in front of the items.
     """
@@ -33,16 +33,16 @@ class Traffic:
     name: str
     plan: Plan
     packets: list[bytes] = field(default_factory=list)
-    marked: list[bool] = field(default_factory=list)
+    packet_errors: list[bool] = field(default_factory=list)
     statuses: list[str] = field(default_factory=list)
     sent_statuses: list[str] = field(default_factory=list)
     transfers: dict[int, list[str]] = field(default_factory=dict)
 
-    def difference(self, seen: Seen) -> str | None:
+    def difference(self, seen: RunResult) -> str | None:
         """Describe the first thing that is not as the Python simulation showed it."""
         for what, mine, right in (
             ("packets", self.packets, seen.packets),
-            ("tuser", self.marked, seen.marked),
+            ("tuser", self.packet_errors, seen.packet_errors),
             ("statuses of the deserializer", self.statuses, _bits(seen.statuses)),
             ("statuses of the serializer", self.sent_statuses, _bits(seen.sent_statuses)),
         ):
@@ -195,5 +195,5 @@ class _Beats:
         self.parts.append(bytes(int(lane, 2) for lane in defined))
         if last == "1":
             run.packets.append(b"".join(self.parts))
-            run.marked.append(user == "1")
+            run.packet_errors.append(user == "1")
             self.parts = []

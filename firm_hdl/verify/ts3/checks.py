@@ -9,7 +9,7 @@ from itertools import chain
 from firm_hdl.plan import Edge, Plan
 from firm_hdl.plan.edges import edges
 from firm_hdl.plan.interpret import decode, encode
-from firm_hdl.sim.record import Seen
+from firm_hdl.sim.record import RunResult
 from firm_hdl.verify.cases.directed import Coverage
 from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.ts3.compare import (
@@ -70,7 +70,7 @@ class Checks:
         reached = possible.intersection(chain.from_iterable(taken))
         self._result.coverage = Coverage(possible=possible, taken=reached)
 
-    def good(self, where: str, seen: Seen, cases: Sequence[Case]) -> None:
+    def good(self, where: str, seen: RunResult, cases: Sequence[Case]) -> None:
         """Check what the circuits made of cases against the oracle."""
         wanted = Expected(
             packets=[case.packet for case in cases],
@@ -82,7 +82,7 @@ class Checks:
         self._result.failures += run_differences(where, self._plan, seen, wanted, names)
         self._result.judged += len(seen.packets)
 
-    def broken(self, where: str, seen: Seen, packets: Sequence[bytes]) -> None:
+    def broken(self, where: str, seen: RunResult, packets: Sequence[bytes]) -> None:
         """Check what the circuits made of packets that are wrong against the golden model."""
         golden = [decode(self._plan, packet) for packet in packets]
         sent = [encode(self._plan, decoded.streams) for decoded in golden]

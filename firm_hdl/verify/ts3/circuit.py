@@ -12,7 +12,8 @@ from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan
 from firm_hdl.sim.bench import DeadlineError
 from firm_hdl.sim.harness import Harness
-from firm_hdl.sim.record import Seen
+from firm_hdl.sim.job import RunOptions
+from firm_hdl.sim.record import RunResult
 from firm_hdl.sim.stalls import Stalls
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.simulators import simulator
@@ -63,7 +64,7 @@ class Circuit:
             Serializer(self._message, wire=wire, bus_bytes=width, max_message_bytes=most),
         )
 
-    def send(self, where: str, packets: Sequence[bytes], stalls: Stalls | None) -> Seen | None:
+    def send(self, where: str, packets: Sequence[bytes], stalls: Stalls | None) -> RunResult | None:
         """Send packets; return what came out, or `None` if the run failed.
 
         Parameters
@@ -74,9 +75,8 @@ class Circuit:
         observe = None if self._cross is None else self._cross.start(where)
         began = time.perf_counter()
         try:
-            seen = self._harness.run(
-                packets=packets, stalls=stalls, observe=observe, vcd=self._waveform()
-            )
+            options = RunOptions(stalls=stalls, observe=observe, vcd=self._waveform())
+            seen = self._harness.run_packets(packets, options)
         except AssertionError as error:
             self._result.failures.append(f"{where}: {type(error).__name__}: {error}")
             return None
@@ -97,7 +97,8 @@ class Circuit:
         where = "hardware, nothing taken"
         observe = self._cross.start(where)
         try:
-            self._harness.run(packets=packets, stalls=stalls, limit=FULL_CYCLES, observe=observe)
+            options = RunOptions(stalls=stalls, limit=FULL_CYCLES, observe=observe)
+            self._harness.run_packets(packets, options)
         except DeadlineError:
             # As it is meant to end.
             pass

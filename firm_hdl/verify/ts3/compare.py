@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from firm_hdl.plan import Payload, Plan
-from firm_hdl.sim.record import Seen
+from firm_hdl.sim.record import RunResult
 from firm_hdl.verify.references.oracle import Transfers
 from firm_hdl.verify.results.texts import first_difference
 
@@ -43,7 +43,7 @@ class Expected:
 
 
 def run_differences(
-    where: str, plan: Plan, seen: Seen, wanted: Expected, names: Sequence[str] = ()
+    where: str, plan: Plan, seen: RunResult, wanted: Expected, names: Sequence[str] = ()
 ) -> Iterator[str]:
     """Say what is the first that differs of packets, of each leaf, of statuses and of marks."""
     yield from packet_differences(where, seen.packets, wanted.packets, names)
@@ -55,8 +55,8 @@ def run_differences(
         got = [status.name for status in statuses]
         yield from _status_differences(f"{where}: {what}", got, right, names)
     marked = [status != "OK" for status in wanted.sent_statuses]
-    if seen.marked != marked:
-        yield f"{where}: packet_error is {seen.marked} instead of {marked}"
+    if seen.packet_errors != marked:
+        yield f"{where}: packet_error is {seen.packet_errors} instead of {marked}"
 
 
 def _status_differences(

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from firm_hdl import Serializer, load_message
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import ToolError
 from firm_hdl.jobs.programs import ProgramMissingError, find_ghdl
-from firm_hdl.sim import Harness, Stalls
+from firm_hdl.sim import Harness, RunOptions, Stalls
 from firm_hdl.verify import Options, Result, accept
 from firm_hdl.verify.simulators import Ghdl, TextSimulator
 from firm_hdl.verify.simulators.crosscheck import first_difference
@@ -60,17 +61,18 @@ def replay_marked(other: TextSimulator, folder: Path) -> None:
     }
     order = ["right", "early", "right", "never", "right"]
     trace.start("marked")
-    seen = harness.run(
-        transfers={0: [3] * len(order), 1: [each for name in order for each in items[name]]},
-        messages=len(order),
-        stalls={"packets_out": Stalls.bits("011"), "status": Stalls.bits("001")},
-        observe=trace.observe,
+    seen = harness.run_messages(
+        [{0: [3], 1: items[name]} for name in order],
+        RunOptions(
+            stalls={"packets_out": Stalls.bits("011"), "status": Stalls.bits("001")},
+            observe=trace.observe,
+        ),
     )
-    assert seen.marked == [name != "right" for name in order]
+    assert seen.packet_errors == [name != "right" for name in order]
     rows = [row.rstrip() for row in other.replay(trace, lambda: [Top(make())], folder)]
     assert first_difference(trace, rows) is None
     (run,) = traffic(trace, rows)
-    assert (run.packets, run.marked) == (seen.packets, seen.marked)
+    assert (run.packets, run.packet_errors) == (seen.packets, seen.packet_errors)
     assert run.sent_statuses == [f"{status.value:08b}" for status in seen.statuses]
 
 
@@ -200,8 +202,8 @@ def test_simulator_that_fails_is_a_failure(monkeypatch):
 
 def test_what_a_hanging_circuit_did_is_compared_as_well(ghdl, monkeypatch):
     class Deaf(circuit.Harness):
-        def run(self, **options):
-            return super().run(**{**options, "limit": 20})
+        def run_packets(self, packets, options):
+            return super().run_packets(packets, replace(options, limit=20))
 
     monkeypatch.setattr(circuit, "Harness", Deaf)
     result = accepted("lyrical", HEADER)

@@ -9,7 +9,7 @@ import pytest
 
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.gateware.signatures import Status
-from firm_hdl.sim import DeadlineError, Stalls
+from firm_hdl.sim import DeadlineError, RunOptions, Stalls
 from firm_hdl.sim.harness import Harness
 from firm_hdl.verify.simulators.crosscheck import first_difference
 from firm_hdl.verify.simulators.semantics import traffic
@@ -29,7 +29,7 @@ def recorded():
     seen = []
     for name, stalls in (("plain", None), ("stalled", {"packets_in": Stalls.bits("01")})):
         trace.start(name)
-        seen.append(harness.run(packets=PACKETS, stalls=stalls, observe=trace.observe))
+        seen.append(harness.run_packets(PACKETS, RunOptions(stalls=stalls, observe=trace.observe)))
     return trace, seen
 
 
@@ -83,9 +83,9 @@ def test_packet_that_a_reset_has_cut_is_no_part_of_the_next(limit):
     harness = Harness(rx, tx, message=message, probes=trace.probes)
     trace.start("stopped")
     with pytest.raises(DeadlineError):
-        harness.run(packets=PACKETS, limit=limit, observe=trace.observe)
+        harness.run_packets(PACKETS, RunOptions(limit=limit, observe=trace.observe))
     trace.start("whole")
-    seen = harness.run(packets=PACKETS, observe=trace.observe)
+    seen = harness.run_packets(PACKETS, RunOptions(observe=trace.observe))
     stopped, whole = traffic(trace, trace.expected)
     assert len(stopped.packets) < len(PACKETS)
     assert whole.difference(seen) is None and whole.packets == PACKETS
@@ -126,11 +126,14 @@ def test_traffic_is_what_the_simulation_showed(recorded):
     ("change", "said"),
     [
         ({"packets": PACKETS[:2]}, "packets differ: number 2 of 2 is "),
-        ({"marked": [False, True, False]}, "tuser differ: number 1 of 3 is [False] instead of "),
+        (
+            {"packet_errors": [False, True, False]},
+            "tuser differ: number 1 of 3 is [False] instead of ",
+        ),
         ({"statuses": [Status.OK] * 2}, "statuses of the deserializer differ: number 2 of 2"),
         ({"sent_statuses": [Status.ITEMS] * 3}, "statuses of the serializer differ: number 0"),
         ({"sent_statuses": [Status.OK] * 2}, "statuses of the serializer differ: number 2 of 2"),
-        ({"marked": [False] * 2}, "tuser differ: number 2 of 2 is [False] instead of []"),
+        ({"packet_errors": [False] * 2}, "tuser differ: number 2 of 2 is [False] instead of []"),
         ({"transfers": {0: [1, 1, 1]}}, "transfers of data differ: number 1 of 3 is [0] instead "),
         # More there than here, and fewer.
         (

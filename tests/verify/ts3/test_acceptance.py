@@ -150,15 +150,15 @@ def test_all_that_a_run_shows_is_judged(monkeypatch, number):
     runs = []
 
     class Doctored(circuit.Harness):
-        def run(self, **options):
-            seen = super().run(**options)
+        def run_packets(self, packets, options):
+            seen = super().run_packets(packets, options)
             runs.append(options)
             if len(runs) == number + 1:
                 seen.packets[-1] += b"\0"
                 seen.transfers[0][-1] ^= 1
                 seen.statuses.append(Status.OK)
                 seen.sent_statuses[-1] = Status.ITEMS
-                seen.marked[-1] = True
+                seen.packet_errors[-1] = True
             return seen
 
     monkeypatch.setattr(circuit, "Harness", Doctored)

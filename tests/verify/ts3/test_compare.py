@@ -8,7 +8,7 @@ import pytest
 
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.plan import build_plan
-from firm_hdl.sim.record import Seen
+from firm_hdl.sim.record import RunResult
 from firm_hdl.verify.ts3.compare import Expected, run_differences
 from firm_hdl.wire import lay_out
 from tests.strategies import make
@@ -20,9 +20,9 @@ TRANSFERS = {
     1: [3, 0, 0],
     2: [((97, 98), False), ((99, 0), True)],
 }
-SEEN = Seen(
+SEEN = RunResult(
     packets=PACKETS,
-    marked=[False, False, True],
+    packet_errors=[False, False, True],
     statuses=[Status.OK, Status.OK, Status.TRUNCATED],
     sent_statuses=[Status.OK, Status.OK, Status.ITEMS],
     transfers=TRANSFERS,
@@ -123,5 +123,5 @@ def test_statuses(field, change, said):
     ],
 )
 def test_marks(marked):
-    (difference,) = told(marked=marked)
+    (difference,) = told(packet_errors=marked)
     assert difference == f"here: packet_error is {marked} instead of [False, False, True]"

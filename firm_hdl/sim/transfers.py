@@ -1,23 +1,30 @@
-"""Count the transfers of each leaf of a message, from its lengths as they come.
+"""Count, split and join the transfers of messages.
 
 Each length determines the number of transfers of the leaves directly below it. So one table, made
-from the layout, gives the transfers that are still to come, in whatever order the leaves move.
+from the layout, gives the transfers that a message still requires, in any order
+of its leaves.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from firm_hdl.model import Message
 from firm_hdl.plan import Payload, Plan
 from firm_hdl.wire import LoopNode, Node, Path, RunNode, Scalar, Trigger, lay_out
 
-__all__ = ["Demand", "DemandTable", "demand_table", "split_transfers"]
+__all__ = [
+    "PendingTransfers",
+    "TransferTable",
+    "join_transfers",
+    "split_transfers",
+    "transfer_table",
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DemandTable:
+class TransferTable:
     """The transfers that a message requires, and those that each length in it adds.
 
     Attributes
@@ -36,36 +43,36 @@ class DemandTable:
 
 
 @dataclass(slots=True)
-class Demand:
+class PendingTransfers:
     """The transfers that one message still requires.
 
     Attributes
     ----------
-    table : DemandTable
-    left : dict of int to int
+    table : TransferTable
+    counts : dict of int to int
         Transfers known to follow, by leaf; leaves without any are absent.
     """
 
-    table: DemandTable
-    left: dict[int, int] = field(init=False)
+    table: TransferTable
+    counts: dict[int, int] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.left = {}
+        self.counts = {}
         self.add(self.table.start)
 
     def add(self, counts: Iterable[tuple[int, int]], factor: int = 1) -> None:
         """Require more transfers: `factor` times the counts."""
         for leaf, count in counts:
             if count * factor:
-                self.left[leaf] = self.left.get(leaf, 0) + count * factor
+                self.counts[leaf] = self.counts.get(leaf, 0) + count * factor
 
     def take(self, leaf: int, payload: Payload) -> None:
         """Note a transfer, which must have been required."""
-        left = self.left[leaf] - 1
+        left = self.counts[leaf] - 1
         if left:
-            self.left[leaf] = left
+            self.counts[leaf] = left
         else:
-            del self.left[leaf]
+            del self.counts[leaf]
         if leaf in self.table.below:
             assert isinstance(payload, int)
             self.add(self.table.below[leaf], payload)
@@ -75,7 +82,7 @@ class Demand:
             self.add([(items, -(-payload // lanes))])
 
 
-def demand_table(plan: Plan, message: Message) -> DemandTable:
+def transfer_table(plan: Plan, message: Message) -> TransferTable:
     """Return the transfers that messages of a type require, with the leaves of a plan."""
     leaves = {leaf.path: number for number, leaf in enumerate(plan.leaves)}
     below: dict[int, tuple[tuple[int, int], ...]] = {}
@@ -105,32 +112,41 @@ def demand_table(plan: Plan, message: Message) -> DemandTable:
                     yield from ((inner, each * count) for inner, each in visit(node.body))
 
     start = tuple(visit(lay_out(message, plan.wire).nodes))
-    return DemandTable(start=start, below=below, items=items)
+    return TransferTable(start=start, below=below, items=items)
 
 
 def split_transfers(
-    table: DemandTable, transfers: Mapping[int, Iterable[Payload]]
-) -> tuple[list[dict[int, list[Payload]]], Demand]:
+    table: TransferTable, transfers: Mapping[int, Iterable[Payload]]
+) -> tuple[list[dict[int, list[Payload]]], PendingTransfers]:
     """Split the transfers of several messages, given by leaf, into those of each message.
 
     Returns
     -------
     messages : list of dict
         Transfers of the messages that are complete; leaves without any are absent.
-    demand : Demand
+    pending : PendingTransfers
         The transfers that the next message still requires.
     """
     rest = {leaf: list(reversed(list(given))) for leaf, given in transfers.items()}
     messages: list[dict[int, list[Payload]]] = []
     while True:
-        demand = Demand(table)
+        pending = PendingTransfers(table)
         message: dict[int, list[Payload]] = {}
-        while ready := [leaf for leaf in demand.left if rest.get(leaf)]:
+        while ready := [leaf for leaf in pending.counts if rest.get(leaf)]:
             for leaf in ready:
-                for _ in range(min(demand.left[leaf], len(rest[leaf]))):
+                for _ in range(min(pending.counts[leaf], len(rest[leaf]))):
                     payload = rest[leaf].pop()
-                    demand.take(leaf, payload)
+                    pending.take(leaf, payload)
                     message.setdefault(leaf, []).append(payload)
-        if demand.left:
-            return messages, demand
+        if pending.counts:
+            return messages, pending
         messages.append(message)
+
+
+def join_transfers(messages: Iterable[Mapping[int, Sequence[Payload]]]) -> dict[int, list[Payload]]:
+    """Return the transfers of several messages, in the order of the messages."""
+    joined: dict[int, list[Payload]] = {}
+    for message in messages:
+        for leaf, payloads in message.items():
+            joined.setdefault(leaf, []).extend(payloads)
+    return joined

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from firm_hdl.plan import build_plan
-from firm_hdl.sim.demand import Demand, demand_table, split_transfers
-from firm_hdl.sim.record import Seen
+from firm_hdl.sim.record import RunResult
+from firm_hdl.sim.transfers import PendingTransfers, split_transfers, transfer_table
 from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import lay_out
 from tests.strategies import make
@@ -16,7 +16,7 @@ POINT = make("ros1", {"x": "uint8", "tags": "uint16[]"}, "Point")
 FIELDS = {"a": "uint8", "s": "string", "f": "uint16[5]", "ps": (POINT, "[]"), "two": (POINT, "[2]")}
 MESSAGE = make("ros1", FIELDS)
 PLAN = build_plan(lay_out(MESSAGE), bus_bytes=4)
-TABLE = demand_table(PLAN, MESSAGE)
+TABLE = transfer_table(PLAN, MESSAGE)
 NUMBER = {str(leaf): index for index, leaf in enumerate(PLAN.leaves)}
 
 
@@ -25,10 +25,10 @@ def named(left):
 
 
 def taken(*steps):
-    demand = Demand(TABLE)
+    pending = PendingTransfers(TABLE)
     for name, payload in steps:
-        demand.take(NUMBER[name], payload)
-    return named(demand.left)
+        pending.take(NUMBER[name], payload)
+    return named(pending.counts)
 
 
 START = {"a": 1, "s.length": 1, "f.items": 3, "ps.length": 1}
@@ -83,7 +83,7 @@ def test_transfers_are_cut_into_the_messages_that_they_make():
     messages, rest = split_transfers(TABLE, joined)
     assert messages == [{n: each for n, each in part.items() if each} for part in parts]
     # The next one calls for a message.
-    assert named(rest.left) == {**START, **TWO}
+    assert named(rest.counts) == {**START, **TWO}
 
 
 def test_what_a_cut_message_lacks_is_told():
@@ -92,12 +92,12 @@ def test_what_a_cut_message_lacks_is_told():
     part[NUMBER["a"]] = []
     part[NUMBER["ps.item.x"]].pop()
     messages, rest = split_transfers(TABLE, part)
-    assert messages == [] and named(rest.left) == {"a": 1, "ps.item.x": 1}
+    assert messages == [] and named(rest.counts) == {"a": 1, "ps.item.x": 1}
 
 
 def test_records_of_two_runs_share_nothing():
-    one, other = Seen(), Seen()
-    for name in ("packets", "marked", "statuses", "sent_statuses", "transfers"):
+    one, other = RunResult(), RunResult()
+    for name in ("packets", "packet_errors", "statuses", "sent_statuses", "transfers"):
         assert getattr(one, name) is not getattr(other, name)
 
 
