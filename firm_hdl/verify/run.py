@@ -24,7 +24,7 @@ from firm_hdl.verify.results.file import ResultsError, ResultsWriter
 from firm_hdl.verify.systems.ending import concluded, is_well
 from firm_hdl.verify.systems.system import Judged, Recorder, System
 from firm_hdl.verify.systems.tasks import UnknownTypeError
-from firm_hdl.verify.ts1 import Ts1, selections_of
+from firm_hdl.verify.ts1 import Ts1, each_distro
 from firm_hdl.verify.ts2.system import Ts2
 from firm_hdl.verify.ts3.system import Ts3
 
@@ -103,20 +103,8 @@ def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWrit
     )
 
 
-def _ts1(work: Workload) -> System:
-    request = work.request
-    selections = selections_of(
-        request.distros,
-        request.paths,
-        request.types,
-        mutations=request.mutations,
-        seed=request.seed,
-    )
-    return Ts1(selections, request.oracles, request.jobs)
-
-
 SYSTEMS: dict[str, Callable[[Workload], System]] = {
-    "ts1": _ts1,
+    "ts1": lambda work: Ts1(each_distro(work.request)),
     "ts2": lambda work: Ts2(work.tasks, work.request),
     "ts3": lambda work: Ts3(work.tasks, work.request),
     "bench": lambda work: Benches(work.tasks, work.request),

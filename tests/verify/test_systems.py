@@ -282,10 +282,10 @@ def test_share_that_ends_its_process_blames_one_item():
 def test_definition_that_ends_our_process_is_the_only_one_that_fails(tmp_path, monkeypatch):
     judge_case = ts1_run.judge_case
 
-    def dies(universe, oracles, case):
+    def dies(universe, oracles, case, test):
         if case.name == "B":
             os.kill(os.getpid(), signal.SIGKILL)
-        return judge_case(universe, oracles, case)
+        return judge_case(universe, oracles, case, test)
 
     monkeypatch.setattr(ts1_run, "judge_case", dies)
     texts = {f"src/p/msg/{name}.msg": "int8 x\n" for name in "ABC"}

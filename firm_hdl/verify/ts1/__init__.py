@@ -8,6 +8,6 @@ from __future__ import annotations
 
 from firm_hdl.verify.ts1.command import Ts1
 from firm_hdl.verify.ts1.oracles import ORACLES
-from firm_hdl.verify.ts1.run import Selection, Tally, Ts1Run, selections_of
+from firm_hdl.verify.ts1.run import Ts1Run, each_distro
 
-__all__ = ["ORACLES", "Selection", "Tally", "Ts1", "Ts1Run", "selections_of"]
+__all__ = ["ORACLES", "Ts1", "Ts1Run", "each_distro"]

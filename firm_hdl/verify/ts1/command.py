@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-from firm_hdl.verify.results.records import (
-    OracleVerdict,
-    Record,
-    Seconds,
-    Test,
-    clipped_verdict,
-)
-from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
+from firm_hdl.verify.results.records import OracleVerdict, Record, Test, clipped_verdict
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.systems.options import Request, command_again
 from firm_hdl.verify.systems.system import Judged, Made, Recorder, System, kept
-from firm_hdl.verify.ts1.judge import Judgement
-from firm_hdl.verify.ts1.run import Selection, Tally, Ts1Run
+from firm_hdl.verify.ts1.case import DefinitionCase
+from firm_hdl.verify.ts1.run import Ts1Run
 
-__all__ = ["Ts1"]
+__all__ = ["Tally", "Ts1", "command_of"]
 
 _MOST_DETAILS = 8
+
+_MOST_SHOWN = 20
+"""The verdicts on so many definitions are printed one by one."""
 
 _SAID = {
     Passed.name: "agrees",
@@ -34,16 +33,62 @@ _SAID = {
 """What is printed of an oracle, in the order of the columns."""
 
 
+def command_of(
+    request: Request,
+    case: DefinitionCase,
+    number: int | None = None,
+    oracles: Sequence[str] = (),
+) -> str:
+    """Return the command that judges one definition, or the mutation of a number, again."""
+    names = [case.spelled_name] if number is None else request.types or ["--all"]
+    return command_again(
+        *names,
+        systems="ts1",
+        distro=request.distros,
+        path=request.paths,
+        oracle=tuple(oracles),
+        mutations=None if number is None else 1,
+        seed=number,
+    )
+
+
+class Tally:
+    """How often each oracle said what.
+
+    Attributes
+    ----------
+    verdicts : counter of (oracle, name of the verdict)
+    refused : counter of oracle
+        How often both refuse; among those that agree.
+    details : counter of (oracle, name of the verdict, text)
+        Keys of known differences, and reasons for what was not judged.
+    """
+
+    def __init__(self, found: Iterable[OracleVerdict]) -> None:
+        self.verdicts: Counter[tuple[str, str]] = Counter()
+        self.refused: Counter[str] = Counter()
+        self.details: Counter[tuple[str, str, str]] = Counter()
+        for each in found:
+            verdict = each.verdict
+            self.verdicts[each.oracle, verdict.name] += 1
+            self.refused[each.oracle] += each.is_refused
+            if not isinstance(verdict, Failed):
+                self.details.update((each.oracle, verdict.name, text) for text in verdict.details)
+
+    @property
+    def differences(self) -> int:
+        """How often an oracle differs."""
+        return sum(n for (_, name), n in self.verdicts.items() if name == Failed.name)
+
+
 class Ts1(System):
     """Definitions before oracles; a test is one definition, or one mutation, before all of them.
 
     Parameters
     ----------
-    selections : sequence of Selection
-    oracles : sequence of str
-        Names of those to ask, all of which have to be here; none: all that are here.
-    jobs : int or None
-        Processes here; oracles read files, so it is never a cluster.
+    requests : sequence of Request
+        One for each distribution, as for `Ts1Run`. Processes are always on this machine, because
+        oracles read files. The oracles that are named all have to be installed.
 
     Raises
     ------
@@ -53,18 +98,14 @@ class Ts1(System):
 
     name = "ts1"
 
-    def __init__(
-        self, selections: Sequence[Selection], oracles: Sequence[str] = (), jobs: int | None = None
-    ):
-        self._selections, self._oracles, self._jobs = selections, tuple(oracles), jobs
+    def __init__(self, requests: Sequence[Request]):
+        self._requests = requests
         self._stack = ExitStack()
         self._runs: list[Ts1Run] = []
 
     def __enter__(self) -> Ts1:
         with ExitStack() as stack:
-            for each in self._selections:
-                run = stack.enter_context(Ts1Run(each, self._oracles, self._jobs))
-                self._runs.append(run)
+            self._runs += [stack.enter_context(Ts1Run(each)) for each in self._requests]
             self._stack = stack.pop_all()
         return self
 
@@ -74,15 +115,13 @@ class Ts1(System):
     @cached_property
     def tests(self) -> Sequence[Test]:
         """All definitions of all distributions, or their mutations."""
-        return [self._test(run, number) for run in self._runs for number in run.numbers]
+        return [run.test(number) for run in self._runs for number in run.numbers]
 
     @property
     def options(self) -> Mapping[str, Any]:
         """The oracles that are asked, with their versions, and what mutations are made from."""
         here = {f"{name} {v}".strip() for run in self._runs for name, v in run.versions.items()}
-        mutated = {
-            run.selection.distro: run.digest for run in self._runs if run.selection.mutations
-        }
+        mutated = {run.distro: run.digest for run in self._runs if run.request.mutations}
         return {"oracles": sorted(here), **({"mutated": mutated} if mutated else {})}
 
     def run(self, recorder: Recorder) -> list[Judged]:
@@ -92,124 +131,79 @@ class Ts1(System):
     def judge(self, run: Ts1Run, recorder: Recorder) -> list[Judged]:
         """Judge the definitions of one run; an oracle that was asked for and is not here fails."""
         began = time.perf_counter()
-        what = "mutation" if run.selection.mutations else "definition"
-        tests = {number: self._test(run, number) for number in run.numbers}
-        judged: dict[int, Sequence[OracleVerdict]] = {}
+        what = "mutation" if run.request.mutations else "definition"
+        tests = {number: run.test(number) for number in run.numbers}
 
         def work(left: Sequence[int]) -> Made[int]:
             with closing(run.judgements(left)) as shares:
                 for share in shares:
-                    judged.update((number, each.said) for number, each in share)
                     yield [
-                        (number, self._record(run, number, each), _differences(run, number, each))
-                        for number, each in share
+                        (number, _kept(run, number, record), _differences(run, number, record))
+                        for number, record in share
                     ]
 
-        records = kept(tests, recorder, work, label=f"ts1 {run.selection.distro}", unit=what)
-        tally = run.tally((n, judged.get(n, record.verdicts)) for n, record in records.items())
-        for line in _summary(run, tally):
+        records = kept(tests, recorder, work, label=f"ts1 {run.distro}", unit=what)
+        tally = Tally(each for record in records.values() for each in record.verdicts)
+        for line in _summary(run, records, tally):
             print(line)
         what += "s" * (run.total != 1)
         seconds = time.perf_counter() - began
-        print(f"{run.total} {what}, {seconds:.0f} s, {len(tally.differing)} differences")
-        asked = run.missing.items() if self._oracles else ()
+        print(f"{run.total} {what}, {seconds:.0f} s, {tally.differences} differences")
+        asked = run.missing.items() if run.request.oracles else ()
         return [
             *(Judged(what=each.test.title, verdict=each.verdict) for each in records.values()),
             *(Judged(what=f"oracle {n}", verdict=Failed((f"is not here: {w}",))) for n, w in asked),
         ]
 
-    def _test(self, run: Ts1Run, number: int) -> Test:
-        selection = run.selection
-        own = [f"path={path}" for path in selection.paths]
-        own += [f"oracle={name}" for name in self._oracles]
-        if selection.mutations:
-            own += [f"of={name}" for name in selection.types]
-            own.append(f"mutation={number}")
-        return Test(
-            system=self.name,
-            distro=selection.distro,
-            type=run.case(number).spelled_name,
-            same=(selection.distro,),
-            options=",".join(own),
-        )
 
-    def _record(self, run: Ts1Run, number: int, found: Judgement) -> Record:
-        case = run.case(number)
-        again = number if run.selection.mutations else None
-        known = [
-            f"known difference from {each.oracle}: {key}"
-            for each in found.said
-            if isinstance(each.verdict, KnownDifference)
-            for key in each.verdict.keys
-        ]
-        return Record(
-            test=self._test(run, number),
-            verdict=clipped_verdict(_verdict(case.language, found.said)),
-            note="; ".join(known),
-            seconds=Seconds(generation=found.reading_seconds, testing=found.asking_seconds),
-            cpu_seconds=found.cpu_seconds,
-            metrics=found.metrics,
-            verdicts=tuple(_clipped(each) for each in found.said),
-            command=run.selection.command(case, again, oracles=self._oracles),
-        )
+def _again(run: Ts1Run, number: int, oracles: Sequence[str] = ()) -> str:
+    mutated = number if run.request.mutations else None
+    return command_of(run.request, run.case(number), mutated, oracles)
 
 
-def _clipped(said: OracleVerdict) -> OracleVerdict:
-    return replace(said, verdict=clipped_verdict(said.verdict))
+def _kept(run: Ts1Run, number: int, record: Record) -> Record:
+    """Return a record with its command, and without long texts."""
+    verdicts = [replace(v, verdict=clipped_verdict(v.verdict)) for v in record.verdicts]
+    return replace(
+        record,
+        verdict=clipped_verdict(record.verdict),
+        verdicts=tuple(verdicts),
+        command=_again(run, number, run.request.oracles),
+    )
 
 
-def _verdict(language: str, said: Sequence[OracleVerdict]) -> Verdict:
-    """Return what all oracles say together; those that did not judge count if nobody did."""
-    details: dict[type[Verdict], list[str]] = {}
-    for each in said:
-        lines = details.setdefault(type(each.verdict), [])
-        lines += [f"{each.oracle}: {detail}" for detail in each.verdict.details]
-    if failures := details.get(Failed):
-        return Failed(tuple(failures))
-    found = [each.verdict for each in said if isinstance(each.verdict, Passed | KnownDifference)]
-    cases = sum(each.cases for each in found)
-    if keys := tuple(dict.fromkeys(key for each in found for key in each.details)):
-        return KnownDifference(keys, cases)
-    if cases:
-        return Passed(cases)
-    reasons = details.get(NotJudged) or [f"no oracle that was asked reads .{language} files"]
-    return NotJudged("; ".join(reasons))
-
-
-def _differences(run: Ts1Run, number: int, found: Judgement) -> Iterator[str]:
+def _differences(run: Ts1Run, number: int, record: Record) -> Iterator[str]:
     """Yield what is printed of a definition, for each oracle that differs."""
-    case, is_mutated = run.case(number), run.selection.mutations > 0
-    for said in found.said:
-        if not isinstance(said.verdict, Failed):
+    case = run.case(number)
+    for each in record.verdicts:
+        if not isinstance(each.verdict, Failed):
             continue
-        lines = [f"DIFFERS {case.full_name}.{case.language}, {said.oracle}"]
-        if is_mutated:
+        lines = [f"DIFFERS {case.full_name}.{case.language}, {each.oracle}"]
+        if run.request.mutations:
             lines += [f"    {line}" for line in case.changes]
-        details = said.verdict.details
+        details = each.verdict.details
         lines += [f"    {detail}" for detail in details[:_MOST_DETAILS]]
         if len(details) > _MOST_DETAILS:
             lines.append(f"    and {len(details) - _MOST_DETAILS} more")
-        again = run.selection.command(case, number if is_mutated else None)
-        yield "\n".join([*lines, f"    again: {again}"])
+        yield "\n".join([*lines, f"    again: {_again(run, number)}"])
 
 
-def _summary(run: Ts1Run, tally: Tally) -> list[str]:
-    lines = []
-    for outcome in tally.shown:
-        details = "both refuse" if outcome.is_refused else "; ".join(outcome.verdict.details)
-        name = _SAID[outcome.verdict.name]
-        said = f"{name}: {details}" if details else name
-        words = [outcome.case.full_name, outcome.oracle, said]
-        lines.append("  ".join(words))
-    lines.append(f"{'oracle':24} {'agree':>7} {'known':>7} {'differ':>7} {'not judged':>11}")
+def _summary(run: Ts1Run, records: Mapping[int, Record], tally: Tally) -> Iterator[str]:
+    is_short = not run.request.mutations and len(run.cases) <= _MOST_SHOWN
+    for number, record in records.items() if is_short else ():
+        for each in record.verdicts:
+            details = "both refuse" if each.is_refused else "; ".join(each.verdict.details)
+            said = ": ".join(filter(None, [_SAID[each.verdict.name], details]))
+            yield f"{run.case(number).full_name}  {each.oracle}  {said}"
+    yield f"{'oracle':24} {'agree':>7} {'known':>7} {'differ':>7} {'not judged':>11}"
     for name, version in run.versions.items():
         counts = [tally.verdicts[name, verdict] for verdict in _SAID]
         refused = f"  ({tally.refused[name]} refused by both)" if tally.refused[name] else ""
-        lines.append(
+        yield (
             f"{f'{name} {version}':24} {counts[0]:7} {counts[1]:7} {counts[2]:7} {counts[3]:11}"
             f"{refused}"
         )
-    lines += [f"{name:24} is not here: {why}" for name, why in run.missing.items()]
+    for name, why in run.missing.items():
+        yield f"{name:24} is not here: {why}"
     for (name, verdict, text), count in sorted(tally.details.items()):
-        lines.append(f"{_SAID[verdict]}, {name}: {text}: {count}")
-    return lines
+        yield f"{_SAID[verdict]}, {name}: {text}: {count}"

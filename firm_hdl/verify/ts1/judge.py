@@ -1,105 +1,81 @@
-"""A definition, our reading of it, and what an oracle says: do they agree?"""
+"""Our reading of a definition against the readings of oracles: do they agree?"""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import replace
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.model import Interface
-from firm_hdl.verify.results.records import OracleVerdict
-from firm_hdl.verify.results.verdict import Failed, NotJudged, Verdict
-from firm_hdl.verify.ts1.again import Again
+from firm_hdl.verify.results.records import OracleVerdict, Record, Test
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
+from firm_hdl.verify.systems.system import Stopwatch
 from firm_hdl.verify.ts1.case import DefinitionCase
+from firm_hdl.verify.ts1.explain import Explainer
 from firm_hdl.verify.ts1.oracles.oracle import Answer, Oracle
 from firm_hdl.verify.ts1.universe import Universe
 
-__all__ = ["Judgement", "Outcome", "compare", "judge", "judge_case", "read"]
+__all__ = ["compare", "judge", "judge_case", "read", "record_of"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Outcome:
-    """What came of one definition before one oracle.
+def judge_case(
+    universe: Universe, oracles: Sequence[Oracle], case: DefinitionCase, test: Test
+) -> Record:
+    """Compare our reading of one definition with those of oracles.
 
-    Attributes
-    ----------
-    oracle : str
-    case : Case
-    verdict : Verdict
-        Cases are facts that were compared; 1 if one refuses.
-    is_refused : bool
-        Whether both refuse it.
+    Returns
+    -------
+    Record
+        ``generation`` is the time of our reading, ``testing`` that of the oracles and of comparing.
+        The processor time includes the oracles' processes.
     """
-
-    oracle: str
-    case: DefinitionCase
-    verdict: Verdict
-    is_refused: bool = False
-
-    @classmethod
-    def of(cls, case: DefinitionCase, said: OracleVerdict) -> Outcome:
-        """Say it of a definition again."""
-        return cls(
-            oracle=said.oracle,
-            case=case,
-            verdict=said.verdict,
-            is_refused=said.is_refused,
-        )
-
-    @property
-    def said(self) -> OracleVerdict:
-        """The same without the definition."""
-        return OracleVerdict(oracle=self.oracle, verdict=self.verdict, is_refused=self.is_refused)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Judgement:
-    """What came of one definition before all oracles.
-
-    Attributes
-    ----------
-    said : tuple of OracleVerdict
-        Of those that read definitions of its language.
-    reading_seconds, asking_seconds : float
-        Until we had read it; for the oracles and for comparing.
-    cpu_seconds : float
-        Of this process and of those of oracles.
-    metrics : dict of str to float
-        Figures of the definition.
-    """
-
-    said: tuple[OracleVerdict, ...] = ()
-    reading_seconds: float = 0.0
-    asking_seconds: float = 0.0
-    cpu_seconds: float = 0.0
-    metrics: Mapping[str, float] = field(default_factory=dict)
-
-
-def judge_case(universe: Universe, oracles: Sequence[Oracle], case: DefinitionCase) -> Judgement:
-    """Compare our reading of one definition with those of oracles."""
-    began, began_cpu = time.perf_counter(), cpu_seconds()
+    watch = Stopwatch()
     ours = read(universe, case)
-    had_read = time.perf_counter()
-    said: list[OracleVerdict] = []
+    watch.enter("testing")
+    verdicts: list[OracleVerdict] = []
     elsewhere = 0.0
     for oracle in oracles:
-        # Two of them may share a process, so it is the difference that is the one's own.
+        # Two oracles may share a process, so only the difference is this one's.
         before = oracle.cpu_seconds()
         try:
-            said += [out.said for out in judge(universe, oracle, [case], lambda _: ours)]
+            verdict = judge(universe, oracle, case, ours)
         except Exception as error:  # As with ours: the next definition is to be judged, too.
-            why = f"the oracle raised {type(error).__name__}: {error}"
-            said.append(OracleVerdict(oracle=oracle.name, verdict=Failed((why,))))
+            verdict = _failed(oracle, f"the oracle raised {type(error).__name__}: {error}")
+        verdicts += [] if verdict is None else [verdict]
         elsewhere += max(0.0, oracle.cpu_seconds() - before)
-    return Judgement(
-        said=tuple(said),
-        reading_seconds=had_read - began,
-        asking_seconds=time.perf_counter() - had_read,
-        cpu_seconds=cpu_seconds() - began_cpu + elsewhere,
-        metrics=_metrics(case, ours),
-    )
+    record = watch.stop(record_of(test, case.language, verdicts))
+    cpu_seconds = record.cpu_seconds + elsewhere
+    return replace(record, cpu_seconds=cpu_seconds, metrics=_metrics(case, ours))
+
+
+def record_of(test: Test, language: str, verdicts: Sequence[OracleVerdict]) -> Record:
+    """Return the record of what oracles say of a definition in some language."""
+    known = [
+        f"known difference from {each.oracle}: {key}"
+        for each in verdicts
+        if isinstance(each.verdict, KnownDifference)
+        for key in each.verdict.keys
+    ]
+    verdict = _common_verdict(language, verdicts)
+    return Record(test=test, verdict=verdict, note="; ".join(known), verdicts=tuple(verdicts))
+
+
+def _common_verdict(language: str, verdicts: Sequence[OracleVerdict]) -> Verdict:
+    """Return what all oracles say together; those that did not judge count if nobody did."""
+    details: dict[type[Verdict], list[str]] = {}
+    for each in verdicts:
+        lines = details.setdefault(type(each.verdict), [])
+        lines += [f"{each.oracle}: {detail}" for detail in each.verdict.details]
+    if failures := details.get(Failed):
+        return Failed(tuple(failures))
+    found = [v.verdict for v in verdicts if isinstance(v.verdict, Passed | KnownDifference)]
+    cases = sum(each.cases for each in found)
+    if keys := tuple(dict.fromkeys(key for each in found for key in each.details)):
+        return KnownDifference(keys, cases)
+    if cases:
+        return Passed(cases)
+    reasons = details.get(NotJudged) or [f"no oracle that was asked reads .{language} files"]
+    return NotJudged("; ".join(reasons))
 
 
 def _metrics(case: DefinitionCase, ours: Interface | Exception) -> dict[str, float]:
@@ -113,32 +89,29 @@ def _metrics(case: DefinitionCase, ours: Interface | Exception) -> dict[str, flo
 def judge(
     universe: Universe,
     oracle: Oracle,
-    cases: Sequence[DefinitionCase],
-    ours: Callable[[DefinitionCase], Interface | Exception] | None = None,
-) -> Iterator[Outcome]:
-    """Compare our reading of definitions with an oracle's, in order.
+    case: DefinitionCase,
+    ours: Interface | Exception | None = None,
+) -> OracleVerdict | None:
+    """Compare our reading of a definition with an oracle's; `None` if the oracle does not read it.
 
     Parameters
     ----------
-    ours : callable or None
-        Gives our reading of a case; `None`: as `read` does.
+    ours : Message, Service, Action, Exception or None
+        Our reading; `None`: that of `read`.
     """
-    taken = [
-        case
-        for case in cases
-        if case.language in oracle.languages.get(case.dialect, ())
-        and (oracle.judges_changes or not case.is_changed)
-    ]
-    answers = list(oracle.judge(taken))
-    if len(answers) != len(taken):
-        # Nobody can say which answer is to which question.
-        why = f"the oracle gave {len(answers)} answers to {len(taken)} questions"
-        for case in taken:
-            yield Outcome(oracle=oracle.name, case=case, verdict=Failed((why,)))
-        return
-    for case, answer in zip(taken, answers, strict=True):
-        mine = read(universe, case) if ours is None else ours(case)
-        yield compare(oracle, case, mine, answer, universe)
+    if case.language not in oracle.languages.get(case.dialect, ()):
+        return None
+    if case.is_changed and not oracle.judges_changes:
+        return None
+    answers = list(oracle.judge([case]))
+    if len(answers) != 1:
+        return _failed(oracle, f"the oracle gave {len(answers)} answers to 1 question")
+    ours = read(universe, case) if ours is None else ours
+    return compare(oracle, case, ours, answers[0], universe)
+
+
+def _failed(oracle: Oracle, why: str) -> OracleVerdict:
+    return OracleVerdict(oracle=oracle.name, verdict=Failed((why,)))
 
 
 def read(universe: Universe, case: DefinitionCase) -> Interface | Exception:
@@ -155,8 +128,8 @@ def compare(
     ours: Interface | Exception,
     answer: Answer,
     universe: Universe | None = None,
-) -> Outcome:
-    """Compare what we make of a definition with an oracle's answer.
+) -> OracleVerdict:
+    """Compare our reading of a definition with an oracle's answer.
 
     Parameters
     ----------
@@ -172,5 +145,5 @@ def compare(
     elif isinstance(ours, Exception) and not isinstance(ours, DefinitionError):
         verdict = Failed((f"verdict: firm-hdl raised {type(ours).__name__}: {ours}",))
     else:
-        verdict, is_refused = Again(universe, oracle, case, ours, answer, read).verdict()
-    return Outcome(oracle=oracle.name, case=case, verdict=verdict, is_refused=is_refused)
+        verdict, is_refused = Explainer(universe, oracle, case, ours, answer, read).verdict()
+    return OracleVerdict(oracle=oracle.name, verdict=verdict, is_refused=is_refused)

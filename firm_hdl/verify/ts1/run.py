@@ -5,99 +5,46 @@ from __future__ import annotations
 import hashlib
 import os
 import tempfile
-from collections import Counter
-from collections.abc import Generator, Iterable, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import ExitStack, closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.jobs.executors import ExecutorError
-from firm_hdl.verify.results.records import OracleVerdict
+from firm_hdl.verify.results.records import OracleVerdict, Record, Test
 from firm_hdl.verify.results.verdict import Failed
-from firm_hdl.verify.systems.options import command_again
+from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import run_shares, shares_of
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1.case import DefinitionCase
-from firm_hdl.verify.ts1.judge import Judgement, Outcome, judge_case
+from firm_hdl.verify.ts1.judge import judge_case, record_of
 from firm_hdl.verify.ts1.mutate import mutation
 from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.oracles.oracle import Oracle
 from firm_hdl.verify.ts1.universe import Universe, write_definitions
 
-__all__ = ["Selection", "Tally", "Ts1Run", "selections_of"]
+__all__ = ["Ts1Run", "each_distro"]
 
 # What one process is given at a time: so many definitions, or so many characters of them.
 _MOST_CASES = 32
 _MOST_CHARACTERS = 30_000
 _LEAST_SHARES = 64
-_MOST_SHOWN = 20
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Selection:
-    """What to judge.
+def each_distro(request: Request) -> list[Request]:
+    """Return a request for each distribution that a request means.
 
-    Attributes
-    ----------
-    distro : str
-    paths : tuple of str
-        As for `Library`.
-    types : tuple of str
-        Names of types; none: all.
-    mutations : int
-        So many changed definitions, made from those of the types, are judged instead of these.
-    seed : int
-        Number of the first mutation.
-    """
-
-    distro: str
-    paths: tuple[str, ...] = ()
-    types: tuple[str, ...] = ()
-    mutations: int = 0
-    seed: int = 0
-
-    def command(
-        self, case: DefinitionCase, number: int | None = None, oracles: Sequence[str] = ()
-    ) -> str:
-        """Write the command that judges one definition, or one mutation, again."""
-        names = [case.spelled_name] if number is None else self.types or ["--all"]
-        return command_again(
-            *names,
-            systems="ts1",
-            distro=self.distro,
-            path=self.paths,
-            oracle=tuple(oracles),
-            mutations=None if number is None else 1,
-            seed=number,
-        )
-
-
-def selections_of(
-    distros: Sequence[str] | None,
-    paths: Sequence[str] = (),
-    types: Sequence[str] = (),
-    *,
-    mutations: int = 0,
-    seed: int = 0,
-) -> list[Selection]:
-    """List what a command asks for, which may be several distributions.
-
-    Where none is named, it is the default one if there are paths, else all that have the types.
+    If it names none, these are the default one if there are paths, else all that have the types.
 
     Raises
     ------
     UnknownTypeError
-        If no distribution has them.
+        If no distribution has the types.
     """
-    names = list(distros or ([DEFAULT_DISTRO] if paths else _having(types)))
-    return [
-        Selection(
-            distro=name, paths=tuple(paths), types=tuple(types), mutations=mutations, seed=seed
-        )
-        for name in names
-    ]
+    names = request.distros or ([DEFAULT_DISTRO] if request.paths else _having(request.types))
+    return [replace(request, distros=(name,)) for name in names]
 
 
 def _having(types: Sequence[str]) -> list[str]:
@@ -113,51 +60,25 @@ def _having(types: Sequence[str]) -> list[str]:
     return found
 
 
-@dataclass(slots=True)
-class Tally:
-    """What came of a number of definitions.
-
-    Attributes
-    ----------
-    verdicts : counter of (oracle, name of the verdict)
-    refused : counter of oracle
-        How often both refuse; among those that agree.
-    details : counter of (oracle, name of the verdict, text)
-        Keys of known differences, and reasons for what was not judged.
-    differing : list of (Outcome, int or None)
-        Those that differ, and the number of the mutation.
-    shown : list of Outcome
-        All outcomes, if only a few definitions were judged.
-    """
-
-    verdicts: Counter[tuple[str, str]] = field(default_factory=Counter)
-    refused: Counter[str] = field(default_factory=Counter)
-    details: Counter[tuple[str, str, str]] = field(default_factory=Counter)
-    differing: list[tuple[Outcome, int | None]] = field(default_factory=list)
-    shown: list[Outcome] = field(default_factory=list)
-
-    def add(self, outcome: Outcome, number: int | None = None) -> None:
-        """Count an outcome."""
-        verdict = outcome.verdict
-        self.verdicts[outcome.oracle, verdict.name] += 1
-        self.refused[outcome.oracle] += outcome.is_refused
-        if isinstance(verdict, Failed):
-            self.differing.append((outcome, number))
-        else:
-            for detail in verdict.details:
-                self.details[outcome.oracle, verdict.name, detail] += 1
-
-
 class Ts1Run:
     """One run; a context manager, because definitions lie in a folder while it lasts.
 
     Parameters
     ----------
-    selection : Selection
-    oracles : sequence of str
-        Names of those to ask; none: all that are here.
-    jobs : int or None
-        Processes; `None`: one per processor.
+    request : Request
+        Of one distribution. `distros`, `paths`, `types`, `mutations`, `seed`, `oracles` and `jobs`
+        are used. Mutations are made from the definitions of the types; `seed` is the number of the
+        first.
+
+    Attributes
+    ----------
+    distro : str
+    cases : list of DefinitionCase
+        The definitions of the types.
+    versions : dict of str to str
+        Releases of the oracles that are asked, by name.
+    missing : dict of str to str
+        Why the others are not.
 
     Raises
     ------
@@ -165,22 +86,20 @@ class Ts1Run:
         If a path is no folder, or a type is not there.
     """
 
-    def __init__(
-        self, selection: Selection, oracles: Sequence[str] = (), jobs: int | None = None
-    ) -> None:
-        self.selection = selection
-        self.jobs = jobs or os.cpu_count()
+    def __init__(self, request: Request) -> None:
+        self.request = request
+        (self.distro,) = request.distros
         self._stack = ExitStack()
         with ExitStack() as stack:
             folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="firm-hdl-ts1-"))
-            universe = Universe(selection.distro, selection.paths, folder)
+            universe = Universe(self.distro, request.paths, folder)
             write_definitions(universe)
-            self.cases = universe.select(selection.types)
+            self.cases = universe.select(request.types)
             self.versions: dict[str, str] = {}
             self.missing: dict[str, str] = {}
-            self._ask_who_is_here(universe, oracles or tuple(ORACLES))
+            self._ask_who_is_here(universe, request.oracles or tuple(ORACLES))
             self._stack = stack.pop_all()
-        self._key = _Key(selection, folder, tuple(self.versions))
+        self._key = _Key(request, folder, tuple(self.versions))
 
     def __enter__(self) -> Ts1Run:
         return self
@@ -206,7 +125,7 @@ class Ts1Run:
     @property
     def total(self) -> int:
         """Number of definitions that are to be judged."""
-        return self.selection.mutations or len(self.cases)
+        return self.request.mutations or len(self.cases)
 
     @cached_property
     def digest(self) -> str:
@@ -219,19 +138,21 @@ class Ts1Run:
 
     def case(self, number: int) -> DefinitionCase:
         """Return the definition of a number, or the mutation."""
-        if self.selection.mutations:
-            return mutation(self.cases, number)
-        return self.cases[number]
+        return _case(self.request, self.cases, number)
+
+    def test(self, number: int) -> Test:
+        """Return the test of a definition, or of a mutation."""
+        return _test(self.request, self.case(number), number)
 
     @property
     def numbers(self) -> range:
         """Numbers of all that is to be judged."""
-        first = self.selection.seed if self.selection.mutations else 0
+        first = self.request.seed if self.request.mutations else 0
         return range(first, first + self.total)
 
     def judgements(
         self, numbers: Sequence[int] | None = None
-    ) -> Generator[list[tuple[int, Judgement]], None, None]:
+    ) -> Generator[list[tuple[int, Record]], None, None]:
         """Judge definitions; yield their numbers and what came of them, as they come, in shares.
 
         Parameters
@@ -240,36 +161,47 @@ class Ts1Run:
             Which of `numbers`; `None`: all.
         """
         left = self.numbers if numbers is None else numbers
-        if self.selection.mutations:
+        if self.request.mutations:
             shares = shares_of(left, _MOST_CASES, 8)
         else:
             shares = _shares(self.cases, left)
-        with closing(run_shares(_judge_share, self._key, shares, jobs=self.jobs)) as run:
+        jobs = self.request.jobs or os.cpu_count()
+        with closing(run_shares(_judge_share, self._key, shares, jobs=jobs)) as run:
             for share, result in run:
                 if isinstance(result, ExecutorError):
                     # One definition, alone in its process.
-                    result = [_died(str(result))]
+                    result = [self._died(share[0], str(result))]
                 if isinstance(result, Exception):
                     raise result
                 yield list(zip(share, result, strict=True))
 
-    def tally(self, judged: Iterable[tuple[int, Sequence[OracleVerdict]]]) -> Tally:
-        """Count what oracles said of definitions."""
-        is_mutated = self.selection.mutations > 0
-        tally = Tally()
-        for number, said in judged:
-            case = self.case(number)
-            for each in said:
-                outcome = Outcome.of(case, each)
-                tally.add(outcome, number if is_mutated else None)
-                if not is_mutated and len(self.cases) <= _MOST_SHOWN:
-                    tally.shown.append(outcome)
-        return tally
+    def _died(self, number: int, why: str) -> Record:
+        verdict = OracleVerdict(oracle="its process", verdict=Failed((why,)))
+        return record_of(self.test(number), self.case(number).language, [verdict])
+
+
+def _case(request: Request, cases: Sequence[DefinitionCase], number: int) -> DefinitionCase:
+    return mutation(cases, number) if request.mutations else cases[number]
+
+
+def _test(request: Request, case: DefinitionCase, number: int) -> Test:
+    own = [f"path={path}" for path in request.paths]
+    own += [f"oracle={name}" for name in request.oracles]
+    if request.mutations:
+        own += [f"of={name}" for name in request.types]
+        own.append(f"mutation={number}")
+    return Test(
+        system="ts1",
+        distro=request.distros[0],
+        type=case.spelled_name,
+        same=request.distros,
+        options=",".join(own),
+    )
 
 
 @dataclass(frozen=True, slots=True)
 class _Key:
-    selection: Selection
+    request: Request
     folder: str
     oracles: tuple[str, ...]
 
@@ -288,8 +220,8 @@ _sessions: dict[_Key, _Session] = {}
 
 def _session(key: _Key) -> _Session:
     if key not in _sessions:
-        universe = Universe(key.selection.distro, key.selection.paths, key.folder)
-        cases = universe.select(key.selection.types)
+        universe = Universe(key.request.distros[0], key.request.paths, key.folder)
+        cases = universe.select(key.request.types)
         oracles = [ORACLES[name](universe) for name in key.oracles]
         for oracle in oracles:
             # Starts its process: no definition is to be blamed for the time that takes.
@@ -305,21 +237,12 @@ def _end_session(key: _Key) -> None:
             oracle.close()
 
 
-def _died(why: str) -> Judgement:
-    said = OracleVerdict(oracle="its process", verdict=Failed((why,)))
-    return Judgement(said=(said,))
-
-
-def _judge_share(key: _Key, share: tuple[int, ...]) -> list[Judgement]:
+def _judge_share(key: _Key, share: tuple[int, ...]) -> list[Record]:
     session = _session(key)
-    is_mutated = key.selection.mutations > 0
+    cases = [(number, _case(key.request, session.cases, number)) for number in share]
     return [
-        judge_case(
-            session.universe,
-            session.oracles,
-            mutation(session.cases, number) if is_mutated else session.cases[number],
-        )
-        for number in share
+        judge_case(session.universe, session.oracles, case, _test(key.request, case, number))
+        for number, case in cases
     ]
 
 

@@ -8,16 +8,25 @@ from itertools import count
 
 import pytest
 
+from firm_hdl.verify.results.verdict import Failed
+from firm_hdl.verify.ts1.command import Tally
 from firm_hdl.verify.ts1.judge import judge
 from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.universe import Universe, write_definitions
 from tests.frontend.workspace import make_files
 
 
-def tally_of(run):
-    """Judge everything; return what came of it."""
+def judged_by(run):
+    """Judge everything; return the tally, and the names and failures of what differs."""
     with closing(run.judgements()) as shares:
-        return run.tally((number, found.said) for share in shares for number, found in share)
+        found = {number: record for share in shares for number, record in share}
+    wrong = [
+        (run.case(number).full_name, each.verdict.failures)
+        for number, record in sorted(found.items())
+        for each in record.verdicts
+        if isinstance(each.verdict, Failed)
+    ]
+    return Tally(each for record in found.values() for each in record.verdicts), wrong
 
 
 class Court:
@@ -44,8 +53,8 @@ class Court:
 
     def outcome(self, name, type_):
         """What comes of the comparison."""
-        (outcome,) = judge(self.universe, self.oracle(name), self.universe.select([type_]))
-        return outcome
+        (case,) = self.universe.select([type_])
+        return judge(self.universe, self.oracle(name), case)
 
 
 def need(name, missing):

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from firm_hdl.verify.ts1 import Selection, Ts1Run
+from firm_hdl.verify.systems.options import Request
+from firm_hdl.verify.ts1 import Ts1Run
 from firm_hdl.verify.ts1.universe import Universe
-from tests.verify.ts1.conftest import need, tally_of
+from tests.verify.ts1.conftest import judged_by, need
 
 JUDGED = ("passed", "failed", "known difference")
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
 
 
-def differing(selection, oracle):
+def differing(request, oracle):
     """Judge; list what differs, and count what both refuse and what was judged."""
-    with Ts1Run(selection, [oracle], 1) as run:
+    with Ts1Run(replace(request, oracles=(oracle,), jobs=1)) as run:
         need(oracle, run.missing.get(oracle))
-        tally = tally_of(run)
-    wrong = [(each.case.full_name, each.verdict.failures) for each, _ in tally.differing]
+        tally, wrong = judged_by(run)
     return wrong, tally.refused[oracle], sum(tally.verdicts[oracle, each] for each in JUDGED)
 
 
@@ -35,7 +37,8 @@ def test_a_sample_is_read_as_oracles_read_it(corpus, dialect, oracle, step):
     path, distro = str(corpus / dialect), DISTROS[dialect]
     cases = Universe(distro, [path]).select([])
     types = tuple(case.spelled_name for case in cases if len(case.text) < 20_000)[::step]
-    wrong, refused, judged = differing(Selection(distro=distro, paths=(path,), types=types), oracle)
+    request = Request(distros=(distro,), paths=(path,), types=types)
+    wrong, refused, judged = differing(request, oracle)
     assert (wrong, refused) == ([], 0)
     assert judged >= 0.9 * len(types) > 60
 
@@ -49,6 +52,7 @@ def test_what_is_invalid_is_refused_by_both(corpus, dialect, oracle):
     bad = str(corpus / "invalid" / dialect)
     types = tuple(case.spelled_name for case in Universe(distro, [bad]).select([]))
     paths = (bad, str(corpus / dialect))
-    wrong, refused, judged = differing(Selection(distro=distro, paths=paths, types=types), oracle)
+    request = Request(distros=(distro,), paths=paths, types=types)
+    wrong, refused, judged = differing(request, oracle)
     assert wrong == []
     assert refused == judged == len(types) > 10

@@ -116,6 +116,22 @@ def test_a_known_difference_hides_no_other(court, distro, oracle, text):
     assert isinstance(found.verdict, Failed)
 
 
+def test_we_read_only_what_is_a_mistake_in_another_text(court, monkeypatch):
+    # rosbags refuses CR LF, which is no mistake: our reader must not refuse it as well.
+    read = judging.read
+
+    def refuses_returns(universe, case):
+        return refuse(None) if "\r" in case.text else read(universe, case)
+
+    here = court("noetic", {"p/msg/A.msg": "int8 x\r\n"})
+    assert_known(here.outcome("rosbags", "p/A"), "rosbags-crlf")
+    monkeypatch.setattr(judging, "read", refuses_returns)
+    found = here.outcome("rosbags", "p/A")
+    assert found.verdict.details == (
+        "verdict: firm-hdl refuses: it is planted; oracle accepts (beside rosbags-crlf)",
+    )
+
+
 def test_several_known_differences_are_all_named_and_no_others(court):
     text = "int8 N=010\r\nbool ON=1\r\nstring S=text\r\nint8 plain\r\n"
     found = court("noetic", {"p/msg/A.msg": text}).outcome("rosbags", "p/A")

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 import pytest
 
-from firm_hdl.verify.ts1 import Selection, Ts1Run
+from firm_hdl.verify.systems.options import Request
+from firm_hdl.verify.ts1 import Ts1Run
 from firm_hdl.verify.ts1 import mutate as rules
 from firm_hdl.verify.ts1.mutate import mutation
 from tests.frontend.workspace import make_files
-from tests.verify.ts1.conftest import need, tally_of
+from tests.verify.ts1.conftest import judged_by, need
 
 ROS1 = {
     "p/msg/A.msg": "# All.\nint8 LOW=-5\nfloat32 F = 1.5  # f\nbool ON=True\nstring S= x # y \n"
@@ -41,11 +43,11 @@ ROS2 = {
 )
 def test_oracles_and_we_agree_on_mistakes(tmp_path, distro, oracle, count):
     root = make_files(tmp_path, ROS1 if distro == "noetic" else ROS2)
-    selection = Selection(distro=distro, paths=(str(root),), mutations=count)
-    with Ts1Run(selection, [oracle], 1) as run:
+    request = Request(distros=(distro,), paths=(str(root),), mutations=count)
+    with Ts1Run(replace(request, oracles=(oracle,), jobs=1)) as run:
         need(oracle, run.missing.get(oracle))
-        tally = tally_of(run)
-    assert [(number, outcome.verdict.details) for outcome, number in tally.differing] == []
+        tally, wrong = judged_by(run)
+    assert wrong == []
     assert sum(tally.verdicts.values()) - tally.verdicts[oracle, "not judged"] == count
     # Neither are all mistakes, nor none.
     assert count / 5 < tally.refused[oracle] < count * 9 / 10

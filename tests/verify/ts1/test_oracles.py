@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from firm_hdl.verify.results.records import Test as Tested
 from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.ros_python.worker import Worker
 from firm_hdl.verify.ts1.judge import judge_case
@@ -184,7 +185,8 @@ def test_a_worker_whose_answer_is_none_fails(court):
 
     here = court("noetic", FILES)
     (case,) = here.universe.select(["q/B"])
-    (said,) = judge_case(here.universe, [Silent(here.universe)], case).said
+    test = Tested(system="ts1", distro="noetic", type="q/B")
+    (said,) = judge_case(here.universe, [Silent(here.universe)], case, test).verdicts
     assert isinstance(said.verdict, Failed) and "answered {}" in said.verdict.failures[0]
 
 

@@ -37,11 +37,12 @@ HASHES = {
 TYPES = ["p/A", "p/Empty", "p/S", "p/Do", "p/I", "q/B"]
 
 
-def outcomes(here, oracle, **how):
-    return {
-        outcome.case.full_name: outcome.verdict
-        for outcome in judge(here.universe, here.oracle(oracle), here.universe.select(TYPES), **how)
+def outcomes(here, oracle, read=lambda case: None):
+    found = {
+        case.full_name: judge(here.universe, here.oracle(oracle), case, read(case))
+        for case in here.universe.select(TYPES)
     }
+    return {name: each.verdict for name, each in found.items() if each is not None}
 
 
 @pytest.mark.parametrize("oracle", [*ADAPTERS, *PARSERS])
@@ -71,7 +72,7 @@ def test_events_of_services_are_judged(court, oracle):
     assert "p/action/Do_GetResult_Event" in here.answer(oracle, "p/Do").facts["structure"]
     # The must-fail twin: services as humble has them.
     humble = Library("humble", [here.universe.folder])
-    found = outcomes(here, oracle, ours=lambda case: humble.interface(case.spelled_name))
+    found = outcomes(here, oracle, read=lambda case: humble.interface(case.spelled_name))
     wrong = next(text for text in found["p/srv/S"].failures if "S_Event" in text)
     assert wrong.startswith("structure/p/srv/S_Event: firm-hdl has none; oracle")
 

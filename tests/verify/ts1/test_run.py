@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -15,17 +16,17 @@ from firm_hdl.frontend import DISTROS
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.records import OracleVerdict
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Recorder
 from firm_hdl.verify.systems.tasks import UnknownTypeError
-from firm_hdl.verify.ts1 import ORACLES, Selection, Ts1, Ts1Run, selections_of
+from firm_hdl.verify.ts1 import ORACLES, Ts1, Ts1Run, each_distro
 from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.case import DefinitionCase
-from firm_hdl.verify.ts1.judge import Outcome
+from firm_hdl.verify.ts1.command import Tally, command_of
 from firm_hdl.verify.ts1.oracles.oracle import Refused
-from firm_hdl.verify.ts1.run import Tally
 from firm_hdl.verify.ts1.universe import Universe
 from tests.frontend.workspace import make_files
-from tests.verify.ts1.conftest import need, tally_of
+from tests.verify.ts1.conftest import judged_by, need
 
 FILES = {
     "src/p/msg/A.msg": "q/B b\n",
@@ -40,27 +41,27 @@ def source(tmp_path):
     return str(make_files(tmp_path, FILES) / "src")
 
 
-def run_ts1(selection, oracles):
+def run_ts1(request, oracles):
     """Judge definitions as the command does; return how many things failed."""
-    system = Ts1([selection], oracles, 1)
-    with Ts1Run(selection, oracles, 1) as run:
-        found = system.judge(run, Recorder())
+    with Ts1([replace(request, oracles=tuple(oracles), jobs=1)]) as system:
+        found = system.run(Recorder())
     return sum(isinstance(each.verdict, Failed) for each in found)
 
 
-def judged(selection, oracles=(), jobs=1):
+def judged(request, oracles=(), jobs=1):
     """Run everything; return the tally, and versions of the oracles that were there."""
-    with Ts1Run(selection, oracles, jobs) as run:
+    with Ts1Run(replace(request, oracles=tuple(oracles), jobs=jobs)) as run:
         for name in oracles:
             need(name, run.missing.get(name))
-        return tally_of(run), run
+        tally, _ = judged_by(run)
+        return tally, run
 
 
 @pytest.mark.parametrize("distro", DISTROS)
 def test_embedded_types_are_what_fast_oracles_say(distro):
     oracles = ["genmsg", "rosbags"] if distro == "noetic" else ["rosidl_adapter", "rosbags"]
-    tally, run = judged(Selection(distro=distro), oracles)
-    assert tally.differing == []
+    tally, run = judged(Request(distros=(distro,)), oracles)
+    assert tally.differences == 0
     assert tally.verdicts[oracles[0], "passed"] == run.total > 140
     assert sum(tally.refused.values()) == 0
     # rosbags hashes char otherwise, in a few types of each distribution.
@@ -76,25 +77,25 @@ def test_a_sample_of_embedded_types_is_what_rosidl_parser_says():
     names = ["Imu", "PointCloud2", "NavSatStatus", "JointState", "CameraInfo", "Range"]
     types = tuple(f"sensor_msgs/msg/{name}" for name in names)
     types += ("diagnostic_msgs/msg/DiagnosticArray", "std_msgs/msg/Empty", "std_msgs/msg/Char")
-    tally, _ = judged(Selection(distro="lyrical", types=types), ["rosidl_parser"])
+    tally, _ = judged(Request(distros=("lyrical",), types=types), ["rosidl_parser"])
     assert tally.verdicts == {("rosidl_parser", "passed"): len(types)}
 
 
 def test_all_of_a_folder_is_judged_and_no_more(source):
-    tally, run = judged(Selection(distro="noetic", paths=(source,)), ["genmsg"])
+    tally, run = judged(Request(distros=("noetic",), paths=(source,)), ["genmsg"])
     assert [case.full_name for case in run.cases] == ["p/A", "p/Bad", "p/S", "q/B"]
     assert tally.verdicts == {("genmsg", "passed"): 4}
     assert tally.refused == {"genmsg": 1}
 
 
 def test_processes_give_what_one_gives(source):
-    selection = Selection(distro="noetic", paths=(source,))
-    one, two = (judged(selection, ["rosbags"], jobs)[0] for jobs in (1, 2))
-    assert one.verdicts == two.verdicts and len(one.shown) == len(two.shown)
+    request = Request(distros=("noetic",), paths=(source,))
+    one, two = (judged(request, ["rosbags"], jobs)[0] for jobs in (1, 2))
+    assert one.verdicts == two.verdicts and one.details == two.details
 
 
 def test_the_report_names_oracles_verdicts_and_types(source, capsys):
-    assert run_ts1(Selection(distro="noetic", paths=(source,)), ["rosbags"]) == 0
+    assert run_ts1(Request(distros=("noetic",), paths=(source,)), ["rosbags"]) == 0
     out = capsys.readouterr().out
     assert "p/A  rosbags  agrees\n" in out
     assert "p/Bad  rosbags  agrees: both refuse\n" in out
@@ -122,8 +123,8 @@ def test_a_difference_is_told_with_the_command_that_repeats_it(source, capsys, m
 
 def test_an_oracle_that_is_asked_for_and_not_here_fails(source, capsys, monkeypatch):
     monkeypatch.setenv("PATH", "/nowhere")
-    selection = Selection(distro="lyrical", paths=(source,), types=("q/B",))
-    assert run_ts1(selection, ["ros2"]) == 1
+    request = Request(distros=("lyrical",), paths=(source,), types=("q/B",))
+    assert run_ts1(request, ["ros2"]) == 1
     assert "is not here: there is no command 'ros2'" in capsys.readouterr().out
 
 
@@ -138,13 +139,19 @@ def test_a_type_or_folder_that_is_not_there(source, tmp_path, capsys):
 
 def test_a_message_of_a_service_has_no_definition_of_its_own(source):
     with pytest.raises(DefinitionError) as error:
-        judged(Selection(distro="lyrical", paths=(source,), types=("p/srv/S_Request",)))
+        judged(Request(distros=("lyrical",), paths=(source,), types=("p/srv/S_Request",)))
     assert str(error.value) == "error: 'p/srv/S_Request' has no definition of its own"
 
 
+def distros_of(**asked):
+    found = [request.distros for request in each_distro(Request(**asked))]
+    assert {len(distros) for distros in found} == {1}
+    return [distro for (distro,) in found]
+
+
 def test_distributions_that_have_the_types_are_chosen():
-    assert [s.distro for s in selections_of(None, (), ["sensor_msgs/Imu"])] == list(DISTROS)
-    assert [s.distro for s in selections_of(None, (), ["std_msgs/msg/Header"])] == list(DISTROS)
+    assert distros_of(types=("sensor_msgs/Imu",)) == list(DISTROS)
+    assert distros_of(types=("std_msgs/msg/Header",)) == list(DISTROS)
     # Some are in distributions that stand between those that lack them, some in the last alone.
     for name, distros in {
         "actionlib/msg/TestAction": ["noetic"],
@@ -152,24 +159,22 @@ def test_distributions_that_have_the_types_are_chosen():
         "geometry_msgs/PolygonInstance": ["jazzy", "kilted", "lyrical"],
         "nav_msgs/msg/Trajectory": ["lyrical"],
     }.items():
-        assert [s.distro for s in selections_of(None, (), [name])] == distros
-        assert [s.distro for s in selections_of(None, (), ["std_msgs/Header", name])] == distros
-    assert [s.distro for s in selections_of(None, ("x",))] == ["lyrical"]
-    assert [s.distro for s in selections_of(["foxy"], ("x",))] == ["foxy"]
+        assert distros_of(types=(name,)) == distros
+        assert distros_of(types=("std_msgs/Header", name)) == distros
+    assert distros_of(paths=("x",)) == ["lyrical"]
+    assert distros_of(distros=("foxy",), paths=("x",)) == ["foxy"]
 
 
 def test_a_type_that_no_distribution_has_is_named():
     with pytest.raises(UnknownTypeError, match=r"^No distribution has std_msgs/Header, p/None$"):
-        selections_of(None, (), ["std_msgs/Header", "p/None"])
+        each_distro(Request(types=("std_msgs/Header", "p/None")))
 
 
-def test_all_that_was_asked_for_is_in_each_selection():
-    more = {"mutations": 3, "seed": 7}
-    found = selections_of(["foxy", "iron"], ("x", "y"), ("p/A", "q/B"), **more)
-    assert found == [
-        Selection(distro=name, paths=("x", "y"), types=("p/A", "q/B"), **more)
-        for name in ("foxy", "iron")
-    ]
+def test_all_that_was_asked_for_is_in_the_request_for_each_distribution():
+    asked = Request(
+        distros=("foxy", "iron"), paths=("x", "y"), types=("p/A", "q/B"), mutations=3, seed=7
+    )
+    assert each_distro(asked) == [replace(asked, distros=(name,)) for name in asked.distros]
 
 
 CASE = DefinitionCase(
@@ -187,38 +192,40 @@ CASE = DefinitionCase(
     ],
 )
 def test_the_command_that_repeats_a_test(types, number, oracles, command):
-    selection = Selection(distro="iron", paths=("a b", "c"), types=types, mutations=9, seed=4)
+    request = Request(
+        distros=("iron",), paths=("a b", "c"), types=types, mutations=9, seed=4
+    )
     words = "firm-hdl verify --systems ts1 --distro iron --path 'a b' --path c"
-    assert selection.command(CASE, number, oracles) == f"{words} {command}"
+    assert command_of(request, CASE, number, oracles) == f"{words} {command}"
 
 
 def test_verdicts_are_counted_by_oracle_and_name():
     def said(oracle, verdict, **more):
-        return Outcome.of(CASE, OracleVerdict(oracle=oracle, verdict=verdict, **more))
+        return OracleVerdict(oracle=oracle, verdict=verdict, **more)
 
-    failed = said("one", Failed(("x", "y")))
-    tally = Tally()
-    tally.add(said("one", Passed(3), is_refused=True))
-    tally.add(said("one", Passed(2)))
-    tally.add(failed, 7)
-    tally.add(said("two", KnownDifference(("k", "l"), 3)))
-    tally.add(said("two", NotJudged("because")))
+    tally = Tally(
+        [
+            said("one", Passed(3), is_refused=True),
+            said("one", Passed(2)),
+            said("one", Failed(("x", "y"))),
+            said("two", KnownDifference(("k", "l"), 3)),
+            said("two", NotJudged("because")),
+            said("one", Failed(("x", "y"))),
+        ]
+    )
     assert tally.verdicts == {
         ("one", "passed"): 2,
-        ("one", "failed"): 1,
+        ("one", "failed"): 2,
         ("two", "known difference"): 1,
         ("two", "not judged"): 1,
     }
     assert tally.refused == {"one": 1, "two": 0}
-    assert tally.differing == [(failed, 7)]
+    assert tally.differences == 2
     assert tally.details == {
         ("two", "known difference", "k"): 1,
         ("two", "known difference", "l"): 1,
         ("two", "not judged", "because"): 1,
     }
-    tally.add(failed, 8)
-    assert tally.verdicts["one", "failed"] == 2 and tally.refused["one"] == 1
-    assert tally.differing == [(failed, 7), (failed, 8)]
 
 
 def test_a_crash_of_ours_ends_no_run(source, monkeypatch):
@@ -227,7 +234,7 @@ def test_a_crash_of_ours_ends_no_run(source, monkeypatch):
 
     monkeypatch.setattr(judging, "read", read)
     types = ("p/A", "q/B")
-    tally, _ = judged(Selection(distro="noetic", paths=(source,), types=types), ["rosbags"])
+    tally, _ = judged(Request(distros=("noetic",), paths=(source,), types=types), ["rosbags"])
     assert tally.verdicts == {("rosbags", "failed"): 1, ("rosbags", "passed"): 1}
 
 
@@ -236,21 +243,17 @@ def test_mutations_are_repeatable_and_told_by_number(source, capsys, monkeypatch
         ORACLES["genmsg"], "judge", lambda self, cases: [Refused("no")] * len(cases)
     )
     monkeypatch.setattr(ORACLES["genmsg"], "missing", lambda self: None)
-    selection = Selection(distro="noetic", paths=(source,), types=("q/B",), mutations=30, seed=7)
-    assert run_ts1(selection, ["genmsg"]) > 0
+    request = Request(distros=("noetic",), paths=(source,), types=("q/B",), mutations=30, seed=7)
+    assert run_ts1(request, ["genmsg"]) > 0
     said = capsys.readouterr()
     text = said.out + said.err
     blocks = re.findall(r"DIFFERS .*\n((?:    .*\n)+)", text)
     numbers = [int(re.search(r"--mutations 1 --seed (\d+) q/B", block)[1]) for block in blocks]
     assert all(7 <= number < 37 for number in numbers) and len(set(numbers)) == len(numbers)
-    one = Selection(**{**_fields(selection), "mutations": 1, "seed": numbers[0]})
+    one = replace(request, mutations=1, seed=numbers[0])
     assert run_ts1(one, ["genmsg"]) == 1
     said = capsys.readouterr()
     assert blocks[0] in said.out + said.err
-
-
-def _fields(selection):
-    return {name: getattr(selection, name) for name in Selection.__slots__}
 
 
 def test_oracles_read_the_text_that_we_take(tmp_path):
@@ -259,7 +262,7 @@ def test_oracles_read_the_text_that_we_take(tmp_path):
     files |= {"three/p/msg/A.msg": "int8 x\n", "three/p/msg/B.msg": "A a\nstd_msgs/String s\n"}
     make_files(tmp_path, files)
     paths = tuple(str(tmp_path / name) for name in ("one", "two", "three"))
-    tally, run = judged(Selection(distro="noetic", paths=paths), ["genmsg"])
+    tally, run = judged(Request(distros=("noetic",), paths=paths), ["genmsg"])
     assert [case.full_name for case in run.cases] == ["p/A", "p/B", "std_msgs/Header"]
     assert tally.verdicts == {("genmsg", "passed"): 3}
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.verify.ts1.again import _needed_names as needed_names
+from firm_hdl.verify.ts1.explain import _needed_names as needed_names
 from firm_hdl.verify.ts1.universe import Universe, write_definitions
 from tests.frontend.workspace import make_files
 

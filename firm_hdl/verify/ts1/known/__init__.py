@@ -1,7 +1,7 @@
 """Differences between oracles and us that are meant to be: docs/errata.md says why.
 
 Each has a key, by which a report names it. An entry normalises what it knows, and the rest is
-compared again (`firm_hdl.verify.ts1.again`). A difference that is left then is a mistake of
+compared again (`firm_hdl.verify.ts1.explain`). A difference that is left then is a mistake of
 somebody's.
 """
 

@@ -1,4 +1,7 @@
-"""Compare again without what is known: is anything left?"""
+"""What explains a difference from an oracle, if it is known.
+
+Both readings are compared again without what is known: is any difference left?
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TypeAlias
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.model import Interface, Message
+from firm_hdl.model import Interface, closure
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, Passed, Verdict
 from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.comparison import Compared, compared
@@ -15,13 +18,13 @@ from firm_hdl.verify.ts1.known.rule import KnownRule
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle
 from firm_hdl.verify.ts1.universe import Universe
 
-__all__ = ["Again"]
+__all__ = ["Explainer"]
 
 _Read: TypeAlias = "Callable[[Universe, DefinitionCase], Interface | Exception]"
 
 
-class Again:
-    """One definition before one oracle, to be compared as often as it takes.
+class Explainer:
+    """One definition before one oracle; it is compared as often as it takes.
 
     Parameters
     ----------
@@ -29,7 +32,7 @@ class Again:
         Where other texts can be read; `None`: nothing can be read again, and no difference is
         known.
     oracle : Oracle
-    case : Case
+    case : DefinitionCase
     ours : Message, Service, Action or Exception
         What we make of it.
     answer : Accepted or Refused
@@ -201,16 +204,11 @@ class Again:
         if isinstance(answer, NotJudged):
             return ()
         ours = self._read(universe, case)
-        verdict, _ = Again(universe, self._oracle, case, ours, answer, self._read).verdict()
+        verdict, _ = Explainer(universe, self._oracle, case, ours, answer, self._read).verdict()
         return verdict.keys if isinstance(verdict, KnownDifference) else ()
 
 
 def _needed_names(interface: Interface) -> list[str]:
-    pending: list[Message] = list(interface.messages)
-    seen: dict[str, None] = {}
-    while pending:
-        for child in pending.pop().children:
-            if child.name not in seen:
-                seen[child.name] = None
-                pending.append(child)
-    return list(seen)
+    own = {message.name for message in interface.messages}
+    names = [message.name for message in closure(interface.messages)]
+    return [name for name in reversed(names) if name not in own]
