@@ -1,0 +1,9 @@
+"""Measure circuits on FPGAs: area and clock rate, from Yosys and nextpnr."""
+
+from __future__ import annotations
+
+from firm_hdl.bench.devices import DEVICES, Device
+from firm_hdl.bench.flow import Measured, measure
+from firm_hdl.bench.tools import BenchError, MissingToolError
+
+__all__ = ["DEVICES", "BenchError", "Device", "Measured", "MissingToolError", "measure"]

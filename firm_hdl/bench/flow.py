@@ -1,0 +1,175 @@
+"""From a circuit's RTLIL to its area, its clock rate and its critical path."""
+
+from __future__ import annotations
+
+import json
+import statistics
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from firm_hdl.bench.devices import Area, Device, Placer
+from firm_hdl.bench.netlist import Names, cell_counts, register_ports, top_module
+from firm_hdl.bench.paths import CriticalPath, critical_path
+from firm_hdl.bench.tools import BenchError, Tool, find_nextpnr, find_yosys, written
+
+__all__ = ["Measured", "Placed", "measure"]
+
+# Yosys 0.70 aborts on some circuits after ABC, but not if they are flattened before. Without names
+# it never did, but then a critical path has none either.
+PREPARATIONS = (
+    "",
+    "hierarchy -top top; proc; flatten; opt_clean; ",
+    "hierarchy -top top; proc; flatten; opt_clean; rename -hide */w:*; ",
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Placed:
+    """The clock rate that one run of nextpnr reached.
+
+    Attributes
+    ----------
+    seed : int
+    mhz : float
+    path : CriticalPath
+        What limits it.
+    """
+
+    seed: int
+    mhz: float
+    path: CriticalPath
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Measured:
+    """The figures of a circuit.
+
+    Attributes
+    ----------
+    device : Device
+    area : Area
+        Of the circuit alone.
+    port_registers : int
+        Flip-flops outside of its ports, which are not in `area`.
+    placed : tuple of Placed
+        One for each seed; none if the device has no nextpnr.
+    mapping : str
+        Commands of Yosys that mapped the circuit.
+    tools : tuple of str
+        Names and versions of the tools.
+    """
+
+    device: Device
+    area: Area
+    port_registers: int
+    placed: tuple[Placed, ...]
+    mapping: str
+    tools: tuple[str, ...]
+
+    @property
+    def mhz(self) -> float | None:
+        """Median of the clock rates, in MHz."""
+        rates = [each.mhz for each in self.placed]
+        return statistics.median(rates) if rates else None
+
+    @property
+    def path(self) -> CriticalPath | None:
+        """The critical path of the run nearest to the median."""
+        middle = self.mhz
+        if middle is None:
+            return None
+        return min(self.placed, key=lambda each: abs(each.mhz - middle)).path
+
+
+def measure(
+    rtlil: str,
+    device: Device,
+    seeds: Sequence[int],
+    *,
+    mapping: str = "",
+    report: Callable[[Placed], None] = lambda placed: None,
+) -> Measured:
+    """Measure a circuit.
+
+    Parameters
+    ----------
+    rtlil : str
+        As `amaranth.back.rtlil.convert` returns it, with the name ``top``. Its clock is ``clk``.
+    seeds : sequence of int
+        Seeds of nextpnr. Each is one run.
+    mapping : str
+        Commands of Yosys before the mapping, such as ``scratchpad -set abc9.D 4000``.
+    report : callable
+        Is called after each run.
+
+    Raises
+    ------
+    BenchError
+    """
+    yosys = find_yosys()
+    placer = device.placer
+    nextpnr = find_nextpnr(placer.package, placer.program) if placer and seeds else None
+    with tempfile.TemporaryDirectory(prefix="firm-hdl-bench-") as name:
+        folder = Path(name)
+        (folder / "top.il").write_text(rtlil, encoding="utf-8")
+        top, script = _synthesize(yosys, folder, device, mapping)
+        area = device.area(cell_counts(top))
+        names = Names(top)
+        placed: list[Placed] = []
+        added = 0
+        if placer and nextpnr:
+            added = register_ports(top, placer)
+            (folder / "ports.json").write_text(json.dumps({"modules": {"top": top}}))
+            for seed in seeds:
+                placed.append(_place(nextpnr, folder, placer, seed, names))
+                report(placed[-1])
+    tools = [f"{yosys.title} {yosys.version}"] + ([nextpnr.version] if nextpnr else [])
+    return Measured(
+        device=device,
+        area=area,
+        port_registers=added,
+        placed=tuple(placed),
+        mapping=script,
+        tools=tuple(tools),
+    )
+
+
+def _synthesize(
+    yosys: Tool, folder: Path, device: Device, mapping: str
+) -> tuple[dict[str, Any], str]:
+    """Map a circuit; return its module, and the commands that did it."""
+    problem = BenchError("Yosys was not run")
+    before = f"{mapping}; " if mapping else ""
+    for preparation in PREPARATIONS:
+        script = f"{before}{preparation}{device.synthesis}"
+        netlist = folder / "top.json"
+        netlist.unlink(missing_ok=True)
+        try:
+            yosys.run(folder, "-q", "-p", f"read_rtlil top.il; {script} -json {netlist.name}")
+        except BenchError as error:
+            if "Assert" not in str(error):
+                raise
+            problem = error
+            continue
+        return top_module(json.loads(written(yosys, netlist))), script
+    raise problem
+
+
+def _place(nextpnr: Tool, folder: Path, placer: Placer, seed: int, names: Names) -> Placed:
+    """Place and route once."""
+    report = folder / "report.json"
+    report.unlink(missing_ok=True)
+    nextpnr.run(
+        folder,
+        *placer.options,
+        *("--json", "ports.json", "--report", report.name),
+        *("--seed", str(seed), "--timing-allow-fail", "-q"),
+    )
+    found = json.loads(written(nextpnr, report))
+    rates = [clock["achieved"] for clock in found.get("fmax", {}).values()]
+    if len(rates) != 1:
+        raise BenchError(f"{nextpnr.title} reports {len(rates)} clocks, not 1")
+    return Placed(seed=seed, mhz=round(rates[0], 1), path=critical_path(found, names))

@@ -1,0 +1,22 @@
+"""What measurements need from outside."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.bench import DEVICES, Device, MissingToolError
+from firm_hdl.bench.tools import find_nextpnr, find_yosys
+from tests.tools import need
+
+
+@pytest.fixture
+def ecp5() -> Device:
+    """A device whose tools are installed."""
+    device = DEVICES["ecp5"]
+    assert device.placer is not None
+    try:
+        find_yosys()
+        find_nextpnr(device.placer.package, device.placer.program)
+    except MissingToolError as error:
+        need(str(error), None)
+    return device
