@@ -119,8 +119,8 @@ _ROSBAGS.add(
 )
 _Entries("rosbags", wires="ros1 cdr").add(
     "rosbags-time-signs",
-    "Seconds of a ROS 1 time are signed, nanoseconds of a duration are not; in ROS 1 it is the "
-    "other way round.",
+    "Seconds of a ROS 1 time are signed and nanoseconds of a duration unsigned; in ROS 1, it is "
+    "the other way round.",
     take_out=_tame_times,
     same=_same_times,
 )
@@ -143,7 +143,7 @@ _FASTCDR.add(
 )
 _FASTCDR_2_3.refuses(
     "fastcdr-options",
-    "A packet has as many bytes less as the last two bits of its options say.",
+    "The last two bits of its options shorten a packet by as many bytes.",
     "options",
 )
 _ALL_FASTCDR.refuses(
@@ -158,10 +158,12 @@ _ALL_FASTCDR.add(
 )
 _GENPY.add(
     "genpy-time-normalized",
-    "Nanoseconds of a second and more are carried over when a time is read.",
+    "When a time is read, nanoseconds from 1,000,000,000 on are carried to the seconds.",
     same=_canonical,
 )
-_GENPY.add("genpy-not-utf8", "What is not UTF-8 in a string is read as U+FFFD.", same=_replaced)
+_GENPY.add(
+    "genpy-not-utf8", "Bytes of a string that are not UTF-8 are read as U+FFFD.", same=_replaced
+)
 _GENPY.refuses(
     "genpy-not-utf8-written", "A string that is not UTF-8 cannot be written.", "encode not-utf8"
 )
@@ -171,13 +173,13 @@ _GENPY.refuses(
 _GENPY.takes(
     "genpy-cut", "A string or an array of bytes at the end of a packet may be cut short.", *_CUTS
 )
-_GENPY.takes("genpy-trailing", "What follows a message is ignored.", "trailing-1", "trailing-4")
+_GENPY.takes("genpy-trailing", "Bytes after a message are ignored.", "trailing-1", "trailing-4")
 _ROSBAGS.refuses(
     "rosbags-bare-string", "An empty string whose length is 0 is refused.", "bare-string"
 )
 _ROSBAGS.refuses("rosbags-no-nul", "A string without a NUL is refused.", "no-nul")
 _ROSBAGS.refuses(
-    "rosbags-trailing", "More than 3 bytes behind a message are refused.", "trailing-4"
+    "rosbags-trailing", "More than 3 bytes after a message are refused.", "trailing-4"
 )
 _ROSBAGS.takes(
     "rosbags-bounds", "Bounds of sequences are not checked.", "bound-items", "encode bound-items"
@@ -187,7 +189,7 @@ _CYCLONEDDS.add(
 )
 _CYCLONEDDS.takes(
     "cyclonedds-cut",
-    "No packet at all, and one that ends in an array of bytes, is read as far as it goes.",
+    "A packet without bytes, or one that ends in an array of bytes, is read as far as it goes.",
     *_CUTS,
 )
 _CYCLONEDDS.takes(
@@ -204,17 +206,17 @@ _MCAP_ROS2.takes(
 )
 _MCAP_ROS2.takes(
     "mcap-ros2-bounds",
-    "Bounds of sequences are not checked in packets; what exceeds them is not written.",
+    "Bounds of sequences are not checked in packets; elements over the bound are not written.",
     "bound-items",
     "encode bound-items",
 )
 _FIRM_HDL.refuses("firm-hdl-no-nul", "A string without a NUL is refused.", "no-nul")
 _FIRM_HDL.refuses(
-    "firm-hdl-trailing", "More than 3 bytes behind a message are refused.", "trailing-4"
+    "firm-hdl-trailing", "More than 3 bytes after a message are refused.", "trailing-4"
 )
 _FIRM_HDL.refuses(
     "firm-hdl-bounds",
-    "Bounds of strings are checked as those of sequences are.",
+    "Bounds of strings are checked, like those of sequences.",
     "bound-text",
     "encode bound-text",
 )
