@@ -1,9 +1,9 @@
-"""How much of a type is simulated: everything, or what can be had in a reasonable time.
+"""Which cases of a type there are, and which of them are simulated, stalled and damaged.
 
-A cycle costs the Python simulator time for every leaf, so a type of a thousand leaves costs minutes
-if all of its cases run, and an array of 8 MiB an hour. Of such types those cases are chosen that
-take the most decisions of the plan for their size; the golden model still sees all of them. What
-was left out is said in words, so that nobody takes a part for the whole.
+The Python simulator takes time for every leaf in every cycle. So a type of a thousand leaves takes
+minutes if all of its cases run, and an array of 8 MiB takes an hour. Of such types, those cases are
+chosen that take the most decisions of the plan for their size. The golden model still sees all
+cases. The result says what was left out.
 """
 
 from __future__ import annotations
@@ -12,18 +12,20 @@ from collections.abc import Iterable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 
 from firm_hdl.plan import Edge, Plan
-from firm_hdl.verify.cases.make import Case
+from firm_hdl.verify.cases.directed import more_cases
+from firm_hdl.verify.cases.make import Case, make_cases
+from firm_hdl.verify.references.oracle import RosbagsOracle
 
 __all__ = [
     "LARGE_STRIDE",
-    "LARGE_WORK",
     "MAX_MESSAGE_BYTES",
     "MOST_WORK",
+    "all_cases",
     "chosen",
+    "disturbed",
+    "is_large",
     "message_limit",
-    "some_cases",
     "too_large",
-    "within",
     "work_of",
 ]
 
@@ -78,7 +80,27 @@ def too_large(plan: Plan, min_bytes: int) -> str:
     )
 
 
-def some_cases(cases: Iterable[Case]) -> Iterator[Case]:
+def all_cases(
+    oracle: RosbagsOracle, name: str, plan: Plan, *, seed: int = 0, most: int | None = None
+) -> list[Case]:
+    """Make at most `most` cases; without a limit, also those that the plan's other decisions need.
+
+    Parameters are those of `make_cases`.
+    """
+    bus_bytes = plan.bus_bytes
+    made = make_cases(oracle, name, wire=plan.wire, bus_bytes=bus_bytes, seed=seed, most=most)
+    cases = list(_some(made))
+    if most is None and _size(cases) < MOST_CASE_BYTES:
+        cases += more_cases(oracle, name, plan, cases, seed=seed)
+    return cases
+
+
+def _size(cases: Iterable[Case]) -> int:
+    """Return the size of packets together, in bytes."""
+    return sum(len(case.packet) for case in cases)
+
+
+def _some(cases: Iterable[Case]) -> Iterator[Case]:
     """Yield cases until they are large together; the first in any case."""
     size = 0
     for case in cases:
@@ -86,6 +108,16 @@ def some_cases(cases: Iterable[Case]) -> Iterator[Case]:
         size += len(case.packet)
         if size >= MOST_CASE_BYTES:
             return
+
+
+def is_large(plan: Plan, cases: Sequence[Case]) -> bool:
+    """Whether a type takes long to simulate; it is stalled and damaged less often."""
+    return work_of(plan, _size(cases)) > LARGE_WORK
+
+
+def disturbed(plan: Plan, cases: Sequence[Case]) -> list[Case]:
+    """Choose what to stall and damage of a large type's cases; nothing if all are too large."""
+    return within(plan, cases[::LARGE_STRIDE], LARGE_WORK)
 
 
 def within(plan: Plan, cases: Sequence[Case], most: int) -> list[Case]:

@@ -8,9 +8,7 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.jobs.processes import in_processes
 from firm_hdl.model import Message
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.cases.directed import more_cases
-from firm_hdl.verify.cases.effort import some_cases
-from firm_hdl.verify.cases.make import make_cases
+from firm_hdl.verify.cases.effort import all_cases
 from firm_hdl.verify.clients.judge import Contest, Trial
 from firm_hdl.verify.references.clients import REFERENCES, client
 from firm_hdl.verify.references.user_oracle import judge_of
@@ -70,7 +68,7 @@ def judge_type(distro: str, name: str, options: Request, here: Sequence[str]) ->
     try:
         message = library_of(distro, options.paths).message(name)
         wire = options.wire or message.wire
-        values = _values(distro, name, wire, options)
+        values = _values(distro, message, wire, options)
     # Whatever it is, the other types are to go on.
     except (NotJudgedError, DefinitionError, ValueError) as error:
         return [_not_judged(library, name, str(error)) for library in options.libraries]
@@ -97,22 +95,12 @@ def _not_judged(library: str, name: str, why: str) -> Trial:
     return Trial(library=library, reference="", type=name, obstacle=NotJudged(why))
 
 
-def _values(distro: str, name: str, wire: Wire, options: Request) -> list[Plain]:
+def _values(distro: str, message: Message, wire: Wire, options: Request) -> list[Plain]:
     """Choose values as TS3 does: all lengths and extremes, and what decisions of a plan need."""
-    message = library_of(distro, options.paths).message(name)
     judge = judge_of(message, None if options.paths else distro, stand_in=True)
-    made = make_cases(
-        judge.oracle,
-        judge.name,
-        wire=wire,
-        bus_bytes=BUS_BYTES,
-        seed=options.seed,
-        most=options.most_cases,
-    )
-    cases = list(some_cases(made))
-    if options.most_cases is None:
-        plan = build_plan(lay_out(message, wire), bus_bytes=BUS_BYTES)
-        cases += more_cases(judge.oracle, judge.name, plan, cases, seed=options.seed)
+    plan = build_plan(lay_out(message, wire), bus_bytes=BUS_BYTES)
+    seed, most = options.seed, options.most_cases
+    cases = all_cases(judge.oracle, judge.name, plan, seed=seed, most=most)
     return [from_objects(message, case.value) for case in cases]
 
 

@@ -25,7 +25,14 @@ from firm_hdl.plan import Edge, build_plan
 from firm_hdl.sim.stalls import Stalls
 from firm_hdl.verify.cases.damage import DAMAGES, broken_packets, stalls_for
 from firm_hdl.verify.cases.directed import bare_packets
-from firm_hdl.verify.cases.effort import message_limit, too_large
+from firm_hdl.verify.cases.effort import (
+    all_cases,
+    chosen,
+    disturbed,
+    is_large,
+    message_limit,
+    too_large,
+)
 from firm_hdl.verify.cases.figures import digest, figures
 from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.references.choice import WIDE_REFERENCES, may_stand_in
@@ -39,7 +46,6 @@ from firm_hdl.verify.ts3.checks import Checks
 from firm_hdl.verify.ts3.circuit import Circuit
 from firm_hdl.verify.ts3.confirm import confirm
 from firm_hdl.verify.ts3.result import Result, command_of
-from firm_hdl.verify.ts3.selection import affordable, all_cases, disturbed, is_large
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["Acceptance", "accept", "accept_message", "measured"]
@@ -103,7 +109,7 @@ def accept_message(
     began = time.perf_counter()
     wire: Any = options.wire or message.wire
     run = Acceptance(message, wire, options, result)
-    cases = all_cases(oracle, name, run.plan, options)
+    cases = all_cases(oracle, name, run.plan, seed=options.seed, most=options.most_cases)
     bare = bare_packets(run.plan, cases)
     result.cases = len(cases)
     result.metrics = figures(message, run.plan, [case.packet for case in cases])
@@ -113,7 +119,8 @@ def accept_message(
     if not options.simulated:
         return
     if options.most_cases is None:
-        numbers = set(affordable(run.plan, cases, bare, taken))
+        packets = [*(case.sent for case in cases), *(packet for _, packet in bare)]
+        numbers = set(chosen(run.plan, packets, taken))
         if len(numbers) < len(taken):
             result.say(f"simulated in part: {len(numbers)} of {len(taken)} packets")
             run.checks.cover(taken[number] for number in numbers)

@@ -23,7 +23,13 @@ from firm_hdl.model import Message
 from firm_hdl.plan import Payload, Plan, build_plan
 from firm_hdl.plan.interpret import Decoded, decode, encode
 from firm_hdl.verify.cases.damage import stalls_for
-from firm_hdl.verify.cases.effort import LARGE_STRIDE, MAX_MESSAGE_BYTES, MOST_WORK, work_of
+from firm_hdl.verify.cases.effort import (
+    LARGE_STRIDE,
+    MAX_MESSAGE_BYTES,
+    MOST_WORK,
+    is_large,
+    work_of,
+)
 from firm_hdl.verify.cases.figures import figures
 from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.choices import MOST_MESSAGES
@@ -35,7 +41,6 @@ from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.acceptance import Acceptance, measured
 from firm_hdl.verify.ts3.recording import RecordedMessage, Selection, Topic, select, topics_of
 from firm_hdl.verify.ts3.result import Result
-from firm_hdl.verify.ts3.selection import is_large
 from firm_hdl.wire import lay_out
 
 __all__ = ["replay"]

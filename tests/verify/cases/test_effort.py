@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import firm_hdl.verify.cases.effort as effort
-import firm_hdl.verify.ts3.selection as selection
+import firm_hdl.verify.ts3.acceptance as acceptance
 from firm_hdl.frontend import Library
 from firm_hdl.plan import Edge, build_plan
 from firm_hdl.verify import Options, accept
@@ -52,7 +52,7 @@ def test_one_in_any_case(plan):
 def test_types_are_simulated_in_part(monkeypatch):
     whole = accept("lyrical", HEADER)
     monkeypatch.setattr(
-        selection,
+        acceptance,
         "chosen",
         lambda plan, *given: effort.chosen(plan, *given, most=effort.work_of(plan, 8)),
     )
@@ -75,7 +75,7 @@ def test_without_the_largest(plan):
 
 def test_what_is_too_large_for_more_is_not_stalled(monkeypatch):
     whole = accept("lyrical", HEADER)
-    monkeypatch.setattr(selection, "LARGE_WORK", 1)
+    monkeypatch.setattr(effort, "LARGE_WORK", 1)
     once = accept("lyrical", HEADER)
     assert assert_passed(once) and once.note == "neither stalled nor damaged"
     assert once.cycles == whole.cycles and once.packets < whole.packets / 2
