@@ -10,23 +10,23 @@ from typing import Any
 
 from tqdm import tqdm
 
-from firm_hdl.frontend import DISTROS
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.clients.judge import Trial
 from firm_hdl.verify.clients.run import command_of, contest_of, judge_types, reference_of
 from firm_hdl.verify.clients.shrink import shrunk
+from firm_hdl.verify.references.choice import find_clients
 from firm_hdl.verify.references.client import ClientMissingError, Refusal
-from firm_hdl.verify.references.clients import CLIENTS, REFERENCES, client, close_clients
+from firm_hdl.verify.references.clients import CLIENTS, REFERENCES, close_clients
 from firm_hdl.verify.references.objects import full_text
 from firm_hdl.verify.references.values import shown
 from firm_hdl.verify.results.texts import clipped
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.systems.system import Judged
+from firm_hdl.verify.systems.system import Judged, wire_of
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.wire import Wire
 
-__all__ = ["find_clients", "run_sut"]
+__all__ = ["run_sut"]
 
 MOST_SHOWN = 5
 """So many differences of each library are made small and shown."""
@@ -43,20 +43,6 @@ _SAID = {
     NotJudged.name: "not judged",
 }
 """What is printed of a library, in the order of the columns."""
-
-
-def find_clients(names: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
-    """Return versions of the libraries that are here, and why the others are not."""
-    versions, missing = {}, {}
-    for name in names:
-        why = client(name).missing()
-        if why is None:
-            versions[name] = client(name).version()
-        else:
-            missing[name] = why
-    # Processes that are forked must not have ours.
-    close_clients()
-    return versions, missing
 
 
 def run_sut(tasks: Sequence[TypeUnderTest], options: Request) -> list[Judged]:
@@ -100,13 +86,8 @@ def run_sut(tasks: Sequence[TypeUnderTest], options: Request) -> list[Judged]:
 
 
 def _wires(tasks: Sequence[TypeUnderTest], options: Request) -> list[Wire]:
-    if options.wire is not None:
-        return [options.wire]
-    dialects = {DISTROS[task.distro].dialect for task in tasks}
-    return [wire for dialect, wire in _WIRES if dialect in dialects]
-
-
-_WIRES: tuple[tuple[str, Wire], ...] = (("ros1", "ros1"), ("ros2", "cdr"))
+    spoken = {wire_of(task.distro, options.wire) for task in tasks}
+    return [wire for wire in REFERENCES if wire in spoken]
 
 
 def _judges(

@@ -5,11 +5,11 @@ docs/divergences.md explains each, by its key.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeGuard
 
 from firm_hdl.model import FieldType, Message, Primitive, String
-from firm_hdl.verify.clients.finding import Change, KnownDivergence
-from firm_hdl.verify.references.values import Plain, is_nan
+from firm_hdl.verify.clients.finding import KnownDivergence
+from firm_hdl.verify.references.values import Change, Plain, is_nan
 
 __all__ = ["KNOWN"]
 
@@ -30,30 +30,35 @@ def _number(name: str, mask: int) -> Change:
     return change
 
 
+def _is_time(kind: FieldType) -> TypeGuard[Message]:
+    return isinstance(kind, Message) and kind.name in ("time", "duration")
+
+
 def _same_times(kind: FieldType, value: Plain) -> Plain:
     """Give times the signs that ROS 1 has for them."""
-    if isinstance(kind, Message) and kind.name == "time":
+    if not _is_time(kind):
+        return value
+    if kind.name == "time":
         return {**value, "secs": value["secs"] & 0xFFFFFFFF}
-    if isinstance(kind, Message):
-        nsecs = value["nsecs"] & 0xFFFFFFFF
-        return {**value, "nsecs": (nsecs ^ 1 << 31) - (1 << 31)}
-    return value
+    nsecs = value["nsecs"] & 0xFFFFFFFF
+    return {**value, "nsecs": (nsecs ^ 1 << 31) - (1 << 31)}
 
 
-def _tame_times(kind: FieldType, value: Plain) -> Plain:
-    if isinstance(kind, Message):
-        member = "secs" if kind.name == "time" else "nsecs"
-        return {**value, member: value[member] & 0x7FFFFFFF}
-    return value
+def _positive_times(kind: FieldType, value: Plain) -> Plain:
+    """Clear the sign of what rosbags has with another sign than ROS 1."""
+    if not _is_time(kind):
+        return value
+    member = "secs" if kind.name == "time" else "nsecs"
+    return {**value, member: value[member] & 0x7FFFFFFF}
 
 
 def _canonical(kind: FieldType, value: Plain) -> Plain:
-    if isinstance(kind, Message):
-        more, nsecs = divmod(value["nsecs"], 1_000_000_000)
-        # What is carried over may be more than a time's seconds have room for.
-        mask = 0xFFFFFFFF if kind.name == "time" else -1
-        return {"secs": value["secs"] + more & mask, "nsecs": nsecs}
-    return value
+    if not _is_time(kind):
+        return value
+    more, nsecs = divmod(value["nsecs"], 1_000_000_000)
+    # What is carried over may be more than a time's seconds have room for.
+    mask = 0xFFFFFFFF if kind.name == "time" else -1
+    return {"secs": value["secs"] + more & mask, "nsecs": nsecs}
 
 
 def _cut(kind: FieldType, value: Plain) -> Plain:
@@ -121,7 +126,7 @@ _Entries("rosbags", wires="ros1 cdr").add(
     "rosbags-time-signs",
     "Seconds of a ROS 1 time are signed and nanoseconds of a duration unsigned; in ROS 1, it is "
     "the other way round.",
-    take_out=_tame_times,
+    take_out=_positive_times,
     same=_same_times,
 )
 _MCAP_ROS2.add(

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal
 
-from firm_hdl.model import Array, FieldType, Message
-from firm_hdl.model import Sequence as SequenceType
+from firm_hdl.model import Message
 from firm_hdl.verify.references.client import Refusal
-from firm_hdl.verify.references.values import Plain
+from firm_hdl.verify.references.values import Change, Plain
 from firm_hdl.wire import Wire
 
-__all__ = ["Change", "Finding", "KnownDivergence", "changed"]
-
-Change: TypeAlias = "Callable[[FieldType, Plain], Plain]"
-"""Returns what a text, a number or a ROS 1 time is to be replaced by."""
+__all__ = ["Finding", "KnownDivergence"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,16 +100,3 @@ class KnownDivergence:
             "refuses": (True, False),
             None: (False, False),
         }[self.answer]
-
-
-def changed(kind: FieldType, value: Plain, change: Change) -> Plain:
-    """Return a value with each text, number and ROS 1 time replaced."""
-    match kind:
-        case Message(name="time" | "duration"):
-            return change(kind, value)
-        case Message():
-            return {item.name: changed(item.type, value[item.name], change) for item in kind.fields}
-        case Array(element=element) | SequenceType(element=element):
-            return [changed(element, each, change) for each in value]
-        case _:
-            return change(kind, value)

@@ -11,7 +11,6 @@ from firm_hdl.model import Message
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.clients.known import known_keys
 from firm_hdl.verify.clients.odd import (
-    ODDITIES,
     odd_packet,
     odd_packets,
     odd_value,
@@ -140,9 +139,9 @@ class Contest:
         ]
         usable = [v for v, p in pairs if plain_packet(message, self.wire, v) == p]
         asked += [
-            _Asked(oddity.name, value, packet)
-            for oddity, value, packet in odd_packets(message, self.wire, usable)
-            if self._reads(oddity.name)
+            _Asked(odd, value, packet)
+            for odd, value, packet in odd_packets(message, self.wire, usable)
+            if self._reads(odd)
         ]
         expectations = _answers(name, right, asked)
         answers = zip(asked, expectations, _answers(self.library.name, theirs, asked), strict=True)
@@ -199,8 +198,8 @@ class Contest:
     def _asked(self, message: Message, what: str, value: Plain, right: Codec) -> _Asked | None:
         if what.startswith("encode"):
             odd = what.removeprefix("encode").strip()
-            changed = odd_value(message, value, odd) if odd else value
-            return None if changed is None else _Asked(what, changed, None)
+            given = odd_value(message, value, odd) if odd else value
+            return None if given is None else _Asked(what, given, None)
         (plain,) = right.encode_all([value])
         if isinstance(plain, Refusal):
             return None
@@ -208,7 +207,7 @@ class Contest:
             return _Asked(what, value, plain)
         if plain != plain_packet(message, self.wire, value):
             return None
-        packet = odd_packet(message, self.wire, value, ODDITIES[what])
+        packet = odd_packet(message, self.wire, value, what)
         return None if packet is None else _Asked(what, value, packet)
 
 

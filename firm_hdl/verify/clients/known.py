@@ -11,10 +11,10 @@ from collections.abc import Sequence
 
 from firm_hdl.model import Message
 from firm_hdl.verify.clients.divergences import KNOWN
-from firm_hdl.verify.clients.finding import Finding, KnownDivergence, changed
+from firm_hdl.verify.clients.finding import Finding, KnownDivergence
 from firm_hdl.verify.references.client import Codec, Refusal, UnsupportedError
 from firm_hdl.verify.references.clients import client
-from firm_hdl.verify.references.values import Plain
+from firm_hdl.verify.references.values import Plain, changed
 from firm_hdl.wire import Wire
 
 __all__ = ["known_keys", "known_writing"]
@@ -47,10 +47,10 @@ def _explained_writing(
     found, value = [], finding.value
     for entry in entries:
         if entry.take_out is not None:
-            tamed = changed(finding.message, value, entry.take_out)
-            if tamed != value:
+            left = changed(finding.message, value, entry.take_out)
+            if left != value:
                 found.append(entry.key)
-            value = tamed
+            value = left
     if not found:
         return ()
     one, other = right.encode_all([value])[0], theirs.encode_all([value])[0]

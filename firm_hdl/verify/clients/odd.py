@@ -1,8 +1,8 @@
-"""Packets that are unusual, and either legal or not: what do libraries make of them?
+"""Odd packets, which are unusual or malformed, and odd values: what do libraries make of them?
 
-Each is a packet of a chosen case with one thing done in another way, at its first place. The
-writer here is one of our own; as long as nothing is done in another way, it has to write what the
-reference writes, or none of its packets is used.
+Each is the packet of a case in which one thing is done in another way, at its first place. The
+writer here is our own. Its packets are used only if the reference writes the same packet for the
+case itself.
 """
 
 from __future__ import annotations
@@ -10,10 +10,11 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import islice
 
 from firm_hdl.model import Array, FieldType, Message, Primitive, String
 from firm_hdl.model import Sequence as SequenceType
-from firm_hdl.verify.references.values import Plain
+from firm_hdl.verify.references.values import Plain, changed
 from firm_hdl.wire import Wire
 
 __all__ = [
@@ -41,55 +42,30 @@ TOO_LONG = 70_000
 _CODES = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Oddity:
-    """One thing that is done in another way.
-
-    Attributes
-    ----------
-    name : str
-    wires : str
-        Where there is such a thing: ``ros1``, ``cdr``, or both.
-    is_legal : bool
-        Whether a receiver has to take the packet.
-    text : str
-        What is odd.
-    """
-
-    name: str
-    wires: str
-    is_legal: bool
-    text: str
-
-
-def _oddities() -> Iterator[Oddity]:
-    def odd(name: str, text: str, wires: str = "ros1 cdr", is_legal: bool = False) -> Oddity:
-        return Oddity(name=name, wires=wires, is_legal=is_legal, text=text)
-
-    yield odd("bare-string", "the length of an empty string is 0, and it has no NUL", "cdr", True)
-    yield odd("no-nul", "a string has no NUL behind it", "cdr")
-    yield odd("nul-inside", "a string has a NUL among its characters")
-    yield odd("not-utf8", "a string is not UTF-8")
-    yield odd("bool-2", "a bool is 2")
-    yield odd("big-endian", "the packet is big-endian", "cdr", True)
-    yield odd("options", "the options in the header are not zero", "cdr", True)
-    yield odd("dirty-padding", "padding is not zero", "cdr", True)
-    for count in (1, 2, 3):
-        yield odd(f"pad-{count}", f"{count} zero bytes follow", "cdr", True)
-    yield odd("trailing-1", "a byte follows", "ros1")
-    yield odd("trailing-4", "4 zero bytes follow")
-    yield odd("cut-1", "the last byte is missing")
-    yield odd("cut-half", "the second half is missing")
-    yield odd("cut-all", "there is nothing")
-    yield odd("cut-header", "there is nothing but half a header", "cdr")
-    yield odd("bound-text", "a string is longer than its bound")
-    yield odd("bound-items", "a sequence is longer than its bound")
-    yield odd("long-text", "a string says that it is longer than the packet")
-    yield odd("long-items", "a sequence says that it is longer than the packet")
-
-
-ODDITIES: dict[str, Oddity] = {each.name: each for each in _oddities()}
-"""Every one by name."""
+ODDITIES: dict[str, str] = {
+    # A receiver has to take these packets.
+    "bare-string": "cdr",  # The length of an empty string is 0, and it has no NUL.
+    "big-endian": "cdr",  # The packet is big-endian.
+    "options": "cdr",  # The options in the header are not zero.
+    "dirty-padding": "cdr",  # Padding is not zero.
+    **dict.fromkeys(("pad-1", "pad-2", "pad-3"), "cdr"),  # So many zero bytes follow.
+    # It need not take these.
+    "no-nul": "cdr",  # A string has no NUL behind it.
+    "nul-inside": "ros1 cdr",  # A string has a NUL among its characters.
+    "not-utf8": "ros1 cdr",  # A string is not UTF-8.
+    "bool-2": "ros1 cdr",  # A bool is 2.
+    "trailing-1": "ros1",  # A byte follows.
+    "trailing-4": "ros1 cdr",  # Four zero bytes follow.
+    "cut-1": "ros1 cdr",  # The last byte is missing.
+    "cut-half": "ros1 cdr",  # The second half is missing.
+    "cut-all": "ros1 cdr",  # There is nothing.
+    "cut-header": "cdr",  # There is nothing but half a header.
+    "bound-text": "ros1 cdr",  # A string is longer than its bound.
+    "bound-items": "ros1 cdr",  # A sequence is longer than its bound.
+    "long-text": "ros1 cdr",  # The length of a string exceeds the packet.
+    "long-items": "ros1 cdr",  # The length of a sequence exceeds the packet.
+}
+"""What is done in another way, and the wires that have it: ``ros1``, ``cdr``, or both."""
 
 _TAILS: dict[str, Callable[[bytes], bytes]] = {
     "options": lambda packet: packet[:2] + b"\x00\x03" + packet[4:],
@@ -107,30 +83,24 @@ _TAILS: dict[str, Callable[[bytes], bytes]] = {
 
 def odd_packets(
     message: Message, wire: Wire, values: Sequence[Plain]
-) -> Iterator[tuple[Oddity, Plain, bytes]]:
-    """Yield odd packets of a type, of each kind at most so many; and the values they come from."""
-    for oddity in ODDITIES.values():
-        if wire not in oddity.wires.split():
-            continue
-        found = 0
-        for value in values:
-            packet = odd_packet(message, wire, value, oddity)
-            if packet is not None:
-                yield oddity, value, packet
-                found += 1
-            if found == MOST_OF_A_KIND:
-                break
+) -> Iterator[tuple[str, Plain, bytes]]:
+    """Yield oddities, values, and their odd packets: `MOST_OF_A_KIND` of each at most."""
+    for odd, wires in ODDITIES.items():
+        if wire in wires.split():
+            packets = ((value, odd_packet(message, wire, value, odd)) for value in values)
+            found = ((odd, value, packet) for value, packet in packets if packet is not None)
+            yield from islice(found, MOST_OF_A_KIND)
 
 
-def odd_packet(message: Message, wire: Wire, value: Plain, oddity: Oddity) -> bytes | None:
+def odd_packet(message: Message, wire: Wire, value: Plain, odd: str) -> bytes | None:
     """Return the packet of a value with one oddity; `None` if there is no place for it."""
     plain = plain_packet(message, wire, value)
     if len(plain) > MOST_PACKET_BYTES:
         return None
-    if oddity.name in _TAILS:
-        packet = _TAILS[oddity.name](plain)
+    if odd in _TAILS:
+        packet = _TAILS[odd](plain)
     else:
-        writer = _Writer(wire=wire, odd=oddity.name)
+        writer = _Writer(wire=wire, odd=odd)
         writer.packet(message, value)
         packet = bytes(writer.data)
     return None if packet == plain else packet
@@ -140,18 +110,17 @@ _VALUE_ODDITIES = ("nul-inside", "not-utf8", "bound-text", "bound-items")
 
 
 def odd_values(message: Message, values: Sequence[Plain]) -> Iterator[tuple[str, Plain]]:
-    """Yield values that are odd, of each kind at most so many: what does a library write?"""
+    """Yield oddities and odd values, `MOST_OF_A_KIND` of each at most; what do libraries write?"""
     for odd in _VALUE_ODDITIES:
-        changed = (odd_value(message, value, odd) for value in values)
-        for value in [value for value in changed if value is not None][:MOST_OF_A_KIND]:
-            yield odd, value
+        found = (odd_value(message, value, odd) for value in values)
+        yield from islice(((odd, value) for value in found if value is not None), MOST_OF_A_KIND)
 
 
 def odd_value(message: Message, value: Plain, odd: str) -> Plain | None:
     """Return a value with one oddity; `None` if there is no place for it."""
     writer = _Writer(wire="cdr", odd=odd)
-    changed = writer.changed(message, value)
-    return changed if writer.is_done else None
+    found = changed(message, value, writer.odd_part)
+    return found if writer.is_done else None
 
 
 def plain_packet(message: Message, wire: Wire, value: Plain) -> bytes:
@@ -255,22 +224,15 @@ class _Writer:
             return value[: kind.bound].ljust(kind.bound + 1, b"x")
         return value
 
-    def changed(self, kind: FieldType, value: Plain) -> Plain:
-        """Return a value with what is odd in it, instead of writing it."""
+    def odd_part(self, kind: FieldType, value: Plain) -> Plain:
+        """Return a value with what is odd in it, but for what is in its parts."""
         match kind:
-            case Message():
-                return {
-                    item.name: self.changed(item.type, value[item.name]) for item in kind.fields
-                }
             case String(wide=False):
                 return self.odd_text(kind, value)
             case String(bound=bound):
                 return self.odd_items(bound, value, 0x61, "bound-text")
             case SequenceType(element=element):
-                items = self.odd_items(kind.bound, value, zero(element))
-                return [self.changed(element, each) for each in items]
-            case Array(element=element):
-                return [self.changed(element, each) for each in value]
+                return self.odd_items(kind.bound, value, zero(element))
             case _:
                 return value
 

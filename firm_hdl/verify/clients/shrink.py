@@ -10,7 +10,7 @@ from firm_hdl.model import Array, Field, FieldType, Message, Primitive, String, 
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.references.objects import full_text
-from firm_hdl.verify.references.values import Plain, packed
+from firm_hdl.verify.references.values import Plain, changed, packed
 
 __all__ = ["shrunk"]
 
@@ -66,8 +66,8 @@ def _smaller(message: Message, value: Plain) -> Iterator[tuple[Message, Plain]]:
             yield replace(message, fields=kept), {f.name: value[f.name] for f in kept}
     for item in message.fields:
         for kind, inner in _smaller_field(item.type, value[item.name]):
-            changed = [replace(f, type=kind) if f is item else f for f in fields]
-            yield replace(message, fields=tuple(changed)), {**value, item.name: inner}
+            other = tuple(replace(f, type=kind) if f is item else f for f in fields)
+            yield replace(message, fields=other), {**value, item.name: inner}
     for nested in closure([message])[:-1]:
         for item in nested.fields if nested.package else ():
             yield _without(message, value, nested, item)
@@ -102,14 +102,14 @@ def _smaller_field(kind: FieldType, value: Plain) -> Iterator[tuple[FieldType, P
         case Array(element=element) | SequenceType(element=element) if value:
             # One at a time: what all have at once, is not minimal.
             for n, each in enumerate(value[:8]):
-                for inner, changed in _smaller_field(element, each):
+                for inner, less in _smaller_field(element, each):
                     if inner == element:
-                        yield kind, [*value[:n], changed, *value[n + 1 :]]
+                        yield kind, [*value[:n], less, *value[n + 1 :]]
         case Message() if kind.package:
             for item in kind.fields:
-                for inner, changed in _smaller_field(item.type, value[item.name]):
+                for inner, less in _smaller_field(item.type, value[item.name]):
                     if inner == item.type:
-                        yield kind, {**value, item.name: changed}
+                        yield kind, {**value, item.name: less}
 
 
 def _without(message: Message, value: Plain, owner: Message, item: Field) -> tuple[Message, Plain]:
@@ -118,17 +118,12 @@ def _without(message: Message, value: Plain, owner: Message, item: Field) -> tup
     def is_kept(kind: Message, name: str) -> bool:
         return kind.name != owner.name or name != item.name
 
-    def value_of(kind: FieldType, given: Plain) -> Plain:
-        match kind:
-            case Message():
-                kept = [f for f in kind.fields if is_kept(kind, f.name)]
-                return {f.name: value_of(f.type, given[f.name]) for f in kept}
-            case Array(element=Message() as element) | SequenceType(element=Message() as element):
-                return [value_of(element, each) for each in given]
-            case _:
-                return given
+    def without(kind: FieldType, given: Plain) -> Plain:
+        if not isinstance(kind, Message):
+            return given
+        return {name: each for name, each in given.items() if is_kept(kind, name)}
 
     def change(kind: Message) -> Message:
         return replace(kind, fields=tuple(f for f in kind.fields if is_kept(kind, f.name)))
 
-    return rebuilt(message, change), value_of(message, value)
+    return rebuilt(message, change), changed(message, value, without)

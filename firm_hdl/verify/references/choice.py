@@ -14,6 +14,7 @@ from firm_hdl.wire import Wire
 __all__ = [
     "WIDE_REFERENCES",
     "WRITERS",
+    "find_clients",
     "find_references",
     "may_stand_in",
     "references_here",
@@ -26,6 +27,20 @@ WRITERS: dict[str, frozenset[Wire]] = {
 
 WIDE_REFERENCES = ("fastcdr", *(kind.name for kind in NEWER))
 """Who has wide text, which rosbags has not: one of them is enough."""
+
+
+def find_clients(names: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
+    """Return versions of the libraries that are here, and why the others are not."""
+    versions, missing = {}, {}
+    for name in names:
+        why = client(name).missing()
+        if why is None:
+            versions[name] = client(name).version()
+        else:
+            missing[name] = why
+    # Processes that are forked must not have ours.
+    close_clients()
+    return versions, missing
 
 
 def references_here(wanted: Sequence[str] | None = None) -> tuple[str, ...]:
@@ -48,15 +63,8 @@ def find_references(wanted: Sequence[str] | None, wires: Sequence[str]) -> list[
     ClientMissingError
         If one of those that are wanted by name is not.
     """
-    said = []
-    for name in WRITERS if wanted is None else wanted:
-        if wanted is None and not set(wires) & WRITERS[name]:
-            continue
-        why = client(name).missing()
-        if why is not None and wanted is not None:
-            raise ClientMissingError(why)
-        if why is not None:
-            said.append(f"{name} does not confirm bytes: {why}")
-    # Processes that are forked must not have ours.
-    close_clients()
-    return said
+    names = [name for name in WRITERS if set(wires) & WRITERS[name]]
+    _, missing = find_clients(names if wanted is None else wanted)
+    if missing and wanted is not None:
+        raise ClientMissingError(next(iter(missing.values())))
+    return [f"{name} does not confirm bytes: {why}" for name, why in missing.items()]

@@ -15,7 +15,6 @@ from firm_hdl.verify.references.values import Plain
 from firm_hdl.wire import Wire
 
 __all__ = [
-    "BatchCodec",
     "Client",
     "ClientDiedError",
     "ClientMissingError",
@@ -55,10 +54,13 @@ class ClientDiedError(UnsupportedError):
     """
 
 
-class Codec(ABC):
-    """A library's writer and reader of one message type on one wire."""
+class Codec:
+    """A library's writer and reader of one message type on one wire.
 
-    @abstractmethod
+    A subclass defines `encode` and `decode`, or, if its library is in another process, `encode_all`
+    and `decode_all`. The other two follow.
+    """
+
     def encode(self, value: Plain) -> bytes:
         """Write a packet.
 
@@ -66,8 +68,8 @@ class Codec(ABC):
         ------
         Refusal
         """
+        return _accepted(self.encode_all([value]))
 
-    @abstractmethod
     def decode(self, packet: bytes) -> Plain:
         """Read a packet.
 
@@ -75,6 +77,7 @@ class Codec(ABC):
         ------
         Refusal
         """
+        return _accepted(self.decode_all([packet]))
 
     def encode_all(self, values: Sequence[Plain]) -> list[bytes | Refusal]:
         """Write packets; what is refused is in the list."""
@@ -85,28 +88,11 @@ class Codec(ABC):
         return [_answer(self.decode, packet) for packet in packets]
 
 
-class BatchCodec(Codec):
-    """A codec that is asked for many at a time: its library is in another process."""
-
-    @abstractmethod
-    def encode_all(self, values: Sequence[Plain]) -> list[bytes | Refusal]:
-        """Write packets."""
-
-    @abstractmethod
-    def decode_all(self, packets: Sequence[bytes]) -> list[Plain | Refusal]:
-        """Read packets."""
-
-    def encode(self, value: Plain) -> bytes:
-        (answer,) = self.encode_all([value])
-        if isinstance(answer, Refusal):
-            raise answer
-        return answer
-
-    def decode(self, packet: bytes) -> Plain:
-        (answer,) = self.decode_all([packet])
-        if isinstance(answer, Refusal):
-            raise answer
-        return answer
+def _accepted(answers: Sequence[R | Refusal]) -> R:
+    (answer,) = answers
+    if isinstance(answer, Refusal):
+        raise answer
+    return answer
 
 
 def each_answered(library: str, questions: Sequence[object], answers: Sequence[R]) -> Sequence[R]:

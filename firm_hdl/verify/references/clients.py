@@ -11,6 +11,7 @@ from firm_hdl.verify.references.fastcdr import NEWER, FastCdr
 from firm_hdl.verify.references.genpy import Genpy
 from firm_hdl.verify.references.libraries import CycloneDds, McapRos1, McapRos2, Rosbags
 from firm_hdl.verify.references.own import FirmHdl
+from firm_hdl.wire import Wire
 
 __all__ = ["CLIENTS", "REFERENCES", "client", "close_clients"]
 
@@ -28,7 +29,7 @@ _ALL: tuple[type[Client], ...] = (
 CLIENTS: dict[str, type[Client]] = {kind.name: kind for kind in _ALL}
 """Every client library by name, in the order of reports."""
 
-REFERENCES = {
+REFERENCES: dict[Wire, tuple[str, ...]] = {
     "ros1": ("genpy", "rosbags"),
     "cdr": ("fastcdr", *(kind.name for kind in reversed(NEWER)), "rosbags"),
 }

@@ -23,7 +23,6 @@ from firm_hdl.jobs.processes import ToolError, hang_up, made_by, run_tool
 from firm_hdl.model import Array, FieldType, Message, Primitive, String, closure
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.references.client import (
-    BatchCodec,
     Client,
     ClientDiedError,
     Codec,
@@ -91,7 +90,7 @@ class FastCdr(Client):
             del self._program
 
 
-class _FastCdrCodec(BatchCodec):
+class _FastCdrCodec(Codec):
     def __init__(self, program: _Program, message: Message, types: str):
         self._program = program
         self._message = message

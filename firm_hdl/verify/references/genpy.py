@@ -10,15 +10,15 @@ from typing import Any, ClassVar
 from firm_hdl.model import Array, FieldType, Message, closure, element_of
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.references.client import (
-    BatchCodec,
     Client,
     ClientDiedError,
     Codec,
     Refusal,
     UnsupportedError,
 )
+from firm_hdl.verify.references.genpy_objects import to_json
 from firm_hdl.verify.references.objects import full_text
-from firm_hdl.verify.references.values import Plain, from_json, to_json
+from firm_hdl.verify.references.values import Plain, from_json
 from firm_hdl.verify.ros_python import worker
 from firm_hdl.wire import Wire
 
@@ -71,7 +71,7 @@ class Genpy(Client):
             self._worker.close()
 
 
-class _GenpyCodec(BatchCodec):
+class _GenpyCodec(Codec):
     _opened: ClassVar[dict[int, _GenpyCodec]] = {}
     """Which codec a worker is ready for."""
 

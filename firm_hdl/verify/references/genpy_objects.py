@@ -10,7 +10,7 @@ import io
 import struct
 from typing import Any
 
-__all__ = ["Objects"]
+__all__ = ["Objects", "to_json"]
 
 FLOATS = {"float32": ("<I", "<f"), "float64": ("<Q", "<d")}
 
@@ -90,3 +90,12 @@ class Objects:
 def _attribute(message: Any, field: str) -> str:
     """Return what genpy calls a field: names that Python does not take have a `_` behind."""
     return field if field in message.__slots__ else field + "_"
+
+
+def to_json(value: Any) -> Any:
+    """Turn a plain value into what JSON's writer takes."""
+    if isinstance(value, bytes):
+        return value.decode("latin-1")
+    if isinstance(value, dict):
+        return {name: to_json(each) for name, each in value.items()}
+    return [to_json(each) for each in value] if isinstance(value, list) else value

@@ -13,7 +13,7 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from firm_hdl import model
-from firm_hdl.model import IDL_PRIMITIVES, Message, Primitive, String, element_of
+from firm_hdl.model import IDL_PRIMITIVES, Message, Primitive, String, closure, element_of
 from firm_hdl.verify.references.oracle import FieldType, RosbagsOracle, distro_oracle
 from firm_hdl.verify.references.wide_oracle import (
     STAND_IN_NOTE,
@@ -83,12 +83,12 @@ def resolved_oracle(message: Message, *, stand_in: bool = False) -> RosbagsOracl
     """
     wide: dict[str, str] = {}
     if stand_in:
-        wide = stand_ins(_all_messages(message))
+        wide = stand_ins(closure([message]))
     else:
         _refuse_wide(message)
     resolved = {
         kind.name: "".join(f"{_spelled(item.type)} {item.name}\n" for item in kind.fields)
-        for kind in _all_messages(message)
+        for kind in closure([message])
     }
     oracle = _oracle(message, resolved, wide)
     if missing := _unknown(oracle, oracle_name(message)):
@@ -122,19 +122,8 @@ def oracle_name(message: Message) -> str:
     return message.name if head.endswith(("/msg", "/action")) else f"{head}/msg/{base}"
 
 
-def _all_messages(message: Message) -> list[Message]:
-    found = {message.name: message}
-    pending = [message]
-    while pending:
-        for child in pending.pop().children:
-            if child.name not in found:
-                found[child.name] = child
-                pending.append(child)
-    return list(found.values())
-
-
 def _refuse_wide(message: Message) -> None:
-    for kind in _all_messages(message):
+    for kind in reversed(closure([message])):
         for item in kind.fields:
             inner = item.element_type
             if isinstance(inner, String) and inner.wide:
@@ -145,7 +134,7 @@ def _oracle(
     message: Message, texts: Mapping[str, str], wide: Mapping[str, str] | None = None
 ) -> RosbagsOracle:
     store = get_typestore(Stores.EMPTY)
-    names = {kind.name: oracle_name(kind) for kind in _all_messages(message)}
+    names = {kind.name: oracle_name(kind) for kind in closure([message])}
     try:
         for name, text in {**texts, **{k: v for k, v in _TIMES.items() if k in texts}}.items():
             store.register(get_types_from_msg(text, names[name]))
@@ -182,7 +171,7 @@ def _named(kind: FieldType) -> str | None:
 
 def _note(message: Message, oracle: RosbagsOracle, name: str) -> str:
     """Say whether rosbags reads the texts as we have."""
-    texts = {kind.name: kind.text for kind in _all_messages(message)}
+    texts = {kind.name: kind.text for kind in closure([message])}
     try:
         other = _oracle(message, texts)
         if other.structure(name) == oracle.structure(name):

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import keyword
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -29,21 +29,25 @@ from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, Strin
 from firm_hdl.verify.references.wide_oracle import WIDE_MEMBER, fit_units
 
 __all__ = [
+    "Change",
     "Plain",
     "as_float",
     "bits_of",
+    "changed",
     "from_json",
     "from_objects",
     "is_nan",
     "packed",
     "shown",
-    "to_json",
     "to_numbers",
     "unpacked",
 ]
 
 Plain: TypeAlias = "Any"
 """A value in the form that this module describes."""
+
+Change: TypeAlias = "Callable[[FieldType, Plain], Plain]"
+"""Returns what replaces a value of a type."""
 
 _FLOATS = {4: ("<I", "<f"), 8: ("<Q", "<d")}
 _CODES = {(1, False): "B", (2, False): "H", (4, False): "I", (8, False): "Q"}
@@ -117,19 +121,6 @@ def _plain_number(kind: Primitive, value: Any) -> int:
     return (bits ^ sign) - sign
 
 
-def to_json(value: Plain) -> Any:
-    """Turn a plain value into what JSON's writer takes."""
-    match value:
-        case bytes():
-            return value.decode("latin-1")
-        case dict():
-            return {name: to_json(each) for name, each in value.items()}
-        case list():
-            return [to_json(each) for each in value]
-        case _:
-            return value
-
-
 def from_json(value: Any) -> Plain:
     """Turn what JSON's reader made of a plain value back into it."""
     match value:
@@ -139,6 +130,22 @@ def from_json(value: Any) -> Plain:
             return {name: from_json(each) for name, each in value.items()}
         case list():
             return [from_json(each) for each in value]
+        case _:
+            return value
+
+
+def changed(kind: FieldType, value: Plain, change: Change) -> Plain:
+    """Return a value with every part replaced: a whole first, and then what is in it.
+
+    Fields that `change` leaves out of a message are left out.
+    """
+    value = change(kind, value)
+    match kind:
+        case Message():
+            kept = [item for item in kind.fields if item.name in value]
+            return {item.name: changed(item.type, value[item.name], change) for item in kept}
+        case Array(element=element) | Sequence(element=element):
+            return [changed(element, each, change) for each in value]
         case _:
             return value
 

@@ -8,7 +8,7 @@ that are packets, bytes always as text in Latin-1. An answer has as many, ``{"it
 
 import sys
 
-from genpy_objects import Objects
+from genpy_objects import Objects, to_json
 
 __all__ = ["readers"]
 
@@ -46,18 +46,10 @@ class _Genpy:
         return self.objects.encode(self.name, value).decode("latin-1")
 
     def _decode(self, packet):
-        return _latin(self.objects.decode(self.name, packet.encode("latin-1")))
+        return to_json(self.objects.decode(self.name, packet.encode("latin-1")))
 
     def _each(self, work, item):
         try:
             return {"item": work(item)}
         except Exception as error:
             return {"refused": f"{type(error).__name__}: {error}"[:300]}
-
-
-def _latin(value):
-    if isinstance(value, bytes):
-        return value.decode("latin-1")
-    if isinstance(value, dict):
-        return {name: _latin(each) for name, each in value.items()}
-    return [_latin(each) for each in value] if isinstance(value, list) else value

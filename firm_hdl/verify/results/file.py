@@ -12,7 +12,7 @@ from __future__ import annotations
 import fcntl
 import json
 import os
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from io import FileIO
@@ -23,7 +23,7 @@ from typing import Any
 from firm_hdl.files import read_file
 from firm_hdl.verify.results.records import Record, Test
 
-__all__ = ["FORMAT", "Results", "ResultsError", "ResultsWriter", "done", "read_results"]
+__all__ = ["FORMAT", "Results", "ResultsError", "ResultsWriter", "read_results"]
 
 FORMAT = "firm-hdl results 2"
 
@@ -61,13 +61,6 @@ class Results:
     def missing(self) -> tuple[Test, ...]:
         """Tests that there is no record of."""
         return tuple(test for test in self.planned if test.key not in self.records)
-
-
-def done(path: str | os.PathLike[str], keys: Iterable[str]) -> set[str]:
-    """Return those of some keys that a file has records of; none if there is no file."""
-    if not Path(path).exists():
-        return set()
-    return set(keys) & set(read_results(path).records)
 
 
 def read_results(path: str | os.PathLike[str]) -> Results:
@@ -195,10 +188,6 @@ class ResultsWriter:
     def add(self, *records: Record) -> None:
         """Add records; they are on the disk when this returns."""
         self._write(*({"record": record.as_json()} for record in records))
-
-    def missing(self) -> list[Test]:
-        """Return the tests that were still to be run when the file was opened."""
-        return list(self.before.missing)
 
     def _write(self, *lines: Mapping[str, Any]) -> None:
         text = "".join(f"{json.dumps(line, allow_nan=False)}\n" for line in lines)

@@ -7,7 +7,6 @@ a known difference has a key and counts what was compared once the known thing w
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, TypeAlias
 
@@ -20,7 +19,6 @@ __all__ = [
     "Verdict",
     "verdict_from_json",
     "verdict_to_json",
-    "worst",
 ]
 
 SILENT = "failed without saying why"
@@ -157,18 +155,6 @@ Verdict: TypeAlias = "Passed | Failed | NotJudged | KnownDifference"
 _KINDS: dict[str, type[Passed | Failed | NotJudged | KnownDifference]] = {
     kind.name: kind for kind in (Failed, NotJudged, KnownDifference, Passed)
 }
-"""By name, the worst first."""
-
-
-def worst(verdicts: Iterable[Verdict]) -> Verdict:
-    """Return the worst verdict: failed, not judged, known difference, passed, in this order.
-
-    Of no verdicts at all the worst is that nothing was judged. Of equally bad ones it is the first.
-    """
-    order = list(_KINDS)
-    return min(
-        verdicts, key=lambda each: order.index(each.name), default=NotJudged("there was nothing")
-    )
 
 
 def verdict_to_json(verdict: Verdict) -> dict[str, Any]:

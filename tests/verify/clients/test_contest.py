@@ -6,16 +6,13 @@ from collections import Counter
 
 import pytest
 
-from firm_hdl.verify.clients.finding import Finding, KnownDivergence, changed
+from firm_hdl.model import Message, Primitive, Sequence, String
+from firm_hdl.verify.clients.finding import Finding, KnownDivergence
 from firm_hdl.verify.clients.judge import Contest, Trial
 from firm_hdl.verify.clients.shrink import shrunk
 from firm_hdl.verify.references import Client, Codec, Refusal
-from firm_hdl.verify.references.client import (
-    BatchCodec,
-    ClientDiedError,
-    UnsupportedError,
-    each_answered,
-)
+from firm_hdl.verify.references.client import ClientDiedError, UnsupportedError, each_answered
+from firm_hdl.verify.references.values import changed
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 
 
@@ -153,7 +150,7 @@ def test_what_a_trial_comes_to():
     )
 
 
-class Batch(BatchCodec):
+class Batch(Codec):
     def encode_all(self, values):
         return [b"x" if value else Refusal("no") for value in values]
 
@@ -242,13 +239,32 @@ def test_changes_reach_every_text_and_number(make_message):
     inner = {"x": 1, "t": b"u"}
     value = {"a": 1, "s": b"s", "b": [inner, inner], "l": [inner], "i": [3, 4]}
     inner = {"x": [1], "t": [b"u"]}
-    assert changed(message, value, lambda kind, each: [each]) == {
+
+    def change(kind, each):
+        return [each] if isinstance(kind, Primitive | String) else each
+
+    assert changed(message, value, change) == {
         "a": [1],
         "s": [b"s"],
         "b": [inner, inner],
         "l": [inner],
         "i": [[3], [4]],
     }
+
+
+def test_changes_of_a_whole_come_before_those_of_its_parts(make_message):
+    message = make_message("uint8 a\nB[] l\n", B="int8 x\n")
+
+    def change(kind, each):
+        match kind:
+            case Message():
+                return {name: part for name, part in each.items() if name != "a"}
+            case Sequence():
+                return [*each, {"x": 5}]
+            case _:
+                return each + 1
+
+    assert changed(message, {"a": 1, "l": [{"x": 2}]}, change) == {"l": [{"x": 3}, {"x": 6}]}
 
 
 def smallest(message, value, shows):

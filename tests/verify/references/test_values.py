@@ -6,12 +6,12 @@ import pytest
 
 from firm_hdl.plan import build_plan, decode, encode
 from firm_hdl.sim.values import from_transfers, to_transfers
+from firm_hdl.verify.references.genpy_objects import to_json
 from firm_hdl.verify.references.values import (
     bits_of,
     from_json,
     packed,
     shown,
-    to_json,
     to_numbers,
     unpacked,
 )

@@ -13,7 +13,6 @@ from firm_hdl.verify.results.verdict import (
     Passed,
     verdict_from_json,
     verdict_to_json,
-    worst,
 )
 
 EACH = [
@@ -77,12 +76,3 @@ def test_json_reads_back(verdict):
 def test_other_json_is_refused(given):
     with pytest.raises(ValueError, match=r"verdict|at least"):
         verdict_from_json(given)
-
-
-def test_worst():
-    passed, failed, not_judged, known = EACH
-    assert worst([passed, known]) is known
-    assert worst([known, not_judged, passed]) is not_judged
-    assert worst([not_judged, failed, passed]) is failed
-    assert worst([passed]) is passed
-    assert worst([]) == NotJudged("there was nothing")
