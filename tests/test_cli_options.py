@@ -184,7 +184,7 @@ def test_sums_are_of_noetic_unless_a_recording_says_otherwise(here, capsys):
     assert main(["md5", "my_msgs/Wheel", "--bag", str(bag)]) == 0
     capsys.readouterr()
     assert main(["md5", "my_msgs/Wheel", "--bag", str(mcap)]) == 1
-    assert "md5 sums are of ROS 1" in capsys.readouterr().err
+    assert "md5 sums are for ROS 1" in capsys.readouterr().err
     assert main(["md5", "p/A", "--path", ".", "--distro", "iron"]) == 1
 
 

@@ -91,7 +91,7 @@ def written(tool: Tool, file: Path) -> str:
     except FileNotFoundError:
         text = ""
     if not text.strip():
-        raise BenchError(f"{tool.title} ended without an error, and has not written {file.name}")
+        raise BenchError(f"{tool.title} ended without an error, but did not write {file.name}")
     return text
 
 

@@ -81,7 +81,7 @@ def add_metrics(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl metrics``."""
     from firm_hdl.metrics import FORMATS
 
-    add_types_or_all(command, "all types that there are")
+    add_types_or_all(command, "all types")
     command.add_argument(
         "--format", choices=list(FORMATS), default="table", help="default: %(default)s"
     )

@@ -46,7 +46,10 @@ COMMANDS: dict[str, Command] = {
     "list": Command(help="list all messages, services and actions", module="reading"),
     "show": Command(help="print a type as ROS's own tools do", module="reading"),
     "plan": Command(help="print what converters do in each cycle, as YAML", module="building"),
-    "info": Command(help="say how many cycles and which clock types need", module="building"),
+    "info": Command(
+        help="print how many cycles packets take, and which clock a line rate needs",
+        module="building",
+    ),
     "verify": Command(
         help="test converters against real ROS parts", module="testing", has_origins=False
     ),
@@ -56,10 +59,10 @@ COMMANDS: dict[str, Command] = {
         has_origins=False,
     ),
     "prove": Command(
-        help="prove that the VHDL is the circuit that Amaranth elaborated", module="testing"
+        help="prove that the VHDL is equivalent to Amaranth's circuit", module="testing"
     ),
     "golden": Command(help="compare plans with golden ones, by meaning", module="testing"),
-    "cover": Command(help="choose few types that have all features", module="testing"),
+    "cover": Command(help="choose a few types that have every feature", module="testing"),
     "md5": Command(help="print the md5 sums of ROS 1 types", module="reading"),
     "hash": Command(help="print the type hashes (RIHS01) of ROS 2 types", module="reading"),
     "proto": Command(help="print an example of a type as ROS's own tools do", module="reading"),

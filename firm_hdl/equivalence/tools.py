@@ -77,7 +77,7 @@ def answer_of(tool: str, file: Path) -> str:
     try:
         text = file.read_text(encoding="utf-8")
     except FileNotFoundError:
-        problem = f"{tool} ended without an error, and has not written {file.name}"
+        problem = f"{tool} ended without an error, but did not write {file.name}"
         raise ToolError(problem) from None
     file.unlink()
     return text

@@ -104,10 +104,10 @@ def _check_list(
     if type_.size is not None:
         size = type_.size.value
         if type_.array == "array" and count != size:
-            message = f"a default of {size} elements must stand here, not of {count}"
+            message = f"the default must have {size} elements, not {count}"
             yield Diagnostic(message=message, span=syntax.span)
         elif count > size:
-            message = f"a default of at most {size} elements must stand here, not of {count}"
+            message = f"the default must have at most {size} elements, not {count}"
             yield Diagnostic(message=message, span=syntax.span)
     for item in syntax.items:
         yield from _check_value(item, type_, primitives)
@@ -119,7 +119,7 @@ def _check_value(
     value = syntax.value
     if isinstance(value, str):
         if type_.bound is not None and len(value) > type_.bound.value:
-            message = f"a text of {len(value)} characters does not fit {type_.name}"
+            message = f"a string of {len(value)} characters does not fit {type_.name}"
             yield Diagnostic(message=f"{message}<={type_.bound.value}", span=syntax.span)
         return
     primitive = primitives[type_.name]

@@ -63,7 +63,7 @@ class Budget:
         """Count decompressed bytes."""
         self._remaining -= count
         if self._remaining < 0:
-            self._refuse(f"more than {self._limit} bytes come out of it when it is decompressed")
+            self._refuse(f"it decompresses to more than {self._limit} bytes")
 
     def check_block(self, count: int) -> None:
         """Check the number of decompressed bytes of one chunk."""

@@ -42,10 +42,10 @@ _PHRASES = {
     "_EQUALS": "'='",
     "INTEGER": "an integer",
     "FLOAT": "a number",
-    "BOOLEAN": "a truth value",
-    "DOUBLE_QUOTED": "a text",
-    "CONSTANT_DOUBLE_QUOTED": "a text",
-    "DOUBLE_QUOTED_ITEM": "a text",
+    "BOOLEAN": "a boolean",
+    "DOUBLE_QUOTED": "a string",
+    "CONSTANT_DOUBLE_QUOTED": "a string",
+    "DOUBLE_QUOTED_ITEM": "a string",
     "LIST_OPEN": "a list in brackets",
     "_COMMA": "','",
     "LIST_CLOSE": "']'",
@@ -146,7 +146,7 @@ def _wrong_name(line: str, start: int, expected: frozenset[str], dialect: Dialec
         return None
     has_value = line[start + len(word) :].lstrip().startswith("=")
     if has_value and len(kinds) == 1 and "CONSTANT_NAME" not in kinds:
-        return len(word), "only a builtin type that is no array can have constants"
+        return len(word), "a constant must have a builtin type and cannot be an array"
     if dialect == "ros1":
         what, rule = "name", NAME_RULES["NAME"]
         if has_value:
@@ -194,7 +194,7 @@ def _wrong_constant(line: str, start: int, expected: frozenset[str], dialect: Di
         return None
     if dialect == "ros2" and "LIST_OPEN" not in expected and "COMMENT" in expected:
         return len(line[start:].rstrip()), "a default cannot contain '='"
-    return len(line[start:].rstrip()), "only a builtin type that is no array can have constants"
+    return len(line[start:].rstrip()), "a constant must have a builtin type and cannot be an array"
 
 
 def _wrong_value(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
@@ -210,11 +210,11 @@ def _wrong_value(line: str, start: int, expected: frozenset[str], dialect: Diale
         return len(word), f"'{quoted}' is not a number"
     if "BOOLEAN" in expected:
         values = "True, False, 1 or 0" if dialect == "ros1" else "true, false, 1 or 0"
-        return len(word), f"'{quoted}' is not a truth value: {values}"
+        return len(word), f"'{quoted}' is not a boolean: {values}"
     if "DOUBLE_QUOTED" in expected and "=" in word:
         return len(word), "a default cannot contain '='"
     if expected & {"DOUBLE_QUOTED", "CONSTANT_DOUBLE_QUOTED"}:
-        return len(word), f"{quoted} is not a text: a quote inside it needs a backslash"
+        return len(word), f"{quoted} is not a string: a quote inside it needs a backslash"
     return None
 
 
@@ -223,7 +223,7 @@ def _wrong_size(line: str, start: int, expected: frozenset[str], dialect: Dialec
     if "SIZE" not in expected:
         return None
     if not word:
-        return 1, "a number must stand here; blanks are not allowed inside a type"
+        return 1, "expected a number; blanks are not allowed inside a type"
     return len(word), f"'{clip(word)}' is not a number of elements or characters"
 
 

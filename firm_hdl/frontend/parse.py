@@ -87,7 +87,7 @@ def read_message(
     diagnostics: list[Diagnostic] = []
     for offset, line in lines_of(source.text, dialect) if lines is None else lines:
         if len(diagnostics) >= _MOST_DIAGNOSTICS:
-            message = "too many errors; the rest of this file was not looked at"
+            message = "too many errors; the rest of this file was not checked"
             span = Span(source=source, start=offset, end=offset + len(line))
             diagnostics.append(Diagnostic(message=message, span=span))
             break
@@ -216,7 +216,7 @@ class _Reader:
         is_constant = tree.data == "constant"
         indent = self._source.text[self._offset : type_.span.start]
         if is_constant and type_.name == "string" and self._dialect == "ros1" and " " in indent:
-            message = "a string constant must start in the first column: genmsg would take "
+            message = "a string constant must start in the first column: genmsg would read "
             message += f"'string {name}' for its name"
             return Diagnostic(message=message, span=type_.span)
         if is_constant and value is None:
@@ -350,7 +350,7 @@ def _item(token: Token) -> str:
     if text and text[0] in "\"'" and text[0] == text[-1]:
         if re.search(rf"(?<!\\){text[0]}", text[1:-1]):
             raise _TokenError(
-                token, f"{clip(text)} is not a text: a quote inside it needs a backslash"
+                token, f"{clip(text)} is not a string: a quote inside it needs a backslash"
             )
         text = _unquoted(text)
     return text

@@ -156,11 +156,11 @@ class RecordingOrigin:
             return self._in_omgidl("/".join(min(self._of_dds)))
         if self._not_ros and not self._missing:
             name = min(self._not_ros)
-            return f"'{self.path}' has a topic of type {name!r}, which is no name in ROS"
+            return f"'{self.path}' has a topic of type {name!r}, which is not a ROS name"
         if not self._missing:
             return f"'{self.path}' has no topics, and so no definitions"
         return (
-            f"'{self.path}' carries no definitions of its types, as recordings made before ROS 2 "
+            f"'{self.path}' has no definitions of its types, like all recordings made before ROS 2 "
             "iron; name folders that have them with --path, or a distribution with --distro, "
             "instead of --bag"
         )
@@ -212,7 +212,7 @@ def _use(path: str, use: Callable[[Reader], _T], budget: Budget) -> _T:
         if error.args[:1] in [(language,) for language in _OTHER_LANGUAGES]:
             reason = f"its definitions are in {error}, and only ros2msg and ros2idl are read"
     except MemoryError:
-        reason = "it asks for more memory than there is"
+        reason = "it needs more memory than is available"
     except Exception:
         # A damaged file can make a reader fail in any way.
         reason = "it is damaged"

@@ -176,7 +176,7 @@ class Resolver:
         actions = self._sources.by_origin(owners(replace(name, kind="action")))
         if actions and self._dialect == "ros1":
             action = f"the action '{actions[0].name}'"
-            message += f"; it will be, when the package is built and a file is made from {action}"
+            message += f"; the build of the package makes it from {action}: name the built folder"
         # Searching for similar names is slow, and so many errors have one common cause.
         if len(entry.diagnostics) < _MOST_SUGGESTIONS:
             builtins: list[str] = []

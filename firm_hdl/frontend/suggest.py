@@ -29,7 +29,7 @@ def unknown_type(sources: Sources, package: str, name: str) -> str:
     message = f"package '{clip(package)}' is not found"
     if package in _NOT_EMBEDDED:
         message += (
-            "; it is one of ROS that does not come with firm-hdl: name a folder that has it with "
+            "; this ROS package does not come with firm-hdl: name a folder that has it with "
             "--path, or source the setup file of an installation that does"
         )
     return message

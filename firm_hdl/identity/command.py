@@ -29,7 +29,7 @@ def md5_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defini
     DefinitionError
         If the distribution is of ROS 2.
     """
-    _require(library, "ros1", "md5 sums are of ROS 1; for ROS 2 there is 'firm-hdl hash'")
+    _require(library, "ros1", "md5 sums are for ROS 1; for ROS 2, use 'firm-hdl hash'")
     summed: list[Message | Service] = []
 
     def on_loaded(interface: Interface) -> None:
@@ -52,7 +52,7 @@ def hash_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defin
     DefinitionError
         If the distribution is of ROS 1.
     """
-    _require(library, "ros2", "type hashes are of ROS 2; for ROS 1 there is 'firm-hdl md5'")
+    _require(library, "ros2", "type hashes are for ROS 2; for ROS 1, use 'firm-hdl md5'")
     lines: list[str] = []
 
     def on_loaded(interface: Interface) -> None:

@@ -55,7 +55,7 @@ class ToolError(Exception):
     """
 
     def __init__(self, output: str):
-        super().__init__(output.strip() or "it failed without any output")
+        super().__init__(output.strip() or "it failed without output")
 
 
 def made_by(tool: str, file: Path) -> Path:
@@ -67,7 +67,7 @@ def made_by(tool: str, file: Path) -> Path:
         If the file does not exist: a program may end without an error and have done nothing.
     """
     if not file.is_file():
-        raise ToolError(f"{tool} ended without an error, and has not written {file.name}")
+        raise ToolError(f"{tool} ended without an error, but did not write {file.name}")
     return file
 
 

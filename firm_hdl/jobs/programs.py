@@ -38,7 +38,9 @@ def find_program(title: str, variable: str, names: Sequence[str], package: str) 
         if path := shutil.which(name):
             return path
     if given:
-        raise ProgramMissingError(f"{title} is '{given}' in the environment, and no such command")
+        raise ProgramMissingError(
+            f"{title} is '{given}' in the environment, but there is no such command"
+        )
     raise ProgramMissingError(f"{title} is not installed (Debian, Ubuntu: apt install {package})")
 
 

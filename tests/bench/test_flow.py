@@ -115,7 +115,7 @@ def test_a_tool_that_writes_nothing_has_failed(
     put(tmp_path, "yosys", "echo 'Yosys 0.99 (git)'")
     put(tmp_path, "nextpnr-ecp5", "echo '\"nextpnr-ecp5\" (Version nextpnr-9)'")
     with pytest.raises(
-        BenchError, match=r"^Yosys ended without an error, and has not written top\.json$"
+        BenchError, match=r"^Yosys ended without an error, but did not write top\.json$"
     ):
         measure("", DEVICES["ecp5"], [1])
 
@@ -125,7 +125,7 @@ def test_an_empty_file_is_not_written(tmp_path: Path) -> None:
     (tmp_path / "full").write_text("text")
     assert written(tool, tmp_path / "full") == "text"
     (tmp_path / "empty").write_text("\n")
-    with pytest.raises(BenchError, match=r"^x ended without an error, and has not written empty$"):
+    with pytest.raises(BenchError, match=r"^x ended without an error, but did not write empty$"):
         written(tool, tmp_path / "empty")
 
 

@@ -163,7 +163,7 @@ def test_packages_that_the_documentation_lists_are_not_here_and_are_told():
         library = Library(distro)
         assert not packages & {name.split("/")[0] for name in library.names()}, distro
         for package in packages:
-            with pytest.raises(DefinitionError, match="it is one of ROS that does not come"):
+            with pytest.raises(DefinitionError, match="this ROS package does not come"):
                 library.interface(f"{package}/Such")
 
 
@@ -172,7 +172,7 @@ def test_a_package_of_ros_that_is_not_here_is_told_from_one_that_nobody_has(dist
     with pytest.raises(DefinitionError) as caught:
         Library(distro).interface(f"{package}/Such")
     assert str(caught.value) == (
-        f"error: package '{package}' is not found; it is one of ROS that does not come with "
+        f"error: package '{package}' is not found; this ROS package does not come with "
         f"firm-hdl: name a folder that has it with --path, or source the setup file of an "
         f"installation that does"
     )

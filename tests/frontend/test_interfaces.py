@@ -227,8 +227,8 @@ def test_ros1_definitions_may_use_the_messages_of_actions_once_they_are_files(tm
     with pytest.raises(DefinitionError) as error:
         library.message("q/M")
     assert error.value.diagnostics[0].message == (
-        "type 'FGoal' is not defined in package 'p'; it will be, when the package is built and a "
-        "file is made from the action 'F'"
+        "type 'FGoal' is not defined in package 'p'; the build of the package makes it from the "
+        "action 'F': name the built folder"
     )
     texts = {f"p/msg/{m.base_name}.msg": m.text for m in library.interface("p/F").messages}
     library = Library("noetic", [make_files(tmp_path, texts)])

@@ -138,7 +138,7 @@ def test_ros1_text_constants_are_not_indented_with_spaces():
     # genmsg would call it 'string X', which is no name in any language.
     for line in ("  string X=a", "\t string X=a", " string\t X = a"):
         assert refused(line, "ros1") == (
-            "a string constant must start in the first column: genmsg would take 'string X' for "
+            "a string constant must start in the first column: genmsg would read 'string X' for "
             "its name"
         )
     assert constant("  int8 X=1", "ros1").name.text == "X"
@@ -228,7 +228,7 @@ def test_ros1_has_no_defaults(line):
     ],
 )
 def test_constants_of_other_types_are_refused(dialect, line):
-    assert refused(line, dialect) == "only a builtin type that is no array can have constants"
+    assert refused(line, dialect) == "a constant must have a builtin type and cannot be an array"
 
 
 def test_constants_of_bounded_strings_are_refused():

@@ -187,7 +187,7 @@ def test_recording_without_definitions_says_what_to_do(tmp_path):
     with pytest.raises(DefinitionError) as error:
         RecordingOrigin(path)
     assert str(error.value) == (
-        f"error: '{path}' carries no definitions of its types, as recordings made before ROS 2 "
+        f"error: '{path}' has no definitions of its types, like all recordings made before ROS 2 "
         "iron; name folders that have them with --path, or a distribution with --distro, instead "
         "of --bag"
     )
@@ -235,7 +235,7 @@ def test_topics_whose_types_have_no_name_in_ros_are_named(tmp_path, name):
     path = record(tmp_path / "r", name, "int8 a\n")
     with pytest.raises(DefinitionError) as error:
         open_library(bags=[path])
-    said = f"error: '{path}' has a topic of type '{name}', which is no name in ROS"
+    said = f"error: '{path}' has a topic of type '{name}', which is not a ROS name"
     assert str(error.value) == said
     both = record(tmp_path / "both", name, "int8 a\n", ("p/msg/B", "int8 b\n"))
     assert open_library(bags=[both]).names() == ["p/msg/B"]

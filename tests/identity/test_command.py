@@ -39,7 +39,7 @@ def test_md5_is_of_ros1_unless_told_otherwise(run):
     )
     status, out, err = run("md5", "std_msgs/msg/String", "--distro", "humble")
     assert (status, out) == (1, "")
-    assert err == "error: humble: md5 sums are of ROS 1; for ROS 2 there is 'firm-hdl hash'\n"
+    assert err == "error: humble: md5 sums are for ROS 1; for ROS 2, use 'firm-hdl hash'\n"
 
 
 def test_md5_of_an_action_is_that_of_its_messages(run):
@@ -63,7 +63,7 @@ def test_hash_says_what_has_none(run):
     assert run("hash", "p/A", "--distro", "noetic") == (
         1,
         "",
-        "error: noetic: type hashes are of ROS 2; for ROS 1 there is 'firm-hdl md5'\n",
+        "error: noetic: type hashes are for ROS 2; for ROS 1, use 'firm-hdl md5'\n",
     )
     status, out, err = run("hash", "p/msg/A", "p/srv/S", "--distro", "foxy")
     assert (status, err, out.splitlines()[0].partition("  ")[2]) == (

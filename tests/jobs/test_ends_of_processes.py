@@ -55,13 +55,13 @@ def test_who_is_dead_already_is_no_error():
 
 def test_a_tool_that_says_nothing_says_so():
     assert str(ToolError(" what \n")) == "what"
-    assert str(ToolError(" \n")) == "it failed without any output"
+    assert str(ToolError(" \n")) == "it failed without output"
 
 
 def test_a_tool_has_made_what_is_there(tmp_path):
     file = tmp_path / "out.v"
     with pytest.raises(
-        ToolError, match=r"^yosys ended without an error, and has not written out\.v$"
+        ToolError, match=r"^yosys ended without an error, but did not write out\.v$"
     ):
         made_by("yosys", file)
     file.touch()

@@ -73,7 +73,7 @@ def default_of(
     if not found:
         return None
     if len(found) > 1:
-        raise IdlError("a member has one default; this is one more", found[1].span)
+        raise IdlError("a member can have only one default", found[1].span)
     if not type_.is_builtin:
         raise IdlError("only a builtin type can have a default", found[0].span)
     expression = _default_expression(found[0])
@@ -150,7 +150,7 @@ def _list(value: Value, type_: TypeSyntax, span: Span) -> ListSyntax:
 
 
 def _no_list(type_: TypeSyntax, span: Span) -> IdlError:
-    return IdlError(f'a list of {type_.name} as a text must stand here, such as "(1, 2)"', span)
+    return IdlError(f'expected a list of {type_.name} as a string, such as "(1, 2)"', span)
 
 
 def _python_value(text: str, span: Span) -> Value | None:

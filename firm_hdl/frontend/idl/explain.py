@@ -118,14 +118,14 @@ def _wrong_character(text: str, start: int, before: str, expected: frozenset[str
         directive = _group(_DIRECTIVE, text, start)
         if directive == "#include":
             return len(directive), "'#include' needs a path in quotes or angle brackets"
-        message = f"'{clip(directive)}' is not supported: ROS 2 knows '#include' alone"
+        message = f"'{clip(directive)}' is not supported: ROS 2 supports only '#include'"
         return len(directive), message
     if rest.startswith("/**/"):
-        return 4, "an empty comment is not allowed: ROS 2 takes its end for its contents"
+        return 4, "an empty comment is not allowed: ROS 2 reads its end as its content"
     if rest.startswith("/*"):
-        return 2, "this comment does not end"
+        return 2, "this comment is not closed"
     if rest.startswith(('"', 'L"')) and '"' not in text[start:].splitlines()[0][2:]:
-        return len(text[start:].splitlines()[0]), "this text does not end in its line"
+        return len(text[start:].splitlines()[0]), "this string is not closed in its line"
     if rest.startswith("\ufeff"):
         return 1, "a byte order mark is not allowed"
     number = _group(_NUMBER, text, start)

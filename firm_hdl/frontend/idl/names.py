@@ -189,7 +189,7 @@ class Names:
                 return of_structs[0]
         message = f"constant '{clip(str(name))}' is not declared above"
         if name.parts in (("true",), ("false",)):
-            message = f"'{name}' is not a truth value: TRUE or FALSE"
+            message = f"'{name}' is not a boolean: TRUE or FALSE"
         elif len(places) > 1:
             message += f"; there are {len(places)} of that name elsewhere"
         raise UnknownNameError(message, name.span)

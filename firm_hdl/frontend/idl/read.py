@@ -154,7 +154,7 @@ class _Reader:
         name = NameSyntax(text=node.name.text, span=node.name.span)
         self.wrong += refusals(node.annotations)
         if not path:
-            message = "a constant must stand in a module"
+            message = "a constant must be declared in a module"
             self.wrong.append(Diagnostic(message=message, span=name.span))
         if full in self._spans:
             line = self._spans[full].line

@@ -132,7 +132,7 @@ class Expander:
             if name is None:
                 shape = self._element(core, layers[-1])
             elif name in names:
-                raise IdlError(f"typedef '{name}' stands for itself", core.span)
+                raise IdlError(f"typedef '{name}' refers to itself", core.span)
             elif name in self._shapes:
                 shape = self._shapes[name]
                 if shape is None:

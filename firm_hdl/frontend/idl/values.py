@@ -123,23 +123,23 @@ def fit(value: Value, name: str, span: Span) -> bool | int | float | str:
     kind, content = value
     if name in ("string", "wstring"):
         if kind != "text":
-            raise IdlError(f"a text must stand here, not {_KINDS[kind]}", span)
+            raise IdlError(f"expected a string, not {_KINDS[kind]}", span)
         return content
     primitive = IDL_PRIMITIVES[name]
     if primitive.kind == "bool":
         if content not in (0, 1) or kind not in ("boolean", "integer"):
-            raise IdlError("TRUE or FALSE must stand here", span)
+            raise IdlError("expected TRUE or FALSE", span)
         return bool(content)
     if primitive.kind == "float":
         if kind not in ("integer", "float"):
-            raise IdlError(f"a number must stand here, not {_KINDS[kind]}", span)
+            raise IdlError(f"expected a number, not {_KINDS[kind]}", span)
         return float(content)
     if kind == "character" and name in ("char", "wchar"):
         assert isinstance(content, int)
         # A signed char holds the upper half of Latin-1 as negative numbers.
         content = content - 256 if name == "char" and 127 < content < 256 else content
     elif kind != "integer":
-        raise IdlError(f"an integer must stand here, not {_KINDS[kind]}", span)
+        raise IdlError(f"expected an integer, not {_KINDS[kind]}", span)
     bits = 8 * primitive.bytes - primitive.signed
     low, high = -(2**bits) if primitive.signed else 0, 2**bits - 1
     assert isinstance(content, int)
@@ -152,8 +152,8 @@ _KINDS = {
     "integer": "an integer",
     "float": "a number with a fraction",
     "character": "a character",
-    "boolean": "a truth value",
-    "text": "a text",
+    "boolean": "a boolean",
+    "text": "a string",
 }
 
 

@@ -79,7 +79,9 @@ def _find_compiler() -> tuple[str, ...]:
         if path := shutil.which(name):
             return (path, *given[1:])
     if given:
-        raise ProgramMissingError(f"CXX is '{given[0]}' in the environment, and no such command")
+        raise ProgramMissingError(
+            f"CXX is '{given[0]}' in the environment, but there is no such command"
+        )
     raise ProgramMissingError(
         "Verilator needs a C++ compiler, and none is installed (Debian, Ubuntu: apt install g++)"
     )

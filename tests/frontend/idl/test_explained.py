@@ -21,13 +21,13 @@ def said(marked):
 
 CASES = [
     ("«#include» x", "'#include' needs a path in quotes or angle brackets"),
-    ("«#define» X", "'#define' is not supported: ROS 2 knows '#include' alone"),
-    ("«# pragma» X", "'# pragma' is not supported: ROS 2 knows '#include' alone"),
-    ("«/**/»", "an empty comment is not allowed: ROS 2 takes its end for its contents"),
-    ("module m { «/*» }", "this comment does not end"),
-    ('const string S = «"abc»\n;', "this text does not end in its line"),
+    ("«#define» X", "'#define' is not supported: ROS 2 supports only '#include'"),
+    ("«# pragma» X", "'# pragma' is not supported: ROS 2 supports only '#include'"),
+    ("«/**/»", "an empty comment is not allowed: ROS 2 reads its end as its content"),
+    ("module m { «/*» }", "this comment is not closed"),
+    ('const string S = «"abc»\n;', "this string is not closed in its line"),
     # The L is a name, as far as anybody has come.
-    ('const wstring S = L«"abc»\n;', "this text does not end in its line"),
+    ('const wstring S = L«"abc»\n;', "this string is not closed in its line"),
     ("module m {\n«\ufeff»", "a byte order mark is not allowed"),
     ("const long N = «0x»;", "'0x' is not a number"),
     ("const long N = «1e+»;", "'1e+' is not a number"),

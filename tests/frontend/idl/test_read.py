@@ -370,4 +370,4 @@ def test_named_characters_are_characters(kind, text):
     assert wrong == []
     assert [member.value.value for member in messages["T"].members[:2]] == [120, 120]
     (problem,) = read(f"{head} const long B = A; }}; {tail}")[1]
-    assert problem.message == "an integer must stand here, not a character"
+    assert problem.message == "expected an integer, not a character"

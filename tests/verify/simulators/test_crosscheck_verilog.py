@@ -310,7 +310,7 @@ def test_missing_simulator_says_how_to_get_it(monkeypatch, tmp_path, kind, varia
     with pytest.raises(ProgramMissingError, match=f"^{said}$"):
         kind()
     monkeypatch.setenv(variable, "nowhere")
-    said = f"^{kind.title} is 'nowhere' in the environment, and no such command$"
+    said = f"^{kind.title} is 'nowhere' in the environment, but there is no such command$"
     with pytest.raises(ProgramMissingError, match=said):
         kind()
 

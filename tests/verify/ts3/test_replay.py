@@ -349,7 +349,7 @@ def test_what_cannot_be_replayed_is_an_error(capsys, tmp_path):
     old = make_old_db3(tmp_path / "old.db3", [STRING])
     status, said = run(capsys, "--bag", old)
     assert status == 1 and said.out == ""
-    assert said.err.startswith(f"error: '{old}' carries no definitions of its types")
+    assert said.err.startswith(f"error: '{old}' has no definitions of its types")
     status, said = run(capsys, "--bag", bag, "std_msgs/Bool")
     assert status == 1 and said.err.startswith("error: type 'Bool' is not defined in package")
     status, said = run(capsys, "--bag", bag, "--wire", "ros1")
