@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from firm_hdl.export.packaging.facts import Manifest
 from firm_hdl.export.packaging.fusesoc import cores
-from firm_hdl.export.packaging.scripts import makefile, vivado_script
-from firm_hdl.export.packaging.vunit import vunit_bench, vunit_script
+from firm_hdl.export.packaging.scripts import scripts
 
 __all__ = ["packaging"]
 
@@ -21,14 +20,9 @@ def packaging(manifest: Manifest) -> dict[str, str]:
     lists the files of the test benches, which compile after the design.
     """
     vhdl = manifest["vhdl"]
-    files = {
-        "files.txt": "".join(f"{file}\n" for file in vhdl["files"]),
-        "bench_files.txt": "".join(f"{file}\n" for file in vhdl["bench"]["files"]),
+    lists = {"files.txt": vhdl["files"], "bench_files.txt": vhdl["bench"]["files"]}
+    return {
+        **{name: "".join(f"{file}\n" for file in files) for name, files in lists.items()},
         **cores(manifest),
-        "vivado.tcl": vivado_script(manifest),
-        "Makefile": makefile(manifest),
+        **scripts(manifest),
     }
-    if vhdl["bench"]["stimuli"] is not None:
-        files["vunit_run.py"] = vunit_script(manifest)
-        files[f"tb_{vhdl['name']}_vunit.vhd"] = vunit_bench(manifest)
-    return files

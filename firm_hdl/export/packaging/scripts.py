@@ -1,79 +1,35 @@
-"""A script for Vivado and a makefile for GHDL."""
+"""Scripts for Vivado, make and VUnit; each is a template beside this module."""
 
 from __future__ import annotations
 
 from firm_hdl.export.packaging.facts import Manifest, own_files, remark, shared_packages
+from firm_hdl.export.templates import render
 
-__all__ = ["makefile", "vivado_script"]
-
-
-def vivado_script(manifest: Manifest) -> str:
-    """Write the Tcl that reads a design into Vivado, without its benches."""
-    section = manifest["vhdl"]
-    others = [*section["common_files"], *(each["file"] for each in shared_packages(manifest))]
-    common = "".join(f"  {file}\n" for file in others)
-    own = "".join(f"  {file}\n" for file in own_files(section["files"], section))
-    return f"""\
-# Read the converters of {remark(manifest)} into Vivado:
-#
-#   source .../vivado.tcl
-#
-# The files are read in compile order, as VHDL-2008, into the current library. Test benches are left
-# out.
-
-set firm_hdl_folder [file dirname [file normalize [info script]]]
-
-# Every type that needs one of these files has it, with the same text: read each file once.
-foreach firm_hdl_file {{
-{common}}} {{
-  if {{[llength [get_files -quiet "*/$firm_hdl_file"]] == 0}} {{
-    read_vhdl -vhdl2008 [file join $firm_hdl_folder $firm_hdl_file]
-  }}
-}}
-
-foreach firm_hdl_file {{
-{own}}} {{
-  read_vhdl -vhdl2008 [file join $firm_hdl_folder $firm_hdl_file]
-}}
-"""
+__all__ = ["scripts"]
 
 
-def makefile(manifest: Manifest) -> str:
-    """Write the makefile that runs the benches in GHDL."""
-    bench = manifest["vhdl"]["bench"]
-    return f"""\
-# Test benches of {remark(manifest)} in GHDL.
-#
-#   make                        run all benches
-#   make SEED=7 STALLS=0        run them with other random stalls (percent)
-#   make lint                   analyse with GHDL's warnings as errors
-#   make clean
+def scripts(manifest: Manifest) -> dict[str, str]:
+    """Return the texts of all scripts by file name.
 
-SEED   ?= 1
-STALLS ?= 40
-# The command of GHDL; empty: the script finds it.
-GHDL   ?=
-
-BENCHES := {" ".join(bench["entities"])}
-FILES   := $(shell cat files.txt bench_files.txt)
-FOUND    = $(firstword $(foreach name,ghdl ghdl-mcode ghdl-llvm ghdl-gcc,\\
-  $(shell command -v $(name))))
-STRICT  := --warn-error --warn-unused --warn-body
-
-.PHONY: all lint clean $(BENCHES)
-
-all: $(BENCHES)
-
-# Benches run one after the other, because they share a folder.
-.NOTPARALLEL:
-
-$(BENCHES):
-	@BENCH=$@ GHDL='$(GHDL)' sh ./{bench["script"]} -gseed=$(SEED) -gstalls=$(STALLS)
-
-lint:
-	@rm -rf work/lint && mkdir -p work/lint
-	'$(or $(GHDL),$(FOUND),ghdl)' -a --std=08 --workdir=work/lint $(STRICT) $(FILES)
-
-clean:
-	rm -rf work
-"""
+    The scripts for VUnit need packets for the benches, so a folder without packets has none.
+    """
+    vhdl = manifest["vhdl"]
+    vunit_top = f"tb_{vhdl['name']}_vunit"
+    templates = {"vivado.tcl": "vivado.tcl", "Makefile": "Makefile"}
+    if vhdl["bench"]["stimuli"] is not None:
+        templates |= {"vunit_run.py": "vunit_run.py", f"{vunit_top}.vhd": "vunit_bench.vhd"}
+    values = {
+        "converters": remark(manifest),
+        "message": manifest["inputs"]["message"],
+        "vhdl": vhdl,
+        "bench": vhdl["bench"],
+        "shared_files": [
+            *vhdl["common_files"],
+            *(each["file"] for each in shared_packages(manifest)),
+        ],
+        "own_files": own_files(vhdl["files"], vhdl),
+        "vunit_top": vunit_top,
+    }
+    return {
+        name: render(f"packaging/{template}", **values) for name, template in templates.items()
+    }

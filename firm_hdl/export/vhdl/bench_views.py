@@ -7,7 +7,7 @@ values, or plain ports. A view has the connections, and the names of the streams
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from firm_hdl.export.primitives import TYPES_NAME, primitive_name
 from firm_hdl.export.top import DIRECTIONS, Direction, Port, leaf_names, ports_of
@@ -51,22 +51,22 @@ class View:
         Declarations of the architecture, such as signals.
     instances : mapping of direction to str
         The unit to instantiate.
-    message_ports : mapping of direction to list of (str, str)
-        Ports on the message side, and their signals.
-    packet_names : mapping of direction to mapping of str to str
-        Names of other ports, where they differ from those of :func:`ports_of`.
+    message_ports : mapping of direction to mapping of str to str
+        Signals of the ports on the message side, by port.
+    channels : list of Channel
+    port_names : mapping of direction to mapping of str to str
+        Names of ports, where they differ from those of :func:`ports_of`.
     bit_keep : bool
         On a bus of one byte, ``tkeep`` is a bit instead of a vector.
-    channels : list of Channel
     """
 
     uses: str
     declarations: str
     instances: Mapping[Direction, str]
-    message_ports: Mapping[Direction, Sequence[tuple[str, str]]]
-    packet_names: Mapping[Direction, Mapping[str, str]]
-    bit_keep: bool
+    message_ports: Mapping[Direction, Mapping[str, str]]
     channels: Sequence[Channel]
+    port_names: Mapping[Direction, Mapping[str, str]] = field(default_factory=dict)
+    bit_keep: bool = False
 
 
 # Names of the message's package are written in full, because its constants may have names of
@@ -84,7 +84,8 @@ def _uses(layer: UserLayer) -> str:
     return _USES.format(types=TYPES_NAME, package=layer.package, components=components)
 
 
-_NO_NAMES: Mapping[Direction, Mapping[str, str]] = {way: {} for way in DIRECTIONS}
+_SIDES: Mapping[Direction, str] = {"deserializer": "rx", "serializer": "tx"}
+"""Prefixes of the signals of each converter."""
 
 
 def stream_view(plan: Plan, layer: UserLayer) -> View:
@@ -100,7 +101,7 @@ def stream_view(plan: Plan, layer: UserLayer) -> View:
                 "valid": f"{side}_msg.{node.access}.valid",
                 "ready": f"{side}_rdy.{node.access}",
             }
-            for side in ("rx", "tx")
+            for side in _SIDES.values()
         ]
         data = sides[0]["data"]
         whole = f"to_slv({data})" if leaf.kind == "items" else data
@@ -115,15 +116,10 @@ def stream_view(plan: Plan, layer: UserLayer) -> View:
         ),
         instances=layer.entities,
         message_ports={
-            way: [("msg", f"{side}_msg"), ("rdy", f"{side}_rdy")] for way, side in _SIDES.items()
+            way: {"msg": f"{side}_msg", "rdy": f"{side}_rdy"} for way, side in _SIDES.items()
         },
-        packet_names=_NO_NAMES,
-        bit_keep=False,
         channels=channels,
     )
-
-
-_SIDES: Mapping[Direction, str] = {"deserializer": "rx", "serializer": "tx"}
 
 
 def _payload(leaf: Leaf) -> tuple[str, ...]:
@@ -136,7 +132,7 @@ def record_view(layer: UserLayer) -> View:
     image = f"to_hstring(work.{layer.package}.to_slv(rx_msg))"
     sides = [
         {"data": f"{side}_msg", "valid": f"{side}_valid", "ready": f"{side}_ready"}
-        for side in ("rx", "tx")
+        for side in _SIDES.values()
     ]
     return View(
         uses=_uses(layer),
@@ -147,11 +143,9 @@ def record_view(layer: UserLayer) -> View:
         ),
         instances=layer.record_entities,
         message_ports={
-            way: [(f"msg{end}", f"{side}_{end[1:] or 'msg'}") for end in ("", "_valid", "_ready")]
+            way: {"msg": f"{side}_msg", "msg_valid": f"{side}_valid", "msg_ready": f"{side}_ready"}
             for way, side in _SIDES.items()
         },
-        packet_names=_NO_NAMES,
-        bit_keep=False,
         channels=[Channel(label="msg", rx=sides[0], tx=sides[1], image=image)],
     )
 
@@ -178,7 +172,7 @@ def flat_view(plan: Plan, package: str, cores: Mapping[Direction, Core]) -> View
         base = names[leaf.path]
         rx, tx = (
             {name: f"{side}_{base}_{name}" for name in (*_payload(leaf), "valid", "ready")}
-            for side in ("rx", "tx")
+            for side in _SIDES.values()
         )
         image = "to_hstring" if widths[f"{base}_data"] > 1 else "to_string"
         channels.append(Channel(label=str(leaf), rx=rx, tx=tx, image=f"{image}({rx['data']})"))
@@ -187,15 +181,12 @@ def flat_view(plan: Plan, package: str, cores: Mapping[Direction, Core]) -> View
         declarations="".join(map(_signals, ports["deserializer"])) + _STATUS,
         instances={way: f"component work.{package}.{cores[way].entity}" for way in cores},
         message_ports={
-            way: [
-                (cores[way].names.get(port.name, port.name), f"{side}_{port.name}")
-                for port in ports[way]
-            ]
+            way: {port.name: f"{side}_{port.name}" for port in ports[way]}
             for way, side in _SIDES.items()
         },
-        packet_names={way: core.names for way, core in cores.items()},
-        bit_keep=True,
         channels=channels,
+        port_names={way: core.names for way, core in cores.items()},
+        bit_keep=True,
     )
 
 
