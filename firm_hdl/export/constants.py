@@ -1,17 +1,21 @@
-"""Constants of a message type: their names in VHDL and SystemVerilog, and their bits."""
+"""Constants of a message type: their names and values in VHDL and SystemVerilog."""
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import groupby
+from math import isfinite
+from typing import Any, Literal, TypeAlias
 
+from firm_hdl.export.remarks import quoted, unit_of
 from firm_hdl.export.tree import snake
-from firm_hdl.model import Constant, Message
-from firm_hdl.names.identifiers import scope_names
+from firm_hdl.model import Constant, Message, Primitive
+from firm_hdl.names.identifiers import first_free, scope_names
 from firm_hdl.vhdl.names import PREDEFINED, USED
 
-__all__ = ["NamedConstant", "float_bits", "named_constants", "string_bytes"]
+__all__ = ["Declaration", "NamedConstant", "declarations", "named_constants"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,11 +35,51 @@ class NamedConstant:
     constant: Constant
     name: str
 
+    def entry(self, package: str) -> dict[str, str]:
+        """Return the manifest's entry on the constant, which `package` declares."""
+        return {
+            "type": self.owner.name,
+            "constant": self.constant.name,
+            "package": package,
+            "name": self.name,
+        }
+
+
+Form: TypeAlias = Literal["bool", "signed", "unsigned", "real", "bits", "string"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Declaration:
+    """A constant as every language declares it.
+
+    Attributes
+    ----------
+    name : str
+    form : "bool", "signed", "unsigned", "real", "bits" or "string"
+        An integer is a vector of its own width and sign, so that it can be compared with a field.
+        "bits" is a vector with the bits of a float. A string is its bytes on the wire.
+    value : int, float or bytes
+    bits : int
+        Width of the vector; 0 for other forms.
+    remark : str
+        Type, value and unit, for a comment; empty where the declaration says it all.
+    """
+
+    name: str
+    form: Form
+    value: Any
+    bits: int = 0
+    remark: str = ""
+
+    @property
+    def digits(self) -> str:
+        """Hexadecimal digits of a vector, in two's complement."""
+        return f"{self.value % (1 << self.bits):0{self.bits // 4}x}"
+
 
 def named_constants(
     message: Message, taken: Iterable[str], *, nested: bool = True
 ) -> list[NamedConstant]:
-
     """Name the constants of a message; with `nested`, those of all types in it, too.
 
     The message's own constants keep their names, unless these would hide names that VHDL code needs
@@ -81,7 +125,64 @@ def _types(message: Message) -> list[Message]:
     return list(found.values())
 
 
-def float_bits(value: float, size: int) -> int:
+def declarations(
+    named: Iterable[NamedConstant],
+    taken: Iterable[str],
+    mark: str,
+    write: Callable[[Declaration, int], str],
+) -> Iterator[str]:
+    """Yield the declarations of constants in a language, in the order of `named`.
+
+    Each type's constants have a title, and each constant the comment of its definition.
+
+    Parameters
+    ----------
+    taken : iterable of str
+        As for :func:`named_constants`.
+    mark : str
+        The comment mark of the language.
+    write : callable
+        Writes a declaration; the second argument is the length of the longest name of the type.
+    """
+    named = list(named)
+    used = {*taken, *(entry.name.lower() for entry in named)}
+    for owner, group in groupby(named, key=lambda entry: entry.owner.name):
+        entries = list(group)
+        width = max(len(entry.name) for entry in entries)
+        yield f"\n  {mark} Constants of {owner}.\n"
+        for entry in entries:
+            yield from quoted(entry.constant.comment, mark=mark)
+            for declaration in _declared(entry, used):
+                yield write(declaration, width)
+
+
+def _declared(entry: NamedConstant, used: set[str]) -> Iterator[Declaration]:
+    """Yield what a constant becomes; a float becomes a real number and its bits."""
+    name, kind, value = entry.name, entry.constant.type, entry.constant.value
+    if not isinstance(kind, Primitive):
+        yield Declaration(name=name, form="string", value=_string_bytes(value))
+        return
+    assert isinstance(value, bool | int | float)
+    bits, unit = 8 * kind.bytes, unit_of(entry.constant.unit)
+    if kind.kind == "bool":
+        yield Declaration(name=name, form="bool", value=int(value))
+    elif kind.kind == "int":
+        form: Form = "signed" if kind.signed else "unsigned"
+        remark = f"{kind} {int(value)}{unit}"
+        yield Declaration(name=name, form=form, value=int(value), bits=bits, remark=remark)
+    else:
+        number = float(value)
+        if isfinite(number):
+            yield Declaration(name=name, form="real", value=number, remark=f"{kind}{unit}")
+        # The bits of a long double are not defined.
+        if kind.has_wire_format:
+            bits_name = first_free(f"{name}_BITS", used)
+            used.add(bits_name.lower())
+            image = _float_bits(number, kind.bytes)
+            yield Declaration(name=bits_name, form="bits", value=image, bits=bits)
+
+
+def _float_bits(value: float, size: int) -> int:
     """Return the bits of a float of 4 or 8 bytes."""
     if size == 8:
         return int(struct.unpack("<Q", struct.pack("<d", value))[0])
@@ -92,6 +193,6 @@ def float_bits(value: float, size: int) -> int:
     return int(struct.unpack("<I", packed)[0])
 
 
-def string_bytes(value: object) -> bytes:
+def _string_bytes(value: object) -> bytes:
     """Return the bytes of a string constant, in UTF-8."""
     return value if isinstance(value, bytes) else str(value).encode("utf-8", "surrogatepass")

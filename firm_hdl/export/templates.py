@@ -1,7 +1,7 @@
-"""Generated files that are templates of jinja2, each beside the module that fills it.
+"""Generated files that are data of this package, each beside the module that writes it.
 
-A template is a file of the output with a few variables, so that it can be read as such. Text that
-depends on the type in every line is written by Python instead.
+A file that is the same for every type is stored as it is. A file with few variables is a template
+of jinja2. Text that depends on the type in most lines is written by Python instead.
 """
 
 from __future__ import annotations
@@ -12,7 +12,14 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-__all__ = ["render"]
+__all__ = ["render", "text_of"]
+
+_FOLDER = Path(__file__).parent
+
+
+def text_of(name: str) -> str:
+    """Return the text of a file, given its path in this package."""
+    return _FOLDER.joinpath(name).read_text(encoding="utf-8")
 
 
 def render(template: str, **values: Any) -> str:
@@ -31,7 +38,7 @@ def render(template: str, **values: Any) -> str:
 @cache
 def _environment() -> Environment:
     return Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
+        loader=FileSystemLoader(_FOLDER),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

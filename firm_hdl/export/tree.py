@@ -63,12 +63,6 @@ class Node:
         """Type of ready."""
         return "std_logic" if self.leaf is not None else f"{self.type.removesuffix('_t')}_ready_t"
 
-    def seen_from(self, package: str, name: str) -> str:
-        """Return a name of this node's package, in full if `package` is another one."""
-        # With use clauses, equal names in two packages would hide each other.
-        own = not self.package or self.package == package
-        return name if own else f"work.{self.package}.{name}"
-
     def walk(self) -> Iterator[Node]:
         """Yield all nodes, children before their parents."""
         for child in self.children:

@@ -6,7 +6,8 @@ from typing import Any
 
 from firm_hdl.export.backend import BackEnd, Converters, Output
 from firm_hdl.export.remarks import remark
-from firm_hdl.export.systemverilog.package import constants_of, message_package, package_name
+from firm_hdl.export.systemverilog.package import constants_of, message_package
+from firm_hdl.export.systemverilog.structs import package_name
 from firm_hdl.export.systemverilog.types import (
     TYPES_NAME,
     WORDS,

@@ -1,31 +1,24 @@
-"""Packed structs in SystemVerilog, for data and valid and for ready, and tie-off constants."""
+"""Records of streams as packed structs in SystemVerilog, and their tie-off constants."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
-__all__ = ["Member", "constant", "guarded", "stream_structs", "struct"]
+from firm_hdl.export.records import Member, Record
+from firm_hdl.export.remarks import quoted
+
+__all__ = ["guarded", "package_name", "stream_structs", "struct"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Member:
-    """A member of a struct of streams.
+def package_name(package: str) -> str:
+    """Return the name of a message type's package, given the name of its VHDL package.
 
-    Attributes
-    ----------
-    name, type, ready_type : str
-    comment : tuple of str
-        Comment lines above the member.
-    remark : str
-        Comment behind the member, on the same line.
+    The two differ, because simulators of both languages may keep them in one library.
+
+    >>> package_name("std_msgs_msg_header_cdr_8_pkg")
+    'std_msgs_msg_header_cdr_8_sv_pkg'
     """
-
-    name: str
-    type: str
-    ready_type: str = "logic"
-    comment: tuple[str, ...] = ()
-    remark: str = ""
+    return f"{package.removesuffix('_pkg')}_sv_pkg"
 
 
 def guarded(package: str, text: Iterable[str]) -> str:
@@ -34,29 +27,39 @@ def guarded(package: str, text: Iterable[str]) -> str:
     return "".join([f"`ifndef {macro}\n`define {macro}\n\n", *text, "\n`endif\n"])
 
 
-def struct(name: str, members: Sequence[Member], *, ready: bool = False) -> Iterator[str]:
-    """Yield the typedef of data and valid, or with `ready` that of ready."""
-    kinds = [member.ready_type if ready else member.type for member in members]
+def struct(name: str, members: Sequence[tuple[str, str, str, Iterable[str]]]) -> Iterator[str]:
+    """Yield a struct; its members are given by name, type, comment behind, and lines above."""
     # Types of other packages are long, and do not count for the columns.
-    width = max((len(kind) for kind in kinds if "::" not in kind), default=0)
+    width = max((len(kind) for _, kind, *_ in members if "::" not in kind), default=0)
     yield "\n  typedef struct packed {\n"
-    for member, kind in zip(members, kinds, strict=True):
-        if not ready:
-            yield from member.comment
-        remark = "" if ready else member.remark
-        yield f"    {kind:{width}} {member.name};{remark}\n"
+    for member, kind, remark, above in members:
+        yield from above
+        behind = f"  // {remark}" if remark else ""
+        yield f"    {kind:{width}} {member};{behind}\n"
     yield f"  }} {name};\n"
 
 
-def constant(kind: str, name: str, value: str) -> str:
-    """Write the declaration of a constant."""
-    return f"  localparam {kind} {name} = {value};\n"
+def stream_structs(record: Record) -> Iterator[str]:
+    """Yield the types and constants of a record."""
+    stem, members = record.stem, record.members
+    yield from struct(
+        f"{stem}_t",
+        [
+            (each.name, _of(each, f"{each.stem}_t"), each.remark, quoted(each.comment, "    "))
+            for each in members
+        ],
+    )
+    yield from struct(
+        f"{stem}_ready_t",
+        [
+            (each.name, "logic" if each.is_leaf else _of(each, f"{each.stem}_ready_t"), "", ())
+            for each in members
+        ],
+    )
+    yield f"\n  localparam {stem}_t {stem.upper()}_IDLE = '0;\n"
+    yield f"  localparam {stem}_ready_t {stem.upper()}_ALL_READY = '1;\n"
 
 
-def stream_structs(base: str, members: Sequence[Member]) -> Iterator[str]:
-    """Yield the types ``base_t`` and ``base_ready_t``, and ``BASE_IDLE`` and ``BASE_ALL_READY``."""
-    yield from struct(f"{base}_t", members)
-    yield from struct(f"{base}_ready_t", members, ready=True)
-    yield "\n"
-    yield constant(f"{base}_t", f"{base.upper()}_IDLE", "'0")
-    yield constant(f"{base}_ready_t", f"{base.upper()}_ALL_READY", "'1")
+def _of(member: Member, name: str) -> str:
+    """Return a name of the package that declares a member's type."""
+    return f"{package_name(member.package)}::{name}" if member.package else name

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from firm_hdl.export.remarks import remark
-from firm_hdl.export.systemverilog.package import package_name
+from firm_hdl.export.systemverilog.structs import package_name
 from firm_hdl.export.systemverilog.types import BEAT, STATUS, STATUS_STREAM, TYPES_NAME, bus_name
 from firm_hdl.export.top import Direction, Port, leaf_names, ports_of
 from firm_hdl.export.tree import Node, Tree

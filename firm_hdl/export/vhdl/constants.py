@@ -1,22 +1,15 @@
-"""Constants of a message type in VHDL, and text from definitions as VHDL comments.
-
-An integer becomes a vector of its own width and sign, so that it can be compared with a field and
-may have 64 bits. A float becomes a real and its bits. A string becomes its bytes on the wire.
-"""
+"""Constants of a message type in VHDL, and text from definitions as VHDL comments."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from math import isfinite
 
-from firm_hdl.export import remarks
-from firm_hdl.export.constants import NamedConstant, float_bits, string_bytes
-from firm_hdl.export.remarks import remark, unit_of
-from firm_hdl.model import Field, Message, Primitive
-from firm_hdl.names.identifiers import first_free
+from firm_hdl.export import constants, remarks
+from firm_hdl.export.constants import Declaration, NamedConstant
+from firm_hdl.export.remarks import remark
 
-__all__ = ["comment", "declarations", "origin", "quoted"]
+__all__ = ["comment", "declarations", "quoted"]
 
 
 def comment(text: str, indent: str = "  ") -> Iterator[str]:
@@ -29,58 +22,25 @@ def quoted(text: str, indent: str = "  ") -> Iterator[str]:
     return remarks.quoted(text, indent, "--")
 
 
-def origin(source: Field, name: str) -> str:
-    """Return a comment that names the ROS field of a record member; `name` is the VHDL name."""
-    return f"  -- {remarks.origin(source, name)}"
-
-
 def declarations(named: Iterable[NamedConstant], taken: Iterable[str]) -> Iterator[str]:
     """Yield the declarations, in the order of `named`."""
-    owner: Message | None = None
-    named = list(named)
-    used = {*taken, *(entry.name.lower() for entry in named)}
-    widths = {
-        id(entry.owner): max(len(other.name) for other in named if other.owner is entry.owner)
-        for entry in named
-    }
-    for entry in named:
-        if entry.owner is not owner:
-            owner = entry.owner
-            yield f"\n  -- Constants of {owner.name}.\n"
-        constant = entry.constant
-        unit = unit_of(constant.unit)
-        yield from quoted(constant.comment)
-        if isinstance(constant.type, Primitive):
-            name = entry.name.ljust(widths[id(owner)])
-            yield from _number(name, constant.type, constant.value, unit, used)
-        else:
-            yield f"  constant {entry.name} : string :=\n    {_string(constant.value)};\n"
+    return constants.declarations(named, taken, "--", _declaration)
 
 
-def _number(name: str, kind: Primitive, value: object, unit: str, used: set[str]) -> Iterator[str]:
-    assert isinstance(value, bool | int | float)
-    bits, digits = 8 * kind.bytes, 2 * kind.bytes
-    if kind.kind == "bool":
-        yield f"  constant {name} : std_logic := '{int(value)}';\n"
-    elif kind.kind == "int":
-        vector = "signed" if kind.signed else "unsigned"
-        number = int(value)
-        literal = f'x"{number % (1 << bits):0{digits}x}"'
-        remark = f"{kind} {number}{unit}"
-        yield f"  constant {name} : {vector}({bits - 1} downto 0) := {literal};  -- {remark}\n"
-    else:
-        number_ = float(value)
-        if isfinite(number_):
-            yield f"  constant {name} : real := {_real(number_)};  -- {kind}{unit}\n"
-        if not kind.has_wire_format:
-            return  # Its bits are not defined.
-        bits_name = first_free(f"{name.rstrip()}_BITS", used)
-        used.add(bits_name.lower())
-        image = float_bits(number_, kind.bytes)
-        yield (
-            f"  constant {bits_name} : std_logic_vector({bits - 1} downto 0) :="
-            f' x"{image:0{digits}x}";\n'
-        )
+def _declaration(each: Declaration, width: int) -> str:
+    name, remark = each.name.ljust(width), f"  -- {each.remark}"
+    match each.form:
+        case "bool":
+            return f"  constant {name} : std_logic := '{each.value}';\n"
+        case "signed" | "unsigned":
+            kind = f"{each.form}({each.bits - 1} downto 0)"
+            return f'  constant {name} : {kind} := x"{each.digits}";{remark}\n'
+        case "real":
+            return f"  constant {name} : real := {_real(each.value)};{remark}\n"
+        case "bits":
+            kind = f"std_logic_vector({each.bits - 1} downto 0)"
+            return f'  constant {each.name} : {kind} := x"{each.digits}";\n'
+    return f"  constant {each.name} : string :=\n    {_string(each.value)};\n"
 
 
 def _real(value: float) -> str:
@@ -90,9 +50,8 @@ def _real(value: float) -> str:
     return f"{point}e{int(exponent)}" if exponent else point
 
 
-def _string(value: object) -> str:
+def _string(data: bytes) -> str:
     """Write the bytes of a string as an expression, with at most 80 characters per line."""
-    data = string_bytes(value)
     parts = []
     # No literal contains `--`, because some tools see a comment there, even in a string.
     for piece in re.findall(rb"(?:[ -,.-~]|-(?!-)){1,80}|-|[^ -~]", data):

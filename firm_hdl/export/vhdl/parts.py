@@ -6,14 +6,12 @@ line is an empty packet, and a line that starts with ``#`` is a comment. Simulat
 
 from __future__ import annotations
 
-from importlib.resources import files
+from firm_hdl.export.templates import text_of
 
 __all__ = ["PARTS", "packets_text"]
 
-_FOLDER = files("firm_hdl.export.vhdl")
-
 PARTS = {
-    name: _FOLDER.joinpath(name).read_text(encoding="utf-8")
+    name: text_of(f"vhdl/{name}")
     for name in ("firm_hdl_bench_pkg.vhd", "firm_hdl_axis_source.vhd", "firm_hdl_axis_sink.vhd")
 }
 """Texts by file name, in compile order."""

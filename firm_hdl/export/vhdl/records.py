@@ -1,35 +1,13 @@
-"""Records in VHDL, for data and valid and for ready, and tie-off constants."""
+"""Records of streams in VHDL, and their tie-off constants."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
-__all__ = ["Element", "record_elements", "stream_record"]
+from firm_hdl.export.records import Member, Record
+from firm_hdl.export.vhdl.constants import quoted
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Element:
-    """An element of a record of streams.
-
-    Attributes
-    ----------
-    name, type, ready_type : str
-    idle, all_ready : str
-        Values of `type` with valid 0, and of `ready_type` with ready 1.
-    comment : tuple of str
-        Comment lines above the element.
-    remark : str
-        Comment behind the element, on the same line.
-    """
-
-    name: str
-    type: str
-    ready_type: str
-    idle: str
-    all_ready: str
-    comment: tuple[str, ...] = ()
-    remark: str = ""
+__all__ = ["record_elements", "stream_record"]
 
 
 def record_elements(elements: Sequence[tuple[str, str, str, Iterable[str]]]) -> Iterator[str]:
@@ -40,19 +18,36 @@ def record_elements(elements: Sequence[tuple[str, str, str, Iterable[str]]]) -> 
     kinds = max(short, default=0) + 1
     for name, kind, remark, above in elements:
         yield from above
-        yield f"    {name:{width}} : {kind + ';':{kinds}}{remark}".rstrip() + "\n"
+        behind = f"  -- {remark}" if remark else ""
+        yield f"    {name:{width}} : {kind + ';':{kinds}}{behind}".rstrip() + "\n"
 
 
-def stream_record(base: str, elements: Sequence[Element]) -> Iterator[str]:
-    """Yield the types ``base_t`` and ``base_ready_t``, and ``BASE_IDLE`` and ``BASE_ALL_READY``."""
-    width = max(len(element.name) for element in elements)
+def stream_record(record: Record) -> Iterator[str]:
+    """Yield the types and constants of a record."""
+    base, members = record.stem, record.members
+    width = max(len(each.name) for each in members)
     yield f"\n  type {base}_t is record\n"
-    yield from record_elements([(e.name, e.type, e.remark, e.comment) for e in elements])
+    yield from record_elements(
+        [
+            (each.name, _of(each, f"{each.stem}_t"), each.remark, quoted(each.comment, "    "))
+            for each in members
+        ]
+    )
     yield f"  end record;\n\n  type {base}_ready_t is record\n"
-    yield from (f"    {each.name:{width}} : {each.ready_type};\n" for each in elements)
+    for each in members:
+        kind = "std_logic" if each.is_leaf else _of(each, f"{each.stem}_ready_t")
+        yield f"    {each.name:{width}} : {kind};\n"
     yield "  end record;\n"
-    for what, kind in (("idle", "t"), ("all_ready", "ready_t")):
-        values = ",\n".join(
-            f"    {each.name:{width}} => {getattr(each, what)}" for each in elements
-        )
-        yield f"\n  constant {base.upper()}_{what.upper()} : {base}_{kind} := (\n{values});\n"
+    idle = {each.name: _of(each, f"{each.stem.upper()}_IDLE") for each in members}
+    ready = {
+        each.name: "'1'" if each.is_leaf else _of(each, f"{each.stem.upper()}_ALL_READY")
+        for each in members
+    }
+    for what, kind, values in (("IDLE", "t", idle), ("ALL_READY", "ready_t", ready)):
+        listed = ",\n".join(f"    {name:{width}} => {value}" for name, value in values.items())
+        yield f"\n  constant {base.upper()}_{what} : {base}_{kind} := (\n{listed});\n"
+
+
+def _of(member: Member, name: str) -> str:
+    """Return a name of the package that declares a member's type."""
+    return f"work.{member.package}.{name}" if member.package else name

@@ -11,8 +11,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from firm_hdl.export.primitives import PRIMITIVE_BITS, primitive_name
+from firm_hdl.export.remarks import origin
 from firm_hdl.export.tree import Node, Package, Tree
-from firm_hdl.export.vhdl.constants import origin, quoted
+from firm_hdl.export.vhdl.constants import quoted
 from firm_hdl.export.vhdl.records import record_elements
 from firm_hdl.export.vhdl.types import data_type
 from firm_hdl.gateware.limits import MAX_CELL_BITS

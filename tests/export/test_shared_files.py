@@ -1,0 +1,81 @@
+"""The packages of primitives are files; they declare what Python calls statuses and primitives."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import pytest
+
+from firm_hdl.export.primitives import PRIMITIVE_BITS
+from firm_hdl.export.systemverilog import types as systemverilog
+from firm_hdl.export.vhdl import types as vhdl
+from firm_hdl.gateware.signatures import Status
+
+STATUSES = {f"STATUS_{status.name}": status.value for status in Status}
+
+
+def wrong_in_vhdl(text: str) -> Iterator[str]:
+    """Yield what the VHDL package declares in another way than Python."""
+    constants = re.findall(r'constant (STATUS_\w+) +: .* := x"(..)";', text)
+    if {name: int(digits, 16) for name, digits in constants} != STATUSES:
+        yield "statuses"
+    if re.findall(r'when (STATUS_\w+) => return "(\w+)"', text) != [
+        (name, name.removeprefix("STATUS_")) for name in STATUSES
+    ]:
+        yield "names of statuses"
+    for what, form in (
+        ("streams", r"type (\w+)_stream_t is record\n +data +: (.*?);"),
+        ("items", r"type (\w+)_items_t is array \(natural range <>\) of (.*);"),
+    ):
+        if dict(re.findall(form, text)) != {name: vhdl.data_type(name) for name in PRIMITIVE_BITS}:
+            yield what
+
+
+def wrong_in_systemverilog(text: str) -> Iterator[str]:
+    """Yield what the SystemVerilog package declares in another way than Python."""
+    constants = re.findall(r"(STATUS_\w+) += 8'h(..)", text)
+    if {name: int(digits, 16) for name, digits in constants} != STATUSES:
+        yield "statuses"
+    form = r"typedef logic( signed)?(?: \[(\d+):0\])? (\w+)_data_t;"
+    declared = {name: (int(high or 0) + 1, sign) for sign, high, name in re.findall(form, text)}
+    if declared != {
+        name: (bits, " signed" if name.startswith("int") else "")
+        for name, bits in PRIMITIVE_BITS.items()
+    }:
+        yield "types"
+    if re.findall(r"(\w+)_data_t +data;\n", text) != list(PRIMITIVE_BITS):
+        yield "streams"
+
+
+def test_packages_declare_the_statuses_and_primitives_of_python():
+    assert list(wrong_in_vhdl(vhdl.types_package())) == []
+    assert list(wrong_in_systemverilog(systemverilog.types_package())) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "what"),
+    [
+        ('STATUS_ITEMS         : std_logic_vector(7 downto 0) := x"06"', "", "statuses"),
+        ('return "STRING"', 'return "STRINGS"', "names of statuses"),
+        ("data  : unsigned(15 downto 0)", "data  : unsigned(16 downto 0)", "streams"),
+        ("of signed(63 downto 0)", "of unsigned(63 downto 0)", "items"),
+    ],
+)
+def test_other_declarations_in_vhdl_are_seen(old, new, what):
+    assert old in vhdl.types_package()
+    assert list(wrong_in_vhdl(vhdl.types_package().replace(old, new, 1))) == [what]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "what"),
+    [
+        ("8'h06", "8'h07", "statuses"),
+        ("logic [15:0] uint16_data_t", "logic signed [15:0] uint16_data_t", "types"),
+        ("int8_data_t data", "uint8_data_t data", "streams"),
+    ],
+)
+def test_other_declarations_in_systemverilog_are_seen(old, new, what):
+    text = systemverilog.types_package()
+    assert old in text
+    assert list(wrong_in_systemverilog(text.replace(old, new, 1))) == [what]
