@@ -58,6 +58,9 @@ class Port:
     signed : bool
     leaf : int or None
         Index of the leaf that the port belongs to; `None` for other ports.
+    member : str
+        Member of the leaf's stream: ``data``, ``last``, ``valid`` or ``ready``; empty for other
+        ports.
     """
 
     name: str
@@ -66,6 +69,7 @@ class Port:
     meaning: str
     signed: bool = False
     leaf: int | None = None
+    member: str = ""
 
 
 def leaf_names(plan: Plan) -> dict[tuple[str, ...], str]:
@@ -159,6 +163,7 @@ def _stream(
             meaning=meaning,
             signed=signed and name == "data",
             leaf=leaf,
+            member=name if leaf is not None else "",
         )
         for way, name, width, meaning in whole
     ]

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from firm_hdl.export.remarks import remark
 from firm_hdl.export.systemverilog.structs import package_name
 from firm_hdl.export.systemverilog.types import BEAT, STATUS, STATUS_STREAM, TYPES_NAME, bus_name
-from firm_hdl.export.top import Direction, Port, leaf_names, ports_of
+from firm_hdl.export.top import Direction, Port, ports_of
 from firm_hdl.export.tree import Node, Tree
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
@@ -69,22 +69,18 @@ def _body(plan: Plan, tree: Tree, direction: Direction, core: str) -> Iterator[s
     yield f"  assign {_STATUS}.tdata = {TYPES_NAME}::{STATUS}'(status);\n"
     if direction == "deserializer":
         yield "\n  wire unused = &{1'b0, s_axis.tuser};\n"
-    ports = ports_of(plan, direction)
-    names, nodes = leaf_names(plan), {node.leaf: node for node in tree.root.leaves()}
-    width = max(len(port.name) for port in ports)
-    actuals = {port.name: _actual(port, plan, names, nodes) for port in ports}
-    joined = ",\n".join(f"    .{port:{width}} ({actual})" for port, actual in actuals.items())
+    nodes = {node.leaf: node for node in tree.root.leaves()}
+    actuals = {port.name: _actual(port, nodes) for port in ports_of(plan, direction)}
+    width = max(map(len, actuals))
+    joined = ",\n".join(f"    .{name:{width}} ({actual})" for name, actual in actuals.items())
     yield f"\n  {core} core (\n{joined}\n  );\n"
 
 
-def _actual(
-    port: Port, plan: Plan, names: Mapping[tuple[str, ...], str], nodes: Mapping[int | None, Node]
-) -> str:
+def _actual(port: Port, nodes: Mapping[int | None, Node]) -> str:
     """Return the expression that a port of the core is connected to."""
     if port.leaf is not None:
-        node = nodes[port.leaf]
-        member = port.name.removeprefix(f"{names[plan.leaves[port.leaf].path]}_")
-        return f"rdy.{node.access}" if member == "ready" else f"msg.{node.access}.{member}"
+        access = nodes[port.leaf].access
+        return f"rdy.{access}" if port.member == "ready" else f"msg.{access}.{port.member}"
     stream, _, member = port.name.rpartition("_")
     if not stream or member == "tready":
         return port.name

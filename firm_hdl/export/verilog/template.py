@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import groupby
 
 from firm_hdl.export.remarks import remark
-from firm_hdl.export.top import Direction, Port, field_of, leaf_names, ports_of
+from firm_hdl.export.top import Direction, Port, field_of, ports_of
 from firm_hdl.model import Array, Message
 from firm_hdl.plan import Leaf, Plan
 
@@ -67,7 +67,6 @@ def _connections(
     message: Message, plan: Plan, direction: Direction, ports: tuple[Port, ...]
 ) -> Iterator[str]:
     """Yield a line for each port that belongs to no field, and a commented line for each field."""
-    names = leaf_names(plan)
     left = len(ports)
     for index, group in groupby(ports, key=lambda port: port.leaf):
         of_leaf = list(group)
@@ -83,10 +82,7 @@ def _connections(
             continue
         leaf = plan.leaves[index]
         transfers = _transfers(message, plan, leaf)
-        tied = {
-            port.name: _tied(leaf, port, port.name.removeprefix(f"{names[leaf.path]}_"), transfers)
-            for port in of_leaf
-        }
+        tied = {port.name: _tied(leaf, port, transfers) for port in of_leaf}
         yield from remark(_what(leaf, direction, transfers))
         yield "  " + ", ".join(f".{name}({value})" for name, value in tied.items()) + f"{end}\n"
 
@@ -118,11 +114,11 @@ def _what(leaf: Leaf, direction: Direction, transfers: int | None) -> str:
     return what
 
 
-def _tied(leaf: Leaf, port: Port, member: str, transfers: int | None) -> str:
+def _tied(leaf: Leaf, port: Port, transfers: int | None) -> str:
     """Return the value that a port is tied to; empty for outputs."""
     if port.direction == "out":
         return ""
-    if member == "data":
+    if port.member == "data":
         return f"{port.width}'d{int(leaf.kind == 'trigger')}"
     # A constant `last` cannot end an array of several transfers, so such an array is not offered.
-    return "1'b1" if member == "ready" or transfers == 1 else "1'b0"
+    return "1'b1" if port.member == "ready" or transfers == 1 else "1'b0"

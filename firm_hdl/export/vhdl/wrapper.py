@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from firm_hdl.export.primitives import TYPES_NAME, primitive_name
 from firm_hdl.export.record_top import record_ports
-from firm_hdl.export.top import Direction, Port, leaf_names, ports_of
+from firm_hdl.export.top import Direction, Port, ports_of
 from firm_hdl.export.tree import Tree
 from firm_hdl.export.vhdl.constants import comment
 from firm_hdl.export.vhdl.values import ValueType
@@ -60,28 +60,31 @@ class Core:
 def stream_lines(message: Message, plan: Plan, tree: Tree, direction: Direction) -> list[Line]:
     """List the ports of a converter with a record of streams."""
     forwards, backwards = ("out", "in ") if direction == "deserializer" else ("in ", "out")
-    return _with_message_ports(
-        [port for port in ports_of(plan, direction) if port.leaf is None],
-        [
-            ("msg", f"{forwards} {tree.root.type}", f"Data and valid of {message.name}."),
-            ("rdy", f"{backwards} {tree.root.ready_type}", "Ready of the fields."),
-        ],
-    )
+    lines = [_outer_line(port) for port in ports_of(plan, direction) if port.leaf is None]
+    status = next(k for k, line in enumerate(lines) if line[0].startswith("m_axis_status"))
+    lines[status:status] = [
+        ("msg", f"{forwards} {tree.root.type}", f"Data and valid of {message.name}."),
+        ("rdy", f"{backwards} {tree.root.ready_type}", "Ready of the fields."),
+    ]
+    return lines
 
 
 def record_lines(
     message: Message, plan: Plan, values: ValueType, direction: Direction
 ) -> list[Line]:
     """List the ports of a converter with a record of values."""
-    forwards, backwards = ("out", "in ") if direction == "deserializer" else ("in ", "out")
-    return _with_message_ports(
-        [port for port in ports_of(plan, direction) if port.leaf is None],
-        [
-            ("msg", f"{forwards} {values.name}", f"The fields of {message.name}."),
-            ("msg_valid", f"{forwards} std_logic", "Valid: the whole message is offered."),
-            ("msg_ready", f"{backwards} std_logic", "Ready: the message is taken."),
-        ],
-    )
+    return [
+        ("msg", f"{port.direction:3} {values.name}", f"The fields of {message.name}.")
+        if port.name == "msg_data"
+        else _outer_line(port)
+        for port in record_ports(plan, direction, values.bits)
+    ]
+
+
+def _outer_line(port: Port) -> Line:
+    """Return a port of the user's layer, which is like that of the core except for ``tkeep``."""
+    kind = _kind(port.width, vector=port.width > 1 or _is_vector(port))
+    return port.name, f"{port.direction:3} {kind}", port.meaning
 
 
 def plain_lines(ports: Iterable[Port], names: Mapping[str, str]) -> list[Line]:
@@ -94,20 +97,6 @@ def plain_lines(ports: Iterable[Port], names: Mapping[str, str]) -> list[Line]:
         )
         for port in ports
     ]
-
-
-def _with_message_ports(ports: list[Port], message: list[Line]) -> list[Line]:
-    """Put the ports of the message before those of the status."""
-    lines = [
-        (
-            port.name,
-            f"{port.direction:3} {_kind(port.width, vector=port.width > 1 or _is_vector(port))}",
-            port.meaning,
-        )
-        for port in ports
-    ]
-    status = next(k for k, line in enumerate(lines) if line[0].startswith("m_axis_status"))
-    return [*lines[:status], *message, *lines[status:]]
 
 
 def _kind(width: int, *, vector: bool) -> str:
@@ -197,7 +186,6 @@ class _Conversions:
     def __init__(self, plan: Plan, tree: Tree, direction: Direction) -> None:
         self.plan, self.direction = plan, direction
         self.nodes = {node.leaf: node for node in tree.root.leaves()}
-        self.names = leaf_names(plan)
         self.signals: list[tuple[str, str]] = []
         self.assignments: list[str] = []
 
@@ -206,11 +194,10 @@ class _Conversions:
             return _packet_actual(port)
         leaf = self.plan.leaves[port.leaf]
         node = self.nodes[port.leaf]
-        member = port.name.removeprefix(f"{self.names[leaf.path]}_")
-        if member == "ready":
+        if port.member == "ready":
             return f"rdy.{node.access}"
-        whole = f"msg.{node.access}.{member}"
-        if member != "data":
+        whole = f"msg.{node.access}.{port.member}"
+        if port.member != "data":
             return whole
         primitive = primitive_name(leaf)
         if leaf.kind == "items" and port.width == 1:
