@@ -10,7 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, TypeAlias
+from typing import Any, ClassVar, Literal, TypeAlias
 
 from firm_hdl.export.manifest import MANIFEST
 from firm_hdl.export.top import Direction, Top
@@ -132,7 +132,15 @@ class Output:
 
 
 class BackEnd(ABC):
-    """A language, or another form of output."""
+    """A language, or another form of output.
+
+    Attributes
+    ----------
+    name : str
+        Name among the inputs in the manifest.
+    """
+
+    name: ClassVar[str]
 
     @abstractmethod
     def write(self, converters: Converters) -> Output:

@@ -34,7 +34,10 @@ from firm_hdl.wire import Wire, lay_out
 __all__ = ["BACK_ENDS", "BuildError", "Built", "build", "check_size", "plan_of"]
 
 BACK_ENDS: tuple[BackEnd, ...] = (Verilog(), Documents(), Vhdl(), SystemVerilog())
-"""The back ends that write a folder, in the order of their entries in the manifest."""
+"""The back ends that write a folder, in the order of their entries in the manifest.
+
+A folder that was built by other back ends is not current: their names are among the inputs.
+"""
 
 
 class BuildError(UserError):
@@ -155,6 +158,7 @@ def _converters(
     if options.window_words != 1:
         inputs["options"]["window_words"] = options.window_words
     inputs["stimuli_sha256"] = _digest(packets)
+    inputs["back_ends"] = [each.name for each in BACK_ENDS]
     return Converters(
         message=message,
         plan=plan,

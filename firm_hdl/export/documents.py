@@ -13,6 +13,8 @@ __all__ = ["Documents"]
 class Documents(BackEnd):
     """`plan.yaml` and `layout.svg`."""
 
+    name = "documents"
+
     def write(self, converters: Converters) -> Output:
         message, plan = converters.message, converters.plan
         picture = to_svg(lay_out(message, plan.wire), f"{message.name} on {plan.wire}")

@@ -24,7 +24,7 @@ from firm_hdl.names.identifiers import first_free, identifier, scope_names
 from firm_hdl.plan import Leaf, Plan
 from firm_hdl.wire import Wire
 
-__all__ = ["Node", "Package", "Tree", "derived", "package_name", "snake", "taken_names", "tree_of"]
+__all__ = ["Node", "Package", "Tree", "package_name", "snake", "taken_names", "tree_of"]
 
 _Paths = dict[str, "_Paths | int"]
 
@@ -111,6 +111,14 @@ class Tree:
     root: Node
     packages: tuple[Package, ...]
 
+    def leaf_members(self, plan: Plan) -> dict[str, str]:
+        """Return the dotted names of the members of all leaves, by the leaves' paths."""
+        return {
+            str(plan.leaves[node.leaf]): node.access
+            for node in self.root.leaves()
+            if node.leaf is not None
+        }
+
 
 def snake(name: str) -> str:
     """Return a message's name in snake case.
@@ -142,7 +150,7 @@ def package_name(message: Message, wire: Wire, bus_bytes: int) -> str:
     return f"{identifier(identifier(name) + f'_{wire}_{bus_bytes}').lower()}_pkg"
 
 
-def derived(base: str) -> tuple[str, ...]:
+def _derived(base: str) -> tuple[str, ...]:
     """Return all identifiers of a message's package except constants of ROS, in lower case."""
     kinds = (base, f"{base}_sequence", f"{base}_array")
     return (
@@ -154,7 +162,7 @@ def derived(base: str) -> tuple[str, ...]:
 
 def taken_names(package: Package, plan: Plan) -> frozenset[str]:
     """Return the names that no constant may hide: those that the package declares or uses."""
-    own = {package.name, *derived(package.base)}
+    own = {package.name, *_derived(package.base)}
     return frozenset({*own, *SHARED_WORDS, *BUS_TYPES, bus_name(plan.bus_bytes)})
 
 
@@ -235,7 +243,7 @@ class _Maker:
             found = Package(
                 message=message,
                 name=f"{name}_pkg",
-                base=first_free(wanted, hidden, derived),
+                base=first_free(wanted, hidden, _derived),
                 node=node,
                 needs=tuple(needs),
             )

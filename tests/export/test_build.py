@@ -14,7 +14,7 @@ import pytest
 
 import firm_hdl
 from firm_hdl.errors import DefinitionError
-from firm_hdl.export.backend import Converters, Options, Output
+from firm_hdl.export.backend import BackEnd, Converters, Options, Output
 from firm_hdl.export.build import BuildError, Built, build, check_size
 from firm_hdl.export.vhdl.backend import Vhdl
 from firm_hdl.frontend import Library
@@ -268,6 +268,42 @@ def test_other_options_and_definitions_are_built_anew(tmp_path, monkeypatch):
     assert build_one(tmp_path, bus_bytes=4).folder.name == "std_msgs_msg_Bool_cdr_4"
     monkeypatch.setattr(firm_hdl, "__version__", "9.9.9")
     assert not build_one(tmp_path, max_message_bytes=1000).was_current
+
+
+class Notes(BackEnd):
+    """A back end that is new."""
+
+    name = "notes"
+
+    def write(self, converters: Converters) -> Output:
+        return Output(files={"notes.txt": f"{converters.message.name}\n"})
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_new_back_end_writes_its_files_to_folders_that_were_current(tmp_path, monkeypatch):
+    before = build_module.BACK_ENDS
+    built = build_one(tmp_path)
+    monkeypatch.setattr(build_module, "BACK_ENDS", (*before, Notes()))
+    assert not build_one(tmp_path).was_current
+    assert (built.folder / "notes.txt").read_text() == "std_msgs/msg/Bool\n"
+    assert build_one(tmp_path).was_current
+    monkeypatch.setattr(build_module, "BACK_ENDS", before)
+    assert not build_one(tmp_path).was_current
+    assert not (built.folder / "notes.txt").exists()
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_back_end_under_the_name_of_another_is_not_noticed(tmp_path, monkeypatch):
+    build_one(tmp_path)
+    monkeypatch.setattr(Notes, "name", "documents")
+    back_ends = [Notes() if each.name == "documents" else each for each in build_module.BACK_ENDS]
+    monkeypatch.setattr(build_module, "BACK_ENDS", tuple(back_ends))
+    assert build_one(tmp_path).was_current
+
+
+def test_back_ends_have_names_of_their_own():
+    names = [each.name for each in build_module.BACK_ENDS]
+    assert len({*names}) == len(names) and all(names)
 
 
 @pytest.mark.usefixtures("quick")

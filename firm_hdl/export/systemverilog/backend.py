@@ -20,14 +20,14 @@ from firm_hdl.export.top import DIRECTIONS, Direction
 from firm_hdl.export.tree import Tree, tree_of
 from firm_hdl.export.verilog import module_name
 
-__all__ = ["FOLDER", "LIST", "SystemVerilog", "wrapper_name"]
+__all__ = ["FOLDER", "SystemVerilog", "wrapper_name"]
 
 FOLDER = "systemverilog"
 """Subfolder of a type's folder."""
 
-LIST, WAIVERS = "files.f", "waivers.vlt"
+_LIST, _WAIVERS = "files.f", "waivers.vlt"
 
-_WAIVERS = """\
+_WAIVERS_TEXT = """\
 // Warnings of Verilator that are harmless here, each with the reason. To lint:
 // $ verilator --lint-only -Wall ../waivers.vlt waivers.vlt -F files.f --top-module MODULE
 
@@ -52,6 +52,8 @@ class SystemVerilog(BackEnd):
     With flat ports, the back end writes nothing.
     """
 
+    name = "systemverilog"
+
     def write(self, converters: Converters) -> Output:
         if converters.options.ports == "flat":
             return Output(files={})
@@ -71,7 +73,7 @@ class SystemVerilog(BackEnd):
         for way, name in modules.items():
             texts[f"{name}.sv"] = _module(converters, tree, way, name)
         listed = [*shared, *cores, *(f"{name}.sv" for name in modules.values())]
-        files = {**texts, LIST: "".join(f"{file}\n" for file in listed), WAIVERS: _WAIVERS}
+        files = {**texts, _LIST: "".join(f"{file}\n" for file in listed), _WAIVERS: _WAIVERS_TEXT}
         return Output(
             files={f"{FOLDER}/{name}": text for name, text in files.items()},
             manifest={"systemverilog": _section(converters, tree, modules, listed)},
@@ -98,18 +100,9 @@ def _section(
         "modules": modules,
         "message_type": tree.root.type,
         "ready_type": tree.root.ready_type,
-        "leaves": {
-            str(plan.leaves[node.leaf]): node.access
-            for node in tree.root.leaves()
-            if node.leaf is not None
-        },
+        "leaves": tree.leaf_members(plan),
         "constants": [
-            {
-                "type": entry.owner.name,
-                "constant": entry.constant.name,
-                "package": package_name(package.name),
-                "name": entry.name,
-            }
+            entry.entry(package_name(package.name))
             for package in tree.packages
             for entry in constants_of(package, plan)
         ],
@@ -121,5 +114,5 @@ def _section(
             ),
         ],
         "files": listed,
-        "waivers": WAIVERS,
+        "waivers": _WAIVERS,
     }

@@ -11,9 +11,9 @@ from firm_hdl.export.verilog.template import template
 from firm_hdl.export.verilog.yosys import to_verilog
 from firm_hdl.plan import Plan
 
-__all__ = ["WAIVERS", "Verilog", "module_name", "waivers"]
+__all__ = ["Verilog", "module_name", "section"]
 
-WAIVERS = "waivers.vlt"
+_WAIVERS = "waivers.vlt"
 """File with waivers of Verilator's warnings."""
 
 _WAIVED = {
@@ -27,10 +27,12 @@ _WAIVED = {
 class Verilog(BackEnd):
     """Verilog-2005 that means the same in SystemVerilog; entry `converters` of the manifest."""
 
+    name = "verilog"
+
     def write(self, converters: Converters) -> Output:
         name = converters.name
         modules = {direction: module_name(name, direction) for direction in DIRECTIONS}
-        files = {WAIVERS: waivers(modules.values())}
+        files = {_WAIVERS: _waivers(modules.values())}
         for direction, module in modules.items():
             header = converters.header(module, f"the {direction}")
             files[f"{module}.v"] = to_verilog(
@@ -51,7 +53,7 @@ def module_name(folder: str, direction: Direction) -> str:
     return f"{folder}_{direction}_verilog"
 
 
-def waivers(modules: Iterable[str]) -> str:
+def _waivers(modules: Iterable[str]) -> str:
     """Write the waivers of some modules, each with its reason, for ``verilator --lint-only -Wall``.
 
     Parameters
@@ -61,7 +63,7 @@ def waivers(modules: Iterable[str]) -> str:
     """
     lines = [
         "// Warnings of Verilator that are harmless here, each with the reason. To lint:\n",
-        f"// $ verilator --lint-only -Wall {WAIVERS} FILE.v\n\n",
+        f"// $ verilator --lint-only -Wall {_WAIVERS} FILE.v\n\n",
         "`verilator_config\n",
     ]
     files = [f"{module}.v" for module in modules]

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from firm_hdl.export.backend import BackEnd, Converters, Output
-from firm_hdl.export.constants import NamedConstant
 from firm_hdl.export.packaging import packaging
 from firm_hdl.export.primitives import TYPES_NAME
 from firm_hdl.export.record_top import RecordTop, why_no_record
@@ -49,6 +48,8 @@ class VhdlFolder:
 
 class Vhdl(BackEnd):
     """VHDL-2008; entry `vhdl` of the manifest."""
+
+    name = "vhdl"
 
     def write(self, converters: Converters) -> Output:
         made = to_vhdl(converters)
@@ -175,15 +176,9 @@ def _add_records(
         "message_type": layer.tree.root.type,
         "ready_type": layer.tree.root.ready_type,
         "record_view": record,
-        "leaves": {
-            str(plan.leaves[node.leaf]): node.access
-            for node in layer.tree.root.leaves()
-            if node.leaf is not None
-        },
+        "leaves": layer.tree.leaf_members(plan),
         "constants": [
-            entry
-            for package, named in layer.constants.items()
-            for entry in _constants(named, package)
+            entry.entry(package) for package, named in layer.constants.items() for entry in named
         ],
         "shared_packages": [
             {
@@ -215,18 +210,6 @@ def _add_flat(parts: _Parts, converters: Converters, cores: Mapping[Direction, C
         "package": package,
         "entities": {way: {"flat": cores[way].entity} for way in DIRECTIONS},
         "record_view": {"built": False, "reason": "The ports are flat"},
-        "constants": _constants(constants, package),
+        "constants": [entry.entry(package) for entry in constants],
         "shared_packages": [],
     }
-
-
-def _constants(named: Iterable[NamedConstant], package: str) -> list[dict[str, str]]:
-    return [
-        {
-            "type": entry.owner.name,
-            "constant": entry.constant.name,
-            "package": package,
-            "name": entry.name,
-        }
-        for entry in named
-    ]
