@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 from firm_hdl.model import Field
 
-__all__ = ["ascii_of", "origin", "quoted", "remark", "unit_of"]
+__all__ = ["origin", "quoted", "remark", "unit_of"]
 
 _PLAIN = str.maketrans(
     {
@@ -48,10 +48,10 @@ def quoted(text: str, indent: str = "  ", mark: str = "//") -> Iterator[str]:
 
 
 def _wrapped(line: str, columns: int) -> list[str]:
-    return textwrap.wrap(ascii_of(line).rstrip(), columns, break_long_words=False) or [""]
+    return textwrap.wrap(_ascii(line).rstrip(), columns, break_long_words=False) or [""]
 
 
-def ascii_of(text: str) -> str:
+def _ascii(text: str) -> str:
     """Return a line in printable ASCII."""
     plain = text.translate(_PLAIN).encode("ascii", "backslashreplace").decode()
     return re.sub(r"[^ -~]", " ", plain.expandtabs(4))
@@ -73,4 +73,4 @@ def origin(source: Field, name: str) -> str:
 
 def unit_of(unit: str | None) -> str:
     """Return a unit in brackets; empty if there is none."""
-    return f" [{ascii_of(unit)}]" if unit else ""
+    return f" [{_ascii(unit)}]" if unit else ""

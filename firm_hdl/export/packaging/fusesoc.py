@@ -18,12 +18,12 @@ from firm_hdl.export.packaging.facts import (
     version,
 )
 
-__all__ = ["BENCH", "COMMON", "cores"]
+__all__ = ["cores"]
 
-COMMON = "firm_hdl_common"
+_COMMON = "firm_hdl_common"
 """The core with the packages that all types share."""
 
-BENCH = "firm_hdl_bench"
+_BENCH = "firm_hdl_bench"
 """The core with the parts of test benches that all types share."""
 
 _SHARED = "that all converters of firm-hdl share"
@@ -33,10 +33,10 @@ def cores(manifest: Manifest) -> dict[str, str]:
     """Return the texts of all cores by file name."""
     vhdl = manifest["vhdl"]
     documents = {
-        COMMON: _shared(
+        _COMMON: _shared(
             _common(manifest), f"Packages {_SHARED}", _vhdl_files(vhdl["common_files"])
         ),
-        BENCH: _shared(
+        _BENCH: _shared(
             _bench(manifest),
             f"Parts of the test benches {_SHARED}",
             _vhdl_files(vhdl["bench"]["common_files"]),
