@@ -51,8 +51,11 @@ MAY_IMPORT["equivalence"] = {
     *("firm_hdl", "arguments", "errors", "jobs", "names", "rtlil", "terminal", "vhdl"),
     *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
-MAY_IMPORT["bench"] = {"errors", "jobs"}
-MAY_IMPORT["cli"] = {*MAY_IMPORT["verify"], "verify", "covering", "equivalence"}
+MAY_IMPORT["bench"] = {
+    *("arguments", "errors", "files", "jobs"),
+    *("model", "frontend", "wire", "plan", "gateware", "sim", "export"),
+}
+MAY_IMPORT["cli"] = {*MAY_IMPORT["verify"], "verify", "covering", "equivalence", "bench"}
 # The package's own face.
 MAY_IMPORT["firm_hdl"] = {"errors", "frontend", "gateware"}
 

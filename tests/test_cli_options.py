@@ -28,6 +28,7 @@ RUN = {
     "cover": "firm_hdl.covering.command",
     "report": "firm_hdl.verify.report.command",
     "prove": "firm_hdl.equivalence.command",
+    "bench": "firm_hdl.bench.command",
 }
 FILES = {
     "p/msg/A.msg": "uint8 a\nuint32 b\nstring c",
@@ -209,7 +210,7 @@ def test_whatever_ends_a_command_is_in_its_status(here, capsys, monkeypatch, err
     assert capsys.readouterr() == ("", said)
 
 
-@pytest.mark.parametrize("command", ["verify", "golden", "cover", "report", "prove"])
+@pytest.mark.parametrize("command", ["verify", "golden", "cover", "report", "prove", "bench"])
 @pytest.mark.parametrize(("returned", "status"), [(None, 0), (0, 0), (1, 1), (3, 3)])
 def test_the_status_of_a_command_is_that_of_what_it_runs(monkeypatch, command, returned, status):
     module = importlib.import_module(RUN[command])

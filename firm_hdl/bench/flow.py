@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import statistics
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -58,8 +58,12 @@ class Measured:
         One for each seed; none if the device has no nextpnr.
     mapping : str
         Commands of Yosys that mapped the circuit.
-    tools : tuple of str
-        Names and versions of the tools.
+    placement : str
+        Options of nextpnr, without the seed.
+    tools : mapping of str to str
+        Versions of the tools, by name.
+    problem : str
+        Why nextpnr gave no clock rate, for example because the circuit does not fit; else empty.
     """
 
     device: Device
@@ -67,7 +71,9 @@ class Measured:
     port_registers: int
     placed: tuple[Placed, ...]
     mapping: str
-    tools: tuple[str, ...]
+    placement: str
+    tools: Mapping[str, str]
+    problem: str = ""
 
     @property
     def mhz(self) -> float | None:
@@ -108,32 +114,38 @@ def measure(
     Raises
     ------
     BenchError
+        If the circuit has no area. If it has no clock rate, `Measured.problem` says why.
     """
     yosys = find_yosys()
-    placer = device.placer
-    nextpnr = find_nextpnr(placer.package, placer.program) if placer and seeds else None
+    placer = device.placer if seeds else None
+    nextpnr = find_nextpnr(placer.package, placer.program) if placer else None
+    placed: list[Placed] = []
+    added = 0
+    problem = ""
     with tempfile.TemporaryDirectory(prefix="firm-hdl-bench-") as name:
         folder = Path(name)
         (folder / "top.il").write_text(rtlil, encoding="utf-8")
         top, script = _synthesize(yosys, folder, device, mapping)
         area = device.area(cell_counts(top))
-        names = Names(top)
-        placed: list[Placed] = []
-        added = 0
         if placer and nextpnr:
+            names = Names(top)
             added = register_ports(top, placer)
             (folder / "ports.json").write_text(json.dumps({"modules": {"top": top}}))
-            for seed in seeds:
-                placed.append(_place(nextpnr, folder, placer, seed, names))
-                report(placed[-1])
-    tools = [f"{yosys.title} {yosys.version}"] + ([nextpnr.version] if nextpnr else [])
+            try:
+                for seed in seeds:
+                    placed.append(_place(nextpnr, folder, placer, seed, names))
+                    report(placed[-1])
+            except BenchError as error:
+                problem = str(error)
     return Measured(
         device=device,
         area=area,
         port_registers=added,
         placed=tuple(placed),
         mapping=script,
-        tools=tuple(tools),
+        placement=" ".join(placer.options) if placer else "",
+        tools={tool.title: tool.version for tool in (yosys, nextpnr) if tool},
+        problem=problem,
     )
 
 

@@ -8,7 +8,7 @@ the circuit inside is the one whose cells were counted, and nothing is optimized
 from __future__ import annotations
 
 import re
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterator, Mapping
 from itertools import count
 from typing import Any
@@ -100,8 +100,8 @@ def _bits(top: Mapping[str, Any]) -> Iterator[int]:
 class Names:
     """What the design itself calls the nets of a netlist.
 
-    Yosys names a net without a name after the nearest one that has one, such as
-    ``fill_LUT4_A_Z``; with `of`, it is ``(fill)``.
+    Most nets between look-up tables have no name in the design. Yosys names them after a neighbour,
+    such as ``fill_LUT4_A_Z``; those names are not used, because the neighbour may be any.
 
     Parameters
     ----------
@@ -110,37 +110,58 @@ class Names:
     """
 
     def __init__(self, top: Mapping[str, Any]):
-        kinds = "|".join(sorted({re.escape(c["type"]) for c in top["cells"].values()}, key=len))
-        self._derived = re.compile(rf"(?:_(?:{kinds})_|\$|~).*")
+        self._cells = top["cells"]
+        kinds = "|".join(sorted({re.escape(cell["type"]) for cell in self._cells.values()}))
+        derived = re.compile(rf"^\$|_(?:{kinds})_")
         self._own: dict[int, str] = {}
-        self._bit_of: dict[str, int] = {}
+        self._bits: dict[str, int] = {}
+        self._drivers = {
+            bit: name for name in self._cells for bit in self._connected(name, "output")
+        }
         for name, net in top["netnames"].items():
-            bits = net["bits"]
-            own = not self._derived.search(name)
-            for index, bit in enumerate(bits):
+            is_own = not net.get("hide_name") and not derived.search(name)
+            for index, bit in enumerate(net["bits"]):
                 if not isinstance(bit, int):
                     continue
-                self._bit_of[f"{name}[{index}]" if len(bits) > 1 else name] = bit
-                if own and not net.get("hide_name"):
-                    known = self._own.get(bit)
-                    if known is None or (len(name), name) < (len(known), known):
-                        self._own[bit] = name
+                self._bits[f"{name}[{index}]" if len(net["bits"]) > 1 else name] = bit
+                known = self._own.get(bit)
+                if is_own and (known is None or (len(name), name) < (len(known), known)):
+                    self._own[bit] = name
 
-    def of(self, name: str) -> str:
-        """Return the own name of a net or cell; of the nearest one, in parentheses, if it has none.
-
-        An empty text if nothing near has a name.
-        """
-        if name.startswith("port "):
-            return f"port {name[5:].partition('[')[0]}"
-        bit = self._bit_of.get(name)
-        if bit in self._own:
-            return self._own[bit]
-        near = self._derived.sub("", name).partition("[")[0]
-        return f"({near})" if near else ""
+    def net(self, name: str) -> str:
+        """Return the design's name of a net, without the index of the bit, or an empty text."""
+        return self._own.get(self._bits.get(name, -1), "")
 
     def register(self, cell: str) -> str:
-        """Return the own name of a flip-flop, from the name of its cell."""
+        """Return the design's name of a flip-flop, from the name of its cell."""
         if cell.startswith("port "):
-            return self.of(cell)
-        return self._derived.sub("", cell).partition("[")[0] or cell
+            return cell.partition("[")[0]
+        outputs = self._connected(cell, "output")
+        return next((self._own[bit] for bit in outputs if bit in self._own), cell)
+
+    def joining(self, cell: str, net: str) -> Iterator[str]:
+        """Yield the design's names of what enters a cell, through other logic, beside one net.
+
+        The nearest come first, and none comes twice.
+        """
+        seen = {self._bits.get(net, -1)}
+        told: set[str] = set()
+        waiting = deque(self._connected(cell, "input"))
+        while waiting:
+            bit = waiting.popleft()
+            if bit in seen:
+                continue
+            seen.add(bit)
+            if bit in self._own:
+                if self._own[bit] not in told:
+                    told.add(self._own[bit])
+                    yield self._own[bit]
+            elif bit in self._drivers:
+                waiting.extend(self._connected(self._drivers[bit], "input"))
+
+    def _connected(self, cell: str, direction: str) -> Iterator[int]:
+        found = self._cells.get(cell, {"port_directions": {}})
+        for port, way in found["port_directions"].items():
+            for bit in found["connections"][port] if way == direction else ():
+                if isinstance(bit, int):
+                    yield bit

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
 from firm_hdl.bench.netlist import Names
 from firm_hdl.bench.tools import BenchError
 
 __all__ = ["CriticalPath", "critical_path"]
+
+MOST_NAMES = 3
+"""Most signals that are named where they enter a path."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,21 +26,22 @@ class CriticalPath:
         Its delay.
     routing_ns : float
         The part of it that is wires.
-    luts : int
-        Number of cells on the way.
+    cells : int
+        Number of look-up tables, carry chains and the like on the way.
     points : tuple of (float, str)
-        Signals on the way, and when they are reached in ns. A name in parentheses is that of the
-        nearest signal that the design names. The first and the last are the registers.
+        Signals on the way, and when they are reached in ns. The first and the last are the
+        registers. Behind ``&`` stand signals that enter the path there, directly or through other
+        logic, and have not before.
     """
 
     ns: float
     routing_ns: float
-    luts: int
+    cells: int
     points: tuple[tuple[float, str], ...]
 
     def __str__(self) -> str:
         way = " > ".join(f"{name} {ns:.1f}" for ns, name in self.points)
-        return f"{self.ns:.1f} ns, {self.routing_ns:.1f} of them routing, {self.luts} LUTs: {way}"
+        return f"{self.ns:.1f} ns, {self.routing_ns:.1f} of them routing, {self.cells} cells: {way}"
 
 
 def critical_path(report: Mapping[str, Any], names: Names) -> CriticalPath:
@@ -56,24 +61,31 @@ def critical_path(report: Mapping[str, Any], names: Names) -> CriticalPath:
 def _described(path: list[Mapping[str, Any]], names: Names) -> CriticalPath:
     points: list[tuple[float, str]] = []
     now = routing = 0.0
+    net = ""
+    known: set[str] = set()
     for segment in path:
         now += segment["delay"]
-        kind = segment["type"]
-        if kind == "routing":
-            routing += segment["delay"]
-        if kind == "clk-to-q":
-            name = names.register(segment["from"]["cell"])
-        elif kind == "setup":
-            name = names.register(segment["to"]["cell"])
-        else:
-            name = names.of(segment["net"]) if kind == "routing" else ""
-        # The register says more than the nets behind and before it.
-        known = {each.strip("()") for _, each in points[-1:]}
-        if name and (kind == "setup" or name.strip("()") not in known):
+        match segment["type"]:
+            case "clk-to-q":
+                name = names.register(segment["from"]["cell"])
+            case "setup":
+                name = names.register(segment["to"]["cell"])
+            case "routing":
+                routing += segment["delay"]
+                net = segment["net"]
+                name = names.net(net)
+            case _:
+                joining = names.joining(segment["from"]["cell"], net)
+                new = list(islice((each for each in joining if each not in known), MOST_NAMES))
+                known.update(new)
+                name = "& " + ", ".join(new) if new else ""
+        # The net behind a register has its name.
+        if name and (name not in known or segment["type"] == "setup"):
             points.append((round(now, 2), name))
+            known.add(name)
     return CriticalPath(
         ns=round(now, 2),
         routing_ns=round(routing, 2),
-        luts=sum(segment["type"] == "logic" for segment in path),
+        cells=sum(segment["type"] == "logic" for segment in path),
         points=tuple(points),
     )

@@ -11,10 +11,19 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from firm_hdl.bench.devices import Device
 from firm_hdl.errors import UserError
 from firm_hdl.jobs import ToolError, run_tool
 
-__all__ = ["BenchError", "MissingToolError", "Tool", "find_nextpnr", "find_yosys", "written"]
+__all__ = [
+    "BenchError",
+    "MissingToolError",
+    "Tool",
+    "find_nextpnr",
+    "find_yosys",
+    "versions",
+    "written",
+]
 
 OLDEST_YOSYS = (0, 40)
 """Oldest version of Yosys that works; Amaranth 0.5 itself requires it."""
@@ -125,10 +134,23 @@ def find_nextpnr(package: str, program: str) -> Tool:
     ------
     MissingToolError
     """
-    tool = _find(program, package, program, "--version", r"Version (\S+?)\)")
+    tool = _find(program, package, program, "--version", r"Version (?:nextpnr-)?(\S+?)\)")
     if tool is None:
         raise MissingToolError(f"{program} is not installed: {PIP}")
     return tool
+
+
+def versions(device: Device, *, with_placer: bool = True) -> dict[str, str]:
+    """Find the tools of a device, and return their versions by name.
+
+    Raises
+    ------
+    MissingToolError
+    """
+    found = [find_yosys()]
+    if with_placer and device.placer is not None:
+        found.append(find_nextpnr(device.placer.package, device.placer.program))
+    return {tool.title: tool.version for tool in found}
 
 
 def _find(title: str, package: str, program: str, option: str, version: str) -> Tool | None:

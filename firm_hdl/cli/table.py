@@ -61,6 +61,9 @@ COMMANDS: dict[str, Command] = {
     "prove": Command(
         help="prove that the VHDL is equivalent to Amaranth's circuit", module="testing"
     ),
+    "bench": Command(
+        help="measure converters on an FPGA: area, clock rate, cycles", module="testing"
+    ),
     "golden": Command(help="compare plans with golden ones, by meaning", module="testing"),
     "cover": Command(help="choose a few types that have every feature", module="testing"),
     "md5": Command(help="print the md5 sums of ROS 1 types", module="reading"),

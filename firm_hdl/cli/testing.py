@@ -1,4 +1,4 @@
-"""The commands that test converters: ``verify``, ``report``, ``prove``, ``golden``, ``cover``."""
+"""The commands that judge converters, such as ``verify``, ``prove`` and ``bench``."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import argparse
 
 from firm_hdl.arguments import add_options
 
-__all__ = ["add_cover", "add_golden", "add_prove", "add_report", "add_verify"]
+__all__ = ["add_bench", "add_cover", "add_golden", "add_prove", "add_report", "add_verify"]
 
 
 def add_verify(command: argparse.ArgumentParser) -> None:
@@ -32,6 +32,14 @@ def add_prove(command: argparse.ArgumentParser) -> None:
     add_prove_arguments(command)
     add_options(command)
     command.set_defaults(run=run_prove)
+
+
+def add_bench(command: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``firm-hdl bench``."""
+    from firm_hdl.bench.command import add_bench_arguments, run_bench
+
+    add_bench_arguments(command)
+    command.set_defaults(run=run_bench)
 
 
 def add_golden(command: argparse.ArgumentParser) -> None:

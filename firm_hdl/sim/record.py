@@ -51,12 +51,18 @@ class RunResult:
     beats_in: int = 0
     beats_out: int = 0
     first_cycle: int = -1
+    last_cycle_in: int = -1
     last_cycle: int = -1
 
     @property
     def cycles(self) -> int:
         """Cycles from the first transfer in to the last one out, both included; 0 without any."""
         return self.last_cycle - self.first_cycle + 1 if self.last_cycle >= 0 else 0
+
+    @property
+    def latency(self) -> int:
+        """Cycles from the last transfer in to the last one out; 0 without any."""
+        return self.last_cycle - self.last_cycle_in if self.last_cycle >= 0 else 0
 
 
 def leaf_name(plan: Plan, leaf: int) -> str:
@@ -145,6 +151,7 @@ class Recorder:
         return take
 
     def _time_in(self, cycle: int) -> None:
+        self.result.last_cycle_in = cycle
         if self.result.first_cycle < 0:
             self.result.first_cycle = cycle
 

@@ -111,6 +111,17 @@ def test_cycles_are_counted_from_the_first_in_to_the_last_out():
     assert run.finish().cycles == 7
 
 
+def test_latency_is_from_the_last_in_to_the_last_out():
+    run = recorder()
+    takes = run.takes()
+    takes["packets_in"](3, 0)
+    takes["packets_in"](4, 0)
+    takes["packets_out"](9, beat(b"ab"))
+    takes["status"](12, 0)
+    assert run.finish().latency == 5
+    assert RunResult().latency == RunResult(last_cycle_in=3).latency == 0
+
+
 # What a deserializer has to ignore, and that it is there.
 
 

@@ -1,0 +1,50 @@
+"""Figures that were computed before, by everything that they depend on."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from firm_hdl.bench.devices import Device
+from firm_hdl.bench.flow import PREPARATIONS, Measured, measure
+from firm_hdl.bench.results import measured_from_json, measured_to_json
+from firm_hdl.bench.tools import versions
+
+__all__ = ["measure_once"]
+
+FORMAT = 1
+"""Changes when figures of the same circuit do, for another reason than those in the key."""
+
+
+def measure_once(
+    rtlil: str, device: Device, seeds: Sequence[int], *, mapping: str, folder: Path | None
+) -> Measured:
+    """Measure a circuit, unless the folder has its figures. Parameters as for `measure`.
+
+    A file's name is a hash of the RTLIL, the device's options, the seeds, and the versions of the
+    tools. Without clock rates for all seeds, nothing is kept.
+
+    Parameters
+    ----------
+    folder : Path or None
+        Created if it does not exist; `None`: measure always.
+    """
+    if folder is None:
+        return measure(rtlil, device, seeds, mapping=mapping)
+    parts = [FORMAT, rtlil, repr(device), PREPARATIONS, list(seeds), mapping, versions(device)]
+    key = hashlib.sha256(json.dumps(parts).encode()).hexdigest()
+    file = folder / f"{key}.json"
+    with suppress(OSError, ValueError, KeyError, TypeError):
+        return measured_from_json(json.loads(file.read_text(encoding="utf-8")))
+    found = measure(rtlil, device, seeds, mapping=mapping)
+    if not found.problem:
+        folder.mkdir(parents=True, exist_ok=True)
+        # Another process may do the same, or read it.
+        part = folder / f"{key}.{os.getpid()}.part"
+        part.write_text(json.dumps(measured_to_json(found)), encoding="utf-8")
+        part.replace(file)
+    return found

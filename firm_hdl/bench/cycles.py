@@ -1,0 +1,89 @@
+"""Cycles that a converter takes, counted in a simulation of its circuit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import islice
+from typing import Literal, TypeAlias
+
+from firm_hdl.bench.messages import STATED, Stated, values
+from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.model import Message
+from firm_hdl.plan import encode
+from firm_hdl.sim import Harness, RunResult, to_transfers
+
+__all__ = ["DIRECTIONS", "Converter", "Cycles", "Direction", "count_cycles"]
+
+Direction: TypeAlias = Literal["deserializer", "serializer"]
+DIRECTIONS: tuple[Direction, ...] = ("deserializer", "serializer")
+
+Converter: TypeAlias = "Deserializer | Serializer"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cycles:
+    """The cycles of messages that come back to back, without stalls.
+
+    Attributes
+    ----------
+    messages : Stated
+        The messages.
+    bytes, beats : int
+        Of their packets.
+    cycles : int
+        From the end of the first message, which is not counted, to the end of the last.
+    latency : int
+        Of the first message, alone: cycles from its last transfer in, a beat or that of a leaf, to
+        its last transfer out.
+    """
+
+    messages: Stated
+    bytes: int
+    beats: int
+    cycles: int
+    latency: int
+
+    @property
+    def per_beat(self) -> float:
+        """Cycles per beat; 1 is the best that there is."""
+        return self.cycles / self.beats
+
+    @property
+    def bits_per_cycle(self) -> float:
+        """Bits of packets per cycle."""
+        return 8 * self.bytes / self.cycles
+
+
+def count_cycles(converter: Converter, message: Message, stated: Stated = STATED) -> Cycles:
+    """Run a converter with the stated messages.
+
+    Parameters
+    ----------
+    converter : Deserializer or Serializer
+        Not yet elaborated.
+    message : Message
+        Its type.
+    """
+    plan = converter.plan
+    drawn = list(islice(values(message, stated), 1 + stated.count))
+    sent = [to_transfers(plan, message, value) for value in drawn]
+    packets = [encode(plan, transfers)[0] for transfers in sent]
+
+    def run(count: int) -> RunResult:
+        if isinstance(converter, Deserializer):
+            return harness.run_packets(packets[:count])
+        return harness.run_messages(sent[:count])
+
+    if isinstance(converter, Deserializer):
+        harness = Harness(converter, None, message=message)
+    else:
+        harness = Harness(None, converter, message=message)
+    alone, together = run(1), run(len(drawn))
+    beats = [max(1, -(-len(packet) // plan.bus_bytes)) for packet in packets]
+    return Cycles(
+        messages=stated,
+        bytes=sum(map(len, packets[1:])),
+        beats=sum(beats[1:]),
+        cycles=together.cycles - alone.cycles,
+        latency=alone.latency,
+    )

@@ -1,0 +1,202 @@
+"""The figures of a converter, and files of them as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from firm_hdl.bench.cycles import Cycles, Direction
+from firm_hdl.bench.devices import DEVICES, Area
+from firm_hdl.bench.flow import Measured, Placed
+from firm_hdl.bench.messages import Stated
+from firm_hdl.bench.paths import CriticalPath
+from firm_hdl.bench.tools import BenchError
+from firm_hdl.files import read_file
+from firm_hdl.wire import Wire
+
+__all__ = [
+    "Converted",
+    "Result",
+    "measured_from_json",
+    "measured_to_json",
+    "read_results",
+    "results_text",
+]
+
+FORMAT = 1
+"""Version of the form of files."""
+
+MOST_BYTES = 1 << 28
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, order=True)
+class Converted:
+    """Which converter it is.
+
+    Attributes
+    ----------
+    distro, type : str
+    wire : "ros1" or "cdr"
+    bus_bytes, max_message_bytes : int
+    direction : "deserializer" or "serializer"
+    """
+
+    distro: str
+    type: str
+    wire: Wire
+    bus_bytes: int
+    max_message_bytes: int
+    direction: Direction
+
+    def __str__(self) -> str:
+        return f"{self.type} ({self.distro}, {self.wire}, {self.bus_bytes} bytes) {self.direction}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Result:
+    """The figures of a converter.
+
+    Attributes
+    ----------
+    converter : Converted
+    cycles : Cycles or None
+    measured : Measured or None
+        `None` if no device was asked for.
+    problem : str
+        Why figures are missing; else empty.
+    """
+
+    converter: Converted
+    cycles: Cycles | None = None
+    measured: Measured | None = None
+    problem: str = ""
+
+    @property
+    def mhz(self) -> float | None:
+        """Median clock rate in MHz."""
+        return None if self.measured is None else self.measured.mhz
+
+    @property
+    def gbit_per_s(self) -> float | None:
+        """Packets in 10⁹ bits per second: those of a cycle, with the stated messages, at `mhz`."""
+        if self.mhz is None or self.cycles is None:
+            return None
+        return self.mhz * self.cycles.bits_per_cycle / 1000
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What has to agree for a comparison: the converter, and the device."""
+        device = "" if self.measured is None else self.measured.device.name
+        return (*(str(value) for value in asdict(self.converter).values()), device)
+
+
+def measured_to_json(measured: Measured) -> dict[str, Any]:
+    """Return the figures of a circuit as JSON has them."""
+    return {
+        "device": measured.device.name,
+        "part": measured.device.title,
+        "mapping": measured.mapping,
+        "placement": measured.placement,
+        "tools": dict(measured.tools),
+        **asdict(measured.area),
+        "port_registers": measured.port_registers,
+        "mhz": measured.mhz,
+        "seeds": [
+            {"seed": each.seed, "mhz": each.mhz, "critical_path": asdict(each.path)}
+            for each in measured.placed
+        ],
+        "problem": measured.problem,
+    }
+
+
+def measured_from_json(found: Mapping[str, Any]) -> Measured:
+    """Read what :func:`measured_to_json` wrote; raise a `KeyError` if something is missing."""
+    return Measured(
+        device=DEVICES[found["device"]],
+        area=Area(**{name: found[name] for name in Area.__dataclass_fields__}),
+        port_registers=found["port_registers"],
+        placed=tuple(
+            Placed(seed=each["seed"], mhz=each["mhz"], path=_path(each["critical_path"]))
+            for each in found["seeds"]
+        ),
+        mapping=found["mapping"],
+        placement=found["placement"],
+        tools=found["tools"],
+        problem=found["problem"],
+    )
+
+
+def _path(found: Mapping[str, Any]) -> CriticalPath:
+    points = tuple((ns, name) for ns, name in found["points"])
+    return CriticalPath(**{**found, "points": points})
+
+
+def results_text(results: Iterable[Result]) -> str:
+    """Write results as JSON, in the order of their converters."""
+    entries = [_entry(result) for result in sorted(results, key=lambda each: each.key)]
+    return json.dumps({"format": FORMAT, "results": entries}, indent=1) + "\n"
+
+
+def _entry(result: Result) -> dict[str, Any]:
+    entry: dict[str, Any] = asdict(result.converter)
+    cycles = result.cycles
+    if cycles is not None:
+        entry["simulation"] = {
+            "messages": asdict(cycles.messages),
+            "bytes": cycles.bytes,
+            "beats": cycles.beats,
+            "cycles": cycles.cycles,
+            "latency": cycles.latency,
+            "cycles_per_beat": round(cycles.per_beat, 4),
+        }
+    if result.measured is not None:
+        entry["circuit"] = measured_to_json(result.measured)
+    if result.gbit_per_s is not None:
+        entry["gbit_per_s"] = round(result.gbit_per_s, 3)
+    entry["problem"] = result.problem
+    return entry
+
+
+def read_results(path: str | Path) -> list[Result]:
+    """Read a file of results.
+
+    Raises
+    ------
+    BenchError
+        If it is not such a file.
+    OSError
+        If it cannot be read.
+    """
+    try:
+        found = json.loads(read_file(path, MOST_BYTES))
+        if found["format"] != FORMAT:
+            raise BenchError(f"'{path}' has format {found['format']}, and {FORMAT} is read")
+        return [_result(entry) for entry in found["results"]]
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        reason = f"{type(error).__name__}: {error}"
+        raise BenchError(f"'{path}' is not a file of results of bench ({reason})") from None
+
+
+def _result(entry: Mapping[str, Any]) -> Result:
+    cycles = None
+    if (found := entry.get("simulation")) is not None:
+        stated = found["messages"]
+        cycles = Cycles(
+            messages=Stated(
+                count=stated["count"],
+                characters=(stated["characters"][0], stated["characters"][1]),
+                elements=(stated["elements"][0], stated["elements"][1]),
+                seed=stated["seed"],
+            ),
+            **{name: found[name] for name in ("bytes", "beats", "cycles", "latency")},
+        )
+    circuit = entry.get("circuit")
+    return Result(
+        converter=Converted(**{name: entry[name] for name in Converted.__dataclass_fields__}),
+        cycles=cycles,
+        measured=None if circuit is None else measured_from_json(circuit),
+        problem=entry["problem"],
+    )

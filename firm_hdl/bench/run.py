@@ -1,0 +1,105 @@
+"""Converters of message types, each simulated and measured in a process of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from amaranth.back import rtlil
+
+from firm_hdl.bench.cache import measure_once
+from firm_hdl.bench.cycles import Converter, Cycles, count_cycles
+from firm_hdl.bench.devices import DEVICES
+from firm_hdl.bench.flow import Measured
+from firm_hdl.bench.messages import STATED, Stated
+from firm_hdl.bench.results import Converted, Result
+from firm_hdl.bench.tools import BenchError
+from firm_hdl.errors import DefinitionError
+from firm_hdl.export.build import BuildError, check_size, plan_of
+from firm_hdl.frontend import open_library
+from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.jobs import run_each
+from firm_hdl.model import Message
+
+__all__ = ["BenchTask", "run_task", "run_tasks"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BenchTask:
+    """One converter.
+
+    Attributes
+    ----------
+    converter : Converted
+    paths, bags
+        As for `open_library`.
+    device : str or None
+        A name of `DEVICES`; `None`: cycles only.
+    seeds : tuple of int
+        Seeds of nextpnr.
+    mapping : str
+        Commands of Yosys before the mapping.
+    stated : Stated or None
+        Messages of the simulation; `None`: no simulation.
+    cache : str or None
+        Folder with figures that were computed before.
+    """
+
+    converter: Converted
+    paths: tuple[str, ...] = ()
+    bags: tuple[str, ...] = ()
+    device: str | None = "ecp5"
+    seeds: tuple[int, ...] = (1, 2, 3)
+    mapping: str = ""
+    stated: Stated | None = STATED
+    cache: str | None = None
+
+
+def run_tasks(tasks: Sequence[BenchTask], jobs: int | None = None) -> Iterator[Result]:
+    """Run tasks in `jobs` processes (`None`: one per processor); yield results as they finish."""
+    work = [(task, (task,)) for task in tasks]
+    for task, result in run_each(run_task, work, jobs=jobs):
+        if isinstance(result, Exception):
+            result = Result(converter=task.converter, problem=str(result))
+        yield result
+
+
+def run_task(task: BenchTask) -> Result:
+    """Run a task. What is wrong with a type, or a tool that fails, is the result's problem."""
+    what = task.converter
+    cycles: Cycles | None = None
+    measured: Measured | None = None
+    problem = ""
+    try:
+        message = open_library(what.distro, task.paths, task.bags).message(what.type)
+        check_size(plan_of(message, what.wire, what.bus_bytes, what.max_message_bytes))
+        if task.stated is not None:
+            cycles = count_cycles(_converter(what, message), message, task.stated)
+        if task.device is not None:
+            measured = _measure(task, message)
+            problem = measured.problem
+    except (BenchError, BuildError, DefinitionError, ValueError) as error:
+        problem = str(error)
+    return Result(converter=what, cycles=cycles, measured=measured, problem=problem)
+
+
+def _measure(task: BenchTask, message: Message) -> Measured:
+    assert task.device is not None
+    return measure_once(
+        rtlil.convert(_converter(task.converter, message), name="top", emit_src=False),
+        DEVICES[task.device],
+        task.seeds,
+        mapping=task.mapping,
+        folder=None if task.cache is None else Path(task.cache),
+    )
+
+
+def _converter(what: Converted, message: Message) -> Converter:
+    component = Deserializer if what.direction == "deserializer" else Serializer
+    return component(
+        message,
+        wire=what.wire,
+        bus_bytes=what.bus_bytes,
+        max_message_bytes=what.max_message_bytes,
+    )

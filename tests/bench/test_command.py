@@ -1,0 +1,150 @@
+"""The command: what it prints and writes, and its exit status."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.bench import Device, MissingToolError, command
+from firm_hdl.bench.results import read_results
+from firm_hdl.bench.run import BenchTask, run_tasks
+from firm_hdl.cli import main
+from tests.bench.results import result
+from tests.frontend.workspace import make_files
+
+TWIST = "geometry_msgs/msg/Twist"
+
+
+def bench(*words: str) -> int:
+    return main(["bench", *words])
+
+
+def test_cycles_need_no_tools(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "a.json"
+    words = ["--device", "none", "--bus-bytes", "4", "--bus-bytes", "8", "--messages", "3"]
+    words += ["--jobs", "1"]
+    assert bench(TWIST, *words, "--json", str(file)) == 0
+    out = capsys.readouterr().out.splitlines()
+    assert [line.split()[:5] for line in out[1:5]] == [
+        [TWIST, "cdr", "deserializer", "4", "1.000"],
+        [TWIST, "cdr", "serializer", "4", "1.000"],
+        [TWIST, "cdr", "deserializer", "8", "1.000"],
+        [TWIST, "cdr", "serializer", "8", "1.000"],
+    ]
+    assert out[5].startswith("simulated with 3 messages, strings of 4 to 10")
+    assert [each.cycles.beats for each in read_results(file) if each.cycles] == [39, 39, 21, 21]
+
+
+def test_a_circuit_is_measured_and_compared(
+    ecp5: Device, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, cache = tmp_path / "a.json", tmp_path / "cache"
+    words = ["std_msgs/msg/Bool", "--direction", "deserializer", "--seeds", "1"]
+    words += ["--cache", str(cache), "--json", str(file)]
+    assert bench(*words) == 0
+    (first,) = read_results(file)
+    assert first.measured is not None and first.measured.device == ecp5
+    assert 20 < first.measured.area.lut < 200 and (first.mhz or 0) > 50
+    assert len(list(cache.iterdir())) == 1
+    text = file.read_text()
+    # From the cache the second time, with the same figures.
+    capsys.readouterr()
+    assert bench(*words, "--compare", str(file)) == 0
+    assert file.read_text() == text
+    assert capsys.readouterr().out.splitlines()[-1] == (
+        "1 converters compared, 0 are new, 0 are not measured now; 0 figures changed by more than "
+        "2 %"
+    )
+    # A circuit that was better before.
+    found = json.loads(text)
+    found["results"][0]["circuit"]["lut"] //= 2
+    file.write_text(json.dumps(found))
+    assert bench(*words, "--compare", str(file)) == 1
+    assert "worse  std_msgs/msg/Bool (lyrical, cdr, 8 bytes) deserializer: LUT" in (
+        capsys.readouterr().out
+    )
+
+
+def test_without_tools_nothing_is_measured(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def missing(device: Device, *, with_placer: bool) -> dict[str, str]:
+        raise MissingToolError(f"nothing is installed for {device.name} {with_placer}")
+
+    monkeypatch.setattr(command, "versions", missing)
+    assert bench(TWIST, "--seeds", "") == 1
+    assert capsys.readouterr() == ("", "error: nothing is installed for ecp5 False\n")
+
+
+def test_a_figure_that_is_missing_is_a_failure(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(command, "versions", lambda device, *, with_placer: {})
+    monkeypatch.setattr(command, "run_tasks", lambda tasks, jobs: [result(problem="too large")])
+    assert bench(TWIST) == 1
+    assert "    no figures: too large\n" in capsys.readouterr().out
+    monkeypatch.setattr(command, "run_tasks", lambda tasks, jobs: [])
+    assert bench(TWIST) == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--seeds", "a", TWIST], "argument --seeds: 'a' is not a number"),
+        (["--seeds", "1,-1", TWIST], "argument --seeds: must be from 0 to 2147483647, not -1"),
+        ([], "name either types or --all"),
+        (["--all", TWIST], "name either types or --all"),
+        (["--device", "abacus", TWIST], "argument --device: invalid choice: 'abacus'"),
+    ],
+)
+def test_wrong_arguments(
+    words: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        bench(*words)
+    assert ended.value.code == 2
+    assert f"firm-hdl bench: error: {message}" in capsys.readouterr().err
+
+
+def test_a_type_that_no_circuit_can_have_is_a_problem_of_its_own(tmp_path: Path) -> None:
+    fields = "".join(f"float64 f{number}\n" for number in range(1100))
+    make_files(tmp_path, {"p/msg/Wide.msg": fields, "p/msg/Small.msg": "bool x"})
+    tasks = [
+        BenchTask(
+            converter=replace(result(f"p/msg/{name}").converter, direction="serializer"),
+            paths=(str(tmp_path),),
+            device=None,
+        )
+        for name in ("Wide", "Missing", "Small")
+    ]
+    found = [each.problem for each in run_tasks(tasks, 1)]
+    assert found[0].startswith("p/msg/Wide: its serializer has 7")
+    assert "type 'Missing' is not defined in package 'p'" in found[1]
+    assert found[2] == ""
+
+
+def test_options_are_those_of_the_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = []
+    monkeypatch.setattr(command, "versions", lambda device, *, with_placer: {})
+
+    def run(tasks: list[object], jobs: int | None) -> list[object]:
+        seen.append((tasks, jobs))
+        return []
+
+    monkeypatch.setattr(command, "run_tasks", run)
+    words = ["--distro", "noetic", "--wire", "cdr", "--bus-bytes", "16", "--seeds", "4,5"]
+    words += ["--mapping", "tee", "--messages", "7", "--message-seed", "9", "--cache", "c"]
+    assert bench("geometry_msgs/Twist", *words, "--jobs", "3") == 1
+    ((tasks, jobs),) = seen
+    assert jobs == 3 and len(tasks) == 2
+    task = tasks[0]
+    assert (task.converter.distro, task.converter.wire, task.converter.bus_bytes) == (
+        "noetic",
+        "cdr",
+        16,
+    )
+    assert (task.seeds, task.mapping, task.cache, task.device) == ((4, 5), "tee", "c", "ecp5")
+    assert (task.stated.count, task.stated.seed) == (7, 9)

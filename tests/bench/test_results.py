@@ -1,0 +1,124 @@
+"""Files of results, tables, and what changed between two sets."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.bench import BenchError
+from firm_hdl.bench.compare import compare, compared
+from firm_hdl.bench.messages import STATED
+from firm_hdl.bench.results import read_results, results_text
+from firm_hdl.bench.tables import geometric_mean, head, row, summary
+from tests.bench.results import result
+
+
+def test_results_come_back_from_a_file(tmp_path: Path) -> None:
+    bare = replace(result("p/msg/B"), measured=None, cycles=None, problem="too large")
+    both = [result("p/msg/C", direction="serializer"), result(), bare]
+    file = tmp_path / "a.json"
+    file.write_text(results_text(both))
+    assert read_results(file) == [result(), bare, result("p/msg/C", direction="serializer")]
+    first = json.loads(file.read_text())["results"][0]
+    assert first["simulation"]["cycles_per_beat"] == 1.25
+    # 600 bytes in 100 cycles of 82.5 MHz.
+    assert first["gbit_per_s"] == 3.96
+    assert first["circuit"]["mhz"] == 82.5
+    assert first["circuit"]["tools"] == {"Yosys": "0.70", "nextpnr-ecp5": "0.11.1"}
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", r"is not a file of results of bench \(JSONDecodeError"),
+        ("[]", r"is not a file of results of bench \(TypeError"),
+        ('{"format": 1}', r"is not a file of results of bench \(KeyError: 'results'\)"),
+        ('{"format": 7, "results": []}', "has format 7, and 1 is read"),
+        ('{"format": 1, "results": [{"type": "x"}]}', r"is not a file .*\(KeyError"),
+    ],
+)
+def test_other_files_are_refused(tmp_path: Path, text: str, message: str) -> None:
+    file = tmp_path / "a.json"
+    file.write_text(text)
+    with pytest.raises(BenchError, match=message):
+        read_results(file)
+
+
+def test_a_line_has_all_figures_and_the_path() -> None:
+    line, path = row(result()).splitlines()
+    assert line.split() == [
+        *("p/msg/A", "cdr", "deserializer", "8", "100", "50", "0", "0", "0"),
+        *("82.5", "(80.0", "90.0", "82.5)", "0.800", "2", "3.96"),
+    ]
+    assert path == (
+        "    12.5 ns, 8.0 of them routing, 9 cells: step 0.5 > & fill, offset 12.0 > run 12.5"
+    )
+    assert row(result(), path=False) == line
+    bare = replace(result(), measured=None, cycles=None, problem="too large")
+    assert row(bare).split("\n")[1] == "    no figures: too large"
+    # Numbers stand below their headings.
+    names = head(None)
+    assert names.index("LUT") + 3 == line.index("100") + 3
+    assert names.index("latency") + 7 == line.rindex(" 2 ") + 2
+
+
+def test_the_summary_has_means_and_extremes() -> None:
+    others = [result("p/msg/B", beats=50, mhz=(70.0,)), result("p/msg/C", beats=100)]
+    text = summary([result(), *others], STATED)
+    assert text == (
+        "Yosys 0.70, nextpnr-ecp5 0.11.1: synth_ecp5 -top top; --45k\n"
+        "simulated with 16 messages, strings of 4 to 10 characters, sequences of 3 to 8 elements, "
+        "seed 0\n"
+        "beats per cycle: 0.737 (geometric mean of 3), 2 below 0.85, lowest 0.500 "
+        "(p/msg/B (lyrical, cdr, 8 bytes) deserializer)\n"
+        "lowest clock rate: 70.0 MHz (p/msg/B (lyrical, cdr, 8 bytes) deserializer)"
+    )
+    assert summary([result(problem="x")], None).endswith(
+        "1 of 1 converters are without some figures"
+    )
+    assert geometric_mean([0.5, 2.0]) == pytest.approx(1)
+
+
+def test_changes_beyond_the_threshold_are_told() -> None:
+    new = result(lut=90, ff=51, mhz=(60.0,), latency=3)
+    found = {
+        change.figure: (str(change), change.is_worse) for change in compare([result()], [new], 0.02)
+    }
+    where = "p/msg/A (lyrical, cdr, 8 bytes) deserializer"
+    assert found == {
+        "LUT": (f"better {where}: LUT 100 -> 90 (-10.0 %)", False),
+        "MHz": (f"worse  {where}: MHz 82.5 -> 60 (-27.3 %)", True),
+        "latency": (f"worse  {where}: latency 2 -> 3 (+50.0 %)", True),
+        "Gbit/s": (f"worse  {where}: Gbit/s 3.960 -> 2.880 (-27.3 %)", True),
+    }
+    assert len(list(compare([result()], [new], 0.01))) == 5
+    assert list(compare([result()], [result()], 0.0)) == []
+
+
+def test_figures_that_vanish_are_worse_and_those_that_appear_are_not() -> None:
+    gone = replace(result(mhz=()), cycles=None)
+    vanished = list(compare([result()], [gone], 0.02))
+    assert {each.figure for each in vanished} == {"MHz", "beats per cycle", "latency", "Gbit/s"}
+    assert all(each.is_worse for each in vanished)
+    assert str(vanished[0]).endswith("MHz 82.5 -> none")
+    assert not any(each.is_worse for each in compare([gone], [result()], 0.02))
+
+
+def test_a_comparison_says_what_is_not_alike() -> None:
+    old = [result(), result("p/msg/B")]
+    text, is_fine = compared(old, [result(mapping="synth_ecp5 -abc9"), result("p/msg/C")], 0.02)
+    made = "Yosys 0.70, nextpnr-ecp5 0.11.1; {}; --45k; seeds 1 2 3; " + str(STATED)
+    assert text == (
+        f"not alike: {result().converter}: {made.format('synth_ecp5 -top top')}, "
+        f"now {made.format('synth_ecp5 -abc9')}\n"
+        "1 converters compared, 1 are new, 1 are not measured now; 0 figures changed by more than "
+        "2 %"
+    )
+    assert is_fine
+    # Nothing to compare with is no pass.
+    assert not compared(old, [result("p/msg/C")], 0.02)[1]
+    assert not compared(old, [result(lut=200)], 0.02)[1]
+    assert compared(old, [result(lut=50)], 0.02)[1]
