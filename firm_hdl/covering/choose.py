@@ -56,7 +56,7 @@ def all_features(
     Parameters
     ----------
     library : Library
-        The library of the message; it knows the language of each definition.
+        The library of the message; it has the language of each definition.
     with_branches : bool
         Include branches. This elaborates the type's converters, which takes some tenths of a
         second.

@@ -1,8 +1,9 @@
 """Which comment belongs to which field, and the unit that a comment names.
 
 The rule is that of ``rosidl_adapter`` (``parse_message_string``, ``process_comments``), used for
-both dialects: comment lines at the very top describe the message; a comment above a definition or
-behind it describes that definition; an indented comment line continues the one before it.
+both dialects. Comment lines at the very top describe the message. A comment above a definition, or
+after it in its line, describes that definition. An indented comment line continues the previous
+one.
 """
 
 from __future__ import annotations
@@ -88,7 +89,7 @@ class CommentCollector:
         self._is_head = False
 
     def claim(self) -> list[str]:
-        """Give a new definition the comments above it and behind it.
+        """Give a new definition the comments above it and in its line.
 
         Returns
         -------

@@ -228,7 +228,7 @@ class Library:
 
     def _unknown(self, names: list[TypeName]) -> DefinitionError:
         for each in names:
-            # A recording may know why it has no definition.
+            # A recording may raise an error with the reason why it has no definition.
             self._sources.find(each.package, each.kind, each.name)
         name = names[0]
         message = unknown_type(self._sources, name.package, name.name)

@@ -145,8 +145,8 @@ def lines_of(text: str, dialect: Dialect) -> Iterator[tuple[int, str]]:
     Yields
     ------
     tuple of int and str
-        Offset of a line, and the line without its line end. The text behind the last line end is
-        a line, too; it may be empty.
+        Offset of a line, and the line without its line end. The text after the last line end is a
+        line, too; it may be empty.
     """
     if dialect == "ros2":
         text = text.replace("\t", " ")  # So does rosidl_adapter, in texts and comments, too.

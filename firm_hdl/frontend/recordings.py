@@ -73,7 +73,7 @@ class RecordingOrigin:
     Raises
     ------
     DefinitionError
-        If the file cannot be read, or carries no definitions. It has no span.
+        If the file cannot be read, or has no definitions. It has no span.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -208,7 +208,7 @@ def _use(path: str, use: Callable[[Reader], _T], budget: Budget) -> _T:
         reason = "it is damaged" if isinstance(error.__context__, unchecked) else str(error)
     except KeyError as error:
         # Such as the language of the definitions.
-        reason = f"rosbags does not know {error}"
+        reason = f"rosbags does not support {error}"
         if error.args[:1] in [(language,) for language in _OTHER_LANGUAGES]:
             reason = f"its definitions are in {error}, and only ros2msg and ros2idl are read"
     except MemoryError:

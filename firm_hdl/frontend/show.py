@@ -166,7 +166,7 @@ def _lines(text: str, fields: Iterable[Field]) -> _Entries:
     remaining = iter(fields)
     lines = [text[start : start + len(line)] for start, line in lines_of(text, "ros2")]
     if not lines[-1]:
-        lines.pop()  # The empty text behind the last line end is not a line.
+        lines.pop()  # The empty text after the last line end is not a line.
     for line in lines:
         type_, _, rest = line.replace("\t", " ").partition("#")[0].rstrip().partition(" ")
         is_field = type_ and rest and "=" not in rest

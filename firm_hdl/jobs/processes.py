@@ -1,4 +1,4 @@
-"""Run programs and worker processes such that an interruption leaves no process and file behind.
+"""Run programs and worker processes such that an interruption leaves neither processes nor files.
 
 A program runs in a process group of its own. When the process that waits for it is stopped, the
 group is killed. Worker processes are stopped, and not waited for, when their parent is interrupted.

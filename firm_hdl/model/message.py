@@ -33,7 +33,7 @@ class Field:
     default : Value or None
         ROS 2 only; never on the wire.
     comment : str
-        Comment lines above and behind the field, without the `#`, joined by newlines.
+        The comments above the field and in its line, without the `#`, joined by newlines.
     unit : str or None
         A comment's ``[unit]``, as rosidl reads it.
     span : Span or None

@@ -1,6 +1,6 @@
 """A fast bench for whole designs: one testbench that drives and observes all streams.
 
-A bench packs all signals that it drives into a few wide ones, and all that it watches in every
+A bench packs all signals that it drives into a few wide signals, and all that it reads in every
 cycle into one. It also drives the clock. So the simulator settles once per clock edge, and payloads
 are read only where a transfer happens or waits. This is several times faster than one testbench per
 stream, which matters for thousands of cases. For users' own testbenches, see
@@ -51,8 +51,8 @@ class Ports:
         Streams inside the design that the bench only watches.
     gates : Signal or None
         A bit for each tap, in order: the design connects the stream through while the bit is high.
-        The bench keeps the bit high while a transfer is offered behind the gate, as the rules of
-        streams demand.
+        While a transfer of the tap waits, the bench keeps the bit high, because `valid` must not
+        fall before the transfer.
     payloads : mapping of str to Value
         Values to observe in place of the payload of a sink or tap.
     """
@@ -99,7 +99,7 @@ class Bench:
     def __init__(self, design: Elaboratable, ports: Ports, *, probes: Sequence[Value] = ()):
         self.sources, self.sinks = ports.sources, ports.sinks
         self.taps, self.gates = ports.taps, ports.gates
-        # Sinks and taps first, as only they are watched.
+        # Sinks and taps first, because only they are checked and observed.
         self.ports = [*self.sinks.values(), *self.taps.values(), *self.sources.values()]
         self.names = [*self.sinks, *self.taps, *self.sources]
         if len(set(self.names)) != len(self.names):
@@ -111,7 +111,7 @@ class Bench:
         self.job: Job | None = None
         self.cycles = 0
         top = self._top(design)
-        # Probes become signals: the simulator compiles what drives signals, but interprets
+        # Probes become signals: the simulator compiles the drivers of signals, but interprets
         # expressions.
         self.probes = [_gathered(top, [value]) for value in probes]
         self.simulator = Simulator(top)
@@ -197,17 +197,17 @@ class Bench:
 
 
 def in_chunks(items: Sequence[T]) -> Iterator[Sequence[T]]:
-    """Yield items in groups of a good size for a module of their own.
+    """Yield items in groups, each of a good size for one module.
 
     The simulator evaluates all combinational assignments of a module again whenever one of their
-    inputs changes, so hundreds of them in one module are slow; so are hundreds of modules.
+    inputs changes. So hundreds of assignments in one module are slow; so are hundreds of modules.
     """
     for start in range(0, len(items), CHUNK):
         yield items[start : start + CHUNK]
 
 
 def _gathered(m: Module, bits: Sequence[Value]) -> Signal:
-    """Return a signal that a module of its own concatenates from bits."""
+    """Return the concatenation of bits, as a signal of a separate module."""
     part = Module()
     together = Cat(*bits)
     gathered = Signal(len(together))
@@ -217,7 +217,7 @@ def _gathered(m: Module, bits: Sequence[Value]) -> Signal:
 
 
 class _Drive:
-    """The inputs of a run: a value for each word of the bench, in each cycle."""
+    """The inputs of a run: the values of the bench's words in each cycle."""
 
     def __init__(self, bench: Bench, job: Job):
         self.words = [0] * len(bench.words)

@@ -1,7 +1,7 @@
 """Converters on a bench: circuits that are elaborated once and run many times.
 
 Stalls and errors use these names of streams: ``packets_in``, ``packets_out``, ``status`` (of the
-deserializer, or of a serializer alone), ``sent_status`` (of a serializer behind a deserializer),
+deserializer, or of a serializer alone), ``sent_status`` (of a serializer after a deserializer),
 and ``message.`` with the path of a leaf.
 """
 

@@ -1,8 +1,8 @@
 """Whole messages on message interfaces, for users' own testbenches.
 
-A :class:`MessagePort` knows the leaf of each stream. All leaves move independently. When sending,
-every leaf offers its transfers as soon as it can. When receiving, a leaf is ready only while
-transfers of it are known to follow; lengths determine this as they arrive.
+A :class:`MessagePort` has the leaf of each stream. All leaves transfer independently. A sending
+leaf offers its transfers as soon as it can. A receiving leaf is ready only while more of its
+transfers are known to follow; the lengths that have arrived determine this.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class MessagePort:
     Attributes
     ----------
     plan : Plan
-        Has the leaves by index.
+        Its `leaves` are in the order of their indices.
     streams : dict of int to stream.Interface
     """
 
@@ -167,7 +167,7 @@ class MessagePort:
         patterns: list[Iterator[bool]],
         before: int,
     ) -> int:
-        """Make the leaves ready that have transfers to come; return them as a bit mask."""
+        """Make the leaves with pending transfers ready; return them as a bit mask."""
         ready = 0
         for leaf in pending.counts:
             if not next(patterns[leaf]):

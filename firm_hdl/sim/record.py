@@ -204,7 +204,7 @@ class Recorder:
         """Return the observations after the run; an incomplete packet at the end is an error."""
         if self.out.partial:
             raise AssertionError(
-                f"Stream 'packets_out' begins a packet too many: {self.out.partial.hex()}"
+                f"Stream 'packets_out' starts an unexpected packet: {self.out.partial.hex()}"
             )
         self.result.transfers = self._transfers()
         self.result.beats_out = self.out.beats

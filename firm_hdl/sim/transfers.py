@@ -1,8 +1,8 @@
 """Count, split and join the transfers of messages.
 
 Each length determines the number of transfers of the leaves directly below it. So one table, made
-from the layout, gives the transfers that a message still requires, in any order
-of its leaves.
+from the layout, gives the transfers that a message still requires, in whatever order its leaves
+transfer.
 """
 
 from __future__ import annotations

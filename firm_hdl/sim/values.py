@@ -68,7 +68,7 @@ def from_transfers(
     *,
     exact: bool = False,
 ) -> dict[str, Any]:
-    """Return the value that the transfers of one message carry.
+    """Return the value of a message, given its transfers.
 
     Numbers become `int`, `float` and `bool`, text `str` (or `bytes` if it is not UTF-8, a list of
     numbers if a `wstring` has units over 0xFFFF), arrays and sequences lists, messages dicts.
@@ -88,7 +88,7 @@ def from_transfers(
     value = joiner.message(message, ())
     for leaf, stream in joiner.streams.items():
         if any(True for _ in stream):
-            raise ValueError(f"Leaf {plan.leaves[leaf]} has more transfers than the message")
+            raise ValueError(f"Leaf {plan.leaves[leaf]} has more transfers than the message needs")
     return value
 
 
@@ -177,12 +177,13 @@ class _Joiner(_Leaves):
     def receive(self, number: int) -> Payload:
         for payload in self.streams.get(number, iter(())):
             return payload
-        raise ValueError(f"Leaf {self.plan.leaves[number]} has fewer transfers than the message")
+        leaf = self.plan.leaves[number]
+        raise ValueError(f"Leaf {leaf} has fewer transfers than the message needs")
 
     def number(self, number: int) -> int:
         payload = self.receive(number)
         if not isinstance(payload, int):
-            raise ValueError(f"Leaf {self.plan.leaves[number]} carries numbers, not {payload!r}")
+            raise ValueError(f"Leaf {self.plan.leaves[number]} transfers numbers, not {payload!r}")
         return payload
 
     def message(self, message: Message, path: Path) -> dict[str, Any]:
@@ -214,11 +215,12 @@ class _Joiner(_Leaves):
         while len(values) < count:
             payload = self.receive(number)
             if isinstance(payload, int):
-                raise ValueError(f"Leaf {leaf} carries lanes and last, not {payload!r}")
+                raise ValueError(f"Leaf {leaf} transfers lanes and `last`, not {payload!r}")
             lanes, last = payload
             values += lanes[: count - len(values)]
             if last != (len(values) == count):
-                raise ValueError(f"Leaf {leaf} has last wrong at item {len(values)} of {count}")
+                item = f"item {len(values)} of {count}"
+                raise ValueError(f"Leaf {leaf} has the wrong `last` at {item}")
         return values
 
 
@@ -244,7 +246,8 @@ def _members(message: Message, value: object, where: str) -> list[Any]:
             raise ValueError(f"{what} lacks the field {item.name!r} of {message.name}")
         members.append(given.pop(names[0]))
     if given:
-        raise ValueError(f"{what} has a field {next(iter(given))!r} that {message.name} lacks")
+        name = next(iter(given))
+        raise ValueError(f"{what} has a field {name!r} that {message.name} does not have")
     return members
 
 

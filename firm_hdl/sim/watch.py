@@ -144,7 +144,6 @@ def watch(streams: Mapping[str, stream.Interface]) -> Callable[[SimulatorContext
             _, reset, valid, ready, *bits = await ctx.tick().sample(valids, readies, *payloads)
             if reset:
                 # A reset discards offered transfers and incomplete packets.
-
                 rules = StreamRules(names)
                 for rule in packets.values():
                     rule._inside = False

@@ -267,7 +267,7 @@ def test_definitions_in_an_unknown_language_are_refused_by_name(tmp_path):
     with pytest.raises(DefinitionError) as error:
         RecordingOrigin(file)
     assert str(error.value) == (
-        f"error: '{file}' cannot be read as a recording: rosbags does not know 'ros1msg'"
+        f"error: '{file}' cannot be read as a recording: rosbags does not support 'ros1msg'"
     )
 
 

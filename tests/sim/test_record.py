@@ -63,7 +63,7 @@ def test_start_of_another_packet_is_an_error():
     take = run.takes()["packets_out"]
     take(1, beat(b"ab"))
     take(2, beat(b"abcd", last=False))
-    with pytest.raises(AssertionError, match=r"begins a packet too many: 61626364$"):
+    with pytest.raises(AssertionError, match=r"starts an unexpected packet: 61626364$"):
         run.finish()
 
 

@@ -134,7 +134,12 @@ REFUSED = [
     ({"x": "uint8[]"}, {"x": "abc"}, TypeError, "x must be a list of uint8, not 'abc'"),
     ({"x": "uint8[]"}, {"x": 3}, TypeError, "x must be a list of uint8, not 3"),
     ({"x": "uint8"}, {}, ValueError, "value lacks the field 'x' of p/msg/T"),
-    ({"x": "uint8"}, {"x": 1, "y": 2}, ValueError, "value has a field 'y' that p/msg/T lacks"),
+    (
+        {"x": "uint8"},
+        {"x": 1, "y": 2},
+        ValueError,
+        "value has a field 'y' that p/msg/T does not have",
+    ),
     ({"x": "uint8"}, 5, TypeError, "value must be a p/msg/T, not 5"),
     (
         {"p": (INNER, "[]")},
@@ -202,23 +207,23 @@ def test_text_that_is_not_unicode_stays_what_it_was():
 @pytest.mark.parametrize(
     ("streams", "message"),
     [
-        ({"q.length": [1]}, "Leaf q.items has fewer transfers than the message"),
-        ({}, "Leaf q.length has fewer transfers than the message"),
-        ({"q.length": [0, 0]}, "Leaf q.length has more transfers than the message"),
+        ({"q.length": [1]}, "Leaf q.items has fewer transfers than the message needs"),
+        ({}, "Leaf q.length has fewer transfers than the message needs"),
+        ({"q.length": [0, 0]}, "Leaf q.length has more transfers than the message needs"),
         (
             {"q.length": [0], "q.items": [((0, 0, 0, 0), True)]},
-            "Leaf q.items has more transfers than the message",
+            "Leaf q.items has more transfers than the message needs",
         ),
         (
             {"q.length": [1], "q.items": [((1, 0, 0, 0), False)]},
-            "Leaf q.items has last wrong at item 1 of 1",
+            "Leaf q.items has the wrong `last` at item 1 of 1",
         ),
         (
             {"q.length": [5], "q.items": [((1, 0, 0, 0), True), ((1, 0, 0, 0), True)]},
-            "Leaf q.items has last wrong at item 4 of 5",
+            "Leaf q.items has the wrong `last` at item 4 of 5",
         ),
-        ({"q.length": [((1,), True)]}, "Leaf q.length carries numbers, not ((1,), True)"),
-        ({"q.length": [1], "q.items": [1]}, "Leaf q.items carries lanes and last, not 1"),
+        ({"q.length": [((1,), True)]}, "Leaf q.length transfers numbers, not ((1,), True)"),
+        ({"q.length": [1], "q.items": [1]}, "Leaf q.items transfers lanes and `last`, not 1"),
     ],
 )
 def test_transfers_that_are_no_message_are_refused(streams, message):
