@@ -61,7 +61,7 @@ def _hash(args: argparse.Namespace) -> None:
 def add_proto(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl proto``."""
     add_types_or_all(command)
-    command.add_argument("--no-quotes", action="store_true", help="print no quotes around it")
+    command.add_argument("--no-quotes", action="store_true", help="print no quotes around the text")
     command.set_defaults(run=_proto)
 
 

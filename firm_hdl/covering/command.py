@@ -114,7 +114,8 @@ def _usable(library: Library, paths: Sequence[str]) -> list[Message]:
 
 def _check(types: Mapping[str, frozenset[str]], kept: list[str], path: str) -> int:
     if unknown := [name for name in kept if name not in types]:
-        raise BuildError(f"'{path}' names types that are not given: {', '.join(unknown)}")
+        names = ", ".join(unknown)
+        raise BuildError(f"'{path}' names types that are not among the given ones: {names}")
     missing = _union(types.values()) - _union(types[name] for name in kept)
     for feature in sorted(missing):
         # The type with the fewest features shows the missing one best.

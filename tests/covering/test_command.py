@@ -51,7 +51,7 @@ def test_what_is_missing_is_named_with_a_type_that_has_it(tmp_path, capsys):
     ("text", "said"),
     [
         ("# nothing\n", "error: '{path}' names no types"),
-        ("x/msg/Y\n", "error: '{path}' names types that are not given: x/msg/Y"),
+        ("x/msg/Y\n", "error: '{path}' names types that are not among the given ones: x/msg/Y"),
         (None, "error: '{path}': No such file or directory"),
     ],
 )
