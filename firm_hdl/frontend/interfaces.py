@@ -200,7 +200,7 @@ def _check_separators(
         yield Diagnostic(message=message, span=span)
     for offset, line in separators[want:]:
         span = Span(source=source, start=offset, end=offset + len(line))
-        yield Diagnostic(message=f"{too_many}; this is one more", span=span)
+        yield Diagnostic(message=f"{too_many}; this line is too many", span=span)
 
 
 def _text(source: Source, part: list[_Line], language: Kind, dialect: Dialect) -> str:

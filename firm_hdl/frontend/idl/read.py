@@ -218,7 +218,7 @@ class _Reader:
 
     def _typedef(self, node: Typedef) -> None:
         for declarator in node.declarators[1:]:
-            message = f"a typedef declares one name in ROS 2; '{declarator.name.text}' is one more"
+            message = f"a typedef declares one name in ROS 2; '{declarator.name.text}' is too many"
             self.wrong.append(Diagnostic(message=message, span=declarator.name.span))
 
     def _check_alias(self, node: Typedef) -> None:
@@ -321,7 +321,7 @@ def _check_structs(file: FileSyntax, structs: list[tuple[Path, Struct]]) -> Iter
     for _, struct in structs[len(_DECLARED) :]:
         message = (
             "a file has one struct for a message, two for a service, three for an action; "
-            f"'{struct.name.text}' is one more"
+            f"'{struct.name.text}' is too many"
         )
         yield Diagnostic(message=message, span=struct.name.span)
     what, kind = _DECLARED[min(len(structs), len(_DECLARED))]
