@@ -1,4 +1,4 @@
-"""Folders of files: whole or not at all, the same everywhere, left alone when current."""
+"""Folders of files: whole or not at all, and the same everywhere."""
 
 from __future__ import annotations
 
@@ -14,9 +14,8 @@ import pytest
 
 import firm_hdl
 from firm_hdl.errors import DefinitionError
-from firm_hdl.export.backend import BackEnd, Converters, Options, Output
+from firm_hdl.export.backend import Options
 from firm_hdl.export.build import BuildError, Built, build, check_size
-from firm_hdl.export.vhdl.backend import Vhdl
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, from_yaml
 from firm_hdl.wire import lay_out
@@ -43,23 +42,6 @@ def build_one(out: Path, type_: str = "std_msgs/msg/Bool", **options: object) ->
     rest = {name: options.pop(name) for name in ("force", "stimuli") if name in options}
     [built] = build([type_], out, library=library, options=Options(**options), **rest)
     return built
-
-
-def quick_vhdl(self: Vhdl, converters: Converters) -> Output:
-    text = converters.header(converters.name, "converters")
-    return Output(files={"vhdl/a.vhd": f"-- {text}"}, manifest={"vhdl": {}})
-
-
-@pytest.fixture
-def quick(monkeypatch):
-    """Leave out Yosys, which takes nearly all of a build's time."""
-    for name in ("Deserializer", "Serializer", "Top"):
-        monkeypatch.setattr(f"firm_hdl.export.backend.{name}", lambda *args, **options: None)
-    monkeypatch.setattr(
-        "firm_hdl.export.verilog.backend.to_verilog",
-        lambda top, module, header: f"{header}module {module};\n",
-    )
-    monkeypatch.setattr(Vhdl, "write", quick_vhdl)
 
 
 def test_folder_is_complete(tmp_path):
@@ -230,80 +212,6 @@ def test_comments_and_units_are_in_the_manifest(tmp_path):
     found = {leaf["path"]: (leaf.get("comment"), leaf.get("unit")) for leaf in leaves}
     assert found["parts.item.item"][1] == "m"
     assert found["parts.length"][1] is None
-
-
-@pytest.mark.usefixtures("quick")
-def test_current_folder_is_left_alone(tmp_path):
-    first = build_one(tmp_path)
-    assert not first.was_current
-    (first.folder / "plan.yaml").touch()
-    times = {path: path.stat().st_mtime_ns for path in first.folder.iterdir()}
-    again = build_one(tmp_path)
-    assert again.was_current
-    assert again.description == first.description
-    assert times == {path: path.stat().st_mtime_ns for path in first.folder.iterdir()}
-    assert not build_one(tmp_path, force=True).was_current
-
-
-@pytest.mark.parametrize("name", ["plan.yaml", "manifest.json"])
-@pytest.mark.parametrize("how", ["changed", "removed"])
-@pytest.mark.usefixtures("quick")
-def test_folder_that_was_tampered_with_is_written_again(tmp_path, name, how):
-    built = build_one(tmp_path)
-    before = tree(built.folder)
-    if how == "removed" and name != "manifest.json":
-        (built.folder / name).unlink()
-    else:
-        text = (built.folder / name).read_text().replace("0.1.0", "0.0.9").replace("step", "stop")
-        (built.folder / name).write_text(text)
-    assert not build_one(tmp_path).was_current
-    assert tree(built.folder) == before
-
-
-@pytest.mark.usefixtures("quick")
-def test_other_options_and_definitions_are_built_anew(tmp_path, monkeypatch):
-    build_one(tmp_path)
-    assert not build_one(tmp_path, max_message_bytes=1000).was_current
-    assert build_one(tmp_path, max_message_bytes=1000).was_current
-    assert build_one(tmp_path, bus_bytes=4).folder.name == "std_msgs_msg_Bool_cdr_4"
-    monkeypatch.setattr(firm_hdl, "__version__", "9.9.9")
-    assert not build_one(tmp_path, max_message_bytes=1000).was_current
-
-
-class Notes(BackEnd):
-    """A back end that is new."""
-
-    name = "notes"
-
-    def write(self, converters: Converters) -> Output:
-        return Output(files={"notes.txt": f"{converters.message.name}\n"})
-
-
-@pytest.mark.usefixtures("quick")
-def test_a_new_back_end_writes_its_files_to_folders_that_were_current(tmp_path, monkeypatch):
-    before = build_module.BACK_ENDS
-    built = build_one(tmp_path)
-    monkeypatch.setattr(build_module, "BACK_ENDS", (*before, Notes()))
-    assert not build_one(tmp_path).was_current
-    assert (built.folder / "notes.txt").read_text() == "std_msgs/msg/Bool\n"
-    assert build_one(tmp_path).was_current
-    monkeypatch.setattr(build_module, "BACK_ENDS", before)
-    assert not build_one(tmp_path).was_current
-    assert not (built.folder / "notes.txt").exists()
-
-
-@pytest.mark.usefixtures("quick")
-def test_a_back_end_under_the_name_of_another_is_not_noticed(tmp_path, monkeypatch):
-    build_one(tmp_path)
-    monkeypatch.setattr(Notes, "name", "documents")
-    back_ends = [Notes() if each.name == "documents" else each for each in build_module.BACK_ENDS]
-    monkeypatch.setattr(build_module, "BACK_ENDS", tuple(back_ends))
-    assert build_one(tmp_path).was_current
-
-
-def test_back_ends_have_names_of_their_own():
-    names = [each.name for each in build_module.BACK_ENDS]
-    assert len({*names}) == len(names) and all(names)
 
 
 @pytest.mark.usefixtures("quick")

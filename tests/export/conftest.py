@@ -1,0 +1,25 @@
+"""Fixtures of the tests of output."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.export.backend import Converters, Output
+from firm_hdl.export.vhdl.backend import Vhdl
+
+
+def quick_vhdl(self: Vhdl, converters: Converters) -> Output:
+    text = converters.header(converters.name, "converters")
+    return Output(files={"vhdl/a.vhd": f"-- {text}"}, manifest={"vhdl": {}})
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """Leave out Yosys, which takes nearly all of a build's time."""
+    for name in ("Deserializer", "Serializer", "Top"):
+        monkeypatch.setattr(f"firm_hdl.export.backend.{name}", lambda *args, **options: None)
+    monkeypatch.setattr(
+        "firm_hdl.export.verilog.backend.to_verilog",
+        lambda top, module, header: f"{header}module {module};\n",
+    )
+    monkeypatch.setattr(Vhdl, "write", quick_vhdl)

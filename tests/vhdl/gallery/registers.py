@@ -1,0 +1,198 @@
+# amaranth: UnusedElaboratable=no
+"""Registers and signals with their names and attributes, and messages for simulators."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Assert, Assume, Cover, Format, Module, Print, Signal, signed
+
+from tests.vhdl.gallery import Made, shows, signals
+
+
+@shows(
+    """\
+
+  -- Registers.
+  signal o_q : unsigned(3 downto 0) := "0101";
+
+  -- Combinational signals.
+  signal total : unsigned(3 downto 0);
+
+  -- More names of values, for whoever looks at a simulation.
+  signal r : unsigned(3 downto 0);
+begin
+
+  total <= o_q + unsigned(i);
+
+  p_clk : process (clk)
+  begin
+    if rising_edge(clk) then
+      if rst = '1' then
+        o_q <= "0101";
+      else
+        o_q <= total xor unsigned(i);
+      end if;
+    end if;
+  end process;
+
+  o2 <= std_logic_vector(unsigned'(total(2 downto 0) & total(3)));
+
+  o <= std_logic_vector(o_q);
+
+  r <= o_q;
+"""
+)
+def names_of_signals() -> Made:
+    """What has a name keeps it; a register's second name is one more."""
+    m, (i, o, o2) = Module(), signals("i o o2", 4)
+    r, total = Signal(4, name="r", init=5), Signal(4, name="total")
+    m.d.comb += total.eq(r + i)
+    m.d.sync += r.eq(total ^ i)
+    m.d.comb += [o.eq(r), o2.eq(total.rotate_left(1))]
+    return m, [i, o, o2]
+
+
+@shows(
+    """\
+
+  -- Registers.
+  signal o_q : unsigned(3 downto 0) := "1001";
+begin
+
+  p_clk : process (clk)
+  begin
+    if rising_edge(clk) then
+      if rst = '1' then
+        o_q <= "1001";
+      else
+        if i(0) = '1' then
+          o_q <= unsigned(i);
+        end if;
+        if i(1) = '1' then
+          o_q(3 downto 2) <= "00";
+        end if;
+      end if;
+    end if;
+  end process;
+
+  o <= std_logic_vector(o_q);
+"""
+)
+def parts_of_registers() -> Made:
+    """A reset gives the first value; statements stay in their order."""
+    m, (i,) = Module(), signals("i", 4)
+    o = Signal(4, name="o", init=9)
+    with m.If(i[0]):
+        m.d.sync += o.eq(i)
+    with m.If(i[1]):
+        m.d.sync += o[2:].eq(0)
+    return m, [i, o]
+
+
+@shows(
+    """\
+
+  -- Registers.
+  signal kept : unsigned(3 downto 0) := (others => '0');
+
+  attribute keep : string;
+  attribute n : integer;
+  attribute keep of kept : signal is "true";
+  attribute n of kept : signal is 3;
+begin
+
+  p_clk : process (clk)
+  begin
+    if rising_edge(clk) then
+      if rst = '1' then
+        kept <= (others => '0');
+      else
+        kept <= unsigned(i);
+      end if;
+    end if;
+  end process;
+"""
+)
+def attributes() -> Made:
+    """What tools are told of a signal is told them here, too."""
+    m, (i,) = Module(), signals("i", 4)
+    kept = Signal(4, name="kept", attrs={"keep": "true", "n": 3})
+    m.d.sync += kept.eq(i)
+    return m, [i]
+
+
+@shows(
+    """\
+
+  -- Combinational signals.
+  signal choice_1 : std_logic;
+  signal choice_2 : std_logic;
+  signal choice_4 : std_logic;
+  signal choice_6 : std_logic;
+  signal choice_7 : std_logic;
+begin
+
+  choice_1 <= '1' when a = '1' else
+              '0';
+
+  choice_2 <= '1' when a = '1' else
+              '0';
+
+  choice_4 <= '1' when a = '1' else
+              '0';
+
+  choice_6 <= '1' when a = '1' else
+              '0';
+
+  choice_7 <= '1' when a = '1' else
+              '0';
+
+  -- synthesis translate_off
+  postponed process (all)
+  begin
+    if choice_1 = '1' then
+      report "{\"\"\" & to_decimal(unsigned(d)) & \"\"\" " & to_hstring(unsigned(d)) & " " &
+          to_string(unsigned(sd)) & " " & to_ostring(unsigned(d)) & "}" & character'val(9) &
+          to_characters(unsigned(d)) severity note;
+    end if;
+  end process;
+  -- synthesis translate_on
+
+  -- synthesis translate_off
+  postponed process (all)
+  begin
+    if choice_2 = '1' then
+      assert a = '1' report "assumption failed in t" severity error;
+    end if;
+  end process;
+  -- synthesis translate_on
+
+  -- Cover: to_std_logic(unsigned(d) = 1)
+
+  -- synthesis translate_off
+  process (clk)
+  begin
+    if rising_edge(clk) and (choice_6 = '1') then
+      assert signed(resize(unsigned(d), 9)) = signed(unsigned(sd)) report "no" severity error;
+    end if;
+  end process;
+  -- synthesis translate_on
+
+  -- synthesis translate_off
+  process (clk)
+  begin
+    if rising_edge(clk) and (choice_7 = '1') then
+      report "" severity note;
+    end if;
+  end process;
+  -- synthesis translate_on
+"""
+)
+def messages() -> Made:
+    """Messages are for simulators; of a format the kinds of numbers are kept."""
+    m, (a,), (d,) = Module(), signals("a"), signals("d", 8)
+    sd = Signal(signed(8), name="sd")
+    with m.If(a):
+        text = Format('{{"{}" {:x} {:b} {:o}}}\t{:c}', d, d, sd, d, d)
+        m.d.comb += [Print(text), Assume(a), Cover(d == 1)]
+        m.d.sync += [Assert(d == sd, "no"), Print("")]
+    return m, [a, d, sd]
