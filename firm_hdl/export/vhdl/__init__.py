@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from firm_hdl.export.vhdl.backend import Vhdl, VhdlFolder, to_vhdl
+from firm_hdl.export.vhdl.backend import Vhdl
 
-__all__ = ["Vhdl", "VhdlFolder", "to_vhdl"]
+__all__ = ["Vhdl"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -21,29 +21,13 @@ from firm_hdl.plan import Plan
 from firm_hdl.vhdl.convert import convert
 from firm_hdl.vhdl.package import PACKAGE_NAME
 
-__all__ = ["FOLDER", "Vhdl", "VhdlFolder", "to_vhdl"]
+__all__ = ["FOLDER", "Vhdl", "to_vhdl"]
 
 FOLDER = "vhdl"
 """Subfolder of a type's folder."""
 
 COMMON = (f"{TYPES_NAME}.vhd", f"{PACKAGE_NAME}.vhd")
 """Files that are the same for all types."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VhdlFolder:
-    """Files of the folder, except those of :mod:`firm_hdl.export.packaging`, and their manifest.
-
-    Attributes
-    ----------
-    files : dict of str to str
-        Texts by file name.
-    manifest : dict
-        The manifest's entry `vhdl`.
-    """
-
-    files: dict[str, str]
-    manifest: dict[str, Any]
 
 
 class Vhdl(BackEnd):
@@ -83,12 +67,16 @@ class _Parts:
         )
 
 
-def to_vhdl(converters: Converters) -> VhdlFolder:
-    """Write the VHDL of a message type."""
-    message, plan, name = converters.message, converters.plan, converters.name
-    parts = _Parts(
-        base=identifier(name).lower(), header=converters.header(name, "converters")
-    )
+def to_vhdl(converters: Converters) -> Output:
+    """Write the VHDL of a message type, except the files of :mod:`firm_hdl.export.packaging`.
+
+    Returns
+    -------
+    Output
+        Texts by name in the VHDL folder, and the manifest's entry `vhdl`.
+    """
+    name, plan = converters.name, converters.plan
+    parts = _Parts(base=identifier(name).lower(), header=converters.header(name, "converters"))
     cores = {
         way: parts.core(converters.tops[way], f"{parts.base}_{way}_flat") for way in DIRECTIONS
     }
@@ -99,46 +87,35 @@ def to_vhdl(converters: Converters) -> VhdlFolder:
         _add_flat(parts, converters, cores)
     common = [file for file in COMMON if file in parts.design]
     design = [*common, *(file for file in parts.design if file not in common)]
-    benches = {**PARTS, **{f"{top}.vhd": text for top, text in parts.benches.items()}}
     entities = list(parts.benches)
+    benches = {**PARTS, **{f"{top}.vhd": text for top, text in parts.benches.items()}}
     files = {
         **{file: parts.design[file] for file in design},
         **benches,
         RUN_SCRIPT: run_script([*design, *benches], entities[0]),
     }
-    stimuli = list(converters.stimuli)
-    if stimuli:
-        remark = f"Packets of {message.name}, {plan.wire}, serialized by rosbags; one per line."
-        files[STIMULI] = packets_text(stimuli, remark)
-    bench = {
-        "entity": entities[0],
-        "entities": entities,
-        "files": list(benches),
-        "common_files": list(PARTS),
-        "script": RUN_SCRIPT,
-        "stimuli": STIMULI if stimuli else None,
-    }
-    return VhdlFolder(files=files, manifest=_section(parts, ports, design, common, bench))
-
-
-def _section(
-    parts: _Parts,
-    ports: str,
-    design: Sequence[str],
-    common: Sequence[str],
-    bench: Mapping[str, Any],
-) -> dict[str, Any]:
-    """Return the folder's entry of the manifest; files are in compile order."""
-    return {
+    if converters.stimuli:
+        remark = f"Packets of {plan.message}, {plan.wire}, serialized by rosbags; one per line."
+        files[STIMULI] = packets_text(converters.stimuli, remark)
+    section = {
         "folder": FOLDER,
         "name": parts.base,
         "standard": "2008",
         "ports": ports,
         **parts.section,
+        # Files are in compile order.
         "files": design,
         "common_files": common,
-        "bench": bench,
+        "bench": {
+            "entity": entities[0],
+            "entities": entities,
+            "files": list(benches),
+            "common_files": list(PARTS),
+            "script": RUN_SCRIPT,
+            "stimuli": STIMULI if converters.stimuli else None,
+        },
     }
+    return Output(files=files, manifest=section)
 
 
 def _add_records(

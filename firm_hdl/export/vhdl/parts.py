@@ -6,6 +6,8 @@ line is an empty packet, and a line that starts with ``#`` is a comment. Simulat
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from firm_hdl.export.templates import text_of
 
 __all__ = ["PARTS", "packets_text"]
@@ -17,7 +19,7 @@ PARTS = {
 """Texts by file name, in compile order."""
 
 
-def packets_text(packets: list[bytes], remark: str = "") -> str:
+def packets_text(packets: Iterable[bytes], remark: str = "") -> str:
     """Return the text of a file of packets, as the source and the sink read it.
 
     >>> packets_text([b"\\x00\\x1f", b""], "Two packets.")

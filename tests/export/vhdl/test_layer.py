@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 from firm_hdl import Deserializer, Serializer, load_message
-from firm_hdl.export.backend import Converters, Options, Ports
+from firm_hdl.export.backend import Converters, Options, Output, Ports
 from firm_hdl.export.top import Direction, Top
-from firm_hdl.export.vhdl.backend import VhdlFolder, to_vhdl
+from firm_hdl.export.vhdl.backend import to_vhdl
 from firm_hdl.export.vhdl.layer import UserLayer, user_layer
 from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.model import Message
@@ -79,7 +79,7 @@ def vhdl_of(
     bus_bytes: int = 8,
     stimuli: Iterable[bytes] = (),
     ports: Ports = "records",
-) -> tuple[VhdlFolder, Plan]:
+) -> tuple[Output, Plan]:
     tops: Any = {
         "deserializer": Top(Deserializer(message, bus_bytes=bus_bytes)),
         "serializer": Top(Serializer(message, bus_bytes=bus_bytes)),
