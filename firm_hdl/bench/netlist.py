@@ -1,25 +1,20 @@
-"""Netlists of Yosys as JSON: counts of cells, own names of nets, and registers outside of ports.
-
-A clock rate of a circuit alone leaves out the paths from its input ports and to its output ports.
-So every bit of a port gets a flip-flop outside. They are put into the netlist after it was mapped:
-the circuit inside is the one whose cells were counted, and nothing is optimized across its ports.
-"""
+"""Netlists of Yosys as JSON: counts of cells, and the design's own names of nets."""
 
 from __future__ import annotations
 
 import re
 from collections import Counter, deque
 from collections.abc import Iterator, Mapping
-from itertools import count
 from typing import Any
 
-from firm_hdl.bench.devices import Placer
 from firm_hdl.bench.tools import BenchError
 
-__all__ = ["Names", "cell_counts", "register_ports", "top_module"]
+__all__ = ["PORT", "Names", "cell_counts", "top_module"]
 
-UNREGISTERED = ("clk", "rst")
-"""Clock and reset. A reset comes from a register of its own, whose path is not the circuit's."""
+PORT = "port "
+"""How names of flip-flops outside of ports start; see :mod:`firm_hdl.bench.surroundings`."""
+
+_PACKED = re.compile(r"_(?:DFF)?LC$|\$.*$")
 
 
 def top_module(netlist: Mapping[str, Any]) -> dict[str, Any]:
@@ -39,62 +34,6 @@ def top_module(netlist: Mapping[str, Any]) -> dict[str, Any]:
 def cell_counts(top: Mapping[str, Any]) -> Counter[str]:
     """Count a module's cells by type."""
     return Counter(cell["type"] for cell in top["cells"].values())
-
-
-def register_ports(top: dict[str, Any], placer: Placer) -> int:
-    """Put a flip-flop outside of every bit of every port but clock and reset.
-
-    Returns
-    -------
-    int
-        Number of flip-flops that were added.
-
-    Raises
-    ------
-    BenchError
-        If the module has no port ``clk``.
-    """
-    if "clk" not in top["ports"]:
-        raise BenchError("the circuit has no clock 'clk', so it has no clock rate")
-    (clock,) = top["ports"]["clk"]["bits"]
-    fresh = count(1 + max(_bits(top), default=1))
-    added = 0
-    for name, port in top["ports"].items():
-        if name in UNREGISTERED:
-            continue
-        for index, inside in enumerate(port["bits"]):
-            # An output may be a constant.
-            if not isinstance(inside, int):
-                continue
-            outside = next(fresh)
-            is_input = port["direction"] == "input"
-            data, output = (outside, inside) if is_input else (inside, outside)
-            port["bits"][index] = outside
-            top["cells"][f"port {name}[{index}]"] = {
-                "type": placer.register,
-                "parameters": dict(placer.parameters),
-                "attributes": {},
-                "port_directions": {
-                    placer.clock: "input",
-                    placer.data: "input",
-                    placer.output: "output",
-                },
-                "connections": {
-                    placer.clock: [clock],
-                    placer.data: [data],
-                    placer.output: [output],
-                },
-            }
-            added += 1
-    return added
-
-
-def _bits(top: Mapping[str, Any]) -> Iterator[int]:
-    for cell in top["cells"].values():
-        for bits in cell["connections"].values():
-            yield from (bit for bit in bits if isinstance(bit, int))
-    for each in (*top["ports"].values(), *top["netnames"].values()):
-        yield from (bit for bit in each["bits"] if isinstance(bit, int))
 
 
 class Names:
@@ -118,6 +57,10 @@ class Names:
         self._drivers = {
             bit: name for name in self._cells for bit in self._connected(name, "output")
         }
+        self._sinks: dict[int, list[str]] = {}
+        for name in self._cells:
+            for bit in self._connected(name, "input"):
+                self._sinks.setdefault(bit, []).append(name)
         for name, net in top["netnames"].items():
             is_own = not net.get("hide_name") and not derived.search(name)
             for index, bit in enumerate(net["bits"]):
@@ -133,11 +76,25 @@ class Names:
         return self._own.get(self._bits.get(name, -1), "")
 
     def register(self, cell: str) -> str:
-        """Return the design's name of a flip-flop, from the name of its cell."""
-        if cell.startswith("port "):
+        """Return the design's name of a flip-flop, from the name of its cell.
+
+        A placed cell of iCE40 has the name of its look-up table, whose output the flip-flop takes.
+        """
+        if cell.startswith(PORT):
             return cell.partition("[")[0]
-        outputs = self._connected(cell, "output")
-        return next((self._own[bit] for bit in outputs if bit in self._own), cell)
+        inside = self._mapped(cell)
+        outputs = list(self._connected(inside, "output"))
+        for behind in (inside, *(name for bit in outputs for name in self._sinks.get(bit, ()))):
+            if behind.startswith(PORT):
+                return behind.partition("[")[0]
+            for bit in self._connected(behind, "output"):
+                if bit in self._own:
+                    return self._own[bit]
+        return cell
+
+    def _mapped(self, cell: str) -> str:
+        """Return the name that a placed cell had before it was packed."""
+        return cell if cell in self._cells else _PACKED.sub("", cell)
 
     def joining(self, cell: str, net: str) -> Iterator[str]:
         """Yield the design's names of what enters a cell, through other logic, beside one net.
@@ -146,7 +103,7 @@ class Names:
         """
         seen = {self._bits.get(net, -1)}
         told: set[str] = set()
-        waiting = deque(self._connected(cell, "input"))
+        waiting = deque(self._connected(self._mapped(cell), "input"))
         while waiting:
             bit = waiting.popleft()
             if bit in seen:

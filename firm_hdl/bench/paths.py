@@ -41,7 +41,8 @@ class CriticalPath:
 
     def __str__(self) -> str:
         way = " > ".join(f"{name} {ns:.1f}" for ns, name in self.points)
-        return f"{self.ns:.1f} ns, {self.routing_ns:.1f} of them routing, {self.cells} cells: {way}"
+        cells = f"{self.cells} cell{'' if self.cells == 1 else 's'}"
+        return f"{self.ns:.1f} ns, {self.routing_ns:.1f} of them routing, {cells}: {way}"
 
 
 def critical_path(report: Mapping[str, Any], names: Names) -> CriticalPath:

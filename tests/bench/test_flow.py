@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.bench import DEVICES, BenchError, Device, MissingToolError, measure, tools
-from firm_hdl.bench.tools import Tool, find_nextpnr, find_yosys, written
+from firm_hdl.bench.tools import Tool, find_nextpnr, find_yosys, versions, written
 
 
 class Wide(wiring.Component):
@@ -43,6 +44,29 @@ def test_paths_between_ports_count(ecp5: Device) -> None:
     assert names[0] in ("port a", "port b") and names[-1] == "port sum"
     assert found.path.ns == pytest.approx(1000 / found.placed[0].mhz, abs=0.2)
     assert found.mapping == "synth_ecp5 -top top" and list(found.tools) == ["Yosys", "nextpnr-ecp5"]
+
+
+@pytest.mark.parametrize("name", ["ice40", "gowin", "xc7"])
+def test_other_devices_have_figures_too(name: str) -> None:
+    device = DEVICES[name]
+    try:
+        versions(device)
+    except MissingToolError as error:
+        # The tools of one device are enough for CI, and large.
+        pytest.skip(str(error))
+    found = measure(rtlil.convert(Wide(), name="top", emit_src=False), device, [1])
+    assert found.problem == "" and found.area.ff == 1 and found.area.carry >= 8
+    assert (found.mhz is None) == (device.placer is None)
+    if found.path is not None:
+        assert found.port_registers == 97 and 30 < (found.mhz or 0) < 1000
+
+
+def test_a_circuit_that_nextpnr_refuses_has_an_area(ecp5: Device) -> None:
+    assert ecp5.placer is not None
+    small = replace(ecp5, placer=replace(ecp5.placer, options=("--nonsense",)))
+    found = measure(rtlil.convert(Wide(), name="top", emit_src=False), small, [1, 2])
+    assert found.area.ff == 1 and found.mhz is None
+    assert found.problem.startswith("nextpnr-ecp5 failed: ")
 
 
 def test_without_seeds_there_is_no_clock_rate(ecp5: Device) -> None:

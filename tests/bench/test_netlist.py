@@ -1,4 +1,4 @@
-"""Registers outside of ports, counts of cells, and own names of nets, on small netlists."""
+"""Counts of cells, own names of nets, and critical paths, on a small netlist."""
 
 from __future__ import annotations
 
@@ -8,56 +8,11 @@ import pytest
 
 from firm_hdl.bench import DEVICES, BenchError
 from firm_hdl.bench.devices import Area
-from firm_hdl.bench.netlist import Names, cell_counts, register_ports, top_module
+from firm_hdl.bench.netlist import Names, cell_counts, top_module
 from firm_hdl.bench.paths import critical_path
+from tests.bench.netlists import small
 
 ECP5 = DEVICES["ecp5"]
-
-
-def lut(z: int, *inputs: int) -> dict[str, Any]:
-    ports = dict(zip("ABC", [[bit] for bit in inputs], strict=False))
-    return {
-        "type": "LUT4",
-        "port_directions": {"Z": "output", **dict.fromkeys(ports, "input"), "D": "input"},
-        "connections": {"Z": [z], **ports, "D": ["0"]},
-    }
-
-
-def flip_flop(d: int, q: int) -> dict[str, Any]:
-    return {
-        "type": "TRELLIS_FF",
-        "port_directions": {"CLK": "input", "DI": "input", "Q": "output"},
-        "connections": {"CLK": [2], "DI": [d], "Q": [q]},
-    }
-
-
-def small() -> dict[str, Any]:
-    """A module of three ports, a register, and two look-up tables between them."""
-    return {
-        "ports": {
-            "clk": {"direction": "input", "bits": [2]},
-            "rst": {"direction": "input", "bits": [3]},
-            "i": {"direction": "input", "bits": [4, 5]},
-            "o": {"direction": "output", "bits": [7, "0"]},
-        },
-        "cells": {
-            "fill_LUT4_A_Z_LUT4_Z": lut(6, 5, 7, 8),
-            "i_LUT4_A": lut(8, 4, 5),
-            "fill_TRELLIS_FF_Q": flip_flop(6, 7),
-            "$1": flip_flop(6, 9),
-        },
-        "netnames": {
-            "clk": {"bits": [2]},
-            "rst": {"bits": [3]},
-            "i": {"bits": [4, 5]},
-            "o": {"bits": [7, "0"]},
-            "i_LUT4_A_Z": {"bits": [8]},
-            "fill_LUT4_A_Z": {"bits": [6]},
-            "core.fill": {"bits": [7]},
-            "$abc$1$x": {"bits": [6]},
-            "f": {"bits": [7], "hide_name": 1},
-        },
-    }
 
 
 def test_cells_count_by_type() -> None:
@@ -73,34 +28,6 @@ def test_cells_count_by_type() -> None:
 def test_an_empty_netlist_is_no_netlist(netlist: dict[str, Any]) -> None:
     with pytest.raises(BenchError, match=r"^Yosys ended without an error, and its netlist has no"):
         top_module(netlist)
-
-
-def test_each_bit_of_a_port_gets_a_register_outside() -> None:
-    top = small()
-    assert ECP5.placer is not None
-    assert register_ports(top, ECP5.placer) == 3
-    assert {name: port["bits"] for name, port in top["ports"].items()} == {
-        "clk": [2],
-        "rst": [3],
-        "i": [10, 11],
-        "o": [12, "0"],
-    }
-    added = {name: c["connections"] for name, c in top["cells"].items() if name.startswith("port")}
-    assert added == {
-        "port i[0]": {"CLK": [2], "DI": [10], "Q": [4]},
-        "port i[1]": {"CLK": [2], "DI": [11], "Q": [5]},
-        "port o[0]": {"CLK": [2], "DI": [7], "Q": [12]},
-    }
-    # The circuit itself is as it was.
-    assert top["cells"]["fill_LUT4_A_Z_LUT4_Z"] == lut(6, 5, 7, 8)
-
-
-def test_a_circuit_without_a_clock_has_no_clock_rate() -> None:
-    top = small()
-    del top["ports"]["clk"]
-    assert ECP5.placer is not None
-    with pytest.raises(BenchError, match=r"^the circuit has no clock 'clk', so it has no clock r"):
-        register_ports(top, ECP5.placer)
 
 
 def test_nets_have_the_names_of_the_design() -> None:
