@@ -114,7 +114,7 @@ def build(
     DefinitionError
         With all errors in the definitions. Nothing was written.
     BuildError
-        If a type cannot be built with these options; nothing was written then. If writing fails;
+        If a type cannot be built with these options; nothing was written. Also if writing fails;
         each folder is then complete, either the old or the new one.
     """
     library = Library() if library is None else library

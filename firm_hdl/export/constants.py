@@ -62,7 +62,7 @@ class Declaration:
     bits : int
         Width of the vector; 0 for other forms.
     remark : str
-        Type, value and unit, for a comment; empty where the declaration says it all.
+        Type, value and unit, for a comment; empty if the declaration shows all of them.
     """
 
     name: str

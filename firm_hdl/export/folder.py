@@ -32,7 +32,7 @@ from firm_hdl.files import read_file
 __all__ = ["clear_up", "is_current", "is_empty", "read_manifest", "replace"]
 
 _MOST_BYTES = 1 << 28
-"""Size over which a file is not read; firm-hdl writes no larger files."""
+"""Files over this size are not read; firm-hdl writes no such files."""
 
 _NEW, _OLD = "new", "old"
 
@@ -230,7 +230,7 @@ def _free_name(name: str, is_folder: bool, files: Mapping[str, str]) -> str:
 
 
 def _candidate_paths(path: Path) -> Iterator[Path]:
-    """Yield a path, then alternative names in case that it is taken."""
+    """Yield a path, then alternative names in case it is taken."""
     name = path.name.removesuffix(".kept")
     yield path
     yield path.with_name(f"{name}.kept")

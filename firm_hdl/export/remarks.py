@@ -39,8 +39,8 @@ def quoted(text: str, indent: str = "  ", mark: str = "//") -> Iterator[str]:
     """Yield a comment of a definition; each line keeps the ``#`` that it has in the definition.
 
     Tools take comments that begin with certain words, such as ``synthesis`` and ``psl``, as
-    directives. The ``#`` keeps the text of a definition from beginning a comment, whatever the
-    words of a tool are.
+    directives. The ``#`` comes before the text of the definition, so no comment begins with such a
+    word.
     """
     for line in text.splitlines():
         for part in _wrapped(line, 95 - len(indent)):

@@ -39,7 +39,7 @@ DIRECTIONS: tuple[Direction, ...] = ("deserializer", "serializer")
 MAX_INPUT_BITS = MAX_CELL_BITS
 """Most input bits of a design: Amaranth makes one cell of all inputs."""
 
-# No leaf may have these names: its ports are its name with ``_data``, ``_last`` and so on.
+# Names that no leaf may have, because its ports are its name with ``_data``, ``_last`` and so on.
 _RESERVED = ("s_axis", "m_axis", "m_axis_status")
 
 

@@ -1,11 +1,11 @@
 """ROS names as identifiers of VHDL and Verilog: one name for both languages.
 
-ROS field names such as `range`, `type`, `label` and `reg` are keywords of one language or the
-other; ROS 1 allows `a__b`, `a_` and both `A` and `a`, which VHDL does not. One identifier serves
-both languages, so that a port has the same name in both. The identifier is legal in VHDL-2008 and
-in SystemVerilog-2017, and differs from its neighbours in more than case.
+Some names of ROS fields, such as `range`, `type`, `label` and `reg`, are keywords of one of the
+languages. ROS 1 also allows `a__b`, `a_`, and both `A` and `a`, which VHDL forbids. Each name gets
+one identifier, so that a port has the same name in both languages. The identifier is legal in
+VHDL-2008 and in SystemVerilog-2017, and differs from its neighbours in more than case.
 
-No two names are ever merged: legal names stay as they are, and the others get a unique suffix.
+Different names get different identifiers: legal names stay, and the others get a suffix.
 """
 
 from __future__ import annotations
@@ -42,14 +42,14 @@ def first_free(
     taken: Collection[str],
     derived: Callable[[str], Iterable[str]] = lambda name: (name,),
 ) -> str:
-    """Give a name that is not taken, ignoring case: the wanted one, or that one with a number.
+    """Return the wanted name, with a number if the name is taken; case is ignored.
 
     Parameters
     ----------
     taken : collection of str
         Names in lower case.
     derived : callable
-        Gives all identifiers that are derived from the name. They have to be free, too.
+        Returns all identifiers that are derived from the name. They have to be free, too.
 
     >>> first_free("Vector", {"vector", "vector_2"})
     'Vector_3'
@@ -61,13 +61,13 @@ def first_free(
 
 
 def identifier(name: str) -> str:
-    """Give the identifier for a single name: the name itself, if it is legal."""
+    """Return the identifier for a single name: the name itself, if it is legal."""
     text = plain(name, "f")
     return text + KEYWORD_SUFFIX if text.lower() in KEYWORDS else text
 
 
 def scope_names(names: Iterable[str], reserved: Collection[str] = ()) -> dict[str, str]:
-    """Give the identifiers for the names of one scope, such as the fields of a record.
+    """Return the identifiers for the names of one scope, such as the fields of a record.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def scope_names(names: Iterable[str], reserved: Collection[str] = ()) -> dict[st
 def flat_names(
     paths: Iterable[tuple[str, ...]], reserved: Collection[str] = ()
 ) -> dict[tuple[str, ...], str]:
-    """Give the identifiers for paths: their parts, joined by one underscore.
+    """Return the identifiers for paths: their parts, joined by one underscore.
 
     Parameters
     ----------

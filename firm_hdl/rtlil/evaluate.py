@@ -15,7 +15,7 @@ _SHIFTS = ("$shl", "$shr", "$sshr", "$shift")
 
 
 def constant(spec: Spec, *, signed: bool = False) -> int | None:
-    """Give the number of a value, if all bits are constant, else `None`."""
+    """Return the number that a value has if all its bits are constant, else `None`."""
     text = bits_of(spec)
     if text is None:
         return None
@@ -34,7 +34,7 @@ def extended(spec: Spec, width: int, *, signed: bool) -> Spec:
 
 
 def evaluate(cell: Cell) -> Spec | None:
-    """Give the result of an operator as a value that needs no operator, else `None`."""
+    """Return the result of an operator as a value that needs no operator, else `None`."""
     kind, ports = cell.kind, cell.ports
     width = spec_width(ports["Y"])
     if kind == "$mux":

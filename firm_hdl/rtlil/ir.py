@@ -47,7 +47,7 @@ class Bits:
 
 @dataclass(frozen=True, slots=True)
 class Slice:
-    """`width` bits of a wire from bit `low` up. `bare`: printed as a name only: the whole wire."""
+    """`width` bits of a wire from bit `low` up. `bare`: printed as the wire's name alone."""
 
     wire: str
     low: int
@@ -67,7 +67,7 @@ def spec_width(spec: Spec) -> int:
 
 
 def bits_of(spec: Spec) -> str | None:
-    """Give the bits of a constant, the most significant first, or `None` for any other value."""
+    """Return the bits of a constant, the most significant first, or `None` for any other value."""
     text = ""
     for chunk in spec:
         if not isinstance(chunk, Bits):
@@ -148,7 +148,7 @@ class Cell:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Assign:
-    """An assignment in a process; a later one wins."""
+    """An assignment in a process; it overrides earlier ones."""
 
     target: Spec
     value: Spec

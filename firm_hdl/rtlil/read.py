@@ -64,7 +64,7 @@ def parse(text: str) -> Design:
     Raises
     ------
     ValueError
-        If Amaranth 0.5 does not print such a line; the message has its number.
+        If Amaranth 0.5 prints no such line. The message has the number of the line.
     """
     return Design(modules={module.name: module for module in _Parser(text).modules()})
 
@@ -167,7 +167,7 @@ class _Parser:
         match = _CELL.match(line) or self._fail(f"malformed cell {line!r}")
         kind, name = match.groups()
         if kind.startswith("$") and kind not in _CELLS:
-            self._fail(f"cell kind {kind} is none that Amaranth 0.5 emits")
+            self._fail(f"Amaranth 0.5 emits no cells of kind {kind}")
         parameters: dict[str, Value] = {}
         ports: dict[str, Spec] = {}
         for inner in self._inner():
@@ -274,7 +274,7 @@ class _Parser:
     def _cut(self, chunk: Chunk | None, high: str, low: str | None) -> Slice:
         top, bottom = int(high), int(high if low is None else low)
         if not isinstance(chunk, Slice) or not chunk.bare or not bottom <= top < chunk.width:
-            self._fail(f"slice [{top}:{bottom}] of nothing that has these bits")
+            self._fail(f"slice [{top}:{bottom}] is out of range")
         return Slice(chunk.wire, bottom, top - bottom + 1)
 
     def _value(self, line: str, into: dict[str, Value]) -> None:

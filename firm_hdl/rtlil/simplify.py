@@ -33,7 +33,7 @@ _OUTPUTS = {"$dff": "Q", "$adff": "Q", "$memrd_v2": "DATA", "$tribuf": "Y"}
 
 
 def simplified(module: Module) -> Module:
-    """Give an equivalent module with fewer operators and statements."""
+    """Return an equivalent module with fewer operators and statements."""
     return _Simplifier(module).run()
 
 
@@ -95,7 +95,7 @@ class _Simplifier:
         return replace(cell, ports=ports) if ports != cell.ports else cell
 
     def _constant_register(self, cell: Cell, ports: Mapping[str, Spec]) -> Spec:
-        """Give the value of a register that always keeps its initial value."""
+        """Return the value of a register that always keeps its initial value."""
         if not ports["Q"]:
             return ()
         (chunk,) = ports["Q"]
@@ -212,7 +212,7 @@ def _append(result: list[Statement], statement: Assign) -> None:
 
 
 def _whole_target(process: Process) -> Spec | None:
-    """Give the wire that a process drives, which is the target of its first assignment."""
+    """Return the wire that a process drives, which is the target of its first assignment."""
     first = process.body[0] if process.body else None
     if not isinstance(first, Assign) or not first.target:
         return None

@@ -47,7 +47,7 @@ class Cells:
         return self._values.width(output(cell))
 
     def is_condition(self, cell: Cell) -> bool:
-        """Tell whether a result is better written as a condition: it is made of comparisons."""
+        """Return whether a result is better written as a condition: it is made of comparisons."""
         if cell.kind in COMPARISONS:
             return spec_width(cell.ports["A"]) > 1 or spec_width(cell.ports["B"]) > 1
         if cell.kind in ("$and", "$or", "$not") and self.width(cell) == 1:

@@ -1,8 +1,8 @@
 """Convert any Amaranth design to VHDL-2008.
 
 The design's hierarchy stays: one entity and architecture for each module, in a file of its own.
-Signals and instances keep their names as far as VHDL allows; the result has all names. The text
-depends on the design only: it has no paths, no dates and no source locations.
+Signals and instances keep their names as far as VHDL allows; `Vhdl.entities` lists all names. The
+text depends on the design only: it has no paths, no dates and no source locations.
 
 Types: one bit is `std_logic`, several bits are `unsigned`, whatever their sign, because in RTLIL
 each operator has its own flag for signed operands. Ports of the outermost entity are
@@ -157,6 +157,6 @@ def _refuse(netlist: Design) -> None:
         for item in module.items:
             if isinstance(item, Cell) and item.kind in _REFUSED:
                 raise ValueError(
-                    f"module {module.name!r} has {_REFUSED[item.kind]} ({item.kind}), which only a "
-                    "formal tool can choose; VHDL has nothing like it"
+                    f"module {module.name!r} has {_REFUSED[item.kind]} ({item.kind}), whose value "
+                    "only a formal tool chooses; VHDL has no equivalent"
                 )

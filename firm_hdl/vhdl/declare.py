@@ -36,7 +36,7 @@ class Signal:
     Attributes
     ----------
     wire : str
-        The wire of the module that it declares.
+        The wire of the module that has this signal.
     declared : Declared
     role : "register", "logic" or "alias"
         A register has an initial value; an alias only gives a value another name.
@@ -57,7 +57,7 @@ class Names:
     signals : tuple of Signal
         Signals of the architecture, in order.
     declared : dict of str to Declared
-        Signal or port to read and to assign, for each wire that has a driver or is an alias.
+        The signal or port of each wire that has a driver, and of each alias.
     memories, labels : dict of str to str
         Identifiers of memories and instances.
     scope : Scope
@@ -74,7 +74,7 @@ class Names:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Driver:
-    """The driver of a wire, and an identifier for the wire if the design does not name it."""
+    """The driver of a wire, and a name for the wire in case that the design has none."""
 
     kind: DriverKind
     name: str
@@ -137,7 +137,7 @@ def declare(
 
 
 def _request(graph: Graph, wire: str, owner: str, driver: _Driver) -> _Request:
-    """Ask for a signal of a driven wire, with the name of its owner if that is of the design."""
+    """Request a signal for a driven wire; its owner is the wire that has the same value."""
     generated = owner.startswith("$")
     return _Request(
         wire=wire,
@@ -149,7 +149,7 @@ def _request(graph: Graph, wire: str, owner: str, driver: _Driver) -> _Request:
 
 
 def _signals(graph: Graph, requests: list[_Request], scope: Scope) -> Iterator[Signal]:
-    """Give the requested signals their identifiers; names of the design come first."""
+    """Return the requested signals their identifiers; names of the design come first."""
     given: dict[str, str] = {}
     for generated in (False, True):
         given |= scope.give_all({r.wire: r.name for r in requests if r.generated is generated})
@@ -170,8 +170,8 @@ def _ports(
 ) -> tuple[list[Port], list[Signal]]:
     """List the ports, and the inner signals of those that logic cannot assign to.
 
-    A register needs an inner signal for its initial value, as not all tools use that of a port. An
-    instance's output needs one if its type differs from that of the port.
+    A register needs an inner signal for its initial value, because not all tools use that of a
+    port. An instance's output needs one if its type differs from that of the port.
     """
     source_of = {owner: wire for wire, owner in graph.name_of.items()}
     # Ports of submodules are `unsigned`, those of foreign components `std_logic_vector`.
@@ -247,7 +247,7 @@ def _drivers(graph: Graph, child_names: Mapping[str, Mapping[str, str]]) -> dict
 
 
 def _is_register(cell: Cell) -> bool:
-    """Tell whether a cell holds its output: a flip-flop, or a memory port that reads at a clock."""
+    """Return whether a cell is a flip-flop, or a memory port that reads at a clock edge."""
     if cell.kind == "$memrd_v2":
         return cell.parameters.get("CLK_ENABLE") == 1
     return cell.kind in ("$dff", "$adff")
@@ -268,7 +268,7 @@ def initial_value(wire: Wire | None, width: int) -> str:
 
 
 def enumeration(wire: Wire, bits: str) -> str:
-    """Give the name of a value in an enumeration, or an empty text."""
+    """Return the name of a value in an enumeration, or an empty text."""
     return _one_line(wire.attributes.get(f"enum_value_{bits}", ""))
 
 

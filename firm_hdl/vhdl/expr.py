@@ -39,7 +39,7 @@ class Declared:
         return "'0'" if self.width == 1 else "(others => '0')"
 
     def part(self, low: int, width: int) -> str:
-        """Name `width` of its bits, as a target; also as a value, unless it is a vector."""
+        """Name `width` bits from bit `low` up; of a vector, the name is a target only."""
         if width == self.width:
             return self.name
         if width == 1:
@@ -82,13 +82,13 @@ class Values:
         return self._width[wire]
 
     def folded(self, spec: Spec) -> Cell | None:
-        """Give the operator whose whole result a value is, if the result has no signal."""
+        """Return the operator that computes the whole value, if its result has no signal."""
         if len(spec) == 1 and isinstance(spec[0], Slice):
             return self._folded.get(spec[0].wire)
         return None
 
     def is_name(self, spec: Spec) -> bool:
-        """Tell whether a value is a signal, or one slice of one."""
+        """Return whether a value is a signal, or one slice of one."""
         return len(spec) == 1 and isinstance(spec[0], Slice) and self.folded(spec) is None
 
     def name(self, chunk: Chunk) -> str:
@@ -97,7 +97,7 @@ class Values:
         return self._declared[chunk.wire].part(chunk.low, chunk.width)
 
     def is_vector(self, chunk: Chunk) -> bool:
-        """Tell whether a signal is a `std_logic_vector`, not `unsigned`."""
+        """Return whether a signal is a `std_logic_vector`, not `unsigned`."""
         return isinstance(chunk, Slice) and self._declared[chunk.wire].vector
 
     def logic(self, spec: Spec) -> Expression:
@@ -169,7 +169,7 @@ class Values:
         return call("to_integer", self.unsigned(spec))
 
     def constant(self, spec: Spec, *, signed: bool = False) -> int | None:
-        """Give the number of a constant value, else `None`."""
+        """Return the number of a constant value, else `None`."""
         return constant(spec, signed=signed)
 
     def _joined(self, spec: Spec, target: bool) -> Expression:

@@ -139,7 +139,7 @@ package body firm_hdl_pkg is
     return result;
   end function;
 
-  -- One bit more than the operands: the lowest number divided by -1.
+  -- One bit more than the operands have: the lowest number divided by -1 needs it.
   function floor_div(dividend, divisor : signed) return signed is
     constant n : positive := maximum(dividend'length, divisor'length) + 1;
     variable a, b, quotient : signed(n - 1 downto 0);

@@ -68,15 +68,15 @@ class Graph:
         return name
 
     def is_instance(self, cell: Cell) -> bool:
-        """Tell whether a cell is an instance, of a module of the design or a foreign component."""
+        """Return whether a cell is an instance: of a module or of a foreign component."""
         return not cell.kind.startswith("$")
 
     def is_submodule(self, cell: Cell) -> bool:
-        """Tell whether a cell is an instance of a module of the design."""
+        """Return whether a cell is an instance of a module of the design."""
         return cell.kind in self.modules
 
     def is_output(self, cell: Cell, port: str) -> bool:
-        """Tell whether a port of an instance is an output.
+        """Return whether a port of an instance is an output.
 
         For a foreign component, Amaranth prints the wire of an output without a slice, and
         everything else with one.

@@ -208,7 +208,7 @@ class MemoryText:
             value = values.logic(part) if width == 1 else values.unsigned(part, target=True)
             line = f"{target.part(low, width)} <= {target.accept(value, width)};"
             if tests:
-                yield f"if {chain('and', *tests).text} then  -- being written"
+                yield f"if {chain('and', *tests).text} then  -- transparent"
                 yield f"  {line}"
                 yield "end if;"
             else:

@@ -26,7 +26,7 @@ _INTERNAL = ("init", "src", "generator", "top", "enum_base_type")
 _TITLES: Mapping[Role, str] = {
     "register": "Registers.",
     "logic": "Combinational signals.",
-    "alias": "More names of values, for whoever looks at a simulation.",
+    "alias": "Signals that no logic reads, for simulation.",
 }
 """Comments above the declarations of signals."""
 
@@ -89,7 +89,7 @@ class ModuleWriter:
         self._registers = Registers(graph, self._values, self._statements, self._names)
 
     def names(self) -> EntityNames:
-        """Give all identifiers of the module."""
+        """Return all identifiers of the module."""
         names, graph = self._names, self._graph
         signals = {wire: item.name for wire, item in names.declared.items()}
         signals.update(
@@ -141,7 +141,7 @@ class ModuleWriter:
         yield "end entity;"
 
     def _remark(self, name: str) -> str:
-        """Write a comment with what the type of a wire lacks: its sign and its enumeration."""
+        """Write a comment on what the type of a wire does not show: its sign and enumeration."""
         wire = self._module.wires[name]
         remarks = ["signed"] if wire.signed and wire.width > 1 else []
         values = [
@@ -178,7 +178,7 @@ class ModuleWriter:
                 if done.setdefault(cell.kind, lines) != lines:
                     raise ValueError(
                         f"instances of {cell.kind!r} in {self._module.name!r} differ in their "
-                        "ports or parameters; one VHDL component cannot stand for both"
+                        "ports or parameters; one VHDL component cannot declare both"
                     )
         for lines in done.values():
             yield ""

@@ -1,9 +1,9 @@
 """Names of a netlist as VHDL identifiers.
 
-A name that is a legal identifier stays as it is. Others lose what VHDL forbids: a double, leading
-or trailing underscore, ``$``, ``.``, brackets. A name gets a suffix if it is then a keyword or a
-name that the generated text uses, or if it is equal to a neighbour, ignoring case. No two are
-merged.
+A name that is a legal identifier stays as it is. Other names lose the characters that VHDL forbids:
+double, leading and trailing underscores, ``$``, ``.`` and brackets. A name gets a suffix if it is
+then a keyword, a name that the generated text uses, or equal to a neighbour, ignoring case. So
+different names get different identifiers.
 IEEE Std 1076-2008, clause 15.4 (identifiers) and 12.2 (scope).
 """
 
@@ -55,7 +55,7 @@ _IDENTIFIER = re.compile(r"[A-Za-z](?:_?[A-Za-z0-9])*\Z")
 
 
 def is_identifier(name: str) -> bool:
-    """Tell whether a name is a basic identifier and not a keyword."""
+    """Return whether a name is a basic identifier and not a keyword."""
     return _IDENTIFIER.match(name) is not None and name.lower() not in KEYWORDS
 
 

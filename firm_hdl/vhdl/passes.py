@@ -17,7 +17,7 @@ __all__ = ["PASSES", "graph_of"]
 
 _COMPARISONS = frozenset("$eq $ne $lt $le $gt $ge".split())
 
-# Largest number of operands of an expression, and of times that a comparison is written out.
+# The most operands of an expression, and how often a comparison may be repeated.
 _MAX_OPERANDS = 6
 _MAX_REPEATS = 3
 
@@ -105,7 +105,7 @@ def _sort_connections(graph: Graph) -> Graph:
 
 
 def _is_redundant_name(graph: Graph, name: str, value: Spec) -> bool:
-    """Tell whether a name is a field of a signal, or a second copy of a name."""
+    """Return whether a name is a field of a signal, or a second copy of a name."""
     cut = min((i for i in (name.find("."), name.find("[")) if i > 0), default=0)
     if cut and name[:cut] in graph.module.wires:
         return True
@@ -266,7 +266,7 @@ def _fold(graph: Graph) -> Graph:
 
 
 def _may_repeat(cell: Cell, uses: int, folded: dict[str, Cell]) -> bool:
-    """Tell whether an expression is short: an inverted bit, or a comparison of two signals."""
+    """Return whether an expression is short: an inverted bit, or a comparison of two signals."""
     specs = [spec for port, spec in cell.ports.items() if port != "Y"]
     if any(len(spec) > 1 for spec in specs):
         return False
@@ -303,7 +303,7 @@ def _in_order(candidates: dict[str, Cell]) -> Iterator[str]:
 
 
 def _has_bits(cell: Cell) -> bool:
-    """Tell whether the result of a cell has any bits."""
+    """Return whether the result of a cell has any bits."""
     for port in ("Y", "Q"):
         if cell.kind.startswith("$") and port in cell.ports and not cell.ports[port]:
             return False

@@ -26,7 +26,7 @@ from firm_hdl.vhdl.text import Expression, atom, chain, infix, literal
 
 __all__ = ["Arm", "Statements", "flatten", "merged"]
 
-# A conditional assignment with more choices is hard to read; a `case` with fewer becomes an `if`.
+# More choices make a conditional assignment hard to read; fewer make a `case` an `if`.
 _MAX_CHOICES = 6
 _MIN_CHOICES = 3
 
@@ -101,7 +101,7 @@ def _joined(a: Switch, b: Switch) -> Switch:
 
 
 def _same_choice(a: Statement, b: Statement) -> bool:
-    """Tell whether two switches on one selector have the same patterns, or are both plain."""
+    """Return whether two switches on one selector have the same patterns, or are both plain."""
     if not isinstance(a, Switch) or not isinstance(b, Switch) or a.selector != b.selector:
         return False
     if [case.patterns for case in a.cases] == [case.patterns for case in b.cases]:
@@ -110,7 +110,7 @@ def _same_choice(a: Statement, b: Statement) -> bool:
 
 
 def _is_plain(switch: Switch) -> bool:
-    """Tell whether at most one arm can match, and no arm is a default."""
+    """Return whether at most one arm can match, and no arm is a default."""
     patterns = [pattern for case in switch.cases for pattern in case.patterns]
     return (
         all(case.patterns for case in switch.cases)
@@ -252,7 +252,7 @@ class Statements:
         return infix("=", self._values.logic(spec), atom("'0'"))
 
     def _plain_cases(self, switch: Switch) -> list[tuple[list[str], Case]] | None:
-        """Give the choices of an equivalent `case` statement, or `None` if none exists."""
+        """Return the choices of an equivalent `case` statement, or `None` if none exists."""
         if not self._values.is_name(switch.selector) or spec_width(switch.selector) < 2:
             return None
         seen: set[str] = set()
@@ -308,7 +308,7 @@ class Statements:
             yield "end if;"
 
     def conditional(self, body: tuple[Statement, ...]) -> list[tuple[str, str | None]] | None:
-        """Give (value, condition) pairs of a conditional assignment equivalent to a process.
+        """Return (value, condition) pairs of a conditional assignment equivalent to a process.
 
         `None` if none exists: the body must be a default for the whole signal and at most one
         switch, whose arms assign the whole signal once.

@@ -98,7 +98,7 @@ class Registers:
         return _Register(wire, cell, body, reset)
 
     def _holds(self, statement: Statement, wire: str) -> bool:
-        """Tell whether a statement is the default of a register: to hold its value."""
+        """Return whether a statement is the default of a register: to hold its value."""
         if not isinstance(statement, Assign) or len(statement.value) != 1:
             return False
         (chunk,) = statement.value
@@ -112,7 +112,7 @@ class Registers:
         )
 
     def _reset_of(self, statement: Statement, wire: str) -> Spec:
-        """Give the signal of a statement that resets a register to its initial value."""
+        """Return the signal of a statement that resets a register to its initial value."""
         if not isinstance(statement, Switch) or spec_width(statement.selector) != 1:
             return ()
         if len(statement.cases) != 1 or statement.cases[0].patterns != ("1",):

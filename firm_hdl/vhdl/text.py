@@ -45,7 +45,7 @@ class Expression(NamedTuple):
         return _LEVELS.get(self.operator, _ATOM)
 
     def inside(self, level: int) -> str:
-        """Give the text for a place that needs at least this level, in parentheses if necessary."""
+        """Return the text, in parentheses if the place needs a higher level."""
         return self.text if self.level >= level else f"({self.text})"
 
 

@@ -230,7 +230,7 @@ module \top
 end
 """
     text = list(convert(rtlil).files.values())[-1]
-    named, _, more = text.partition("More names of values")
+    named, _, more = text.partition("Signals that no logic reads")
     assert "signal x : unsigned(3 downto 0);" in named
     assert "signal seen : unsigned(3 downto 0);" in more
     for line in ("x <= unsigned(i);", "o <= std_logic_vector(x);", "seen <= unsigned(i);"):
@@ -254,8 +254,8 @@ def test_names_are_legal_and_never_merged(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        ("AnyConst", r"^module 'top' has AnyConst \(\$anyconst\), which only a formal tool can"),
-        ("AnySeq", r"^module 'top' has AnySeq \(\$anyseq\), which only a formal tool can"),
+        ("AnyConst", r"^module 'top' has AnyConst \(\$anyconst\), whose value only a formal"),
+        ("AnySeq", r"^module 'top' has AnySeq \(\$anyseq\), whose value only a formal"),
     ],
 )
 def test_refuses_what_only_formal_tools_know(make: str, message: str) -> None:
@@ -320,7 +320,7 @@ def test_what_is_written_is_read_at_once_if_the_addresses_are_the_same() -> None
     ports = [write.addr, write.data, write.en, read.addr, read.data, read.en]
     text = convert(m, name="bypass", ports=ports).files["bypass.vhd"]
     same = "if unsigned(read_addr) = unsigned(write_addr) and write_en = '1' then"
-    assert f"{same}  -- being written" in text
+    assert f"{same}  -- transparent" in text
 
 
 class Pads(Elaboratable):

@@ -34,7 +34,7 @@ class Member:
     first, bits : int
         Lowest bit in the record's vector, and number of bits.
     to_slv, from_slv : str
-        Functions that convert the member to a vector and back; empty if it is one.
+        Functions that convert the member to a vector and back; empty if the member is a vector.
     source : Field or None
         The definition's field; `None` in a message without fields.
     """
@@ -75,7 +75,7 @@ class ValueType:
 
     def declarations(self) -> Iterator[str]:
         """Yield the declarations of the package."""
-        yield "\n  -- The message as plain values; the ports of the entities ..._record have it.\n"
+        yield "\n  -- The message as plain values, for the ports of the entities ..._record.\n"
         yield from _record(self)
         yield "\n  -- Conversion between records and vectors, first member in the lowest bits.\n"
         yield f"  constant {self.base.upper()}_BITS : positive := {self.bits};\n"

@@ -84,7 +84,7 @@ def test_changed_byte_more_and_fewer_packets_fail(ghdl, tmp_path):
     for what, wrong, message in (
         ("changed", changed, "FAIL packet 2: byte 17 is "),
         ("longer", longer, "FAIL packet 0 has "),
-        ("more", [*packets, packets[0]], "FAIL nothing moves: "),
+        ("more", [*packets, packets[0]], "FAIL no beat in 1000 cycles: "),
         ("fewer", packets[:-1], f"FAIL packet {len(packets) - 1}: no such packet is expected"),
     ):
         path = tmp_path / f"{what}.txt"

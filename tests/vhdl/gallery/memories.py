@@ -97,7 +97,7 @@ begin
   begin
     if rising_edge(clk) then
       read_data_q <= mem(to_integer(read_addr));
-      if read_addr = write_addr and write_en = '1' then  -- being written
+      if read_addr = write_addr and write_en = '1' then  -- transparent
         read_data_q <= write_data;
       end if;
     end if;
@@ -118,7 +118,7 @@ def memory_of_bits() -> Made:
 @shows(
     """\
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal there_addr  : unsigned(2 downto 0);
   signal beyond_addr : unsigned(2 downto 0);
 
@@ -148,7 +148,7 @@ def memory_at_fixed_places() -> Made:
 @shows(
     """\
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal port_data : unsigned(3 downto 0);
 
   type some_array is array (0 to 1) of unsigned(3 downto 0);

@@ -74,7 +74,7 @@ def widths() -> Made:
 @shows(
     """\
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal whole : unsigned(4 downto 0);
   signal seen  : unsigned(2 downto 0);
 begin

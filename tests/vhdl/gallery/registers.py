@@ -17,7 +17,7 @@ from tests.vhdl.gallery import Made, shows, signals
   -- Combinational signals.
   signal total : unsigned(3 downto 0);
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal r : unsigned(3 downto 0);
 begin
 

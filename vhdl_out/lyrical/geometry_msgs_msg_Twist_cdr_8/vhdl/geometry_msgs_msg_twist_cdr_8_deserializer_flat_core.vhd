@@ -103,7 +103,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core is
   signal status        : unsigned(2 downto 0);
   signal drop          : std_logic;
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal have         : unsigned(11 downto 0);
   signal small_sig    : unsigned(3 downto 0);
   signal left         : std_logic;

@@ -53,7 +53,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_window 
   signal pops_idle     : std_logic;
   signal pops_finished : std_logic;
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal have       : unsigned(11 downto 0);
   signal first_last : std_logic;
   signal past       : unsigned(5 downto 0);

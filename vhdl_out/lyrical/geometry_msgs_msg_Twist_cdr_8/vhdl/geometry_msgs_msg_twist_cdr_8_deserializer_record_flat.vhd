@@ -52,7 +52,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_record_flat is
   signal or_39                     : std_logic;
   signal packets_payload_64        : unsigned(3 downto 0);
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal packets_valid              : std_logic;
   signal packets_ready              : std_logic;
   signal status_valid               : std_logic;

@@ -98,7 +98,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core 
   signal status        : unsigned(2 downto 0);
   signal drop          : std_logic;
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal have                    : unsigned(11 downto 0);
   signal message_linear_y_ready  : std_logic;
   signal message_linear_z_ready  : std_logic;

@@ -32,7 +32,7 @@ end entity;
 
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_record is
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal taken                   : std_logic;
   signal message_linear_y_ready  : std_logic;
   signal message_linear_z_ready  : std_logic;

@@ -65,7 +65,7 @@ package geometry_msgs_msg_twist_cdr_8_pkg is
   constant TWIST_ARRAY_ALL_READY : twist_array_ready_t := (
     item => TWIST_ALL_READY);
 
-  -- The message as plain values; the ports of the entities ..._record have it.
+  -- The message as plain values, for the ports of the entities ..._record.
 
   type twist_value_t is record
     -- geometry_msgs/msg/Vector3

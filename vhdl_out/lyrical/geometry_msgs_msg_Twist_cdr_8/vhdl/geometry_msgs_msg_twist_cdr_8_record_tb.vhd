@@ -58,7 +58,8 @@ architecture sim of geometry_msgs_msg_twist_cdr_8_record_tb is
   signal rx_tready, tx_tready : std_logic := '0';
   signal rx_count, tx_count   : natural := 0;
 
-  -- Per leaf: the gate is open; the deserializer offers a transfer; the serializer is ready for it.
+  -- One bit per leaf. gate: transfers may pass; offered: valid of the deserializer; taken: ready of
+  -- the serializer.
   signal gate    : std_logic_vector(LEAVES - 1 downto 0) := (others => '1');
   signal offered : std_logic_vector(LEAVES - 1 downto 0);
   signal taken   : std_logic_vector(LEAVES - 1 downto 0);
@@ -176,7 +177,7 @@ begin
     procedure check (what : string; status : std_logic_vector(7 downto 0); number : natural) is
     begin
       assert status = STATUS_OK
-        report "FAIL packet " & integer'image(number) & ": the " & what & " says " &
+        report "FAIL packet " & integer'image(number) & ": the " & what & " reports " &
           status_name(status)
         severity failure;
     end procedure;
@@ -213,17 +214,18 @@ begin
       final := cycle;
     end if;
     assert idle < patience
-      report "FAIL nothing moves: " & integer'image(o_packets) & " of " & integer'image(o_total) &
-        " packets came out, " & integer'image(i_packets) & " went in, with " &
-        integer'image(rx_count) & " and " & integer'image(tx_count) & " statuses"
+      report "FAIL no beat in " & integer'image(patience) & " cycles: " &
+        integer'image(o_packets) & " of " & integer'image(o_total) & " packets came out, " &
+        integer'image(i_packets) & " went in, with " & integer'image(rx_count) & " and " &
+        integer'image(tx_count) & " statuses"
       severity failure;
 
-    -- Wait 100 cycles more, in case that unexpected data comes.
+    -- Wait 100 more cycles for unexpected transfers.
     if i_done and o_packets = o_total and i_packets = o_total and rx_count = o_total and
         tx_count = o_total and idle > 100 then
       assert o_total > 0 report "FAIL there are no packets" severity failure;
       assert (o_tvalid or rx_tvalid or tx_tvalid or (or offered)) = '0'
-        report "FAIL something is left over" severity failure;
+        report "FAIL unexpected transfers after the last packet" severity failure;
       write(output,
         "PASS geometry_msgs/msg/Twist record, cdr, bus of 8 bytes: " &
         integer'image(o_packets) & " packets, " & integer'image(o_bytes) & " bytes, " &

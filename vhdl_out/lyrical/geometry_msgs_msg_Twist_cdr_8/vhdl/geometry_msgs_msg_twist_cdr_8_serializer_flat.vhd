@@ -52,7 +52,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat is
   signal packets_payload : unsigned(68 downto 0);
   signal rst             : std_logic;
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal packet_error              : std_logic;
   signal packets_valid             : std_logic;
   signal packets_ready             : std_logic;

@@ -94,7 +94,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core is
   signal able_1      : std_logic;
   signal ends        : std_logic;
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal error_sig    : std_logic;
   signal small_sig    : unsigned(3 downto 0);
   signal left         : std_logic;

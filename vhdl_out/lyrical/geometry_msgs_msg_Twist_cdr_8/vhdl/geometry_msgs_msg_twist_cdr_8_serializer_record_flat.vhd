@@ -55,7 +55,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat is
   signal message_angular_z_payload : unsigned(63 downto 0);
   signal rst                       : std_logic;
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal packet_error   : std_logic;
   signal packets_valid  : std_logic;
   signal packets_ready  : std_logic;

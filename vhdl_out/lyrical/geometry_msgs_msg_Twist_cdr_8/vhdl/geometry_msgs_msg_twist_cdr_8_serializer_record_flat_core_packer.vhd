@@ -49,7 +49,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_pa
   signal choice_like  : unsigned(4 downto 0);
   signal beats        : unsigned(4 downto 0);
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal position : unsigned(2 downto 0);
 begin
 

@@ -52,7 +52,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record 
   -- Combinational signals.
   signal and_43 : std_logic;
 
-  -- More names of values, for whoever looks at a simulation.
+  -- Signals that no logic reads, for simulation.
   signal record_ready : std_logic;
 begin
 

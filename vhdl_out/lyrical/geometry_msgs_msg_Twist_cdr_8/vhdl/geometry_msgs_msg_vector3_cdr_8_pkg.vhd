@@ -69,7 +69,7 @@ package geometry_msgs_msg_vector3_cdr_8_pkg is
   constant VECTOR3_ARRAY_ALL_READY : vector3_array_ready_t := (
     item => VECTOR3_ALL_READY);
 
-  -- The message as plain values; the ports of the entities ..._record have it.
+  -- The message as plain values, for the ports of the entities ..._record.
 
   type vector3_value_t is record
     x : std_logic_vector(63 downto 0);  -- float64
