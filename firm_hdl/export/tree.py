@@ -111,6 +111,11 @@ class Tree:
     root: Node
     packages: tuple[Package, ...]
 
+    @property
+    def package(self) -> Package:
+        """The message's own package."""
+        return self.packages[-1]
+
     def leaf_members(self, plan: Plan) -> dict[str, str]:
         """Return the dotted names of the members of all leaves, by the leaves' paths."""
         return {

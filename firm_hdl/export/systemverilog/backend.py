@@ -83,9 +83,7 @@ class SystemVerilog(BackEnd):
 def _module(converters: Converters, tree: Tree, way: Direction, name: str) -> str:
     header = "".join(remark(converters.header(name, f"the {way}"), ""))
     core = module_name(converters.name, way)
-    return header + wrapper(
-        converters.message, converters.plan, tree, way, name=name, core=core
-    )
+    return header + wrapper(converters.plan, tree, way, name=name, core=core)
 
 
 def _section(
@@ -96,7 +94,7 @@ def _section(
     return {
         "folder": FOLDER,
         "standard": "1800-2012",
-        "package": package_name(tree.packages[-1].name),
+        "package": package_name(tree.package.name),
         "modules": modules,
         "message_type": tree.root.type,
         "ready_type": tree.root.ready_type,

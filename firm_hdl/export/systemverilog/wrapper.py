@@ -9,7 +9,6 @@ from firm_hdl.export.systemverilog.structs import package_name
 from firm_hdl.export.systemverilog.types import BEAT, STATUS, STATUS_STREAM, TYPES_NAME, bus_name
 from firm_hdl.export.top import Direction, Port, ports_of
 from firm_hdl.export.tree import Node, Tree
-from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
 __all__ = ["wrapper"]
@@ -17,9 +16,7 @@ __all__ = ["wrapper"]
 _STATUS = "m_axis_status"
 
 
-def wrapper(
-    message: Message, plan: Plan, tree: Tree, direction: Direction, *, name: str, core: str
-) -> str:
+def wrapper(plan: Plan, tree: Tree, direction: Direction, *, name: str, core: str) -> str:
     """Write a module.
 
     Parameters
@@ -29,12 +26,12 @@ def wrapper(
     core : str
         Name of the Verilog module inside.
     """
-    head = remark(f"The {direction} of {message.name} with structs. {core} has plain ports.", "")
+    head = remark(f"The {direction} of {plan.message} with structs. {core} has plain ports.", "")
     return "".join(
         [
             *head,
             f"\nmodule {name} (\n",
-            *_ports(message, plan, tree, direction),
+            *_ports(plan, tree, direction),
             ");\n",
             *_body(plan, tree, direction, core),
             f"\nendmodule : {name}\n",
@@ -42,8 +39,8 @@ def wrapper(
     )
 
 
-def _ports(message: Message, plan: Plan, tree: Tree, direction: Direction) -> Iterator[str]:
-    own, bus = package_name(tree.packages[-1].name), bus_name(plan.bus_bytes)
+def _ports(plan: Plan, tree: Tree, direction: Direction) -> Iterator[str]:
+    own, bus = package_name(tree.package.name), bus_name(plan.bus_bytes)
     reads = direction == "deserializer"
     forward, backward = ("output", "input") if reads else ("input", "output")
     beats = "s_axis" if reads else "m_axis"
@@ -52,7 +49,7 @@ def _ports(message: Message, plan: Plan, tree: Tree, direction: Direction) -> It
         ("input", "logic", "aresetn", "Synchronous reset, active low."),
         (backward, f"{bus}::{BEAT}", beats, "Packets."),
         (forward, "logic", f"{beats}_tready", "beat: ready."),
-        (forward, f"{own}::{tree.root.type}", "msg", f"Data and valid of {message.name}."),
+        (forward, f"{own}::{tree.root.type}", "msg", f"Data and valid of {plan.message}."),
         (backward, f"{own}::{tree.root.ready_type}", "rdy", "Ready of the fields."),
         ("output", f"{TYPES_NAME}::{STATUS_STREAM}", _STATUS, "Status of each packet."),
         ("input", "logic", f"{_STATUS}_tready", "status: ready."),

@@ -25,6 +25,7 @@ from firm_hdl.export.vhdl.wrapper import (
     IEEE,
     LIBRARIES,
     Core,
+    Line,
     component,
     plain_lines,
     record_lines,
@@ -121,93 +122,62 @@ def user_layer(
     whole = {way: f"{entity}_record" for way, entity in entities.items() if record_cores}
     tree = tree_of(message, plan)
     values = values_of(tree, plan)
-    bus = bus_name(plan.bus_bytes)
-    writer = _Writer(message, plan, tree, values.get(message.name), header)
+    own = values.get(message.name)
     components = f"{name}_components_pkg"
+    head = "".join(comment(header, ""))
+    lines = {entity: stream_lines(plan, tree, way) for way, entity in entities.items()}
+    wrappers = {
+        entity: stream_wrapper(plan, tree, way, entity=entity, core=cores[way])
+        for way, entity in entities.items()
+    }
+    for way, entity in whole.items():
+        assert own is not None and record_cores is not None
+        lines[entity] = record_lines(plan, own, way)
+        wrappers[entity] = record_wrapper(plan, own, way, entity=entity, core=record_cores[way])
     return UserLayer(
         name=name,
-        package=tree.packages[-1].name,
+        package=tree.package.name,
         entities=entities,
         record_entities=whole,
         tree=tree,
-        values=writer.values if whole else None,
+        values=own if whole else None,
         constants={package.name: constants_of(package, plan) for package in tree.packages},
-        shared=(
-            Shared(name=bus),
-            *(
-                Shared(name=each.name, needs=(bus, *each.needs), message=each.message.name)
-                for each in tree.packages
-            ),
-        ),
+        shared=_shared(plan, tree),
         packages={
-            f"{TYPES_NAME}.vhd": types_package(),
-            f"{bus}.vhd": bus_package(plan.bus_bytes),
-            **{
-                f"{each.name}.vhd": message_package(each, plan, values.get(each.message.name))
-                for each in tree.packages
-            },
-            f"{components}.vhd": writer.components(components, entities, whole),
+            **_shared_packages(plan, tree, values),
+            f"{components}.vhd": head + _components(plan, tree, components, lines),
         },
-        wrappers={
-            **writer.wrappers(entities, cores),
-            **writer.record_wrappers(whole, record_cores or {}),
-        },
+        wrappers={f"{entity}.vhd": head + text for entity, text in wrappers.items()},
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Writer:
-    message: Message
-    plan: Plan
-    tree: Tree
-    values: ValueType | None
-    header: str
+def _shared(plan: Plan, tree: Tree) -> tuple[Shared, ...]:
+    bus = bus_name(plan.bus_bytes)
+    own = (
+        Shared(name=each.name, needs=(bus, *each.needs), message=each.message.name)
+        for each in tree.packages
+    )
+    return (Shared(name=bus), *own)
 
-    @property
-    def package_name(self) -> str:
-        return self.tree.packages[-1].name
 
-    def remark(self) -> str:
-        return "".join(comment(self.header, ""))
+def _shared_packages(plan: Plan, tree: Tree, values: Mapping[str, ValueType]) -> dict[str, str]:
+    """Write the packages that other messages' folders have, too, by file name."""
+    texts = {TYPES_NAME: types_package(), bus_name(plan.bus_bytes): bus_package(plan.bus_bytes)}
+    for each in tree.packages:
+        texts[each.name] = message_package(each, plan, values.get(each.message.name))
+    return {f"{name}.vhd": text for name, text in texts.items()}
 
-    def wrappers(
-        self, entities: Mapping[Direction, str], cores: Mapping[Direction, Core]
-    ) -> dict[str, str]:
-        package = self.package_name
-        return {
-            f"{entity}.vhd": self.remark()
-            + stream_wrapper(self.message, self.plan, self.tree, way, entity, package, cores[way])
-            for way, entity in entities.items()
-        }
 
-    def record_wrappers(
-        self, entities: Mapping[Direction, str], cores: Mapping[Direction, Core]
-    ) -> dict[str, str]:
-        if self.values is None:
-            return {}
-        package = self.package_name
-        return {
-            f"{entity}.vhd": self.remark()
-            + record_wrapper(self.message, self.plan, self.values, way, entity, package, cores[way])
-            for way, entity in entities.items()
-        }
-
-    def components(
-        self, name: str, entities: Mapping[Direction, str], whole: Mapping[Direction, str]
-    ) -> str:
-        text = [
-            self.remark(),
-            *comment(f"Components of the converters of {self.message.name}.", ""),
-            f"\n{LIBRARIES}use work.{self.package_name}.all;\n\npackage {name} is\n",
-        ]
-        for way, entity in entities.items():
-            text += component(entity, stream_lines(self.message, self.plan, self.tree, way))
-        if self.values is not None:
-            for way, entity in whole.items():
-                lines = record_lines(self.message, self.plan, self.values, way)
-                text += component(entity, lines)
-        text.append(f"\nend package {name};\n")
-        return "".join(text)
+def _components(plan: Plan, tree: Tree, name: str, lines: Mapping[str, list[Line]]) -> str:
+    """Write the package of the components; `lines` has the ports of each."""
+    text = [
+        *comment(f"Components of the converters of {plan.message}.", ""),
+        f"\n{LIBRARIES}use work.{tree.package.name}.all;\n\npackage {name} is\n",
+    ]
+    for entity, ports in lines.items():
+        text += component(entity, ports)
+    text.append(f"\nend package {name};\n")
+    return "".join(text)
 
 
 def flat_package(

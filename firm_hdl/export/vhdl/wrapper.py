@@ -11,7 +11,6 @@ from firm_hdl.export.top import Direction, Port, ports_of
 from firm_hdl.export.tree import Tree
 from firm_hdl.export.vhdl.constants import comment
 from firm_hdl.export.vhdl.values import ValueType
-from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
 __all__ = [
@@ -57,24 +56,22 @@ class Core:
     names: Mapping[str, str]
 
 
-def stream_lines(message: Message, plan: Plan, tree: Tree, direction: Direction) -> list[Line]:
+def stream_lines(plan: Plan, tree: Tree, direction: Direction) -> list[Line]:
     """List the ports of a converter with a record of streams."""
     forwards, backwards = ("out", "in ") if direction == "deserializer" else ("in ", "out")
     lines = [_outer_line(port) for port in ports_of(plan, direction) if port.leaf is None]
     status = next(k for k, line in enumerate(lines) if line[0].startswith("m_axis_status"))
     lines[status:status] = [
-        ("msg", f"{forwards} {tree.root.type}", f"Data and valid of {message.name}."),
+        ("msg", f"{forwards} {tree.root.type}", f"Data and valid of {plan.message}."),
         ("rdy", f"{backwards} {tree.root.ready_type}", "Ready of the fields."),
     ]
     return lines
 
 
-def record_lines(
-    message: Message, plan: Plan, values: ValueType, direction: Direction
-) -> list[Line]:
+def record_lines(plan: Plan, values: ValueType, direction: Direction) -> list[Line]:
     """List the ports of a converter with a record of values."""
     return [
-        ("msg", f"{port.direction:3} {values.name}", f"The fields of {message.name}.")
+        ("msg", f"{port.direction:3} {values.name}", f"The fields of {plan.message}.")
         if port.name == "msg_data"
         else _outer_line(port)
         for port in record_ports(plan, direction, values.bits)
@@ -158,20 +155,15 @@ def _entity(
 
 
 def stream_wrapper(
-    message: Message,
-    plan: Plan,
-    tree: Tree,
-    direction: Direction,
-    entity: str,
-    package: str,
-    core: Core,
+    plan: Plan, tree: Tree, direction: Direction, *, entity: str, core: Core
 ) -> str:
     """Write a converter with a record of streams, one for each leaf."""
+    package = tree.package.name
     conversions = _Conversions(plan, tree, direction)
     ports = ports_of(plan, direction)
     parts = {port.name: conversions.actual(port) for port in ports}
-    lines = stream_lines(message, plan, tree, direction)
-    head = f"-- The {direction} of {message.name} with records.\n-- {core.entity} has flat ports.\n"
+    lines = stream_lines(plan, tree, direction)
+    head = f"-- The {direction} of {plan.message} with records.\n-- {core.entity} has flat ports.\n"
     return head + "".join(
         _entity(entity, package, lines, core, parts, conversions.signals, conversions.assignments)
     )
@@ -227,13 +219,7 @@ def _packet_actual(port: Port) -> str:
 
 
 def record_wrapper(
-    message: Message,
-    plan: Plan,
-    values: ValueType,
-    direction: Direction,
-    entity: str,
-    package: str,
-    core: Core,
+    plan: Plan, values: ValueType, direction: Direction, *, entity: str, core: Core
 ) -> str:
     """Write a converter with a record of values that has one handshake."""
     bits = values.bits
@@ -244,10 +230,10 @@ def record_wrapper(
         if direction == "deserializer"
         else "  msg_data <= to_slv(msg);\n"
     )
-    lines = record_lines(message, plan, values, direction)
+    lines = record_lines(plan, values, direction)
     signals = [("msg_data", _kind(bits, vector=True))]
     head = (
-        f"-- The {direction} of {message.name}: whole messages, as a record of values.\n"
+        f"-- The {direction} of {plan.message}: whole messages, as a record of values.\n"
         f"-- {core.entity} has flat ports.\n"
     )
-    return head + "".join(_entity(entity, package, lines, core, parts, signals, [convert]))
+    return head + "".join(_entity(entity, values.package, lines, core, parts, signals, [convert]))
