@@ -16,7 +16,7 @@ from firm_hdl.cli import main
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.verify.results.file import ResultsWriter, read_results
-from firm_hdl.verify.results.records import Record
+from firm_hdl.verify.results.records import Record, from_json, to_json
 from firm_hdl.verify.results.verdict import Failed, NotJudged
 from firm_hdl.verify.systems.system import run_shares, shares_of
 from firm_hdl.verify.ts1 import ORACLES
@@ -72,7 +72,7 @@ def test_every_system_has_a_record_of_each_type_that_can_be_read_back(tmp_path):
         assert min(record.seconds.generation, record.seconds.testing) > 0
         assert bool(record.seconds.simulation) == (record.test.system == "ts3")
         assert bool(record.shape) == (record.test.system != "ts1") == (not record.verdicts)
-        assert Record.from_json(record.as_json()) == record
+        assert from_json(Record, to_json(record)) == record
     commands = {record.test.system: record.command for record in records}
     for command in commands.values():
         assert main([*command.split()[1:], "--jobs", "1"]) == 0

@@ -8,6 +8,7 @@ from typing import Any
 
 from firm_hdl.verify.report.outcomes import NotRun, Outcome
 from firm_hdl.verify.report.summary import Summary
+from firm_hdl.verify.results.records import to_json as record_to_json
 
 __all__ = ["FORMAT", "to_json"]
 
@@ -42,6 +43,6 @@ def _outcome(outcome: Outcome) -> dict[str, Any]:
         "key": outcome.test.key,
     }
     if outcome.record is not None:
-        found["record"] = outcome.record.as_json()
+        found["record"] = record_to_json(outcome.record)
         del found["record"]["test"]
     return found

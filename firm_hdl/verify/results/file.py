@@ -14,14 +14,14 @@ import json
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from io import FileIO
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 from firm_hdl.files import read_file
-from firm_hdl.verify.results.records import Record, Test
+from firm_hdl.verify.results.records import Record, Test, from_json, to_json
 
 __all__ = ["FORMAT", "Results", "ResultsError", "ResultsWriter", "read_results"]
 
@@ -93,7 +93,7 @@ def _read(path: Path) -> tuple[Results, int]:
             if "session" in given:
                 sessions.append(_session(given["session"]))
             else:
-                record = Record.from_json(given["record"])
+                record = from_json(Record, given["record"])
                 records[record.test.key] = record
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             # What `Record` and `Test` say of what they need; Python's own words start small.
@@ -109,7 +109,7 @@ def _header(path: Path, line: bytes) -> tuple[Mapping[str, Any], tuple[Test, ...
         given = json.loads(line)
         if given["format"] != FORMAT or not isinstance(given["options"], dict):
             raise ValueError
-        return given["options"], tuple(Test.from_json(test) for test in given["planned"])
+        return given["options"], tuple(from_json(Test, test) for test in given["planned"])
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise ResultsError(f"'{path}' has no results of firm-hdl verify") from None
 
@@ -175,10 +175,10 @@ class ResultsWriter:
         found, whole = _read(self.path)
         os.ftruncate(self._file.fileno(), whole)
         if not whole:
-            tests = [_test(test) for test in planned]
-            self._write({"format": FORMAT, "options": options, "planned": tests})
+            tests = tuple(planned)
+            self._write({"format": FORMAT, "options": options, "planned": to_json(tests)})
             _sync_folder(self.path.parent)
-            return Results(options=options, planned=tuple(planned))
+            return Results(options=options, planned=tests)
         if different := "; ".join(_differences(found, options, planned)):
             raise ResultsError(
                 f"'{self.path}' is of another run: {different}; name another file, or remove it"
@@ -187,7 +187,7 @@ class ResultsWriter:
 
     def add(self, *records: Record) -> None:
         """Add records; they are on the disk when this returns."""
-        self._write(*({"record": record.as_json()} for record in records))
+        self._write(*({"record": to_json(record)} for record in records))
 
     def _write(self, *lines: Mapping[str, Any]) -> None:
         text = "".join(f"{json.dumps(line, allow_nan=False)}\n" for line in lines)
@@ -210,10 +210,6 @@ class ResultsWriter:
         trace: TracebackType | None,
     ) -> None:
         self.close()
-
-
-def _test(test: Test) -> dict[str, Any]:
-    return {name: value for name, value in asdict(test).items() if value}
 
 
 def _sync_folder(folder: Path) -> None:

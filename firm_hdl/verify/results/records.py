@@ -7,8 +7,9 @@ what became of it. Both are written as JSON and read back by :mod:`firm_hdl.veri
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
-from typing import Any, get_args, get_origin, get_type_hints
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
+from types import NoneType, UnionType
+from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 from firm_hdl.verify.results.texts import clipped
 from firm_hdl.verify.results.verdict import (
@@ -29,8 +30,12 @@ __all__ = [
     "Seconds",
     "Test",
     "clipped_verdict",
+    "from_json",
     "settled",
+    "to_json",
 ]
+
+T = TypeVar("T")
 
 MOST_FAILURES = 20
 MOST_CHARACTERS = 4000
@@ -86,18 +91,6 @@ class Test:
         """What people read it by."""
         bus = f", {self.bus_bytes}-byte bus" if self.bus_bytes else ""
         return f"{self.type} ({', '.join(self.distros)}), {self.system}{bus}"
-
-    @classmethod
-    def from_json(cls, given: object) -> Test:
-        """Return a test that was written as an object of its attributes.
-
-        Raises
-        ------
-        ValueError
-            If it is none.
-        """
-        test: Test = _made(cls, given)
-        return test
 
     @property
     def distros(self) -> tuple[str, ...]:
@@ -168,28 +161,6 @@ class OracleVerdict:
     verdict: Verdict
     is_refused: bool = False
 
-    def as_json(self) -> dict[str, Any]:
-        """Return what `from_json` reads."""
-        found = {"oracle": self.oracle, **verdict_to_json(self.verdict)}
-        if self.is_refused:
-            found["is_refused"] = True
-        return found
-
-    @classmethod
-    def from_json(cls, given: object) -> OracleVerdict:
-        """Return what `as_json` wrote.
-
-        Raises
-        ------
-        ValueError
-            If it is none.
-        """
-        values = dict(_mapping(given, "What an oracle says"))
-        own: dict[str, Any] = {n: values.pop(n) for n in ("oracle", "is_refused") if n in values}
-        own["verdict"] = verdict_from_json(values)
-        made: OracleVerdict = _made(cls, own)
-        return made
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Record:
@@ -251,35 +222,6 @@ class Record:
         """The same but for how long it took, which differs from run to run."""
         return replace(self, seconds=Seconds(), cpu_seconds=0.0)
 
-    def as_json(self) -> dict[str, Any]:
-        """Return what `from_json` reads: without what is empty, and times in microseconds."""
-        found = _without_empty(asdict(self))
-        found["verdict"] = verdict_to_json(self.verdict)
-        if self.verdicts:
-            found["verdicts"] = [each.as_json() for each in self.verdicts]
-        return found
-
-    @classmethod
-    def from_json(cls, given: object) -> Record:
-        """Return a record that was written by `as_json`.
-
-        Raises
-        ------
-        ValueError
-            If it is none.
-        """
-        values = dict(_mapping(given, "A record"))
-        values["test"] = Test.from_json(values.get("test"))
-        values["verdict"] = verdict_from_json(values.get("verdict"))
-        if "seconds" in values:
-            values["seconds"] = _made(Seconds, values["seconds"])
-        if "verdicts" in values:
-            values["verdicts"] = tuple(map(OracleVerdict.from_json, values["verdicts"]))
-        if "coverage" in values:
-            values["coverage"] = _made(PlanCoverage, values["coverage"])
-        record: Record = _made(cls, values)
-        return record
-
 
 def _clipped(failures: Sequence[str]) -> tuple[str, ...]:
     """Return failures as a record keeps them: not too many, and none too long."""
@@ -322,56 +264,96 @@ def settled(record: Record, records: Mapping[str, Record]) -> Verdict:
     return record.verdict
 
 
-def _without_empty(values: dict[str, Any]) -> dict[str, Any]:
-    found = {}
-    for name, value in values.items():
-        if isinstance(value, dict) and name != "coverage":
-            value = _without_empty(value)
-        if isinstance(value, float):
-            value = round(value, 6)
-        if value or name in ("verdict", "test"):
-            found[name] = value
-    return found
+def to_json(value: Any) -> Any:
+    """Return a record, or a part of one, in values that JSON has.
 
+    A dataclass becomes an object. What is empty is left out, unless it has to be given. Floats are
+    rounded to 6 decimal places, so times to microseconds.
+    """
+    match value:
+        case float():
+            return round(value, 6)
+        case tuple():
+            return list(map(to_json, value))
+        case Mapping():
+            found = {name: to_json(each) for name, each in value.items()}
+            return {name: each for name, each in found.items() if each}
+        case Passed() | Failed() | NotJudged() | KnownDifference():
+            return verdict_to_json(value)
+        case Test() | Seconds() | PlanCoverage() | OracleVerdict() | Record():
+            found = {each.name: to_json(getattr(value, each.name)) for each in fields(value)}
+            required = _REQUIRED[type(value)]
+            found = {name: each for name, each in found.items() if each or name in required}
+            # An oracle's verdict is an object with a verdict's own names.
+            verdict = found.pop("verdict") if isinstance(value, OracleVerdict) else {}
+            return found | verdict
+        case _:
+            return value
+
+
+def from_json(kind: type[T], given: object) -> T:
+    """Return a record, or a part of one, from an object that `to_json` wrote.
+
+    Raises
+    ------
+    ValueError
+        If the object has unknown names, or lacks one, or has a value of another type.
+    """
+    values = _object(given, _CALLED.get(kind, kind.__name__))
+    if kind is OracleVerdict:
+        own: dict[str, Any] = {n: values.pop(n) for n in ("oracle", "is_refused") if n in values}
+        values = {**own, "verdict": values}
+    found = {}
+    for name, hint in _HINTS[kind].items():
+        is_part = hint == _VERDICT or is_dataclass(hint)
+        if name in values or (is_part and name in _REQUIRED[kind]):
+            try:
+                found[name] = _read(hint, values.get(name))
+            except TypeError:
+                raise ValueError(f"{kind.__name__}: {name} must be of another type") from None
+    if unknown := sorted(values.keys() - found.keys()):
+        raise ValueError(f"{kind.__name__} has no {', '.join(unknown)}")
+    try:
+        return kind(**found)
+    except TypeError as error:
+        raise ValueError(f"{kind.__name__}: {error}") from None
+
+
+def _read(hint: Any, given: Any) -> Any:
+    """Return the value of an attribute; `TypeError` if it is of another type."""
+    kinds = [each for each in get_args(hint) if each not in (NoneType, Ellipsis)]
+    if hint == _VERDICT:
+        return verdict_from_json(given)
+    if get_origin(hint) is tuple and isinstance(given, list | tuple):
+        return tuple(_read(kinds[0], each) for each in given)
+    if get_origin(hint) is Mapping and isinstance(given, dict):
+        return {name: _read(kinds[1], each) for name, each in given.items()}
+    # What may be `None` is left out then.
+    hint = kinds[0] if get_origin(hint) is UnionType else hint
+    if is_dataclass(hint):
+        part: Any = from_json(hint, given)  # type: ignore[arg-type]
+        return part
+    # A truth value is no number.
+    if type(given) is hint or (hint is float and type(given) is int):
+        return given
+    raise TypeError
+
+
+_KINDS: tuple[Any, ...] = (Test, Seconds, PlanCoverage, OracleVerdict, Record)
+_HINTS: dict[Any, dict[str, Any]] = {kind: get_type_hints(kind) for kind in _KINDS}
+_REQUIRED: dict[Any, set[str]] = {
+    kind: {f.name for f in fields(kind) if f.default is MISSING and f.default_factory is MISSING}
+    for kind in _KINDS
+}
+_VERDICT = _HINTS[Record]["verdict"]
+_CALLED: dict[type, str] = {Record: "A record", OracleVerdict: "What an oracle says"}
 
 _JSON = {dict: "an object", list: "a list", str: "a text", bool: "a truth value"}
 """What values that JSON has are called; all others but null are numbers."""
 
 
-def _mapping(given: object, what: str) -> dict[str, Any]:
+def _object(given: object, what: str) -> dict[str, Any]:
     if not isinstance(given, dict):
         kind = "nothing" if given is None else _JSON.get(type(given), "a number")
         raise ValueError(f"{what} must be an object, not {kind}")
-    return given
-
-
-def _made(kind: type[Any], given: object) -> Any:
-    """Make a dataclass of an object that JSON was read to, lists as tuples."""
-    values = _mapping(given, kind.__name__)
-    if unknown := sorted(values.keys() - kind.__dataclass_fields__.keys()):
-        raise ValueError(f"{kind.__name__} has no {', '.join(unknown)}")
-    for name, value in values.items():
-        if not _fits(value, _HINTS[kind][name]):
-            raise ValueError(f"{kind.__name__}: {name} must be of another type")
-    try:
-        return kind(**{n: tuple(v) if type(v) is list else v for n, v in values.items()})
-    except TypeError as error:
-        raise ValueError(f"{kind.__name__}: {error}") from None
-
-
-_HINTS = {
-    kind: get_type_hints(kind) for kind in (Test, Seconds, PlanCoverage, OracleVerdict, Record)
-}
-
-
-def _fits(value: object, hint: Any) -> bool:
-    """Tell whether a value that JSON was read to can be that of an attribute."""
-    origin, arguments = get_origin(hint), get_args(hint)
-    if origin is tuple:
-        return isinstance(value, list | tuple) and all(_fits(v, arguments[0]) for v in value)
-    if origin is Mapping:
-        return isinstance(value, dict) and all(_fits(v, arguments[1]) for v in value.values())
-    if hint is float:
-        return type(value) in (int, float)
-    # A truth value is no number.
-    return type(value) is hint if hint is int else isinstance(value, hint)
+    return dict(given)

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.verify.results.file import FORMAT, ResultsError, ResultsWriter, read_results
-from firm_hdl.verify.results.records import Record
+from firm_hdl.verify.results.records import Record, to_json
 from firm_hdl.verify.results.verdict import Failed
 from tests.verify.report.samples import a_record, a_test
 
@@ -81,7 +81,7 @@ def test_missing_records_are_named(tmp_path):
 def test_torn_last_line_is_dropped_and_replaced(tmp_path, cut):
     path = written(tmp_path / "r", a_record())
     whole = path.read_bytes()
-    line = json.dumps({"record": a_record(BOOL).as_json()}).encode()
+    line = json.dumps({"record": to_json(a_record(BOOL))}).encode()
     path.write_bytes(whole + line[:cut])
     assert list(read_results(path).records) == [HEADER.key]
     written(path, a_record(BOOL))
