@@ -60,7 +60,7 @@ def counts_bar(counts: Counts) -> str:
 def cumulative(curves: Sequence[Curve]) -> str:
     """Draw the share of tests that took at most so long, a line for each suite."""
     figure = Figure(760, 340, "Share of tests completed within a time")
-    x = Scale.of((v for c in curves for v, _ in c.points), 62, 740, is_log=True)
+    x = Scale.logarithmic((v for c in curves for v, _ in c.points), 62, 740)
     y = Scale(0, 1, 286, 16)
     figure.x_axis(x, 286, "time per test in s, logarithmic", 16)
     figure.y_axis(y, 62, "share of tests completed", 740, percent=True)
@@ -84,7 +84,7 @@ def stages(curve: Curve) -> str:
     figure = Figure(760, bottom + 44, f"Run times of the stages, {curve.suite}")
     # Not of the points, which are some of the values.
     ends = (v for stage in names for v in (curve.stages[stage].least, curve.stages[stage].most))
-    x = Scale.of(ends, 96, 740, is_log=True)
+    x = Scale.logarithmic(ends, 96, 740)
     figure.x_axis(x, bottom, "time per test in s, logarithmic", 12)
     for row, stage in enumerate(names):
         middle = 12 + height * row + height / 2
@@ -131,8 +131,8 @@ def scatter(trend: Trend) -> str:
     name = trend.metric.replace("_", " ")
     figure = Figure(372, 290, f"Time over {name}")
     points = [(a, b) for a, b in trend.points if a > 0 and b > 0]
-    x = Scale.of((a for a, _ in points), 62, 346, is_log=True)
-    y = Scale.of((b for _, b in points), 236, 14, is_log=True)
+    x = Scale.logarithmic((a for a, _ in points), 62, 346)
+    y = Scale.logarithmic((b for _, b in points), 236, 14)
     figure.x_axis(x, 236, f"{name}, logarithmic", 14)
     figure.y_axis(y, 62, "time in s, logarithmic", 346)
     step = -(-len(points) // MOST_DOTS)

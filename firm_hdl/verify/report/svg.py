@@ -58,18 +58,11 @@ class Scale:
     is_log: bool = False
 
     @classmethod
-    def of(
-        cls, values: Iterable[float], start: float, end: float, *, is_log: bool = False
-    ) -> Scale:
-        """Return a scale that shows all of some values, between round figures."""
-        known = [value for value in values if not is_log or value > 0] or [1.0]
-        low, high = min(known), max(known)
-        if is_log:
-            low, high = _round_down(low), -_round_down(-high)
-            return cls(low, high if high > low else low * 10, start, end, True)
-        low = min(0.0, low)
-        step = _step(high - low)
-        return cls(low, math.ceil(high / step) * step or 1.0, start, end)
+    def logarithmic(cls, values: Iterable[float], start: float, end: float) -> Scale:
+        """Return a logarithmic scale that shows all positive values, between round figures."""
+        known = [value for value in values if value > 0] or [1.0]
+        low, high = _round_down(min(known)), -_round_down(-max(known))
+        return cls(low, high if high > low else low * 10, start, end, True)
 
     def __call__(self, value: float) -> float:
         """Return the place of a figure."""
@@ -80,11 +73,9 @@ class Scale:
         return round(self.start + share * (self.end - self.start), 1)
 
     def ticks(self) -> list[float]:
-        """Return round figures, a few of them."""
+        """Return round figures, a few of them; of a linear scale, the ends of its fifths."""
         if not self.is_log:
-            step = _step(self.high - self.low)
-            count = math.floor((self.high - self.low) / step + 1e-9)
-            return [self.low + step * index for index in range(count + 1)]
+            return [self.low + (self.high - self.low) * fifths / 5 for fifths in range(6)]
         decades = math.log10(self.high / self.low)
         digits: Sequence[int] = (1, 2, 5) if decades <= 2.1 else (1,)
         every = 1 if decades <= 6 else math.ceil(decades / 5)
@@ -104,13 +95,6 @@ def _round_down(value: float) -> float:
     if value > 0:
         return max(digit * power for digit in (1, 2, 5) if digit * power <= size * (1 + 1e-9))
     return -min(digit * power for digit in (1, 2, 5, 10) if digit * power >= size * (1 - 1e-9))
-
-
-def _step(span: float) -> float:
-    if span <= 0:
-        return 1.0
-    power: float = 10.0 ** math.floor(math.log10(span / 4))
-    return next(digit * power for digit in (1, 2, 2.5, 5, 10) if span / (digit * power) <= 5)
 
 
 def spread(index: int) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 from firm_hdl.export.top import leaf_names
 from firm_hdl.gateware.signatures import Status
@@ -126,36 +127,29 @@ def _cycles(trace: Trace, rows: Sequence[str]) -> Iterator[tuple[int | None, dic
 
 
 def _streams(trace: Trace) -> Iterator[_Stream]:
-    keys: dict[tuple[str, str], str] = {}
-    for letter, pins in (("i", trace.inputs), ("o", trace.outputs)):
-        for pin in pins:
-            direction = trace.devices[pin.device].direction
-            keys[direction, pin.port.name] = f"{letter}{pin.number}"
-    for device in trace.devices:
-
-        def key(name: str, direction: str = device.direction) -> str:
-            return keys[direction, name]
-
-        yield _Stream(
-            key("m_axis_status_tvalid"),
-            key("m_axis_status_tready"),
-            (key("m_axis_status_tdata"),),
-            _take_status if device.direction == "deserializer" else _take_sent_status,
-        )
-        if device.direction == "serializer":
-            payload = ("m_axis_tdata", "m_axis_tkeep", "m_axis_tlast", "m_axis_tuser")
-            yield _Stream(
-                key("m_axis_tvalid"),
-                key("m_axis_tready"),
-                tuple(key(name) for name in payload),
-                _Beats().take,
-            )
+    for number, device in enumerate(trace.devices):
+        keys = {
+            pin.port.name: f"{letter}{pin.number}"
+            for letter, pins in (("i", trace.inputs), ("o", trace.outputs))
+            for pin in pins
+            if pin.device == number
+        }
+        is_receiver = device.direction == "deserializer"
+        valid, ready, status = (keys[f"m_axis_status_{n}"] for n in ("tvalid", "tready", "tdata"))
+        yield _Stream(valid, ready, (status,), _take_status if is_receiver else _take_sent_status)
+        if not is_receiver:
+            valid, ready, *payload = (keys[f"m_axis_{part}"] for part in _BEAT)
+            yield _Stream(valid, ready, tuple(payload), _Beats().take)
             continue
         for leaf, (path, base) in enumerate(leaf_names(device.plan).items()):
             assert device.plan.leaves[leaf].path == path
-            last = keys.get(("deserializer", f"{base}_last"))
-            bits = (*([] if last is None else [last]), key(f"{base}_data"))
-            yield _Stream(key(f"{base}_valid"), key(f"{base}_ready"), bits, _Leaf(leaf).take)
+            last = [keys[name] for name in (f"{base}_last",) if name in keys]
+            bits = (*last, keys[f"{base}_data"])
+            take = partial(_take_transfer, leaf)
+            yield _Stream(keys[f"{base}_valid"], keys[f"{base}_ready"], bits, take)
+
+
+_BEAT = ("tvalid", "tready", "tdata", "tkeep", "tlast", "tuser")
 
 
 def _take_status(run: Traffic, payload: list[str]) -> None:
@@ -166,14 +160,8 @@ def _take_sent_status(run: Traffic, payload: list[str]) -> None:
     run.sent_statuses.append(payload[0])
 
 
-@dataclass(slots=True)
-class _Leaf:
-    """Collects the transfers of a leaf."""
-
-    number: int
-
-    def take(self, run: Traffic, payload: list[str]) -> None:
-        run.transfers.setdefault(self.number, []).append("".join(payload))
+def _take_transfer(leaf: int, run: Traffic, payload: list[str]) -> None:
+    run.transfers.setdefault(leaf, []).append("".join(payload))
 
 
 @dataclass(slots=True)

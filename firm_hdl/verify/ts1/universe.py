@@ -145,17 +145,16 @@ class Universe:
         DefinitionError
             If it, or one that it depends on, is refused.
         """
-        library = self.library
-        if case.is_changed:
-            library = Library(self.distro, origins=[_Changed(case), *self._origins])
-        return library.interface(case.spelled_name)
+        return self._library_with(case).interface(case.spelled_name)
 
     def show(self, case: DefinitionCase) -> str:
         """Print a definition as ``firm-hdl show`` does."""
-        library = self.library
-        if case.is_changed:
-            library = Library(self.distro, origins=[_Changed(case), *self._origins])
-        return show(library, case.spelled_name)
+        return show(self._library_with(case), case.spelled_name)
+
+    def _library_with(self, case: DefinitionCase) -> Library:
+        if not case.is_changed:
+            return self.library
+        return Library(self.distro, origins=[_Changed(case), *self._origins])
 
 
 class _Changed:

@@ -54,7 +54,7 @@ def test_a_suite_without_times_has_no_curve_and_the_next_one_has_its_own():
 
 def test_the_curve_of_a_suite_climbs_from_its_fastest_test_to_all():
     text = cumulative([a_curve(), a_curve("slow", [100.0, 1000.0])])
-    x = Scale.of([*TIMES, 100.0, 1000.0], 62, 740, is_log=True)
+    x = Scale.logarithmic([*TIMES, 100.0, 1000.0], 62, 740)
     y = Scale(0, 1, 286, 16)
     (path,) = of_kind(text, "path", "curve c1")
     expected = f"M{x(0.1)} {y(0)}" + "".join(f"H{x(v)}V{y(n / 5)}" for n, v in enumerate(TIMES, 1))
@@ -69,7 +69,7 @@ def test_the_curve_of_a_suite_climbs_from_its_fastest_test_to_all():
 def test_the_axis_of_stages_has_the_least_and_the_most_of_all():
     # Drawn are only some values, and the box knows more of them.
     curve = a_curve(stage_values={"generation": (0.3,), "testing": (0.02,)})
-    x = Scale.of([0.01, 10.0], 96, 740, is_log=True)
+    x = Scale.logarithmic([0.01, 10.0], 96, 740)
     text = stages(curve)
     whiskers = of_kind(text, "line", "whisker c1")
     assert (float(whiskers[0][1]["x1"]), float(whiskers[0][1]["x2"])) == (x(0.1), x(10.0))
@@ -82,7 +82,7 @@ def test_the_axis_of_stages_has_the_least_and_the_most_of_all():
 
 def test_a_box_has_its_quartiles_where_the_axis_says():
     text = stages(a_curve())
-    x = Scale.of([0.01, 10.0], 96, 740, is_log=True)
+    x = Scale.logarithmic([0.01, 10.0], 96, 740)
     box = box_of(TIMES)
     (rect,) = of_kind(text, "rect", "box c1")
     assert float(rect[1]["x"]) == x(box.q1)

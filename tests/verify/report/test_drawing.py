@@ -98,27 +98,28 @@ def test_a_vertical_axis_has_a_grid_beside_it(percent, ends):
 
 
 @pytest.mark.parametrize(
-    ("values", "is_log", "ends", "ticks"),
+    ("values", "ends", "ticks"),
     [
-        ([0, 9], False, (0, 10), [0, 2, 4, 6, 8, 10]),
-        ([3, 4], False, (0, 4), [0, 1, 2, 3, 4]),
-        ([-3, 4], False, (-3, 4), [-3, -1, 1, 3]),
-        ([0], False, (0, 1), [0, 0.2, 0.4, 0.6, 0.8, 1]),
-        ([], False, (0, 1), [0, 0.2, 0.4, 0.6, 0.8, 1]),
-        ([1, 100], True, (1, 100), [1, 2, 5, 10, 20, 50, 100]),
-        ([3, 70], True, (2, 100), [2, 5, 10, 20, 50, 100]),
-        ([5, 5], True, (5, 50), [5, 10, 20, 50]),
-        ([1, 1000], True, (1, 1000), [1, 10, 100, 1000]),
-        ([1, 1e6], True, (1, 1e6), [10.0**n for n in range(7)]),
-        ([1, 1e7], True, (1, 1e7), [1, 1e2, 1e4, 1e6]),
-        ([0, -2, 1, 10], True, (1, 10), [1, 2, 5, 10]),
+        ([1, 100], (1, 100), [1, 2, 5, 10, 20, 50, 100]),
+        ([3, 70], (2, 100), [2, 5, 10, 20, 50, 100]),
+        ([5, 5], (5, 50), [5, 10, 20, 50]),
+        ([1, 1000], (1, 1000), [1, 10, 100, 1000]),
+        ([1, 1e6], (1, 1e6), [10.0**n for n in range(7)]),
+        ([1, 1e7], (1, 1e7), [1, 1e2, 1e4, 1e6]),
+        ([0, -2, 1, 10], (1, 10), [1, 2, 5, 10]),
     ],
 )
-def test_scales_end_at_round_figures_and_have_a_few_more(values, is_log, ends, ticks):
-    scale = Scale.of(values, 0, 100, is_log=is_log)
+def test_scales_end_at_round_figures_and_have_a_few_more(values, ends, ticks):
+    scale = Scale.logarithmic(values, 0, 100)
     assert (scale.low, scale.high) == pytest.approx(ends)
     assert scale.ticks() == pytest.approx(ticks)
     assert (scale(scale.low), scale(scale.high)) == (0, 100)
+
+
+def test_a_linear_scale_has_fifths():
+    assert Scale(0, 1, 0, 100).ticks() == pytest.approx([0, 0.2, 0.4, 0.6, 0.8, 1])
+    assert Scale(-5, 5, 100, 0).ticks() == pytest.approx([-5, -3, -1, 1, 3, 5])
+    assert [Scale(-5, 5, 100, 0)(value) for value in (-5, 0, 5)] == [100, 50, 0]
 
 
 @pytest.mark.parametrize(

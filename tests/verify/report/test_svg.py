@@ -14,9 +14,9 @@ from firm_hdl.verify.report.svg import Scale, number, seconds, spread
 POSITIVE = st.floats(min_value=1e-6, max_value=1e9)
 
 
-@given(st.lists(POSITIVE, min_size=1), st.booleans())
-def test_values_and_ticks_are_inside(values, is_log):
-    scale = Scale.of(values, 10, 200, is_log=is_log)
+@given(st.lists(POSITIVE, min_size=1))
+def test_values_and_ticks_are_inside(values):
+    scale = Scale.logarithmic(values, 10, 200)
     for value in values:
         assert 10 <= scale(value) <= 200
     ticks = scale.ticks()
@@ -26,20 +26,20 @@ def test_values_and_ticks_are_inside(values, is_log):
 
 @given(POSITIVE, POSITIVE)
 def test_larger_values_are_further_on(one, other):
-    scale = Scale.of([one, other], 200, 10, is_log=True)
+    scale = Scale.logarithmic([one, other], 200, 10)
     assert (scale(one) - scale(other)) * (one - other) <= 0
 
 
 @pytest.mark.parametrize("values", [[], [0], [-1, 0]])
 def test_what_has_no_logarithm_is_left_out(values):
-    scale = Scale.of([*values, 0.2, 30], 0, 100, is_log=True)
+    scale = Scale.logarithmic([*values, 0.2, 30], 0, 100)
     assert (scale.low, scale.high) == (0.2, 50)
     assert scale(0) == scale(0.2) == 0
-    assert Scale.of(values, 0, 100, is_log=True).low == 1
+    assert Scale.logarithmic(values, 0, 100).low == 1
 
 
 def test_logarithms_are_even():
-    scale = Scale.of([0.01, 100], 0, 400, is_log=True)
+    scale = Scale.logarithmic([0.01, 100], 0, 400)
     assert [scale(value) for value in (0.01, 0.1, 1, 10, 100)] == [0, 100, 200, 300, 400]
     assert scale.ticks() == pytest.approx([0.01, 0.1, 1, 10, 100])
 

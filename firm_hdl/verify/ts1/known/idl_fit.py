@@ -23,33 +23,27 @@ from firm_hdl.verify.ts1.known.idl_text import (
 )
 from firm_hdl.verify.ts1.known.idl_values import integer_of, integers_of
 from firm_hdl.verify.ts1.known.rule import Rules, mend_members, without_hash
+from firm_hdl.verify.ts1.known.texts import limits
 
 __all__ = ["RULES"]
 
 RULES = Rules("rosidl_parser", language="idl")
 """What is known of rosidl_parser, values and included files."""
 
-_RANGES: Mapping[str, tuple[int, int]] = {
-    **{
-        kind: (-(1 << bits - 1), (1 << bits - 1) - 1)
-        for bits, kinds in {
-            8: ("int8", "char"),
-            16: ("int16", "short"),
-            32: ("int32", "long"),
-            64: ("int64", "long long"),
-        }.items()
-        for kind in kinds
-    },
-    **{
-        kind: (0, (1 << bits) - 1)
-        for bits, kinds in {
-            8: ("uint8", "octet"),
-            16: ("uint16", "unsigned short", "wchar"),
-            32: ("uint32", "unsigned long"),
-            64: ("uint64", "unsigned long long"),
-        }.items()
-        for kind in kinds
-    },
+_INTEGERS = {
+    "int8": ("char",),
+    "int16": ("short",),
+    "int32": ("long",),
+    "int64": ("long long",),
+    "uint8": ("octet",),
+    "uint16": ("unsigned short", "wchar"),
+    "uint32": ("unsigned long",),
+    "uint64": ("unsigned long long",),
+}
+"""Other names that IDL has for the integers."""
+
+_RANGES = {
+    name: limits(kind, "ros2") for kind, others in _INTEGERS.items() for name in (kind, *others)
 }
 _FLOATS = ("float", "double", "long double")
 _NUMBER = re.compile(r"[-+]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
