@@ -53,7 +53,7 @@ class Workload:
         """
         request = self.request
         if request.bags:
-            from firm_hdl.verify.ts3.recorded_tasks import collect_recorded
+            from firm_hdl.verify.ts3.recording import collect_recorded
 
             return collect_recorded(
                 next(iter(request.distros), None),

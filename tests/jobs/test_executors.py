@@ -13,7 +13,7 @@ import pytest
 from firm_hdl.jobs import executors
 from firm_hdl.jobs.executors import ExecutorError, check_executor, run_each
 from firm_hdl.verify import Options, collect_tasks, run_tasks
-from firm_hdl.verify.ts3.recorded import record_of
+from firm_hdl.verify.ts3.result import record_of
 from tests.verify.judged import assert_passed
 
 TASKS = [(f"task {number}", (number,)) for number in range(30)]

@@ -10,50 +10,16 @@ before. What is still missing in the end is named, so that nobody takes silence 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from firm_hdl.plan import BeginRun, Edge, Plan, decode, encode
 from firm_hdl.plan.edges import edges
 from firm_hdl.verify.cases.make import Case, make_cases
 from firm_hdl.verify.references.oracle import RosbagsOracle
 
-__all__ = ["Coverage", "bare_packets", "coverage", "more_cases"]
+__all__ = ["bare_packets", "more_cases"]
 
 TRIES = 300
 """How many seeds to draw cases from that nothing new comes of."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Coverage:
-    """How much of a plan some packets reach.
-
-    Attributes
-    ----------
-    possible : frozenset of Edge
-        All decisions of the plan.
-    taken : frozenset of Edge
-        Those among them that a packet took.
-    """
-
-    possible: frozenset[Edge]
-    taken: frozenset[Edge]
-
-    @property
-    def missing(self) -> list[Edge]:
-        """What no packet took, in the order of the plan."""
-        return sorted(self.possible - self.taken)
-
-    def __str__(self) -> str:
-        return f"{len(self.taken)} of {len(self.possible)}"
-
-
-def coverage(plan: Plan, packets: Iterable[bytes]) -> Coverage:
-    """Find out which decisions of a plan packets take, by the golden model."""
-    taken: set[Edge] = set()
-    for packet in packets:
-        taken |= decode(plan, packet).edges
-    possible = edges(plan)
-    return Coverage(possible=possible, taken=possible & taken)
 
 
 def more_cases(

@@ -157,11 +157,11 @@ class Stopwatch:
         self._spent[self._stage] += now - self._began
         self._stage, self._began = stage, now
 
-    def stop(self, record: Record) -> Record:
-        """End the test; return its record with the times."""
+    def stop(self) -> tuple[Seconds, float]:
+        """End the test; return the times of its stages, and its processor time in seconds."""
         self.enter("")
         seconds = Seconds(**{stage: self._spent[stage] for stage in STAGES})
-        return replace(record, seconds=seconds, cpu_seconds=cpu_seconds() - self._began_cpu)
+        return seconds, cpu_seconds() - self._began_cpu
 
 
 def recorded(test: Test, run: Callable[[Stopwatch], Record]) -> Record:
@@ -173,7 +173,8 @@ def recorded(test: Test, run: Callable[[Stopwatch], Record]) -> Record:
         record = Record(test=test, verdict=NotJudged(str(error) or type(error).__name__))
     except Exception as error:  # Whatever it is, the other types are to go on.
         record = Record(test=test, verdict=Failed((described(error),)))
-    return watch.stop(record)
+    seconds, processor = watch.stop()
+    return replace(record, seconds=seconds, cpu_seconds=processor)
 
 
 def failure_of(what: str, record: Record) -> Iterator[str]:

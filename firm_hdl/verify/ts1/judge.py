@@ -43,9 +43,11 @@ def judge_case(
             verdict = _failed(oracle, f"the oracle raised {type(error).__name__}: {error}")
         verdicts += [] if verdict is None else [verdict]
         elsewhere += max(0.0, oracle.cpu_seconds() - before)
-    record = watch.stop(record_of(test, case.language, verdicts))
-    cpu_seconds = record.cpu_seconds + elsewhere
-    return replace(record, cpu_seconds=cpu_seconds, metrics=_metrics(case, ours))
+    seconds, here = watch.stop()
+    record = record_of(test, case.language, verdicts)
+    return replace(
+        record, seconds=seconds, cpu_seconds=here + elsewhere, metrics=_metrics(case, ours)
+    )
 
 
 def record_of(test: Test, language: str, verdicts: Sequence[OracleVerdict]) -> Record:

@@ -12,14 +12,12 @@ cycle by cycle (:mod:`firm_hdl.verify.simulators.crosscheck`).
 from __future__ import annotations
 
 import random
-import time
 from collections.abc import Callable, Sequence
 from collections.abc import Set as AbstractSet
 from itertools import chain
 from typing import Any
 
 from firm_hdl.errors import described
-from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.model import Message
 from firm_hdl.plan import Edge, build_plan
 from firm_hdl.sim.stalls import Stalls
@@ -81,7 +79,6 @@ def measured(
         Adds to the result. It may raise anything, which goes to the result as well.
     """
     result = Result(distro=distro, name=name, command=command_of(options, distro, name))
-    began, began_cpu = time.perf_counter(), cpu_seconds()
     try:
         message = library_of(distro, options.paths, options.bags).message(name)
         judge = judge_of(
@@ -90,15 +87,12 @@ def measured(
             stand_in=not options.bags and may_stand_in(message, options.references),
         )
         result.note = judge.note
-        prepared = time.perf_counter() - began
         run(message, judge, options, result)
-        result.setup_seconds += prepared
     except NotJudgedError as error:
         result.obstacle = NotJudged(str(error) or type(error).__name__)
     except Exception as error:  # Whatever it is, the other types are to go on.
         result.failures.append(described(error))
-    result.seconds = time.perf_counter() - began
-    result.cpu_seconds = cpu_seconds() - began_cpu
+    result.seconds, result.cpu_seconds = result.watch.stop()
     return result
 
 
@@ -106,7 +100,6 @@ def accept_message(
     message: Message, oracle: RosbagsOracle, name: str, options: Options, result: Result
 ) -> None:
     """Run all cases of a message type that the oracle knows by `name`, and add to `result`."""
-    began = time.perf_counter()
     wire: Any = options.wire or message.wire
     run = Acceptance(message, wire, options, result)
     cases = all_cases(oracle, name, run.plan, seed=options.seed, most=options.most_cases)
@@ -114,7 +107,7 @@ def accept_message(
     result.cases = len(cases)
     result.metrics = figures(message, run.plan, [case.packet for case in cases])
     _confirm(message, run.plan.wire, cases, options, result, isinstance(oracle, WideOracle))
-    result.setup_seconds = time.perf_counter() - began
+    result.watch.enter("testing")
     taken = run.golden(cases, bare)
     if not options.simulated:
         return
@@ -206,7 +199,7 @@ class Acceptance:
         if reason := too_large(self.plan, layout.min_bytes):
             raise NotJudgedError(reason)
         self.checks = Checks(self.plan, result)
-        result.wire, result.shape = self.plan.wire, digest(self.plan)
+        result.shape = digest(self.plan)
         self._random = random.Random(f"{options.seed}/{message.name}/broken")
         if options.simulated:
             self.circuit = Circuit(message, self.plan, options, result)

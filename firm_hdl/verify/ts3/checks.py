@@ -10,8 +10,8 @@ from firm_hdl.plan import Edge, Plan
 from firm_hdl.plan.edges import edges
 from firm_hdl.plan.interpret import decode, encode
 from firm_hdl.sim.record import RunResult
-from firm_hdl.verify.cases.directed import Coverage
 from firm_hdl.verify.cases.make import Case
+from firm_hdl.verify.results.records import PlanCoverage
 from firm_hdl.verify.ts3.compare import (
     Expected,
     packet_differences,
@@ -67,8 +67,12 @@ class Checks:
     def cover(self, taken: Iterable[AbstractSet[Edge]]) -> None:
         """Note which decisions of the plan some packets take."""
         possible = edges(self._plan)
-        reached = possible.intersection(chain.from_iterable(taken))
-        self._result.coverage = Coverage(possible=possible, taken=reached)
+        missing = sorted(possible.difference(*taken))
+        self._result.coverage = PlanCoverage(
+            taken=len(possible) - len(missing),
+            possible=len(possible),
+            missing=tuple(f"step {edge.step}: {edge.way}" for edge in missing),
+        )
 
     def good(self, where: str, seen: RunResult, cases: Sequence[Case]) -> None:
         """Check what the circuits made of cases against the oracle."""

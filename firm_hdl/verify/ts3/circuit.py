@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Sequence
 
 from firm_hdl.gateware import Deserializer, Serializer
@@ -73,7 +72,7 @@ class Circuit:
             What the run is called in failures.
         """
         observe = None if self._cross is None else self._cross.start(where)
-        began = time.perf_counter()
+        self._result.watch.enter("simulation")
         try:
             options = RunOptions(stalls=stalls, observe=observe, vcd=self._waveform())
             seen = self._harness.run_packets(packets, options)
@@ -81,7 +80,7 @@ class Circuit:
             self._result.failures.append(f"{where}: {type(error).__name__}: {error}")
             return None
         finally:
-            self._result.simulation_seconds += time.perf_counter() - began
+            self._result.watch.enter("testing")
         self._result.packets += len(packets)
         self._result.simulated_cycles += self._harness.bench.cycles
         if self._cross is not None:
@@ -110,9 +109,9 @@ class Circuit:
         """Compare everything that was sent with another simulator, if there is one."""
         if self._cross is None:
             return
-        began = time.perf_counter()
+        self._result.watch.enter("simulation")
         self._result.comparison = found = self._cross.compare()
-        self._result.simulation_seconds += time.perf_counter() - began
+        self._result.watch.enter("testing")
         title = self._cross.simulator.title
         # The simulator was asked for, so its silence is one of the failures.
         silent = isinstance(found.verdict, NotJudged)

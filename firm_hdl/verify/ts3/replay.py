@@ -8,10 +8,8 @@ packets get that do not fit; for these, hardware and golden model must agree.
 
 from __future__ import annotations
 
-import struct
-import time
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
@@ -20,7 +18,7 @@ import numpy as np
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message
-from firm_hdl.plan import Payload, Plan, build_plan
+from firm_hdl.plan import Leaf, Payload, Plan, build_plan
 from firm_hdl.plan.interpret import Decoded, decode, encode
 from firm_hdl.verify.cases.damage import stalls_for
 from firm_hdl.verify.cases.effort import (
@@ -35,6 +33,7 @@ from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.choices import MOST_MESSAGES
 from firm_hdl.verify.references.oracle import Transfers
 from firm_hdl.verify.references.user_oracle import Judge
+from firm_hdl.verify.references.values import as_float, bits_of
 from firm_hdl.verify.results.verdict import NotJudgedError
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.tasks import library_of
@@ -83,7 +82,6 @@ def _recorded_message(library: Library, topic: Topic) -> Message | None:
 
 
 def _replay(message: Message, judge: Judge, options: Options, result: Result) -> None:
-    began = time.perf_counter()
     topics, others = _topics(message, library_of(result.distro, (), options.bags), options.bags)
     selection = _select(message, topics, options)
     longest = max(len(each.data) for each in selection.messages)
@@ -96,7 +94,7 @@ def _replay(message: Message, judge: Judge, options: Options, result: Result) ->
     result.failures += [each.finding for each in judged if each.finding]
     parts = [*_counts(selection, options), *others, *_kinds(judged)]
     result.note = "; ".join([*parts, *([judge.note] if judge.note else [])])
-    result.setup_seconds = time.perf_counter() - began
+    result.watch.enter("testing")
     run.golden(cases, ())
     if not options.simulated:
         return
@@ -196,7 +194,7 @@ def _judge(plan: Plan, judge: Judge, message: RecordedMessage, with_bag: bool) -
         return _refused(plan, judge, by_golden, decoded, error)
     if decoded.status != "OK":
         return _Judged(case=by_golden, finding=_misfit(by_golden, "rosbags reads it"))
-    if _kept(plan, decoded.streams) != decoded.streams:
+    if _changed(plan, decoded.streams, _in_python) != decoded.streams:
         kind = "with a signalling NaN, which Python does not keep"
         return _tamed(plan, judge, by_golden, decoded, kind, "rosbags reads it otherwise")
     case = Case(what=what, value=None, packet=answer, transfers=transfers, given=packet)
@@ -241,7 +239,8 @@ def _refused(plan: Plan, judge: Judge, case: Case, decoded: Decoded, error: Exce
 
 def _tamed(plan: Plan, judge: Judge, case: Case, decoded: Decoded, kind: str, text: str) -> _Judged:
     """Judge a packet by another one, in which rosbags can read what is in the way."""
-    streams = _ascii(plan, _kept(plan, decoded.streams))
+    kept = _changed(plan, decoded.streams, _in_python)
+    streams = _changed(plan, kept, _in_ascii)
     packet = encode(plan, streams)[0]
     try:
         is_same = _ask(plan, judge, packet) == (packet, _by_path(plan, streams))
@@ -263,38 +262,31 @@ def _by_path(plan: Plan, streams: Mapping[int, Sequence[Payload]]) -> Transfers:
     return {plan.leaves[leaf].path: list(payloads) for leaf, payloads in streams.items()}
 
 
-def _kept(plan: Plan, streams: Mapping[int, Sequence[Payload]]) -> dict[int, list[Payload]]:
-    """Return transfers as Python would have them: a float of its is not any 32 bits."""
-    kept: dict[int, list[Payload]] = {}
-    for number, payloads in streams.items():
-        leaf = plan.leaves[number]
-        is_float = leaf.kind == "scalar" and leaf.type in ("float32", "float64")
-        kept[number] = [
-            _through_float(each, leaf.item_bytes) if is_float and isinstance(each, int) else each
-            for each in payloads
-        ]
-    return kept
-
-
-def _through_float(bits: int, size: int) -> int:
-    code = "<f" if size == 4 else "<d"
-    (value,) = struct.unpack(code, bits.to_bytes(size, "little"))
-    return int.from_bytes(struct.pack(code, value), "little")
-
-
-def _ascii(plan: Plan, streams: Mapping[int, Sequence[Payload]]) -> dict[int, list[Payload]]:
-    """Return transfers without the highest bits of bytes, so that all text is ASCII."""
+def _changed(
+    plan: Plan,
+    streams: Mapping[int, Sequence[Payload]],
+    change: Callable[[Leaf, Payload], Payload],
+) -> dict[int, list[Payload]]:
     return {
-        number: [
-            (tuple(item & 0x7F for item in each[0]), each[1])
-            if not isinstance(each, int)
-            and plan.leaves[number].item_bytes == 1
-            and not plan.leaves[number].signed
-            else each
-            for each in payloads
-        ]
+        number: [change(plan.leaves[number], payload) for payload in payloads]
         for number, payloads in streams.items()
     }
+
+
+def _in_python(leaf: Leaf, payload: Payload) -> Payload:
+    """Return a payload as Python would have it: not any 32 bits are one of its floats."""
+    if leaf.kind != "scalar" or leaf.type not in ("float32", "float64"):
+        return payload
+    assert isinstance(payload, int)
+    return bits_of(as_float(payload, leaf.item_bytes), leaf.item_bytes)
+
+
+def _in_ascii(leaf: Leaf, payload: Payload) -> Payload:
+    """Return a payload without the highest bits of bytes, so that all text is ASCII."""
+    if isinstance(payload, int) or leaf.item_bytes != 1 or leaf.signed:
+        return payload
+    items, last = payload
+    return tuple(item & 0x7F for item in items), last
 
 
 def _representation(packet: bytes) -> str:

@@ -1,16 +1,28 @@
-"""What becomes of a type in acceptance, and how to run it again."""
+"""Which test a type with some options is, what becomes of it, and what is kept of that."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
 
-from firm_hdl.verify.cases.directed import Coverage
+from firm_hdl.errors import DefinitionError
+from firm_hdl.export.build import BuildError, plan_of
+from firm_hdl.verify.cases.effort import message_limit
+from firm_hdl.verify.cases.figures import digest
 from firm_hdl.verify.choices import LONGEST
+from firm_hdl.verify.results.records import PlanCoverage, Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 from firm_hdl.verify.simulators.crosscheck import Comparison
 from firm_hdl.verify.systems.options import Options, command_again
+from firm_hdl.verify.systems.system import Stopwatch, wire_of
+from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
+from firm_hdl.wire import lay_out
 
-__all__ = ["Result", "command_of"]
+__all__ = ["Result", "command_of", "record_of", "same_circuits", "test_of"]
+
+WAVEFORM_FOLDER = "waveforms"
+"""The folder that the command for a waveform writes."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -33,11 +45,11 @@ class Result:
         Of the run without stalls.
     simulated_cycles : int
         Of all runs.
-    seconds, setup_seconds, simulation_seconds, cpu_seconds : float
-        In total, until the circuit was ready to run, in simulators, and of the processor.
-    wire : str
-        Empty if nothing was run.
-    coverage : Coverage or None
+    watch : Stopwatch
+        Measures the stages of the test.
+    seconds : Seconds
+    cpu_seconds : float
+    coverage : PlanCoverage or None
         Decisions of the plan that the packets took which are not damaged.
     metrics : dict of str to float
         Figures of the type, of its plan and of its cases.
@@ -65,12 +77,10 @@ class Result:
     beats: int = 0
     cycles: int = 0
     simulated_cycles: int = 0
-    seconds: float = 0.0
-    setup_seconds: float = 0.0
-    simulation_seconds: float = 0.0
+    watch: Stopwatch = field(default_factory=Stopwatch, repr=False, compare=False)
+    seconds: Seconds = field(default_factory=Seconds)
     cpu_seconds: float = 0.0
-    wire: str = ""
-    coverage: Coverage | None = None
+    coverage: PlanCoverage | None = None
     metrics: dict[str, float] = field(default_factory=dict)
     shape: str = ""
     command: str = ""
@@ -116,3 +126,82 @@ def command_of(options: Options, distro: str, name: str) -> str:
         reference=("none",) if references == () else references,
         vcd=options.vcd,
     )
+
+
+def test_of(task: TypeUnderTest, options: Options) -> Test:
+    """Return the test that runs a task with some options."""
+    own = [f"seed={options.seed}"]
+    own += [] if options.most_cases is None else [f"cases={options.most_cases}"]
+    own += [] if options.stalled else ["no-stalls"]
+    own += [] if options.broken else ["no-broken"]
+    own += [] if options.references is None else [f"references={'+'.join(options.references)}"]
+    own += [f"path={path}" for path in options.paths]
+    own += [f"bag={bag}" for bag in options.bags]
+    own += [] if options.longest == LONGEST else [f"longest={options.longest}"]
+    return Test(
+        system="ts3",
+        simulator=options.simulator,
+        distro=task.distro,
+        type=task.name,
+        same=task.same,
+        wire=wire_of(task.distro, options.wire),
+        bus_bytes=options.bus_bytes,
+        options=",".join(own),
+    )
+
+
+# Pytest takes functions of such names for tests, wherever they come from.
+test_of.__test__ = False  # type: ignore[attr-defined]
+
+
+def record_of(task: TypeUnderTest, result: Result, options: Options, same_as: str = "") -> Record:
+    """Return what is kept of a result.
+
+    Parameters
+    ----------
+    same_as : str
+        Key of the test that simulates the circuit for this one.
+    """
+    waveform = replace(options, vcd=WAVEFORM_FOLDER, simulator="python")
+    return Record(
+        test=test_of(task, options),
+        verdict=clipped_verdict(result.verdict),
+        note=result.note,
+        seconds=result.seconds,
+        cpu_seconds=result.cpu_seconds,
+        cases=result.cases,
+        packets=result.packets,
+        cycles=result.simulated_cycles,
+        beats=result.beats,
+        coverage=result.coverage,
+        metrics=result.metrics,
+        shape=result.shape,
+        same_as=same_as,
+        written_by=("rosbags", *result.written_by) if result.cases else (),
+        command=result.command,
+        waveform_command=command_of(waveform, task.distro, task.name),
+    )
+
+
+def same_circuits(
+    tasks: Sequence[TypeUnderTest], options: Options
+) -> dict[TypeUnderTest, TypeUnderTest]:
+    """Return tasks whose circuit is that of an earlier task, and that task.
+
+    Circuits are the same where plans are the same but for names.
+    """
+    first: dict[str, TypeUnderTest] = {}
+    found: dict[TypeUnderTest, TypeUnderTest] = {}
+    for task in tasks:
+        try:
+            message = library_of(task.distro, options.paths).message(task.name)
+            wire: Any = options.wire or message.wire
+            limit = message_limit(lay_out(message, wire).min_bytes)
+            plan = plan_of(message, wire, options.bus_bytes, limit)
+        except (DefinitionError, BuildError, ValueError):
+            # Whatever is wrong with it, its own test says.
+            continue
+        other = first.setdefault(digest(plan), task)
+        if other is not task:
+            found[task] = other
+    return found

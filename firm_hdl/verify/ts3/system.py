@@ -29,9 +29,8 @@ from firm_hdl.verify.systems.system import (
 )
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts3.acceptance import accept
-from firm_hdl.verify.ts3.recorded import record_of, same_circuits, test_of
 from firm_hdl.verify.ts3.replay import replay
-from firm_hdl.verify.ts3.result import Result, command_of
+from firm_hdl.verify.ts3.result import Result, command_of, record_of, same_circuits, test_of
 
 __all__ = ["Ts3", "run_tasks"]
 
@@ -206,15 +205,15 @@ def _count(records: Mapping[TypeUnderTest, Record], options: Options) -> None:
 def _summarize(results: Sequence[Result], options: Options) -> None:
     if not results:
         return
-    seconds = sorted(result.seconds for result in results)
+    seconds = sorted(result.seconds.total for result in results)
     cycles = sum(result.simulated_cycles for result in results)
     print(
         f"{len(results)} different types, {sum(r.packets for r in results)} packets, "
         f"{cycles} cycles; seconds per type: median {seconds[len(seconds) // 2]:.2f}, "
         f"most {seconds[-1]:.1f}, {sum(seconds):.0f} in total"
     )
-    slowest = sorted(results, key=lambda result: -result.seconds)[:5]
-    print("slowest:", ", ".join(f"{each.name} {each.seconds:.1f} s" for each in slowest))
+    slowest = sorted(results, key=lambda result: -result.seconds.total)[:5]
+    print("slowest:", ", ".join(f"{each.name} {each.seconds.total:.1f} s" for each in slowest))
     writers = Counter(
         name for result in results if result.cases for name in ("rosbags", *result.written_by)
     )

@@ -65,18 +65,20 @@ def test_each_shape_is_where_it_is_to_be(call, part):
 
 
 def test_a_horizontal_axis_has_a_grid_above_it():
-    parts = drawn("x_axis", Scale(0, 2, 10, 110), 50, "cycles", 5)
+    parts = drawn("x_axis", Scale(0, 2.5, 10, 110), 50, "cycles", 5)
     assert parts == [
         '<line x1="10.0" y1="50" x2="10.0" y2="5" class="grid"/>',
         '<text x="10.0" y="65" class="tick" text-anchor="middle">0</text>',
-        '<line x1="35.0" y1="50" x2="35.0" y2="5" class="grid"/>',
-        '<text x="35.0" y="65" class="tick" text-anchor="middle">0.5</text>',
-        '<line x1="60.0" y1="50" x2="60.0" y2="5" class="grid"/>',
-        '<text x="60.0" y="65" class="tick" text-anchor="middle">1</text>',
-        '<line x1="85.0" y1="50" x2="85.0" y2="5" class="grid"/>',
-        '<text x="85.0" y="65" class="tick" text-anchor="middle">1.5</text>',
+        '<line x1="30.0" y1="50" x2="30.0" y2="5" class="grid"/>',
+        '<text x="30.0" y="65" class="tick" text-anchor="middle">0.5</text>',
+        '<line x1="50.0" y1="50" x2="50.0" y2="5" class="grid"/>',
+        '<text x="50.0" y="65" class="tick" text-anchor="middle">1</text>',
+        '<line x1="70.0" y1="50" x2="70.0" y2="5" class="grid"/>',
+        '<text x="70.0" y="65" class="tick" text-anchor="middle">1.5</text>',
+        '<line x1="90.0" y1="50" x2="90.0" y2="5" class="grid"/>',
+        '<text x="90.0" y="65" class="tick" text-anchor="middle">2</text>',
         '<line x1="110.0" y1="50" x2="110.0" y2="5" class="grid"/>',
-        '<text x="110.0" y="65" class="tick" text-anchor="middle">2</text>',
+        '<text x="110.0" y="65" class="tick" text-anchor="middle">2.5</text>',
         '<line x1="10" y1="50" x2="110" y2="50" class="axis"/>',
         '<text x="60.0" y="83" class="label" text-anchor="middle">cycles</text>',
     ]

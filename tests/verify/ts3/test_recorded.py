@@ -18,7 +18,7 @@ import firm_hdl.verify.ts3.checks as checks
 from firm_hdl.cli import main
 from firm_hdl.verify import Options, accept, collect_tasks
 from firm_hdl.verify.results.file import read_results
-from firm_hdl.verify.ts3.recorded import record_of, same_circuits, test_of
+from firm_hdl.verify.ts3.result import record_of, same_circuits, test_of
 from tests.verify.judged import assert_passed
 
 TYPES = ["std_msgs/msg/Bool", "std_msgs/msg/Header", "std_msgs/msg/String", "std_msgs/msg/Char"]

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from firm_hdl.verify.results.records import Seconds
 from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.simulators.crosscheck import Comparison
 from firm_hdl.verify.ts3 import system
@@ -13,7 +14,7 @@ from firm_hdl.verify.ts3.result import Result
 
 
 def result(name, took, **more):
-    return Result(distro="lyrical", name=name, seconds=took, **more)
+    return Result(distro="lyrical", name=name, seconds=Seconds(testing=took), **more)
 
 
 PYTHON = SimpleNamespace(simulator="python")
