@@ -31,7 +31,7 @@ ORACLE_NAMES = (
     "rosbags",
     "ros2",
 )
-"""Oracles of TS1: :data:`firm_hdl.verify.ts1.ORACLES`."""
+"""Oracles of TS1: :data:`firm_hdl.verify.ts1.oracles.ORACLES`."""
 
 SIMULATOR_NAMES = ("ghdl", "iverilog", "verilator")
 """Simulators of exported text: :data:`firm_hdl.verify.simulators.SIMULATORS`."""
@@ -47,7 +47,7 @@ CLIENT_NAMES = (
     "mcap-ros1",
     "mcap-ros2",
 )
-"""Client libraries: :data:`firm_hdl.verify.references.CLIENTS`."""
+"""Client libraries: :data:`firm_hdl.verify.references.clients.CLIENTS`."""
 
 WRITER_NAMES = ("genpy", "fastcdr", "fastcdr-2.2", "fastcdr-2.3", "cyclonedds")
 """Those that can be references of TS3: :data:`firm_hdl.verify.references.choice.WRITERS`."""

@@ -33,22 +33,11 @@ from firm_hdl.verify.systems.tasks import UnknownTypeError
 
 __all__ = ["add_verify_arguments", "run_verify"]
 
-# What a library under test is never asked, and what it is by default.
-_OTHERS: dict[str, object] = {
-    "bag": [],
-    "bus_bytes": None,
-    "executor": PROCESSES,
-    "golden": None,
-    "mutations": 0,
-    "oracle": [],
-    "reference": [],
-    "report": None,
-    "results": None,
-    "share_circuits": None,
-    "simulator": "python",
-    "systems": ("ts3",),
-    "vcd": None,
-}
+# Arguments that are not for a library under test.
+_OTHERS = (
+    *("bag", "bus_bytes", "executor", "golden", "mutations", "oracle", "reference"),
+    *("report", "results", "share_circuits", "simulator", "systems", "vcd"),
+)
 
 
 def run_verify(given: argparse.Namespace) -> int:
@@ -142,8 +131,8 @@ def _check_libraries(given: argparse.Namespace) -> None:
         given.usage_error(f"--reference {NO_REFERENCE} goes with no other")
     if not given.sut:
         return
-    for name, default in _OTHERS.items():
-        if getattr(given, name) != default:
+    for name in _OTHERS:
+        if getattr(given, name) != given.default_of(name):
             given.usage_error(f"--{name.replace('_', '-')} does not go with --sut")
     if not (given.stalls and given.broken):
         given.usage_error("--no-stalls and --no-broken do not go with --sut")
@@ -188,6 +177,7 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
     _add_replay(parser.add_argument_group("options of ts3 with recordings"))
     _add_libraries(parser.add_argument_group("client libraries"), ts3)
     _add_results(parser.add_argument_group("results"))
+    parser.set_defaults(default_of=parser.get_default)
 
 
 def _add_ts1(group: argparse._ArgumentGroup) -> None:

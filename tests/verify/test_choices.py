@@ -8,11 +8,11 @@ import sys
 from firm_hdl.cli.building import PORT_NAMES
 from firm_hdl.export.backend import PORTS
 from firm_hdl.verify import choices
-from firm_hdl.verify.references import CLIENTS
 from firm_hdl.verify.references.choice import WRITERS
+from firm_hdl.verify.references.clients import CLIENTS
 from firm_hdl.verify.run import SYSTEMS
 from firm_hdl.verify.simulators import SIMULATORS
-from firm_hdl.verify.ts1 import ORACLES
+from firm_hdl.verify.ts1.oracles import ORACLES
 
 
 def test_each_name_is_that_of_something():

@@ -16,8 +16,8 @@ from firm_hdl.jobs.processes import ToolError
 from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.verify import Options, accept, distro_oracle, make_cases
 from firm_hdl.verify.clients.judge import Contest
-from firm_hdl.verify.references import CLIENTS
 from firm_hdl.verify.references.client import ClientDiedError, each_answered
+from firm_hdl.verify.references.clients import CLIENTS
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.simulators import Verilator
 from firm_hdl.verify.simulators.crosscheck import Comparison

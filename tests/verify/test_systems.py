@@ -19,8 +19,8 @@ from firm_hdl.verify.results.file import ResultsWriter, read_results
 from firm_hdl.verify.results.records import Record, from_json, to_json
 from firm_hdl.verify.results.verdict import Failed, NotJudged
 from firm_hdl.verify.systems.system import run_shares, shares_of
-from firm_hdl.verify.ts1 import ORACLES
 from firm_hdl.verify.ts1 import run as ts1_run
+from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.oracles.oracle import Refused
 from firm_hdl.verify.ts2 import system as ts2
 from tests.frontend.workspace import make_files

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -13,16 +14,15 @@ from firm_hdl.jobs.programs import find_ghdl
 from firm_hdl.verify.bench.run import run_bench
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
-from firm_hdl.verify.systems.options import Request, command_again
+from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import (
     Judged,
     Made,
     Recorder,
-    System,
+    TypesSystem,
     judged,
     kept,
     run_tests,
-    wire_of,
 )
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 
@@ -32,7 +32,7 @@ MOST_CHARACTERS = 2000
 """Of a failure, so many are printed."""
 
 
-class Benches(System):
+class Benches(TypesSystem):
     """Generated benches; a test is the bench of a type of one distribution.
 
     Parameters
@@ -49,10 +49,11 @@ class Benches(System):
     name = "bench"
 
     def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
-        self._request, self._ghdl = request, find_ghdl()
         # Each distribution has its own bench, even if another has the same type: the headers of
         # the files differ.
-        self._types = [(distro, task.name) for task in tasks for distro in task.same]
+        each = [replace(task, distro=name, same=(name,)) for task in tasks for name in task.same]
+        super().__init__(each, request)
+        self._ghdl = find_ghdl()
 
     @cached_property
     def tests(self) -> Sequence[Test]:
@@ -60,19 +61,7 @@ class Benches(System):
         return [each for width in self._request.widths for each in self._tests(width)]
 
     def _tests(self, bus_bytes: int) -> list[Test]:
-        return [
-            Test(
-                system=self.name,
-                simulator="ghdl",
-                distro=distro,
-                type=name,
-                same=(distro,),
-                wire=wire_of(distro, self._request.wire),
-                bus_bytes=bus_bytes,
-                options=",".join(f"path={path}" for path in self._request.paths),
-            )
-            for distro, name in self._types
-        ]
+        return [self._test(task, bus_bytes, "ghdl") for task in self._tasks]
 
     @property
     def options(self) -> Mapping[str, Any]:
@@ -97,17 +86,6 @@ class Benches(System):
         given = self._request, self._ghdl
         jobs = self._request.jobs
         return run_tests(run_bench, given, left, self._command, _said, jobs=jobs)
-
-    def _command(self, test: Test) -> str:
-        """Return the command that runs one type again."""
-        return command_again(
-            test.type,
-            systems=self.name,
-            distro=test.distro,
-            path=self._request.paths,
-            wire=self._request.wire,
-            bus_bytes=test.bus_bytes,
-        )
 
 
 def _said(record: Record) -> list[str]:

@@ -9,7 +9,6 @@ infinities, NaN with payloads, subnormal numbers) and then mixed. Everything fol
 from __future__ import annotations
 
 import random
-import struct
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -26,6 +25,7 @@ from firm_hdl.verify.references.oracle import (
     RosbagsOracle,
     Transfers,
 )
+from firm_hdl.verify.references.values import as_float, is_nan
 
 __all__ = ["Case", "make_cases", "run_lengths"]
 
@@ -226,13 +226,10 @@ class _Maker:
             return bool(bits)
         if name in FLOATS:
             size = SIZES[name]
-            fraction = 23 if size == 4 else 52
-            exponent = (1 << 8 * size - 1) - (1 << fraction)
-            if bits & exponent == exponent and bits & ((1 << fraction) - 1):
+            if is_nan(bits, size):
                 # A Python float does not keep a signalling NaN; so it is quiet from the start.
-                bits |= 1 << fraction - 1
-            code = "<f" if size == 4 else "<d"
-            return struct.unpack(code, bits.to_bytes(size, "little"))[0]
+                bits |= 1 << (22 if size == 4 else 51)
+            return as_float(bits, size)
         # rosbags takes -128 to 127 for a byte, in ROS 2 as well.
         signed = name.startswith("int") or name == "byte"
         sign = 1 << (8 * SIZES[name] - 1) if signed else 0

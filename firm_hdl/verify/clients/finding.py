@@ -84,10 +84,13 @@ class KnownDivergence:
 
     def is_about(self, finding: Finding) -> str | None:
         """Return the library that it is about; `None` if neither."""
-        if finding.wire not in self.wires.split():
+        return self.whose(finding.wire, finding.library, finding.reference)
+
+    def whose(self, wire: Wire, *libraries: str) -> str | None:
+        """Return which of some libraries it is about on a wire; `None` if none."""
+        if wire not in self.wires.split():
             return None
-        both = (finding.library, finding.reference)
-        return next((name for name in both if name in self.libraries), None)
+        return next((name for name in libraries if name in self.libraries), None)
 
     def explains_answer(self, finding: Finding) -> bool:
         """Whether it explains who takes an odd packet or value."""

@@ -26,9 +26,8 @@ def known_keys(finding: Finding, theirs: Codec, right: Codec) -> Sequence[str]:
     for entry in entries:
         if entry.explains_answer(finding):
             return [entry.key]
-    is_writing = finding.what.startswith("encode")
-    if is_writing:
-        return _explained_writing(finding, entries, theirs, right)
+    if finding.what.startswith("encode"):
+        return _explained_writing(finding.message, finding.value, entries, theirs, right)
     if isinstance(finding.expected, Refusal) or isinstance(finding.got, Refusal):
         return ()
     found, expected, got = [], finding.expected, finding.got
@@ -42,12 +41,16 @@ def known_keys(finding: Finding, theirs: Codec, right: Codec) -> Sequence[str]:
 
 
 def _explained_writing(
-    finding: Finding, entries: Sequence[KnownDivergence], theirs: Codec, right: Codec
+    message: Message,
+    value: Plain,
+    entries: Sequence[KnownDivergence],
+    theirs: Codec,
+    right: Codec,
 ) -> Sequence[str]:
-    found, value = [], finding.value
+    found = []
     for entry in entries:
         if entry.take_out is not None:
-            left = changed(finding.message, value, entry.take_out)
+            left = changed(message, value, entry.take_out)
             if left != value:
                 found.append(entry.key)
             value = left
@@ -75,15 +78,5 @@ def known_writing(
     except UnsupportedError:
         # Without the type, there is nothing in its way.
         return ()
-    finding = Finding(
-        library=library,
-        reference=reference,
-        wire=wire,
-        what="encode",
-        message=message,
-        value=value,
-        packet=b"",
-        expected=b"",
-        got=b"",
-    )
-    return known_keys(finding, codec, right)
+    entries = [entry for entry in KNOWN if entry.whose(wire, library, reference) is not None]
+    return _explained_writing(message, value, entries, codec, right)

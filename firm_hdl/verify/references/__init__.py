@@ -5,18 +5,4 @@ packages, ROS's own genpy and Fast CDR, and our converters. They are references 
 other; `firm_hdl.verify.clients` has them under test. rosbags is also the oracle, see `oracle`.
 """
 
-from __future__ import annotations
-
-from firm_hdl.verify.references.client import Client, Codec, Refusal, UnsupportedError
-from firm_hdl.verify.references.clients import CLIENTS, REFERENCES, client, close_clients
-
-__all__ = [
-    "CLIENTS",
-    "REFERENCES",
-    "Client",
-    "Codec",
-    "Refusal",
-    "UnsupportedError",
-    "client",
-    "close_clients",
-]
+__all__ = []

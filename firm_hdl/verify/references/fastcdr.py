@@ -123,9 +123,8 @@ NEWER = tuple(_newer())
 
 
 def _wchar_sizes(message: Message) -> set[int]:
-    kinds = [item.type for each in closure([message]) for item in each.fields]
-    inner = [kind.element if isinstance(kind, Array | SequenceType) else kind for kind in kinds]
-    return {kind.bytes for kind in inner if isinstance(kind, Primitive) and kind.name == "wchar"}
+    kinds = [item.element_type for each in closure([message]) for item in each.fields]
+    return {kind.bytes for kind in kinds if isinstance(kind, Primitive) and kind.name == "wchar"}
 
 
 def _described(message: Message) -> str:

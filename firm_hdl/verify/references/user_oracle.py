@@ -8,6 +8,7 @@ as they were resolved, and whether it reads the texts to the same effect is said
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
@@ -31,19 +32,21 @@ _TIMES = dict.fromkeys(_BUILTIN, "int32 sec\nuint32 nanosec\n")
 """To rosbags, the times of ROS 1 are those of ROS 2; the bytes are the same."""
 
 
+@dataclass(frozen=True, slots=True)
 class Judge:
     """An oracle that knows a type, and by which name.
 
     Attributes
     ----------
-    oracle : Oracle
+    oracle : RosbagsOracle
     name : str
     note : str
         What is to be known about it; empty in most cases.
     """
 
-    def __init__(self, oracle: RosbagsOracle, name: str, note: str = ""):
-        self.oracle, self.name, self.note = oracle, name, note
+    oracle: RosbagsOracle
+    name: str
+    note: str = ""
 
 
 def judge_of(message: Message, distro: str | None = None, *, stand_in: bool = False) -> Judge:

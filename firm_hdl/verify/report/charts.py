@@ -143,12 +143,10 @@ def scatter(trend: Trend) -> str:
     law, line = trend.correlation.power, trend.correlation.linear
     if line is not None:
         made = [(a, line.a + line.b * a) for a in across]
-        title = f"line {line_text(line)}, R² {line.r2:.2f}"
-        _fitted(figure, x, y, made, "fit-line", title)
+        _fitted(figure, x, y, made, "fit-line", f"line {line_text(line)}, R² {line.r2:.2f}")
     if law is not None:
         made = [(a, law.a * a**law.b) for a in across]
-        title = f"power law {law_text(law)}, R² {law.r2:.2f}"
-        _fitted(figure, x, y, made, "fit-law", title)
+        _fitted(figure, x, y, made, "fit-law", f"power law {law_text(law)}, R² {law.r2:.2f}")
     return str(figure)
 
 

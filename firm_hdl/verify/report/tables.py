@@ -16,7 +16,7 @@ from firm_hdl.verify.report.outcomes import Counts, NotRun, Outcome, failures_of
 from firm_hdl.verify.report.stats import Fit
 from firm_hdl.verify.report.summary import LIMITS, Curve, Group, Summary, Trend
 from firm_hdl.verify.report.svg import number, seconds
-from firm_hdl.verify.results.records import STAGES
+from firm_hdl.verify.results.records import STAGES, Record
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 
 __all__ = [
@@ -264,19 +264,17 @@ def _r2(fit: Fit | None) -> TableCell:
 def every_table(outcomes: Iterable[Outcome]) -> Iterator[Row]:
     """List tests one by one."""
     for outcome in outcomes:
-        test, record = outcome.test, outcome.record
-        metrics = record.metrics if record is not None else {}
-        times = (record.seconds.total, record.cpu_seconds) if record is not None else (0.0, 0.0)
-        counts = (record.packets, record.cycles) if record is not None else (0, 0)
+        test = outcome.test
+        record = outcome.record or Record(test=test, verdict=NotJudged("it was not run"))
         yield (
             test.type,
             " ".join(test.distros),
             f"{test.system} {test.simulator}".strip(),
             f"{test.wire} {test.bus_bytes or ''}".strip(),
             _result(outcome.verdict.name),
-            *map(_time, times),
-            *(metrics.get(name, 0) for name in ("leaves", "steps")),
-            *counts,
+            *map(_time, (record.seconds.total, record.cpu_seconds)),
+            *(record.metrics.get(name, 0) for name in ("leaves", "steps")),
+            *(record.packets, record.cycles),
             _covered(outcome),
             outcome.circuit_of,
         )

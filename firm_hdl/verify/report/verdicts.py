@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from firm_hdl.verify.report.outcomes import NotRun, Outcome
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 
-__all__ = ["OracleSum", "Reason", "Remark", "oracle_sums", "reason_groups", "said_of"]
+__all__ = ["OracleSum", "Remark", "oracle_sums", "reason_groups", "said_of"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -41,16 +41,12 @@ class Passed:
     """
 
     name: ClassVar[str] = "passed"
+    details: ClassVar[tuple[str, ...]] = ()
 
     cases: int
 
     def __post_init__(self) -> None:
         _check_cases(self.cases)
-
-    @property
-    def details(self) -> tuple[str, ...]:
-        """Nothing more is to be said."""
-        return ()
 
 
 @dataclass(frozen=True, slots=True)

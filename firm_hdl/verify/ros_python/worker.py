@@ -99,12 +99,8 @@ class Worker:
             if line is not None:
                 process.stdin.write(line + "\n")
                 process.stdin.flush()
-            answer = process.stdout.readline()
-        except OSError:
-            return None
-        try:
-            return dict(json.loads(answer))
-        except ValueError:
+            return dict(json.loads(process.stdout.readline()))
+        except (OSError, ValueError):
             return None
 
 

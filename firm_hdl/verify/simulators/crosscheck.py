@@ -22,7 +22,7 @@ from firm_hdl.jobs.processes import ToolError
 from firm_hdl.sim.record import RunResult
 from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Passed, Verdict
 from firm_hdl.verify.simulators import TextSimulator
-from firm_hdl.verify.simulators.semantics import Traffic, traffic
+from firm_hdl.verify.simulators.semantics import traffic
 from firm_hdl.verify.simulators.trace import Trace, read_row
 
 __all__ = ["Comparison", "Crosscheck", "first_difference"]
@@ -106,9 +106,13 @@ class Crosscheck:
         """Replay all runs, and compare."""
         began = time.perf_counter()
         title = self.simulator.title
+
+        def tops() -> list[Top]:
+            return [Top(core) for core in self.make()]
+
         try:
             with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
-                rows = self.simulator.replay(self.trace, self._tops, Path(folder))
+                rows = self.simulator.replay(self.trace, tops, Path(folder))
         except ToolError as error:
             return Comparison(failures=(f"{title}: {error}",))
         rows = [row.rstrip() for row in rows]
@@ -119,21 +123,13 @@ class Crosscheck:
         for run, seen in zip(found, self.seen, strict=True):
             if seen is not None and (difference := run.difference(seen)):
                 failures.append(f"{title}, {run.name}: {difference}")
-        return self._result(failures, found, len(rows), time.perf_counter() - began)
-
-    def _tops(self) -> list[Top]:
-        return [Top(core) for core in self.make()]
-
-    def _result(
-        self, failures: list[str], found: list[Traffic], cycles: int, seconds: float
-    ) -> Comparison:
         return Comparison(
             failures=tuple(failures),
-            cycles=cycles,
+            cycles=len(rows),
             packets=sum(len(run.packets) for run in found),
             transfers=sum(len(bits) for run in found for bits in run.transfers.values()),
             statuses=sum(len(run.statuses) + len(run.sent_statuses) for run in found),
-            seconds=seconds,
+            seconds=time.perf_counter() - began,
         )
 
 

@@ -24,6 +24,8 @@ from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import STAGES, Record, Seconds, Test, clipped_verdict, settled
 from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Verdict
+from firm_hdl.verify.systems.options import Request, command_again
+from firm_hdl.verify.systems.tasks import TypeUnderTest
 
 __all__ = [
     "Judged",
@@ -31,6 +33,7 @@ __all__ = [
     "Recorder",
     "Stopwatch",
     "System",
+    "TypesSystem",
     "failure_of",
     "judged",
     "kept",
@@ -136,6 +139,43 @@ class System(ABC):
     @abstractmethod
     def run(self, recorder: Recorder) -> list[Judged]:
         """Run the tests without a record; print a summary of all tests, and return them."""
+
+
+class TypesSystem(System):
+    """A test system whose tests are types, each on each bus.
+
+    Parameters
+    ----------
+    tasks : sequence of TypeUnderTest
+    request : Request
+    """
+
+    def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
+        self._tasks, self._request = tasks, request
+
+    def _test(self, task: TypeUnderTest, bus_bytes: int, simulator: str = "") -> Test:
+        """Return the test of a type on a bus."""
+        return Test(
+            system=self.name,
+            simulator=simulator,
+            distro=task.distro,
+            type=task.name,
+            same=task.same,
+            wire=wire_of(task.distro, self._request.wire),
+            bus_bytes=bus_bytes,
+            options=",".join(f"path={path}" for path in self._request.paths),
+        )
+
+    def _command(self, test: Test, **more: object) -> str:
+        """Return the command that runs one test again, by its bus if nothing else is given."""
+        return command_again(
+            test.type,
+            systems=self.name,
+            distro=test.distro,
+            path=self._request.paths,
+            wire=self._request.wire,
+            **(more or {"bus_bytes": test.bus_bytes}),
+        )
 
 
 def wire_of(distro: str, wire: str | None) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from firm_hdl.frontend.names import Kind
 from firm_hdl.frontend.sources import Language
@@ -24,6 +24,8 @@ class DefinitionCase:
         What it is written in, and how the file's name ends.
     text : str
         All of it, line ends as they are.
+    source : str
+        Where it is: the name of a file, or of a text that comes with firm-hdl.
     before : str or None
         If `text` is another one than the file's: that of the file.
     included : tuple of str
@@ -36,6 +38,7 @@ class DefinitionCase:
     name: str
     language: Language
     text: str
+    source: str = field(default="", compare=False)
     before: str | None = None
     included: tuple[str, ...] = ()
 

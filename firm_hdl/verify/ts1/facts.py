@@ -136,24 +136,17 @@ def _message(message: Message, alike: Mapping[str, str]) -> dict[str, Any]:
 
 
 def _field(field: Field, alike: Mapping[str, str]) -> dict[str, Any]:
-    return {
-        "name": field.name,
-        "type": _type(field.type, alike),
-        "default": None if field.default is None else _value(field.default),
-        "comment": field.comment,
-        "unit": field.unit,
-    }
+    default = None if field.default is None else _value(field.default)
+    return {**_member(field, alike), "default": default}
 
 
 def _constant(constant: Constant, alike: Mapping[str, str]) -> dict[str, Any]:
-    return {
-        "name": constant.name,
-        "type": _type(constant.type, alike),
-        "value": _value(constant.value),
-        "text": constant.text,
-        "comment": constant.comment,
-        "unit": constant.unit,
-    }
+    return {**_member(constant, alike), "value": _value(constant.value), "text": constant.text}
+
+
+def _member(member: Field | Constant, alike: Mapping[str, str]) -> dict[str, Any]:
+    kind = _type(member.type, alike)
+    return {"name": member.name, "type": kind, "comment": member.comment, "unit": member.unit}
 
 
 def _type(kind: FieldType, alike: Mapping[str, str]) -> str:

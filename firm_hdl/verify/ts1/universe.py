@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
@@ -63,7 +63,7 @@ class Universe:
         if wanted:
             return [self._selected(name) for name in wanted]
         names = Sources(self._folders).names or self._sources.names
-        return [self._case(*name)[1] for name in sorted(names)]
+        return [self._case(*name) for name in sorted(names)]
 
     def _selected(self, name: str) -> DefinitionCase:
         kinds = KINDS
@@ -76,7 +76,7 @@ class Universe:
                 package = base = ""
         for kind in kinds:
             if (package, kind, base) in self._sources.names:
-                return self._case(package, kind, base)[1]
+                return self._case(package, kind, base)
         self.library.source(name)  # Says what is wrong with the name.
         message = f"'{name}' has no definition of its own"
         raise DefinitionError([Diagnostic(message=message)])
@@ -85,19 +85,15 @@ class Universe:
         """Give the definition of a message; `None` if there is none."""
         if (package, "msg", name) not in self._sources.names:
             return None
-        return self._case(package, "msg", name)[1]
-
-    def read_all(self) -> Iterator[tuple[Source, DefinitionCase]]:
-        """Yield every definition with its source, whose name may be that of a file."""
-        for package, kind, name in sorted(self._sources.names):
-            yield self._case(package, kind, name)
+        return self._case(package, "msg", name)
 
     @cached_property
     def by_source(self) -> dict[str, DefinitionCase]:
-        """Every definition by the name of its source."""
-        return {source.name: case for source, case in self.read_all()}
+        """Every definition by the name of its source, which may be that of a file."""
+        cases = [self._case(*name) for name in sorted(self._sources.names)]
+        return {case.source: case for case in cases}
 
-    def _case(self, package: str, kind: Kind, name: str) -> tuple[Source, DefinitionCase]:
+    def _case(self, package: str, kind: Kind, name: str) -> DefinitionCase:
         try:
             found = self._sources.find(package, kind, name)
             assert found is not None
@@ -106,7 +102,8 @@ class Universe:
             # A file that is no text: oracles are to say so, too.
             source = _source_of(error)
             language = "idl" if source.name.endswith(".idl") else kind
-        return source, DefinitionCase(
+        return DefinitionCase(
+            source=source.name,
             dialect=self.dialect,
             package=package,
             kind=kind,
@@ -203,22 +200,22 @@ class _AllChanged:
 
 def write_definitions(universe: Universe) -> None:
     """Put all definitions where oracles find them: files as links, other texts as files."""
-    folders: dict[tuple[str, str], list[tuple[str, DefinitionCase]]] = {}
-    for source, case in universe.read_all():
-        folders.setdefault((case.package, case.kind), []).append((source.name, case))
+    folders: dict[tuple[str, str], list[DefinitionCase]] = {}
+    for case in universe.by_source.values():
+        folders.setdefault((case.package, case.kind), []).append(case)
     for (package, kind), found in folders.items():
         folder = os.path.join(universe.folder, package, kind)
         os.makedirs(os.path.dirname(folder), exist_ok=True)
-        origins = {os.path.dirname(name) for name, _ in found}
-        if len(origins) == 1 and all(os.path.isfile(name) for name, _ in found):
+        origins = {os.path.dirname(case.source) for case in found}
+        if len(origins) == 1 and all(os.path.isfile(case.source) for case in found):
             # The usual case, which saves thousands of links.
             os.symlink(os.path.abspath(origins.pop()), folder)
             continue
         os.makedirs(folder)
-        for name, case in found:
+        for case in found:
             file = os.path.join(folder, case.file)
-            if os.path.isfile(name):
-                os.symlink(os.path.abspath(name), file)
+            if os.path.isfile(case.source):
+                os.symlink(os.path.abspath(case.source), file)
             else:
                 Path(file).write_bytes(case.text.encode())
 

@@ -21,19 +21,18 @@ from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, check, from_yaml, to_yaml
 from firm_hdl.verify.cases.figures import digest, figures
 from firm_hdl.verify.results.records import Record, Test, clipped_verdict
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
-from firm_hdl.verify.systems.options import Options, Request, command_again
+from firm_hdl.verify.systems.options import Options, Request
 from firm_hdl.verify.systems.system import (
     Judged,
     Made,
     Recorder,
     Stopwatch,
-    System,
+    TypesSystem,
     failure_of,
     judged,
     kept,
     recorded,
     run_tests,
-    wire_of,
 )
 from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
 from firm_hdl.verify.ts2.golden import Golden, check_golden, read_golden
@@ -65,7 +64,7 @@ def check_plan(message: Message, test: Test, wire: Wire | None, watch: Stopwatch
     return Record(test=test, verdict=verdict, shape=digest(plan), metrics=metrics)
 
 
-class Ts2(System):
+class Ts2(TypesSystem):
     """Plans of types; a test is one plan, or one golden plan.
 
     Parameters
@@ -83,7 +82,7 @@ class Ts2(System):
     name = "ts2"
 
     def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
-        self._request, self._tasks = request, tasks
+        super().__init__(tasks, request)
         self._plans = [self._test(task, width) for task in tasks for width in request.widths]
 
     @cached_property
@@ -114,30 +113,11 @@ class Ts2(System):
             _checked,
             request,
             left,
-            lambda test: self._command(test, bus_bytes=test.bus_bytes),
+            self._command,
             _said,
             most=MOST_IN_A_SHARE,
             executor=request.executor,
             jobs=request.jobs,
-        )
-
-    def _command(self, test: Test, **more: object) -> str:
-        """Return the command that checks one type again."""
-        paths, wire = self._request.paths, self._request.wire
-        distro = test.distro
-        return command_again(
-            test.type, systems=self.name, distro=distro, path=paths, wire=wire, **more
-        )
-
-    def _test(self, task: TypeUnderTest, bus_bytes: int) -> Test:
-        return Test(
-            system=self.name,
-            distro=task.distro,
-            type=task.name,
-            same=task.same,
-            wire=wire_of(task.distro, self._request.wire),
-            bus_bytes=bus_bytes,
-            options=",".join(f"path={path}" for path in self._request.paths),
         )
 
     @cached_property

@@ -63,11 +63,11 @@ def _status_differences(
     what: str, got: Sequence[str], wanted: Sequence[str], names: Sequence[str] = ()
 ) -> Iterator[str]:
     """Say which status is the first that differs, if one does."""
-    for number, (one, other) in enumerate(zip(got, wanted, strict=False)):
-        if one != other:
-            yield f"{what} of packet {number} is {one} instead of {other}{_name(names, number)}"
-            return
-    if len(got) != len(wanted):
+    number = first_difference(got, wanted)
+    if number < min(len(got), len(wanted)):
+        statuses = f"{got[number]} instead of {wanted[number]}"
+        yield f"{what} of packet {number} is {statuses}{_name(names, number)}"
+    elif len(got) != len(wanted):
         yield f"{what}: {len(got)} instead of {len(wanted)}"
 
 
@@ -75,15 +75,15 @@ def packet_differences(
     where: str, got: Sequence[bytes], wanted: Sequence[bytes], names: Sequence[str] = ()
 ) -> Iterator[str]:
     """Say which packet is the first that differs, if one does, and where."""
-    for number, (one, other) in enumerate(zip(got, wanted, strict=False)):
-        if one != other:
-            at = first_difference(one, other)
-            yield (
-                f"{where}: packet {number} of {len(wanted)} differs at byte {at}: "
-                f"{one.hex()} instead of {other.hex()}{_name(names, number)}"
-            )
-            return
-    if len(got) != len(wanted):
+    number = first_difference(got, wanted)
+    if number < min(len(got), len(wanted)):
+        one, other = got[number], wanted[number]
+        yield (
+            f"{where}: packet {number} of {len(wanted)} differs at byte "
+            f"{first_difference(one, other)}: "
+            f"{one.hex()} instead of {other.hex()}{_name(names, number)}"
+        )
+    elif len(got) != len(wanted):
         yield f"{where}: {len(got)} packets instead of {len(wanted)}"
 
 

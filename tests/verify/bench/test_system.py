@@ -10,7 +10,7 @@ from firm_hdl.cli import main
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT
 from firm_hdl.frontend import Library
 from firm_hdl.verify.bench.system import Benches
-from firm_hdl.verify.references import client
+from firm_hdl.verify.references.clients import client
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.records import Test
 from firm_hdl.verify.results.verdict import Failed, NotJudged

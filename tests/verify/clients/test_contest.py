@@ -10,8 +10,14 @@ from firm_hdl.model import Message, Primitive, Sequence, String
 from firm_hdl.verify.clients.finding import Finding, KnownDivergence
 from firm_hdl.verify.clients.judge import Contest, Trial
 from firm_hdl.verify.clients.shrink import shrunk
-from firm_hdl.verify.references import Client, Codec, Refusal
-from firm_hdl.verify.references.client import ClientDiedError, UnsupportedError, each_answered
+from firm_hdl.verify.references.client import (
+    Client,
+    ClientDiedError,
+    Codec,
+    Refusal,
+    UnsupportedError,
+    each_answered,
+)
 from firm_hdl.verify.references.values import changed
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 

@@ -9,7 +9,7 @@ import pytest
 
 from firm_hdl.verify.clients.divergences import KNOWN
 from firm_hdl.verify.clients.judge import Contest
-from firm_hdl.verify.references import Refusal
+from firm_hdl.verify.references.client import Refusal
 from firm_hdl.verify.references.objects import definition_text
 from firm_hdl.verify.references.values import shown
 from tests.verify.clients.examples import EXAMPLES

@@ -7,7 +7,7 @@ import pytest
 from firm_hdl.verify.clients.judge import Contest
 from firm_hdl.verify.clients.odd import ODDITIES, odd_packet, odd_packets
 from firm_hdl.verify.clients.shrink import shrunk
-from firm_hdl.verify.references import Refusal
+from firm_hdl.verify.references.client import Refusal
 from firm_hdl.verify.references.objects import full_text
 from firm_hdl.verify.results.verdict import Failed, NotJudged
 from tests.verify.clients.twins import Same, Twin

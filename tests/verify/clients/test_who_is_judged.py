@@ -12,7 +12,8 @@ from firm_hdl.model import PRIMITIVES
 from firm_hdl.verify.clients.judge import Contest, Trial
 from firm_hdl.verify.clients.run import command_of, reference_of
 from firm_hdl.verify.command import add_verify_arguments
-from firm_hdl.verify.references import Refusal, client
+from firm_hdl.verify.references.client import Refusal
+from firm_hdl.verify.references.clients import client
 from firm_hdl.verify.systems.options import Request
 from tests.verify.clients.test_clauses import UINT8, a_message
 from tests.verify.clients.twins import Same, Twin

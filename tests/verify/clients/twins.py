@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from firm_hdl.verify.references import Client, Codec
+from firm_hdl.verify.references.client import Client, Codec
 
 __all__ = ["Same", "Twin"]
 

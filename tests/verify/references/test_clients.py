@@ -12,7 +12,8 @@ import yaml
 
 from firm_hdl.frontend import Library
 from firm_hdl.model import PRIMITIVES, Field, Message
-from firm_hdl.verify.references import CLIENTS, Refusal, UnsupportedError, client
+from firm_hdl.verify.references.client import Refusal, UnsupportedError
+from firm_hdl.verify.references.clients import CLIENTS, client
 from firm_hdl.verify.references.fastcdr import FastCdr
 from firm_hdl.verify.references.genpy import Genpy
 from firm_hdl.verify.references.values import bits_of

@@ -14,8 +14,8 @@ import pytest
 import firm_hdl
 from firm_hdl.model import IDL_PRIMITIVES, Field, Message, Sequence, String, idl_primitives
 from firm_hdl.verify.clients.run import judge_type
-from firm_hdl.verify.references import CLIENTS, Refusal, UnsupportedError
-from firm_hdl.verify.references.client import ClientDiedError
+from firm_hdl.verify.references.client import ClientDiedError, Refusal, UnsupportedError
+from firm_hdl.verify.references.clients import CLIENTS
 from firm_hdl.verify.references.fastcdr import FastCdr
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, Passed
 from firm_hdl.verify.ros2_wheels import RELEASES as ROS2_RELEASES

@@ -11,11 +11,12 @@ import re
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.verify.report import FORMATS, count, outcomes_of, summarise
 from firm_hdl.verify.report import markdown as markdown_writer
-from firm_hdl.verify.report.outcomes import Counts
+from firm_hdl.verify.report.command import FORMATS
+from firm_hdl.verify.report.outcomes import Counts, count, outcomes_of
 from firm_hdl.verify.report.prose import facts, shown_packages, shown_tests
 from firm_hdl.verify.report.stats import box_of, curve_of, share_within
+from firm_hdl.verify.report.summary import summarise
 from firm_hdl.verify.report.tables import (
     circuits_table,
     coverage_table,

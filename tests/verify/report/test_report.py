@@ -10,10 +10,12 @@ from html.parser import HTMLParser
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.verify.report import FORMATS, count, outcomes_of, summarise, tables
 from firm_hdl.verify.report import html as page_writer
 from firm_hdl.verify.report import summary as summary_of
-from firm_hdl.verify.report.outcomes import failures_of
+from firm_hdl.verify.report import tables
+from firm_hdl.verify.report.command import FORMATS
+from firm_hdl.verify.report.outcomes import count, failures_of, outcomes_of
+from firm_hdl.verify.report.summary import summarise
 from firm_hdl.verify.report.verdicts import reason_groups
 from firm_hdl.verify.results.file import Results, ResultsWriter
 from firm_hdl.verify.results.records import OracleVerdict, PlanCoverage, Seconds

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.ts1 import Ts1Run
+from firm_hdl.verify.ts1.run import Ts1Run
 from firm_hdl.verify.ts1.universe import Universe
 from tests.verify.ts1.conftest import judged_by, need
 

@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.ts1 import Ts1Run
 from firm_hdl.verify.ts1 import mutate as rules
 from firm_hdl.verify.ts1.mutate import mutation
+from firm_hdl.verify.ts1.run import Ts1Run
 from tests.frontend.workspace import make_files
 from tests.verify.ts1.conftest import judged_by, need
 

@@ -19,11 +19,12 @@ from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, 
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Recorder
 from firm_hdl.verify.systems.tasks import UnknownTypeError
-from firm_hdl.verify.ts1 import ORACLES, Ts1, Ts1Run, each_distro
 from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.case import DefinitionCase
-from firm_hdl.verify.ts1.command import Tally, command_of
+from firm_hdl.verify.ts1.command import Tally, Ts1, command_of
+from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.oracles.oracle import Refused
+from firm_hdl.verify.ts1.run import Ts1Run, each_distro
 from firm_hdl.verify.ts1.universe import Universe
 from tests.frontend.workspace import make_files
 from tests.verify.ts1.conftest import judged_by, need

@@ -8,9 +8,9 @@ import firm_hdl.verify.ts3.confirm as references
 from firm_hdl.cli import main
 from firm_hdl.frontend import Library
 from firm_hdl.verify import Options, accept, distro_oracle, make_cases
-from firm_hdl.verify.references import CLIENTS, Refusal, client
 from firm_hdl.verify.references.choice import WRITERS, find_references, references_here
-from firm_hdl.verify.references.client import UnsupportedError
+from firm_hdl.verify.references.client import Refusal, UnsupportedError
+from firm_hdl.verify.references.clients import CLIENTS, client
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.ts3.confirm import confirm
 from tests.tools import need
