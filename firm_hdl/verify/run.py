@@ -2,6 +2,9 @@
 
 A test system is a line in :data:`SYSTEMS`: a function that makes it of what is asked for. What each
 of them finds out goes to one file of results, which says first what all of them are to test.
+
+What was asked for by name has to be judged. Of all types, those that nobody can judge are listed
+and do not count. A run that judged nothing at all is no pass.
 """
 
 from __future__ import annotations
@@ -21,7 +24,7 @@ from firm_hdl.verify.report.command import write_report
 from firm_hdl.verify.request import Workload
 from firm_hdl.verify.results.environment import code_digest, environment, inputs_digest
 from firm_hdl.verify.results.file import ResultsError, ResultsWriter
-from firm_hdl.verify.systems.ending import concluded, is_well
+from firm_hdl.verify.results.verdict import Failed, NotJudged
 from firm_hdl.verify.systems.system import Judged, Recorder, System
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1.command import Ts1
@@ -29,7 +32,7 @@ from firm_hdl.verify.ts1.run import each_distro
 from firm_hdl.verify.ts2.system import Ts2
 from firm_hdl.verify.ts3.system import Ts3
 
-__all__ = ["SYSTEMS", "run_workload"]
+__all__ = ["SYSTEMS", "concluded", "is_well", "run_workload"]
 
 
 def run_workload(work: Workload) -> int:
@@ -63,6 +66,34 @@ def run_workload(work: Workload) -> int:
     for problem in work.problems:
         print(problem, file=sys.stderr)
     return 0 if is_well(found, is_named=request.is_named) and not work.problems else 1
+
+
+def is_well(found: Sequence[Judged], *, is_named: bool) -> bool:
+    """Say whether a run is a success, which its exit status tells.
+
+    Parameters
+    ----------
+    is_named : bool
+        Whether what was tested was asked for by name, and not all that there is.
+    """
+    verdicts = [each.verdict for each in found]
+    if any(isinstance(verdict, Failed) for verdict in verdicts):
+        return False
+    silent = sum(isinstance(verdict, NotJudged) for verdict in verdicts)
+    return silent < len(verdicts) and not (is_named and silent)
+
+
+def concluded(found: Sequence[Judged], *, is_named: bool) -> list[str]:
+    """Return lines for the end of a run: each test that was not judged, and what that means."""
+    silent = [(each.what, each.verdict) for each in found if isinstance(each.verdict, NotJudged)]
+    lines = [f"not judged: {what}: {verdict.reason}" for what, verdict in silent]
+    if len(silent) == len(found):
+        return [*lines, "nothing was judged: this is no pass"]
+    if silent:
+        were = "was" if len(silent) == 1 else "were"
+        meaning = ", although named: this is no pass" if is_named else ""
+        lines.append(f"{len(silent)} of {len(found)} tests {were} not judged{meaning}")
+    return lines
 
 
 def _run_systems(work: Workload) -> list[Judged]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import logging
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from importlib.metadata import version
 from io import StringIO
@@ -218,6 +218,16 @@ def _take_members(self: Any, **members: Any) -> None:
 # mcap.
 
 
+def _opened(kind: Callable[[Message], Codec], message: Message, library: str) -> Codec:
+    try:
+        # Its parser prints what it does not take.
+        with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
+            return kind(message)
+    # Whatever its parser raises.
+    except Exception as error:
+        raise UnsupportedError(f"{library} refuses the definition: {first_line(error)}") from None
+
+
 class McapRos2(_Imported):
     """mcap-ros2-support: what reads and writes the messages of ROS 2 in MCAP files."""
 
@@ -229,15 +239,7 @@ class McapRos2(_Imported):
 
     def open(self, message: Message, wire: Wire) -> Codec:
         refuse_wide(message, self.name)
-        try:
-            # Its parser prints what it does not take.
-            with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
-                return _McapRos2Codec(message)
-        # Whatever its parser raises.
-        except Exception as error:
-            raise UnsupportedError(
-                f"mcap-ros2 refuses the definition: {first_line(error)}"
-            ) from None
+        return _opened(_McapRos2Codec, message, self.name)
 
 
 class _McapRos2Codec(ObjectCodec):
@@ -268,12 +270,7 @@ class McapRos1(_Imported):
     wires: ClassVar = frozenset({"ros1"})
 
     def open(self, message: Message, wire: Wire) -> Codec:
-        try:
-            return _McapRos1Codec(message)
-        except Exception as error:
-            raise UnsupportedError(
-                f"mcap-ros1 refuses the definition: {first_line(error)}"
-            ) from None
+        return _opened(_McapRos1Codec, message, self.name)
 
 
 class _McapRos1Codec(Codec):

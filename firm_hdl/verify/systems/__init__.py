@@ -1,3 +1,3 @@
-"""What all test systems share: their interface, their tasks, and how a run ends."""
+"""What all test systems share: their interface, their options, and their tasks."""
 
 __all__ = []

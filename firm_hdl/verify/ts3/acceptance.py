@@ -12,7 +12,7 @@ cycle by cycle (:mod:`firm_hdl.verify.simulators.crosscheck`).
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from collections.abc import Set as AbstractSet
 from itertools import chain
 from typing import Any
@@ -20,6 +20,8 @@ from typing import Any
 from firm_hdl.errors import described
 from firm_hdl.model import Message
 from firm_hdl.plan import Edge, build_plan
+from firm_hdl.plan.edges import edges
+from firm_hdl.plan.interpret import decode, encode
 from firm_hdl.sim.stalls import Stalls
 from firm_hdl.verify.cases.damage import DAMAGES, broken_packets, stalls_for
 from firm_hdl.verify.cases.directed import bare_packets
@@ -37,11 +39,17 @@ from firm_hdl.verify.references.choice import WIDE_REFERENCES, may_stand_in
 from firm_hdl.verify.references.oracle import RosbagsOracle
 from firm_hdl.verify.references.user_oracle import Judge, judge_of
 from firm_hdl.verify.references.wide_oracle import WideOracle
+from firm_hdl.verify.results.records import PlanCoverage
 from firm_hdl.verify.results.verdict import NotJudged, NotJudgedError
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.tasks import library_of
-from firm_hdl.verify.ts3.checks import Checks
 from firm_hdl.verify.ts3.circuit import Circuit
+from firm_hdl.verify.ts3.compare import (
+    Expected,
+    packet_differences,
+    run_differences,
+    transfer_differences,
+)
 from firm_hdl.verify.ts3.confirm import confirm
 from firm_hdl.verify.ts3.result import Result, command_of
 from firm_hdl.wire import Wire, lay_out
@@ -116,7 +124,7 @@ def accept_message(
         numbers = set(chosen(run.plan, packets, taken))
         if len(numbers) < len(taken):
             result.say(f"simulated in part: {len(numbers)} of {len(taken)} packets")
-            run.checks.cover(taken[number] for number in numbers)
+            run.cover(taken[number] for number in numbers)
         bare = [pair for number, pair in enumerate(bare, len(cases)) if number in numbers]
         cases = [case for number, case in enumerate(cases) if number in numbers]
     run.good(cases, None, bare)
@@ -169,7 +177,6 @@ class Acceptance:
     Attributes
     ----------
     plan : Plan
-    checks : Checks
     circuit : Circuit
         Only if it is to be simulated.
 
@@ -198,7 +205,6 @@ class Acceptance:
         )
         if reason := too_large(self.plan, layout.min_bytes):
             raise NotJudgedError(reason)
-        self.checks = Checks(self.plan, result)
         result.shape = digest(self.plan)
         self._random = random.Random(f"{options.seed}/{message.name}/broken")
         if options.simulated:
@@ -207,11 +213,45 @@ class Acceptance:
     def golden(
         self, cases: Sequence[Case], bare: Sequence[tuple[Case, bytes]]
     ) -> list[AbstractSet[Edge]]:
-        """Check the golden model; it alone is judged if the circuit is not to be simulated."""
-        taken = self.checks.golden(cases, bare)
+        """Check the golden model against the oracle; return the decisions of each packet.
+
+        It alone is judged if the circuit is not to be simulated.
+        """
+        failures, plan = self._result.failures, self.plan
+        leaves = {leaf.path: number for number, leaf in enumerate(plan.leaves)}
+        taken: list[AbstractSet[Edge]] = []
+        for case, packet in chain(((case, case.sent) for case in cases), bare):
+            where = f"golden model, {case.what}"
+            decoded = decode(plan, packet)
+            taken.append(decoded.edges)
+            if decoded.status != case.status:
+                failures.append(f"{where}: status {decoded.status}")
+            failures += transfer_differences(where, plan, decoded.streams, [case.transfers])
+        for case in cases:
+            where = f"golden model, {case.what}"
+            streams = {leaves[path]: list(items) for path, items in case.transfers.items()}
+            try:
+                packet, status = encode(plan, streams)
+            except ValueError as error:
+                failures.append(f"{where}: {error}")
+                continue
+            failures += packet_differences(where, [packet], [case.packet])
+            if status != "OK":
+                failures.append(f"{where}: status {status} when encoding")
+        self.cover(taken)
         if not self._options.simulated:
             self._result.judged += len(taken)
         return taken
+
+    def cover(self, taken: Iterable[AbstractSet[Edge]]) -> None:
+        """Note which decisions of the plan some packets take."""
+        possible = edges(self.plan)
+        missing = sorted(possible.difference(*taken))
+        self._result.coverage = PlanCoverage(
+            taken=len(possible) - len(missing),
+            possible=len(possible),
+            missing=tuple(f"step {edge.step}: {edge.way}" for edge in missing),
+        )
 
     def good(
         self,
@@ -227,7 +267,16 @@ class Acceptance:
             return
         if stalls is None:
             self._result.beats, self._result.cycles = seen.beats_in, seen.cycles
-        self.checks.good(where, seen, [*cases, *(case for case, _ in bare)])
+        judged = [*cases, *(case for case, _ in bare)]
+        wanted = Expected(
+            packets=[case.packet for case in judged],
+            transfers=[case.transfers for case in judged],
+            statuses=[case.status for case in judged],
+            sent_statuses=["OK"] * len(judged),
+        )
+        names = [case.what for case in judged]
+        self._result.failures += run_differences(where, self.plan, seen, wanted, names)
+        self._result.judged += len(seen.packets)
 
     def broken(self, cases: Sequence[Case]) -> None:
         """Check the hardware against the golden model on packets that are wrong."""
@@ -237,5 +286,18 @@ class Acceptance:
         stalls = stalls_for(self._random.random()) if self._options.stalled else None
         where = f"hardware, broken packets, {stalls}"
         seen = self.circuit.send(where, packets, stalls)
-        if seen is not None:
-            self.checks.broken(where, seen, packets)
+        if seen is None:
+            return
+        golden = [decode(self.plan, packet) for packet in packets]
+        sent = [encode(self.plan, decoded.streams) for decoded in golden]
+        wanted = Expected(
+            packets=[packet for packet, _ in sent],
+            transfers=[
+                {self.plan.leaves[leaf].path: got for leaf, got in decoded.streams.items()}
+                for decoded in golden
+            ],
+            statuses=[decoded.status for decoded in golden],
+            sent_statuses=[status for _, status in sent],
+        )
+        names = [packet.hex() for packet in packets]
+        self._result.failures += run_differences(where, self.plan, seen, wanted, names)

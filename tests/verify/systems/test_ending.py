@@ -18,7 +18,7 @@ from firm_hdl.verify.results.verdict import (
     NotJudgedError,
     Passed,
 )
-from firm_hdl.verify.systems.ending import concluded, is_well
+from firm_hdl.verify.run import concluded, is_well
 from firm_hdl.verify.systems.system import Judged
 from tests.frontend.workspace import make_files
 from tests.verify.report.samples import a_record, a_test

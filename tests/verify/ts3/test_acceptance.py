@@ -9,7 +9,7 @@ import pytest
 from amaranth.hdl import Module, Signal
 from amaranth.lib import wiring
 
-import firm_hdl.verify.ts3.checks as checks
+import firm_hdl.verify.ts3.acceptance as acceptance
 import firm_hdl.verify.ts3.circuit as circuit
 from firm_hdl.frontend import load_message
 from firm_hdl.gateware import Deserializer, Serializer
@@ -200,13 +200,13 @@ def test_broken_packets_are_of_every_kind():
 
 
 def test_fault_in_the_golden_model_is_found(monkeypatch):
-    original = checks.decode
+    original = acceptance.decode
 
     def decode(plan, packet):
         decoded = original(plan, packet)
         return replace(decoded, transfers=decoded.transfers[:-1])
 
-    monkeypatch.setattr(checks, "decode", decode)
+    monkeypatch.setattr(acceptance, "decode", decode)
     result = accept("humble", HEADER, Options(broken=False, stalled=False))
     assert any(f.startswith("golden model, case 0 of") for f in result.failures)
     assert not any(f.startswith("hardware") for f in result.failures)
@@ -222,8 +222,8 @@ def test_fault_in_the_golden_model_is_found(monkeypatch):
     ],
 )
 def test_each_answer_of_the_golden_model_is_judged(monkeypatch, which, change, said):
-    original = getattr(checks, which)
-    monkeypatch.setattr(checks, which, lambda *given: change(original(*given)))
+    original = getattr(acceptance, which)
+    monkeypatch.setattr(acceptance, which, lambda *given: change(original(*given)))
     result = accept("humble", "std_msgs/msg/UInt8", Options(simulated=False))
     assert result.failures
     for failure in result.failures:

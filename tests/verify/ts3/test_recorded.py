@@ -14,7 +14,6 @@ from pathlib import Path
 import pytest
 
 import firm_hdl.verify.ts3.acceptance as acceptance
-import firm_hdl.verify.ts3.checks as checks
 from firm_hdl.cli import main
 from firm_hdl.verify import Options, accept, collect_tasks
 from firm_hdl.verify.results.file import read_results
@@ -78,8 +77,8 @@ def test_wrong_answer_to_a_bare_string_is_found(monkeypatch):
 
 def test_failures_are_recorded_and_not_run_again(tmp_path, monkeypatch, capsys):
     path = tmp_path / "r.jsonl"
-    decode = checks.decode
-    monkeypatch.setattr(checks, "decode", lambda plan, packet: decode(plan, packet + bytes(99)))
+    decode = acceptance.decode
+    monkeypatch.setattr(acceptance, "decode", lambda plan, packet: decode(plan, packet + bytes(99)))
     assert verify("--results", str(path), "std_msgs/Bool") == 1
     monkeypatch.undo()
     (record,) = read_results(path).records.values()
@@ -178,7 +177,7 @@ def test_all_types_share_circuits_and_those_with_a_name_do_not(tmp_path, argumen
 
 def test_circuit_that_fails_fails_all_that_have_it(tmp_path, monkeypatch, capsys):
     path = tmp_path / "r.jsonl"
-    monkeypatch.setattr(checks, "run_differences", lambda *given: ["hardware: no"])
+    monkeypatch.setattr(acceptance, "run_differences", lambda *given: ["hardware: no"])
     assert verify("--results", str(path), "--share-circuits", *TWINS) == 1
     assert "humble      0 of    2 types pass" in capsys.readouterr().out
 
