@@ -14,7 +14,7 @@ from firm_hdl.jobs import executors
 from firm_hdl.jobs.executors import ExecutorError, check_executor, run_each
 from firm_hdl.verify import Options, collect_tasks, run_tasks
 from firm_hdl.verify.ts3.result import record_of
-from tests.verify.judged import assert_passed
+from tests.verify.judged import assert_passed, without_times
 
 TASKS = [(f"task {number}", (number,)) for number in range(30)]
 SQUARES = {f"task {number}": number * number for number in range(30)}
@@ -127,7 +127,7 @@ class TestDask:
         tasks = collect_tasks(["humble"], ["std_msgs/Bool", "std_msgs/String", "std_msgs/Header"])
         here, there = (
             {
-                task.name: record_of(task, result, options).without_times
+                task.name: without_times(record_of(task, result, options))
                 for task, result in run_tasks(tasks, options, 2, executor=where)
             }
             for where in ("processes", executor)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from firm_hdl.verify.results.records import Seconds
 from firm_hdl.verify.results.verdict import KnownDifference, Passed
 
-__all__ = ["NAN_KEY", "TIME_KEY", "assert_known", "assert_passed"]
+__all__ = ["NAN_KEY", "TIME_KEY", "assert_known", "assert_passed", "without_times"]
 
 
 NAN_KEY = "python-signalling-nan"
@@ -29,3 +32,8 @@ def assert_known(result, *keys):
     verdict = getattr(result, "verdict", result)
     assert isinstance(verdict, KnownDifference), verdict
     assert verdict.keys == keys
+
+
+def without_times(record):
+    """Return a record without its times, which differ from run to run."""
+    return replace(record, seconds=Seconds(), cpu_seconds=0.0)

@@ -24,7 +24,7 @@ from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.oracles.oracle import Refused
 from firm_hdl.verify.ts2 import system as ts2
 from tests.frontend.workspace import make_files
-from tests.verify.judged import assert_known, assert_passed
+from tests.verify.judged import assert_known, assert_passed, without_times
 
 BOOL, CHAR = "std_msgs/msg/Bool", "std_msgs/msg/Char"
 # rosbags is always here.
@@ -37,7 +37,7 @@ def verify(*arguments):
 
 
 def records_of(path):
-    return {key: record.without_times for key, record in read_results(path).records.items()}
+    return {key: without_times(record) for key, record in read_results(path).records.items()}
 
 
 def written(path):

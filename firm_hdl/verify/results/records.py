@@ -7,20 +7,12 @@ what became of it. Both are written as JSON and read back by :mod:`firm_hdl.veri
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from types import NoneType, UnionType
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 from firm_hdl.verify.results.texts import clipped
-from firm_hdl.verify.results.verdict import (
-    Failed,
-    KnownDifference,
-    NotJudged,
-    Passed,
-    Verdict,
-    verdict_from_json,
-    verdict_to_json,
-)
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 
 __all__ = [
     "STAGES",
@@ -217,11 +209,6 @@ class Record:
         if not isinstance(self.verdict, Passed | Failed | NotJudged | KnownDifference):
             raise ValueError(f"What became of a test must be a verdict, not {self.verdict!r}")
 
-    @property
-    def without_times(self) -> Record:
-        """The same but for how long it took, which differs from run to run."""
-        return replace(self, seconds=Seconds(), cpu_seconds=0.0)
-
 
 def _clipped(failures: Sequence[str]) -> tuple[str, ...]:
     """Return failures as a record keeps them: not too many, and none too long."""
@@ -279,7 +266,8 @@ def to_json(value: Any) -> Any:
             found = {name: to_json(each) for name, each in value.items()}
             return {name: each for name, each in found.items() if each}
         case Passed() | Failed() | NotJudged() | KnownDifference():
-            return verdict_to_json(value)
+            found = {each.name: to_json(getattr(value, each.name)) for each in fields(value)}
+            return {"verdict": value.name, **found}
         case Test() | Seconds() | PlanCoverage() | OracleVerdict() | Record():
             found = {each.name: to_json(getattr(value, each.name)) for each in fields(value)}
             required = _REQUIRED[type(value)]
@@ -323,7 +311,7 @@ def _read(hint: Any, given: Any) -> Any:
     """Return the value of an attribute; `TypeError` if it is of another type."""
     kinds = [each for each in get_args(hint) if each not in (NoneType, Ellipsis)]
     if hint == _VERDICT:
-        return verdict_from_json(given)
+        return _verdict(given)
     if get_origin(hint) is tuple and isinstance(given, list | tuple):
         return tuple(_read(kinds[0], each) for each in given)
     if get_origin(hint) is Mapping and isinstance(given, dict):
@@ -339,7 +327,18 @@ def _read(hint: Any, given: Any) -> Any:
     raise TypeError
 
 
-_KINDS: tuple[Any, ...] = (Test, Seconds, PlanCoverage, OracleVerdict, Record)
+def _verdict(given: object) -> Verdict:
+    if not isinstance(given, dict) or given.get("verdict") not in _VERDICTS:
+        raise ValueError(f"A verdict must be one of {', '.join(_VERDICTS)}, not {given!r}")
+    values = {name: value for name, value in given.items() if name != "verdict"}
+    verdict: Verdict = from_json(_VERDICTS[given["verdict"]], values)
+    return verdict
+
+
+_VERDICTS: dict[str, Any] = {
+    kind.name: kind for kind in (Failed, NotJudged, KnownDifference, Passed)
+}
+_KINDS = (Test, Seconds, PlanCoverage, OracleVerdict, Record, *_VERDICTS.values())
 _HINTS: dict[Any, dict[str, Any]] = {kind: get_type_hints(kind) for kind in _KINDS}
 _REQUIRED: dict[Any, set[str]] = {
     kind: {f.name for f in fields(kind) if f.default is MISSING and f.default_factory is MISSING}

@@ -7,19 +7,10 @@ a known difference has a key and counts what was compared once the known thing w
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Any, ClassVar, TypeAlias
+from dataclasses import dataclass
+from typing import ClassVar, TypeAlias
 
-__all__ = [
-    "Failed",
-    "KnownDifference",
-    "NotJudged",
-    "NotJudgedError",
-    "Passed",
-    "Verdict",
-    "verdict_from_json",
-    "verdict_to_json",
-]
+__all__ = ["Failed", "KnownDifference", "NotJudged", "NotJudgedError", "Passed", "Verdict"]
 
 SILENT = "failed without saying why"
 """What stands for the text of a failure that has none."""
@@ -147,40 +138,6 @@ class KnownDifference:
 
 
 Verdict: TypeAlias = "Passed | Failed | NotJudged | KnownDifference"
-
-_KINDS: dict[str, type[Passed | Failed | NotJudged | KnownDifference]] = {
-    kind.name: kind for kind in (Failed, NotJudged, KnownDifference, Passed)
-}
-
-
-def verdict_to_json(verdict: Verdict) -> dict[str, Any]:
-    """Return a verdict as an object that JSON can carry, with its name as ``verdict``."""
-    values = {each.name: getattr(verdict, each.name) for each in fields(verdict)}
-    plain = {n: list(v) if isinstance(v, tuple) else v for n, v in values.items()}
-    return {"verdict": verdict.name, **plain}
-
-
-def verdict_from_json(given: object) -> Verdict:
-    """Return a verdict that `verdict_to_json` wrote.
-
-    Raises
-    ------
-    ValueError
-        If it is none.
-    """
-    if not isinstance(given, dict) or given.get("verdict") not in _KINDS:
-        raise ValueError(f"A verdict must be one of {', '.join(_KINDS)}, not {given!r}")
-    kind: Any = _KINDS[given["verdict"]]
-    values = {
-        name: tuple(value) if isinstance(value, list) else value
-        for name, value in given.items()
-        if name != "verdict"
-    }
-    try:
-        verdict: Verdict = kind(**values)
-    except (AttributeError, TypeError) as error:
-        raise ValueError(f"A verdict '{kind.name}' is not written so: {error}") from None
-    return verdict
 
 
 def _check_cases(cases: int) -> None:

@@ -161,12 +161,6 @@ def test_each_part_of_a_record_is_read_back(name):
     assert getattr(without, name) == getattr(Record(test=WHOLE, verdict=Passed(1)), name)
 
 
-def test_times_alone_are_left_out():
-    assert RECORD.without_times.seconds == Seconds()
-    assert RECORD.without_times.cpu_seconds == 0
-    assert RECORD.without_times.cases == 1 and RECORD.without_times.metrics == RECORD.metrics
-
-
 @pytest.mark.parametrize(
     ("given", "said"),
     [

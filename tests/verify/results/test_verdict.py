@@ -6,14 +6,9 @@ import json
 
 import pytest
 
-from firm_hdl.verify.results.verdict import (
-    Failed,
-    KnownDifference,
-    NotJudged,
-    Passed,
-    verdict_from_json,
-    verdict_to_json,
-)
+from firm_hdl.verify.results.records import Record, from_json, to_json
+from firm_hdl.verify.results.records import Test as Tested
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 
 EACH = [
     Passed(3),
@@ -21,6 +16,14 @@ EACH = [
     NotJudged("rosbags has no wstring"),
     KnownDifference(("rosbags-octal",), 1),
 ]
+
+
+TEST = Tested(system="ts2", distro="iron", type="p/A")
+
+
+def read_back(verdict):
+    """Read a verdict as that of a record."""
+    return from_json(Record, {"test": to_json(TEST), "verdict": verdict}).verdict
 
 
 @pytest.mark.parametrize("cases", [0, -1, True, 1.0])
@@ -53,7 +56,7 @@ def test_a_known_difference_has_a_key(keys):
 
 @pytest.mark.parametrize("verdict", EACH, ids=lambda each: each.name)
 def test_json_reads_back(verdict):
-    assert verdict_from_json(json.loads(json.dumps(verdict_to_json(verdict)))) == verdict
+    assert read_back(json.loads(json.dumps(to_json(verdict)))) == verdict
 
 
 @pytest.mark.parametrize(
@@ -74,5 +77,5 @@ def test_json_reads_back(verdict):
     ],
 )
 def test_other_json_is_refused(given):
-    with pytest.raises(ValueError, match=r"verdict|at least"):
-        verdict_from_json(given)
+    with pytest.raises(ValueError, match=r"verdict|at least|Passed|Failed|NotJudged|KnownDiff"):
+        read_back(given)

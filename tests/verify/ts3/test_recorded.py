@@ -18,7 +18,7 @@ from firm_hdl.cli import main
 from firm_hdl.verify import Options, accept, collect_tasks
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.ts3.result import record_of, same_circuits, test_of
-from tests.verify.judged import assert_passed
+from tests.verify.judged import assert_passed, without_times
 
 TYPES = ["std_msgs/msg/Bool", "std_msgs/msg/Header", "std_msgs/msg/String", "std_msgs/msg/Char"]
 FAST = ["--jobs", "1", "--cases", "3", "--distro", "humble"]
@@ -29,7 +29,7 @@ def verify(*arguments):
 
 
 def outcomes(path):
-    return {key: record.without_times for key, record in read_results(path).records.items()}
+    return {key: without_times(record) for key, record in read_results(path).records.items()}
 
 
 def task_of(name):
