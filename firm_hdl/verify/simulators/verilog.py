@@ -16,11 +16,9 @@ __all__ = ["modules_of", "write_inputs"]
 
 def modules_of(trace: Trace) -> list[str]:
     """Name the devices' modules as ``firm-hdl build`` names them."""
-    plans = [(device, device.plan) for device in trace.devices]
-    return [
-        module_name(f"{identifier(plan.message)}_{plan.wire}_{plan.bus_bytes}", device.direction)
-        for device, plan in plans
-    ]
+    plan = trace.devices[0].plan
+    base = f"{identifier(plan.message)}_{plan.wire}_{plan.bus_bytes}"
+    return [module_name(base, device.direction) for device in trace.devices]
 
 
 def write_inputs(trace: Trace, tops: Sequence[Top], folder: Path) -> list[str]:

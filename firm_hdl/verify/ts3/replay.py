@@ -73,14 +73,6 @@ def replay(distro: str, name: str, options: Options) -> Result:
     return measured(distro, name, options, _replay)
 
 
-def _recorded_message(library: Library, topic: Topic) -> Message | None:
-    """Return the type of a topic; `None` if its definition cannot be used."""
-    try:
-        return library.message(topic.type)
-    except DefinitionError:
-        return None
-
-
 def _replay(message: Message, judge: Judge, options: Options, result: Result) -> None:
     topics, others = _topics(message, library_of(result.distro, (), options.bags), options.bags)
     selection = _select(message, topics, options)
@@ -117,12 +109,15 @@ def _topics(
     message: Message, library: Library, bags: Sequence[str]
 ) -> tuple[list[Topic], list[str]]:
     """Return the topics of a type, and which are left out because their definition differs."""
-    mine = [
-        topic
-        for bag in bags
-        for topic in topics_of(bag)
-        if (found := _recorded_message(library, topic)) is not None and found.name == message.name
-    ]
+
+    def is_meant(topic: Topic) -> bool:
+        try:
+            return library.message(topic.type).name == message.name
+        except DefinitionError:
+            # A definition that cannot be used is that of another type.
+            return False
+
+    mine = [topic for bag in bags for topic in topics_of(bag) if is_meant(topic)]
     digest = next((topic.digest for topic in mine if topic.digest), "")
     others = [topic for topic in mine if topic.digest not in ("", digest)]
     return [topic for topic in mine if topic not in others], [
