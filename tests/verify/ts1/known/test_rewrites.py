@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.verify.ts1.rewriting import numbered, private, rewritten
+from tests.verify.ts1.known.rewriting import numbered, private, rewritten
 
 # Each with a line behind it that is to change as well, or a line that is not.
 MSG = [

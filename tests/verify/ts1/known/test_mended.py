@@ -7,7 +7,7 @@ import math
 import pytest
 
 from firm_hdl.model import Array, Field, Message, Sequence, String
-from tests.verify.ts1.rewriting import BY_KEY, case_of, numbered, private
+from tests.verify.ts1.known.rewriting import BY_KEY, case_of, numbered, private
 
 
 def field_of(name, kind):

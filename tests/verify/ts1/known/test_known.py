@@ -16,9 +16,9 @@ from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.known import KNOWN
 from firm_hdl.verify.ts1.known.texts import hidden, renamed, renamed_back, shown
 from tests.verify.judged import assert_known, assert_passed
-from tests.verify.ts1.examples import EXAMPLES, drop_last, refuse
+from tests.verify.ts1.known.examples import EXAMPLES, drop_last, refuse
 
-ERRATA = Path(__file__).parents[3] / "docs" / "errata.md"
+ERRATA = Path(__file__).parents[4] / "docs" / "errata.md"
 
 NAMED = {f"{number} {each.key} {each.oracle}": each for number, each in enumerate(EXAMPLES)}
 SPARED = {name: each for name, each in NAMED.items() if each.spared}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.verify.ts1.known.idl_values import integer_of
-from tests.verify.ts1.rewriting import BY_KEY, numbered, rewritten
-from tests.verify.ts1.test_rewrites import MSG
+from tests.verify.ts1.known.rewriting import BY_KEY, numbered, rewritten
+from tests.verify.ts1.known.test_rewrites import MSG
 
 IDL = [
     # key, before, after
