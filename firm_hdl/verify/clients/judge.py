@@ -10,7 +10,7 @@ from typing import Any
 from firm_hdl.model import Message
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.clients.known import known_keys
-from firm_hdl.verify.clients.odd import (
+from firm_hdl.verify.clients.oddities import (
     odd_packet,
     odd_packets,
     odd_value,

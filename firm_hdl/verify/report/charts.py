@@ -22,7 +22,7 @@ __all__ = [
 ]
 
 COLOURS = 6
-"""How many colours the style sheet has, ``c1`` and so on."""
+"""The number of colours in the style sheet, ``c1`` and so on."""
 
 MOST_DOTS = 500
 BAR_WIDTH = 110
@@ -58,7 +58,7 @@ def counts_bar(counts: Counts) -> str:
 
 
 def cumulative(curves: Sequence[Curve]) -> str:
-    """Draw the share of tests that took at most so long, a line for each suite."""
+    """Draw the share of tests that were completed within a time, with a line for each suite."""
     figure = Figure(760, 340, "Share of tests completed within a time")
     x = Scale.logarithmic((v for c in curves for v, _ in c.points), 62, 740)
     y = Scale(0, 1, 286, 16)
@@ -77,7 +77,7 @@ def cumulative(curves: Sequence[Curve]) -> str:
 
 
 def stages(curve: Curve) -> str:
-    """Draw how long each stage took: all tests as points, and their quartiles as a box."""
+    """Draw the times of each stage: all tests as points, and their quartiles as a box."""
     names = [stage for stage in STAGES if stage in curve.stages]
     height = 64
     bottom = 12 + height * len(names)

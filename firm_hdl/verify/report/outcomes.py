@@ -1,7 +1,7 @@
-"""What became of every test that was planned: the input of all that a report says.
+"""The outcome of every planned test: the input of a report.
 
-A test counts as passed only if there is a record that says so. One without a record was not run,
-and one that rests on the circuit of another type is worth what that type's own record is worth.
+A test counts as passed only if a record says so. A test without a record was not run. A test that
+relies on the circuit of another type is worth what the record of that type is worth.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ __all__ = ["VERDICTS", "Counts", "NotRun", "Outcome", "count", "failures_of", "o
 
 @dataclass(frozen=True, slots=True)
 class NotRun:
-    """There is no result of a test.
+    """A test has no result.
 
     Attributes
     ----------
@@ -33,19 +33,19 @@ class NotRun:
 
 
 VERDICTS = (Passed.name, KnownDifference.name, Failed.name, NotJudged.name, NotRun.name)
-"""Names of all that may become of a test."""
+"""Names of all outcomes of a test."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """What became of a test.
+    """The outcome of a test.
 
     Attributes
     ----------
     verdict : Verdict or NotRun
     record : Record or None
     circuit_of : str
-        Name of the type whose circuit was simulated in place of this one's, which is the same.
+        Name of the type whose equal circuit was simulated in place of this one's.
     """
 
     test: Test
@@ -56,7 +56,7 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Counts:
-    """How many tests became what; those with a known difference alone are none that passed."""
+    """The number of tests of each outcome. Tests with a known difference do not count as passed."""
 
     passed: int = 0
     known: int = 0
@@ -71,7 +71,7 @@ class Counts:
 
     @property
     def verdict(self) -> str:
-        """The worst of them, one of `VERDICTS`; what nobody can judge counts if it is all."""
+        """The worst outcome, one of `VERDICTS`; ``not judged`` only if nothing was judged."""
         if self.failed:
             return Failed.name
         if self.not_run or not self.total:
@@ -94,7 +94,7 @@ def count(outcomes: Iterable[Outcome]) -> Counts:
 
 
 def failures_of(outcome: Outcome) -> tuple[str, ...]:
-    """Return what is wrong; nothing if nobody found anything."""
+    """Return the failures of a test; none if it did not fail."""
     return outcome.verdict.failures if isinstance(outcome.verdict, Failed) else ()
 
 

@@ -1,4 +1,4 @@
-"""What a report says in words, in all of its forms."""
+"""The sentences of a report, for HTML and Markdown."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _ORDER = (Failed.name, NotRun.name, NotJudged.name, KnownDifference.name, Passed
 
 
 def headline(summary: Summary) -> str:
-    """Say in a line what came out."""
+    """Return the result in one line."""
     counts = summary.counts
     if not counts.total:
         return "? no tests"
@@ -83,7 +83,7 @@ def _cpu_facts(summary: Summary) -> Iterator[tuple[str, str]]:
 
 
 def note_of(outcome: Outcome) -> str:
-    """Return what is to be known about a test; empty in most cases."""
+    """Return the note of a test; empty in most cases."""
     return "" if outcome.record is None else outcome.record.note
 
 
@@ -93,7 +93,7 @@ def shown_tests(summary: Summary, most: int) -> tuple[list[Outcome], str]:
     Returns
     -------
     tests, rest
-        And a word on those that are left out, which is empty if there are none.
+        The rest is a text about the tests that are left out; empty if there are none.
     """
     found = list(summary.outcomes)
     left = len(found) - most
@@ -138,13 +138,13 @@ def trends_by_suite(summary: Summary) -> dict[str, list[Trend]]:
 
 
 def slowest_suite(summary: Summary) -> str:
-    """Name the suite with trends that takes most time: people ask about it."""
+    """Return the suite with trends that takes most time. It is shown open."""
     spent = {curve.suite: curve.seconds.total for curve in summary.curves if curve.seconds}
     return max(trends_by_suite(summary), key=lambda suite: spent.get(suite, 0))
 
 
 def caption_of_fit(trend: Trend) -> str:
-    """Say what was fitted to points."""
+    """Describe the functions that were fitted to points."""
     law, line = trend.correlation.power, trend.correlation.linear
     parts = [f"power law {law_text(law)} s (R² {law.r2:.2f})"] if law else []
     parts += [f"line {line_text(line)} s (R² {line.r2:.2f})"] if line else []
@@ -152,7 +152,7 @@ def caption_of_fit(trend: Trend) -> str:
 
 
 def sources(summary: Summary) -> Iterator[tuple[str, list[str]]]:
-    """Yield the files that a report is of, with the options of the run and what it ran on."""
+    """Yield the files of a report, with the options and environments of their runs."""
     for run in summary.runs:
         lines = [f"{run.recorded} of {run.planned} planned tests have a record"]
         lines += [f"{name}: {_plain(value)}" for name, value in run.options.items()]

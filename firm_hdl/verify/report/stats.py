@@ -14,7 +14,7 @@ import numpy as np
 __all__ = ["Box", "Correlation", "Fit", "box_of", "correlate", "curve_of", "share_within"]
 
 LEAST_POINTS = 5
-"""A function is fitted to so many points, and so many different values, at least."""
+"""The smallest number of points that a function is fitted to."""
 
 LEAST_VALUES = 3
 MOST_CURVE_POINTS = 240
@@ -22,7 +22,7 @@ MOST_CURVE_POINTS = 240
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Box:
-    """How values are distributed.
+    """The distribution of values.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Fit:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Correlation:
-    """How a figure goes with a time.
+    """The correlation of a figure with a time.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class Correlation:
 
 
 def box_of(values: Sequence[float]) -> Box | None:
-    """Return how values are distributed; `None` of no values."""
+    """Return the distribution of values; `None` of no values."""
     if not values:
         return None
     at = np.quantile(np.asarray(values, dtype=float), (0, 0.25, 0.5, 0.75, 0.95, 1))
@@ -83,7 +83,7 @@ def box_of(values: Sequence[float]) -> Box | None:
 
 
 def curve_of(values: Sequence[float]) -> list[tuple[float, float]]:
-    """Return points of the share of values that are at most so large, the last one at 1."""
+    """Return points of the cumulative distribution of values; the last one is at 1."""
     ordered = sorted(values)
     count = len(ordered)
     if not count:
@@ -101,7 +101,7 @@ def share_within(values: Sequence[float], limit: float) -> float:
 def correlate(
     x: Sequence[float] | np.ndarray, y: Sequence[float] | np.ndarray
 ) -> Correlation | None:
-    """Find out how two figures go together.
+    """Return the correlation of two figures.
 
     Returns
     -------

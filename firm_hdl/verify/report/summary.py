@@ -1,4 +1,4 @@
-"""All that a report says, as data: HTML, Markdown and JSON are three ways to write it down."""
+"""The content of a report as data, which is written as HTML, Markdown or JSON."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from firm_hdl.verify.results.verdict import Failed, NotJudged
 __all__ = ["LIMITS", "CoverageSum", "Curve", "Group", "RunSummary", "Summary", "Trend", "summarise"]
 
 LIMITS = (0.01, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 60)
-"""Seconds that shares of tests are given for."""
+"""Times in seconds; the report has the share of tests within each."""
 
 MOST_POINTS = 1000
-"""So many points of a chart are kept; statistics are of all."""
+"""The largest number of points in a chart; statistics use all points."""
 
 _TOP = 15
-"""How many of the slowest and of the most complex types are listed."""
+"""The number of slowest tests, and of most complex types, that are listed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,13 +53,13 @@ class Curve:
     ----------
     suite : str
     points : tuple of (float, float)
-        Seconds, and the share of tests that took at most so long.
+        Seconds, and the share of tests within this time.
     within : mapping of float to float
         That share at `LIMITS`.
     seconds, cpu_seconds : Box or None
-        By the clock on the wall, and of the processor.
+        Wall-clock time, and processor time.
     stages : mapping of str to Box
-        Times of each stage that took any.
+        Times of each stage that took time.
     stage_values : mapping of str to tuple of float
         At most `MOST_POINTS` of them.
     """
@@ -75,7 +75,7 @@ class Curve:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trend:
-    """How a figure of types goes with a time of their tests.
+    """The correlation of a figure of types with a time of their tests.
 
     Attributes
     ----------
@@ -144,7 +144,7 @@ class Summary:
         A test counts once in `by_suite`, and in each of its distributions in the others.
     outcomes : tuple of Outcome
     circuits : mapping of str to (int, int)
-        By suite: different circuits, and tests that rest on that of another type.
+        By suite: different circuits, and tests that rely on the circuit of another type.
     writers : mapping of str to (mapping of str to int)
         By suite: libraries that wrote the packets, and of how many tests.
     curves : tuple of Curve
@@ -179,12 +179,12 @@ class Summary:
 
     @property
     def not_run(self) -> list[Outcome]:
-        """Tests that nothing is known about."""
+        """Tests without a result."""
         return [each for each in self.outcomes if isinstance(each.verdict, NotRun)]
 
     @property
     def not_judged(self) -> list[Outcome]:
-        """Tests that nobody could judge, for a reason."""
+        """Tests that no oracle could judge."""
         return [each for each in self.outcomes if isinstance(each.verdict, NotJudged)]
 
     @property
@@ -195,7 +195,7 @@ class Summary:
 
     @property
     def slowest(self) -> list[Outcome]:
-        """Tests that took longest, the slowest first."""
+        """The slowest tests, the slowest first."""
         return self._top(lambda record: record.seconds.total)
 
     @property

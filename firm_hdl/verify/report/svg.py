@@ -1,7 +1,7 @@
-"""Drawing: scales with axes, and figures made of text, lines and points, as SVG in a page.
+"""Scales with axes, and figures of text, lines and points, as SVG in a page.
 
-Colours are classes (``c1`` and so on) that the page's style sheet gives a value for light and for
-dark. What a point is, its ``<title>`` says.
+Colours are classes (``c1`` and so on). The style sheet of the page has a value for each of them in
+light and in dark mode. The ``<title>`` of a point says what it is.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ __all__ = ["Figure", "Scale", "number", "seconds", "spread"]
 
 
 def number(value: float) -> str:
-    """Write a number with three digits that matter, thousands apart."""
+    """Write a number with three significant digits and separators of thousands."""
     if not math.isfinite(value):
         return "-"
     if value == int(value) and abs(value) < 1e15:
@@ -27,7 +27,7 @@ def number(value: float) -> str:
 
 
 def seconds(value: float) -> str:
-    """Write a time in a unit that suits it."""
+    """Write a time in a suitable unit."""
     if value <= 0:
         return "0 s"
     for most, factor, unit in ((1e-3, 1e6, "µs"), (1, 1e3, "ms"), (120, 1, "s")):
@@ -40,14 +40,14 @@ def seconds(value: float) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """From figures to places in a picture.
+    """The mapping from values to coordinates in a figure.
 
     Attributes
     ----------
     low, high : float
-        Figures at the ends.
+        Values at the ends.
     start, end : float
-        Places of the ends.
+        Coordinates of the ends.
     is_log : bool
     """
 
@@ -65,7 +65,7 @@ class Scale:
         return cls(low, high if high > low else low * 10, start, end, True)
 
     def __call__(self, value: float) -> float:
-        """Return the place of a figure."""
+        """Return the coordinate of a value."""
         if self.is_log:
             share = math.log(max(value, self.low) / self.low) / math.log(self.high / self.low)
         else:
@@ -73,7 +73,7 @@ class Scale:
         return round(self.start + share * (self.end - self.start), 1)
 
     def ticks(self) -> list[float]:
-        """Return round figures, a few of them; of a linear scale, the ends of its fifths."""
+        """Return a few round values; of a linear scale, the ends of its fifths."""
         if not self.is_log:
             return [self.low + (self.high - self.low) * fifths / 5 for fifths in range(6)]
         decades = math.log10(self.high / self.low)
@@ -104,13 +104,13 @@ def spread(index: int) -> float:
 
 @dataclass(slots=True)
 class Figure:
-    """A picture.
+    """A figure.
 
     Attributes
     ----------
     width, height : int
     label : str
-        What a screen reader says of it.
+        The text for screen readers.
     parts : list of str
     """
 
@@ -134,7 +134,7 @@ class Figure:
     def path(
         self, points: Iterable[tuple[float, float]], kind: str, title: str = "", steps: bool = False
     ) -> None:
-        """Draw a line through points; as a staircase if it has `steps`."""
+        """Draw a line through points; with `steps`, as a staircase."""
         text = ""
         for x, y in points:
             text += f"M{x} {y}" if not text else f"H{x}V{y}" if steps else f"L{x} {y}"
@@ -143,7 +143,7 @@ class Figure:
     def text(
         self, x: float, y: float, text: str, kind: str = "tick", anchor: str = "middle"
     ) -> None:
-        """Write something."""
+        """Write a text."""
         self.parts.append(
             f'<text x="{x}" y="{y}" class="{kind}" text-anchor="{anchor}">{escape(text)}</text>'
         )

@@ -1,7 +1,6 @@
-"""The tables of a report, which all of its forms have: headings, and rows of cells.
+"""The tables of a report, for HTML and Markdown: headings, and rows of cells.
 
-A cell is what is read and, where it is a number, what it sorts by. Forms differ in how they write
-it down, not in what is there.
+A cell has a text and, if it is a number, the value to sort by.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ __all__ = [
 T = TypeVar("T")
 
 MOST_ROWS = 1000
-"""How long a table of tests or packages may be on a page; JSON has all of them."""
+"""The largest number of rows of a table on a page; JSON has all tests and packages."""
 
 MOST_TEXT = 300
 
@@ -54,7 +53,7 @@ SIGNS = {
     NotJudged.name: "- not judged",
     NotRun.name: "? not run",
 }
-"""How verdicts are written: never by colour alone."""
+"""The text of each verdict; a verdict is never shown by colour alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +64,11 @@ class TableCell:
     ----------
     text : str
     value : float or None
-        What it sorts by, if it is a number.
+        The value to sort by, if it is a number.
     verdict : str
         Its colour; empty for that of text.
     counts : Counts or None
-        Drawn as a bar, where something can be drawn.
+        Drawn as a bar in HTML.
     """
 
     text: str
@@ -132,7 +131,7 @@ def _result(verdict: str) -> TableCell:
 
 
 def cut(table: Table, most: int = MOST_ROWS) -> tuple[Table, str]:
-    """Return the first rows of a table, and a word on the rest, which is empty if there is none."""
+    """Return the first rows of a table, and a text about the rest; the text may be empty."""
     left = len(table.rows) - most
     if left <= 0:
         return table, ""

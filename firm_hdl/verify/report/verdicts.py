@@ -59,7 +59,7 @@ class Remark:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reason:
-    """Tests of which the same is to be said, but for names and numbers.
+    """Tests with the same text, apart from names and numbers.
 
     Attributes
     ----------
@@ -144,5 +144,5 @@ def _reason_of(outcome: Outcome) -> str:
 
 
 def _without_names(text: str) -> str:
-    """Return a text without what differs from type to type: names with a ``/``, and numbers."""
+    """Return a text without what differs between types: names with a ``/``, and numbers."""
     return re.sub(r"\d[\d,.]*", "0", re.sub(r"[^\s'\"]*/[^\s'\",;:]*", "...", text))

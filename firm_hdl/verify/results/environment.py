@@ -1,4 +1,4 @@
-"""What a run ran on: versions of all that results may depend on."""
+"""The environment of a run: the versions of all that results may depend on."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ PACKAGES = (
 )
 
 _INPUTS = (".msg", ".srv", ".action", ".idl", ".xml", ".yaml")
-"""Endings of the files that definitions, packages and golden plans are read from."""
+"""Suffixes of the files that definitions, packages and golden plans are read from."""
 
 _MOST_BYTES = 1 << 22
-"""A definition has no more (`firm_hdl.frontend.sources`); of a larger file the size tells."""
+"""No definition is larger (`firm_hdl.frontend.sources`); of a larger file, the size counts."""
 
 
 def environment(**more: str) -> dict[str, str]:
-    """Return names and versions, none of which tells one user or one machine from another.
+    """Return names and versions, none of which identifies a user or a machine.
 
     Parameters
     ----------
     **more
-        What else is to be in it.
+        Further entries.
     """
     found = {
         "started": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
@@ -57,7 +57,7 @@ def environment(**more: str) -> dict[str, str]:
 
 
 def code_digest() -> str:
-    """Return a digest of the package's own files: results of other code are other results."""
+    """Return a digest of the package's own files. Results of other code cannot be continued."""
     root = Path(firm_hdl.__file__).parent
     digest = hashlib.sha256()
     for path in sorted(root.rglob("*")):
@@ -68,10 +68,10 @@ def code_digest() -> str:
 
 
 def inputs_digest(paths: Iterable[str]) -> str:
-    """Return a digest of what is read from folders and files: other inputs have other results.
+    """Return a digest of the files that a run reads. Results of other inputs cannot be continued.
 
-    Of folders, it is the names and texts of definitions, ``package.xml`` and golden plans. Of any
-    other file, such as a recording, it is the size and the time of the last change.
+    In folders, the names and texts of definitions, ``package.xml`` and golden plans count. Of any
+    other file, such as a recording, the size and the time of the last change count.
     """
     digest = hashlib.sha256()
     for path in paths:

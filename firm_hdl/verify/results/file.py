@@ -1,10 +1,10 @@
-"""Results of a run as JSON lines, so that nothing is lost when the run is.
+"""Results of a run as JSON lines, so that they survive the end of the process.
 
-The first line says what is tested and how; each other line is a record, on the disk before it is
-counted, or what a session ran on. A run that was stopped goes on with the same file: what is
-in it is not tested again. A last line without an end is what a killed process was writing, and is
-dropped. A file is continued only by a run with the same options and the same tests, for otherwise
-nobody could say what its figures are of.
+The first line says what is tested and how. Each other line is a record or the environment of a
+session. A record is on the disk before it is counted. A run that was stopped goes on with the same
+file, and does not repeat the tests in it. A last line without a line end is dropped: its writer was
+killed. Only a run with the same options and the same tests can continue a file, because its figures
+would mean nothing otherwise.
 """
 
 from __future__ import annotations
@@ -32,21 +32,21 @@ _MOST_BYTES = 1 << 28
 
 
 class ResultsError(ValueError):
-    """A file is not one of results, or is of another run; the text says which and why."""
+    """A file does not contain results, or those of another run; the text says which and why."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Results:
-    """What is in a file.
+    """The content of a file.
 
     Attributes
     ----------
     options : mapping of str to object
         Of the run.
     planned : tuple of Test
-        All tests of the run, whether there are records of them or not.
+        All tests of the run, with and without records.
     records : mapping of str to Record
-        By key; of several with the same key, the last.
+        By key. The last of several records with the same key counts.
     sessions : tuple of mapping of str to str
         What each session of the run ran on.
     """
@@ -58,17 +58,17 @@ class Results:
 
     @property
     def missing(self) -> tuple[Test, ...]:
-        """Tests that there is no record of."""
+        """Tests without a record."""
         return tuple(test for test in self.planned if test.key not in self.records)
 
 
 def read_results(path: str | os.PathLike[str]) -> Results:
-    """Read a file of results; a last line that was not written to its end is no part of it.
+    """Read a file of results, without a last line that has no line end.
 
     Raises
     ------
     ResultsError
-        If it is something else.
+        If the file does not contain results.
     OSError
     """
     return _read(Path(path))[0]
@@ -125,24 +125,24 @@ class ResultsWriter:
     Parameters
     ----------
     path : path
-        Made if it is not there, continued if it is.
+        A new file, or one to continue.
     options : mapping of str to object
-        Of the run; what JSON can say.
+        Of the run, in values that JSON has.
     planned : sequence of Test
         All tests of the run.
     session : mapping of str to str
-        What this session runs on.
+        The environment of this session.
 
     Attributes
     ----------
     before : Results
-        What was in the file.
+        The content of the file when it was opened.
 
     Raises
     ------
     ResultsError
-        If the file is no such file, or is of a run with other options or tests, or if another
-        process is writing to it.
+        If the file does not contain results, or those of a run with other options or tests, or
+        if another process writes to it.
     OSError
     """
 

@@ -1,7 +1,7 @@
-"""What a test system found out about one type, as data that outlives the run.
+"""The result of one test as data that outlives the run.
 
-A `Test` says what is tested, and its key is the same in every run of every version; a `Record` says
-what became of it. Both are written as JSON and read back by :mod:`firm_hdl.verify.results.file`.
+A `Test` says what is tested. Its key is the same in every run of every version. A `Record` is the
+result of a test. :mod:`firm_hdl.verify.results.file` writes both as JSON and reads them back.
 """
 
 from __future__ import annotations
@@ -45,18 +45,18 @@ class Test:
     system : str
         ``ts1``, ``ts2``, ``ts3`` or ``bench``.
     distro, type : str
-        The type is a message; that of ``ts1`` is what a file defines, which may be a service.
+        The type is a message; of ``ts1``, what a file defines, such as a service.
     same : tuple of str
-        All distributions that the result counts for, `distro` included: those that have the type
-        just so.
+        All distributions that the result counts for, `distro` included: those with an equal
+        definition of the type.
     simulator : str
         Empty if nothing is simulated.
     wire : str
-        ``ros1`` or ``cdr``; empty if the definition alone is looked at.
+        ``ros1`` or ``cdr``; empty if only the definition is tested.
     bus_bytes : int
-        0 if there is no circuit.
+        0 if no circuit is tested.
     options : str
-        What else makes results differ, such as ``seed=0``.
+        Everything else that results depend on, such as ``seed=0``.
     """
 
     # Pytest takes classes of this name for tests.
@@ -73,14 +73,14 @@ class Test:
 
     @property
     def key(self) -> str:
-        """What tells tests apart."""
+        """Identifies the test."""
         circuit = f"{self.wire}/{self.bus_bytes}" if self.bus_bytes else self.wire
         parts = (self.system, self.simulator, self.distro, self.type, circuit, self.options)
         return " ".join(part for part in parts if part)
 
     @property
     def title(self) -> str:
-        """What people read it by."""
+        """The name of the test for people."""
         bus = f", {self.bus_bytes}-byte bus" if self.bus_bytes else ""
         return f"{self.type} ({', '.join(self.distros)}), {self.system}{bus}"
 
@@ -97,17 +97,17 @@ class Test:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Seconds:
-    """How long the stages of a test took.
+    """The duration of each stage of a test.
 
     Attributes
     ----------
     generation : float
-        From the definition to what is tested: the model, the plan, or a circuit that is ready to
-        run, with its cases.
+        From the definition to the object under test: the model, the plan, or a circuit that is
+        ready to run, with its cases.
     simulation : float
     testing : float
-        Asking oracles and comparing: what came out with the oracle and with the golden model, the
-        plan with its layout, the model with what others read.
+        Asking oracles, and comparing: the output with the oracle and the golden model, the plan
+        with its layout, the model with the readings of oracles.
     """
 
     generation: float = 0.0
@@ -116,13 +116,13 @@ class Seconds:
 
     @property
     def total(self) -> float:
-        """All stages together."""
+        """The sum of all stages."""
         return self.generation + self.simulation + self.testing
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanCoverage:
-    """Which decisions of a plan the packets of a test took.
+    """The decisions of a plan that the packets of a test took.
 
     Attributes
     ----------
@@ -138,13 +138,13 @@ class PlanCoverage:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OracleVerdict:
-    """What an oracle of definitions says of a type.
+    """The verdict on a type by one oracle of definitions.
 
     Attributes
     ----------
     oracle : str
     verdict : Verdict
-        Cases are facts that were compared.
+        Its cases are the facts that were compared.
     is_refused : bool
         Whether both refuse the definition.
     """
@@ -156,16 +156,16 @@ class OracleVerdict:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Record:
-    """What became of a test.
+    """The result of a test.
 
     Attributes
     ----------
     verdict : Verdict
-        See `settled` for a test that rests on another one's circuit.
+        Of this test alone; see `settled` for a test that relies on the circuit of another.
     note : str
-        What is to be known about the oracle.
+        A remark about the oracle.
     seconds : Seconds
-        By the clock on the wall.
+        Wall-clock time.
     cpu_seconds : float
     cases, packets, cycles, beats : int
         Cases of the type; packets and cycles of all runs; beats of one run of all cases.
@@ -173,10 +173,10 @@ class Record:
     metrics : mapping of str to float
         Figures of the type and of its plan.
     shape : str
-        Digest of the plan without names: types with the same one have the same circuit.
+        Digest of the plan without names. Types with equal digests have the same circuit.
     same_as : str
-        Name of the type whose circuit, tested by the same test, is this one's; empty if this one's
-        own was simulated.
+        Key of the test that simulated the same circuit for another type; empty if the circuit of
+        this type was simulated.
     verdicts : tuple of OracleVerdict
         Of all oracles that read the definition.
     written_by : tuple of str
@@ -211,7 +211,7 @@ class Record:
 
 
 def _clipped(failures: Sequence[str]) -> tuple[str, ...]:
-    """Return failures as a record keeps them: not too many, and none too long."""
+    """Return at most `MOST_FAILURES` failures, of at most `MOST_CHARACTERS` each."""
     found = [clipped(text, MOST_CHARACTERS) for text in failures[:MOST_FAILURES]]
     if len(failures) > MOST_FAILURES:
         found.append(f"and {len(failures) - MOST_FAILURES} more")
@@ -219,7 +219,7 @@ def _clipped(failures: Sequence[str]) -> tuple[str, ...]:
 
 
 def clipped_verdict(verdict: Verdict) -> Verdict:
-    """Return a verdict as a record keeps it: without too many failures, and no long texts."""
+    """Return a verdict as a record keeps it: with a limited number and length of texts."""
     match verdict:
         case Failed(failures):
             return Failed(_clipped(failures))
@@ -230,7 +230,7 @@ def clipped_verdict(verdict: Verdict) -> Verdict:
 
 
 def settled(record: Record, records: Mapping[str, Record]) -> Verdict:
-    """Return what a test is worth: one that rests on the circuit of another, that one's verdict.
+    """Return the verdict that counts: it includes that of the test which simulated the circuit.
 
     Parameters
     ----------

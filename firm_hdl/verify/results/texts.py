@@ -1,4 +1,4 @@
-"""Texts about what was found out: cut to a length, and where two sequences differ first."""
+"""Texts of results: shortened texts, and the first difference of two sequences."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["clipped", "first_difference"]
 
 
 def clipped(text: str, most: int) -> str:
-    """Return a text with at most so many characters, and how many it had if they are more."""
+    """Return at most `most` characters of a text, and its length if it is longer."""
     return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
 
 

@@ -1,8 +1,8 @@
-"""What a test system may say of what it was given to judge: one of four things.
+"""The four possible verdicts of a test system.
 
-Only `Passed` is a pass. Each of the four carries what makes it believable, and refuses to be made
-without: a pass counts what was judged, a failure has a text, a missing judgement has a reason, and
-a known difference has a key and counts what was compared once the known thing was taken away.
+Only `Passed` is a pass. Each verdict needs its evidence, and cannot be made without it. A pass
+counts what was judged. A failure has a text. A missing judgement has a reason. A known difference
+has a key, and counts what was compared without the known difference.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ SILENT = "failed without saying why"
 
 @dataclass(frozen=True, slots=True)
 class Passed:
-    """All that was judged is right.
+    """Everything that was judged is right.
 
     Attributes
     ----------
     cases : int
-        What was judged: packets, definitions, plans; at least 1.
+        Number of packets, definitions or plans that were judged; at least 1.
 
     Raises
     ------
@@ -42,13 +42,13 @@ class Passed:
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """Something is wrong, or the judge broke down.
+    """Something is wrong, or the judge failed.
 
     Attributes
     ----------
     failures : tuple of str
-        What is wrong, at least one text. A blank one becomes `SILENT`: a tool that fails without a
-        message fails all the same.
+        At least one text. A blank text becomes `SILENT`, because a tool that fails without a
+        message has failed, too.
 
     Raises
     ------
@@ -74,7 +74,7 @@ class Failed:
 
 @dataclass(frozen=True, slots=True)
 class NotJudged:
-    """Nobody could say whether it is right.
+    """No oracle could judge it.
 
     Attributes
     ----------
@@ -101,19 +101,19 @@ class NotJudged:
 
 
 class NotJudgedError(Exception):
-    """Nobody can judge what was given, such as a type; the text says why."""
+    """No oracle can judge something, such as a type; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class KnownDifference:
-    """It differs as documented, and in nothing else.
+    """It differs only as documented.
 
     Attributes
     ----------
     keys : tuple of str
-        Entries of the documentation that explain the difference, at least one.
+        Keys of the documented differences that explain it; at least one.
     cases : int
-        What was compared again without the known difference, at least 1.
+        Number of cases that were compared without the known difference; at least 1.
 
     Raises
     ------

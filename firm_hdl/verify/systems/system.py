@@ -1,4 +1,4 @@
-"""What a test system is, and how its tests are run and their records kept.
+"""The interface of test systems, and functions that run tests and keep their records.
 
 A system lists all its tests before it runs one, so that a file of results can say what is missing.
 :func:`kept` takes the records of earlier sessions from a recorder, runs the other tests with a
@@ -57,7 +57,7 @@ class Judged:
     Attributes
     ----------
     what : str
-        The test as people read it: the type, its distributions, and how it was tested.
+        The name of the test for people: the type, its distributions, and how it was tested.
     verdict : Verdict
     """
 
@@ -80,7 +80,7 @@ class Recorder:
     Parameters
     ----------
     writer : ResultsWriter or None
-        `None`: there is no file, and no earlier session.
+        `None`: no file and no earlier session.
     """
 
     def __init__(self, writer: ResultsWriter | None = None):
@@ -91,7 +91,7 @@ class Recorder:
         return None if self._writer is None else self._writer.before.records.get(test.key)
 
     def add(self, *records: Record) -> None:
-        """Keep records; they are on the disk when this returns."""
+        """Write records; they are on the disk when this returns."""
         if self._writer is not None and records:
             self._writer.add(*records)
 
@@ -101,7 +101,7 @@ class Recorder:
         Parameters
         ----------
         what : str
-            What a test is called, in the plural.
+            The name of a test in messages, in the plural.
         """
         found = {key: record for key, test in tests.items() if (record := self.known(test))}
         if self._writer is not None and found:

@@ -11,7 +11,7 @@ from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, String
 from firm_hdl.verify.clients.divergences import KNOWN
 from firm_hdl.verify.clients.finding import Finding, KnownDivergence
 from firm_hdl.verify.clients.known import known_keys
-from firm_hdl.verify.clients.odd import odd_packet, odd_value, odd_values, plain_packet
+from firm_hdl.verify.clients.oddities import odd_packet, odd_value, odd_values, plain_packet
 from firm_hdl.verify.references.client import Codec, Refusal
 from firm_hdl.verify.references.values import as_float, bits_of, changed, is_nan
 

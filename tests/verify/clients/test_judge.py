@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.verify.clients.judge import Contest
-from firm_hdl.verify.clients.odd import ODDITIES, odd_packet, odd_packets
+from firm_hdl.verify.clients.oddities import ODDITIES, odd_packet, odd_packets
 from firm_hdl.verify.clients.shrink import shrunk
 from firm_hdl.verify.references.client import Refusal
 from firm_hdl.verify.references.objects import full_text

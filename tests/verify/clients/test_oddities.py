@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.verify.clients import odd
-from firm_hdl.verify.clients.odd import (
+from firm_hdl.verify.clients import oddities as odd
+from firm_hdl.verify.clients.oddities import (
     ODDITIES,
     odd_packet,
     odd_packets,
