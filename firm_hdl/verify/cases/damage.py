@@ -1,4 +1,4 @@
-"""What acceptance does to packets and streams: damage, and stalls."""
+"""Damaged packets and stalled streams for TS3."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from firm_hdl.verify.cases.make import Case
 __all__ = ["DAMAGES", "broken_packets", "stalls_for"]
 
 MOST_STEPS = 500
-"""Of a damaged packet, besides twice the beats that it had."""
+"""The most steps of a damaged packet, in addition to twice its beats."""
 
 
 def stalls_for(seed: str | float) -> Stalls:

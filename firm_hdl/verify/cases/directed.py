@@ -3,8 +3,8 @@
 :mod:`firm_hdl.verify.cases.make` chooses lengths and values for themselves. Some decisions need
 more: a padding of five bytes between two strings, or a second element in the last turn of an outer
 loop.
-Those are searched for: more cases are drawn, and one is kept if it takes a decision that none took
-before. What is still missing in the end is named, so that nobody takes silence for coverage.
+So more cases are drawn, and each that takes a new decision is kept. The record of a test names the
+decisions that are still missing.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from firm_hdl.verify.references.oracle import RosbagsOracle
 __all__ = ["bare_packets", "more_cases"]
 
 TRIES = 300
-"""How many seeds to draw cases from that nothing new comes of."""
+"""The search ends after so many seeds in a row without a new decision."""
 
 
 def more_cases(
@@ -62,7 +62,7 @@ def more_cases(
 
 
 def _taken(plan: Plan, case: Case) -> frozenset[Edge]:
-    """Return what a case takes, and what only its form with bare strings takes."""
+    """Return the decisions of a case, and those that only its form with bare strings takes."""
     decoded = decode(plan, case.packet)
     bare = _bare_edges(plan)
     if not bare:

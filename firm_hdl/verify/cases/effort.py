@@ -30,25 +30,25 @@ __all__ = [
 ]
 
 MAX_MESSAGE_BYTES = 1 << 16
-"""Small enough that a length over what it leaves room for can be completed in simulation."""
+"""Small enough that a packet with a length over this limit can be completed in simulation."""
 
 LARGE_WORK = 300_000
-"""Of all cases of a large type, which is stalled and damaged less often."""
+"""The work of all cases of a large type, which is stalled and damaged less often."""
 
 LARGE_STRIDE = 4
-"""Of a large type's cases, every so many are stalled and damaged."""
+"""Of the cases of a large type, one in so many is stalled and damaged."""
 
 MOST_WORK = 1_000_000
-"""Of all cases of a type that are simulated."""
+"""The most work of all cases of a type that are simulated."""
 
 MORE_FOR_NEW = 4
-"""Times so much may be spent on packets that take a decision which no other takes."""
+"""The factor for `MOST_WORK` for packets that take a decision which no other packet takes."""
 
 MOST_WORK_OF_ONE = 1_500_000
-"""Of the smallest message of a type that is simulated at all."""
+"""The most work of the smallest message of a type; no larger type is simulated."""
 
 MOST_CASE_BYTES = 1 << 18
-"""No more cases are made when they have so many bytes together."""
+"""No more cases are made when all packets together have so many bytes."""
 
 # A circuit of few leaves has other work to do in a cycle.
 LEAST_LEAVES = 8
@@ -66,7 +66,7 @@ def message_limit(min_bytes: int) -> int:
 
 
 def work_of(plan: Plan, packet_bytes: int) -> int:
-    """Return beats times leaves, which simulation time is roughly proportional to."""
+    """Return beats times leaves. The time of a simulation is roughly proportional to it."""
     return -(-packet_bytes // plan.bus_bytes) * max(len(plan.leaves), LEAST_LEAVES)
 
 

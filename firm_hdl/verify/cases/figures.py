@@ -1,4 +1,4 @@
-"""Figures of a type and of its plan, which a report sets against the time that tests took."""
+"""Figures of a type and of its plan. A report correlates them with the times of tests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cases that mean something: messages of a type whose values are chosen, not just drawn.
+"""Test cases: messages of a type with chosen values.
 
 Over the cases of a type, every string, sequence and run takes the lengths 0, 1 and 2, every residue
 modulo the bus, lengths over two bus words, and its bound, each in an order of its own, so that
@@ -30,7 +30,7 @@ from firm_hdl.verify.references.values import as_float, is_nan
 __all__ = ["Case", "make_cases", "run_lengths"]
 
 MOST_BYTES = 1 << 13
-"""Bounds of more bytes than this are not reached: simulation would take too long."""
+"""Larger bounds, in bytes, are not reached, because simulation would take too long."""
 
 MODES = ("zero", "high", "low", "special", "mixed")
 CHARACTERS = ("azAZ09 _/~\x01\x7f", "äéßøÿ", "€漢ﬀ\ufeff", "🤖𝔸")  # noqa: RUF001
@@ -66,17 +66,17 @@ class Case:
     Attributes
     ----------
     what : str
-        How its values were chosen.
+        Describes how its values were chosen.
     value : object
         The rosbags object.
     packet : bytes
         What rosbags writes for it.
     transfers : dict of path to list
-        What its leaves transfer, from what rosbags reads in the packet.
+        The transfers of its leaves, from what rosbags reads in the packet.
     given : bytes or None
-        What the deserializer gets, if that is another form of `packet`, or damaged.
+        The input of the deserializer, if it differs from `packet`.
     status : str
-        What the deserializer says of it.
+        The expected status of the deserializer.
     """
 
     what: str
@@ -88,12 +88,12 @@ class Case:
 
     @property
     def sent(self) -> bytes:
-        """What the deserializer gets."""
+        """The input of the deserializer."""
         return self.packet if self.given is None else self.given
 
 
 def run_lengths(item_bytes: int, bus_bytes: int, bound: int | None) -> list[int]:
-    """Return the lengths that a run of items should have at least once, without repetition."""
+    """Return the lengths that items should have at least once, without repetition."""
     lanes = max(1, bus_bytes // item_bytes)
     # On a narrow bus, every residue modulo 8 still counts: padding depends on it.
     most = max(3, lanes + 2, 8 // item_bytes + 2)
@@ -138,7 +138,7 @@ def make_cases(
 
 @dataclass(slots=True)
 class _Visits:
-    """The lengths that something still has to take, and what it took."""
+    """The lengths that a place still has to take, and all its lengths."""
 
     left: list[int]
     lengths: list[int]
@@ -197,7 +197,7 @@ class _Maker:
         return [self.field(element, (*path, "item")) for _ in range(count)]
 
     def length(self, path: tuple[str, ...], lengths: list[int], cost: int = 1) -> int:
-        """Choose a length: one that this place did not have yet, as long as there is any."""
+        """Choose a length that this place did not have yet, or any length if it had all."""
         visits = self.visits.get(path)
         if visits is None:
             # In an order of its own, so that neighbours combine differently in each case.

@@ -1,4 +1,4 @@
-"""A difference between a client library and its reference, and what may be known of it."""
+"""A difference between a client library and its reference, and known divergences."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class Finding:
         ``encode`` or ``decode``, the name of an oddity, or ``encode`` with that.
     message : Message
     value : Plain
-        What was to be written, or what the packet comes from.
+        The value to write, or that of the packet.
     packet : bytes
-        What was to be read.
+        The packet to read.
     expected, got : bytes, Plain or Refusal
         The answers of the reference and of the library.
     """
@@ -58,19 +58,19 @@ class KnownDivergence:
     key : str
         Its name, here and in docs/divergences.md.
     libraries : tuple of str
-        Who does it in another way than ROS, or in a way of its own.
+        Libraries that differ from ROS.
     wires : str
         ``ros1``, ``cdr``, or both.
     text : str
-        What it does, in one sentence.
+        What the libraries do, in one sentence.
     take_out : callable or None
-        Takes what it is about out of a value, so that all write the same.
+        Removes the difference from a value to write.
     same : callable or None
-        Takes it out of what was read.
+        Removes the difference from a value that was read.
     whats : tuple of str
-        Oddities that it is about.
+        Oddities of this divergence.
     answer : "takes", "refuses" or None
-        What it does with them, when the other does the opposite; `None`: both take them.
+        The answer of the libraries if the other one does the opposite; `None`: both take them.
     """
 
     key: str

@@ -34,24 +34,24 @@ __all__ = ["Contest", "Trial"]
 
 @dataclass(slots=True, kw_only=True)
 class Trial:
-    """What came of a library and a type.
+    """The result of one library on one type.
 
     Attributes
     ----------
     library, reference : str
     type : str
     comparisons : int
-        How often both were asked for the same.
+        Number of questions that both were asked.
     answers : int
-        How often the reference had an answer to that, and did not refuse.
+        Number of questions that the reference answered and did not refuse.
     known : counter of str
-        Keys of differences that are known.
+        Keys of known differences.
     findings : list of Finding
-        Others, the first of each kind.
+        The first unknown difference of each kind.
     unknown : int
-        How many others there are.
+        Number of unknown differences.
     obstacle : NotJudged, Failed or None
-        Why there is nothing: a library has no such type, or broke down.
+        Why there is no result: a library lacks the type, or died.
     is_asked : bool
         Whether the library was asked to judge just this: not if it does not speak the wire of a
         distribution that nobody named.
@@ -70,7 +70,7 @@ class Trial:
 
     @property
     def verdict(self) -> Verdict:
-        """What all of this comes to; cases are comparisons."""
+        """The verdict; its cases are comparisons."""
         if self.unknown:
             kinds = [f"{each.what} differs from {self.reference}" for each in self.findings]
             return Failed(tuple(kinds) or (f"{self.unknown} differences",))
@@ -105,7 +105,7 @@ class Contest:
         self.library, self.reference, self.wire = library, reference, wire
 
     def judge(self, message: Message, values: Sequence[Plain]) -> Trial:
-        """Compare what they make of values, and of packets that come from these."""
+        """Compare how both write values, and how both read packets of these values."""
         trial = Trial(library=self.library.name, reference=self.reference.name, type=message.name)
         try:
             self._judge(trial, message, values, *self._open(message))

@@ -1,8 +1,9 @@
-"""What explains a difference, if it is known.
+"""Which known divergences explain a difference.
 
-A difference in values is explained if it is gone once what an entry is about is taken out of the
-values; so one that is known hides no other. One in whether a packet is taken is explained by what
-is odd about the packet, and by who takes it. A difference that no entry explains is new.
+A difference in values is explained if the values are equal without the parts that an entry is
+about. So a known divergence hides no other. If one library takes an odd packet and the other
+refuses it, the oddity and the library explain the difference. A difference that no entry explains
+is new.
 """
 
 from __future__ import annotations

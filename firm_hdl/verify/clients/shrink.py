@@ -1,4 +1,4 @@
-"""The smallest type and value that still show a difference."""
+"""Reduces a type and a value to the smallest ones that still show a difference."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ def shrunk(
     *,
     seconds: float = MOST_SECONDS,
 ) -> Finding:
-    """Return a difference of the same kind that nothing can be taken away from.
+    """Return a minimal difference of the same kind.
 
     Parameters
     ----------
     again : callable
         Asks again for what was asked, of another type and value; see `Contest.again`.
     seconds : float
-        After these it gives what it has.
+        The time limit; after it, the smallest difference so far is returned.
     """
     until = time.monotonic() + seconds
     is_smaller = True
@@ -48,13 +48,13 @@ def shrunk(
 
 
 def _size(finding: Finding) -> tuple[int, int, int]:
-    """Tell how much there is: of the definition, of the value, and in the value."""
+    """Return the sizes of the definition and of the value, and the bytes that are not plain."""
     data = packed(finding.message, finding.value)
     return len(full_text(finding.message)), len(data), sum(byte not in b"\0x" for byte in data)
 
 
 def _smaller(message: Message, value: Plain) -> Iterator[tuple[Message, Plain]]:
-    """Yield types and values with less in them, what takes most away first."""
+    """Yield smaller types and values, the smallest first."""
     for item in message.fields:
         yield from _inside(item.type, value[item.name])
     fields = message.fields

@@ -1,4 +1,4 @@
-"""What a client library is: somebody's code that writes and reads packets of ROS messages.
+"""The interface of client libraries, which write and read packets of ROS messages.
 
 To add one, write a subclass of :class:`Client`, and name it in
 `firm_hdl.verify.references.clients`.
@@ -29,7 +29,7 @@ R = TypeVar("R")
 
 
 class Refusal(Exception):  # noqa: N818 - it is an answer, which may be right.
-    """A library refuses a value or a packet; the text is what it says."""
+    """A library refuses a value or a packet; the text is its message."""
 
     def __eq__(self, other: object) -> bool:
         # Nobody agrees on words.
@@ -40,17 +40,17 @@ class Refusal(Exception):  # noqa: N818 - it is an answer, which may be right.
 
 
 class ClientMissingError(Exception):
-    """A library that was asked for is not here; the text says how to get it."""
+    """A library that was asked for is not installed; the text says how to get it."""
 
 
 class UnsupportedError(Exception):
-    """A library cannot have a type at all; the text says why."""
+    """A library does not support a type; the text says why."""
 
 
 class ClientDiedError(UnsupportedError):
-    """A library broke down when it was asked: its process died, or gave answers to other questions.
+    """A library died when it was asked, or gave a wrong number of answers.
 
-    Whoever judges by it, or judges it, has to say so.
+    This is a failure, and not a missing judgement.
     """
 
 
@@ -124,9 +124,9 @@ class Client(ABC):
     name : str
         As ``--sut`` takes it.
     wires : set of "ros1" and "cdr"
-        What it speaks.
+        The wire formats that it supports.
     byte_orders : tuple of "little" and "big"
-        Which byte orders of CDR it is meant to read.
+        The byte orders of CDR that it supports.
     may_confirm : bool
         Whether TS3 asks it to write what rosbags writes, on its wires (``--reference``).
     """
@@ -138,11 +138,11 @@ class Client(ABC):
 
     @abstractmethod
     def missing(self) -> str | None:
-        """Tell why the library cannot be used here, and how to get it; `None` if it can."""
+        """Return why the library cannot be used, and how to get it; `None` if it can be used."""
 
     @abstractmethod
     def version(self) -> str:
-        """Tell which release it is. It is there."""
+        """Return the release of the library, which is installed."""
 
     @abstractmethod
     def open(self, message: Message, wire: Wire) -> Codec:
@@ -154,4 +154,4 @@ class Client(ABC):
         """
 
     def close(self) -> None:  # noqa: B027 - most have nothing to do.
-        """End what the library has started. It can be used again after that."""
+        """End the processes of the library. It can be used again after that."""

@@ -30,7 +30,7 @@ __all__ = ["Comparison", "Crosscheck", "first_difference"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Comparison:
-    """What became of a replay.
+    """The result of a replay.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Comparison:
 
     @property
     def verdict(self) -> Verdict:
-        """What all of this comes to; cases are cycles that were compared."""
+        """The verdict; its cases are cycles that were compared."""
         if self.failures:
             return Failed(self.failures)
         return Passed(self.cycles) if self.cycles else NotJudged("no cycle was compared")
@@ -93,13 +93,13 @@ class Crosscheck:
         self.trace = Trace(self.cores, self.message)
 
     def start(self, name: str) -> Callable[[list[int]], None]:
-        """Begin a run; return what is to look at each of its cycles."""
+        """Begin a run; return the function that observes each of its cycles."""
         self.trace.start(name)
         self.seen.append(None)
         return self.trace.observe
 
     def done(self, seen: RunResult) -> None:
-        """Note what the run that was begun last has shown, if it came to its end."""
+        """Keep the result of the last run, which came to its end."""
         self.seen[-1] = seen
 
     def compare(self) -> Comparison:

@@ -1,4 +1,4 @@
-"""Packets, transfers and statuses in rows of a trace, put together from ports alone."""
+"""Reconstructs packets, transfers and statuses from the ports in the rows of a trace."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["Traffic", "traffic"]
 
 @dataclass(slots=True, kw_only=True)
 class Traffic:
-    """What went over the ports of both converters in a run.
+    """The traffic on the ports of both converters in a run.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class Traffic:
     transfers: dict[int, list[str]] = field(default_factory=dict)
 
     def difference(self, seen: RunResult) -> str | None:
-        """Describe the first thing that is not as the Python simulation showed it."""
+        """Describe the first difference from the Python simulation."""
         for what, mine, right in (
             ("packets", self.packets, seen.packets),
             ("tuser", self.packet_errors, seen.packet_errors),
@@ -84,7 +84,7 @@ class _Stream:
 
 
 def traffic(trace: Trace, rows: Sequence[str]) -> list[Traffic]:
-    """Put together what rows of outputs say, with the trace's inputs; one entry for each run."""
+    """Reconstruct the traffic of each run from rows of outputs and the inputs of the trace."""
     watching: dict[str, list[_Stream]] = {}
     for stream in _streams(trace):
         watching.setdefault(stream.valid, []).append(stream)
@@ -166,7 +166,7 @@ def _take_transfer(leaf: int, run: Traffic, payload: list[str]) -> None:
 
 @dataclass(slots=True)
 class _Beats:
-    """Puts packets together."""
+    """Joins beats to packets."""
 
     run: Traffic | None = None
     parts: list[bytes] = field(default_factory=list)

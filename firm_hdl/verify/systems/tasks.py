@@ -1,6 +1,6 @@
-"""What test systems are to run: types, of distributions or of a user's own folders.
+"""The types that test systems run, of distributions or of a user's own folders.
 
-Types that are the same in several distributions are run once and counted for each.
+A type that is equal in several distributions is run once, and counts for each.
 """
 
 from __future__ import annotations
@@ -19,19 +19,18 @@ __all__ = ["TypeUnderTest", "UnknownTypeError", "collect_own", "collect_tasks", 
 
 
 class UnknownTypeError(ValueError):
-    """No distribution has a type of a name."""
+    """No distribution has a type of this name."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TypeUnderTest:
-    """One run.
+    """A type to test.
 
     Attributes
     ----------
     distro, name : str
-        Of the type that is run.
     same : tuple of str
-        All distributions that have the type just so, `distro` included.
+        All distributions with an equal type, `distro` included.
     """
 
     distro: str
@@ -43,8 +42,8 @@ class TypeUnderTest:
 def library_of(distro: str, paths: tuple[str, ...], bags: tuple[str, ...] = ()) -> Library:
     """Return a library, which is opened once in a process.
 
-    Without folders and recordings it has the distribution's own types, whatever workspace is
-    active: rosbags knows these without being told. Behind folders comes the workspace.
+    Without folders and recordings, it has only the distribution's own types, because rosbags knows
+    these. With folders, it searches the active workspace after them.
     """
     return open_library(distro, paths, bags) if paths or bags else Library(distro)
 
@@ -55,7 +54,7 @@ def collect_tasks(
     *,
     problems: dict[str, Diagnostic] | None = None,
 ) -> list[TypeUnderTest]:
-    """List what to run, the largest types first.
+    """List the types to test, the largest first.
 
     Parameters
     ----------
@@ -64,7 +63,7 @@ def collect_tasks(
     names : sequence of str
         Types as ``package/Type`` or ``package/msg/Type``; none: all types.
     problems : dict or None
-        Takes the names that no distribution has, by what is to be said of them, if it has others.
+        Takes the error about names that no distribution has, by its text, if other names exist.
 
     Raises
     ------
@@ -103,12 +102,12 @@ def collect_own(
     own: Sequence[str] | None = None,
     problems: dict[str, Diagnostic] | None = None,
 ) -> list[TypeUnderTest]:
-    """List what to run of the types in folders, the largest types first.
+    """List the types in folders to test, the largest first.
 
     Parameters
     ----------
     distros : iterable of str
-        Whose rules and types the folders' own are read with, in turn.
+        Whose rules and types are used to read those in the folders, one after the other.
     names : sequence of str
         Types, services or actions; none: all that are in the folders. Types that are named must not
         be too large to be laid out (:func:`firm_hdl.wire.too_large`).
@@ -116,12 +115,12 @@ def collect_own(
     own : sequence of str or None
         Those of `paths` whose types are meant by all; `None`: all of them.
     problems : dict or None
-        Takes what is wrong with definitions, by its text; they are left out then.
+        Takes errors in definitions, by their texts; these definitions are left out then.
 
     Raises
     ------
     DefinitionError
-        With those of all of them, without `problems`, or if none of the named types can be used.
+        With all errors, if `problems` is `None` or none of the named types can be used.
     """
     found: dict[tuple[str, str], int] = {}
     wrong: dict[str, Diagnostic] = {} if problems is None else problems
@@ -146,7 +145,7 @@ def collect_own(
 
 
 def _weight(message: Message) -> int:
-    """Estimate how long a type takes: by its fields, nested ones included."""
+    """Estimate the time that a type takes by its number of fields, nested ones included."""
     return sum(len(part.fields) for part in closure([message]))
 
 

@@ -1,4 +1,4 @@
-"""What we make of a definition next to what an oracle makes of it."""
+"""Compares our reading of a definition with the answer of an oracle."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ __all__ = ["Compared", "compared"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Compared:
-    """What came of a comparison.
+    """The result of a comparison.
 
     Attributes
     ----------
     differences : tuple of Difference
     cases : int
-        Facts that were compared; 1 if one of the two refuses; 0 if the oracle says nothing.
+        Number of facts that were compared; 1 if one of the two refuses; 0 if the oracle has none.
     is_refused : bool
         Whether both refuse.
     """

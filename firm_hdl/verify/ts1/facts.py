@@ -1,6 +1,6 @@
-"""What is said of a definition, in plain data, so that readers of any kind can be compared.
+"""Facts about a definition in plain data, so that readers of any kind can be compared.
 
-Facts are a dictionary. Whoever gives them gives the parts that it knows:
+Facts are a dictionary. Each reader gives the parts that it knows:
 
 ``structure``
     Each message that the definition declares or that is derived from it, by full name. A message
@@ -42,21 +42,21 @@ __all__ = ["Difference", "Facts", "count_facts", "differences", "structure"]
 Facts: TypeAlias = "dict[str, Any]"
 
 MOST_CHARACTERS = 300
-"""Of what a reader says, so many are shown."""
+"""The most characters of a value in a difference."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Difference:
-    """One thing that two readers say differently.
+    """One fact that differs between two readers.
 
     Attributes
     ----------
     path : str
         Where: ``verdict``, or a path through facts.
     ours, theirs : str
-        What each says, in one line.
+        The fact of each, in one line.
     values : tuple
-        What each says, as it is.
+        The fact of each, as it is.
     """
 
     path: str
@@ -81,7 +81,7 @@ def structure(interface: Interface, alike: Mapping[str, str] | None = None) -> d
 
 
 def differences(ours: Any, theirs: Any, path: str = "") -> Iterator[Difference]:
-    """Yield what `theirs` says otherwise. What it does not speak of is not compared."""
+    """Yield the facts in `theirs` that differ. Facts that it lacks are not compared."""
     if isinstance(theirs, dict) and isinstance(ours, dict):
         for key, value in theirs.items():
             step = f"{path}/{key}" if path else key
@@ -101,7 +101,7 @@ def differences(ours: Any, theirs: Any, path: str = "") -> Iterator[Difference]:
 
 
 def count_facts(facts: Any) -> int:
-    """Return how many single things facts say; of an empty list, that it is empty."""
+    """Return the number of single facts; an empty list is one."""
     if isinstance(facts, dict):
         return sum(map(count_facts, facts.values()))
     if _is_members(facts):

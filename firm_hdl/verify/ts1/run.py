@@ -61,7 +61,7 @@ def _having(types: Sequence[str]) -> list[str]:
 
 
 class Ts1Run:
-    """One run; a context manager, because definitions lie in a folder while it lasts.
+    """One run; a context manager, because it keeps definitions in a temporary folder.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ class Ts1Run:
 
     @cached_property
     def digest(self) -> str:
-        """What tells the definitions that mutations are made from, which decide about these."""
+        """Identifies the definitions that mutations are made from."""
         digest = hashlib.sha256()
         for case in self.cases:
             digest.update(f"{case.spelled_name} {case.language} {len(case.text)}\n".encode())
@@ -247,7 +247,7 @@ def _judge_share(key: _Key, share: tuple[int, ...]) -> list[Record]:
 
 
 def _shares(cases: Sequence[DefinitionCase], numbers: Sequence[int]) -> list[tuple[int, ...]]:
-    """Deal out cases, the longest first: none is to be left with one of those at the end."""
+    """Divide cases into shares, the longest first, so that no long case is left at the end."""
     shares: list[tuple[int, ...]] = []
     share: list[int] = []
     size = 0

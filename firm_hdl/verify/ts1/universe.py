@@ -1,4 +1,4 @@
-"""All definitions of a run: for us as a library, for oracles as files in a folder."""
+"""All definitions of a run: a library for us, and files in a folder for oracles."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Universe:
     ----------
     distro : str
     paths : sequence of str
-        As for `Library`. What the environment names is searched, too, as by all commands.
+        As for `Library`. The folders that the environment names are searched, too.
     folder : str
         Where `write_definitions` has put the files, ``PACKAGE/msg|srv|action/FILE``.
     """
@@ -199,7 +199,7 @@ class _AllChanged:
 
 
 def write_definitions(universe: Universe) -> None:
-    """Put all definitions where oracles find them: files as links, other texts as files."""
+    """Put all definitions into the folder of a universe: files as links, other texts as files."""
     folders: dict[tuple[str, str], list[DefinitionCase]] = {}
     for case in universe.by_source.values():
         folders.setdefault((case.package, case.kind), []).append(case)

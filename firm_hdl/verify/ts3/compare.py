@@ -1,4 +1,4 @@
-"""What came out against what should have: each first difference as a line of text.
+"""Compares the output of converters with the expected one: each first difference is a line.
 
 `names` are those of the messages, in order, so that a line says which of them it is about; without
 names it says numbers alone.

@@ -1,4 +1,4 @@
-"""Reference libraries of TS3: who else has to write the bytes that rosbags writes for a case.
+"""Reference libraries of TS3: libraries that have to write the same bytes as rosbags.
 
 Cases, and what their leaves transfer, come from rosbags. Every other library that is here is given
 the same value and has to write the same packet, so that a mistake of rosbags alone does not pass.
@@ -27,23 +27,23 @@ from firm_hdl.wire import Wire
 __all__ = ["confirm"]
 
 MOST_BYTES = 1 << 18
-"""Of all packets of a type that are written again; the first one always is."""
+"""The most bytes of all packets of a type that are written again; the first always is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Confirmation:
-    """What other libraries make of the cases of a type.
+    """The packets of other libraries, compared with those of rosbags.
 
     Attributes
     ----------
     by : tuple of str
-        Those that were given the cases and answered, in the same way or not.
+        Libraries that wrote the cases, with the same bytes or not.
     failures : tuple of str
-        What they write in another way, and nobody knows why.
+        Unknown differences.
     known : tuple of str
-        Keys of what explains the other differences.
+        Keys of the known divergences.
     unable : dict of str to str
-        Those that have no such wire or type, and why.
+        Libraries that lack the wire format or the type, and why.
     """
 
     by: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""Which test a type with some options is, what becomes of it, and what is kept of that."""
+"""The test of a type with some options, its result, and the record of that."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ WAVEFORM_FOLDER = "waveforms"
 
 @dataclass(slots=True, kw_only=True)
 class Result:
-    """What became of a type.
+    """The result of a type.
 
     Attributes
     ----------
     distro, name : str
     failures : list of str
-        What is wrong, as it is found.
+        In the order in which they are found.
     judged : int
         Packets whose bytes and transfers were compared with the oracle's: those that came out of
         the circuit, or of the golden model if the circuit is not to be simulated.
     obstacle : NotJudged or None
-        Why there is no oracle for the type, and nothing was run.
+        Why no oracle knows the type, so that nothing was run.
     cases, packets : int
         Cases of the type, and packets sent for them in all runs.
     beats, cycles : int
@@ -50,19 +50,19 @@ class Result:
     seconds : Seconds
     cpu_seconds : float
     coverage : PlanCoverage or None
-        Decisions of the plan that the packets took which are not damaged.
+        Decisions of the plan that undamaged packets took.
     metrics : dict of str to float
         Figures of the type, of its plan and of its cases.
     shape : str
         Digest of the plan without names.
     command : str
-        How to run it again.
+        The command that repeats the test.
     note : str
-        What is to be known about the oracle; empty in most cases.
+        A remark about the oracle; empty in most cases.
     written_by : tuple of str
-        Who was asked to write the same bytes as rosbags.
+        Libraries that wrote the same values as rosbags.
     known : tuple of str
-        Keys of what explains that one of those writes other bytes than rosbags.
+        Keys of the known divergences between rosbags and these libraries.
     comparison : Comparison or None
         With another simulator, if there was one.
     """
@@ -95,7 +95,7 @@ class Result:
 
     @property
     def verdict(self) -> Verdict:
-        """What all of this comes to; cases are packets that were judged."""
+        """The verdict; its cases are packets that were judged."""
         if self.failures:
             return Failed(tuple(self.failures))
         if self.obstacle is not None:
@@ -155,7 +155,7 @@ test_of.__test__ = False  # type: ignore[attr-defined]
 
 
 def record_of(task: TypeUnderTest, result: Result, options: Options, same_as: str = "") -> Record:
-    """Return what is kept of a result.
+    """Return the record of a result.
 
     Parameters
     ----------
@@ -186,9 +186,9 @@ def record_of(task: TypeUnderTest, result: Result, options: Options, same_as: st
 def same_circuits(
     tasks: Sequence[TypeUnderTest], options: Options
 ) -> dict[TypeUnderTest, TypeUnderTest]:
-    """Return tasks whose circuit is that of an earlier task, and that task.
+    """Return tasks whose circuit is equal to that of an earlier task, and that task.
 
-    Circuits are the same where plans are the same but for names.
+    Circuits are equal if plans are equal apart from names.
     """
     first: dict[str, TypeUnderTest] = {}
     found: dict[TypeUnderTest, TypeUnderTest] = {}
