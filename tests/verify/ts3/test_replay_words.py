@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from firm_hdl import load_message
+from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.interpret import decode
 from firm_hdl.verify.cases.effort import MAX_MESSAGE_BYTES
@@ -133,7 +134,7 @@ def test_bytes_of_texts_lose_their_highest_bit_and_signed_ones_do_not():
     text = plan_of("std_msgs/msg/String")
     streams = decode(text, b"\0\1\0\0\4\0\0\0\xe9\x41\xff\0").streams
     (leaf,) = (number for number, each in enumerate(text.leaves) if each.kind == "items")
-    found = replay._ascii(text, streams)
+    found = replay._changed(text, streams, replay._in_ascii)
     before = [item for items, _ in streams[leaf] for item in items]
     after = [item for items, _ in found[leaf] for item in items]
     assert before[:3] == [0xE9, 0x41, 0xFF] and after[:3] == [0x69, 0x41, 0x7F]
@@ -143,10 +144,10 @@ def test_bytes_of_texts_lose_their_highest_bit_and_signed_ones_do_not():
     }
     wide = plan_of("std_msgs/msg/UInt32")
     streams = decode(wide, b"\0\1\0\0\xff\xff\xff\xff").streams
-    assert replay._ascii(wide, streams) == streams
+    assert replay._changed(wide, streams, replay._in_ascii) == streams
     signed = plan_of("std_msgs/msg/Int8")
     streams = decode(signed, b"\0\1\0\0\xff").streams
-    assert replay._ascii(signed, streams) == streams
+    assert replay._changed(signed, streams, replay._in_ascii) == streams
 
 
 @pytest.mark.parametrize(
@@ -161,7 +162,7 @@ def test_what_python_keeps(name, code, signalling):
     plan = plan_of(name)
     for bits in (0, 1, signalling):
         streams = decode(plan, b"\0\1\0\0" + struct.pack(code, bits)).streams
-        kept = replay._kept(plan, streams)
+        kept = replay._changed(plan, streams, replay._in_python)
         # Doubles pass as they are, and so do integers.
         assert kept == {number: list(each) for number, each in streams.items()}
 
@@ -170,7 +171,7 @@ def test_a_signalling_single_becomes_a_quiet_one():
     plan = plan_of("std_msgs/msg/Float32")
     for bits, kept in ((0x7F800001, 0x7FC00001), (0x7FC00000, 0x7FC00000), (0x3F800000,) * 2):
         streams = decode(plan, b"\0\1\0\0" + struct.pack("<I", bits)).streams
-        assert list(replay._kept(plan, streams).values()) == [[kept]]
+        assert list(replay._changed(plan, streams, replay._in_python).values()) == [[kept]]
 
 
 def test_topics_of_another_definition_are_named(monkeypatch):
@@ -182,12 +183,14 @@ def test_topics_of_another_definition_are_named(monkeypatch):
         "two": [topic("/c", "y"), topic("/d", "x"), topic("/bad", "x", "")],
     }
     monkeypatch.setattr(replay, "topics_of", topics.__getitem__)
-    monkeypatch.setattr(
-        replay,
-        "_recorded_message",
-        lambda library, each: SimpleNamespace(name=each.type) if each.type else None,
-    )
-    found, left = replay._topics(SimpleNamespace(name="p/A"), None, ["one", "two"])
+
+    def message(name):
+        if not name:
+            raise DefinitionError([Diagnostic(message="it cannot be used")])
+        return SimpleNamespace(name=name)
+
+    library = SimpleNamespace(message=message)
+    found, left = replay._topics(SimpleNamespace(name="p/A"), library, ["one", "two"])
     assert [each.name for each in found] == ["/a", "/b", "/d"]
     assert left == ["/c left out: its definition is another one (y)"]
 
