@@ -21,6 +21,7 @@ MAY_IMPORT = {
     # Of no message: these could be packages of their own.
     "terminal": set[str](),
     "errors": {"terminal"},
+    "drawing": set[str](),
     "files": set[str](),
     "jobs": set[str](),
     "names": set[str](),
@@ -34,26 +35,27 @@ MAY_IMPORT = {
     "wire": {"errors", "model"},
     "metrics": {"errors", "model", "frontend", "identity", "wire"},
     "plan": {"errors", "model", "wire"},
+    "estimates": {"plan"},
     "gateware": {"errors", "model", "wire", "plan"},
     "sim": {"errors", "model", "frontend", "wire", "plan", "gateware"},
     "export": {"firm_hdl", "errors", "files", "names", "vhdl", "model", "frontend", "wire", "plan"},
 }
-MAY_IMPORT["export"] |= {"gateware"}
+MAY_IMPORT["export"] |= {"estimates", "gateware"}
 MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {
     *("arguments", "errors", "files", "model", "frontend", "wire", "plan", "gateware", "export"),
 }
 MAY_IMPORT["verify"] = {
     *MAY_IMPORT["export"],
-    *("arguments", "export", "identity", "jobs", "metrics", "sim", "terminal"),
+    *("arguments", "drawing", "export", "identity", "jobs", "metrics", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
     *("firm_hdl", "arguments", "errors", "jobs", "names", "rtlil", "terminal", "vhdl"),
     *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
 MAY_IMPORT["bench"] = {
-    *("arguments", "errors", "files", "jobs"),
-    *("model", "frontend", "wire", "plan", "gateware", "sim", "export"),
+    *("arguments", "drawing", "errors", "files", "jobs", "terminal"),
+    *("model", "frontend", "wire", "plan", "estimates", "gateware", "sim", "export"),
 }
 MAY_IMPORT["cli"] = {*MAY_IMPORT["verify"], "verify", "covering", "equivalence", "bench"}
 # The package's own face.

@@ -30,7 +30,7 @@ TARGETS = {
     "metrics": ["firm_hdl/metrics/*.py"],
     "ts1": ["firm_hdl/verify/ts1/**/*.py"],
     "sut": ["firm_hdl/verify/clients/*.py", "firm_hdl/verify/references/*.py"],
-    "report": ["firm_hdl/verify/report/*.py"],
+    "report": ["firm_hdl/verify/report/*.py", "firm_hdl/drawing/*.py"],
     "verify": ["firm_hdl/verify/**/*.py"],
     "top": ["firm_hdl/**/*.py"],
 }

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 
+from firm_hdl.drawing.svg import number, seconds
 from firm_hdl.verify.report.charts import law_text, line_text
 from firm_hdl.verify.report.outcomes import NotRun, Outcome
 from firm_hdl.verify.report.summary import Group, Summary, Trend
-from firm_hdl.verify.report.svg import number, seconds
 from firm_hdl.verify.report.tables import SIGNS
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 

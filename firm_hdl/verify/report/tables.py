@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from functools import wraps
 from typing import TypeAlias, TypeVar
 
+from firm_hdl.drawing.svg import number, seconds
 from firm_hdl.verify.report.charts import law_text, line_text
 from firm_hdl.verify.report.outcomes import Counts, NotRun, Outcome, failures_of
 from firm_hdl.verify.report.stats import Fit
 from firm_hdl.verify.report.summary import LIMITS, Curve, Group, Summary, Trend
-from firm_hdl.verify.report.svg import number, seconds
 from firm_hdl.verify.results.records import STAGES, Record
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 

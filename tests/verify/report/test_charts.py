@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import pytest
 
+from firm_hdl.drawing.svg import Figure, Scale, seconds
 from firm_hdl.verify.report import charts
 from firm_hdl.verify.report.charts import counts_bar, cumulative, scatter, stages
 from firm_hdl.verify.report.outcomes import Counts
 from firm_hdl.verify.report.stats import Correlation, Fit, box_of, curve_of
 from firm_hdl.verify.report.summary import Curve, Trend
-from firm_hdl.verify.report.svg import Figure, Scale, seconds
 
 TIMES = [0.1, 0.2, 0.3, 0.4, 10.0]
 

@@ -6,12 +6,12 @@ import math
 
 import pytest
 
+from firm_hdl.drawing.svg import number
 from firm_hdl.verify.report.command import write_report
 from firm_hdl.verify.report.markdown import _block, _table, _text
 from firm_hdl.verify.report.prose import slowest_suite, trends_by_suite
 from firm_hdl.verify.report.stats import correlate, curve_of, share_within
 from firm_hdl.verify.report.summary import summarise
-from firm_hdl.verify.report.svg import number
 from firm_hdl.verify.report.tables import Table, TableCell
 from firm_hdl.verify.results.file import Results
 from firm_hdl.verify.results.records import Seconds
@@ -141,3 +141,8 @@ def test_a_report_may_go_into_folders_that_are_not_there(tmp_path):
     assert out.read_text().startswith("# Mine\n")
     # Nothing else is left there.
     assert list(out.parent.iterdir()) == [out]
+
+
+def test_reports_are_of_firm_hdl_unless_they_are_called_otherwise():
+    assert summarise({}).title == "Verification of firm-hdl"
+    assert summarise({}, "Mine").title == "Mine"

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from firm_hdl.drawing.svg import number
 from firm_hdl.verify.report.charts import law_text, line_text, scatter
 from firm_hdl.verify.report.prose import shown_trends
 from firm_hdl.verify.report.stats import (
@@ -17,7 +18,6 @@ from firm_hdl.verify.report.stats import (
     share_within,
 )
 from firm_hdl.verify.report.summary import Trend
-from firm_hdl.verify.report.svg import number
 
 
 def test_box_has_quartiles():

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from firm_hdl.verify.report.svg import Scale, number, seconds, spread
+from firm_hdl.drawing.svg import Scale, number, seconds, spread
 
 POSITIVE = st.floats(min_value=1e-6, max_value=1e9)
 

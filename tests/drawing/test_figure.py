@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.verify.report.summary import summarise
-from firm_hdl.verify.report.svg import Figure, Scale, number, seconds, spread
+from firm_hdl.drawing.svg import Figure, Scale, number, seconds, spread
 
 
 def drawn(method, *arguments, **options):
@@ -158,8 +157,3 @@ def test_units_of_time_change_at_their_limits(value, text):
 
 def test_neighbours_are_a_golden_section_apart():
     assert [round(spread(n), 3) for n in range(4)] == [0, 0.618, 0.236, 0.854]
-
-
-def test_reports_are_of_firm_hdl_unless_they_are_called_otherwise():
-    assert summarise({}).title == "Verification of firm-hdl"
-    assert summarise({}, "Mine").title == "Mine"
