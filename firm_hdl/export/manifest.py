@@ -10,11 +10,13 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Mapping
+from dataclasses import asdict
 from importlib.metadata import version
 from math import isfinite
 from typing import Any
 
 import firm_hdl
+from firm_hdl.estimates import estimates_of
 from firm_hdl.export.top import field_of, leaf_names
 from firm_hdl.gateware.signatures import LATENCY_CYCLES, Status
 from firm_hdl.model import Constant, Message, closure
@@ -80,6 +82,7 @@ def make_manifest(
         "inputs": dict(inputs),
         "inputs_sha256": _digest(to_json(inputs)),
         "timing": _timing(figures),
+        "estimates": {name: asdict(found) for name, found in estimates_of(plan).items()},
         "status": {status.name: status.value for status in statuses},
         **sections,
         "leaves": list(_leaves(message, plan)),

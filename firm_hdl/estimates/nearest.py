@@ -1,0 +1,130 @@
+"""The converters that were measured, and the one that is nearest to another.
+
+``python -m firm_hdl.bench`` writes ``figures.json``. Nothing is computed from the figures: an
+estimate is what was measured of another converter with the same bus width and direction. The
+nearest one has the smallest distance. That is the sum, over the features of a plan (bits of the
+payloads of all leaves, steps, and lengths), of how many times one has to be doubled to give the
+other, and 1 more for another wire format.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from math import log2
+from typing import Any
+
+from firm_hdl.plan import Plan
+
+__all__ = ["DATA", "FEATURES", "Estimate", "estimate_text", "estimates_of", "features_of"]
+
+DATA = "figures.json"
+"""Name of the file, in this package."""
+
+FEATURES = ("bits", "steps", "lengths")
+"""Names of the features of a plan."""
+
+DIRECTIONS = ("deserializer", "serializer")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Estimate:
+    """An estimate of a converter.
+
+    Attributes
+    ----------
+    part : str
+        FPGA and speed grade.
+    lut, ff : int
+        Look-up tables and flip-flops.
+    mhz : float
+        Clock rate.
+    type : str
+        The type that was measured.
+    is_same : bool
+        Whether that is the type itself, with a plan of the same features.
+    """
+
+    part: str
+    lut: int
+    ff: int
+    mhz: float
+    type: str
+    is_same: bool
+
+
+def features_of(plan: Plan) -> dict[str, int]:
+    """Return the features by which plans are near each other, by the names of `FEATURES`."""
+    bits = sum(
+        (1 if leaf.type == "bool" else 8 * leaf.item_bytes) * leaf.lanes for leaf in plan.leaves
+    )
+    lengths = sum(leaf.kind == "length" for leaf in plan.leaves)
+    return {"bits": bits, "steps": len(plan.steps), "lengths": lengths}
+
+
+def estimates_of(
+    plan: Plan, measured: Sequence[Mapping[str, Any]] | None = None
+) -> dict[str, Estimate]:
+    """Return the nearest estimate of each converter of a plan.
+
+    Parameters
+    ----------
+    plan : Plan
+    measured : sequence of dict or None
+        Entries of the file; `None`: those of the package.
+
+    Returns
+    -------
+    dict
+        By ``deserializer`` and ``serializer``; empty if no converter with that bus was measured.
+    """
+    entries = _measured() if measured is None else measured
+    features = features_of(plan)
+    found = {}
+    for direction in DIRECTIONS:
+        near = [
+            (_distance(features, plan, entry), entry["type"], entry)
+            for entry in entries
+            if (entry["direction"], entry["bus_bytes"]) == (direction, plan.bus_bytes)
+        ]
+        if near:
+            distance, name, entry = min(near, key=lambda each: each[:2])
+            found[direction] = Estimate(
+                part=entry["part"],
+                lut=entry["lut"],
+                ff=entry["ff"],
+                mhz=entry["mhz"],
+                type=name,
+                is_same=name == plan.message and distance == 0,
+            )
+    return found
+
+
+def _distance(features: Mapping[str, int], plan: Plan, entry: Mapping[str, Any]) -> float:
+    apart: float = sum(abs(log2((1 + features[name]) / (1 + entry[name]))) for name in FEATURES)
+    return apart + bool(entry["wire"] != plan.wire)
+
+
+def estimate_text(plan: Plan) -> str:
+    """Return a line with the estimates of a plan's converters; empty if there are none."""
+    parts = []
+    told = None
+    for direction, found in estimates_of(plan).items():
+        what = "measured" if found.is_same else f"that of {found.type}, the nearest measured"
+        origin = (found.part, what)
+        start = "" if origin == told else f"{found.part} ({what}): "
+        told = origin
+        parts.append(
+            f"{start}{direction} about {found.mhz:.0f} MHz, {found.lut:,} LUT, {found.ff:,} FF"
+        )
+    return f"    estimate, {'; '.join(parts)}" if parts else ""
+
+
+@cache
+def _measured() -> list[dict[str, Any]]:
+    text = resources.files("firm_hdl.estimates").joinpath(DATA).read_text(encoding="utf-8")
+    found: list[dict[str, Any]] = json.loads(text)
+    return found

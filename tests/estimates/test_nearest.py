@@ -1,0 +1,116 @@
+"""The nearest converter that was measured."""
+
+from __future__ import annotations
+
+import json
+from importlib import resources
+from typing import Any
+
+import pytest
+
+from firm_hdl.estimates import estimate_text, estimates_of, features_of, nearest
+from firm_hdl.frontend import Library
+from firm_hdl.plan import build_plan
+from firm_hdl.wire import lay_out
+
+
+def plan_of(name: str, **options: Any) -> Any:
+    return build_plan(lay_out(Library("lyrical").message(name)), **{"bus_bytes": 8, **options})
+
+
+def entry(type_: str, **changes: Any) -> dict[str, Any]:
+    """An entry of a type's own features, or of others."""
+    return {
+        "type": type_,
+        "wire": "cdr",
+        "bus_bytes": 8,
+        "direction": "deserializer",
+        "part": "P",
+        "lut": 1273,
+        "ff": 1585,
+        "mhz": 83.6,
+        **features_of(plan_of(type_)),
+        **changes,
+    }
+
+
+POSE, TWIST = "geometry_msgs/msg/Pose", "geometry_msgs/msg/Twist"
+IMU, STRING = "sensor_msgs/msg/Imu", "std_msgs/msg/String"
+
+
+def test_features_are_of_the_plan() -> None:
+    assert features_of(plan_of(TWIST)) == {"bits": 384, "steps": 7, "lengths": 0}
+    found = features_of(plan_of(STRING))
+    assert (found["bits"], found["lengths"]) == (32 + 64, 1)
+
+
+def test_a_type_that_was_measured_is_its_own_estimate() -> None:
+    measured = [entry(IMU), entry(TWIST, lut=7), entry(POSE)]
+    found = estimates_of(plan_of(TWIST), measured)
+    assert list(found) == ["deserializer"]
+    assert (found["deserializer"].lut, found["deserializer"].is_same) == (7, True)
+
+
+def test_other_features_are_no_longer_the_same_type() -> None:
+    found = estimates_of(plan_of(TWIST), [entry(TWIST, steps=9)])
+    assert found["deserializer"].type == TWIST and not found["deserializer"].is_same
+    found = estimates_of(plan_of(TWIST), [entry(TWIST, wire="ros1")])
+    assert not found["deserializer"].is_same
+
+
+def test_the_nearest_is_taken() -> None:
+    measured = [entry(IMU), entry(TWIST), entry(STRING)]
+    assert estimates_of(plan_of(POSE), measured)["deserializer"].type == TWIST
+    assert estimates_of(plan_of("std_msgs/msg/Header"), measured)["deserializer"].type == STRING
+    assert estimates_of(plan_of("nav_msgs/msg/Odometry"), measured)["deserializer"].type == IMU
+    # Of two that are as near, the first by name, whatever their order.
+    both = [entry(TWIST, type="b/msg/B"), entry(TWIST, type="a/msg/A")]
+    assert estimates_of(plan_of(POSE), both)["deserializer"].type == "a/msg/A"
+    # Another wire is further than the same one.
+    both = [entry(TWIST, type="a/msg/A", wire="ros1"), entry(TWIST, type="b/msg/B")]
+    assert estimates_of(plan_of(POSE), both)["deserializer"].type == "b/msg/B"
+
+
+def test_other_buses_and_directions_say_nothing() -> None:
+    assert estimates_of(plan_of(TWIST, bus_bytes=4), [entry(TWIST)]) == {}
+    assert list(estimates_of(plan_of(TWIST), [entry(TWIST, direction="serializer")])) == [
+        "serializer"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("measured", "text"),
+    [
+        ([], ""),
+        (
+            [entry(TWIST)],
+            "    estimate, P (measured): deserializer about 84 MHz, 1,273 LUT, 1,585 FF",
+        ),
+        (
+            [entry(IMU), entry(IMU, direction="serializer", mhz=99.6)],
+            f"    estimate, P (that of {IMU}, the nearest measured): deserializer about 84 MHz, "
+            "1,273 LUT, 1,585 FF; serializer about 100 MHz, 1,273 LUT, 1,585 FF",
+        ),
+        (
+            [entry(IMU), entry(TWIST, direction="serializer")],
+            f"    estimate, P (that of {IMU}, the nearest measured): deserializer about 84 MHz, "
+            "1,273 LUT, 1,585 FF; P (measured): serializer about 84 MHz, 1,273 LUT, 1,585 FF",
+        ),
+    ],
+)
+def test_the_line_says_whose_figures_they_are(
+    monkeypatch: pytest.MonkeyPatch, measured: list[dict[str, Any]], text: str
+) -> None:
+    monkeypatch.setattr(nearest, "_measured", lambda: measured)
+    assert estimate_text(plan_of(TWIST)) == text
+
+
+def test_the_file_of_the_package_has_all_that_is_read() -> None:
+    file = resources.files("firm_hdl.estimates").joinpath(nearest.DATA)
+    entries = json.loads(file.read_text(encoding="utf-8"))
+    assert len({(e["type"], e["bus_bytes"], e["direction"]) for e in entries}) == len(entries)
+    assert {e["direction"] for e in entries} == {"deserializer", "serializer"}
+    for each in entries:
+        assert set(each) == set(entry(TWIST))
+        assert each["lut"] > 0 and each["ff"] > 0 and 10 < each["mhz"] < 1000
+    assert estimates_of(plan_of(TWIST))["deserializer"].type == TWIST
