@@ -107,8 +107,10 @@ fuzz: $(VENV)/.installed-dev ## a million damaged definitions through the front 
 mutate: $(VENV)/.installed-dev tools ## faults in the program, and which tests notice (hours); MUTATE_ARGS='--count 24'
 	$(BIN)/python -m tools.mutation --first --jobs $(JOBS) --each 1 --most 90 $(MUTATE_ARGS)
 
-bench: $(VENV)/.installed ## cycles per beat of long and short messages, on several bus widths
-	$(BIN)/python examples/bench.py
+# Figures of circuits that did not change are kept in build/bench; BENCH_ARGS='--group beats' takes some.
+bench: $(VENV)/.installed-bench ## area, clock rate and cycles for docs/performance.md (an hour the first time)
+	$(BIN)/python -m firm_hdl.bench --jobs $(JOBS) $(BENCH_ARGS)
+	$(BIN)/firm-hdl build --force geometry_msgs/msg/Twist
 
 HDL_EXAMPLES := vhdl_motor vhdl_two_types sv_motor cocotb_motor
 examples: $(VENV)/.installed-dev ghdl verilog ## designs that act on good packets only, with their benches
@@ -171,6 +173,10 @@ $(VENV)/.installed: pyproject.toml $(VENV)/.created
 
 $(VENV)/.installed-dev: pyproject.toml $(VENV)/.created
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $@ $(VENV)/.installed
+
+$(VENV)/.installed-bench: pyproject.toml $(VENV)/.created
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
 	@touch $@ $(VENV)/.installed
 
 $(VENV)/.created:

@@ -1,0 +1,158 @@
+"""``python -m firm_hdl.bench``: the figures of ``docs/performance.md``, with their plots.
+
+``make bench`` runs this. ``firm-hdl bench`` is the command for chosen types. Figures of circuits
+that did not change are taken from ``build/bench``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from tqdm import tqdm
+
+from firm_hdl.arguments import add_jobs
+from firm_hdl.bench.compare import compared
+from firm_hdl.bench.devices import DEVICES
+from firm_hdl.bench.estimates import estimates_json
+from firm_hdl.bench.page import (
+    area_table,
+    beats_table,
+    converter_table,
+    made_with,
+    path_list,
+    write_page,
+)
+from firm_hdl.bench.plots import area_plot, beats_plot, clock_plot
+from firm_hdl.bench.results import Result, read_results, results_text
+from firm_hdl.bench.run import BenchTask, run_tasks
+from firm_hdl.bench.standard import ALL_TYPES, MEASURED, Group, group_tasks
+from firm_hdl.bench.tables import row
+from firm_hdl.bench.tools import BenchError, versions
+from firm_hdl.terminal import printable_streams
+
+KEPT = "performance.json"
+"""File of all measured figures, beside the page's plots."""
+
+
+@printable_streams()
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure, and write the page; return 0 if there are all figures, however they changed."""
+    parser = argparse.ArgumentParser(prog="python -m firm_hdl.bench", description=__doc__)
+    parser.add_argument("--page", default="docs/performance.md", help="default: %(default)s")
+    parser.add_argument(
+        "--figures", default="docs/figures", help="folder of plots and JSON; default: %(default)s"
+    )
+    parser.add_argument(
+        "--estimates",
+        default="firm_hdl/estimates/figures.json",
+        help="file of `firm-hdl info`; default: %(default)s",
+    )
+    parser.add_argument("--cache", default="build/bench", help="default: %(default)s")
+    parser.add_argument(
+        "--group",
+        action="append",
+        choices=[*MEASURED, "beats"],
+        help="parts of the page to write; repeatable; default: all",
+    )
+    add_jobs(parser)
+    given = parser.parse_args(arguments)
+    try:
+        return _measure_all(given)
+    except BenchError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+
+
+def _measure_all(given: argparse.Namespace) -> int:
+    names = given.group or [*MEASURED, "beats"]
+    figures = Path(given.figures)
+    groups = {name: group for name, group in MEASURED.items() if name in names}
+    for device in {device for group in groups.values() for device in group.devices}:
+        versions(DEVICES[device])
+    results = {name: _run(name, group, given.jobs, given.cache) for name, group in groups.items()}
+    sets = {}
+    if "beats" in names:
+        sets = {name: _run(name, group, given.jobs, None) for name, group in ALL_TYPES.items()}
+    wrong = [
+        each for found in (*results.values(), *sets.values()) for each in found if each.problem
+    ]
+    if wrong:
+        print(*(f"{each.converter}: {each.problem}" for each in wrong), sep="\n", file=sys.stderr)
+        return 1
+    _write_plots(figures, results, sets)
+    _write_parts(Path(given.page), results, sets)
+    measured = [each for found in results.values() for each in found]
+    if measured:
+        _keep(figures / KEPT, Path(given.estimates), measured)
+    return 0
+
+
+def _run(name: str, group: Group, jobs: int | None, cache: str | None) -> list[Result]:
+    """Run a group; return the results in the order of its tasks."""
+    tasks: list[BenchTask] = list(group_tasks(group, cache=cache))
+    found: dict[tuple[str, ...], Result] = {}
+    with tqdm(total=len(tasks), unit="converter", desc=name, disable=None) as progress:
+        for result in run_tasks(tasks, jobs):
+            if group.devices:
+                with progress.external_write_mode():
+                    print(row(result, path=False), flush=True)
+            found[_order(result)] = result
+            progress.update()
+    return [found[key] for key in sorted(found)]
+
+
+def _order(result: Result) -> tuple[str, ...]:
+    what = result.converter
+    device = "" if result.measured is None else result.measured.device.name
+    return (device, what.type, what.wire, f"{what.bus_bytes:02}", what.direction)
+
+
+def _write_plots(
+    folder: Path, results: Mapping[str, list[Result]], sets: Mapping[str, list[Result]]
+) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    plots = {}
+    if "figures" in results:
+        plots["clock"] = clock_plot(results["figures"])
+        plots["area"] = area_plot(results["figures"])
+    if sets:
+        plots["beats"] = beats_plot(sets)
+    for name, text in plots.items():
+        (folder / f"bench_{name}.svg").write_text(text, encoding="utf-8")
+
+
+def _write_parts(
+    page: Path, results: Mapping[str, list[Result]], sets: Mapping[str, list[Result]]
+) -> None:
+    parts = {}
+    for name, found in results.items():
+        parts[name] = area_table(found) if name == "devices" else converter_table(found)
+        parts[f"{name}: made with"] = made_with(found)
+    if "figures" in results:
+        parts["figures: paths"] = path_list(results["figures"])
+    if sets:
+        parts["beats"] = beats_table(sets)
+    write_page(page, parts)
+
+
+def _keep(file: Path, estimates: Path, results: list[Result]) -> None:
+    """Say what changed since the file was written, and write it; figures of others stay.
+
+    The file of estimates is made from all of them.
+    """
+    old = read_results(file) if file.exists() else []
+    new = {result.key: result for result in results}
+    same = [result for result in old if result.key in new]
+    if same:
+        print(compared(same, results, 0.02)[0])
+    everything = [*(result for result in old if result.key not in new), *results]
+    file.write_text(results_text(everything), encoding="utf-8")
+    in_order = sorted(everything, key=lambda each: each.key)
+    estimates.write_text(estimates_json(in_order), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,221 @@
+"""The page of figures, its plots, and what `make bench` does with them."""
+
+from __future__ import annotations
+
+import json
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.bench import BenchError
+from firm_hdl.bench import __main__ as bench
+from firm_hdl.bench.page import (
+    area_table,
+    beats_table,
+    converter_table,
+    made_with,
+    path_list,
+    write_page,
+)
+from firm_hdl.bench.plots import area_plot, beats_plot, clock_plot
+from firm_hdl.bench.results import Result, read_results
+from firm_hdl.bench.run import BenchTask
+from firm_hdl.bench.standard import ALL_TYPES, MEASURED, Group, group_tasks
+from tests.bench.results import result
+
+ROOT = Path(__file__).parents[2]
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def test_parts_of_a_page_are_replaced_and_the_rest_stays(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("# A\n\n<!-- b -->\nold\n<!-- end b -->\n\nmore\n<!-- c -->\n<!-- end c -->\n")
+    write_page(page, {"b": "new \\1\n", "c": "1\n"})
+    text = "# A\n\n<!-- b -->\n\nnew \\1\n\n<!-- end b -->\n"
+    text += "\nmore\n<!-- c -->\n\n1\n\n<!-- end c -->\n"
+    assert page.read_text() == text
+    write_page(page, {"b": "new \\1\n"})
+    assert page.read_text() == text
+    with pytest.raises(BenchError, match=r"page\.md' has not one part 'd'$"):
+        write_page(page, {"b": "newer\n", "d": ""})
+    assert page.read_text() == text
+
+
+def test_tables_have_the_figures() -> None:
+    ser = result(direction="serializer", lut=1234, mhz=(99.0,))
+    assert converter_table([result(), ser]).splitlines()[2:] == [
+        "| p/msg/A | cdr | 8 | deserializer | 100 | 50 | 0 | 0 | 82.5 (80, 90, 82) | 0.800 | 2 | "
+        "3.96 |",
+        "| p/msg/A | cdr | 8 | serializer | 1,234 | 50 | 0 | 0 | 99.0 | 0.800 | 2 | 4.75 |",
+    ]
+    assert area_table([ser]).splitlines()[2:] == [
+        "| ECP5 LFE5U-45F-8 | p/msg/A | serializer | 1,234 | 50 | 0 | 0 | 99.0 |"
+    ]
+    bare = replace(result(), measured=None, cycles=None)
+    assert converter_table([bare]).splitlines()[2].count("|") == 13
+    assert area_table([bare]).count("\n") == 2
+    assert path_list([result(), bare]) == (
+        "* `p/msg/A` cdr deserializer: `12.5 ns, 8.0 of them routing, 9 cells: step 0.5 > & fill, "
+        "offset 12.0 > run 12.5`\n"
+    )
+    assert made_with([result(), ser, result(mhz=(1.0, 2.0, 3.0)), bare]) == (
+        "* ECP5 LFE5U-45F-8: Yosys 0.70, nextpnr-ecp5 0.11.1; `synth_ecp5 -top top`; `--45k`; "
+        "seeds 1 (1 converters)\n"
+        "* ECP5 LFE5U-45F-8: Yosys 0.70, nextpnr-ecp5 0.11.1; `synth_ecp5 -top top`; `--45k`; "
+        "seeds 1, 2, 3 (2 converters)\n"
+    )
+
+
+def test_the_mean_of_beats_is_geometric() -> None:
+    both = [result(beats=50), result("p/msg/B", beats=100)]
+    assert beats_table({"some": both, "none": []}).splitlines()[2:] == [
+        "| some | 2 | 0.707 | 1 | 0.500, p/msg/A deserializer |"
+    ]
+
+
+def drawn(text: str) -> ElementTree.Element:
+    root = ElementTree.fromstring(text)
+    assert root.tag == f"{SVG}svg"
+    return root
+
+
+@pytest.mark.parametrize(
+    ("plot", "titles"),
+    [
+        (clock_plot, ["deserializer: 82.5 MHz", "serializer: 99.0 MHz"]),
+        (area_plot, ["deserializer: 100 LUT, 50 FF", "serializer: 100 LUT, 50 FF"]),
+    ],
+)
+def test_each_converter_has_a_bar(
+    plot: Callable[[Sequence[Result]], str], titles: list[str]
+) -> None:
+    root = drawn(plot([result(), result(direction="serializer", mhz=(99.0,))]))
+    bars = root.findall(f"{SVG}rect[@class='bar c1']") + root.findall(f"{SVG}rect[@class='bar c3']")
+    told = [title.text for bar in bars for title in bar.findall(f"{SVG}title")]
+    assert told == [f"p/msg/A (lyrical, cdr, 8 bytes) {title}" for title in titles]
+    assert float(root.get("height") or 0) > 60
+
+
+def test_the_line_of_the_goal_is_at_its_clock_rate() -> None:
+    root = drawn(clock_plot([result()]))
+    (goal,) = root.findall(f"{SVG}line[@class='goal']")
+    (bar,) = [bar for bar in root.findall(f"{SVG}rect") if bar.findall(f"{SVG}title")]
+    start, width = float(bar.get("x") or 0), float(bar.get("width") or 0)
+    assert float(goal.get("x1") or 0) == pytest.approx(start + width * 156.25 / 82.5, abs=0.3)
+
+
+def test_curves_of_beats_reach_their_ends() -> None:
+    root = drawn(beats_plot({"some": [result(beats=50), result("p/msg/B", beats=100)]}))
+    (curve,) = root.findall(f"{SVG}path")
+    assert (curve.get("d") or "").endswith("H730.0V34.0")
+
+
+def test_a_plot_without_figures_is_empty() -> None:
+    bare = replace(result(), measured=None)
+    for text in (clock_plot([bare]), area_plot([bare])):
+        assert not drawn(text).findall(f".//{SVG}title")
+
+
+def test_groups_have_both_directions_on_all_buses_and_devices() -> None:
+    group = Group(
+        title="",
+        types={"lyrical": ("std_msgs/msg/Bool",), "noetic": ("std_msgs/Bool",)},
+        bus_bytes=(1, 8),
+        devices=("ecp5", "xc7"),
+        seeds=(7,),
+    )
+    tasks = list(group_tasks(group, cache="c"))
+    assert len(tasks) == len({(task.converter, task.device) for task in tasks}) == 16
+    assert {(task.seeds, task.cache, task.converter.wire) for task in tasks} == {
+        ((7,), "c", "cdr"),
+        ((7,), "c", "ros1"),
+    }
+    assert len(list(group_tasks(replace(ALL_TYPES["lyrical, 64-byte bus"])))) == 2 * 171
+    assert {task.device for task in group_tasks(Group(title="", types=group.types))} == {None}
+
+
+@pytest.fixture
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a page, where figures are made up."""
+    (tmp_path / "page.md").write_text((ROOT / "docs" / "performance.md").read_text())
+
+    def run(tasks: Sequence[BenchTask], jobs: int | None) -> Iterator[Result]:
+        assert jobs == 3
+        for task in reversed(tasks):
+            yield replace(
+                result() if task.device else replace(result(), measured=None),
+                converter=task.converter,
+            )
+
+    monkeypatch.setattr(bench, "run_tasks", run)
+    monkeypatch.setattr(bench, "versions", lambda device: {})
+    return tmp_path
+
+
+def ran(place: Path, *words: str) -> int:
+    where = ["--page", str(place / "page.md"), "--figures", str(place / "figures")]
+    where += ["--estimates", str(place / "e.json"), "--jobs", "3"]
+    return bench.main([*where, *words])
+
+
+def test_all_parts_of_the_page_are_written(place: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert ran(place) == 0
+    text = (place / "page.md").read_text()
+    for name in [*MEASURED, "beats"]:
+        assert len(text.split(f"<!-- {name} -->")[1].split("<!-- end")[0]) > 100
+    assert "| sensor_msgs/msg/Imu | cdr | 8 | serializer | 100 | 50 |" in text
+    files = {file.name for file in (place / "figures").iterdir()}
+    assert files == {
+        "bench_area.svg",
+        "bench_beats.svg",
+        "bench_clock.svg",
+        "performance.json",
+    }
+    # What the page shows is there.
+    assert all(f"figures/{name}" in text for name in files if name.endswith(".svg"))
+    entries = json.loads((place / "e.json").read_text())
+    assert {entry["bus_bytes"] for entry in entries} == {1, 2, 4, 8}
+    assert {entry["part"] for entry in entries} == {"ECP5 LFE5U-45F-8"}
+    # Made-up results are all of one device, so those of other devices replace them.
+    assert "figures changed" not in capsys.readouterr().out
+    assert ran(place) == 0
+    assert (place / "page.md").read_text() == text
+    assert "0 figures changed by more than 2 %" in capsys.readouterr().out
+
+
+def test_one_part_leaves_the_others_alone(place: Path) -> None:
+    before = (place / "page.md").read_text()
+    assert ran(place, "--group", "narrow") == 0
+    after = (place / "page.md").read_text()
+    head, marks, tail = before.partition("<!-- narrow -->")
+    assert marks and after.startswith(head)
+    assert after.endswith(tail.partition("<!-- end narrow: made with -->")[2])
+    assert [file.name for file in (place / "figures").iterdir()] == ["performance.json"]
+    assert len(read_results(place / "figures" / "performance.json")) == 24
+    assert ran(place, "--group", "figures") == 0
+    assert len(read_results(place / "figures" / "performance.json")) == 24 + 22
+
+
+def test_without_all_figures_nothing_is_written(
+    place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = (place / "page.md").read_text()
+    monkeypatch.setattr(bench, "run_tasks", lambda tasks, jobs: [result(problem="too large")])
+    assert ran(place, "--group", "narrow") == 1
+    assert "p/msg/A (lyrical, cdr, 8 bytes) deserializer: too large" in capsys.readouterr().err
+    assert (place / "page.md").read_text() == before
+    assert not (place / "e.json").exists()
+
+
+def test_a_missing_tool_is_an_error(
+    place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def missing(device: object) -> dict[str, str]:
+        raise BenchError("nothing is installed")
+
+    monkeypatch.setattr(bench, "versions", missing)
+    assert ran(place, "--group", "devices") == 1
+    assert capsys.readouterr().err == "error: nothing is installed\n"
