@@ -22,7 +22,7 @@ def clock_plot(results: Sequence[Result]) -> str:
     """Draw the clock rate of each converter: the median as a bar, and all seeds as a line."""
     label = "Clock rate in MHz; lines: all seeds; dashes: 10 Gbit/s of whole 8-byte beats"
     rates = [result.mhz or 0.0 for result in results]
-    scale = Scale.of([*rates, LINE_RATE_MHZ], LEFT, RIGHT)
+    scale = Scale.linear([*rates, LINE_RATE_MHZ], LEFT, RIGHT)
     figure, bottom = _figure(results, scale, label)
 
     def draw(result: Result, y: float) -> None:
@@ -42,7 +42,7 @@ def clock_plot(results: Sequence[Result]) -> str:
 def area_plot(results: Sequence[Result]) -> str:
     """Draw the look-up tables of each converter as a bar."""
     figures = [float(result.measured.area.lut) for result in results if result.measured]
-    scale = Scale.of(figures, LEFT, RIGHT)
+    scale = Scale.linear(figures, LEFT, RIGHT)
     figure, _ = _figure(results, scale, "Look-up tables")
 
     def draw(result: Result, y: float) -> None:

@@ -64,6 +64,14 @@ class Scale:
         low, high = _round_down(min(known)), -_round_down(-max(known))
         return cls(low, high if high > low else low * 10, start, end, True)
 
+    @classmethod
+    def linear(cls, values: Iterable[float], start: float, end: float) -> Scale:
+        """Return a scale from 0 to a round figure that is at least as high as all values."""
+        most = max(values, default=0.0)
+        power = 10.0 ** math.floor(math.log10(most)) if most > 0 else 1.0
+        ends = (digits * power for digits in (1, 1.5, 2, 2.5, 3, 4, 5, 7.5, 10))
+        return cls(0, next(end for end in ends if end >= most), start, end)
+
     def __call__(self, value: float) -> float:
         """Return the coordinate of a value."""
         if self.is_log:

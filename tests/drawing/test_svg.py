@@ -79,3 +79,14 @@ def test_neighbours_are_spread():
     values = [spread(index) for index in range(50)]
     assert all(0 <= value < 1 for value in values)
     assert min(abs(a - b) for a, b in pairwise(values)) > 0.3
+
+
+@pytest.mark.parametrize(
+    ("values", "high"),
+    [([], 1), ([0.0], 1), ([1.0], 1), ([156.25, 3], 200), ([2057, 2930], 3000), ([76.0], 100)],
+)
+def test_linear_scales_go_from_zero_to_a_round_figure(values, high):
+    scale = Scale.linear(values, 10, 110)
+    assert (scale.low, scale.high, scale.is_log) == (0, high, False)
+    assert (scale(0), scale(high)) == (10, 110)
+    assert len(scale.ticks()) == 6
