@@ -31,7 +31,8 @@ class Cycles:
     bytes, beats : int
         Of their packets.
     cycles : int
-        From the end of the first message, which is not counted, to the end of the last.
+        From the end of the first message, which is not counted, to the end of the last. A message
+        ends with the last transfer of a leaf or beat, or with its status if that is later.
     latency : int
         Of the first message, alone: cycles from its last transfer in, a beat or that of a leaf, to
         its last transfer out.
@@ -84,6 +85,6 @@ def count_cycles(converter: Converter, message: Message, stated: Stated = STATED
         messages=stated,
         bytes=sum(map(len, packets[1:])),
         beats=sum(beats[1:]),
-        cycles=together.cycles - alone.cycles,
+        cycles=together.end_cycle - alone.end_cycle,
         latency=alone.latency,
     )

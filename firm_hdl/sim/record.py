@@ -53,6 +53,7 @@ class RunResult:
     first_cycle: int = -1
     last_cycle_in: int = -1
     last_cycle: int = -1
+    last_status_cycle: int = -1
 
     @property
     def cycles(self) -> int:
@@ -63,6 +64,11 @@ class RunResult:
     def latency(self) -> int:
         """Cycles from the last transfer in to the last one out; 0 without any."""
         return self.last_cycle - self.last_cycle_in if self.last_cycle >= 0 else 0
+
+    @property
+    def end_cycle(self) -> int:
+        """Cycle of the last transfer out, that of a status included; -1 without any."""
+        return max(self.last_cycle, self.last_status_cycle)
 
 
 def leaf_name(plan: Plan, leaf: int) -> str:
@@ -124,6 +130,7 @@ class Recorder:
     def _status(self, name: str, statuses: list[Status]) -> Callable[[int, int], None]:
         def take(cycle: int, bits: int) -> None:
             statuses.append(Status(bits))
+            self.result.last_status_cycle = cycle
             self._limit(name, cycle)
 
         return take

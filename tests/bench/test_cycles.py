@@ -60,6 +60,14 @@ def test_a_fixed_size_takes_a_cycle_per_beat(component: type) -> None:
 
 
 @pytest.mark.parametrize("component", [Deserializer, Serializer])
+def test_messages_end_with_their_status_and_not_with_their_last_leaf(component: type) -> None:
+    # The terminator may be alone in the last beat, in which no leaf is.
+    message = load_message("std_msgs/msg/String")
+    found = count_cycles(component(message, bus_bytes=2), message)
+    assert found.beats == found.cycles
+
+
+@pytest.mark.parametrize("component", [Deserializer, Serializer])
 def test_latency_is_that_of_the_last_transfer(component: type) -> None:
     message = load_message("std_msgs/msg/Bool")
     assert 1 <= count_cycles(component(message), message).latency <= 8

@@ -118,8 +118,10 @@ def test_latency_is_from_the_last_in_to_the_last_out():
     takes["packets_in"](4, 0)
     takes["packets_out"](9, beat(b"ab"))
     takes["status"](12, 0)
-    assert run.finish().latency == 5
+    found = run.finish()
+    assert (found.latency, found.end_cycle) == (5, 12)
     assert RunResult().latency == RunResult(last_cycle_in=3).latency == 0
+    assert (RunResult().end_cycle, RunResult(last_cycle=7, last_status_cycle=5).end_cycle) == (-1, 7)
 
 
 # What a deserializer has to ignore, and that it is there.
