@@ -135,9 +135,10 @@ def _path(found: Mapping[str, Any]) -> CriticalPath:
 
 
 def results_text(results: Iterable[Result]) -> str:
-    """Write results as JSON, in the order of their converters."""
-    entries = [_entry(result) for result in sorted(results, key=lambda each: each.key)]
-    return json.dumps({"format": FORMAT, "results": entries}, indent=1) + "\n"
+    """Write results as JSON, in the order of their converters, a line for each."""
+    in_order = sorted(results, key=lambda each: each.key)
+    lines = ",\n".join(json.dumps(_entry(result)) for result in in_order)
+    return f'{{"format": {FORMAT}, "results": [\n{lines}\n]}}\n'
 
 
 def _entry(result: Result) -> dict[str, Any]:
