@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from firm_hdl.equivalence.circuit import Bit, Bits, Cell, ProofError
 from firm_hdl.equivalence.dump import Instance
 
-__all__ = ["Gate", "divided", "gate_cells", "renamed"]
+__all__ = ["Gate", "divided", "gate_cells", "mux_cell", "operator_cell", "renamed"]
 
 _Fresh = Callable[[int], tuple[int, ...]]
 """Makes new nets that nothing drives."""
@@ -159,17 +159,17 @@ def gate_cells(gate: Gate, output: tuple[int, ...]) -> list[Cell]:
         between = gate.fresh(gate.width)
         gate.check(len(values[0]) == len(values[1]) == gate.width)
         return [
-            _cell(_INVERTED[kind], between, A=values[0], B=values[1]),
-            _cell("$not", output, A=between),
+            operator_cell(_INVERTED[kind], between, A=values[0], B=values[1]),
+            operator_cell("$not", output, A=between),
         ]
     if kind in _UNARY:
         if kind in ("$not", "$neg"):
             gate.check(len(values[0]) == gate.width)
-        return [_cell(_UNARY[kind], output, A=values[0])]
+        return [operator_cell(_UNARY[kind], output, A=values[0])]
     if kind == "$mux2":
         gate.check([len(value) for value in values] == [1, gate.width, gate.width])
         select, low, high = values
-        return [_mux(output, select[0], low, high)]
+        return [mux_cell(output, select[0], low, high)]
     if kind == "$mux4":
         return _mux4(gate, values, output)
     if kind == "$pmux":
@@ -189,9 +189,9 @@ def _binary(gate: Gate, values: list[Bits], output: tuple[int, ...]) -> list[Cel
     signed = gate.kind in _SIGNED
     if kind in ("$shl", "$shr", "$sshr"):
         # Only the value that is shifted can be signed, not the amount.
-        return [_cell(kind, output, signed=signed, second_signed=False, A=left, B=right)]
+        return [operator_cell(kind, output, signed=signed, second_signed=False, A=left, B=right)]
     if kind not in ("$div", "$mod", "$modfloor"):
-        return [_cell(kind, output, signed=signed, A=left, B=right)]
+        return [operator_cell(kind, output, signed=signed, A=left, B=right)]
     return divided(kind, signed, left, right, output, gate.fresh)
 
 
@@ -201,9 +201,9 @@ def divided(
     """Return the cells of a division whose result may be any value if the divisor is 0."""
     result, by_zero = fresh(len(output)), fresh(1)
     return [
-        _cell(kind, result, signed=signed, A=left, B=right),
-        _cell("$logic_not", by_zero, A=right),
-        _mux(output, by_zero[0], result, fresh(len(output))),
+        operator_cell(kind, result, signed=signed, A=left, B=right),
+        operator_cell("$logic_not", by_zero, A=right),
+        mux_cell(output, by_zero[0], result, fresh(len(output))),
     ]
 
 
@@ -212,9 +212,9 @@ def _mux4(gate: Gate, values: list[Bits], output: tuple[int, ...]) -> list[Cell]
     select, *choices = values
     low, high = gate.fresh(gate.width), gate.fresh(gate.width)
     return [
-        _mux(low, select[0], choices[0], choices[1]),
-        _mux(high, select[0], choices[2], choices[3]),
-        _mux(output, select[1], low, high),
+        mux_cell(low, select[0], choices[0], choices[1]),
+        mux_cell(high, select[0], choices[2], choices[3]),
+        mux_cell(output, select[1], low, high),
     ]
 
 
@@ -228,12 +228,13 @@ def _pmux(gate: Gate, values: list[Bits], output: tuple[int, ...]) -> list[Cell]
     for place, (bit, choice) in enumerate(zip(select, choices, strict=True)):
         last = place == len(choices) - 1
         target = output if last else gate.fresh(gate.width)
-        cells.append(_mux(target, bit, value, choice))
+        cells.append(mux_cell(target, bit, value, choice))
         value = target
     return cells
 
 
-def _mux(output: tuple[int, ...], select: Bit, low: Bits, high: Bits) -> Cell:
+def mux_cell(output: tuple[int, ...], select: Bit, low: Bits, high: Bits) -> Cell:
+    """Return a multiplexer; the output is `high` if `select` is 1."""
     return Cell(
         kind="$mux",
         parameters={"WIDTH": len(output)},
@@ -242,7 +243,7 @@ def _mux(output: tuple[int, ...], select: Bit, low: Bits, high: Bits) -> Cell:
     )
 
 
-def _cell(
+def operator_cell(
     kind: str,
     output: tuple[int, ...],
     *,
@@ -250,6 +251,17 @@ def _cell(
     second_signed: bool | None = None,
     **inputs: Bits,
 ) -> Cell:
+    """Return an operator with the operands A and, if it has two, B.
+
+    Parameters
+    ----------
+    kind : str
+        Type of the cell in Yosys.
+    signed : bool
+        The operands are signed.
+    second_signed : bool or None
+        B is signed; `None`: as `signed` says.
+    """
     parameters: dict[str, int | str] = {"Y_WIDTH": len(output)}
     for port, bits in inputs.items():
         parameters[f"{port}_WIDTH"] = len(bits)

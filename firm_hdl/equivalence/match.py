@@ -9,12 +9,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Protocol
+from dataclasses import dataclass
+from typing import Protocol, TypeAlias
 
-__all__ = ["Names", "vhdl_paths"]
+__all__ = ["Match", "Names", "match_names", "word_name"]
 
+_Path: TypeAlias = tuple[str, ...]
 _MODULE = re.compile(r"module \\(\S+)$")
 _CELL = re.compile(r"cell \\(\S+) \\(\S+)$")
+_MEMORY = re.compile(r"memory width \d+ size (\d+) \\(\S+)$")
 
 
 class Names(Protocol):
@@ -25,49 +28,89 @@ class Names(Protocol):
         """Names of signals, by wire of the RTLIL."""
 
     @property
+    def memories(self) -> Mapping[str, str]:
+        """Names of memories, by memory of the RTLIL."""
+
+    @property
     def instances(self) -> Mapping[str, str]:
         """Labels of instances, by cell of the RTLIL."""
 
 
-def vhdl_paths(
-    rtlil: str, top: str, entities: Mapping[str, Names]
-) -> Mapping[tuple[str, ...], tuple[str, ...]]:
-    """Return paths of signals in VHDL by paths in the flattened RTLIL; both without the top.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Match:
+    """What matches what; all paths are without the top.
+
+    Attributes
+    ----------
+    signals : mapping of tuple to tuple
+        Paths of signals and of words of memories in VHDL by paths in the flattened RTLIL.
+    memories : mapping of tuple to int
+        Number of words by path of the memory in VHDL.
+    """
+
+    signals: Mapping[_Path, _Path]
+    memories: Mapping[_Path, int]
+
+
+@dataclass(slots=True)
+class _Module:
+    """The modules of the instances in a module, and the sizes of its memories, by name."""
+
+    cells: dict[str, str]
+    memories: dict[str, int]
+
+
+def word_name(memory: str, place: int) -> str:
+    """Name a word of a memory."""
+    return f"{memory}[{place}]"
+
+
+def match_names(rtlil: str, top: str, entities: Mapping[str, Names]) -> Match:
+    """Match the signals and memories of both sides.
 
     Parameters
     ----------
     rtlil : str
-        RTLIL text; only its modules and instances are read.
+        RTLIL text; only its modules, instances and sizes of memories are read.
     top : str
         The outermost module.
     entities : mapping of str to Names
         Names in VHDL by module.
     """
-    cells = _instances(rtlil)
-    paths: dict[tuple[str, ...], tuple[str, ...]] = {}
-    stack: list[tuple[str, tuple[str, ...], tuple[str, ...]]] = [(top, (), ())]
+    modules = _modules(rtlil)
+    signals: dict[_Path, _Path] = {}
+    memories: dict[_Path, int] = {}
+    stack: list[tuple[str, _Path, _Path]] = [(top, (), ())]
     while stack:
         module, rtlil_path, vhdl_path = stack.pop()
         names = entities.get(module)
         if names is None:
             continue
+        found = modules.get(module) or _Module({}, {})
         for wire, signal in names.signals.items():
-            paths[(*rtlil_path, wire)] = (*vhdl_path, signal.lower())
-        for cell, kind in cells.get(module, {}).items():
+            signals[(*rtlil_path, wire)] = (*vhdl_path, signal.lower())
+        for memory, signal in names.memories.items():
+            words = found.memories.get(memory, 0)
+            memories[(*vhdl_path, signal.lower())] = words
+            for place in range(words):
+                word = (*vhdl_path, word_name(signal.lower(), place))
+                signals[(*rtlil_path, word_name(memory, place))] = word
+        for cell, kind in found.cells.items():
             label = names.instances.get(cell)
             if label is not None:
                 stack.append((kind, (*rtlil_path, cell), (*vhdl_path, label.lower())))
-    return paths
+    return Match(signals=signals, memories=memories)
 
 
-def _instances(rtlil: str) -> dict[str, dict[str, str]]:
-    """Return, for each module, the modules of its instances by the instance's name."""
-    found: dict[str, dict[str, str]] = {}
-    inside: dict[str, str] = {}
+def _modules(rtlil: str) -> dict[str, _Module]:
+    found: dict[str, _Module] = {}
+    inside = _Module({}, {})
     for line in rtlil.split("\n"):
         line = line.strip()
         if match := _MODULE.match(line):
-            inside = found[match[1]] = {}
+            inside = found[match[1]] = _Module({}, {})
         elif match := _CELL.match(line):
-            inside[match[2]] = match[1]
+            inside.cells[match[2]] = match[1]
+        elif match := _MEMORY.match(line):
+            inside.memories[match[2]] = int(match[1])
     return found

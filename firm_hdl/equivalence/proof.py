@@ -11,7 +11,7 @@ from typing import Any, Literal, TypeAlias
 
 from amaranth.back import rtlil as amaranth_rtlil
 
-from firm_hdl.equivalence.match import vhdl_paths
+from firm_hdl.equivalence.match import match_names
 from firm_hdl.equivalence.miter import Miter, make_miter
 from firm_hdl.equivalence.rtlil_side import read_rtlil
 from firm_hdl.equivalence.solve import solve
@@ -142,12 +142,15 @@ def _miter(rtlil: str, vhdl: Vhdl, tools: Tools, folder: Path, timeout: float) -
     for name, text in vhdl.files.items():
         (folder / name).write_text(text, encoding="utf-8")
     tools.run_ghdl(folder, "-a", "--std=08", *vhdl.files, timeout=timeout)
-    dump = tools.run_ghdl(folder, "--synth", "--std=08", "--out=dump", vhdl.top, timeout=timeout)
+    # GHDL leaves memories as registers (`-dm`), so its inference of memories has not to be trusted.
+    options = "--std=08", "-dm", "--out=dump"
+    dump = tools.run_ghdl(folder, "--synth", *options, vhdl.top, timeout=timeout)
     # The outermost module is the last one.
     top = list(vhdl.entities)[-1]
+    match = match_names(rtlil, top, vhdl.entities)
     return make_miter(
         read_rtlil(rtlil, tools, folder, timeout),
-        read_vhdl(dump),
+        read_vhdl(dump, match.memories),
         ports=vhdl.entities[top].ports,
-        signals=vhdl_paths(rtlil, top, vhdl.entities),
+        signals=match.signals,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from itertools import count
 from pathlib import Path
@@ -10,6 +11,8 @@ from typing import Any
 
 from firm_hdl.equivalence.circuit import Bit, Bits, Cell, Circuit, Flop, ProofError
 from firm_hdl.equivalence.gates import divided
+from firm_hdl.equivalence.match import word_name
+from firm_hdl.equivalence.memories import MemoryCircuit, memory_of
 from firm_hdl.equivalence.tools import Tools, answer_of
 
 __all__ = ["read_rtlil"]
@@ -21,6 +24,8 @@ _SCRIPT = (
 )
 _DIVISIONS = frozenset("$div $mod $divfloor $modfloor".split())
 _REFUSED = frozenset("$tribuf $anyseq $anyconst $allseq $allconst $initstate".split())
+# Registers and memories of other kinds, which Yosys makes of those that Amaranth prints.
+_STATE = re.compile(r"\$(\w*dff\w*|ff|sr|mem\w*)")
 
 
 def read_rtlil(text: str, tools: Tools, folder: Path, timeout: float | None) -> Circuit:
@@ -40,6 +45,11 @@ def read_rtlil(text: str, tools: Tools, folder: Path, timeout: float | None) -> 
     if len(tops) != 1:
         raise ProofError(f"the RTLIL has {len(tops)} outermost modules")
     return _Reader(tops[0]).circuit()
+
+
+def _path(name: str, item: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the path of a wire or memory of the flattened design."""
+    return tuple(item["attributes"].get("hdlname", name).split(" "))
 
 
 class _Reader:
@@ -65,15 +75,19 @@ class _Reader:
         cells: list[Cell] = []
         flops: dict[int, Flop] = {}
         inits = self._inits()
+        memories = self._memories()
+        for memory in memories.values():
+            cells += memory.cells
+            flops.update(memory.flops)
         for name, cell in self._module["cells"].items():
             if cell["type"] in ("$dff", "$adff"):
                 flops.update(self._flops(cell, inits))
-            else:
+            elif memory_of(cell) is None:
                 cells += self._cell(name, cell)
         return Circuit(
             inputs=ports["input"],
             outputs=ports["output"],
-            signals=self._signals(flops),
+            signals=self._signals(flops, memories),
             cells=cells,
             flops=flops,
         )
@@ -120,13 +134,38 @@ class _Reader:
             for bit, data, start in zip(ports["Q"], ports["D"], reversed(value), strict=True)
         }
 
-    def _signals(self, flops: Mapping[int, Flop]) -> dict[tuple[str, ...], Bits]:
-        """Return the wires that are registers, which are those with initial values."""
+    def _memories(self) -> dict[str, MemoryCircuit]:
+        """Return the memories by their names in the flattened design."""
+        memories = {
+            name: MemoryCircuit(name, memory["width"], memory["size"], self._fresh)
+            for name, memory in self._module.get("memories", {}).items()
+        }
+        ports: dict[str, list[Mapping[str, Any]]] = {name: [] for name in memories}
+        for cell in self._module["cells"].values():
+            owner = memory_of(cell)
+            if owner is not None:
+                ports[owner].append(cell)
+        for name, memory in memories.items():
+            if self._module["memories"][name]["start_offset"]:
+                raise ProofError(f"memory {name} does not start at address 0")
+            memory.add(ports[name], self._bits)
+        return memories
+
+    def _signals(
+        self, flops: Mapping[int, Flop], memories: Mapping[str, MemoryCircuit]
+    ) -> dict[tuple[str, ...], Bits]:
+        """Return the registers: wires with an initial value or of a read port, and words."""
+        reads = {read for memory in memories.values() for read in memory.reads}
         signals: dict[tuple[str, ...], Bits] = {}
         for name, net in self._nets.items():
-            if "init" in net["attributes"] and all(bit in flops for bit in net["bits"]):
-                path = net["attributes"].get("hdlname", name).split(" ")
-                signals[tuple(path)] = tuple(net["bits"])
+            bits = tuple(net["bits"])
+            if bits in reads or ("init" in net["attributes"] and all(bit in flops for bit in bits)):
+                signals[_path(name, net)] = bits
+        for name, memory in memories.items():
+            *path, own = _path(name, self._module["memories"][name])
+            for place, word in enumerate(memory.words):
+                if word and all(bit in flops for bit in word):
+                    signals[(*path, word_name(own, place))] = word
         named = {bit for bits in signals.values() for bit in bits}
         for bit in flops:
             if bit not in named:
@@ -137,7 +176,7 @@ class _Reader:
         kind = cell["type"]
         if not kind.startswith("$"):
             raise ProofError(f"the design has an instance of {kind}, which is not in the design")
-        if kind in _REFUSED or kind.startswith("$mem"):
+        if kind in _REFUSED or _STATE.fullmatch(kind):
             raise ProofError(f"the design has {kind}, which a proof does not support")
         ways = cell["port_directions"]
         ports = {port: self._bits(bits) for port, bits in cell["connections"].items()}

@@ -8,6 +8,7 @@ from itertools import count
 from firm_hdl.equivalence.circuit import Bit, Bits, Cell, Circuit, Flop, ProofError
 from firm_hdl.equivalence.dump import Instance, Module, Net, parse_dump
 from firm_hdl.equivalence.gates import Gate, gate_cells, renamed
+from firm_hdl.equivalence.match import word_name
 
 __all__ = ["read_vhdl"]
 
@@ -16,25 +17,42 @@ _EDGES = {"$posedge": True, "$negedge": False}
 _IGNORED = frozenset("$assert $assume $cover $assert_cover".split())
 
 
-def read_vhdl(dump: str) -> Circuit:
+def read_vhdl(dump: str, memories: Mapping[tuple[str, ...], int] | None = None) -> Circuit:
     """Read the outermost entity of a dump.
 
     Parameters
     ----------
     dump : str
-        Output of ``ghdl --synth --out=dump``.
+        Output of ``ghdl --synth -dm --out=dump``.
+    memories : mapping or None
+        Numbers of words by path of the memory. Words become signals of their own.
 
     Returns
     -------
     Circuit
         Names are in lower case, because VHDL ignores case.
     """
-    return _Flattener(parse_dump(dump)).run()
+    return _Flattener(parse_dump(dump), memories or {}).run()
+
+
+def _words(path: tuple[str, ...], bits: Bits, count: int) -> dict[tuple[str, ...], Bits]:
+    """Split a memory; GHDL puts the first element of an array to the highest bits."""
+    width, rest = divmod(len(bits), count)
+    if rest:
+        raise ProofError(f"memory {path[-1]} of the VHDL has not {count} words")
+    *entity, name = path
+    return {
+        (*entity, word_name(name, place)): bits[len(bits) - width * (place + 1) :][:width]
+        for place in range(count)
+    }
 
 
 class _Flattener:
-    def __init__(self, modules: Mapping[str, Module]) -> None:
+    def __init__(
+        self, modules: Mapping[str, Module], memories: Mapping[tuple[str, ...], int]
+    ) -> None:
         self._modules = modules
+        self._memories = memories
         self._numbers = count(2)
         # The bits of each net of the dump, by path and number; nets that are aliases of others.
         self._nets: dict[tuple[tuple[str, ...], int], tuple[int, ...]] = {}
@@ -58,7 +76,7 @@ class _Flattener:
         circuit = Circuit(
             inputs={name.lower(): self._net((), net) for name, net in top.own.outputs.items()},
             outputs={name.lower(): self._resolved(bits) for name, bits in outputs.items()},
-            signals={path: self._resolved(bits) for path, bits in self._signals.items()},
+            signals=self._all_signals(),
             flops=self._all_flops(),
             cells=[
                 Cell(
@@ -73,6 +91,14 @@ class _Flattener:
         if not circuit.driven.isdisjoint(self._aliases):
             raise ProofError("GHDL's netlist drives a net twice")
         return circuit
+
+    def _all_signals(self) -> dict[tuple[str, ...], Bits]:
+        signals: dict[tuple[str, ...], Bits] = {}
+        for path, bits in self._signals.items():
+            count = self._memories.get(path)
+            found = self._resolved(bits)
+            signals.update(_words(path, found, count) if count else {path: found})
+        return signals
 
     def _fresh(self, width: int) -> tuple[int, ...]:
         return tuple(next(self._numbers) for _ in range(width))

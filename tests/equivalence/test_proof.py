@@ -180,17 +180,3 @@ def test_what_is_proved_is_what_build_writes(direction: Direction, tmp_path: obj
 def _code(text: str) -> str:
     """Leave out the remarks at the head of a file."""
     return text[text.index("library ieee;") :]
-
-
-def test_memories_are_refused(tools: Tools) -> None:
-    from amaranth.lib.memory import Memory
-
-    m = Module()
-    m.submodules.memory = memory = Memory(shape=4, depth=4, init=[])
-    port = memory.write_port()
-    read = memory.read_port(domain="comb")
-    out = Signal(4, name="out")
-    m.d.comb += out.eq(read.data)
-    ports = [port.en, port.data, port.addr, read.addr, out]
-    with pytest.raises(ProofError, match=r"the design has \$mem\w+, which a proof"):
-        prove(m, ports=ports, tools=tools)
