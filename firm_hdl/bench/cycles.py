@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Literal, TypeAlias
 
 from firm_hdl.bench.messages import STATED, Stated, values
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
-from firm_hdl.plan import encode
+from firm_hdl.plan import Payload, encode
 from firm_hdl.sim import Harness, RunResult, to_transfers
 
 __all__ = ["DIRECTIONS", "Converter", "Cycles", "Direction", "count_cycles"]
 
 Direction: TypeAlias = Literal["deserializer", "serializer"]
 DIRECTIONS: tuple[Direction, ...] = ("deserializer", "serializer")
+
+MOST_BEATS = 10_000
+"""Beats after which no further message is added: nested sequences have thousands in each."""
 
 Converter: TypeAlias = "Deserializer | Serializer"
 
@@ -27,7 +30,7 @@ class Cycles:
     Attributes
     ----------
     messages : Stated
-        The messages.
+        The messages, with how many of them there were.
     bytes, beats : int
         Of their packets.
     cycles : int
@@ -56,7 +59,7 @@ class Cycles:
 
 
 def count_cycles(converter: Converter, message: Message, stated: Stated = STATED) -> Cycles:
-    """Run a converter with the stated messages.
+    """Run a converter with the stated messages, or with as many as have `MOST_BEATS`.
 
     Parameters
     ----------
@@ -66,9 +69,15 @@ def count_cycles(converter: Converter, message: Message, stated: Stated = STATED
         Its type.
     """
     plan = converter.plan
-    drawn = list(islice(values(message, stated), 1 + stated.count))
-    sent = [to_transfers(plan, message, value) for value in drawn]
-    packets = [encode(plan, transfers)[0] for transfers in sent]
+    sent: list[dict[int, list[Payload]]] = []
+    packets: list[bytes] = []
+    beats: list[int] = []
+    for value in islice(values(message, stated), 1 + stated.count):
+        sent.append(to_transfers(plan, message, value))
+        packets.append(encode(plan, sent[-1])[0])
+        beats.append(max(1, -(-len(packets[-1]) // plan.bus_bytes)))
+        if sum(beats[1:]) >= MOST_BEATS:
+            break
 
     def run(count: int) -> RunResult:
         if isinstance(converter, Deserializer):
@@ -79,10 +88,9 @@ def count_cycles(converter: Converter, message: Message, stated: Stated = STATED
         harness = Harness(converter, None, message=message)
     else:
         harness = Harness(None, converter, message=message)
-    alone, together = run(1), run(len(drawn))
-    beats = [max(1, -(-len(packet) // plan.bus_bytes)) for packet in packets]
+    alone, together = run(1), run(len(packets))
     return Cycles(
-        messages=stated,
+        messages=replace(stated, count=len(packets) - 1),
         bytes=sum(map(len, packets[1:])),
         beats=sum(beats[1:]),
         cycles=together.end_cycle - alone.end_cycle,

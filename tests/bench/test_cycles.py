@@ -8,6 +8,7 @@ from itertools import islice
 import pytest
 
 from firm_hdl import Deserializer, Serializer, load_message
+from firm_hdl.bench import cycles
 from firm_hdl.bench.cycles import count_cycles
 from firm_hdl.bench.messages import Stated, values
 from firm_hdl.model import Array, Field, Message, Sequence, String
@@ -65,6 +66,15 @@ def test_messages_end_with_their_status_and_not_with_their_last_leaf(component: 
     message = load_message("std_msgs/msg/String")
     found = count_cycles(component(message, bus_bytes=2), message)
     assert found.beats == found.cycles
+
+
+def test_large_messages_are_fewer(monkeypatch: pytest.MonkeyPatch) -> None:
+    message = load_message("geometry_msgs/msg/Twist")
+    monkeypatch.setattr(cycles, "MOST_BEATS", 15)
+    found = count_cycles(Deserializer(message), message)
+    assert (found.messages.count, found.beats, found.cycles) == (3, 21, 21)
+    monkeypatch.setattr(cycles, "MOST_BEATS", 1)
+    assert count_cycles(Deserializer(message), message).messages.count == 1
 
 
 @pytest.mark.parametrize("component", [Deserializer, Serializer])
