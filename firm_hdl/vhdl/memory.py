@@ -2,6 +2,9 @@
 
 As in Amaranth's simulator, a read beyond the last word gives 0, and a write there has no effect. A
 read register starts at 0. A port that is transparent for a write port reads the data being written.
+
+The text has the form from which synthesis tools infer RAM: an array of vectors, also if a word has
+one bit; writes in a clocked process; reads of whole words, outside of it if they are asynchronous.
 """
 
 from __future__ import annotations
@@ -10,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from firm_hdl.rtlil.ir import Bits, Cell, Memory, Slice, Spec, bits_of, cut, spec_width
 from firm_hdl.vhdl.expr import Declared, Values
-from firm_hdl.vhdl.text import Expression, atom, bit_literal, chain, infix, literal
+from firm_hdl.vhdl.text import Expression, atom, chain, infix, literal
 from firm_hdl.vhdl.uses import enable_runs, int_parameter
 
 __all__ = ["MemoryText", "edge", "memory_id"]
@@ -66,10 +69,10 @@ class MemoryText:
     def declarations(self) -> Iterator[str]:
         """Yield lines for the declarative part."""
         width = self._memory.width
-        element = "std_logic" if width == 1 else f"unsigned({width - 1} downto 0)"
+        element = f"unsigned({width - 1} downto 0)"
         yield f"type {self.type_name} is array (0 to {self._memory.size - 1}) of {element};"
         words = self._words()
-        zero = "'0'" if width == 1 else "(others => '0')"
+        zero = "(others => '0')"
         used = [(i, word) for i, word in enumerate(words) if "1" in word]
         if not used:
             yield f"signal {self._name} : {self.type_name} := (others => {zero});"
@@ -77,8 +80,7 @@ class MemoryText:
         yield f"signal {self._name} : {self.type_name} := ("
         for i, word in used:
             last = i == self._memory.size - 1 == len(used) - 1
-            text = bit_literal(word) if width == 1 else literal(word)
-            yield f"  {i} => {text}{'' if last else ','}"
+            yield f"  {i} => {literal(word)}{'' if last else ','}"
         if len(used) < self._memory.size:
             yield f"  others => {zero}"
         yield ");"
@@ -128,6 +130,10 @@ class MemoryText:
         number = "0" if (constant or 0) >= self._memory.size else self._values.number(address).text
         return f"{self._name}({number})"
 
+    def _read_word(self, address: Spec) -> Expression:
+        """Write the value of a word; one of a single bit is `std_logic`, as all such values are."""
+        return atom(self._word(address) + ("(0)" if self._memory.width == 1 else ""))
+
     def _write(self, cell: Cell) -> Iterator[str]:
         address, data = cell.ports["ADDR"], cell.ports["DATA"]
         guard = self._guard(address)
@@ -140,8 +146,10 @@ class MemoryText:
             value = (
                 self._values.logic(part) if width == 1 else self._values.unsigned(part, target=True)
             )
-            target = Declared(name=self._word(address), width=self._memory.width)
-            line = f"{target.part(low, width)} <= {value.text};"
+            line = f"{self._word(address)} <= (0 => {value.text});"
+            if self._memory.width > 1:
+                target = Declared(name=self._word(address), width=self._memory.width)
+                line = f"{target.part(low, width)} <= {value.text};"
             if tests:
                 yield f"if {chain('and', *tests).text} then"
                 yield f"  {line}"
@@ -152,7 +160,7 @@ class MemoryText:
     def _direct_read(self, cell: Cell) -> str:
         target, address = self._target(cell), cell.ports["ADDR"]
         guard = self._guard(address)
-        word = target.accept(atom(self._word(address)), target.width)
+        word = target.accept(self._read_word(address), target.width)
         if guard is None:
             return f"{target.name} <= {word};"
         return f"{target.name} <= {word} when {guard.text} else {target.zero};"
@@ -175,7 +183,7 @@ class MemoryText:
     def _read_statements(self, cell: Cell) -> Iterator[str]:
         target, address = self._target(cell), cell.ports["ADDR"]
         guard = self._guard(address)
-        line = f"{target.name} <= {target.accept(atom(self._word(address)), target.width)};"
+        line = f"{target.name} <= {target.accept(self._read_word(address), target.width)};"
         if guard is None:
             yield line
         else:

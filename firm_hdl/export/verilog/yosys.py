@@ -23,6 +23,7 @@ from amaranth.back import rtlil
 
 from firm_hdl.errors import UserError
 from firm_hdl.export.top import Top
+from firm_hdl.export.verilog.memories import settled_memories
 from firm_hdl.names.identifiers import first_free
 from firm_hdl.names.keywords import KEYWORDS
 
@@ -51,6 +52,8 @@ _NO_MEMORY = re.compile(
 
 _CHOICE = re.compile(r"\\\$procmux\$(\w+)")
 _IDENTIFIER = re.compile(r"\\(\S+)")
+_SETTING = re.compile(r"^ *(?:parameter|attribute) .*$", re.MULTILINE)
+_MEMORY_OF_PORT = re.compile(r'(?<=^    parameter \\MEMID "\\)\\([^"]+)')
 _EMPTY_WIRE = re.compile(r"^ *(wire|reg)( signed)? \[-1:0\] \S+ *;\n", re.MULTILINE)
 
 
@@ -108,7 +111,8 @@ def to_verilog(top: Top, *, module: str, header: str) -> str:
     UserError
         If there is not enough memory.
     """
-    design = _without_keywords(rtlil.convert(top, name=module, emit_src=False))
+    design = settled_memories(rtlil.convert(top, name=module, emit_src=False))
+    design = _without_keywords(design)
     script = _SCRIPT.format(
         rtlil=design, attributes=" ".join(f"-remove {name}" for name in _ATTRIBUTES)
     )
@@ -153,7 +157,14 @@ def _without_keywords(design: str) -> str:
             used.add(names[name].lower())
         return f"\\{names.get(name, name)}"
 
-    return _IDENTIFIER.sub(renamed, design)
+    # Parameters and attributes have names that Yosys knows, such as PRIORITY of a memory.
+    parts: list[str] = []
+    place = 0
+    for setting in _SETTING.finditer(design):
+        parts.append(_IDENTIFIER.sub(renamed, design[place : setting.start()]))
+        parts.append(_MEMORY_OF_PORT.sub(renamed, setting[0]))
+        place = setting.end()
+    return "".join([*parts, _IDENTIFIER.sub(renamed, design[place:])])
 
 
 @contextmanager

@@ -77,10 +77,10 @@ def memory_of_an_odd_size() -> Made:
   -- Registers.
   signal read_data_q : std_logic := '0';
 
-  type mem_array is array (0 to 1) of std_logic;
+  type mem_array is array (0 to 1) of unsigned(0 downto 0);
   signal mem : mem_array := (
-    0 => '1',
-    1 => '1'
+    0 => "1",
+    1 => "1"
   );
 begin
 
@@ -88,7 +88,7 @@ begin
   begin
     if rising_edge(clk) then
       if write_en = '1' then
-        mem(to_integer(write_addr)) <= write_data;
+        mem(to_integer(write_addr)) <= (0 => write_data);
       end if;
     end if;
   end process;
@@ -96,7 +96,7 @@ begin
   process (clk)
   begin
     if rising_edge(clk) then
-      read_data_q <= mem(to_integer(read_addr));
+      read_data_q <= mem(to_integer(read_addr))(0);
       if read_addr = write_addr and write_en = '1' then  -- transparent
         read_data_q <= write_data;
       end if;

@@ -1,0 +1,52 @@
+"""What RTLIL leaves open about memories, and Verilog must not: as in Amaranth's simulator."""
+
+from __future__ import annotations
+
+import re
+
+__all__ = ["settled_memories"]
+
+_INIT_OF_READ = re.compile(r"(?<=^    parameter \\INIT_VALUE )(\d+)'x+$", re.MULTILINE)
+_WRITE = re.compile(r"^  cell \$memwr_v2 .*?^  end$", re.MULTILINE | re.DOTALL)
+_MEMORY = re.compile(r'parameter \\MEMID "(.*)"$', re.MULTILINE)
+_NUMBER = re.compile(r"parameter \\PORTID (\d+)$", re.MULTILINE)
+_CLOCK = re.compile(r"connect \\CLK .*$|parameter \\CLK_POLARITY .*$", re.MULTILINE)
+_PRIORITY = re.compile(r"(?<=parameter \\PRIORITY_MASK )0$", re.MULTILINE)
+
+
+def settled_memories(design: str) -> str:
+    """Settle initial values of read ports, and the order of write ports.
+
+    The register of a read port starts at 0. Of ports of one clock that write one word at the same
+    time, the port with the highest number is the last; without this, Yosys writes processes
+    whose order is open.
+
+    Parameters
+    ----------
+    design : str
+        RTLIL, as Amaranth prints it.
+    """
+    design = _INIT_OF_READ.sub(lambda width: f"{width[1]}'{'0' * int(width[1])}", design)
+    parts = re.split(r"(?=^module )", design, flags=re.MULTILINE)
+    return "".join(_ordered(part) for part in parts)
+
+
+def _ordered(module: str) -> str:
+    """Give the write ports of one module their order."""
+    clocks: dict[tuple[str, int], list[str]] = {}
+    for cell in _WRITE.findall(module):
+        clocks[_port(cell)] = _CLOCK.findall(cell)
+
+    def ordered(cell: re.Match[str]) -> str:
+        memory, number = _port(cell[0])
+        same = [clocks[memory, other] == clocks[memory, number] for other in range(number)]
+        mask = "".join(str(int(each)) for each in reversed(same))
+        return _PRIORITY.sub(f"{number}'{mask}" if number else "0", cell[0])
+
+    return _WRITE.sub(ordered, module)
+
+
+def _port(cell: str) -> tuple[str, int]:
+    memory, number = _MEMORY.search(cell), _NUMBER.search(cell)
+    assert memory and number
+    return memory[1], int(number[1])

@@ -1,0 +1,128 @@
+"""Memories in VHDL: simulation and inference by GHDL."""
+
+from __future__ import annotations
+
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.vhdl.convert import Vhdl, convert
+from tests.memory_designs import DESIGNS, Store, Stores, rtlil_of, simulated
+from tests.vhdl.ghdl import GHDL, analyse, difference, run, simulate, synthesize
+
+STEPS = 200
+
+
+def _vhdl(name: str) -> Vhdl:
+    return convert(rtlil_of(DESIGNS[name]), name="stores")
+
+
+@pytest.mark.usefixtures("ghdl")
+@pytest.mark.parametrize("name", DESIGNS)
+def test_memories_do_what_amaranth_does(name: str, tmp_path: Path) -> None:
+    inputs, outputs, steps, wanted = simulated(DESIGNS[name], steps=STEPS, seed=len(name))
+    assert difference(wanted, simulate(_vhdl(name), steps, inputs, outputs, tmp_path)) is None
+
+
+@pytest.mark.usefixtures("ghdl")
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("asynchronous", "mem(to_integer(unsigned(mem_w0_addr)))", "mem(0)"),
+        ("one bit", "(0 => mem_w0_data)", '"0"'),
+        ("lanes", "(7 downto 6) <= unsigned(mem_w0_data(7 downto 6))", '(7 downto 6) <= "00"'),
+        ("transparent", "= '1' then  -- transparent", "= 'U' then"),
+        ("synchronous", "if mem_r0_en = '1' then", "if true then"),
+        ("odd depth", '2 => "00000011"', '2 => "00000010"'),
+    ],
+)
+def test_a_changed_memory_is_noticed(name: str, old: str, new: str, tmp_path: Path) -> None:
+    vhdl = _vhdl(name)
+    text = vhdl.files["stores.vhd"]
+    assert old in text
+    broken = replace(vhdl, files={**vhdl.files, "stores.vhd": text.replace(old, new)})
+    inputs, outputs, steps, wanted = simulated(DESIGNS[name], steps=STEPS, seed=len(name))
+    assert difference(wanted, simulate(broken, steps, inputs, outputs, tmp_path)) is not None
+
+
+# GHDL does not make RAM of one word, nor of a memory with constant addresses.
+@pytest.mark.usefixtures("ghdl")
+@pytest.mark.parametrize("name", sorted(set(DESIGNS) - {"one word", "odd depth", "contents alone"}))
+def test_ghdl_infers_a_ram(name: str, tmp_path: Path) -> None:
+    said = synthesize(_vhdl(name), tmp_path)
+    for memory, store in DESIGNS[name].items():
+        width = store.shape if isinstance(store.shape, int) else store.shape.size
+        signal = _vhdl(name).entities["stores"].memories[memory]
+        assert f'found RAM "{signal}", width: {width} bits, depth: {store.depth}' in said
+
+
+def test_memories_have_names_of_their_own() -> None:
+    vhdl = _vhdl("several")
+    names = vhdl.entities["stores"]
+    assert names.memories == {"mem": "mem", "data": "data", "signal": "signal_sig"}
+    assert set(names.memories.values()).isdisjoint(names.signals.values())
+    for signal in names.memories.values():
+        assert f"  signal {signal} : {signal}_array := (" in vhdl.files["stores.vhd"]
+
+
+_BENCH = """
+library ieee;
+use ieee.std_logic_1164.all;
+entity bench is
+end entity;
+architecture sim of bench is
+  signal clk, en, data : std_logic := '0';
+  signal addr : std_logic_vector(2 downto 0) := "000";
+  signal r_data : std_logic;
+begin
+  dut : entity work.stores port map (
+    clk => clk, rst => '0', mem_w0_addr => addr, mem_w0_data => data, mem_w0_en => en,
+    mem_r0_addr => addr, mem_r0_data => r_data);
+  process
+  begin
+    addr <= "XXX"; wait for 1 ns;
+    assert r_data = '{read}' report "unknown address" severity failure;
+    addr <= "001"; data <= '1'; en <= 'X'; wait for 1 ns;
+    clk <= '1'; wait for 1 ns; clk <= '0'; wait for 1 ns;
+    assert r_data = '0' report "unknown enable" severity failure;
+    en <= '1'; data <= 'X'; wait for 1 ns;
+    clk <= '1'; wait for 1 ns; clk <= '0'; wait for 1 ns;
+    assert r_data = 'X' report "unknown data" severity failure;
+    addr <= "010"; wait for 1 ns;
+    assert r_data = '0' report "another word" severity failure;
+    report "done";
+    wait;
+  end process;
+end architecture;
+"""
+
+
+@pytest.mark.usefixtures("ghdl")
+@pytest.mark.parametrize(
+    ("depth", "init", "read"), [(8, [0] * 8, "0"), (8, [1, 0, 0], "1"), (5, [1, 0, 0], "0")]
+)
+def test_unknown_values_stop_no_simulation(
+    depth: int, init: list[int], read: str, tmp_path: Path
+) -> None:
+    """An unknown address reads word 0, or 0 if there are fewer words than addresses."""
+    store = Store(shape=1, depth=depth, init=init)
+    vhdl = convert(Stores({"mem": store}), name="stores")
+    analyse(vhdl, tmp_path)
+    (tmp_path / "bench.vhd").write_text(_BENCH.format(read=read))
+    run(tmp_path, "-a", "--std=08", "bench.vhd")
+    said = run(tmp_path, "--elab-run", "--std=08", "bench", "--ieee-asserts=disable")
+    assert "done" in said
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_a_wrong_bench_fails(tmp_path: Path) -> None:
+    vhdl = convert(Stores({"mem": Store(shape=1, init=[1])}), name="stores")
+    analyse(vhdl, tmp_path)
+    (tmp_path / "bench.vhd").write_text(_BENCH.format(read="0"))
+    assert GHDL is not None
+    run(tmp_path, "-a", "--std=08", "bench.vhd")
+    command = [GHDL, "--elab-run", "--std=08", "bench", "--ieee-asserts=disable"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode != 0 and "unknown address" in done.stdout + done.stderr
