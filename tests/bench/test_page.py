@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import pytest
@@ -219,3 +220,21 @@ def test_a_missing_tool_is_an_error(
     monkeypatch.setattr(bench, "versions", missing)
     assert ran(place, "--group", "devices") == 1
     assert capsys.readouterr().err == "error: nothing is installed\n"
+
+
+def test_the_committed_page_has_all_parts_and_plots() -> None:
+    text = (ROOT / "docs" / "performance.md").read_text()
+    for name in [*MEASURED, *(f"{name}: made with" for name in MEASURED), "beats"]:
+        part = text.split(f"<!-- {name} -->\n")[1].split(f"<!-- end {name} -->")[0]
+        assert part.count("\n| ") > 4 or part.count("\n* ") > 0, name
+    plots = re.findall(r"\]\((figures/\w+\.svg)\)", text)
+    assert len(plots) == 3
+    for plot in plots:
+        drawn((ROOT / "docs" / plot).read_text())
+    kept = read_results(ROOT / "docs" / "figures" / bench.KEPT)
+    assert {each.key for each in kept} == {
+        (*map(str, asdict(task.converter).values()), task.device)
+        for group in MEASURED.values()
+        for task in group_tasks(group)
+    }
+    assert not any(each.problem for each in kept)
