@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -15,7 +16,7 @@ from amaranth.lib.wiring import Component, In, Member, Out
 
 from tests.vhdl.ghdl import Steps, expected, vectors
 
-__all__ = ["DESIGNS", "WHOLE", "Store", "Stores", "rtlil_of", "simulated"]
+__all__ = ["DESIGNS", "WHOLE", "Store", "Stores", "random_stores", "rtlil_of", "simulated"]
 
 PAIR = StructLayout({"low": 3, "high": StructLayout({"flag": 1, "number": 5})})
 
@@ -149,6 +150,24 @@ DESIGNS = {
     },
 }
 """Memories by their names."""
+
+
+def random_stores(seed: int) -> dict[str, Store]:
+    """Choose one or two memories at random."""
+    chosen = random.Random(seed)
+    stores = {}
+    for name in ("mem", "other")[: chosen.randint(1, 2)]:
+        width, depth = chosen.choice([1, 2, 3, 6, 8, 11]), chosen.choice([1, 2, 3, 4, 5, 7, 8, 9])
+        stores[name] = Store(
+            shape=width,
+            depth=depth,
+            init=[*(chosen.getrandbits(width) for _ in range(depth - 1)), 1],
+            reads=[chosen.choice(["comb", "sync", "transparent"]) for _ in range(2)],
+            places=chosen.sample(range(depth), chosen.randint(0, 1)),
+            writes=chosen.randint(0, 2),
+            granularity=chosen.choice([n for n in range(1, width + 1) if width % n == 0]),
+        )
+    return stores
 
 
 WHOLE = [

@@ -15,7 +15,7 @@ from firm_hdl.equivalence.miter import make_miter
 from firm_hdl.equivalence.rtlil_side import read_rtlil
 from firm_hdl.equivalence.solve import solve
 from firm_hdl.vhdl.convert import Vhdl, convert
-from tests.memory_designs import DESIGNS, Store, rtlil_of
+from tests.memory_designs import DESIGNS, Store, random_stores, rtlil_of
 
 FULL = {"mem": Store(depth=5, init=[1, 2, 3], granularity=4, reads=("comb", "transparent"))}
 TWO = {"mem": Store(depth=4, writes=2)}
@@ -35,6 +35,13 @@ def test_memories_are_proved_equal(name: str, tools: Tools) -> None:
     words = [s.depth * (s.shape if isinstance(s.shape, int) else 9) for s in DESIGNS[name].values()]
     if name != "contents alone":
         assert proof.registers >= sum(words)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_memories_are_proved_equal(seed: int, tools: Tools) -> None:
+    text = rtlil_of(random_stores(seed))
+    proof = prove(text, convert(text), tools=tools)
+    assert proof.result == "equal", proof
 
 
 def test_memories_of_inner_modules_are_proved_equal(tools: Tools) -> None:
