@@ -1,8 +1,8 @@
 """Memories of the RTLIL as registers: one register per word, and multiplexers for the ports.
 
-RTLIL leaves two things open. A read beyond the last word is undefined, and so is the result of two
-write ports that write different data to one word at the same time. Here they are what Amaranth's
-simulator makes of them: the read gives 0, and the port with the higher number is written last.
+RTLIL leaves three things open: what is read beyond the last word, which of two ports wins that
+write one word at the same time, and the first value of the register of a synchronous read port.
+Here they are what Amaranth's simulator makes of them: 0, the port with the higher number, and 0.
 """
 
 from __future__ import annotations
@@ -175,7 +175,7 @@ class MemoryCircuit:
                 data=data[place],
                 clock=ports["CLK"][0],
                 rising=bool(int(parameters["CLK_POLARITY"], 2)),
-                init=parameters["INIT_VALUE"][::-1][place],
+                init=parameters["INIT_VALUE"].replace("x", "0")[::-1][place],
             )
 
     def _selected(self, address: Bits) -> Bits:

@@ -77,6 +77,10 @@ VHDL_TWINS = {
         "others => (others => '0')\n  );",
         "others => (others => '1')\n  );",
     ),
+    "another initial value of the register": (
+        "mem_r1_data_q : unsigned(7 downto 0) := (others => '0')",
+        "mem_r1_data_q : unsigned(7 downto 0) := (others => '1')",
+    ),
     "initial values in another order": ('0 => "00000001",\n    1', '1 => "00000001",\n    0'),
     "no initial values": (
         ' := (\n    0 => "00000001",\n    1 => "00000010",\n    2 => "00000011",\n'

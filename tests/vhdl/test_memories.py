@@ -58,6 +58,18 @@ def test_ghdl_infers_a_ram(name: str, tmp_path: Path) -> None:
         assert f'found RAM "{signal}", width: {width} bits, depth: {store.depth}' in said
 
 
+@pytest.mark.usefixtures("ghdl")
+def test_a_write_beyond_the_last_word_stops_the_simulation(tmp_path: Path) -> None:
+    """A proof cannot find this, because synthesis may do anything there."""
+    vhdl = _vhdl("transparent")
+    broken = vhdl.files["stores.vhd"].replace("(mem_w0_addr) < 5", "(mem_w0_addr) <= 5")
+    assert broken != vhdl.files["stores.vhd"]
+    inputs, outputs, steps, _ = simulated(DESIGNS["transparent"], steps=STEPS, seed=1)
+    files = {**vhdl.files, "stores.vhd": broken}
+    with pytest.raises(AssertionError, match="bound"):
+        simulate(replace(vhdl, files=files), steps, inputs, outputs, tmp_path)
+
+
 def test_memories_have_names_of_their_own() -> None:
     vhdl = _vhdl("several")
     names = vhdl.entities["stores"]
