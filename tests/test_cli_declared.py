@@ -76,7 +76,7 @@ TAKEN = {
         {**ORIGINS, **PLAN, "types": [], "branches": False, "out": None, "check": None},
     ),
 }
-NOT_SAID = ("run", "refuse", "usage_error", "version")
+NOT_SAID = ("run", "refuse", "usage_error", "default_of", "version")
 
 
 def taken(*words):
