@@ -5,6 +5,7 @@ A type that is equal in several distributions is run once, and counts for each.
 
 from __future__ import annotations
 
+import os
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -38,13 +39,18 @@ class TypeUnderTest:
     same: tuple[str, ...]
 
 
-@cache
 def library_of(distro: str, paths: tuple[str, ...], bags: tuple[str, ...] = ()) -> Library:
     """Return a library, which is opened once in a process.
 
     Without folders and recordings, it has only the distribution's own types, because rosbags knows
     these. With folders, it searches the active workspace after them.
     """
+    return _opened(os.getcwd(), distro, paths, bags)
+
+
+@cache
+def _opened(folder: str, distro: str, paths: tuple[str, ...], bags: tuple[str, ...]) -> Library:
+    """Open a library; `folder` is the one that relative paths start from."""
     return open_library(distro, paths, bags) if paths or bags else Library(distro)
 
 
