@@ -78,9 +78,10 @@ def write_report(
         raise BuildError(f"'{out}': the name of a report must end in {ends}, or give --format")
     text = _made(results, form, title)
     path.parent.mkdir(parents=True, exist_ok=True)
-    # Nobody finds half a page, however this ends.
+    # Nobody finds half a page, however this ends. Names of files may have bytes that are no UTF-8:
+    # they come as in JSON and in Python, "\udcff".
     part = path.with_name(path.name + ".part")
-    part.write_text(text, encoding="utf-8", newline="\n")
+    part.write_text(text, encoding="utf-8", newline="\n", errors="backslashreplace")
     part.replace(path)
 
 

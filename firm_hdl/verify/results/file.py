@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import fcntl
 import json
+import math
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -88,7 +89,7 @@ def _read(path: Path) -> tuple[Results, int]:
     sessions: list[Mapping[str, str]] = []
     for number, line in enumerate(lines[1:], 2):
         try:
-            given = json.loads(line)
+            given = _value(line)
             if "session" in given:
                 sessions.append(_session(given["session"]))
             else:
@@ -105,12 +106,24 @@ def _read(path: Path) -> tuple[Results, int]:
 
 def _header(path: Path, line: bytes) -> tuple[Mapping[str, Any], tuple[Test, ...]]:
     try:
-        given = json.loads(line)
+        given = _value(line)
         if given["format"] != FORMAT or not isinstance(given["options"], dict):
             raise ValueError
         return given["options"], tuple(from_json(Test, test) for test in given["planned"])
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise ResultsError(f"'{path}' has no results of firm-hdl verify") from None
+
+
+def _value(line: bytes) -> Any:
+    """Read a line. JSON has no infinite numbers, which Python reads, and reports cannot write."""
+
+    def number(text: str) -> float:
+        value = float(text)
+        if not math.isfinite(value):
+            raise ValueError(f"{text} is not a number of JSON")
+        return value
+
+    return json.loads(line, parse_float=number, parse_constant=number)
 
 
 def _session(given: object) -> Mapping[str, str]:

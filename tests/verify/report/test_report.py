@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -385,3 +386,13 @@ def test_whiskers_end_inside_the_axis_though_few_points_are_drawn(monkeypatch):
     text = made("html", run_of(*run.records.values(), longest))
     places = [float(x) for x in re.findall(r'x2="([\d.]+)"[^>]*class="whisker', text)]
     assert places and max(places) <= 740
+
+
+@pytest.mark.parametrize("form", list(FORMATS))
+def test_a_name_whose_bytes_are_no_utf_8_is_written(tmp_path, form):
+    command = os.fsdecode(b"firm-hdl verify --path p\xff std_msgs/msg/Header")
+    record = a_record(command=command, verdict=Failed(("wrong bytes",)))
+    path = written(tmp_path / "r.jsonl", run_of(record))
+    out = tmp_path / f"report.{form}"
+    assert main(["report", path, "--out", str(out)]) == 0
+    assert "--path p\\udcff" in out.read_text(encoding="utf-8")

@@ -260,6 +260,9 @@ def test_workers_end_with_a_run_that_was_killed(tmp_path):
         ('{"record": {"test": {"system": "x"}}}', "it is damaged"),
         ('{"record": []}', "A record must be an object, not a list"),
         ('{"record": {"test": 3}}', "Test must be an object, not a number"),
+        # Python reads such numbers, and reports could not write them.
+        ('{"session": NaN}', "it is damaged"),
+        ('{"session": 1e999}', "it is damaged"),
         ('{"session": 7}', "A session must be an object of texts"),
         ('{"session": {"started": 7}}', "A session must be an object of texts"),
     ],
