@@ -127,7 +127,7 @@ def measure(
         folder = Path(name)
         (folder / "top.il").write_text(rtlil, encoding="utf-8")
         top, script = _synthesize(yosys, folder, device, mapping)
-        area = device.area(cell_counts(top))
+        area = _area(device, top)
         if placer and nextpnr:
             names = Names(top)
             added = surround(top, placer)
@@ -150,6 +150,15 @@ def measure(
         tools={tool.title: tool.version for tool in (yosys, nextpnr) if tool},
         problem=problem,
     )
+
+
+def _area(device: Device, top: dict[str, Any]) -> Area:
+    """Count a mapped circuit's cells. A Yosys that renames its cells is an error, not zero cells."""
+    counts = cell_counts(top)
+    area = device.area(counts)
+    if not area.lut and not area.ff:
+        raise BenchError(f"no cell of {', '.join(sorted(counts))} counts on {device.title}")
+    return area
 
 
 def _synthesize(

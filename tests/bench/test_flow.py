@@ -69,6 +69,12 @@ def test_a_circuit_that_nextpnr_refuses_has_an_area(ecp5: Device) -> None:
     assert found.problem.startswith("nextpnr-ecp5 failed: ")
 
 
+def test_a_circuit_of_cells_that_do_not_count_has_no_figures() -> None:
+    other = replace(DEVICES["xc7"], cells={"lut": ("LUT9",), "carry": ("CARRY4",)})
+    with pytest.raises(BenchError, match=r"^no cell of CARRY4, FDRE, .* counts on AMD 7 series"):
+        measure(rtlil.convert(Wide(), name="top", emit_src=False), other, [])
+
+
 def test_without_seeds_there_is_no_clock_rate(ecp5: Device) -> None:
     found = measure(rtlil.convert(Wide(), name="top", emit_src=False), ecp5, [])
     assert (found.mhz, found.path, found.port_registers) == (None, None, 0)
