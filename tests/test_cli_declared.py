@@ -18,13 +18,13 @@ PLAN = {"wire": None, "bus_bytes": 8, "max_message_bytes": 16 << 20}
 TAKEN = {
     "build": (
         ["a/B"],
-        {**ORIGINS, **PLAN, "types": ["a/B"], "window_words": 1, "out": "vhdl_out"}
+        {**ORIGINS, **PLAN, "types": ["a/B"], "out": "vhdl_out"}
         | {"ports": "records", "force": False},
     ),
     "list": ([], ORIGINS),
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
-    "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B", "window_words": 1}),
-    "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"], "window_words": 1}),
+    "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B"}),
+    "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"]}),
     "md5": ([], {**ORIGINS, "types": [], "all": False}),
     "hash": ([], {**ORIGINS, "types": [], "all": False}),
     "proto": ([], {**ORIGINS, "types": [], "all": False, "no_quotes": False}),
@@ -144,7 +144,6 @@ def test_folders_exclude_recordings(capsys):
         ("wire", ["ros1", "cdr"], ["ROS1", ""]),
         ("distro", "noetic foxy humble iron jazzy kilted lyrical".split(), ["melodic", "rolling"]),
         ("bus_bytes", ["1", "2", "4", "8", "16", "32", "64"], ["0", "3", "128", "-8"]),
-        ("window_words", ["1", "2"], ["0", "3"]),
         ("max_message_bytes", ["1", str((1 << 32) - 1)], ["0", str(1 << 32), "-1", "", "1.5"]),
         ("jobs", ["1", "1000"], ["0", "-1", "x"]),
         ("timeout", ["1", "9999999"], ["0", "-1"]),

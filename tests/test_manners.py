@@ -144,11 +144,6 @@ BOOL = load_message("std_msgs/msg/Bool")
             TypeError,
             "Maximum message size must be an integer, not '1'",
         ),
-        (
-            lambda: Deserializer(BOOL, window_words=True),
-            TypeError,
-            "Window must have an integer number of words, not True",
-        ),
     ],
 )
 def test_constructors_check_their_arguments(make, error, message):

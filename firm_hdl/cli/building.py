@@ -24,7 +24,6 @@ def add_build(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl build``."""
     _add_types(command)
     add_options(command)
-    _add_window(command)
     command.add_argument("--out", default="vhdl_out", help="folder to write to (%(default)s)")
     command.add_argument(
         "--ports",
@@ -65,7 +64,6 @@ def _build(args: argparse.Namespace) -> None:
             wire=args.wire,
             bus_bytes=args.bus_bytes,
             max_message_bytes=args.max_message_bytes,
-            window_words=args.window_words,
             ports=args.ports,
         ),
         force=args.force,
@@ -80,7 +78,6 @@ def add_plan(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl plan``."""
     command.add_argument("type", metavar="TYPE")
     add_options(command)
-    _add_window(command)
     command.set_defaults(run=_plan)
 
 
@@ -97,7 +94,6 @@ def add_info(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl info``."""
     _add_types(command)
     add_options(command)
-    _add_window(command)
     command.set_defaults(run=_info)
 
 
@@ -116,22 +112,8 @@ def _info(args: argparse.Namespace) -> None:
 def _planned(message: Message, args: argparse.Namespace) -> Plan:
     from firm_hdl.export.build import plan_of
 
-    return plan_of(
-        message, args.wire, args.bus_bytes, args.max_message_bytes, args.window_words
-    )
+    return plan_of(message, args.wire, args.bus_bytes, args.max_message_bytes)
 
 
 def _add_types(command: argparse.ArgumentParser) -> None:
     command.add_argument("types", nargs="+", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
-
-
-def _add_window(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--window-words",
-        type=int,
-        choices=(1, 2),
-        default=1,
-        metavar="N",
-        help="bus words that are converted in one cycle: 1, or 2 for many short fields at a lower "
-        "clock rate; default: %(default)s",
-    )

@@ -33,7 +33,7 @@ class Options:
     ----------
     wire : "ros1", "cdr" or None
         Wire format; `None`: that of the distribution.
-    bus_bytes, max_message_bytes, window_words : int
+    bus_bytes, max_message_bytes : int
         As for the converters.
     ports : "records" or "flat"
         "records" adds entities with records and modules with structs; "flat" is for tools that do
@@ -43,7 +43,6 @@ class Options:
     wire: Wire | None = None
     bus_bytes: int = 8
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
-    window_words: int = 1
     ports: Ports = "records"
 
 
@@ -82,7 +81,6 @@ class Converters:
             "wire": self.plan.wire,
             "bus_bytes": self.plan.bus_bytes,
             "max_message_bytes": self.plan.max_message_bytes,
-            "window_words": self.options.window_words,
         }
 
     def make_tops(self) -> dict[Direction, Top]:

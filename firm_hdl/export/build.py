@@ -121,13 +121,7 @@ def build(
     options = Options() if options is None else options
     tasks = []
     for message in load_all(library, types):
-        plan = plan_of(
-            message,
-            options.wire,
-            options.bus_bytes,
-            options.max_message_bytes,
-            options.window_words,
-        )
+        plan = plan_of(message, options.wire, options.bus_bytes, options.max_message_bytes)
         check_size(plan)
         packets = list(stimuli(message, plan)) if stimuli is not None else []
         converters = _converters(library, message, plan, options, packets)
@@ -155,8 +149,6 @@ def _converters(
         definition_sha256=library.definition_hash(message),
         ports=options.ports,
     )
-    if options.window_words != 1:
-        inputs["options"]["window_words"] = options.window_words
     inputs["stimuli_sha256"] = _digest(packets)
     inputs["back_ends"] = [each.name for each in BACK_ENDS]
     return Converters(
@@ -173,20 +165,11 @@ def _digest(packets: Sequence[bytes]) -> str:
     return hashlib.sha256("".join(f"{packet.hex()}\n" for packet in packets).encode()).hexdigest()
 
 
-def plan_of(
-    message: Message,
-    wire: Wire | None,
-    bus_bytes: int,
-    max_message_bytes: int,
-    window_words: int = 1,
-) -> Plan:
+def plan_of(message: Message, wire: Wire | None, bus_bytes: int, max_message_bytes: int) -> Plan:
     """Plan a type's converters; raise a `BuildError` if the options do not fit the type."""
     try:
         return build_plan(
-            lay_out(message, wire),
-            bus_bytes=bus_bytes,
-            max_message_bytes=max_message_bytes,
-            window_words=window_words,
+            lay_out(message, wire), bus_bytes=bus_bytes, max_message_bytes=max_message_bytes
         )
     except ValueError as error:
         raise BuildError(f"{message.name}: {error}") from None

@@ -107,8 +107,6 @@ def _dependencies(message: Message) -> list[str]:
 def _timing(figures: Timing) -> dict[str, Any]:
     return {
         "steps": figures.steps,
-        "window_bytes": figures.window_bytes,
-        "window_beats": figures.window_beats,
         "latency_cycles": LATENCY_CYCLES,
         "shortest_packet": _cost(figures.shortest),
         "hardest_packet_tried": _cost(figures.hardest),

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Module
+from amaranth.hdl import Module, Mux, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.gateware.deserializer_circuit import DeserializerCircuit
+from firm_hdl.gateware.buffer import Buffer
 from firm_hdl.gateware.members import member_tree
+from firm_hdl.gateware.mover import Mover
+from firm_hdl.gateware.orders import OrderQueue
+from firm_hdl.gateware.parser import Parser
 from firm_hdl.gateware.signatures import (
     MessageSignature,
     PacketSignature,
     StatusSignature,
+    leaf_streams,
 )
 from firm_hdl.model import Message
 from firm_hdl.plan import (
@@ -69,13 +73,11 @@ class Deserializer(wiring.Component):
         wire: Wire | None = None,
         bus_bytes: int = 8,
         max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
-        window_words: int = 1,
     ):
         self.plan = build_plan(
             lay_out(message, wire),
             bus_bytes=bus_bytes,
             max_message_bytes=max_message_bytes,
-            window_words=window_words,
         )
         self.tree = member_tree(leaf.path for leaf in self.plan.leaves)
         super().__init__(
@@ -87,4 +89,39 @@ class Deserializer(wiring.Component):
         )
 
     def elaborate(self, platform: object) -> Module:
-        return DeserializerCircuit(self).module
+        m = Module()
+        plan = self.plan
+        m.submodules.buffer = buffer = Buffer(plan)
+        m.submodules.parser = parser = Parser(plan)
+        m.submodules.queue = queue = OrderQueue(plan)
+        m.submodules.mover = mover = Mover(plan)
+        orders = queue.o
+        m.d.comb += [
+            buffer.packets.payload.eq(self.packets.payload),
+            buffer.packets.valid.eq(self.packets.valid),
+            self.packets.ready.eq(buffer.packets.ready),
+            parser.beat.eq(buffer.beat),
+            parser.limit.eq(buffer.limit),
+            parser.ended.eq(buffer.ended),
+            parser.following.eq(buffer.following),
+            buffer.next.eq(parser.next),
+            queue.i.payload.eq(parser.orders.payload),
+            queue.i.valid.eq(parser.orders.valid),
+            parser.orders.ready.eq(queue.i.ready),
+            mover.orders.payload.eq(orders.payload),
+            mover.orders.valid.eq(orders.valid),
+            orders.ready.eq(mover.orders.ready),
+            mover.beat.eq(buffer.beat),
+            buffer.freed.eq(Mux(orders.valid, orders.payload.first, parser.at)),
+            self.status.payload.eq(mover.status.payload),
+            self.status.valid.eq(mover.status.valid),
+            mover.status.ready.eq(self.status.ready),
+        ]
+        for leaf, interface in leaf_streams(self.message, self.tree).items():
+            made = getattr(mover, f"leaf_{leaf}")
+            m.d.comb += [
+                Value.cast(interface.payload).eq(Value.cast(made.payload)),
+                interface.valid.eq(made.valid),
+                made.ready.eq(interface.ready),
+            ]
+        return m

@@ -32,7 +32,7 @@ __all__ = [
     "signature_of",
 ]
 
-LATENCY_CYCLES = 2
+LATENCY_CYCLES = 5
 """Latency of both converters. Deserializer: from the beat that completes a leaf to the transfer of
 the leaf. Serializer: from the leaf that fills a beat or ends a packet to the beat.
 ``tests/gateware/test_latency.py`` measures it."""

@@ -2,8 +2,8 @@
 
 The layout is flattened into segments: bytes in a row whose map is static. A segment ends where a
 length decides what follows, where a loop starts or ends, or where padding is known in the circuit
-only. Segments are cut into steps (see :mod:`firm_hdl.plan.cut`). The step that holds a length also
-takes the first items of its run if the window has room for both.
+only. Segments are cut into steps (see :mod:`firm_hdl.plan.cut`). The last word of a run is its
+rest, which the step behind the run takes together with its own bytes.
 """
 
 from __future__ import annotations
@@ -11,11 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from firm_hdl.model import Primitive
-from firm_hdl.plan.cut import cut, split
+from firm_hdl.plan.cut import split, step_sizes
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
-    BeginArray,
     BeginLoop,
     BeginRun,
     Exits,
@@ -48,7 +47,6 @@ def build_plan(
     *,
     bus_bytes: int = 8,
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
-    window_words: int = 1,
 ) -> Plan:
     """Plan the converters of a layout.
 
@@ -59,11 +57,6 @@ def build_plan(
         Width of the packet stream: 1, 2, 4, 8, 16, 32 or 64 bytes.
     max_message_bytes : int
         A packet whose lengths promise more is an error; at most 2**32 - 1.
-    window_words : 1 or 2
-        Bus words that a step may take. With 2, the step that holds a length also takes the first
-        items, and remainders need no step of their own. This saves about one cycle for each string
-        or sequence, and costs a wider shifter and a longer path through it. Messages of fixed size
-        always have 2.
 
     Raises
     ------
@@ -74,14 +67,10 @@ def build_plan(
     """
     check_bus_bytes(bus_bytes)
     check_max_message_bytes(layout, max_message_bytes)
-    if not isinstance(window_words, int) or isinstance(window_words, bool):
-        raise TypeError(f"Window must have an integer number of words, not {window_words!r}")
-    if window_words not in (1, 2):
-        raise ValueError(f"Window must have 1 or 2 bus words, not {window_words!r}")
-    # Without lengths, a wide window does not slow the circuit down, and keeps the bus busy.
-    if not any(isinstance(n, RunNode | LoopNode) and n.count is None for n in walk(layout.nodes)):
-        window_words = 2
-    builder = _Builder(layout, bus_bytes, max_message_bytes, window_words * bus_bytes)
+    has_lengths = any(
+        isinstance(node, RunNode | LoopNode) and node.count is None for node in walk(layout.nodes)
+    )
+    builder = _Builder(layout, bus_bytes, max_message_bytes, has_lengths)
     steps = builder.build()
     return Plan(
         message=layout.message.name,
@@ -89,7 +78,7 @@ def build_plan(
         bus_bytes=bus_bytes,
         max_message_bytes=max_message_bytes,
         header_bytes=layout.rules.header_bytes,
-        slack_bytes=layout.rules.slack_bytes,
+        max_trailing_bytes=layout.rules.max_trailing_bytes,
         leaves=tuple(builder.leaves),
         runs=tuple(builder.runs),
         levels=builder.levels,
@@ -124,7 +113,7 @@ class _Builder:
     layout: Layout
     bus_bytes: int
     max_message_bytes: int
-    window_bytes: int
+    has_lengths: bool
     leaves: list[Leaf] = field(default_factory=list)
     runs: list[Run] = field(default_factory=list)
     levels: int = 0
@@ -132,6 +121,8 @@ class _Builder:
     program: list[Step | _Mark] = field(default_factory=list)
     segment: list[Slice] = field(default_factory=list)
     segment_align: int = 1
+    # The run whose rest the next step takes.
+    rest: int | None = None
     depth: int = 0
     # Index of the step at each place of the program that is a step.
     numbers: dict[int, int] = field(default_factory=dict)
@@ -144,6 +135,7 @@ class _Builder:
             self.segment.append(Fixed(at=len(rules.encapsulation), data=options, check=False))
         self.nodes(self.layout.nodes)
         self.flush()
+        self.flush_rest()
         places = [place for place, item in enumerate(self.program) if not isinstance(item, _Mark)]
         self.numbers = {place: index for index, place in enumerate(places)}
         return self.link()
@@ -211,29 +203,41 @@ class _Builder:
             self.item_loop(node, items, _Count(length=length, limit=limit))
         else:
             run = self.new_run(items, terminated=node.terminated)
-            self.run(node, BeginRun(length=length, limit=limit, run=run, body=None))
+            align = node.item_gap.align if node.item_gap.bytes != 0 else 1
+            self.flush(BeginRun(length=length, limit=limit, run=run, align=align, body=_END))
+            self.program.append(RunStep(run=run, exits=_NOWHERE))
+            self.rest = run
 
     def array(self, node: RunNode) -> None:
         assert node.count is not None
         items = self.leaf(node.path, "items", node.item, self.lanes(node.item))
         size = node.item.bytes
-        full, tail = divmod(node.count, self.lanes(node.item))
-        if node.count * size <= max(size, self.bus_bytes):
-            self.gap(node.item_gap)
-            self.value(items, node.count * size, last=True)
-            return
-        if size > self.bus_bytes:
+        if size > self.bus_bytes and node.count > 1:
             self.item_loop(node, items, node.count)
             return
         self.gap(node.item_gap)
-        run = self.new_run(items, last=not tail)
-        begin = BeginArray(count=full * self.lanes(node.item), run=run, body=None)
-        self.run(replace(node, item_gap=Gap(align=1, bytes=0)), begin)
+        lanes = self.lanes(node.item)
+        full, tail = divmod(node.count, lanes)
+        if node.count <= 2 * lanes:
+            # One or two transfers are as static as other values, and share steps with them.
+            left = node.count
+            if left > lanes:
+                self.value(items, lanes * size)
+                left -= lanes
+            self.value(items, left * size, last=True)
+            return
+        self.flush()
+        self.flush_rest()
+        run = self.new_run(items, counted=False, last=not tail)
+        self.program.append(_Mark(kind="enter", counter=RUN_COUNTER, count=full * lanes))
+        self.program.append(RunStep(align=self.take_align(), run=run, exits=_NOWHERE))
         if tail:
             self.value(items, tail * size, last=True)
 
-    def new_run(self, items: int, *, terminated: bool = False, last: bool = True) -> int:
-        self.runs.append(Run(items=items, terminated=terminated, last=last))
+    def new_run(
+        self, items: int, *, counted: bool = True, terminated: bool = False, last: bool = True
+    ) -> int:
+        self.runs.append(Run(items=items, counted=counted, terminated=terminated, last=last))
         return len(self.runs) - 1
 
     def item_loop(self, node: RunNode, items: int, count: int | _Count) -> None:
@@ -265,6 +269,8 @@ class _Builder:
         self.levels = max(self.levels, self.depth)
         if isinstance(count, int):
             self.flush()
+            # The step behind would also be reached from the end of the loop's body.
+            self.flush_rest()
             self.program.append(_Mark(kind="enter", counter=level, count=count))
         else:
             length, limit = count.length, count.limit
@@ -275,59 +281,78 @@ class _Builder:
     def leave_loop(self) -> None:
         self.flush()
         self.depth -= 1
+        self.join_rest()
         self.program.append(_Mark(kind="end", counter=self.depth))
 
-    # Segments to steps.
-
-    def run(self, node: RunNode, begin: BeginRun | BeginArray) -> None:
-        """End the segment with the start of a run, and add the run's body if it may be needed."""
-        at_once = self.bus_bytes + (1 if self.runs[begin.run].terminated else 0)
-        body = RunStep(run=begin.run, head=min(at_once, self.window_bytes), exits=_NOWHERE)
-        if isinstance(begin, BeginArray) and not self.segment:
-            self.flush()
-            self.program.append(_Mark(kind="enter", counter=RUN_COUNTER, count=begin.count))
-            self.program.append(replace(body, align=self.take_align()))
+    def join_rest(self) -> None:
+        """Let the first step of a body that ends take the rest of the body's last run."""
+        if self.rest is None:
             return
-        gap = node.item_gap.bytes
-        used = cut(self.segment, self.bus_bytes, self.bus_bytes)[-1] + (gap or 0)
-        head = min(at_once, self.window_bytes - used)
-        if gap is None or head < self.bus_bytes:
-            head = 0
-        self.flush(replace(begin, gap=gap or 0, head=head))
-        if not (isinstance(begin, BeginArray) and begin.count * node.item.bytes <= head):
-            self.program.append(replace(body, align=node.item_gap.align if gap is None else 1))
+        place = self.body_start(self.depth)
+        first = self.program[place]
+        # A step has room for a rest and one bus word.
+        if (
+            isinstance(first, MapStep)
+            and first.bytes <= self.bus_bytes
+            and first.rest in (None, self.rest)
+        ):
+            self.program[place] = replace(first, rest=self.rest)
+        else:
+            self.flush_rest()
+
+    def body_start(self, level: int) -> int:
+        """Return the place of the first step of the body of the innermost open loop."""
+        marks = (
+            place
+            for place, item in reversed(list(enumerate(self.program)))
+            if isinstance(item, _Mark) and item.kind == "loop" and item.counter == level
+        )
+        place = next(marks) + 1
+        while isinstance(self.program[place], _Mark):
+            place += 1
+        return place
+
+    # Segments to steps.
 
     def take_align(self) -> int:
         align, self.segment_align = self.segment_align, 1
         return align
+
+    def flush_rest(self) -> None:
+        """Take the rest of a run in a step of its own."""
+        if self.rest is not None:
+            self.program.append(MapStep(rest=self.rest, exits=_NOWHERE))
+            self.rest = None
 
     def flush(self, begin: Begin | None = None) -> None:
         """Cut the segment into steps. The last step starts `begin`."""
         if not self.segment:
             assert begin is None
             return
-        heads = begin is not None and not isinstance(begin, BeginLoop) and begin.head > 0
-        bus = self.bus_bytes
-        if not self.program and not heads:
-            # From the start of the packet, cuts at bus words need no shifter.
-            sizes = [min(bus, self.segment_bytes - at) for at in range(0, self.segment_bytes, bus)]
-            sizes = sizes or [0]
-        else:
-            # Elsewhere the offset is dynamic. The last step may be longer, so that a remainder
-            # takes no cycle, unless that room is needed for the head of a run.
-            sizes = cut(self.segment, bus, bus if heads else self.window_bytes)
+        # A remainder would cost a cycle in each turn, or in each packet of few bytes.
+        may_be_wide = self.depth > 0 or not self.has_lengths
+        if not self.program:
+            may_be_wide |= self.layout.min_bytes <= 16 * self.bus_bytes
+        sizes = step_sizes(
+            self.segment,
+            self.bus_bytes,
+            at_start=not self.program,
+            may_be_wide=may_be_wide,
+            has_rest=self.rest is not None,
+        )
         align = self.take_align()
-        steps = split(self.segment, sizes)
-        for index, slices in enumerate(steps):
+        for index, slices in enumerate(split(self.segment, sizes)):
             self.program.append(
                 MapStep(
+                    rest=self.rest,
                     align=align if index == 0 else 1,
                     bytes=sizes[index],
                     slices=slices,
-                    begin=begin if index == len(steps) - 1 else None,
+                    begin=begin if index == len(sizes) - 1 else None,
                     exits=_NOWHERE,
                 )
             )
+            self.rest = None
         self.segment = []
 
     # Control flow.
@@ -369,12 +394,10 @@ class _Builder:
                 if isinstance(begin, BeginLoop):
                     begin = replace(begin, body=self.jump_to(after))
                     after = ends[after] + 1
-                elif after < len(self.program):
-                    # If the run has a body, it is the next step.
-                    next_step = self.program[after]
-                    if isinstance(next_step, RunStep) and next_step.run == begin.run:
-                        begin = replace(begin, body=self.jump_to(after))
-                        after += 1
+                else:
+                    # The body of a run is the next step.
+                    begin = replace(begin, body=self.jump_to(after))
+                    after += 1
                 item = replace(item, begin=begin)
             steps.append(replace(item, exits=self.exits_at(after, bodies)))
         return tuple(steps)

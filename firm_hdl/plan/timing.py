@@ -1,8 +1,8 @@
 """The cycles that a converter takes for a packet, found by running its plan.
 
 A packet takes as many cycles as it has beats or steps, whichever is more. The packet with the most
-cycles per byte is searched for, not proved: short strings and few elements take a step each and
-have few bytes.
+cycles per byte is searched for, not proved: short strings and few elements take a step each, for
+their length, and have few bytes.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from itertools import product
 
 from firm_hdl.plan import Payload, Plan, decode, encode
-from firm_hdl.plan.geometry import geometry
 
 __all__ = ["LINE_RATES", "Cost", "Timing", "clock_mhz", "describe", "timing"]
 
@@ -49,10 +48,6 @@ class Timing:
     bus_bytes : int
     steps : int
         Number of steps of the plan; each takes one cycle, or one cycle per bus word of a run.
-    window_bytes : int
-        Largest number of bytes that one cycle takes.
-    window_beats : int
-        Largest number of beats that these bytes touch.
     shortest : Cost
         Cost of the packet with every length 0.
     hardest : Cost
@@ -61,8 +56,6 @@ class Timing:
 
     bus_bytes: int
     steps: int
-    window_bytes: int
-    window_beats: int
     shortest: Cost
     hardest: Cost
 
@@ -70,13 +63,13 @@ class Timing:
 def timing(plan: Plan) -> Timing:
     """Compute the figures of a plan."""
     bus = plan.bus_bytes
-    sizes = geometry(plan)
     shortest = hardest = _cost(plan, 0, 0)
     # In a long packet, short strings are a small part.
     is_short = shortest.bytes < 1 << 14
     if is_short and any(leaf.kind == "length" for leaf in plan.leaves):
         counts = sorted({0, 1, MAX_ELEMENTS.get(plan.levels, 2)})
-        for elements, items in product(counts, sorted({0, 1, bus // 2, bus, bus + 1})):
+        # A run takes one cycle for each bus word, so that longer ones are not harder.
+        for elements, items in product(counts, sorted({0, 1, bus // 2})):
             try:
                 cost = _cost(plan, elements, items, MAX_TRANSFERS)
             except _TooLongError:
@@ -86,8 +79,6 @@ def timing(plan: Plan) -> Timing:
     return Timing(
         bus_bytes=bus,
         steps=len(plan.steps),
-        window_bytes=sizes.window_bytes,
-        window_beats=sizes.window_beats,
         shortest=shortest,
         hardest=hardest,
     )

@@ -227,7 +227,6 @@ def test_a_cdr_string_of_length_zero_is_empty():
     [
         ("bus_bytes", 3, "Bus width must be one of 1, 2, 4, 8, 16, 32, 64 bytes, not 3"),
         ("wire", "can", f"Wire must be one of {', '.join(map(repr, RULES))}, not 'can'"),
-        ("window_words", 3, "Window must have 1 or 2 bus words, not 3"),
         (
             "max_message_bytes",
             1,

@@ -25,32 +25,26 @@ def cost(size, beats, steps):
 
 def test_figures_of_a_type_of_one_size():
     figures = timing(plan_of({"a": "uint32"}, 4, "ros2"))
-    only = cost(8, 2, 2)
-    assert figures == Timing(
-        bus_bytes=4, steps=2, window_bytes=4, window_beats=1, shortest=only, hardest=only
-    )
-
-
-def test_window_of_steps_that_stand_anywhere():
-    figures = timing(plan_of({"s": "string", "d": "uint64"}, 8))
-    assert (figures.window_bytes, figures.window_beats) == (8, 2)
+    # Header and field are two words, which one step takes.
+    only = cost(8, 2, 1)
+    assert figures == Timing(bus_bytes=4, steps=1, shortest=only, hardest=only)
 
 
 @pytest.mark.parametrize(
     ("fields", "bus_bytes", "shortest", "hardest"),
     [
-        # A length in one cycle; one character takes another one.
-        ({"s": "string"}, 8, cost(4, 1, 1), cost(5, 1, 2)),
+        # A length in one cycle; the end of the packet, which takes the rest, in another one.
+        ({"s": "string"}, 8, cost(4, 1, 2), cost(4, 1, 2)),
         # Longer texts are easier: the bus is busy all the time.
         ({"s": "string"}, 1, cost(4, 4, 4), cost(4, 4, 4)),
-        # In loops, 16 elements, each a length and a character in two cycles.
-        ({"d": "uint64[3]", "t": (TEXT, "[]")}, 8, cost(28, 4, 4), cost(108, 14, 36)),
+        # In loops, 16 elements, each a length in a cycle, which also takes the rest before.
+        ({"d": "uint64[3]", "t": (TEXT, "[]")}, 8, cost(28, 4, 5), cost(92, 12, 21)),
         # Not more than the bound allows.
-        ({"d": "uint64[3]", "t": (TEXT, "[<=3]")}, 8, cost(28, 4, 4), cost(43, 6, 10)),
-        # In loops in loops 4 of each: a cycle for each length but the first, and each character.
-        ({"d": "uint64[3]", "rows": (ROW, "[]")}, 8, cost(28, 4, 4), cost(124, 16, 40)),
-        # Texts make it harder, and elements that fill the bus easier: a character, and no element.
-        ({"s": "string", "w": (WIDE, "[]")}, 8, cost(8, 1, 2), cost(9, 2, 3)),
+        ({"d": "uint64[3]", "t": (TEXT, "[<=3]")}, 8, cost(28, 4, 5), cost(40, 5, 8)),
+        # In loops in loops 4 of each: a cycle for each length.
+        ({"d": "uint64[3]", "rows": (ROW, "[]")}, 8, cost(28, 4, 5), cost(108, 14, 25)),
+        # Texts and elements that fill the bus make it easier.
+        ({"s": "string", "w": (WIDE, "[]")}, 8, cost(8, 1, 2), cost(8, 1, 2)),
         # Elements that fill the bus are no harder than none.
         ({"pairs": (PAIR, "[]")}, 4, cost(4, 1, 1), cost(4, 1, 1)),
     ],
@@ -65,26 +59,29 @@ def test_shortest_and_hardest_packets(fields, bus_bytes, shortest, hardest):
 @pytest.mark.parametrize(
     ("fields", "bus_bytes", "hardest"),
     [
-        # No text at all in one element: its NUL is a cycle of its own.
-        ({"t": (TEXT, "[]")}, 2, cost(13, 7, 7)),
-        # Items that fill a word and one more, or just a word, so that the next field starts anew.
-        ({"t": (TEXT, "[]"), "a": "uint8", "b": "uint16[]"}, 2, cost(24, 12, 13)),
-        ({"s": "string", "a": "uint8[]", "b": "uint8"}, 2, cost(20, 10, 11)),
-        ({"a": "uint8[]", "b": "uint16", "c": "float64[]"}, 4, cost(60, 15, 16)),
+        # No text at all in one element: its NUL is a beat of its own.
+        ({"t": (TEXT, "[]")}, 2, cost(13, 7, 5)),
+        # One item is a beat of its own, too.
+        ({"a": "uint8[]"}, 2, cost(9, 5, 4)),
+        # None, because the packet ends in a cycle of its own.
+        ({"a": "uint8[]"}, 8, cost(8, 1, 2)),
+        # Half a word of text, a NUL and padding: the last field starts a beat.
+        ({"s": "string", "b": "uint16"}, 4, cost(14, 4, 2)),
     ],
 )
-def test_lengths_around_the_bus_width_are_tried(fields, bus_bytes, hardest):
+def test_lengths_up_to_half_a_bus_word_are_tried(fields, bus_bytes, hardest):
     assert timing(plan_of(fields, bus_bytes, "ros2")).hardest == hardest
 
 
 def test_packets_with_too_many_transfers_are_left_out(monkeypatch):
     fields = {"d": "uint64[3]", "t": (TEXT, "[]")}
-    # 3 transfers, a length, and two for each element.
+    # 3 transfers, a length, and for each element another one, and one more if it has text.
     hardest = {
-        36: cost(108, 14, 36),
-        35: cost(92, 12, 20),
-        20: cost(92, 12, 20),
-        19: cost(33, 5, 6),
+        36: cost(92, 12, 21),
+        20: cost(92, 12, 21),
+        19: cost(32, 4, 6),
+        5: cost(32, 4, 6),
+        4: cost(28, 4, 5),
     }
     for most, found in hardest.items():
         monkeypatch.setattr("firm_hdl.plan.timing.MAX_TRANSFERS", most)
@@ -93,7 +90,7 @@ def test_packets_with_too_many_transfers_are_left_out(monkeypatch):
 
 @pytest.mark.parametrize(("count", "searched"), [(2046, True), (2047, True), (2048, False)])
 def test_nothing_is_searched_where_short_texts_are_a_small_part(count, searched):
-    figures = timing(plan_of({"d": f"float64[{count}]", "s": "string"}, 8))
+    figures = timing(plan_of({"d": f"float64[{count}]", "t": (TEXT, "[]")}, 8))
     assert figures.shortest.bytes == 8 * count + 4
     assert (figures.hardest.bytes > figures.shortest.bytes) == searched
 
@@ -112,13 +109,18 @@ ONE_SIZE = """\
 N on ros1, 32-bit bus: 1 step; packet 4 bytes, 1 beat, 1 cycle
     clock for every packet: 100 Mbit/s 3.1 MHz, 1 Gbit/s 31.2 MHz, 10 Gbit/s 312.5 MHz"""
 LONG = """\
-N on ros1, 64-bit bus: 2 steps; shortest packet 4 bytes, 1 beat, 1 cycle
+N on ros1, 64-bit bus: 3 steps; shortest packet 4 bytes, 1 beat, 2 cycles
     clock for long strings or arrays: 100 Mbit/s 1.6 MHz, 1 Gbit/s 15.6 MHz, 10 Gbit/s 156.2 MHz
-    clock for the hardest packet tried (5 bytes, 1 beat, 2 cycles): 100 Mbit/s 5.0 MHz, \
-1 Gbit/s 50.0 MHz, 10 Gbit/s 500.0 MHz"""
+    clock for the hardest packet tried (the shortest): 100 Mbit/s 6.2 MHz, 1 Gbit/s 62.5 MHz, \
+10 Gbit/s 625.0 MHz"""
+TEXTS = """\
+N on ros1, 64-bit bus: 4 steps; shortest packet 4 bytes, 1 beat, 2 cycles
+    clock for long strings or arrays: 100 Mbit/s 1.6 MHz, 1 Gbit/s 15.6 MHz, 10 Gbit/s 156.2 MHz
+    clock for the hardest packet tried (8 bytes, 1 beat, 4 cycles): 100 Mbit/s 6.2 MHz, \
+1 Gbit/s 62.5 MHz, 10 Gbit/s 625.0 MHz"""
 # Its array is of one size, and its sequence is of messages.
 MANY = """\
-N on ros1, 32-bit bus: 3 steps; shortest packet 7 bytes, 2 beats, 2 cycles
+N on ros1, 32-bit bus: 2 steps; shortest packet 7 bytes, 2 beats, 2 cycles
     clock for the hardest packet tried (the shortest): 100 Mbit/s 3.6 MHz, 1 Gbit/s 35.7 MHz, \
 10 Gbit/s 357.1 MHz"""
 

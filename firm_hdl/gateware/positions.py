@@ -1,0 +1,184 @@
+"""Positions of bytes in the packet buffer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from amaranth.hdl import Cat, Const, Module, Signal, Value
+from amaranth.lib import data
+
+from firm_hdl.plan import Plan
+
+__all__ = [
+    "Ring",
+    "align_up",
+    "any_of",
+    "beat_layout",
+    "pick",
+    "raised_by",
+    "rotate",
+    "sum_of_three",
+]
+
+
+class Ring:
+    """The shape of positions: a lane of a bus word, the word's place in the ring, and a lap bit.
+
+    Attributes
+    ----------
+    depth : int
+        Words of the ring; a power of two. More than the words that one step can touch.
+    lane_bits, beat_bits, bits : int
+        Bits of the lane, of the word (the lap bit included), and of a whole position.
+    """
+
+    def __init__(self, plan: Plan):
+        self.plan = plan
+        self.bus = plan.bus_bytes
+        self.depth = 8 if self.bus > 2 else 16
+        self.lane_bits = self.bus.bit_length() - 1
+        self.beat_bits = self.depth.bit_length()
+        self.bits = self.lane_bits + self.beat_bits
+
+    def position(self, name: str, **kwargs: object) -> Signal:
+        return Signal(self.bits, name=name, **kwargs)  # type: ignore[arg-type]
+
+    def lane(self, position: Value) -> Value:
+        return position[: self.lane_bits]
+
+    def beat(self, position: Value) -> Value:
+        """Return the word with its lap bit."""
+        return position[self.lane_bits :]
+
+    def slot(self, position: Value) -> Value:
+        """Return the place of the word in the ring."""
+        return position[self.lane_bits : self.bits - 1]
+
+
+def beat_layout(plan: Plan) -> data.StructLayout:
+    """Return a beat on its way into the packet buffer.
+
+    Members
+    -------
+    data : unsigned(8 * bus_bytes)
+    count : range(bus_bytes + 1)
+        Valid bytes; only used if `last`.
+    last : unsigned(1)
+    at : beat
+        Where it is written, with the lap bit.
+    valid : unsigned(1)
+    """
+    bus = plan.bus_bytes
+    return data.StructLayout(
+        {
+            "data": 8 * bus,
+            "count": range(bus + 1),
+            "last": 1,
+            "at": Ring(plan).beat_bits,
+            "valid": 1,
+        }
+    )
+
+
+def raised_by(align: int, phase: int, shift: int = 0) -> int:
+    """Return what to add so that clearing low bits rounds up; see `align_up`."""
+    return align - 1 - phase % align + (phase % align + shift) // align * align
+
+
+def align_up(
+    m: Module, value: Value, distance: Value | int, align: int, phase: Value | int, shift: int = 0
+) -> Value:
+    """Return `shift` bytes behind the first aligned position from `value + distance` on.
+
+    Parameters
+    ----------
+    align : int
+        A power of two. Positions are aligned that are a multiple of it behind `phase`.
+    phase : Value or int
+        If it is a constant, there is one carry chain.
+    """
+    total = Signal(len(value))
+    if align == 1:
+        m.d.comb += total.eq(value + distance + shift)
+        return total
+    if isinstance(phase, int):
+        low = align.bit_length() - 1
+        m.d.comb += total.eq(value + (distance + raised_by(align, phase, shift)))
+        return Cat(Const((phase + shift) % align, low), total[low:])
+    pad, result = Signal(3), Signal(len(value))
+    m.d.comb += [
+        total.eq(value + distance),
+        pad.eq((phase - total) & (align - 1)),
+        result.eq(total + pad + shift),
+    ]
+    return result
+
+
+def pick(cases: Iterable[tuple[Value, Value | int]], width: int) -> Value:
+    """Select a value by signals of which at most one is high: an AND-OR without priority."""
+    cases = list(cases)
+    bits: list[list[Value]] = [[] for _ in range(width)]
+    for chosen, value in cases:
+        if isinstance(value, int):
+            for k in range(width):
+                if value >> k & 1:
+                    bits[k].append(chosen)
+        else:
+            for k in range(min(width, len(value))):
+                bits[k].append(chosen & value[k])
+    return Cat(any_of(column) for column in bits)
+
+
+def any_of(values: Sequence[Value]) -> Value:
+    return Cat(values).any() if values else Const(0, 1)
+
+
+def rotate(
+    m: Module,
+    value: Value,
+    lane: Value,
+    lanes: Sequence[int],
+    unit: int,
+    name: str,
+    most: int = 2,
+) -> Value:
+    """Rotate a bus word so that the byte of a lane comes first.
+
+    Parameters
+    ----------
+    lanes : sequence of int
+        The lanes that are possible; others are don't care.
+    unit : int
+        Bits per lane.
+    most : 1 or 2
+        Bits of `lane` per stage: 1 is smaller, 2 is faster.
+    """
+    if tuple(lanes) == (0,):
+        return value
+    twice = Cat(value, value)
+    if len(lanes) == 1:
+        return twice[lanes[0] * unit : lanes[0] * unit + len(value)]
+    common = len(value) // unit
+    while any(a % common != lanes[0] % common for a in lanes):
+        common //= 2
+    first = lanes[0] % common
+    now = twice[first * unit : first * unit + len(value)]
+    low, high = common.bit_length() - 1, (len(value) // unit).bit_length() - 1
+    while low < high:
+        take = min(most, 2 if (high - low) % 2 == 0 else 1)
+        result = Signal(len(value), name=f"{name}_{low}")
+        with m.Switch(lane[high - take : high]):
+            for k in range(1 << take):
+                with m.Case(k):
+                    at = (k << (high - take)) * unit
+                    m.d.comb += result.eq(Cat(now, now)[at : at + len(value)])
+        now, high = result, high - take
+    return now
+
+
+def sum_of_three(a: Value, b: Value, c: Value) -> Value:
+    """Return a sum modulo the width of `a`, with one carry chain; `b` and `c` are sign-extended."""
+    width = len(a)
+    b, c = (Cat(x, x[-1].replicate(width))[:width] for x in (b, c))
+    carry = (a & b) | (a & c) | (b & c)
+    return (a ^ b ^ c) + Cat(Const(0, 1), carry[:-1])
