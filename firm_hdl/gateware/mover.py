@@ -95,8 +95,8 @@ class _Circuit:
         self.m = m = Module()
         plan = self.plan
         self.order = mover.orders.payload
-        self.full, self.take, self.done = (Signal(name=n) for n in ("full", "take", "done"))
-        m.d.comb += [self.take.eq(~self.full | self.done), mover.orders.ready.eq(self.take)]
+        self.take = Signal(name="take")
+        m.d.comb += mover.orders.ready.eq(self.take)
         self.streams = [getattr(mover, f"leaf_{k}") for k in range(len(plan.leaves))]
         # No reset: where an error writes 0, the reset of the flip-flop does it.
         self.payloads = [
@@ -113,7 +113,7 @@ class _Circuit:
         self.have: dict[str, Signal] = {}
         self._read()
         self.counted, self.last = self._kept("counted"), self._kept("last")
-        self.final, self.ends = self._kept("final"), self._kept("ends")
+        self.final, self.ends = self._kept("final"), Signal(name="ends_now")
         self.writers = list(self._writers())
         self._serve()
         self._carry()
@@ -213,50 +213,50 @@ class _Circuit:
         """
         m, c, order = self.m, self.c, self.order
         repeated, status_repeats = _repeated(self.plan)
-        served = [Signal(name=f"served_{k}") for k in range(1 + max(self._slots, default=0))]
-        slow, now, comes = Signal(name="slow"), list[Value](), list[Value]()
-        waits: list[Value] = []
+        slow, now, comes, waits = Signal(name="slow"), list[Value](), list[Value](), list[Value]()
+        wanted: dict[int, list[tuple[Value, Value]]] = {}
         for writer in self.writers:
             port = self.streams[writer.leaf]
             chosen = c.orders.valid & ~order.blank & (order.step == writer.step)
             if writer.part is None and self._run(writer).counted:
                 chosen = chosen & order.items
-            with m.If(self.take):
-                m.d.sync += writer.active.eq(chosen)
-            left = writer.active & ~served[writer.slot]
+            m.d.sync += writer.active.eq(Mux(self.take, chosen, writer.active & ~writer.go))
             earlier = [
                 each.blocked
                 for each in self.writers
                 if each.step == writer.step and each.slot < writer.slot
             ]
-            m.d.comb += writer.go.eq(left & ~writer.blocked & ~any_of(earlier))
+            m.d.comb += writer.go.eq(writer.active & ~writer.blocked & ~any_of(earlier))
             if writer.leaf in repeated:
-                m.d.comb += writer.blocked.eq(left & port.valid & ~port.ready)
-                now.append(writer.blocked)
+                m.d.comb += writer.blocked.eq(writer.active & port.valid & ~port.ready)
+                wanted.setdefault(writer.leaf, []).append((chosen, writer.go))
             else:
-                m.d.comb += writer.blocked.eq(left & port.valid)
+                m.d.comb += writer.blocked.eq(writer.active & port.valid)
                 waits.append(writer.blocked & ~port.ready)
                 comes.append(chosen & port.valid & ~port.ready)
-        stuck = c.status.valid & ~c.status.ready
+        for leaf, writers in wanted.items():
+            port, want = self.streams[leaf], Signal(name=f"want_{leaf}")
+            m.d.sync += want.eq(
+                Mux(
+                    self.take,
+                    any_of([chosen for chosen, _ in writers]),
+                    want & ~any_of([go for _, go in writers]),
+                )
+            )
+            now.append(want & port.valid & ~port.ready)
+        stuck, ends = c.status.valid & ~c.status.ready, c.orders.valid & order.ends
         if status_repeats:
             now.append(self.ends & stuck)
         else:
             waits.append(self.ends & stuck)
-            comes.append(c.orders.valid & order.ends & stuck)
-        with m.If(self.take):
-            m.d.sync += self.full.eq(c.orders.valid)
+            comes.append(ends & stuck)
         m.d.sync += slow.eq(Mux(self.take, any_of(comes), any_of(waits)))
-        m.d.comb += self.done.eq(self.full & ~slow & ~any_of(now))
+        m.d.comb += self.take.eq(~slow & ~any_of(now))
         status = self._kept("status")
-        with m.If(self.done & self.ends):
-            m.d.sync += [c.status.valid.eq(1), c.status.payload.eq(status)]
-        for k, flag in enumerate(served):
-            goes = any_of([w.go for w in self.writers if w.slot == k])
-            m.d.sync += flag.eq((flag | goes) & ~self.done)
-
-    @property
-    def _slots(self) -> list[int]:
-        return [writer.slot for writer in self.writers]
+        with m.If(self.take):
+            m.d.sync += self.ends.eq(ends)
+            with m.If(self.ends):
+                m.d.sync += [c.status.valid.eq(1), c.status.payload.eq(status)]
 
     def _run(self, writer: _Writer) -> Run:
         """Return the run of which the writer writes a word or the rest."""
@@ -297,7 +297,7 @@ class _Circuit:
                     _, good = self._byte(step, part.at + end - part.first - 1)
                     value = Mux(good, value, 0)
                 at = 8 * (part.first + k)
-                with m.If(self.done & here):
+                with m.If(self.take & here):
                     m.d.sync += self.carried[at : at + 8].eq(value)
 
     def _whole(self, writer: _Writer, begin: int, end: int) -> tuple[Value, Value]:

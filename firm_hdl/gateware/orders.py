@@ -68,19 +68,36 @@ class OrderQueue(wiring.Component):
     i : In(stream.Signature(order_layout(plan)))
     o : Out(stream.Signature(order_layout(plan)))
         Latency 1 cycle.
+    at : In(beat)
+        The first beat that the sender of orders still needs.
+    freed : Out(beat)
+        Beats in front of this one are needed by no one: the first beat of the oldest order.
     """
 
     def __init__(self, plan: Plan):
-        layout = order_layout(plan)
-        super().__init__({"i": In(stream.Signature(layout)), "o": Out(stream.Signature(layout))})
+        layout, beat = order_layout(plan), Ring(plan).beat_bits
+        super().__init__(
+            {
+                "i": In(stream.Signature(layout)),
+                "o": Out(stream.Signature(layout)),
+                "at": In(beat),
+                "freed": Out(beat),
+            }
+        )
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
         # The order that came while `o` was waiting.
         second = Signal(self.i.payload.shape(), reset_less=True)
         has_second = Signal()
-        m.d.comb += self.i.ready.eq(~has_second)
-        with m.If(~self.o.valid | self.o.ready):
+        m.d.comb += [
+            self.i.ready.eq(~has_second),
+            self.freed.eq(
+                Mux(self.o.valid, self.o.payload.first, Mux(has_second, second.first, self.at))
+            ),
+        ]
+        # `o` waits for `ready` even if it has no order: so `ready` alone enables its registers.
+        with m.If(self.o.ready):
             m.d.sync += [
                 self.o.valid.eq(self.i.valid | has_second),
                 self.o.payload.eq(Mux(has_second, Value.cast(second), Value.cast(self.i.payload))),
