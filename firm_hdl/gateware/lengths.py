@@ -18,7 +18,7 @@ from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.flow import exceeds
 from firm_hdl.gateware.positions import Ring, align_up, beat_layout
-from firm_hdl.plan import BeginRun, Jump, MapStep, Plan
+from firm_hdl.plan import BeginRun, Jump, MapStep, Plan, RunStep
 from firm_hdl.plan.geometry import Geometry
 
 __all__ = ["LENGTH_BYTES", "Lengths", "Meaning", "shift_of"]
@@ -27,10 +27,14 @@ LENGTH_BYTES = 4
 
 
 def shift_of(plan: Plan, step: int | None) -> int:
-    """Return the distance from the start of a step's map to the last byte of its length, or 0."""
-    if step is None or plan.steps[step].begin is None:
-        return 0
-    return plan.steps[step].bytes - 1
+    """Return the distance from the start of a step's own bytes to the last one of them.
+
+    It is -1 if there are none, as at the end of the packet (`None`).
+    """
+    if step is None:
+        return -1
+    taken = plan.steps[step]
+    return (plan.bus_bytes if isinstance(taken, RunStep) else taken.bytes) - 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,14 +90,11 @@ class Meaning:
         """Items of the rest."""
         return f"rest_{self.kind}"
 
-    def place(self, jump: Jump) -> str:
-        """The place of the step that follows if all items are in the rest."""
+    def last(self, jump: Jump) -> str:
+        """The last byte of the step that follows if all items are in the rest."""
         assert self.run is not None and jump.step is not None
-        return f"place_{self.kind}_{self.run.align}_{self.plan.steps[jump.step].align}"
-
-    def key(self, jump: Jump) -> str:
-        """The last byte of the length of the step that follows."""
-        return f"{self.place(jump)}_{shift_of(self.plan, jump.step)}"
+        align, shift = self.plan.steps[jump.step].align, shift_of(self.plan, jump.step)
+        return f"last_{self.kind}_{self.run.align}_{align}_{shift + 1}"
 
     @property
     def jumps(self) -> Iterator[Jump]:
@@ -155,9 +156,7 @@ class Lengths(wiring.Component):
             if meaning.run is not None:
                 fields[meaning.rest] = self._lanes_of(meaning).bit_length()
                 for jump in meaning.jumps:
-                    fields[meaning.place(jump)] = self.ring.bits
-                    if shift_of(self.plan, jump.step):
-                        fields[meaning.key(jump)] = self.ring.bits
+                    fields[meaning.last(jump)] = self.ring.bits
         return fields
 
     def _lanes_of(self, meaning: Meaning) -> int:
@@ -226,7 +225,7 @@ class Lengths(wiring.Component):
     def _places(
         self, m: Module, length: Signal, lane: int, entry: data.View, meaning: Meaning
     ) -> None:
-        """Decode where the next step starts if there is no word in front of the rest."""
+        """Decode where the next step ends if there is no word in front of the rest."""
         ring, run = self.ring, meaning.run
         assert run is not None
         phase: Value | int = self.plan.header_bytes if self.plan.bus_bytes >= 8 else self.phase
@@ -243,7 +242,5 @@ class Lengths(wiring.Component):
         for jump in meaning.jumps:
             assert jump.step is not None
             align, shift = self.plan.steps[jump.step].align, shift_of(self.plan, jump.step)
-            m.d.comb += entry[meaning.place(jump)].eq(align_up(m, behind, 0, align, phase))
-            if shift:
-                key = align_up(m, behind, 0, align, phase, shift)
-                m.d.comb += entry[meaning.key(jump)].eq(key)
+            last = align_up(m, behind, 0, align, phase, shift)
+            m.d.comb += entry[meaning.last(jump)].eq(last)

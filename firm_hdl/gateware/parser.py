@@ -98,10 +98,10 @@ class _Circuit:
         }
         self.flow = self._flow()
         self.state, self.step = self.flow.state, self.flow.step
-        # Start of the map or word of the step, and behind the step before it; the last byte of the
-        # step's length.
-        self.place, self.first = ring.position("place"), ring.position("first")
-        self.key = ring.position("key", init=shift_of(plan, plan.start.step))
+        # The last byte of the step's map or word, which is that of its length, and the byte behind
+        # the step before it, or the first item of a run.
+        self.last = ring.position("last", init=shift_of(plan, plan.start.step) % (1 << ring.bits))
+        self.first = ring.position("first")
         # Items of the rest of a run, and the position of its NUL, if one must be there.
         lanes = max((plan.leaves[run.items].lanes for run in plan.runs), default=1)
         self.rest = Signal(range(lanes + 1), name="rest")
@@ -113,8 +113,9 @@ class _Circuit:
         self.phase = self._phase()
         self.behind, self.left = ring.position("behind"), ring.position("left")
         self.present, self.done = Signal(name="present"), Signal(name="done")
+        self.leaves = Signal(name="leaves")
         self.ends, self.closes = Signal(name="ends"), Signal(name="closes")
-        self.issue = Signal(name="issue")
+        self.issue, self.blind = Signal(name="issue"), Signal(name="blind")
         self._look_up()
         self._decide()
         self._judge()
@@ -127,29 +128,28 @@ class _Circuit:
         plan = self.plan
         counts = [meaning.max_count for meaning in self.meanings.values()]
         counts += [count for jump in plan.jumps() for _, count in jump.enter]
-        width = (2 * plan.bus_bytes).bit_length()
         flags = "run_begin loop_begin words counted rest lead plain end"
-        # `less` is 1 - need in two's complement.
-        fields = {"need": width, "less": width + 1} | dict.fromkeys(flags.split(), 1)
+        # `back` is in two's complement.
+        fields = {"back": plan.bus_bytes.bit_length() + 1} | dict.fromkeys(flags.split(), 1)
         bits = max(counts, default=1).bit_length()
         return Flow(self.m, plan, bits, fields, self._traits, has_end=True)
 
     def _traits(self, index: int | None) -> dict[str, int]:
         plan, bus = self.plan, self.plan.bus_bytes
         if index is None:
-            return {"end": 1, "less": 1}
+            return {"end": 1, "back": 1}
         step = plan.steps[index]
         is_words = isinstance(step, RunStep)
-        need = bus if is_words else step.bytes
+        is_lead = step.bytes > bus
         return {
-            "need": need,
-            "less": 1 - need,
+            # From the last byte to the first one of the map's last word.
+            "back": is_lead * bus - shift_of(plan, index),
             "run_begin": isinstance(step.begin, BeginRun),
             "loop_begin": isinstance(step.begin, BeginLoop),
             "words": is_words,
             "counted": isinstance(step, RunStep) and plan.runs[step.run].counted,
             "rest": step.rest is not None,
-            "lead": step.bytes > bus,
+            "lead": is_lead,
             "plain": step.begin is None and not is_words,
         }
 
@@ -165,12 +165,12 @@ class _Circuit:
     def _look_up(self) -> None:
         m, c, plan = self.m, self.c, self.plan
         if not self.meanings:
-            self.zero = self.over = self.skips = self.single = self.count = Const(0, 1)
-            self.next_rest = Const(0, 1)
+            self.zero = self.over = self.single = self.count = Const(0, 1)
+            self.run_skips = self.loop_skips = self.next_rest = Const(0, 1)
             self.entry = None
             return
         m.submodules.lengths = lengths = Lengths(plan, geometry(plan))
-        m.d.comb += [lengths.beat.eq(c.beat), lengths.key.eq(self.key)]
+        m.d.comb += [lengths.beat.eq(c.beat), lengths.key.eq(self.last)]
         if plan.bus_bytes < 8:
             # The phase of the packet that arrives.
             phase = Signal(3, name="arriving_phase", init=plan.header_bytes % 8)
@@ -181,23 +181,37 @@ class _Circuit:
         self.entry = lengths.entry
         self.zero, self.count = self.entry.zero, self.entry.count
         self.over = self._select(lambda meaning: meaning.over)
-        self.skips = self._select(lambda meaning: meaning.skips)
+        good = ~self.bad
+        self.run_skips = self._select(
+            lambda meaning: meaning.skips if meaning.run is not None else None, on=good
+        )
+        self.loop_skips = self._select(
+            lambda meaning: meaning.skips if meaning.run is None else None, on=good
+        )
         self.single = self._select(lambda meaning: meaning.single)
         self.next_rest = self._select(
             lambda meaning: meaning.rest if meaning.run is not None else None, len(self.rest)
         )
 
-    def _select(self, name: Callable[[Meaning], str | None], width: int = 1) -> Value:
-        """Select a field of the entry by the step; 0 where there is none."""
+    def _select(
+        self, name: Callable[[Meaning], str | None], width: int = 1, on: Value | None = None
+    ) -> Value:
+        """Select a field of the entry by the step. With `on`, it is 0 without, and in other steps.
+
+        A field is late in the cycle, and what selects it is not.
+        """
         fields: dict[str, list[Value]] = {}
         for index, meaning in self.meanings.items():
             field = name(meaning)
             if field is not None:
                 fields.setdefault(field, []).append(self.step[index])
-        if len(fields) == 1:
+        if len(fields) == 1 and on is None:
             return Value.cast(self.entry[next(iter(fields))])
         return pick(
-            [(any_of(chosen), Value.cast(self.entry[field])) for field, chosen in fields.items()],
+            [
+                (any_of(chosen) & (1 if on is None else on), Value.cast(self.entry[field]))
+                for field, chosen in fields.items()
+            ],
             width,
         )
 
@@ -207,15 +221,17 @@ class _Circuit:
         """Decide whether all bytes are present, and which way the step is left."""
         m, c, state, flow = self.m, self.c, self.state, self.flow
         is_begin = state.run_begin | state.loop_begin
-        leaves = state.plain | (state.words & flow.words.last)
         m.d.comb += [
-            self.behind.eq(self.place + state.need),
-            # limit - place - need.
-            self.left.eq(sum_of_three(c.limit, ~self.place, state.less.as_signed())),
+            self.behind.eq(self.last + 1),
+            # limit - last - 1.
+            self.left.eq(c.limit + ~self.last),
             self.present.eq(~self.left[-1]),
-            self.done.eq(leaves | (is_begin & (self.bad | self.skips))),
+            self.leaves.eq(state.plain | (state.words & flow.words.last)),
+            self.done.eq(
+                self.leaves | (is_begin & self.bad) | self.run_skips | self.loop_skips
+            ),
             # Where a length ends the packet, the end is a step of its own: it is known too late.
-            self.ends.eq(state.end | (flow.exit_ends & leaves)),
+            self.ends.eq(state.end | (flow.exit_ends & self.leaves)),
             self.closes.eq(self.ends & c.ended),
         ]
 
@@ -230,7 +246,7 @@ class _Circuit:
         m.d.comb += [
             marks.beat.eq(c.beat),
             marks.nul_at.eq(self.nul_at),
-            marks.header_at.eq(self.ring.beat(self.place)),
+            marks.header_at.eq(self.ring.beat(self.first)),
             within.eq(c.limit - self.nul_at),
             wrong_nul.eq(self.has_nul & self.state.rest & marks.nonzero),
             trailing.eq(self.present & too_many),
@@ -238,9 +254,10 @@ class _Circuit:
         ]
         headers = [self.step[i] & marks.mismatch[k] for k, i in enumerate(marks.steps)]
         if headers:
-            begun = self.ring.position("place_within")
+            # Nothing is in front of the bytes of a header that is checked.
+            begun = self.ring.position("header_within")
             m.d.comb += [
-                begun.eq(c.limit - self.place),
+                begun.eq(c.limit - self.first),
                 mismatch.eq(any_of(headers) & ~begun[-1] & begun.any()),
             ]
         m.d.comb += begins.eq(self.issue & (self.state.run_begin | self.state.loop_begin))
@@ -273,29 +290,43 @@ class _Circuit:
 
     def _note(self) -> None:
         """After an error, find out how much of the step's words is good."""
-        m, bus = self.m, self.plan.bus_bytes
-        ring, code = self.ring, self.code
+        m, bus, state = self.m, self.plan.bus_bytes, self.state
+        ring, code, limit = self.ring, self.code, self.c.limit
         self.items_at, self.map_at = ring.position("items_at"), ring.position("map_at")
+        back = state.back.as_signed()
         m.d.comb += [
-            self.items_at.eq(Mux(self.state.rest, self.first, self.place)),
-            self.map_at.eq(Cat(ring.lane(self.place), ring.beat(self.place) + self.state.lead)),
+            self.map_at.eq(self.last + back),
+            self.items_at.eq(
+                Mux(
+                    state.rest,
+                    self.first,
+                    Cat(ring.lane(self.map_at), ring.beat(self.map_at) - state.lead),
+                )
+            ),
         ]
+        # Bytes from the first one of the map's last word to the packet's end.
+        behind_map = ring.position("behind_map")
+        m.d.comb += behind_map.eq(sum_of_three(limit, ~self.last, (1 - back)))
+        map_room = self._room(behind_map)
+        items_room = Mux(state.rest, self._room(limit - self.first), map_room)
+        # Of two words, that of items is in front of the map's.
+        in_front = Mux(ring.beat(behind_map).all(), ring.lane(behind_map), 0)
+        items_room = Mux(state.lead, Mux(behind_map[-1], in_front, bus), items_room)
         with m.If(self.bad):
             m.d.sync += self.noted.eq(0)
             with m.If(self.noted):
                 is_cut, trails = code == Status.TRUNCATED, code == Status.TRAILING
                 whole = Mux(trails | (code == Status.STRING), bus, 0)
                 m.d.sync += [
-                    self.items_room.eq(Mux(is_cut, self._room(self.items_at), whole)),
-                    self.map_room.eq(Mux(is_cut, self._room(self.map_at), Mux(trails, bus, 0))),
+                    self.items_room.eq(Mux(is_cut, items_room, whole)),
+                    self.map_room.eq(Mux(is_cut, map_room, Mux(trails, bus, 0))),
                 ]
-            with m.Elif(self.issue):
+            with m.Elif(self.blind & self.c.orders.ready):
                 m.d.sync += [self.items_room.eq(0), self.map_room.eq(0)]
 
-    def _room(self, start: Value) -> Value:
-        """Return how many bytes of a word are in front of the packet's end."""
-        bus = self.plan.bus_bytes
-        room = (self.c.limit - start)[: self.ring.bits]
+    def _room(self, room: Value) -> Value:
+        """Return how many bytes of a word are in front of the packet's end, from its start on."""
+        bus, room = self.plan.bus_bytes, room[: self.ring.bits]
         return Mux(room[-1], 0, Mux(room >= bus, bus, room[: bus.bit_length()]))
 
     def _order(self) -> None:
@@ -303,7 +334,7 @@ class _Circuit:
         order, bus, bad = c.orders.payload, self.plan.bus_bytes, self.bad
         # After an error, steps look at nothing; before, at whether all is here and good. What is
         # late in the cycle is kept apart, as `ready` and `closes` are early.
-        blind, sighted = Signal(name="blind"), Signal(name="sighted")
+        blind, sighted = self.blind, Signal(name="sighted")
         good = self.present & ~self.wrong_nul
         ready = c.orders.ready
         m.d.comb += [
@@ -390,19 +421,27 @@ class _Circuit:
         m, c, ring, plan = self.m, self.c, self.ring, self.plan
         start = Signal(ring.bits, name="next_packet")
         m.d.comb += start.eq(Cat(Const(0, ring.lane_bits), c.following))
-        place, key = self._next("place", self.place, start), None
-        if self.meanings:
-            key = self._next("key", self.key, start + shift_of(plan, plan.start.step))
-        items = self._items_start()
+        ways = NextPlace(m, self.flow, self.last, self.phase, self.meanings, self.entry)
+        # What a length decides is late.
+        early, last = ring.position("early_last"), ring.position("next_last")
+        begin = start + shift_of(plan, plan.start.step)
+        m.d.comb += [
+            early.eq(
+                Mux(
+                    self.closes,
+                    begin,
+                    Mux(self.bad, self.last, Mux(self.leaves, ways.exit, ways.body)),
+                )
+            ),
+            last.eq(
+                Mux(self.run_skips, ways.after_rest, Mux(self.loop_skips, ways.exit, early))
+            ),
+        ]
         # After an error, nothing is read; the end step drops what is left of the packet.
         kept = Mux(self.state.end, c.limit, self.first)
+        first = Mux(self.closes, start, Mux(self.bad, kept, self._items_start()))
         with m.If(self.issue | (self.bad & self.state.end)):
-            m.d.sync += [
-                self.place.eq(place),
-                self.first.eq(Mux(self.closes, start, Mux(self.bad, kept, items))),
-            ]
-            if key is not None:
-                m.d.sync += self.key.eq(key)
+            m.d.sync += [self.last.eq(last), self.first.eq(first)]
         with m.If(self.issue):
             if any(run.terminated for run in plan.runs):
                 rest = Mux(self.state.words, self.rest, self.next_rest)
@@ -422,24 +461,3 @@ class _Circuit:
             aligned = align_up(self.m, self.behind, 0, align, self.phase)
             start = Mux(chosen & ~self.zero, aligned, start)
         return start
-
-    def _next(self, name: str, now: Signal, start: Value) -> Value:
-        """Return the next value of `place` or `key`."""
-        state = self.state
-        ways = NextPlace(
-            self.m,
-            name,
-            self.flow,
-            self.place,
-            self.phase,
-            self.meanings,
-            self.entry,
-            of_length=now is self.key,
-        )
-        stays = Mux(state.end, self.c.limit, now)
-        left = Mux(state.run_begin, ways.after_rest, ways.exit)
-        result = self.ring.position(f"next_{name}")
-        self.m.d.comb += result.eq(
-            Mux(self.closes, start, Mux(self.bad, stays, Mux(self.done, left, ways.body)))
-        )
-        return result

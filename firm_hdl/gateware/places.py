@@ -1,4 +1,4 @@
-"""Where the next step starts: the part of the parser that computes positions."""
+"""Where the next step ends: the part of the parser that computes positions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from amaranth.lib import data
 from firm_hdl.gateware.flow import Flow
 from firm_hdl.gateware.lengths import Meaning, shift_of
 from firm_hdl.gateware.positions import Ring, any_of, pick, raised_by
-from firm_hdl.plan import BeginRun, RunStep
+from firm_hdl.plan import BeginRun, Jump, RunStep
 
 __all__ = ["NextPlace"]
 
@@ -24,37 +24,34 @@ class _Way:
     ----------
     taken : Value
         The step takes this way, if it takes one of its kind.
-    size : int or None
-        Bytes of the step; `None` for the last word of a counted run, whose rest is behind it.
     align : int
-        Alignment of the position.
+        Alignment of the next step.
     shift : int
-        Bytes behind the aligned position.
+        Distance from the start of the next step to its last byte.
+    rest : bool
+        The step is the last word of a counted run, whose rest is behind it.
     """
 
     taken: Value
-    size: int | None
     align: int
     shift: int
+    rest: bool = False
 
 
 class NextPlace:
-    """Positions of the step that follows. Not a component: logic of one module.
+    """The last byte of the step that follows. Not a component: logic of one module.
 
     Parameters
     ----------
-    name : str
     flow : Flow
-    place : Signal
-        Position of the map or word of the step.
+    last : Signal
+        The last byte of the step's map or word.
     phase : Value or int
         Position behind the packet's encapsulation header, modulo 8.
     meanings : mapping of int to Meaning
         By step.
     entry : View or None
         The step's length, decoded; `None` if the plan has no lengths.
-    of_length : bool
-        The position of the last byte of the next step's length, instead of that of its map.
 
     Attributes
     ----------
@@ -69,72 +66,65 @@ class NextPlace:
     def __init__(
         self,
         m: Module,
-        name: str,
         flow: Flow,
-        place: Signal,
+        last: Signal,
         phase: Value | int,
         meanings: Mapping[int, Meaning],
         entry: data.View | None,
-        *,
-        of_length: bool,
     ):
-        self.m, self.name, self.flow, self.plan = m, name, flow, flow.plan
-        self.place, self.phase, self.meanings = place, phase, meanings
-        self.entry, self.of_length = entry, of_length
+        self.m, self.flow, self.plan = m, flow, flow.plan
+        self.last, self.phase, self.meanings, self.entry = last, phase, meanings, entry
         self.ring = Ring(self.plan)
         tail = self._tail()
         self.exit = self._sum("exit", list(self._exits()), tail)
         self.body = self._sum("body", list(self._bodies()), tail)
         self.after_rest = self._after_rest()
 
-    def _shift(self, step: int | None) -> int:
-        return shift_of(self.plan, step) if self.of_length else 0
-
     def _exits(self) -> Iterator[_Way]:
         plan = self.plan
         for taken, index, jump in self.flow.exits:
             step = plan.steps[index]
             align = 1 if jump.step is None else plan.steps[jump.step].align
-            size: int | None = step.bytes
-            if isinstance(step, RunStep):
-                size = None if plan.runs[step.run].counted else plan.bus_bytes
-            yield _Way(taken=taken, size=size, align=align, shift=self._shift(jump.step))
+            rest = isinstance(step, RunStep) and plan.runs[step.run].counted
+            yield _Way(taken=taken, align=align, shift=shift_of(plan, jump.step), rest=rest)
 
     def _bodies(self) -> Iterator[_Way]:
         plan = self.plan
         for index, step in enumerate(plan.steps):
             taken = self.flow.step[index]
             if isinstance(step, RunStep):
-                yield _Way(taken=taken, size=plan.bus_bytes, align=1, shift=0)
+                yield _Way(taken=taken, align=1, shift=plan.bus_bytes - 1)
             elif step.begin is not None and step.begin.body is not None:
                 body = step.begin.body.step
                 assert body is not None
                 is_run = isinstance(step.begin, BeginRun)
                 align = step.begin.align if is_run else plan.steps[body].align
-                yield _Way(taken=taken, size=step.bytes, align=align, shift=self._shift(body))
+                yield _Way(taken=taken, align=align, shift=shift_of(plan, body))
 
     def _raised(self, align: int, shift: int) -> int:
-        """Return what to add for an alignment and a shift, if the phase is constant."""
+        """Return what to add to the last byte, for the next one, its alignment, and a shift.
+
+        If the phase is not a constant, that is only the next byte.
+        """
         if not isinstance(self.phase, int):
-            return 0
-        return shift if align == 1 else raised_by(align, self.phase, shift)
+            return 1
+        return 1 + (shift if align == 1 else raised_by(align, self.phase, shift))
 
     def _sum(self, kind: str, ways: list[_Way], tail: Value) -> Value:
         """Return the position of the way that is taken."""
-        m, ring, name = self.m, self.ring, f"{self.name}_{kind}"
-        amount, total = Signal(len(tail), name=f"{name}_amount"), ring.position(f"{name}_sum")
+        m, ring = self.m, self.ring
+        amount, total = Signal(len(tail), name=f"{kind}_amount"), ring.position(f"{kind}_sum")
         sizes = [
-            (way.taken, tail if way.size is None else way.size + self._raised(way.align, way.shift))
-            for way in ways
+            (way.taken, tail if way.rest else self._raised(way.align, way.shift)) for way in ways
         ]
-        m.d.comb += [amount.eq(pick(sizes, len(amount))), total.eq(self.place + amount)]
+        m.d.comb += [amount.eq(pick(sizes, len(amount))), total.eq(self.last + amount)]
         if isinstance(self.phase, int):
             return Cat(self._low_bit(ways, k, total[k]) for k in range(3)) | (
                 total & ~Const(7, len(total))
             )
-        pad, result = Signal(3, name=f"{name}_pad"), ring.position(name)
+        pad, result = Signal(3, name=f"{kind}_pad"), ring.position(f"{kind}_last")
         mask = pick([(way.taken, way.align - 1) for way in ways], 3)
-        shift = pick([(way.taken, way.shift) for way in ways], len(amount))
+        shift = pick([(way.taken, way.shift) for way in ways], ring.bits)
         m.d.comb += [
             pad.eq((self.phase - total) & mask),
             result.eq(total + pad + shift),
@@ -153,18 +143,14 @@ class NextPlace:
     def _tail(self) -> Value:
         """Return how far it is from the last word of a run to the step behind the rest."""
         plan, bus = self.plan, self.plan.bus_bytes
-        tail = Signal(range(6 * bus + 16), name=f"{self.name}_tail", reset_less=True)
+        tail = Signal(range(5 * bus + 16), name="tail", reset_less=True)
         sizes: list[tuple[Value, int]] = []
         rests: list[tuple[Value, Value]] = []
-        for taken, index, jump in self.flow.exits:
-            meaning = self.meanings.get(index)
-            if meaning is None or meaning.run is None or jump.step is None:
-                continue
-            run = plan.runs[meaning.run.run]
-            raised = self._raised(plan.steps[jump.step].align, self._shift(jump.step))
-            sizes.append((taken, bus + run.terminated + raised))
+        for taken, step, _, meaning in self._rests():
+            raised = self._raised(plan.steps[step].align, shift_of(plan, step))
+            assert meaning.run is not None and self.entry is not None
+            sizes.append((taken, raised + plan.runs[meaning.run.run].terminated))
             unit = plan.item_bytes(meaning.run.run)
-            assert self.entry is not None
             rest = Value.cast(self.entry[meaning.rest]) << (unit.bit_length() - 1)
             rests.append((taken, rest))
         if sizes:
@@ -175,16 +161,17 @@ class NextPlace:
 
     def _after_rest(self) -> Value:
         cases: dict[str, list[Value]] = {}
-        for taken, index, jump in self.flow.exits:
-            meaning = self.meanings.get(index)
-            if meaning is None or meaning.run is None or jump.step is None:
-                continue
-            if not self.of_length:
-                cases.setdefault(meaning.place(jump), []).append(taken)
-            elif shift_of(self.plan, jump.step):
-                cases.setdefault(meaning.key(jump), []).append(taken)
+        for taken, _, jump, meaning in self._rests():
+            cases.setdefault(meaning.last(jump), []).append(taken)
         if not cases:
             return Const(0, self.ring.bits)
         assert self.entry is not None
         fields = [(any_of(on), Value.cast(self.entry[field])) for field, on in cases.items()]
         return fields[0][1] if len(fields) == 1 else pick(fields, self.ring.bits)
+
+    def _rests(self) -> Iterator[tuple[Value, int, Jump, Meaning]]:
+        """Yield the exits of steps that begin a run with a rest: taken, next step, jump, length."""
+        for taken, index, jump in self.flow.exits:
+            meaning = self.meanings.get(index)
+            if meaning is not None and meaning.run is not None and jump.step is not None:
+                yield taken, jump.step, jump, meaning
