@@ -135,22 +135,22 @@ class Buffer(wiring.Component):
             write.en.eq(1),
             read.addr.eq(popped),
         ]
-        now = [self.limit.eq(newest.limit), self.following.eq(newest.following)]
-        with m.If(self.next):
-            m.d.sync += self.ended.eq(has_second | ends_now)
-            with m.If(has_second):
-                m.d.sync += [self.limit.eq(second.limit), self.following.eq(second.following)]
-                m.d.sync += has_second.eq(stored | ends_now)
-                with m.If(stored):
-                    m.d.sync += [second.eq(read.data), popped.eq(popped + 1)]
-                    m.d.sync += pushed.eq(pushed + ends_now)
-                with m.Else():
-                    m.d.sync += second.eq(end)
-            with m.Else():
-                m.d.sync += now
-        with m.Elif(~self.ended):
-            m.d.sync += [*now, self.ended.eq(ends_now)]
-        with m.Elif(~has_second):
-            m.d.sync += [second.eq(end), has_second.eq(ends_now)]
-        with m.Else():
-            m.d.sync += pushed.eq(pushed + ends_now)
+        # `next` is late, so it only selects or enables. It comes only if `ended`, and `has_second`
+        # is never without `ended`.
+        first = Mux(has_second, Value.cast(second), Value.cast(newest))
+        more, follows = Signal(name="more"), Signal(name="follows")
+        m.d.comb += [more.eq(stored | ends_now), follows.eq(self.ended & ends_now)]
+        with m.If(self.next | ~self.ended):
+            m.d.sync += [
+                Cat(self.limit, self.following).eq(first),
+                self.ended.eq(has_second | ends_now),
+            ]
+        with m.If(self.next | ~has_second):
+            m.d.sync += second.eq(Mux(stored, Value.cast(read.data), Value.cast(end)))
+        m.d.sync += has_second.eq(
+            Mux(has_second, Mux(self.next, more, 1), Mux(self.next, 0, follows))
+        )
+        with m.If(self.next & stored):
+            m.d.sync += popped.eq(popped + 1)
+        with m.If(has_second & ends_now & (stored | ~self.next)):
+            m.d.sync += pushed.eq(pushed + 1)

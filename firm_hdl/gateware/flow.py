@@ -39,7 +39,8 @@ class Counter:
         self.value = Signal(max(bits, 3), name=f"{name}_value", reset_less=count is None, **start)
         self.less = Signal(name=f"{name}_less")
         self.last = Signal(name=f"{name}_last", init=count in (None, 1))
-        self.pending = Signal(name=f"{name}_pending")
+        # Without a start value, the counter is loaded before it counts: it needs no reset.
+        self.pending = Signal(name=f"{name}_pending", reset_less=count is None)
 
     def add_logic(self, m: Module) -> None:
         m.d.sync += self.pending.eq(0)

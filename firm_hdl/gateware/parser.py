@@ -112,7 +112,8 @@ class _Circuit:
         self.map_room = Signal(range(plan.bus_bytes + 1), name="map_room")
         self.phase = self._phase()
         self.behind, self.left = ring.position("behind"), ring.position("left")
-        self.present, self.done = Signal(name="present"), Signal(name="done")
+        self.present, self.good = Signal(name="present"), Signal(name="good")
+        self.done = Signal(name="done")
         self.leaves = Signal(name="leaves")
         self.ends, self.closes = Signal(name="ends"), Signal(name="closes")
         self.issue, self.blind = Signal(name="issue"), Signal(name="blind")
@@ -253,15 +254,17 @@ class _Circuit:
             cut.eq(c.ended & ~self.present),
         ]
         headers = [self.step[i] & marks.mismatch[k] for k, i in enumerate(marks.steps)]
+        wrong_header = any_of(headers)
         if headers:
             # Nothing is in front of the bytes of a header that is checked.
             begun = self.ring.position("header_within")
             m.d.comb += [
                 begun.eq(c.limit - self.first),
-                mismatch.eq(any_of(headers) & ~begun[-1] & begun.any()),
+                mismatch.eq(wrong_header & ~begun[-1] & begun.any()),
             ]
+        m.d.comb += self.good.eq(self.present & ~wrong_nul & ~wrong_header)
         m.d.comb += begins.eq(self.issue & (self.state.run_begin | self.state.loop_begin))
-        self.mismatch, self.trailing, self.wrong_nul = mismatch, trailing, wrong_nul
+        self.trailing = trailing
         # The string has its last byte, although the step may lack others.
         missing_nul = wrong_nul & (self.present | (~within[-1] & within.any()))
         overrun = self.ends & ~c.ended & trailing
@@ -335,11 +338,10 @@ class _Circuit:
         # After an error, steps look at nothing; before, at whether all is here and good. What is
         # late in the cycle is kept apart, as `ready` and `closes` are early.
         blind, sighted = self.blind, Signal(name="sighted")
-        good = self.present & ~self.wrong_nul
-        ready = c.orders.ready
+        ready, good = c.orders.ready, self.good
         m.d.comb += [
             blind.eq(bad & ~self.noted & (~state.end | c.ended)),
-            sighted.eq(~bad & ~self.mismatch & (~self.ends | c.ended)),
+            sighted.eq(~bad & (~self.ends | c.ended)),
             c.orders.valid.eq(blind | (sighted & good)),
             self.issue.eq((blind & ready) | (sighted & ready & good)),
             c.next.eq((blind & ready & self.closes) | (sighted & ready & self.closes & good)),
@@ -441,8 +443,9 @@ class _Circuit:
         kept = Mux(self.state.end, c.limit, self.first)
         first = Mux(self.closes, start, Mux(self.bad, kept, self._items_start()))
         with m.If(self.issue | (self.bad & self.state.end)):
-            m.d.sync += [self.last.eq(last), self.first.eq(first)]
+            m.d.sync += self.first.eq(first)
         with m.If(self.issue):
+            m.d.sync += self.last.eq(last)
             if any(run.terminated for run in plan.runs):
                 rest = Mux(self.state.words, self.rest, self.next_rest)
                 m.d.sync += self.nul_at.eq(self.behind + rest)
