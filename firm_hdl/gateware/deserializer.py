@@ -6,11 +6,9 @@ from amaranth.hdl import Module, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.gateware.buffer import Buffer
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.gateware.mover import Mover
-from firm_hdl.gateware.orders import OrderQueue
-from firm_hdl.gateware.parser import Parser
+from firm_hdl.gateware.parse import Buffer, OrderQueue, Sequencer
 from firm_hdl.gateware.signatures import (
     MessageSignature,
     PacketSignature,
@@ -92,7 +90,7 @@ class Deserializer(wiring.Component):
         m = Module()
         plan = self.plan
         m.submodules.buffer = buffer = Buffer(plan)
-        m.submodules.parser = parser = Parser(plan)
+        m.submodules.sequencer = sequencer = Sequencer(plan)
         m.submodules.queue = queue = OrderQueue(plan)
         m.submodules.mover = mover = Mover(plan)
         orders = queue.o
@@ -100,19 +98,19 @@ class Deserializer(wiring.Component):
             buffer.packets.payload.eq(self.packets.payload),
             buffer.packets.valid.eq(self.packets.valid),
             self.packets.ready.eq(buffer.packets.ready),
-            parser.beat.eq(buffer.beat),
-            parser.limit.eq(buffer.limit),
-            parser.ended.eq(buffer.ended),
-            parser.following.eq(buffer.following),
-            buffer.next.eq(parser.next),
-            queue.i.payload.eq(parser.orders.payload),
-            queue.i.valid.eq(parser.orders.valid),
-            parser.orders.ready.eq(queue.i.ready),
+            sequencer.beat.eq(buffer.beat),
+            sequencer.limit.eq(buffer.limit),
+            sequencer.ended.eq(buffer.ended),
+            sequencer.following.eq(buffer.following),
+            buffer.next.eq(sequencer.next),
+            queue.i.payload.eq(sequencer.orders.payload),
+            queue.i.valid.eq(sequencer.orders.valid),
+            sequencer.orders.ready.eq(queue.i.ready),
             mover.orders.payload.eq(orders.payload),
             mover.orders.valid.eq(orders.valid),
             orders.ready.eq(mover.orders.ready),
             mover.beat.eq(buffer.beat),
-            queue.at.eq(parser.at),
+            queue.at.eq(sequencer.at),
             buffer.freed.eq(queue.freed),
             self.status.payload.eq(mover.status.payload),
             self.status.valid.eq(mover.status.valid),

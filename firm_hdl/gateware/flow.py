@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from amaranth.hdl import Const, Module, Mux, Signal, Value
 from amaranth.lib import data
@@ -126,9 +126,9 @@ class Flow:
         self.exit_ends = any_of([taken for taken, _, jump in self.exits if jump.step is None])
         self.body_state = pick(
             [
-                (self.step[i], self.encode(i if isinstance(s, RunStep) else s.begin.body.step))
+                (self.step[i], self.encode(i if s.begin is None else s.begin.body.step))
                 for i, s in enumerate(steps)
-                if isinstance(s, RunStep) or (s.begin is not None and s.begin.body is not None)
+                if isinstance(s, RunStep) or s.begin is not None
             ],
             width,
         )
@@ -148,7 +148,22 @@ class Flow:
         """Return whether a test holds for the step."""
         return any_of([self.step[i] for i, s in enumerate(self.plan.steps) if test(s)])
 
-    def _exits(self):  # type: ignore[no-untyped-def]
+    def rest_bytes(self, rest: Value) -> Value:
+        """Return the bytes of the items of the rest that the step takes.
+
+        Parameters
+        ----------
+        rest : Value
+            Number of these items.
+        """
+        units: dict[int, list[Value]] = {}
+        for i, s in enumerate(self.plan.steps):
+            if s.rest is not None:
+                units.setdefault(self.plan.item_bytes(s.rest), []).append(self.step[i])
+        cases = [(any_of(on), rest << (unit.bit_length() - 1)) for unit, on in units.items()]
+        return cases[0][1] if len(cases) == 1 else pick(cases, self.plan.bus_bytes.bit_length())
+
+    def _exits(self) -> Iterator[tuple[Value, int, Jump]]:
         for i, s in enumerate(self.plan.steps):
             free: Value = self.step[i]
             for level, jump in s.exits.repeats:

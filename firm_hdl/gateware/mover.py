@@ -1,4 +1,4 @@
-"""The mover: bytes from the packet buffer to the leaves, as the parser orders."""
+"""The mover: bytes from the packet buffer to the leaves, as the sequencer orders."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.gateware.orders import order_layout
+from firm_hdl.gateware.parse import order_layout
 from firm_hdl.gateware.positions import Ring, any_of, beat_layout, rotate
 from firm_hdl.gateware.signatures import StatusSignature, leaf_shape
 from firm_hdl.plan import Part, Plan, Run, RunStep, Step

@@ -9,9 +9,9 @@ from amaranth.lib import data, stream, wiring
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.collect import words_layout
 from firm_hdl.gateware.positions import Ring, rotate
 from firm_hdl.gateware.signatures import PacketSignature
-from firm_hdl.gateware.words import words_layout
 from firm_hdl.plan import BeginRun, Plan, RunStep, Step
 from firm_hdl.plan.geometry import geometry
 
@@ -132,7 +132,7 @@ class _Circuit:
                 self.marked.eq(words.error),
                 self.last_bytes.eq(Mux(words.empty, 0, full[: ring.lane_bits] + 1)),
             ]
-            if bus < 8:
+            if not isinstance(phase, int):
                 with m.If(words.last):
                     m.d.sync += phase.eq(self.end + plan.header_bytes)
 

@@ -40,8 +40,8 @@ class Ring:
         self.beat_bits = self.depth.bit_length()
         self.bits = self.lane_bits + self.beat_bits
 
-    def position(self, name: str, **kwargs: object) -> Signal:
-        return Signal(self.bits, name=name, **kwargs)  # type: ignore[arg-type]
+    def position(self, name: str, *, init: int = 0) -> Signal:
+        return Signal(self.bits, name=name, init=init)
 
     def lane(self, position: Value) -> Value:
         return position[: self.lane_bits]

@@ -6,7 +6,7 @@ from amaranth.hdl import Module, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.gateware.collector import Collector
+from firm_hdl.gateware.collect import Collector
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.gateware.packer import Packer
 from firm_hdl.gateware.signatures import (

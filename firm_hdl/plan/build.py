@@ -17,7 +17,6 @@ from firm_hdl.plan.ir import (
     Begin,
     BeginLoop,
     BeginRun,
-    Exits,
     Fixed,
     Jump,
     Leaf,
@@ -36,6 +35,7 @@ from firm_hdl.plan.limits import (
     check_bus_bytes,
     check_max_message_bytes,
 )
+from firm_hdl.plan.link import END, NOWHERE, Mark, link
 from firm_hdl.wire import Layout, LoopNode, Node, Path, RunNode, Scalar, Trigger, walk
 from firm_hdl.wire.layout import LENGTH, OCTET, Gap
 
@@ -71,7 +71,7 @@ def build_plan(
         isinstance(node, RunNode | LoopNode) and node.count is None for node in walk(layout.nodes)
     )
     builder = _Builder(layout, bus_bytes, max_message_bytes, has_lengths)
-    steps = builder.build()
+    start, steps = builder.build()
     return Plan(
         message=layout.message.name,
         wire=layout.rules.wire,
@@ -82,22 +82,9 @@ def build_plan(
         leaves=tuple(builder.leaves),
         runs=tuple(builder.runs),
         levels=builder.levels,
-        start=builder.jump_to(0),
+        start=start,
         steps=steps,
     )
-
-
-@dataclass(slots=True, kw_only=True)
-class _Mark:
-    """A position between steps where a loop starts or ends, or a constant counter is loaded.
-
-    `kind` is "enter" (load `counter` with `count`), "loop" (the body of loop `counter` starts) or
-    "end" (the body ends).
-    """
-
-    kind: str
-    counter: int | str
-    count: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,16 +105,15 @@ class _Builder:
     runs: list[Run] = field(default_factory=list)
     levels: int = 0
     # Steps and marks in wire order. `link` fills in exits and bodies at the end.
-    program: list[Step | _Mark] = field(default_factory=list)
+    program: list[Step | Mark] = field(default_factory=list)
     segment: list[Slice] = field(default_factory=list)
     segment_align: int = 1
     # The run whose rest the next step takes.
     rest: int | None = None
     depth: int = 0
-    # Index of the step at each place of the program that is a step.
-    numbers: dict[int, int] = field(default_factory=dict)
 
-    def build(self) -> tuple[Step, ...]:
+    def build(self) -> tuple[Jump, tuple[Step, ...]]:
+        """Return the jump to the first step, and all steps."""
         rules = self.layout.rules
         if rules.header_bytes:
             self.segment.append(Fixed(at=0, data=rules.encapsulation, check=True))
@@ -136,9 +122,7 @@ class _Builder:
         self.nodes(self.layout.nodes)
         self.flush()
         self.flush_rest()
-        places = [place for place, item in enumerate(self.program) if not isinstance(item, _Mark)]
-        self.numbers = {place: index for index, place in enumerate(places)}
-        return self.link()
+        return link(self.program)
 
     # Nodes to segments.
 
@@ -204,8 +188,8 @@ class _Builder:
         else:
             run = self.new_run(items, terminated=node.terminated)
             align = node.item_gap.align if node.item_gap.bytes != 0 else 1
-            self.flush(BeginRun(length=length, limit=limit, run=run, align=align, body=_END))
-            self.program.append(RunStep(run=run, exits=_NOWHERE))
+            self.flush(BeginRun(length=length, limit=limit, run=run, align=align, body=END))
+            self.program.append(RunStep(run=run, exits=NOWHERE))
             self.rest = run
 
     def array(self, node: RunNode) -> None:
@@ -229,8 +213,8 @@ class _Builder:
         self.flush()
         self.flush_rest()
         run = self.new_run(items, counted=False, last=not tail)
-        self.program.append(_Mark(kind="enter", counter=RUN_COUNTER, count=full * lanes))
-        self.program.append(RunStep(align=self.take_align(), run=run, exits=_NOWHERE))
+        self.program.append(Mark(kind="enter", counter=RUN_COUNTER, count=full * lanes))
+        self.program.append(RunStep(align=self.take_align(), run=run, exits=NOWHERE))
         if tail:
             self.value(items, tail * size, last=True)
 
@@ -271,18 +255,18 @@ class _Builder:
             self.flush()
             # The step behind would also be reached from the end of the loop's body.
             self.flush_rest()
-            self.program.append(_Mark(kind="enter", counter=level, count=count))
+            self.program.append(Mark(kind="enter", counter=level, count=count))
         else:
             length, limit = count.length, count.limit
-            self.flush(BeginLoop(length=length, limit=limit, level=level, body=_END))
-        self.program.append(_Mark(kind="loop", counter=level))
+            self.flush(BeginLoop(length=length, limit=limit, level=level, body=END))
+        self.program.append(Mark(kind="loop", counter=level))
         return level
 
     def leave_loop(self) -> None:
         self.flush()
         self.depth -= 1
         self.join_rest()
-        self.program.append(_Mark(kind="end", counter=self.depth))
+        self.program.append(Mark(kind="end", counter=self.depth))
 
     def join_rest(self) -> None:
         """Let the first step of a body that ends take the rest of the body's last run."""
@@ -305,10 +289,10 @@ class _Builder:
         marks = (
             place
             for place, item in reversed(list(enumerate(self.program)))
-            if isinstance(item, _Mark) and item.kind == "loop" and item.counter == level
+            if isinstance(item, Mark) and item.kind == "loop" and item.counter == level
         )
         place = next(marks) + 1
-        while isinstance(self.program[place], _Mark):
+        while isinstance(self.program[place], Mark):
             place += 1
         return place
 
@@ -321,7 +305,7 @@ class _Builder:
     def flush_rest(self) -> None:
         """Take the rest of a run in a step of its own."""
         if self.rest is not None:
-            self.program.append(MapStep(rest=self.rest, exits=_NOWHERE))
+            self.program.append(MapStep(rest=self.rest, exits=NOWHERE))
             self.rest = None
 
     def flush(self, begin: Begin | None = None) -> None:
@@ -349,73 +333,8 @@ class _Builder:
                     bytes=sizes[index],
                     slices=slices,
                     begin=begin if index == len(sizes) - 1 else None,
-                    exits=_NOWHERE,
+                    exits=NOWHERE,
                 )
             )
             self.rest = None
         self.segment = []
-
-    # Control flow.
-
-    def jump_to(self, place: int) -> Jump:
-        """Return the jump to the next step from a place of the program where no loop ends."""
-        enter: list[tuple[int | str, int]] = []
-        while place < len(self.program):
-            item = self.program[place]
-            if not isinstance(item, _Mark):
-                break
-            assert item.kind != "end"
-            if item.kind == "enter":
-                enter.append((item.counter, item.count))
-            place += 1
-        return Jump(enter=tuple(enter), step=self.numbers.get(place))
-
-    def exits_at(self, place: int, bodies: dict[int, int]) -> Exits:
-        """Return the exits of a step or run that ends in front of a place of the program."""
-        repeats: list[tuple[int, Jump]] = []
-        while place < len(self.program):
-            item = self.program[place]
-            if not isinstance(item, _Mark) or item.kind != "end":
-                break
-            assert isinstance(item.counter, int)
-            repeats.append((item.counter, self.jump_to(bodies[place])))
-            place += 1
-        return Exits(repeats=tuple(repeats), default=self.jump_to(place))
-
-    def link(self) -> tuple[Step, ...]:
-        bodies, ends = self.loop_places()
-        steps: list[Step] = []
-        for place, item in enumerate(self.program):
-            if isinstance(item, _Mark):
-                continue
-            after = place + 1
-            if item.begin is not None:
-                begin = item.begin
-                if isinstance(begin, BeginLoop):
-                    begin = replace(begin, body=self.jump_to(after))
-                    after = ends[after] + 1
-                else:
-                    # The body of a run is the next step.
-                    begin = replace(begin, body=self.jump_to(after))
-                    after += 1
-                item = replace(item, begin=begin)
-            steps.append(replace(item, exits=self.exits_at(after, bodies)))
-        return tuple(steps)
-
-    def loop_places(self) -> tuple[dict[int, int], dict[int, int]]:
-        """Return the start of each loop's body by the loop's end, and the end by its start."""
-        bodies: dict[int, int] = {}
-        ends: dict[int, int] = {}
-        open_loops: list[int] = []
-        for place, item in enumerate(self.program):
-            if isinstance(item, _Mark) and item.kind == "loop":
-                open_loops.append(place)
-            elif isinstance(item, _Mark) and item.kind == "end":
-                start = open_loops.pop()
-                bodies[place] = start + 1
-                ends[start] = place
-        return bodies, ends
-
-
-_END = Jump(step=None)
-_NOWHERE = Exits(default=_END)

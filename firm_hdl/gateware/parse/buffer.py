@@ -17,8 +17,8 @@ __all__ = ["Buffer"]
 class Buffer(wiring.Component):
     """Give each beat its place in the ring, and tell how much of the packet being read is there.
 
-    The bytes are kept by those who read them: the parser keeps lengths, the mover lanes. They write
-    `beat` to their memories, and can read it in the cycle behind.
+    The bytes are kept by those who read them: the sequencer keeps lengths, the mover lanes. They
+    write `beat` to their memories, and can read it in the cycle behind.
 
     Latency 1 cycle from `packets` to `beat`, and 2 cycles to `limit`.
 

@@ -1,4 +1,4 @@
-"""Where the next step ends: the part of the parser that computes positions."""
+"""Where the next step ends: the part of the sequencer that computes positions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from amaranth.hdl import Cat, Const, Module, Signal, Value
 from amaranth.lib import data
 
 from firm_hdl.gateware.flow import Flow
-from firm_hdl.gateware.lengths import Meaning, shift_of
+from firm_hdl.gateware.parse.lengths import Meaning, shift_of
 from firm_hdl.gateware.positions import Ring, any_of, pick, raised_by
 from firm_hdl.plan import BeginRun, Jump, RunStep
 
@@ -97,8 +97,9 @@ class NextPlace:
             elif step.begin is not None and step.begin.body is not None:
                 body = step.begin.body.step
                 assert body is not None
-                is_run = isinstance(step.begin, BeginRun)
-                align = step.begin.align if is_run else plan.steps[body].align
+                align = plan.steps[body].align
+                if isinstance(step.begin, BeginRun):
+                    align = step.begin.align
                 yield _Way(taken=taken, align=align, shift=shift_of(plan, body))
 
     def _raised(self, align: int, shift: int) -> int:

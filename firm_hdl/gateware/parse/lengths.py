@@ -1,9 +1,9 @@
 """Lengths, decoded as beats arrive: at each place where a length can end, what would it mean?
 
-The parser has one cycle from a length to the position behind the items that the length counts. So
-whatever follows from the value of a length alone is computed here, before the parser comes there:
-comparisons, the size of the rest, and the position of the next step. What is left to the parser is
-to select an entry by a position, and fields of the entry by the step.
+The sequencer has one cycle from a length to the position behind the items that the length counts.
+So whatever follows from the value of a length alone is computed here, before the sequencer comes
+there: comparisons, the size of the rest, and the position of the next step. What is left to the
+sequencer is to select an entry by a position, and fields of the entry by the step.
 """
 
 from __future__ import annotations

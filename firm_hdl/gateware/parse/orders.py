@@ -1,4 +1,4 @@
-"""Orders: what the parser tells the mover to do, one per step."""
+"""Orders: what the sequencer tells the mover to do, one per step."""
 
 from __future__ import annotations
 

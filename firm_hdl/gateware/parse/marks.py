@@ -1,4 +1,4 @@
-"""Marks of beats that the parser looks at: bytes that are not NUL, headers that are wrong."""
+"""Marks of beats that the sequencer looks at: bytes that are not NUL, headers that are wrong."""
 
 from __future__ import annotations
 
