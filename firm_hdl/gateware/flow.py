@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from amaranth.hdl import Const, Module, Mux, Signal, Value
+from amaranth.hdl import Const, Module, Signal, Value
 from amaranth.lib import data
 
+from firm_hdl.gateware.counter import Counter
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.plan import RUN_COUNTER, BeginLoop, BeginRun, Jump, Plan, RunStep, Step
 
-__all__ = ["Counter", "Flow", "exceeds"]
+__all__ = ["Flow", "exceeds"]
 
 
 def exceeds(value: Value, limit: int) -> Value:
@@ -19,47 +20,6 @@ def exceeds(value: Value, limit: int) -> Value:
     for k in range(len(value)):
         result = (value[k] & result) if limit >> k & 1 else (value[k] | result)
     return result if limit >> len(value) == 0 else Const(0, 1)
-
-
-class Counter:
-    """A counter of words or elements that tells a cycle ahead that one is left.
-
-    The number itself follows a cycle later, so that nothing wide depends on a late decision.
-
-    Attributes
-    ----------
-    value, less : Signal
-        `value - less` words or elements are left, of which one is subtracted if `pending`.
-    last : Signal
-        One is left.
-    """
-
-    def __init__(self, bits: int, name: str, count: int | None = None):
-        start = {} if count is None else {"init": count}
-        self.value = Signal(max(bits, 3), name=f"{name}_value", reset_less=count is None, **start)
-        self.less = Signal(name=f"{name}_less")
-        self.last = Signal(name=f"{name}_last", init=count in (None, 1))
-        # Without a start value, the counter is loaded before it counts: it needs no reset.
-        self.pending = Signal(name=f"{name}_pending", reset_less=count is None)
-
-    def add_logic(self, m: Module) -> None:
-        m.d.sync += self.pending.eq(0)
-        with m.If(self.pending):
-            m.d.sync += self.value.eq(self.value - 1)
-
-    def load(self, m: Module, value: Value | int, last: Value | int, less: Value | int = 0) -> None:
-        m.d.sync += [self.value.eq(value), self.last.eq(last), self.less.eq(less)]
-
-    def down(self, m: Module) -> None:
-        """Count one, in a cycle in which the enclosing condition holds."""
-        high = self.value[3:].any()
-        two, three, four = (~high & (self.value[:3] == k) for k in (2, 3, 4))
-        m.d.sync += [
-            self.pending.eq(1),
-            self.last.eq(
-                Mux(self.pending, Mux(self.less, four, three), Mux(self.less, three, two))
-            ),
-        ]
 
 
 class Flow:
@@ -71,8 +31,8 @@ class Flow:
     Parameters
     ----------
     plan : Plan
-    count_bits : int
-        Width of the counters.
+    limit : function
+        Gives the largest number that a length may have which begins a run or a loop.
     fields : mapping of str to int
         Traits and their widths.
     traits : function
@@ -98,7 +58,7 @@ class Flow:
         self,
         m: Module,
         plan: Plan,
-        count_bits: int,
+        limit: Callable[[BeginRun | BeginLoop], int],
         fields: Mapping[str, int],
         traits: Callable[[int | None], Mapping[str, int]],
         *,
@@ -112,12 +72,12 @@ class Flow:
         self.state = Signal(self.layout, init=self.layout.from_bits(self.start), name="state")
         self.step = self.state.step
         init = {counter: self._counted(plan.start, counter) for counter, _ in plan.start.enter}
-        self.words = Counter(count_bits, "words", init.get(RUN_COUNTER))
+        most = self._most(limit)
+        self.words = Counter(most[RUN_COUNTER], "words", init.get(RUN_COUNTER))
         self.levels = [
-            Counter(count_bits, f"level_{level}", init.get(level)) for level in range(plan.levels)
+            Counter(most[level], f"level_{level}", init.get(level))
+            for level in range(plan.levels)
         ]
-        for counter in (self.words, *self.levels):
-            counter.add_logic(m)
         self.exits = list(self._exits())
         width = self.layout.size
         self.exit_state = pick(
@@ -175,34 +135,68 @@ class Flow:
             self.m.d.comb += leaves.eq(free)
             yield leaves, i, s.exits.default
 
-    def leave(self) -> None:
-        """Count and load the counters of the exit that is taken, in a cycle that takes one."""
-        taken: dict[int, list[Value]] = {}
+    def count(
+        self, *, moves: Value, ends: Value, done: Value, count: Value, single: Value, nul: bool
+    ) -> None:
+        """Count and load the counters.
+
+        Parameters
+        ----------
+        moves, ends, done : Value
+            The step is executed in this cycle. Then the packet ends; else the step is left through
+            an exit (`done`), or goes on in its body.
+        count : Value
+            The length that the step has, as its run or loop counts it.
+        single : Value
+            The body of the run or loop is executed once, if at all.
+        nul : bool
+            The count includes the NUL of a string.
+        """
+        leaves, stays = Signal(name="step_leaves"), Signal(name="step_stays")
+        self.m.d.comb += [leaves.eq(moves & ~ends & done), stays.eq(moves & ~ends & ~done)]
+        self._load_constants(moves & ends, leaves, stays)
+        self._load_levels(count, single)
+        self._load_words(count, single, nul)
         exits = iter(self.exits)
-        for s in self.plan.steps:
-            for level, _ in s.exits.repeats:
-                taken.setdefault(level, []).append(next(exits)[0])
+        for step in self.plan.steps:
+            for level, _ in step.exits.repeats:
+                self.levels[level].down(leaves & next(exits)[0])
             next(exits)
-        for level, conditions in taken.items():
-            with self.m.If(any_of(conditions)):
-                self.levels[level].down(self.m)
-        for condition, _, jump in self.exits:
-            if jump.enter and jump.step is not None:
-                with self.m.If(condition):
-                    self.enter(jump)
+        self.words.down(stays & self.on(lambda step: isinstance(step, RunStep)))
+        for counter in (self.words, *self.levels):
+            counter.add_logic(self.m)
 
-    def go_into_body(self) -> None:
-        """Load the counters of constant count in a body, in a cycle that goes there."""
-        for i, s in enumerate(self.plan.steps):
-            if s.begin is not None and s.begin.body is not None and s.begin.body.enter:
-                with self.m.If(self.step[i]):
-                    self.enter(s.begin.body)
-
-    def enter(self, jump: Jump) -> None:
-        for counter, _ in jump.enter:
-            count = self._counted(jump, counter)
+    def _load_constants(self, starts: Value, leaves: Value, stays: Value) -> None:
+        """Load counters where a jump enters a run or loop of a constant count."""
+        jumps = [(starts, self.plan.start)]
+        jumps += [(leaves & taken, jump) for taken, _, jump in self.exits if jump.step is not None]
+        jumps += [
+            (stays & self.step[i], step.begin.body)
+            for i, step in enumerate(self.plan.steps)
+            if step.begin is not None and step.begin.body is not None
+        ]
+        loads: dict[tuple[int | str, int], list[Value]] = {}
+        for on, jump in jumps:
+            for counter, _ in jump.enter:
+                loads.setdefault((counter, self._counted(jump, counter)), []).append(on)
+        for (counter, number), on in loads.items():
             target = self.words if counter == RUN_COUNTER else self.levels[int(counter)]
-            target.load(self.m, count, int(count == 1))
+            target.load(any_of(on), number)
+
+    def _most(self, limit: Callable[[BeginRun | BeginLoop], int]) -> dict[int | str, int]:
+        """Return the largest number that each counter is loaded with."""
+        plan = self.plan
+        most: dict[int | str, int] = dict.fromkeys([RUN_COUNTER, *range(plan.levels)], 1)
+        for jump in plan.jumps():
+            for counter, _ in jump.enter:
+                most[counter] = max(most[counter], self._counted(jump, counter))
+        for step in plan.steps:
+            if isinstance(step.begin, BeginRun):
+                lanes = plan.leaves[plan.runs[step.begin.run].items].lanes
+                most[RUN_COUNTER] = max(most[RUN_COUNTER], limit(step.begin) // lanes)
+            elif step.begin is not None:
+                most[step.begin.level] = max(most[step.begin.level], limit(step.begin))
+        return most
 
     def _counted(self, jump: Jump, counter: int | str) -> int:
         """Return the words or elements that a jump begins to count."""
@@ -214,7 +208,7 @@ class Flow:
         assert isinstance(step, RunStep)
         return count // self.plan.leaves[self.plan.runs[step.run].items].lanes
 
-    def load_levels(self, count: Value, one: Value) -> None:
+    def _load_levels(self, count: Value, single: Value) -> None:
         """Load the counter of a loop that the step may begin.
 
         It is not in use before, so that this may happen in every cycle of the step.
@@ -226,11 +220,10 @@ class Flow:
                 if isinstance(s.begin, BeginLoop) and s.begin.level == level
             ]
             if chosen:
-                with self.m.If(any_of(chosen)):
-                    counter.load(self.m, count, one)
+                counter.load_by_default(any_of(chosen), count, single)
 
-    def load_words(self, count: Value, single: Value, *, nul_counts: bool) -> None:
-        """Load the counter of words of a run that the step may begin; as `load_levels`.
+    def _load_words(self, count: Value, single: Value, nul_counts: bool) -> None:
+        """Load the counter of words of a run that the step may begin; as `_load_levels`.
 
         Of n items in words of w, (n - 1) // w words are taken in front of the rest.
         """
@@ -246,5 +239,4 @@ class Flow:
         for (shift, nul), chosen in groups.items():
             less = ~exceeds(count[:shift], nul) if shift else Const(1)
             value = count - 1 if nul and not shift else count[shift:]
-            with self.m.If(any_of(chosen)):
-                self.words.load(self.m, value, single, less)
+            self.words.load_by_default(any_of(chosen), value, single, less)

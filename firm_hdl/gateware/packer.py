@@ -10,7 +10,7 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.collect import words_layout
-from firm_hdl.gateware.positions import Ring, rotate
+from firm_hdl.gateware.positions import Ring, known_lane_bits, rotate
 from firm_hdl.gateware.signatures import PacketSignature
 from firm_hdl.plan import BeginRun, Plan, RunStep, Step
 from firm_hdl.plan.geometry import geometry
@@ -69,7 +69,7 @@ class _Placed:
     """A word in its lanes: its bytes, the position of the first one, and their number."""
 
     data: Signal
-    start: Signal
+    start: Value
     size: Signal
 
 
@@ -159,17 +159,24 @@ class _Circuit:
     ) -> _Placed:
         """Rotate a word so that its first byte is in the lane of its position."""
         m, ring, bus = self.m, self.ring, self.plan.bus_bytes
-        turn = Signal(max(1, ring.lane_bits), name=f"{name}_turn")
-        m.d.comb += turn.eq(-ring.lane(start) if bus > 1 else 0)
-        turns = tuple(sorted({-lane % bus for lane in lanes}))
-        word = rotate(m, getattr(self.c.words.payload, name), turn, turns, 8, f"{name}_rotated")
+        word = rotate(
+            m,
+            getattr(self.c.words.payload, name),
+            ring.lane(start),
+            lanes,
+            8,
+            f"{name}_rotated",
+            back=True,
+        )
+        register = ring.position(f"{name}_start")
+        first, known = known_lane_bits(lanes, bus)
         placed = _Placed(
             Signal(8 * bus, name=f"{name}_placed", reset_less=True),
-            ring.position(f"{name}_start"),
+            Cat(Const(first, known), register[known:]),
             Signal(range(bus + 1), name=f"{name}_size"),
         )
         with m.If(self.takes):
-            m.d.sync += [placed.data.eq(word), placed.start.eq(start), placed.size.eq(size)]
+            m.d.sync += [placed.data.eq(word), register.eq(start), placed.size.eq(size)]
         return placed
 
     def _wait(self) -> None:
@@ -182,7 +189,7 @@ class _Circuit:
         newest, room = (Signal(ring.beat_bits, name=name) for name in ("newest", "room"))
         ready = Signal(name="ready", init=1)
         m.d.comb += [
-            newest.eq(Mux(self.takes, ring.beat(self.end), ring.beat(self.at))),
+            newest.eq(ring.beat(self.at) + Mux(self.takes, self.c.words.payload.max_beats, 0)),
             room.eq(bound - newest),
             self.c.words.ready.eq(ready),
         ]

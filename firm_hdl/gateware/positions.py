@@ -14,6 +14,7 @@ __all__ = [
     "align_up",
     "any_of",
     "beat_layout",
+    "known_lane_bits",
     "pick",
     "raised_by",
     "rotate",
@@ -141,8 +142,11 @@ def rotate(
     unit: int,
     name: str,
     most: int = 2,
+    back: bool = False,
 ) -> Value:
     """Rotate a bus word so that the byte of a lane comes first.
+
+    With `back`, the first byte comes to the lane.
 
     Parameters
     ----------
@@ -153,27 +157,31 @@ def rotate(
     most : 1 or 2
         Bits of `lane` per stage: 1 is smaller, 2 is faster.
     """
-    if tuple(lanes) == (0,):
-        return value
-    twice = Cat(value, value)
-    if len(lanes) == 1:
-        return twice[lanes[0] * unit : lanes[0] * unit + len(value)]
-    common = len(value) // unit
-    while any(a % common != lanes[0] % common for a in lanes):
-        common //= 2
-    first = lanes[0] % common
-    now = twice[first * unit : first * unit + len(value)]
-    low, high = common.bit_length() - 1, (len(value) // unit).bit_length() - 1
+    count = len(value) // unit
+
+    def turned(value: Value, lane: int) -> Value:
+        at = (-lane if back else lane) % count * unit
+        return Cat(value, value)[at : at + len(value)]
+
+    first, low = known_lane_bits(lanes, count)
+    now, high = turned(value, first), count.bit_length() - 1
     while low < high:
         take = min(most, 2 if (high - low) % 2 == 0 else 1)
         result = Signal(len(value), name=f"{name}_{low}")
         with m.Switch(lane[high - take : high]):
             for k in range(1 << take):
                 with m.Case(k):
-                    at = (k << (high - take)) * unit
-                    m.d.comb += result.eq(Cat(now, now)[at : at + len(value)])
+                    m.d.comb += result.eq(turned(now, k << (high - take)))
         now, high = result, high - take
     return now
+
+
+def known_lane_bits(lanes: Sequence[int], bus_bytes: int) -> tuple[int, int]:
+    """Return the low bits that all lanes have in common: their value, and how many there are."""
+    common = bus_bytes
+    while any(lane % common != lanes[0] % common for lane in lanes):
+        common //= 2
+    return lanes[0] % common, common.bit_length() - 1
 
 
 def sum_of_three(a: Value, b: Value, c: Value) -> Value:

@@ -204,27 +204,25 @@ class _Circuit(Progress):
     # The next step.
 
     def _proceed(self) -> None:
-        m, flow, state, plan = self.m, self.flow, self.state, self.plan
+        m, flow, state = self.m, self.flow, self.state
         next_rest = self.of_length(lambda length: length.rest, len(self.rest), BeginRun)
         single = self.of_length(lambda length: length.single)
         count = self._count()
-        # A jump may load the same counter, and then counts.
-        flow.load_levels(count, single)
-        flow.load_words(count, single, nul_counts=False)
+        flow.count(
+            moves=self.complete,
+            ends=self.ends,
+            done=self.done,
+            count=count,
+            single=single,
+            nul=False,
+        )
         with m.If(self.complete):
             m.d.sync += Value.cast(state).eq(
                 Mux(self.ends, flow.start, Mux(self.done, flow.exit_state, flow.body_state))
             )
             with m.If(self.ends):
                 m.d.sync += [self.rest.eq(0), self.has_nul.eq(0)]
-                flow.enter(plan.start)
             with m.Else():
-                with m.If(self.done):
-                    flow.leave()
-                with m.Else():
-                    flow.go_into_body()
-                with m.If(state.words & ~flow.words.last):
-                    flow.words.down(m)
                 with m.If(state.run_begin):
                     m.d.sync += [self.rest.eq(next_rest), self.has_nul.eq(state.terminated)]
                 with m.Elif(state.rest):

@@ -127,6 +127,8 @@ class Filler:
             m.d.sync += begun.eq(begins & ~now.ends)
         raised, mask = self._items_align()
         to_end, end_mask = Signal.like(words.to_end), Signal(max(3, ring.lane_bits))
+        to_map = Signal.like(words.to_map)
+        m.d.comb += to_map.eq(Mux(state.lead, 0, items) + nul + state.raised)
         with m.If(now.ends):
             m.d.comb += [to_end.eq(Mux(begins, whole + (bus - 1), bus)), end_mask.eq(bus - 1)]
         with m.Else():
@@ -137,7 +139,8 @@ class Filler:
                 words.items_bytes.eq(items),
                 words.map_bytes.eq(state.map_bytes),
                 words.lead.eq(state.lead),
-                words.to_map.eq(Mux(state.lead, 0, items) + nul + state.raised),
+                words.to_map.eq(to_map),
+                words.max_beats.eq((to_map + to_end + (bus - 1)) >> ring.lane_bits),
                 words.map_mask.eq(state.mask),
                 words.to_end.eq(to_end),
                 words.end_mask.eq(end_mask),

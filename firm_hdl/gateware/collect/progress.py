@@ -75,7 +75,8 @@ class Progress:
         flags = "run_begin loop_begin words plain rest terminated lead"
         fields = {"map_bytes": size, "items_bytes": size, "mask": 3, "raised": 3}
         fields |= dict.fromkeys(flags.split(), 1)
-        return Flow(self.m, self.plan, COUNT_BITS, fields, self._traits, has_end=False)
+        most = (1 << COUNT_BITS) - 1
+        return Flow(self.m, self.plan, lambda _: most, fields, self._traits, has_end=False)
 
     def _traits(self, index: int | None) -> dict[str, int]:
         if index is None:

@@ -28,6 +28,8 @@ def words_layout(plan: Plan) -> data.StructLayout:
     to_end, end_mask
         Distance from the start of the map to where the next step starts, and the mask of its
         alignment. Behind a packet, that is the next beat.
+    max_beats : unsigned
+        The next step starts at most so many beats behind the one in which this step starts.
     last : unsigned(1)
         The packet ends with this step.
     empty : unsigned(1)
@@ -47,6 +49,7 @@ def words_layout(plan: Plan) -> data.StructLayout:
             "map_mask": 3,
             "to_end": range(3 * bus + 9),
             "end_mask": max(3, ring.lane_bits),
+            "max_beats": range((bus - 1 + (bus + 8) + (3 * bus + 8)) // bus + 1),
             "last": 1,
             "empty": 1,
             "error": 1,

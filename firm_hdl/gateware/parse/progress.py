@@ -91,13 +91,10 @@ class Progress:
 
     def _flow(self) -> Flow:
         plan = self.plan
-        counts = [meaning.max_count for meaning in self.meanings.values()]
-        counts += [count for jump in plan.jumps() for _, count in jump.enter]
         flags = "run_begin loop_begin words counted rest lead plain end"
         # `back` is in two's complement.
         fields = {"back": plan.bus_bytes.bit_length() + 1} | dict.fromkeys(flags.split(), 1)
-        bits = max(counts, default=1).bit_length()
-        return Flow(self.m, plan, bits, fields, self._traits, has_end=True)
+        return Flow(self.m, plan, plan.max_count, fields, self._traits, has_end=True)
 
     def _traits(self, index: int | None) -> dict[str, int]:
         plan, bus = self.plan, self.plan.bus_bytes

@@ -168,21 +168,19 @@ class _Circuit(Progress):
         m.d.comb += next_state.eq(
             Mux(self.closes, flow.start, Mux(self.done, flow.exit_state, flow.body_state))
         )
-        # A jump may load the same counter, and then counts.
-        flow.load_levels(self.length.count, self.length.single)
-        flow.load_words(self.length.count, self.length.single, nul_counts=True)
+        flow.count(
+            moves=self.issue,
+            ends=self.closes,
+            done=self.done,
+            count=self.length.count,
+            single=self.length.single,
+            nul=True,
+        )
         with m.If(self.issue):
             m.d.sync += Value.cast(state).eq(next_state)
             with m.If(self.closes):
                 m.d.sync += [self.bad.eq(0), self.rest.eq(0), self.has_nul.eq(0)]
-                flow.enter(self.plan.start)
             with m.Else():
-                with m.If(self.done):
-                    flow.leave()
-                with m.Else():
-                    flow.go_into_body()
-                with m.If(state.words & ~flow.words.last):
-                    flow.words.down(m)
                 self._begin_run()
 
     def _begin_run(self) -> None:
