@@ -147,6 +147,21 @@ def test_status_waits_until_it_is_taken_and_holds_the_next_packet():
     simulate(dut, feed, take)
 
 
+@pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8])
+@pytest.mark.parametrize("field", ["uint8", "uint16[2]", "uint8[40]", "float64[9]", "string"])
+def test_a_packet_begins_only_with_its_message(field, bus_bytes):
+    # On a narrow bus, the encapsulation header has beats of its own.
+    dut = Serializer(make("ros2", {"x": field}), bus_bytes=bus_bytes)
+
+    async def look(ctx):
+        ctx.set(dut.packets.ready, 1)
+        for _ in range(20):
+            await ctx.tick()
+            assert not ctx.get(dut.packets.valid)
+
+    simulate(dut, look)
+
+
 def test_a_length_over_its_bound_is_sent_as_promised_and_marked():
     message = make("ros2", {"name": "string<=3", "z": "uint8"})
     five = {0: [5], 1: [((1, 2, 3, 4, 5, 0, 0, 0), True)], 2: [9]}

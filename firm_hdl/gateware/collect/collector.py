@@ -175,7 +175,8 @@ class _Circuit(Progress):
     @property
     def _first_step(self) -> int:
         """The first step with bytes of a leaf."""
-        return next((i for i, step in enumerate(self.plan.steps) if step.parts), 0)
+        steps = enumerate(self.plan.steps)
+        return next((i for i, step in steps if step.parts or isinstance(step, RunStep)), 0)
 
     def _judge(self, wrong_items: Value) -> None:
         """Keep the packet's first error, and report it with the last step."""
