@@ -30,9 +30,9 @@ class Deserializer(wiring.Component):
 
     Every leaf has one register. A packet advances one step of the plan per cycle, while its bytes
     are present and the registers of the step's leaves are free or being read. Leaves become valid
-    in wire order. Latency from the beat that completes a leaf to its `valid`: 2 cycles.
-    `packets.ready` is a function of registers; all other outputs are registers. One clock domain,
-    `sync`; its reset discards all packets and messages inside.
+    in wire order, `LATENCY_CYCLES["deserializer"]` cycles after the last beat of their step. All
+    outputs are registers. One clock domain, `sync`; its reset discards all packets and messages
+    inside.
 
     Each packet ends in one transfer on `status`. After the first error in a packet, remaining
     scalars and lengths transfer as 0, the current sequence is completed with zeros, and the rest of
@@ -47,9 +47,6 @@ class Deserializer(wiring.Component):
         Bytes per beat: 1, 2, 4, 8, 16, 32 or 64.
     max_message_bytes : int
         A length that does not fit into a packet of this many bytes is an error.
-    window_words : 1 or 2
-        Most bus words per step, hence per cycle. 2 saves about one cycle for each string or
-        sequence, and makes the circuit larger and slower.
 
     Members
     -------

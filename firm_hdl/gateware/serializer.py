@@ -26,10 +26,12 @@ class Serializer(wiring.Component):
     """Turn messages into packets.
 
     Leaves are taken in wire order, several in one cycle if they are valid. No leaf waits for a
-    later one. The serializer adds the lengths on the wire, padding and terminators. Latency from
-    the last leaf of a step to its beat: 2 cycles. The `ready` of a leaf depends combinationally on
-    `packets.ready` and on the `valid` of the earlier leaves of the same step. One clock domain,
-    `sync`; its reset discards all messages and packets inside.
+    later one. A length is taken one cycle after it is offered at the earliest. The serializer adds
+    the lengths on the wire, padding and terminators. A beat is valid `LATENCY_CYCLES["serializer"]`
+    cycles after the last leaf of the step that fills it. The `ready` of a leaf depends
+    combinationally on its own `valid` and on that of the earlier leaves of the same step; all other
+    outputs are registers. One clock domain, `sync`; its reset discards all messages and packets
+    inside.
 
     Each packet ends in one transfer on `status`. A length over its bound is written unchanged, and
     as many items are taken as it says. The packet is marked with an error, so that the receiver can
@@ -38,7 +40,7 @@ class Serializer(wiring.Component):
 
     Parameters
     ----------
-    message, wire, bus_bytes, max_message_bytes, window_words
+    message, wire, bus_bytes, max_message_bytes
         As for :class:`Deserializer`.
 
     Members

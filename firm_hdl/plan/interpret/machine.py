@@ -28,10 +28,20 @@ Payload: TypeAlias = "int | tuple[tuple[int, ...], bool]"
 
 
 class Visit(NamedTuple):
-    """One cycle of a plan: the step, and the bytes that it takes, computed padding left out."""
+    """One cycle of a plan.
+
+    Attributes
+    ----------
+    step : int
+    bytes : int
+        Bytes that the step takes, computed padding left out.
+    end : int
+        Bytes of the packet up to here.
+    """
 
     step: int
     bytes: int
+    end: int
 
 
 class Edge(NamedTuple):
@@ -126,7 +136,7 @@ class Machine(ABC):
                     self.fixed(item)
                 case Part():
                     self.part(item)
-        self.visits.append(Visit(index, self.offset - start - padding))
+        self.visits.append(Visit(index, self.offset - start - padding, self.offset))
         body = self.begin(step)
         if body is None:
             return self.leave(index, step.exits)
@@ -170,7 +180,7 @@ class Machine(ABC):
         while True:
             start = self.offset
             self.items_of(run, lanes)
-            self.visits.append(Visit(index, self.offset - start))
+            self.visits.append(Visit(index, self.offset - start, self.offset))
             if self.counters[RUN_COUNTER] <= keep:
                 return
             self.edges.add(Edge(index, "again"))
