@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from amaranth.hdl import Cat, Const, Module, Signal, Value
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data
 
 from firm_hdl.gateware.flow import Flow
 from firm_hdl.gateware.parse.lengths import Meaning, shift_of
 from firm_hdl.gateware.positions import Ring, any_of, pick, raised_by
-from firm_hdl.plan import BeginRun, Jump, RunStep
+from firm_hdl.plan import BeginRun, Jump, Plan, RunStep
 
-__all__ = ["NextPlace"]
+__all__ = ["NextPlace", "place_fields", "place_traits"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,8 +22,6 @@ class _Way:
 
     Attributes
     ----------
-    taken : Value
-        The step takes this way, if it takes one of its kind.
     align : int
         Alignment of the next step.
     shift : int
@@ -32,10 +30,71 @@ class _Way:
         The step is the last word of a counted run, whose rest is behind it.
     """
 
-    taken: Value
     align: int
     shift: int
     rest: bool = False
+
+
+def _ways(plan: Plan, index: int) -> Iterator[tuple[str, _Way]]:
+    """Yield the ways out of a step: `exit`, `again_N` if loop N may go on, and `body`."""
+    step = plan.steps[index]
+    rest = isinstance(step, RunStep) and plan.runs[step.run].counted
+    exits = [("exit", step.exits.default)]
+    exits += [(f"again_{level}", jump) for level, jump in step.exits.repeats]
+    for name, jump in exits:
+        align = 1 if jump.step is None else plan.steps[jump.step].align
+        yield name, _Way(align=align, shift=shift_of(plan, jump.step), rest=rest)
+    if isinstance(step, RunStep):
+        yield "body", _Way(align=1, shift=plan.bus_bytes - 1)
+    elif step.begin is not None and step.begin.body is not None:
+        body = step.begin.body.step
+        assert body is not None
+        align = step.begin.align if isinstance(step.begin, BeginRun) else plan.steps[body].align
+        yield "body", _Way(align=align, shift=shift_of(plan, body))
+
+
+def _raised(plan: Plan, align: int, shift: int) -> int:
+    """Return what to add to the last byte, for the next one, its alignment, and a shift.
+
+    If the phase is not a constant, that is only the next byte.
+    """
+    if plan.bus_bytes < 8:
+        return 1
+    return 1 + (shift if align == 1 else raised_by(align, plan.header_bytes, shift))
+
+
+def place_traits(plan: Plan, index: int) -> dict[str, int]:
+    """Return the traits of a step from which the next position is computed.
+
+    For each way out of the step there are an addend, the mask of the low bits that the alignment
+    covers, and what these bits are (`low`); if the phase is not a constant, `low` is a distance.
+    `rest` tells that the addend is a distance that the parser keeps.
+    """
+    bus, traits = plan.bus_bytes, dict[str, int]()
+    for name, way in _ways(plan, index):
+        low = way.shift
+        if bus >= 8:
+            low = (plan.header_bytes + way.shift) % way.align
+        traits |= {
+            f"{name}_add": _raised(plan, way.align, way.shift),
+            f"{name}_mask": way.align - 1,
+            f"{name}_low": low,
+            f"{name}_rest": way.rest,
+            f"{name}_is": 1,
+        }
+    return traits
+
+
+def place_fields(plan: Plan) -> dict[str, int]:
+    """Return the widths of these traits, in bits."""
+    bus = plan.bus_bytes
+    widths = {"add": (3 * bus + 8).bit_length(), "mask": 3, "low": 3, "rest": 1, "is": 1}
+    if bus < 8:
+        widths["low"] = Ring(plan).bits
+    names = {name for index in range(len(plan.steps)) for name, _ in _ways(plan, index)}
+    return {
+        f"{name}_{what}": bits for name in sorted(names) for what, bits in widths.items()
+    }
 
 
 class NextPlace:
@@ -75,71 +134,56 @@ class NextPlace:
         self.m, self.flow, self.plan = m, flow, flow.plan
         self.last, self.phase, self.meanings, self.entry = last, phase, meanings, entry
         self.ring = Ring(self.plan)
+        self.names = [name.removesuffix("_is") for name in place_fields(self.plan) if "_is" in name]
         tail = self._tail()
-        self.exit = self._sum("exit", list(self._exits()), tail)
-        self.body = self._sum("body", list(self._bodies()), tail)
+        self.exit = self._sum("exit", self._exits(), tail)
+        self.body = self._sum("body", [(Const(1, 1), "body")], tail)
         self.after_rest = self._after_rest()
 
-    def _exits(self) -> Iterator[_Way]:
-        plan = self.plan
-        for taken, index, jump in self.flow.exits:
-            step = plan.steps[index]
-            align = 1 if jump.step is None else plan.steps[jump.step].align
-            rest = isinstance(step, RunStep) and plan.runs[step.run].counted
-            yield _Way(taken=taken, align=align, shift=shift_of(plan, jump.step), rest=rest)
+    def _trait(self, name: str) -> Value:
+        """Return a trait of the step: a register, or logic if positions are short."""
+        width = place_fields(self.plan).get(name)
+        if width is None:
+            return Const(0, 1)
+        if name in self.flow.layout.members:
+            return self.flow.state[name]
+        values = [place_traits(self.plan, k).get(name, 0) for k in range(len(self.plan.steps))]
+        return pick([(self.flow.step[k], value) for k, value in enumerate(values)], width)
 
-    def _bodies(self) -> Iterator[_Way]:
-        plan = self.plan
-        for index, step in enumerate(plan.steps):
-            taken = self.flow.step[index]
-            if isinstance(step, RunStep):
-                yield _Way(taken=taken, align=1, shift=plan.bus_bytes - 1)
-            elif step.begin is not None and step.begin.body is not None:
-                body = step.begin.body.step
-                assert body is not None
-                align = plan.steps[body].align
-                if isinstance(step.begin, BeginRun):
-                    align = step.begin.align
-                yield _Way(taken=taken, align=align, shift=shift_of(plan, body))
+    def _exits(self) -> list[tuple[Value, str]]:
+        """Return the ways that leave the step: which is taken, and its name."""
+        found: list[tuple[Value, str]] = []
+        free: Value = Const(1, 1)
+        # The innermost loop goes on first.
+        for level in reversed(range(self.plan.levels)):
+            if f"again_{level}" in self.names:
+                again = self._trait(f"again_{level}_is") & ~self.flow.levels[level].last
+                found.append((free & again, f"again_{level}"))
+                free = free & ~again
+        return [*found, (free, "exit")]
 
-    def _raised(self, align: int, shift: int) -> int:
-        """Return what to add to the last byte, for the next one, its alignment, and a shift.
-
-        If the phase is not a constant, that is only the next byte.
-        """
-        if not isinstance(self.phase, int):
-            return 1
-        return 1 + (shift if align == 1 else raised_by(align, self.phase, shift))
-
-    def _sum(self, kind: str, ways: list[_Way], tail: Value) -> Value:
+    def _sum(self, kind: str, ways: list[tuple[Value, str]], tail: Value) -> Value:
         """Return the position of the way that is taken."""
         m, ring = self.m, self.ring
-        amount, total = Signal(len(tail), name=f"{kind}_amount"), ring.position(f"{kind}_sum")
-        sizes = [
-            (way.taken, tail if way.rest else self._raised(way.align, way.shift)) for way in ways
-        ]
-        m.d.comb += [amount.eq(pick(sizes, len(amount))), total.eq(self.last + amount)]
-        if isinstance(self.phase, int):
-            return Cat(self._low_bit(ways, k, total[k]) for k in range(3)) | (
-                total & ~Const(7, len(total))
-            )
-        pad, result = Signal(3, name=f"{kind}_pad"), ring.position(f"{kind}_last")
-        mask = pick([(way.taken, way.align - 1) for way in ways], 3)
-        shift = pick([(way.taken, way.shift) for way in ways], ring.bits)
-        m.d.comb += [
-            pad.eq((self.phase - total) & mask),
-            result.eq(total + pad + shift),
-        ]
-        return result
 
-    def _low_bit(self, ways: list[_Way], k: int, bit: Value) -> Value:
-        """Return a bit of a position; it is known where the alignment covers it."""
-        assert isinstance(self.phase, int)
-        aligned = [way for way in ways if way.align >= 2 << k]
-        ones = [
-            way.taken for way in aligned if (self.phase + way.shift) % way.align >> k & 1
+        def chosen(what: str, width: int) -> Value:
+            return pick([(on, self._trait(f"{name}_{what}")) for on, name in ways], width)
+
+        amount, total = Signal(len(tail), name=f"{kind}_amount"), ring.position(f"{kind}_sum")
+        mask, low = Signal(3, name=f"{kind}_mask"), ring.position(f"{kind}_low")
+        rest = Signal(name=f"{kind}_rest")
+        m.d.comb += [
+            rest.eq(chosen("rest", 1)),
+            amount.eq(Mux(rest, tail, chosen("add", len(tail)))),
+            total.eq(self.last + amount),
+            mask.eq(chosen("mask", 3)),
+            low.eq(chosen("low", len(low))),
         ]
-        return (bit & ~any_of([way.taken for way in aligned])) | any_of(ones)
+        if isinstance(self.phase, int):
+            return (total & ~Cat(mask, Const(0, len(total) - 3))) | low
+        pad, result = Signal(3, name=f"{kind}_pad"), ring.position(f"{kind}_last")
+        m.d.comb += [pad.eq((self.phase - total) & mask), result.eq(total + pad + low)]
+        return result
 
     def _tail(self) -> Value:
         """Return how far it is from the last word of a run to the step behind the rest."""
@@ -148,7 +192,7 @@ class NextPlace:
         sizes: list[tuple[Value, int]] = []
         rests: list[tuple[Value, Value]] = []
         for taken, step, _, meaning in self._rests():
-            raised = self._raised(plan.steps[step].align, shift_of(plan, step))
+            raised = _raised(plan, plan.steps[step].align, shift_of(plan, step))
             assert meaning.run is not None and self.entry is not None
             sizes.append((taken, raised + plan.runs[meaning.run.run].terminated))
             unit = plan.item_bytes(meaning.run.run)

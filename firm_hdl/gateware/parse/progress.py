@@ -6,6 +6,7 @@ from amaranth.hdl import Module, Signal, Value
 
 from firm_hdl.gateware.flow import Flow
 from firm_hdl.gateware.parse.lengths import Meaning, shift_of
+from firm_hdl.gateware.parse.places import place_fields, place_traits
 from firm_hdl.gateware.positions import Ring
 from firm_hdl.plan import BeginLoop, BeginRun, MapStep, Plan, RunStep
 
@@ -94,6 +95,8 @@ class Progress:
         flags = "run_begin loop_begin words counted rest lead plain end"
         # `back` is in two's complement.
         fields = {"back": plan.bus_bytes.bit_length() + 1} | dict.fromkeys(flags.split(), 1)
+        # On a narrow bus, positions are short: their traits are not worth registers.
+        fields |= place_fields(plan) if plan.bus_bytes >= 8 else {}
         return Flow(self.m, plan, plan.max_count, fields, self._traits, has_end=True)
 
     def _traits(self, index: int | None) -> dict[str, int]:
@@ -113,4 +116,5 @@ class Progress:
             "rest": step.rest is not None,
             "lead": is_lead,
             "plain": step.begin is None and not is_words,
+            **(place_traits(plan, index) if bus >= 8 else {}),
         }
