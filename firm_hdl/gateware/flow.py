@@ -136,7 +136,15 @@ class Flow:
             yield leaves, i, s.exits.default
 
     def count(
-        self, *, moves: Value, ends: Value, done: Value, count: Value, single: Value, nul: bool
+        self,
+        *,
+        moves: Value,
+        ends: Value,
+        done: Value,
+        count: Value,
+        single: Value,
+        double: Value | None = None,
+        nul: bool,
     ) -> None:
         """Count and load the counters.
 
@@ -146,17 +154,19 @@ class Flow:
             The step is executed in this cycle. Then the packet ends; else the step is left through
             an exit (`done`), or goes on in its body.
         count : Value
-            The length that the step has, as its run or loop counts it.
-        single : Value
-            The body of the run or loop is executed once, if at all.
+            The length that the step has, as its run or loop counts it. With `double`, the one that
+            the step of the cycle before has.
+        single, double : Value
+            The body of the run or loop is executed once, if at all; if it is executed more than
+            once, it is so twice.
         nul : bool
             The count includes the NUL of a string.
         """
         leaves, stays = Signal(name="step_leaves"), Signal(name="step_stays")
         self.m.d.comb += [leaves.eq(moves & ~ends & done), stays.eq(moves & ~ends & ~done)]
         self._load_constants(moves & ends, leaves, stays)
-        self._load_levels(count, single)
-        self._load_words(count, single, nul)
+        self._load_levels(count, single, double)
+        self._load_words(count, single, double, nul)
         exits = iter(self.exits)
         for step in self.plan.steps:
             for level, _ in step.exits.repeats:
@@ -208,7 +218,7 @@ class Flow:
         assert isinstance(step, RunStep)
         return count // self.plan.leaves[self.plan.runs[step.run].items].lanes
 
-    def _load_levels(self, count: Value, single: Value) -> None:
+    def _load_levels(self, count: Value, single: Value, double: Value | None) -> None:
         """Load the counter of a loop that the step may begin.
 
         It is not in use before, so that this may happen in every cycle of the step.
@@ -220,9 +230,11 @@ class Flow:
                 if isinstance(s.begin, BeginLoop) and s.begin.level == level
             ]
             if chosen:
-                counter.load_by_default(any_of(chosen), count, single)
+                counter.load_by_default(any_of(chosen), count, single, double)
 
-    def _load_words(self, count: Value, single: Value, nul_counts: bool) -> None:
+    def _load_words(
+        self, count: Value, single: Value, double: Value | None, nul_counts: bool
+    ) -> None:
         """Load the counter of words of a run that the step may begin; as `_load_levels`.
 
         Of n items in words of w, (n - 1) // w words are taken in front of the rest.
@@ -239,4 +251,4 @@ class Flow:
         for (shift, nul), chosen in groups.items():
             less = ~exceeds(count[:shift], nul) if shift else Const(1)
             value = count - 1 if nul and not shift else count[shift:]
-            self.words.load_by_default(any_of(chosen), value, single, less)
+            self.words.load_by_default(any_of(chosen), value, single, double, less)

@@ -150,7 +150,8 @@ class Buffer(wiring.Component):
         m.d.sync += has_second.eq(
             Mux(has_second, Mux(self.next, more, 1), Mux(self.next, 0, follows))
         )
-        with m.If(self.next & stored):
-            m.d.sync += popped.eq(popped + 1)
-        with m.If(has_second & ends_now & (stored | ~self.next)):
+        # An end that `second` takes as it comes is pushed and popped.
+        with m.If(has_second & ends_now):
             m.d.sync += pushed.eq(pushed + 1)
+        with m.If(self.next & has_second & more):
+            m.d.sync += popped.eq(popped + 1)

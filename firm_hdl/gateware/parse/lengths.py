@@ -17,7 +17,7 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.flow import exceeds
-from firm_hdl.gateware.positions import Ring, align_up, beat_layout
+from firm_hdl.gateware.positions import Ring, align_up, beat_layout, known_lane_bits
 from firm_hdl.plan import BeginRun, Jump, MapStep, Plan, RunStep
 from firm_hdl.plan.geometry import Geometry
 
@@ -86,6 +86,11 @@ class Meaning:
         return f"single_{self.kind}"
 
     @property
+    def double(self) -> str:
+        """If the body is executed more than once, it is so twice."""
+        return f"double_{self.kind}"
+
+    @property
     def rest(self) -> str:
         """Items of the rest."""
         return f"rest_{self.kind}"
@@ -124,7 +129,10 @@ class Lengths(wiring.Component):
     key : In(position)
         Last byte of a length.
     entry : Out
-        The fields that :class:`Meaning` names, and `count`, the value, as wide as legal values.
+        The fields that :class:`Meaning` names, and `zero`.
+    count : Out
+        The length that was looked up in the cycle before, as wide as legal values. Nothing has to
+        know the number at once; so memories of numbers do not load `key`, which is late.
     """
 
     def __init__(self, plan: Plan, geometry: Geometry):
@@ -139,20 +147,21 @@ class Lengths(wiring.Component):
             }
         )
         self.layout = data.StructLayout(self._fields())
+        self.count_bits = max((m.max_count.bit_length() for m in self.meanings), default=1)
         super().__init__(
             {
                 "beat": In(beat_layout(plan)),
                 "phase": In(3),
                 "key": In(self.ring.bits),
                 "entry": Out(self.layout),
+                "count": Out(self.count_bits),
             }
         )
 
     def _fields(self) -> dict[str, int]:
-        fields = {"count": max((m.max_count.bit_length() for m in self.meanings), default=1)}
-        fields["zero"] = 1
+        fields = {"zero": 1}
         for meaning in self.meanings:
-            fields |= {meaning.over: 1, meaning.skips: 1, meaning.single: 1}
+            fields |= {meaning.over: 1, meaning.skips: 1, meaning.single: 1, meaning.double: 1}
             if meaning.run is not None:
                 fields[meaning.rest] = self._lanes_of(meaning).bit_length()
                 for jump in meaning.jumps:
@@ -165,54 +174,70 @@ class Lengths(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        ring, bus = self.ring, self.plan.bus_bytes
+        ring = self.ring
         # A length may have begun in earlier beats.
         history = Signal(8 * (LENGTH_BYTES - 1), reset_less=True)
         stream = Cat(history, self.beat.data)
         with m.If(self.beat.valid):
             m.d.sync += history.eq(stream[-len(history) :])
-        words = []
+        entries, counts = [], []
+        key = ring.position("key_before")
+        m.d.sync += key.eq(self.key)
         for lane in self.lanes:
-            memory = Memory(shape=self.layout, depth=ring.depth, init=[])
-            m.submodules[f"lane_{lane}"] = memory
-            write, read = memory.write_port(), memory.read_port(domain="comb")
             length = Signal(8 * LENGTH_BYTES, name=f"length_{lane}")
             entry = Signal(self.layout, name=f"entry_{lane}")
-            m.d.comb += [
-                length.eq(stream[8 * lane : 8 * (lane + LENGTH_BYTES)]),
-                write.addr.eq(self.beat.at),
-                write.data.eq(entry),
-                write.en.eq(self.beat.valid),
-                read.addr.eq(ring.slot(self.key)),
-            ]
+            m.d.comb += length.eq(stream[8 * lane : 8 * (lane + LENGTH_BYTES)])
             self._decode(m, length, lane, entry)
-            words.append(read.data)
-        if len(words) == 1:
-            m.d.comb += self.entry.eq(words[0])
-        elif bus > 1:
-            with m.Switch(ring.lane(self.key)):
-                for lane, word in zip(self.lanes, words, strict=True):
-                    with m.Case(lane):
-                        m.d.comb += self.entry.eq(word)
+            entries.append(self._keep(m, f"entry_{lane}", Value.cast(entry), self.key))
+            counts.append(self._keep(m, f"count_{lane}", length[: self.count_bits], key))
+        self._select(m, Value.cast(self.entry), self.key, entries)
+        self._select(m, self.count, key, counts)
         return m
+
+    def _keep(self, m: Module, name: str, value: Value, key: Value) -> Value:
+        """Write a value with each beat; return that of the beat with `key`."""
+        ring = self.ring
+        m.submodules[name] = memory = Memory(shape=len(value), depth=ring.depth, init=[])
+        write, read = memory.write_port(), memory.read_port(domain="comb")
+        m.d.comb += [
+            write.addr.eq(self.beat.at),
+            write.data.eq(value),
+            write.en.eq(self.beat.valid),
+            read.addr.eq(ring.slot(key)),
+        ]
+        return read.data
+
+    def _select(self, m: Module, target: Value, key: Value, values: list[Value]) -> None:
+        """Select the value of the lane of `key`; others than those of lengths do not occur."""
+        _, known = known_lane_bits(self.lanes, self.plan.bus_bytes)
+        lane = self.ring.lane(key)[known:]
+        with m.Switch(lane):
+            for number, value in zip(self.lanes[:-1], values, strict=False):
+                with m.Case(number >> known):
+                    m.d.comb += target.eq(value)
+            with m.Default():
+                m.d.comb += target.eq(values[-1])
 
     def _decode(self, m: Module, length: Signal, lane: int, entry: data.View) -> None:
         zero = ~length.any()
-        m.d.comb += [entry.count.eq(length), entry.zero.eq(zero)]
+        m.d.comb += entry.zero.eq(zero)
         for meaning in self.meanings:
             over = exceeds(length, meaning.max_count)
             if meaning.run is None:
-                skips, single = zero, length == 1
+                skips, single, double = zero, length == 1, length == 2
             else:
                 lanes = self._lanes_of(meaning)
                 word = self.plan.word(meaning.run.run)
-                skips, single = ~exceeds(length, word), ~exceeds(length, lanes + word)
+                skips, single, double = (
+                    ~exceeds(length, n * lanes + word) for n in range(3)
+                )
                 m.d.comb += entry[meaning.rest].eq(self._rest(length, lanes, word - lanes))
                 self._places(m, length, lane, entry, meaning)
             m.d.comb += [
                 entry[meaning.over].eq(over),
                 entry[meaning.skips].eq(skips | over),
                 entry[meaning.single].eq(single),
+                entry[meaning.double].eq(double),
             ]
 
     @staticmethod

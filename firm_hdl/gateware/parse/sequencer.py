@@ -174,6 +174,7 @@ class _Circuit(Progress):
             done=self.done,
             count=self.length.count,
             single=self.length.single,
+            double=self.length.double,
             nul=True,
         )
         with m.If(self.issue):
@@ -204,17 +205,11 @@ class _Circuit(Progress):
         start = Signal(ring.bits, name="next_packet")
         m.d.comb += start.eq(Cat(Const(0, ring.lane_bits), c.following))
         ways = NextPlace(m, self.flow, self.last, self.phase, self.meanings, self.length.entry)
-        # What a length decides is late.
+        # What a length decides is late. After an error, positions have no meaning.
         early, last = ring.position("early_last"), ring.position("next_last")
         begin = start + shift_of(plan, plan.start.step)
         m.d.comb += [
-            early.eq(
-                Mux(
-                    self.closes,
-                    begin,
-                    Mux(self.bad, self.last, Mux(self.leaves, ways.exit, ways.body)),
-                )
-            ),
+            early.eq(Mux(self.closes, begin, Mux(self.leaves, ways.exit, ways.body))),
             last.eq(
                 Mux(
                     self.length.run_skips,

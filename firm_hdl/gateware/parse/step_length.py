@@ -32,14 +32,16 @@ class StepLength:
     entry : View or None
         The fields that :class:`Meaning` names; `None` if the plan has no lengths.
     count : Value
-        The length on the wire. Of a `string` of CDR, it includes the NUL.
+        The length on the wire, a cycle later. Of a `string` of CDR, it includes the NUL.
     zero, over : Value(1)
         The length is 0; it is above the largest legal one.
     run_skips, loop_skips : Value(1)
         The body of the run or the loop is skipped: there is none, all of it is the rest, or the
-        length is wrong. 0 if an error was found before.
+        length is wrong.
     single : Value(1)
         The body is one element, or one word in front of the rest.
+    double : Value(1)
+        If it is executed more than once, it is so twice.
     rest : Value(range(lanes + 1))
         Items of the rest.
     """
@@ -49,20 +51,20 @@ class StepLength:
         self.entry: data.View | None = None
         self.zero: Value = Const(0, 1)
         self.over = self.run_skips = self.loop_skips = self.zero
-        self.single = self.count = self.rest = self.zero
+        self.single = self.double = self.count = self.rest = self.zero
         if not now.meanings:
             return
         self.entry = self._look_up(beat)
-        self.zero, self.count = self.entry.zero, self.entry.count
+        self.zero = self.entry.zero
         self.over = self._select(lambda meaning: meaning.over)
-        good = ~now.bad
         self.run_skips = self._select(
-            lambda meaning: meaning.skips if meaning.run is not None else None, on=good
+            lambda meaning: meaning.skips if meaning.run is not None else None, exact=True
         )
         self.loop_skips = self._select(
-            lambda meaning: meaning.skips if meaning.run is None else None, on=good
+            lambda meaning: meaning.skips if meaning.run is None else None, exact=True
         )
         self.single = self._select(lambda meaning: meaning.single)
+        self.double = self._select(lambda meaning: meaning.double)
         self.rest = self._select(
             lambda meaning: meaning.rest if meaning.run is not None else None, len(now.rest)
         )
@@ -72,6 +74,7 @@ class StepLength:
         m, plan, ring = self.now.m, self.now.plan, self.now.ring
         m.submodules.lengths = lengths = Lengths(plan, geometry(plan))
         m.d.comb += [lengths.beat.eq(beat), lengths.key.eq(self.now.last)]
+        self.count = lengths.count
         if plan.bus_bytes < 8:
             # The phase of the packet that arrives.
             phase = Signal(3, name="arriving_phase", init=plan.header_bytes % 8)
@@ -82,24 +85,18 @@ class StepLength:
         return lengths.entry
 
     def _select(
-        self, name: Callable[[Meaning], str | None], width: int = 1, on: Value | None = None
+        self, name: Callable[[Meaning], str | None], width: int = 1, *, exact: bool = False
     ) -> Value:
-        """Select a field of the entry by the step. With `on`, it is 0 without, and in other steps.
-
-        A field is late in the cycle, and what selects it is not.
-        """
+        """Select a field of the entry by the step; 0 where the step has none, if `exact`."""
         assert self.entry is not None
         fields: dict[str, list[Value]] = {}
         for index, meaning in self.now.meanings.items():
             field = name(meaning)
             if field is not None:
                 fields.setdefault(field, []).append(self.now.step[index])
-        if len(fields) == 1 and on is None:
+        if len(fields) == 1 and not exact:
             return Value.cast(self.entry[next(iter(fields))])
         return pick(
-            [
-                (any_of(chosen) & (1 if on is None else on), Value.cast(self.entry[field]))
-                for field, chosen in fields.items()
-            ],
+            [(any_of(chosen), Value.cast(self.entry[field])) for field, chosen in fields.items()],
             width,
         )
