@@ -144,7 +144,7 @@ class _Circuit:
         lanes = self._memories({name: (at, starts) for name, (at, starts, _) in ports.items()})
         for name, (at, starts, size) in ports.items():
             lane = self.ring.lane(at)
-            word = rotate(m, Cat(lanes[name]), lane, starts, 8, f"{name}_rotated")
+            word = rotate(m, Cat(lanes[name]), lane, starts, 8, f"{name}_rotated", most=1)
             self.word[name] = Signal(8 * bus, name=f"{name}_word", reset_less=True)
             self.have[name] = Signal(bus, name=f"{name}_have", reset_less=True)
             with m.If(self.take):
@@ -159,9 +159,8 @@ class _Circuit:
         """Make a memory for each lane, which each word reads at its own address."""
         m, ring, beat = self.m, self.ring, self.c.beat
         found: dict[str, list[Value]] = {name: [] for name in ports}
-        slots = {name: at[ring.lane_bits :] for name, (at, _) in ports.items()}
-        following = {name: Signal(len(slot), name=f"{name}_next") for name, slot in slots.items()}
-        m.d.comb += [following[name].eq(slot + 1) for name, slot in slots.items()]
+        order = self.order
+        following = {"items": order.items_next, "map": order.map_next}
         for k in range(self.plan.bus_bytes):
             memory = Memory(shape=8, depth=ring.depth, init=[])
             m.submodules[f"lane_{k}"] = memory
@@ -174,7 +173,7 @@ class _Circuit:
             for name, (at, starts) in ports.items():
                 read = memory.read_port(domain="comb")
                 # Lanes in front of the first byte are of the next beat.
-                address: Value = slots[name]
+                address: Value = at[ring.lane_bits :]
                 if any(start > k for start in starts):
                     address = Mux(ring.lane(at) > k, following[name], address)
                 m.d.comb += read.addr.eq(address)

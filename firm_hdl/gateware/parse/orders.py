@@ -23,6 +23,8 @@ def order_layout(plan: Plan) -> data.StructLayout:
         No step: no leaf is written.
     items_at, map_at : position, without the lap bit
         First byte of the word of items, and of the map.
+    items_next, map_next : slot
+        The beats behind those of these bytes.
     items_bytes, map_bytes : range(bus_bytes + 1)
         Bytes of these words that have their values; what is behind them is 0.
     items : unsigned(1)
@@ -47,6 +49,8 @@ def order_layout(plan: Plan) -> data.StructLayout:
             "blank": 1,
             "items_at": ring.bits - 1,
             "map_at": ring.bits - 1,
+            "items_next": ring.beat_bits - 1,
+            "map_next": ring.beat_bits - 1,
             "items_bytes": range(bus + 1),
             "map_bytes": range(bus + 1),
             "items": 1,

@@ -145,6 +145,8 @@ class _Circuit(Progress):
             order.blank.eq(state.end),
             order.items_at.eq(self.items_at),
             order.map_at.eq(self.map_at),
+            order.items_next.eq(self.ring.slot(self.items_at) + 1),
+            order.map_next.eq(self.ring.slot(self.map_at) + 1),
             order.items_bytes.eq(Mux(bad & ~fits, self.judge.items_room, wanted)),
             order.map_bytes.eq(Mux(bad, self.judge.map_room, bus)),
             order.items.eq((state.rest & self.rest.any()) | state.counted),
