@@ -144,7 +144,7 @@ class _Circuit:
         lanes = self._memories({name: (at, starts) for name, (at, starts, _) in ports.items()})
         for name, (at, starts, size) in ports.items():
             lane = self.ring.lane(at)
-            word = rotate(m, Cat(lanes[name]), lane, starts, 8, f"{name}_rotated", most=1)
+            word = rotate(m, Cat(lanes[name]), lane, starts, f"{name}_rotated")
             self.word[name] = Signal(8 * bus, name=f"{name}_word", reset_less=True)
             self.have[name] = Signal(bus, name=f"{name}_have", reset_less=True)
             with m.If(self.take):

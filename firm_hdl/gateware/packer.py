@@ -164,7 +164,6 @@ class _Circuit:
             getattr(self.c.words.payload, name),
             ring.lane(start),
             lanes,
-            8,
             f"{name}_rotated",
             back=True,
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from amaranth.hdl import Cat, Const, Module, Signal, Value
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data
 
 from firm_hdl.plan import Plan
@@ -135,44 +135,30 @@ def any_of(values: Sequence[Value]) -> Value:
 
 
 def rotate(
-    m: Module,
-    value: Value,
-    lane: Value,
-    lanes: Sequence[int],
-    unit: int,
-    name: str,
-    most: int = 2,
-    back: bool = False,
+    m: Module, value: Value, lane: Value, lanes: Sequence[int], name: str, *, back: bool = False
 ) -> Value:
     """Rotate a bus word so that the byte of a lane comes first.
 
-    With `back`, the first byte comes to the lane.
+    With `back`, the first byte comes to the lane. There is one stage for each bit of `lane`: fewer
+    stages of wider selections need more cells, and are not faster.
 
     Parameters
     ----------
     lanes : sequence of int
         The lanes that are possible; others are don't care.
-    unit : int
-        Bits per lane.
-    most : 1 or 2
-        Bits of `lane` per stage: 1 is smaller, 2 is faster.
     """
-    count = len(value) // unit
+    count = len(value) // 8
 
     def turned(value: Value, lane: int) -> Value:
-        at = (-lane if back else lane) % count * unit
+        at = 8 * ((-lane if back else lane) % count)
         return Cat(value, value)[at : at + len(value)]
 
-    first, low = known_lane_bits(lanes, count)
-    now, high = turned(value, first), count.bit_length() - 1
-    while low < high:
-        take = min(most, 2 if (high - low) % 2 == 0 else 1)
-        result = Signal(len(value), name=f"{name}_{low}")
-        with m.Switch(lane[high - take : high]):
-            for k in range(1 << take):
-                with m.Case(k):
-                    m.d.comb += result.eq(turned(now, k << (high - take)))
-        now, high = result, high - take
+    first, known = known_lane_bits(lanes, count)
+    now = turned(value, first)
+    for bit in reversed(range(known, count.bit_length() - 1)):
+        result = Signal(len(value), name=f"{name}_{bit}")
+        m.d.comb += result.eq(Mux(lane[bit], turned(now, 1 << bit), now))
+        now = result
     return now
 
 
