@@ -16,10 +16,20 @@ __all__ = ["Flow", "exceeds"]
 
 def exceeds(value: Value, limit: int) -> Value:
     """Return whether a number is above a constant, as plain logic: no carry chain."""
+    if limit >> len(value):
+        return Const(0, 1)
     result: Value = Const(0, 1)
-    for k in range(len(value)):
-        result = (value[k] & result) if limit >> k & 1 else (value[k] | result)
-    return result if limit >> len(value) == 0 else Const(0, 1)
+    start = 0
+    while start < len(value):
+        # Bits of the limit that are equal are compared together.
+        is_one = limit >> start & 1
+        end = start
+        while end < len(value) and limit >> end & 1 == is_one:
+            end += 1
+        bits = value[start:end]
+        result = bits.all() & result if is_one else bits.any() | result
+        start = end
+    return result
 
 
 class Flow:

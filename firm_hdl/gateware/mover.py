@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import stream, wiring
-from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.parse import order_layout
 from firm_hdl.gateware.positions import Ring, any_of, beat_layout, rotate
 from firm_hdl.gateware.signatures import StatusSignature, leaf_shape
@@ -162,16 +162,15 @@ class _Circuit:
         order = self.order
         following = {"items": order.items_next, "map": order.map_next}
         for k in range(self.plan.bus_bytes):
-            memory = Memory(shape=8, depth=ring.depth, init=[])
-            m.submodules[f"lane_{k}"] = memory
-            write = memory.write_port()
+            memory = LutMemory(m, f"lane_{k}", 8, ring.depth)
+            write = memory.write
             m.d.comb += [
                 write.addr.eq(beat.at),
                 write.data.eq(beat.data[8 * k : 8 * k + 8]),
                 write.en.eq(beat.valid),
             ]
             for name, (at, starts) in ports.items():
-                read = memory.read_port(domain="comb")
+                read = memory.reader(name)
                 # Lanes in front of the first byte are of the next beat.
                 address: Value = at[ring.lane_bits :]
                 if any(start > k for start in starts):

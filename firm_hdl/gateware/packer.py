@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, stream, wiring
-from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.collect import words_layout
+from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.positions import Ring, known_lane_bits, rotate
 from firm_hdl.gateware.signatures import PacketSignature
 from firm_hdl.plan import BeginRun, Plan, RunStep, Step
@@ -86,7 +86,12 @@ class _Circuit:
         )
         self.reads, self.writes = Signal(name="reads"), Signal(name="writes")
         self.takes = Signal(name="takes")
-        m.d.comb += self.takes.eq(packer.words.valid & packer.words.ready)
+        # The beat that is read, one bit for each.
+        self.leaving = Signal(ring.depth, name="leaving")
+        m.d.comb += [
+            self.takes.eq(packer.words.valid & packer.words.ready),
+            self.leaving.eq(self.reads << self.first[:-1]),
+        ]
         m.d.sync += self.writes.eq(self.takes)
         self._place()
         self._wait()
@@ -147,9 +152,7 @@ class _Circuit:
         total = Signal(size)
         m.d.comb += total.eq(value + distance)
         if isinstance(phase, int):
-            fixed = [Mux(last, 0, phase >> k & 1) for k in range(min(size, len(mask)))]
-            low = [Mux(mask[k], bit, total[k]) for k, bit in enumerate(fixed)]
-            return Cat(low, total[len(low) :])
+            return ((total & ~Cat(mask, Const(0, size))) | (mask & Mux(last, 0, phase)))[:size]
         pad = Signal(3)
         m.d.comb += pad.eq((phase - total) & mask)
         return Mux(last, total & ~Cat(mask, Const(0, size - len(mask))), total + pad)[:size]
@@ -215,21 +218,15 @@ class _Circuit:
             # Without padding, a byte that is not of items is of a map, or behind the packet.
             items = [self._lane("items", k) for k in range(plan.bus_bytes)]
             others = [self._lane("map", k, marked=False) for k in range(plan.bus_bytes)]
-            return Cat(
-                (a & has.replicate(8)) | (b & ~has.replicate(8))
-                for (a, has), (b, _) in zip(items, others, strict=True)
-            )
+            return Cat(Mux(has, a, b) for (a, has), (b, _) in zip(items, others, strict=True))
         lanes = [[self._lane(name, k) for name in self.placed] for k in range(plan.bus_bytes)]
-        return Cat(
-            (a & a_has.replicate(8)) | (b & b_has.replicate(8))
-            for (a, a_has), (b, b_has) in lanes
-        )
+        return Cat(Mux(a_has, a, 0) | Mux(b_has, b, 0) for (a, a_has), (b, b_has) in lanes)
 
     def _lane(self, name: str, k: int, *, marked: bool = True) -> tuple[Value, Value]:
         """Write a lane of a word; return its byte of the first beat, and whether there is one."""
         m, ring, placed = self.m, self.ring, self.placed[name]
-        m.submodules[f"{name}_{k}"] = memory = Memory(shape=8, depth=ring.depth, init=[])
-        write, read = memory.write_port(), memory.read_port(domain="comb")
+        memory = LutMemory(m, f"{name}_{k}", 8, ring.depth)
+        write, read = memory.write, memory.reader()
         index = Signal(max(1, ring.lane_bits), name=f"{name}_index_{k}")
         used = Signal(name=f"{name}_used_{k}")
         slot = Signal(ring.beat_bits - 1, name=f"{name}_slot_{k}")
@@ -238,7 +235,7 @@ class _Circuit:
             index.eq(k - lane if ring.lane_bits else 0),
             used.eq(self.writes & (index < placed.size)),
             # Lanes in front of the first byte are of the next beat.
-            slot.eq(ring.slot(placed.start) + (lane > k if ring.lane_bits else 0)),
+            slot.eq(ring.slot(placed.start) + (lane > k if k < self.plan.bus_bytes - 1 else 0)),
             write.addr.eq(slot),
             write.data.eq(placed.data[8 * k : 8 * k + 8]),
             write.en.eq(used),
@@ -248,13 +245,9 @@ class _Circuit:
             return read.data, Const(1, 1)
         # Which beats have this byte from this word.
         has = Signal(ring.depth, name=f"{name}_has_{k}")
-        for beat in range(ring.depth):
-            with m.If(self.reads & (self.first[:-1] == beat)):
-                m.d.sync += has[beat].eq(0)
-            with m.Elif(used & (slot == beat)):
-                m.d.sync += has[beat].eq(1)
+        m.d.sync += has.eq((has | (used << slot)) & ~self.leaving)
         here = Signal(name=f"{name}_here_{k}")
-        m.d.comb += here.eq(has.bit_select(self.first[:-1], 1))
+        m.d.comb += here.eq((has >> self.first[:-1])[0])
         return read.data, here
 
     # Third cycle.
@@ -263,8 +256,8 @@ class _Circuit:
         m, ring, packets = self.m, self.ring, self.c.packets
         slot = (self.done - 1)[: ring.beat_bits - 1]
         layout = data.StructLayout({"count": range(self.plan.bus_bytes + 1), "error": 1})
-        m.submodules.ends = ends = Memory(shape=layout, depth=ring.depth, init=[])
-        write, read = ends.write_port(), ends.read_port(domain="comb")
+        ends = LutMemory(m, "ends", layout, ring.depth)
+        write, read = ends.write, ends.reader()
         m.d.comb += [
             write.addr.eq(slot),
             write.data.count.eq(self.last_bytes),
@@ -275,11 +268,10 @@ class _Circuit:
         ]
         # Which beats are the last ones of their packets.
         last, is_last = Signal(ring.depth, name="last"), Signal(name="is_last")
-        m.d.comb += is_last.eq(last.bit_select(self.first[:-1], 1))
+        m.d.comb += is_last.eq((last >> self.first[:-1])[0])
+        m.d.sync += last.eq((last | ((self.writes & self.final) << slot)) & ~self.leaving)
         with m.If(self.writes):
             m.d.sync += self.complete.eq(self.done)
-            with m.If(self.final):
-                m.d.sync += last.bit_select(slot, 1).eq(1)
         payload = Signal(packets.payload.shape(), name="payload", reset_less=True)
         error = Signal(name="error_now", reset_less=True)
         m.d.comb += [Value.cast(packets.payload).eq(Value.cast(payload)), self.c.error.eq(error)]
@@ -293,5 +285,4 @@ class _Circuit:
                 payload.last.eq(is_last),
                 payload.count.eq(Mux(is_last, read.data.count, self.plan.bus_bytes)),
                 error.eq(is_last & read.data.error),
-                last.bit_select(self.first[:-1], 1).eq(0),
             ]

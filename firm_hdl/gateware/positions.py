@@ -117,17 +117,21 @@ def align_up(
 
 def pick(cases: Iterable[tuple[Value, Value | int]], width: int) -> Value:
     """Select a value by signals of which at most one is high: an AND-OR without priority."""
-    cases = list(cases)
-    bits: list[list[Value]] = [[] for _ in range(width)]
+    constants: list[list[Value]] = [[] for _ in range(width)]
+    result: Value | None = None
     for chosen, value in cases:
         if isinstance(value, int):
             for k in range(width):
                 if value >> k & 1:
-                    bits[k].append(chosen)
+                    constants[k].append(chosen)
         else:
-            for k in range(min(width, len(value))):
-                bits[k].append(chosen & value[k])
-    return Cat(any_of(column) for column in bits)
+            picked = Mux(chosen, value[:width], 0)
+            result = picked if result is None else result | picked
+    if result is None:
+        return Cat(any_of(column) for column in constants)
+    if any(constants):
+        result = result | Cat(any_of(column) for column in constants)
+    return result[:width] if len(result) >= width else Cat(result, Const(0, width - len(result)))
 
 
 def any_of(values: Sequence[Value]) -> Value:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
-from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.positions import Ring, beat_layout
 from firm_hdl.gateware.signatures import PacketSignature
 from firm_hdl.plan import Plan
@@ -122,8 +122,8 @@ class Buffer(wiring.Component):
 
         There are as many as there are beats, because a packet may have one beat.
         """
-        m.submodules.ends = ends = Memory(shape=layout, depth=self.ring.depth, init=[])
-        write, read = ends.write_port(), ends.read_port(domain="comb")
+        ends = LutMemory(m, "ends", layout, self.ring.depth)
+        write, read = ends.write, ends.reader()
         pushed = Signal(self.ring.beat_bits, name="pushed")
         popped = Signal(self.ring.beat_bits, name="popped")
         second, has_second = Signal(layout, name="second"), Signal(name="has_second")

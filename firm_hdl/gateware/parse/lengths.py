@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
-from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.flow import exceeds
+from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.positions import Ring, align_up, beat_layout, known_lane_bits
 from firm_hdl.plan import BeginRun, Jump, MapStep, Plan, RunStep
 from firm_hdl.plan.geometry import Geometry
@@ -197,8 +197,8 @@ class Lengths(wiring.Component):
     def _keep(self, m: Module, name: str, value: Value, key: Value) -> Value:
         """Write a value with each beat; return that of the beat with `key`."""
         ring = self.ring
-        m.submodules[name] = memory = Memory(shape=len(value), depth=ring.depth, init=[])
-        write, read = memory.write_port(), memory.read_port(domain="comb")
+        memory = LutMemory(m, name, len(value), ring.depth)
+        write, read = memory.write, memory.reader()
         m.d.comb += [
             write.addr.eq(self.beat.at),
             write.data.eq(value),

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from amaranth.hdl import Cat, Module
 from amaranth.lib import wiring
-from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.positions import Ring, any_of, beat_layout
 from firm_hdl.plan import Fixed, Plan
 
@@ -63,20 +63,18 @@ class Marks(wiring.Component):
         beat, ring = self.beat, self.ring
         lanes = [beat.data[8 * k : 8 * k + 8] for k in range(self.plan.bus_bytes)]
         if any(run.terminated for run in self.plan.runs):
-            m.submodules.nonzero = memory = Memory(shape=len(lanes), depth=ring.depth, init=[])
-            write, read = memory.write_port(), memory.read_port(domain="comb")
+            memory = LutMemory(m, "nonzero", len(lanes), ring.depth)
+            write, read = memory.write, memory.reader()
             m.d.comb += [
                 write.addr.eq(beat.at),
                 write.data.eq(Cat(lane.any() for lane in lanes)),
                 write.en.eq(beat.valid),
                 read.addr.eq(ring.slot(self.nul_at)),
-                self.nonzero.eq(read.data.bit_select(ring.lane(self.nul_at), 1)),
+                self.nonzero.eq((read.data >> ring.lane(self.nul_at))[0]),
             ]
         if self.steps:
-            m.submodules.headers = memory = Memory(
-                shape=len(self.steps), depth=ring.depth, init=[]
-            )
-            write, read = memory.write_port(), memory.read_port(domain="comb")
+            memory = LutMemory(m, "headers", len(self.steps), ring.depth)
+            write, read = memory.write, memory.reader()
             # The checked bytes of a step are in its first beat: a header is cut at bus words.
             wrong = [
                 any_of([(lanes[k] != byte) & (~beat.last | (beat.count > k)) for k, byte in checks])
