@@ -68,18 +68,15 @@ class Buffer(wiring.Component):
         end = Signal(layout)
         # Where the packet that arrives ends, if it ends now; else, how far it is there.
         newest = Signal(layout)
+        here = Mux(beat.valid, behind, at)
         m.d.comb += [
             behind.eq(at + 1),
             ends_now.eq(beat.valid & beat.last),
             end.limit.eq(Cat(Const(0, ring.lane_bits), at) + beat.count),
             end.following.eq(behind),
+            newest.limit.eq(Mux(ends_now, end.limit, Cat(Const(0, ring.lane_bits), here))),
             newest.following.eq(behind),
         ]
-        with m.If(ends_now):
-            m.d.comb += newest.limit.eq(end.limit)
-        with m.Else():
-            here = Mux(beat.valid, behind, at)
-            m.d.comb += newest.limit.eq(Cat(Const(0, ring.lane_bits), here))
         self._follow(m, layout, ends_now, end, newest)
         return m
 
