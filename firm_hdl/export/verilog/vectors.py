@@ -1,9 +1,9 @@
 """Vectors that are put together from others keep a net of their own in Verilog.
 
-In Amaranth's netlist, such a vector is connected to a concatenation, or a process without conditions
-assigns its parts. Yosys would use the vector's name for those parts of other signals, and write
-assignments to parts of several vectors. Tools that look at whole vectors would see loops: Verilator
-warns of them, and simulates them slowly.
+In the netlist of Amaranth, such a vector is connected to a concatenation, or a process without
+conditions assigns its parts. Yosys would use the name of the vector for those parts of other
+signals, and write assignments to parts of several vectors. Tools that look at whole vectors would
+see loops: Verilator warns of them, and simulates them slowly.
 """
 
 from __future__ import annotations
@@ -61,7 +61,9 @@ def _buffered(module: str) -> str:
 
 def _joined(parts: str, default: str) -> str | None:
     """Return the concatenation of parts, or `None` if they overlap."""
-    found = sorted((int(low or high), int(high), value) for _, high, low, value in _PART.findall(parts))
+    found = sorted(
+        (int(low or high), int(high), value) for _, high, low, value in _PART.findall(parts)
+    )
     pieces, at = [], 0
     for low, high, value in [*found, (len(default), len(default), "")]:
         if low < at:
