@@ -86,12 +86,7 @@ class _Circuit:
         )
         self.reads, self.writes = Signal(name="reads"), Signal(name="writes")
         self.takes = Signal(name="takes")
-        # The beat that is read, one bit for each.
-        self.leaving = Signal(ring.depth, name="leaving")
-        m.d.comb += [
-            self.takes.eq(packer.words.valid & packer.words.ready),
-            self.leaving.eq(self.reads << self.first[:-1]),
-        ]
+        m.d.comb += self.takes.eq(packer.words.valid & packer.words.ready)
         m.d.sync += self.writes.eq(self.takes)
         self._place()
         self._wait()
@@ -245,7 +240,11 @@ class _Circuit:
             return read.data, Const(1, 1)
         # Which beats have this byte from this word.
         has = Signal(ring.depth, name=f"{name}_has_{k}")
-        m.d.sync += has.eq((has | (used << slot)) & ~self.leaving)
+        for beat in range(ring.depth):
+            with m.If(self.reads & (self.first[:-1] == beat)):
+                m.d.sync += has[beat].eq(0)
+            with m.Elif(used & (slot == beat)):
+                m.d.sync += has[beat].eq(1)
         here = Signal(name=f"{name}_here_{k}")
         m.d.comb += here.eq((has >> self.first[:-1])[0])
         return read.data, here
@@ -269,9 +268,10 @@ class _Circuit:
         # Which beats are the last ones of their packets.
         last, is_last = Signal(ring.depth, name="last"), Signal(name="is_last")
         m.d.comb += is_last.eq((last >> self.first[:-1])[0])
-        m.d.sync += last.eq((last | ((self.writes & self.final) << slot)) & ~self.leaving)
         with m.If(self.writes):
             m.d.sync += self.complete.eq(self.done)
+            with m.If(self.final):
+                m.d.sync += last.bit_select(slot, 1).eq(1)
         payload = Signal(packets.payload.shape(), name="payload", reset_less=True)
         error = Signal(name="error_now", reset_less=True)
         m.d.comb += [Value.cast(packets.payload).eq(Value.cast(payload)), self.c.error.eq(error)]
@@ -285,4 +285,5 @@ class _Circuit:
                 payload.last.eq(is_last),
                 payload.count.eq(Mux(is_last, read.data.count, self.plan.bus_bytes)),
                 error.eq(is_last & read.data.error),
+                last.bit_select(self.first[:-1], 1).eq(0),
             ]

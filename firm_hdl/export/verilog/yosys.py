@@ -24,6 +24,7 @@ from amaranth.back import rtlil
 from firm_hdl.errors import UserError
 from firm_hdl.export.top import Top
 from firm_hdl.export.verilog.memories import settled_memories
+from firm_hdl.export.verilog.ports import named_ports
 from firm_hdl.export.verilog.vectors import whole_vectors
 from firm_hdl.names.identifiers import first_free
 from firm_hdl.names.keywords import KEYWORDS
@@ -113,7 +114,7 @@ def to_verilog(top: Top, *, module: str, header: str) -> str:
         If there is not enough memory.
     """
     design = settled_memories(rtlil.convert(top, name=module, emit_src=False))
-    design = whole_vectors(_without_keywords(design))
+    design = whole_vectors(_without_keywords(named_ports(design)))
     script = _SCRIPT.format(
         rtlil=design, attributes=" ".join(f"-remove {name}" for name in _ATTRIBUTES)
     )

@@ -126,8 +126,9 @@ class Filler:
         with m.If(now.complete):
             m.d.sync += begun.eq(begins & ~now.ends)
         raised, mask = self._items_align()
-        to_end, end_mask = Signal.like(words.to_end), Signal(max(3, ring.lane_bits))
-        to_map = Signal.like(words.to_map)
+        to_end = Signal.like(words.to_end, name="to_end")
+        end_mask = Signal(max(3, ring.lane_bits), name="end_mask")
+        to_map = Signal.like(words.to_map, name="to_map")
         m.d.comb += to_map.eq(Mux(state.lead, 0, items) + nul + state.raised)
         with m.If(now.ends):
             m.d.comb += [to_end.eq(Mux(begins, whole + (bus - 1), bus)), end_mask.eq(bus - 1)]
