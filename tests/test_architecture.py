@@ -38,9 +38,11 @@ MAY_IMPORT = {
     "estimates": {"plan"},
     "gateware": {"errors", "model", "wire", "plan"},
     "sim": {"errors", "model", "frontend", "wire", "plan", "gateware"},
-    "export": {"firm_hdl", "errors", "files", "names", "vhdl", "model", "frontend", "wire", "plan"},
 }
-MAY_IMPORT["export"] |= {"estimates", "gateware"}
+MAY_IMPORT["export"] = {
+    *("firm_hdl", "errors", "files", "jobs", "names", "vhdl"),
+    *("model", "frontend", "wire", "plan", "estimates", "gateware"),
+}
 MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {
     *("arguments", "errors", "files", "model", "frontend", "wire", "plan", "gateware", "export"),

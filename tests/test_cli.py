@@ -281,7 +281,7 @@ def test_build_that_is_interrupted_leaves_whole_folders(here, capsys, monkeypatc
         return to_verilog(*args, **options)
 
     monkeypatch.setattr(module, "to_verilog", interrupted)
-    assert main(["build", "std_msgs/msg/Bool", "std_msgs/msg/Char"]) == 130
+    assert main(["build", "std_msgs/msg/Bool", "std_msgs/msg/Char", "--jobs", "1"]) == 130
     assert capsys.readouterr().err == "interrupted\n"
     assert [path.name for path in here.glob("vhdl_out/lyrical/*")] == [
         "std_msgs_msg_Bool_cdr_8"

@@ -6,7 +6,7 @@ import argparse
 import os
 from typing import TYPE_CHECKING
 
-from firm_hdl.arguments import add_options
+from firm_hdl.arguments import add_jobs, add_options
 from firm_hdl.cli.types import library_of
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ def add_build(command: argparse.ArgumentParser) -> None:
         help="whether the VHDL has records, or plain vectors only; default: %(default)s",
     )
     command.add_argument("--force", action="store_true", help="also write folders that are current")
+    add_jobs(command)
     command.set_defaults(run=_build)
 
 
@@ -69,6 +70,7 @@ def _build(args: argparse.Namespace) -> None:
         force=args.force,
         stimuli=packets_of,
         report=report,
+        jobs=args.jobs,
     )
     for built in done:
         print(built.description)

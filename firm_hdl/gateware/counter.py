@@ -93,13 +93,14 @@ class Counter:
         ]
         cases = [*self._loads, *(replace(each, on=each.on & ~loads) for each in self._defaults)]
         last = [(each.on, each.last) for each in cases]
+        next_is_last = self._next_is_last(m, loads)
         m.d.sync += [
             self.pending.eq(keeps & down),
-            self.last.eq(pick([(keeps, Mux(down, self._next_is_last(m), self.last)), *last], 1)),
+            self.last.eq(pick([(keeps, Mux(down, next_is_last, self.last)), *last], 1)),
         ]
         self._load_value(m, loads)
 
-    def _next_is_last(self, m: Module) -> Value:
+    def _next_is_last(self, m: Module, loads: Value) -> Value:
         """Return whether one is left when the counter has counted one."""
         high = self.value[3:].any()
         two, three, four = (~high & (self.value[:3] == k) for k in (2, 3, 4))
@@ -110,7 +111,7 @@ class Counter:
         second, fresh = Signal(name=f"{self.name}_second"), Signal(name=f"{self.name}_fresh")
         m.d.sync += [
             # The number itself comes in this cycle.
-            fresh.eq(any_of([each.on for each in late])),
+            fresh.eq(~loads & any_of([each.on for each in late])),
             second.eq(pick([(each.on, each.double) for each in late], 1)),
         ]
         return Mux(fresh, second, known)

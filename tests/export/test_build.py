@@ -355,3 +355,19 @@ def test_output_is_the_same_everywhere(tmp_path):
     for text in trees[0].values():
         assert str(ROOT).encode() not in text
         assert str(tmp_path).encode() not in text
+
+
+def test_several_processes_write_the_same_files(tmp_path):
+    types = ["std_msgs/msg/Empty", "std_msgs/msg/String", "std_msgs/msg/Bool"]
+    reported = []
+    for jobs in (1, 2):
+        built = build(types, tmp_path / str(jobs), jobs=jobs, report=reported.append)
+        assert [each.name for each in built] == types
+    assert sorted(each.name for each in reported) == sorted(2 * types)
+    assert tree(tmp_path / "1") == tree(tmp_path / "2")
+
+
+def test_an_error_in_a_process_is_told(tmp_path):
+    (tmp_path / "lyrical").write_text("not a folder")
+    with pytest.raises(BuildError, match=r"^'.*lyrical.*' cannot be written: "):
+        build(["std_msgs/msg/Empty", "std_msgs/msg/Bool"], tmp_path, jobs=2)
