@@ -161,7 +161,7 @@ def test_build_says_what_it_did(here, capsys):
     out, err = capsys.readouterr()
     folder = os.path.join("gen", "lyrical", "geometry_msgs_msg_Twist_cdr_4", "")
     figures = (
-        "geometry_msgs/msg/Twist on cdr, 32-bit bus: 13 steps; packet 52 bytes, 13 beats, "
+        "geometry_msgs/msg/Twist on cdr, 32-bit bus: 12 steps; packet 52 bytes, 13 beats, "
         "13 cycles\n"
         "    clock for every packet: 100 Mbit/s 3.1 MHz, 1 Gbit/s 31.2 MHz, 10 Gbit/s 312.5 MHz\n"
     )

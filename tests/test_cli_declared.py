@@ -111,6 +111,16 @@ def test_what_must_be_said_must_be(command, capsys):
     assert "required" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("words", [["--window-words", "2"], ["--window-words=1"], ["--window"]])
+@pytest.mark.parametrize("command", ["build", "plan", "info"])
+def test_an_option_that_is_gone_is_refused_with_the_reason(command, words, capsys):
+    assert refused(*words_of(command, *words))
+    err = capsys.readouterr().err
+    assert f"{command}: error: argument --window-words: there is no such option any more: " in err
+    assert "--window-words" not in err.partition("error: ")[0]
+    assert refused("prove", *words)
+
+
 @pytest.mark.parametrize("command", ["list", "show", "plan"])
 def test_nobody_takes_one_word_too_many(command, capsys):
     assert refused(command, *TAKEN[command][0], "more")

@@ -20,10 +20,19 @@ PORT_NAMES = ("records", "flat")
 """What ``--ports`` takes: `firm_hdl.export.backend.PORTS`, without the imports of that."""
 
 
+class _Gone(argparse.Action):
+    """An option that there is no more."""
+
+    def __call__(self, *_: object) -> None:
+        raise argparse.ArgumentError(
+            self, "there is no such option any more: converters take two bus words in each cycle"
+        )
+
+
 def add_build(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl build``."""
     _add_types(command)
-    add_options(command)
+    _add_options(command)
     command.add_argument("--out", default="vhdl_out", help="folder to write to (%(default)s)")
     command.add_argument(
         "--ports",
@@ -79,7 +88,7 @@ def _build(args: argparse.Namespace) -> None:
 def add_plan(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl plan``."""
     command.add_argument("type", metavar="TYPE")
-    add_options(command)
+    _add_options(command)
     command.set_defaults(run=_plan)
 
 
@@ -95,7 +104,7 @@ def _plan(args: argparse.Namespace) -> None:
 def add_info(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl info``."""
     _add_types(command)
-    add_options(command)
+    _add_options(command)
     command.set_defaults(run=_info)
 
 
@@ -115,6 +124,12 @@ def _planned(message: Message, args: argparse.Namespace) -> Plan:
     from firm_hdl.export.build import plan_of
 
     return plan_of(message, args.wire, args.bus_bytes, args.max_message_bytes)
+
+
+def _add_options(command: argparse.ArgumentParser) -> None:
+    add_options(command)
+    hidden = argparse.SUPPRESS
+    command.add_argument("--window-words", action=_Gone, nargs="?", default=hidden, help=hidden)
 
 
 def _add_types(command: argparse.ArgumentParser) -> None:

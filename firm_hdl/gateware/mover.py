@@ -248,7 +248,8 @@ class _Circuit:
         else:
             waits.append(self.ends & stuck)
             comes.append(ends & stuck)
-        m.d.sync += slow.eq(Mux(self.take, any_of(comes), any_of(waits)))
+        if comes:
+            m.d.sync += slow.eq(Mux(self.take, any_of(comes), any_of(waits)))
         m.d.comb += self.take.eq(~slow & ~any_of(now))
         status = self._kept("status")
         with m.If(self.take):
