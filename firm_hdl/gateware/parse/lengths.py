@@ -8,7 +8,7 @@ sequencer is to select an entry by a position, and fields of the entry by the st
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
@@ -18,7 +18,7 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware.flow import exceeds
 from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.positions import Ring, align_up, beat_layout, known_lane_bits
-from firm_hdl.plan import BeginRun, Jump, MapStep, Plan, RunStep
+from firm_hdl.plan import BeginLoop, BeginRun, Jump, MapStep, Plan, RunStep
 from firm_hdl.plan.geometry import Geometry
 
 __all__ = ["LENGTH_BYTES", "Lengths", "Meaning", "shift_of"]
@@ -46,10 +46,13 @@ class Meaning:
     plan : Plan
     step : MapStep
         A step that begins a loop or a run.
+    has_leaves : bool
+        Whether steps without bytes matter, because they have leaves.
     """
 
     plan: Plan
     step: MapStep
+    has_leaves: bool = True
 
     @property
     def run(self) -> BeginRun | None:
@@ -60,9 +63,17 @@ class Meaning:
     def kind(self) -> str:
         """What is counted: equal for lengths whose items have one size."""
         if self.run is None:
-            return "loop"
+            return "nothing" if self.is_nothing else "loop"
         terminated = self.plan.runs[self.run.run].terminated
         return f"run_{self.plan.item_bytes(self.run.run)}{'_nul' if terminated else ''}"
+
+    @property
+    def is_nothing(self) -> bool:
+        """It counts elements without bytes, which do not matter."""
+        if self.has_leaves or not isinstance(self.step.begin, BeginLoop):
+            return False
+        body = self.plan.steps[self.step.begin.body.step or 0]
+        return isinstance(body, MapStep) and not body.bytes and body.begin is None
 
     @property
     def max_count(self) -> int:
@@ -118,6 +129,8 @@ class Lengths(wiring.Component):
     ----------
     plan : Plan
     geometry : Geometry
+    meanings : sequence of Meaning
+        Of the steps with a length.
 
     Members
     -------
@@ -135,9 +148,8 @@ class Lengths(wiring.Component):
         know the number at once; so memories of numbers do not load `key`, which is late.
     """
 
-    def __init__(self, plan: Plan, geometry: Geometry):
-        self.plan, self.ring = plan, Ring(plan)
-        self.meanings = [Meaning(plan, s) for s in plan.steps if isinstance(s, MapStep) and s.begin]
+    def __init__(self, plan: Plan, geometry: Geometry, meanings: Sequence[Meaning]):
+        self.plan, self.ring, self.meanings = plan, Ring(plan), meanings
         self.lanes = sorted(
             {
                 (lane + step.bytes - 1) % plan.bus_bytes
@@ -224,7 +236,8 @@ class Lengths(wiring.Component):
         for meaning in self.meanings:
             over = exceeds(length, meaning.max_count)
             if meaning.run is None:
-                skips, single, double = zero, length == 1, length == 2
+                skips = Const(1, 1) if meaning.is_nothing else zero
+                single, double = length == 1, length == 2
             else:
                 lanes = self._lanes_of(meaning)
                 word = self.plan.word(meaning.run.run)

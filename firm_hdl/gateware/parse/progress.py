@@ -16,6 +16,13 @@ __all__ = ["Progress"]
 class Progress:
     """Where the sequencer is in the packet and in the plan. Not a component: signals.
 
+    Parameters
+    ----------
+    m : Module
+    plan : Plan
+    has_leaves : bool
+        As of :class:`Sequencer`.
+
     Attributes
     ----------
     m : Module
@@ -64,11 +71,11 @@ class Progress:
         It can be, because of an error: bytes do not matter any more.
     """
 
-    def __init__(self, m: Module, plan: Plan):
+    def __init__(self, m: Module, plan: Plan, *, has_leaves: bool):
         self.m, self.plan = m, plan
         self.ring = ring = Ring(plan)
         self.meanings = {
-            index: Meaning(plan, step)
+            index: Meaning(plan, step, has_leaves)
             for index, step in enumerate(plan.steps)
             if isinstance(step, MapStep) and step.begin is not None
         }

@@ -39,6 +39,10 @@ class Sequencer(wiring.Component):
     Parameters
     ----------
     plan : Plan
+    has_leaves : bool
+        Whether orders write leaves. If they do not, only the last order of a packet counts, the one
+        that `ends`: after an error no more steps are executed, and elements without bytes are
+        skipped.
 
     Members
     -------
@@ -52,14 +56,16 @@ class Sequencer(wiring.Component):
         Where the next packet starts, if `ended`.
     next : Out(1)
         The packet is done.
+    trailing : Out(2)
+        Bytes behind the message, if the packet is done and its status is `OK`.
     at : Out(beat)
         Beats in front of this one are not needed by the sequencer.
     orders : Out(stream.Signature(order_layout(plan)))
         `valid` does not depend on `ready`; the payload is stable only with `valid`.
     """
 
-    def __init__(self, plan: Plan):
-        self.plan = plan
+    def __init__(self, plan: Plan, *, has_leaves: bool = True):
+        self.plan, self.has_leaves = plan, has_leaves
         ring = Ring(plan)
         super().__init__(
             {
@@ -68,6 +74,7 @@ class Sequencer(wiring.Component):
                 "ended": In(1),
                 "following": In(ring.beat_bits),
                 "next": Out(1),
+                "trailing": Out(2),
                 "at": Out(ring.beat_bits),
                 "orders": Out(stream.Signature(order_layout(plan))),
             }
@@ -85,7 +92,7 @@ class _Circuit(Progress):
     """
 
     def __init__(self, sequencer: Sequencer):
-        super().__init__(Module(), sequencer.plan)
+        super().__init__(Module(), sequencer.plan, has_leaves=sequencer.has_leaves)
         self.c = c = sequencer
         self.length = StepLength(self, c.beat)
         self._decide()
@@ -106,6 +113,7 @@ class _Circuit(Progress):
             self.behind.eq(self.last + 1),
             # limit - last - 1.
             self.left.eq(c.limit + ~self.last),
+            c.trailing.eq(self.left),
             self.present.eq(~self.left[-1]),
             self.leaves.eq(state.plain | (state.words & flow.words.last)),
             self.done.eq(
@@ -167,9 +175,10 @@ class _Circuit(Progress):
         """Go to the next step, and count."""
         m, state, flow = self.m, self.state, self.flow
         next_state = Signal(flow.layout.size, name="next_state")
-        m.d.comb += next_state.eq(
-            Mux(self.closes, flow.start, Mux(self.done, flow.exit_state, flow.body_state))
-        )
+        following = Mux(self.done, flow.exit_state, flow.body_state)
+        if not self.c.has_leaves:
+            following = Mux(self.bad, flow.encode(None), following)
+        m.d.comb += next_state.eq(Mux(self.closes, flow.start, following))
         flow.count(
             moves=self.issue,
             ends=self.closes,

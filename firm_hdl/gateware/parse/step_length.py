@@ -72,7 +72,9 @@ class StepLength:
     def _look_up(self, beat: data.View) -> data.View:
         """Return the entry of the step's length."""
         m, plan, ring = self.now.m, self.now.plan, self.now.ring
-        m.submodules.lengths = lengths = Lengths(plan, geometry(plan))
+        m.submodules.lengths = lengths = Lengths(
+            plan, geometry(plan), list(self.now.meanings.values())
+        )
         m.d.comb += [lengths.beat.eq(beat), lengths.key.eq(self.now.last)]
         self.count = lengths.count
         if plan.bus_bytes < 8:
