@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Cat, Const, Module, Signal
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.parse import Buffer, Sequencer
 from firm_hdl.gateware.positions import Ring, beat_layout
-from firm_hdl.gateware.signatures import PacketSignature, StatusSignature
+from firm_hdl.gateware.signatures import PacketSignature, Status, StatusSignature
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan, check_bus_bytes
 from firm_hdl.plan.outline import outline
@@ -48,7 +48,7 @@ class Parser(wiring.Component):
     behind; then `packets.ready` is low.
 
     `packets.ready`, `status.valid`, `status.payload` and `sizes` are registers; no path leads from
-    an input to an output. While a status is not taken, the next packet cannot end. One clock
+    an input to an output. While a status is not taken, only one more packet can end. One clock
     domain, `sync`; its reset discards all packets inside.
 
     Parameters
@@ -98,7 +98,11 @@ class Parser(wiring.Component):
         m.submodules.sequencer = sequencer = Sequencer(self.plan, has_leaves=False)
         m.submodules.packet_sizes = sizes = PacketSizes(self.plan)
         order = sequencer.orders.payload
-        takes = Signal()
+        # A judgement that comes while `status` waits; so no path leads from `status.ready` to the
+        # sequencer.
+        layout = data.StructLayout({"status": Status, "trailing": 2})
+        judged, second = Signal(layout), Signal(layout, reset_less=True)
+        has_second, takes = Signal(), Signal()
         m.d.comb += [
             buffer.packets.payload.eq(self.packets.payload),
             buffer.packets.valid.eq(self.packets.valid),
@@ -110,18 +114,25 @@ class Parser(wiring.Component):
             buffer.next.eq(sequencer.next),
             buffer.freed.eq(sequencer.at),
             sizes.beat.eq(buffer.beat),
-            sizes.next.eq(sequencer.next),
-            # Only the end of a packet waits for the status of the one before.
+            judged.status.eq(order.status),
+            judged.trailing.eq(sequencer.trailing),
             takes.eq(~self.status.valid | self.status.ready),
-            sequencer.orders.ready.eq(~order.ends | takes),
+            sizes.next.eq(takes & (has_second | sequencer.next)),
+            sequencer.orders.ready.eq(~(order.ends & has_second)),
         ]
         with m.If(takes):
             m.d.sync += [
-                self.status.valid.eq(sequencer.next),
-                self.status.payload.eq(order.status),
+                has_second.eq(0),
+                self.status.valid.eq(has_second | sequencer.next),
+                Cat(Value.cast(self.status.payload), self.sizes.trailing).eq(
+                    Mux(has_second, Value.cast(second), Value.cast(judged))
+                ),
                 self.sizes.packet.eq(sizes.bytes),
-                self.sizes.trailing.eq(sequencer.trailing),
             ]
+        with m.Elif(sequencer.next):
+            m.d.sync += has_second.eq(1)
+        with m.If(~has_second):
+            m.d.sync += second.eq(judged)
         return m
 
 
@@ -137,7 +148,7 @@ class PacketSizes(wiring.Component):
     beat : In(beat_layout(plan))
         The beat that is written to the packet buffer in this cycle.
     next : In(1)
-        Go to the next packet.
+        Forget the oldest packet.
     bytes : Out(32)
         Bytes of the oldest packet that has ended, a cycle after its last beat; 2**32 - 1 if there
         are more. Combinational from a memory.
@@ -154,8 +165,9 @@ class PacketSizes(wiring.Component):
         ring, beat = self.ring, self.beat
         # There are too many beats to count.
         over, total = Signal(), Signal(SIZE_BITS + 1)
-        # A packet has at least a beat, so there are never more of them than words of the ring.
-        memory = LutMemory(m, "ends", SIZE_BITS, ring.depth)
+        # A packet has at least a beat, so the ring has no more packets than words. Two that are
+        # judged may wait.
+        memory = LutMemory(m, "ends", SIZE_BITS, 2 * ring.depth)
         write, read = memory.write, memory.reader()
         m.d.comb += [
             total.eq(Cat(Const(0, ring.lane_bits), self.beats) + beat.count),

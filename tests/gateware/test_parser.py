@@ -282,15 +282,18 @@ def test_a_packet_per_cycle():
     assert seen.late(packets, 8) == [LATENCY] * 50
 
 
-def test_a_status_that_is_not_taken_holds_the_end_of_the_next_packet_only():
+def test_a_status_that_is_not_taken_holds_the_end_of_the_next_packet_but_one():
     good = bytes.fromhex(GOOD)
-    packets = [good] * 3
+    packets = [good] * 4
     parser = Parser(load_message(HEADER), bus_bytes=1)
-    # The first status is taken after the bytes of the second packet and half of the third.
-    seen = run(parser, packets, stalls={"status": Stalls.bits("0" * 55 + "1" * 1000)})
-    assert seen.beats[: 2 * len(good)] == list(range(2 * len(good)))
-    assert seen.times[:2] == [55, 56]
-    assert seen.statuses == [Status.OK] * 3
+    waits = 5 * len(good)
+    seen = run(parser, packets, stalls={"status": Stalls.bits("0" * waits + "1" * 1000)})
+    # Beats behind the third packet fill the buffer.
+    here = 3 * len(good)
+    assert seen.beats[:here] == list(range(here))
+    assert here < sum(beat < waits for beat in seen.beats) < here + 20
+    assert seen.times[:3] == [waits, waits + 1, waits + 2]
+    assert seen.statuses == [Status.OK] * 4
 
 
 def has_path(component, inputs, outputs):
