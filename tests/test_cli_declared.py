@@ -57,6 +57,7 @@ TAKEN = {
             "bus_bytes": None,
             "direction": None,
             "device": "ecp5",
+            "software": False,
             "seeds": [1, 2, 3],
             "mapping": "",
             "messages": 16,
