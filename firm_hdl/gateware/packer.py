@@ -12,22 +12,10 @@ from firm_hdl.gateware.collect import words_layout
 from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.positions import Ring, known_lane_bits, rotate
 from firm_hdl.gateware.signatures import PacketSignature
-from firm_hdl.plan import BeginRun, Plan, RunStep, Step
-from firm_hdl.plan.geometry import geometry
+from firm_hdl.plan import Plan
+from firm_hdl.plan.geometry import geometry, may_end_empty, most_beats
 
-__all__ = ["Packer", "may_end_empty"]
-
-
-def may_end_empty(plan: Plan) -> bool:
-    """Tell whether a packet may end in a step without bytes.
-
-    Then its last beat may be full before it is known to be the last one.
-    """
-    return any(
-        step.exits.default.step is None and not step.bytes and step.rest is None
-        for step in plan.steps
-        if not isinstance(step, RunStep)
-    )
+__all__ = ["Packer"]
 
 
 class Packer(wiring.Component):
@@ -179,10 +167,8 @@ class _Circuit:
     def _wait(self) -> None:
         """Take words only if there is room for those that may come in the next cycle."""
         m, ring = self.m, self.ring
-        # An empty packet has a beat, too.
-        span = max(1, *map(self._span, self.plan.steps))
         # The last beat in which a step may start.
-        bound = Signal(ring.beat_bits, name="bound", init=ring.depth - span)
+        bound = Signal(ring.beat_bits, name="bound", init=ring.depth - most_beats(self.plan))
         newest, room = (Signal(ring.beat_bits, name=name) for name in ("newest", "room"))
         ready = Signal(name="ready", init=1)
         m.d.comb += [
@@ -193,16 +179,6 @@ class _Circuit:
         m.d.sync += ready.eq(~room[-1])
         with m.If(self.reads):
             m.d.sync += bound.eq(bound + 1)
-
-    def _span(self, step: Step) -> int:
-        """Return the largest number of beats that the words of a step touch."""
-        plan, bus = self.plan, self.plan.bus_bytes
-        size = max(step.bytes, bus if isinstance(step, RunStep) else 0) + step.align - 1
-        if step.rest is not None:
-            size += bus + plan.runs[step.rest].terminated
-        if isinstance(step.begin, BeginRun):
-            size += step.begin.align - 1
-        return -(-(bus - 1 + size) // bus)
 
     # Second cycle.
 

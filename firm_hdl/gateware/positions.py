@@ -8,6 +8,7 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data
 
 from firm_hdl.plan import Plan
+from firm_hdl.plan.geometry import ring_beats
 
 __all__ = [
     "Ring",
@@ -36,7 +37,7 @@ class Ring:
     def __init__(self, plan: Plan):
         self.plan = plan
         self.bus = plan.bus_bytes
-        self.depth = 8 if self.bus > 2 else 16
+        self.depth = ring_beats(self.bus)
         self.lane_bits = self.bus.bit_length() - 1
         self.beat_bits = self.depth.bit_length()
         self.bits = self.lane_bits + self.beat_bits

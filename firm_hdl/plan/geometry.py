@@ -12,7 +12,15 @@ from dataclasses import dataclass
 from firm_hdl.plan.ir import BeginRun, Exits, Jump, MapStep, Plan, RunStep, Step
 from firm_hdl.wire import residues as rs
 
-__all__ = ["Geometry", "Place", "geometry"]
+__all__ = [
+    "Geometry",
+    "Place",
+    "geometry",
+    "may_end_empty",
+    "most_beats",
+    "only_ends",
+    "ring_beats",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +80,48 @@ def geometry(plan: Plan) -> Geometry:
         map_lanes=tuple(sorted(map_lanes)) or (0,),
         aligns=any(step.align > 1 for step in plan.steps)
         or any(isinstance(s.begin, BeginRun) and s.begin.align > 1 for s in plan.steps),
+    )
+
+
+def ring_beats(bus_bytes: int) -> int:
+    """Return the number of beats in the ring of a converter.
+
+    A power of two, and more beats than one step can touch.
+    """
+    return 8 if bus_bytes > 2 else 16
+
+
+def most_beats(plan: Plan) -> int:
+    """Return the largest number of beats that a step touches, the padding in it included."""
+    # An empty packet has a beat, too.
+    return max(1, *(_beats(plan, step) for step in plan.steps))
+
+
+def _beats(plan: Plan, step: Step) -> int:
+    bus = plan.bus_bytes
+    size = max(step.bytes, bus if isinstance(step, RunStep) else 0) + step.align - 1
+    if step.rest is not None:
+        size += bus + plan.runs[step.rest].terminated
+    if isinstance(step.begin, BeginRun):
+        size += step.begin.align - 1
+    return -(-(bus - 1 + size) // bus)
+
+
+def only_ends(step: Step) -> bool:
+    """Tell whether a step ends the packet in any case, and takes a rest at most."""
+    ends = step.exits.default.step is None and not step.exits.repeats
+    return ends and step.rest is not None and not step.bytes
+
+
+def may_end_empty(plan: Plan) -> bool:
+    """Tell whether a packet may end in a step without bytes.
+
+    Then its last beat may be full before it is known to be the last one.
+    """
+    return any(
+        step.exits.default.step is None and not step.bytes and step.rest is None
+        for step in plan.steps
+        if not isinstance(step, RunStep)
     )
 
 
