@@ -148,6 +148,24 @@ def test_status_waits_until_it_is_taken_and_holds_the_next_packet():
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8])
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_an_empty_sequence_in_an_element_does_not_end_the_message(dialect, bus_bytes):
+    # The rest of a sequence has a step of its own here, which is the last one or goes on with the
+    # next element. A packet leaves this step out if it is the last one and there is no rest.
+    element = make(dialect, {"x": "uint64", "a": "uint8[]"}, "E")
+    message = make(dialect, {"e": (element, "[]")})
+    packet = b"\0\1\0\0" * (dialect == "ros2")
+    body = b"\5\0\0\0"
+    for items in (b"", b"", b"ab", b"abcdefghi", b""):
+        body += bytes(-len(body) % 8) if dialect == "ros2" else b""
+        body += b"\7" + bytes(7) + len(items).to_bytes(4, "little") + items
+    packet += body
+    packets, statuses = loopback(message, [packet] * 2, bus_bytes=bus_bytes)
+    assert packets == [packet] * 2
+    assert statuses == [Status.OK] * 2
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8])
 @pytest.mark.parametrize("field", ["uint8", "uint16[2]", "uint8[40]", "float64[9]", "string"])
 def test_a_packet_begins_only_with_its_message(field, bus_bytes):
     # On a narrow bus, the encapsulation header has beats of its own.

@@ -14,6 +14,7 @@ from firm_hdl.gateware.collect.words import words_layout
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.gateware.signatures import Status, StatusSignature, leaf_shape
 from firm_hdl.plan import BeginRun, Plan, RunStep, Step
+from firm_hdl.plan.geometry import only_ends
 
 __all__ = ["Collector"]
 
@@ -91,11 +92,7 @@ class _Circuit(Progress):
         is_begin = state.run_begin | state.loop_begin
         skips = self.of_length(lambda length: length.skips)
         # A last step that only takes a rest is left out where there is none.
-        rests = {
-            i
-            for i, step in enumerate(plan.steps)
-            if step.rest is not None and not step.bytes and step.exits.default.step is None
-        }
+        rests = {i for i, step in enumerate(plan.steps) if only_ends(step)}
         to_rest = any_of([taken for taken, _, jump in flow.exits if jump.step in rests])
         nothing = is_begin & self.zero & ~state.terminated & to_rest
         m.d.comb += [
