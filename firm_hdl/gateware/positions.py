@@ -119,19 +119,21 @@ def align_up(
 def pick(cases: Iterable[tuple[Value, Value | int]], width: int) -> Value:
     """Select a value by signals of which at most one is high: an AND-OR without priority."""
     constants: list[list[Value]] = [[] for _ in range(width)]
-    result: Value | None = None
+    picked: list[Value] = []
     for chosen, value in cases:
         if isinstance(value, int):
             for k in range(width):
                 if value >> k & 1:
                     constants[k].append(chosen)
         else:
-            picked = Mux(chosen, value[:width], 0)
-            result = picked if result is None else result | picked
-    if result is None:
-        return Cat(any_of(column) for column in constants)
-    if any(constants):
-        result = result | Cat(any_of(column) for column in constants)
+            picked.append(Mux(chosen, value[:width], 0))
+    if any(constants) or not picked:
+        picked.append(Cat(any_of(column) for column in constants))
+    # A tree: a plan has hundreds of steps, and expressions must not be nested so deeply.
+    while len(picked) > 1:
+        pairs = zip(picked[::2], picked[1::2], strict=False)
+        picked = [a | b for a, b in pairs] + picked[len(picked) & ~1 :]
+    (result,) = picked
     return result[:width] if len(result) >= width else Cat(result, Const(0, width - len(result)))
 
 
