@@ -19,7 +19,7 @@ TAKEN = {
     "build": (
         ["a/B"],
         {**ORIGINS, **PLAN, "types": ["a/B"], "out": "vhdl_out"}
-        | {"ports": "records", "force": False},
+        | {"ports": "records", "force": False, "jobs": None},
     ),
     "list": ([], ORIGINS),
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
