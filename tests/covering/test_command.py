@@ -23,7 +23,7 @@ def test_types_and_what_they_add_are_printed(capsys):
 def test_branches_are_counted_if_asked_for(capsys):
     assert main(["cover", "--branches", "std_msgs/msg/Bool"]) == 0
     out, err = capsys.readouterr()
-    assert "branch: plan/build.py " in out and "branch: gateware/deserializer_circuit.py " in out
+    assert "branch: plan/build.py " in out and "branch: gateware/parse/sequencer.py " in out
     assert ", branch " in err
 
 
