@@ -22,7 +22,7 @@ class Packer(wiring.Component):
     """Write words to a ring of beats, and send the beats that are complete.
 
     The first cycle computes the positions of both words and rotates the words to their lanes. The
-    second one writes the words to the ring, where each lane has a memory for either word. The third
+    second one writes the words to the ring, where lanes have a memory for either word. The third
     one sends a beat. So two words are written and one beat is sent per cycle; latency 3 cycles.
 
     Parameters
@@ -185,18 +185,35 @@ class _Circuit:
     def _beat(self) -> Value:
         """Write words to the ring, and return the bytes of its first beat."""
         plan = self.plan
-        if not plan.header_bytes and not geometry(plan).aligns:
-            # Without padding, a byte that is not of items is of a map, or behind the packet.
-            items = [self._lane("items", k) for k in range(plan.bus_bytes)]
-            others = [self._lane("map", k, marked=False) for k in range(plan.bus_bytes)]
-            return Cat(Mux(has, a, b) for (a, has), (b, _) in zip(items, others, strict=True))
-        lanes = [[self._lane(name, k) for name in self.placed] for k in range(plan.bus_bytes)]
-        return Cat(Mux(a_has, a, 0) | Mux(b_has, b, 0) for (a, a_has), (b, b_has) in lanes)
+        sizes = geometry(plan)
+        units = {"items": sizes.item_unit, "map": sizes.map_unit}
+        # Without padding, a byte that is not of items is of a map, or behind the packet.
+        padded = bool(plan.header_bytes) or sizes.aligns
+        words = {
+            name: [self._lanes(name, k, unit, marked=padded or name == "items") for k in starts]
+            for name, unit in units.items()
+            for starts in [range(0, plan.bus_bytes, unit)]
+        }
+        # Groups of lanes that both words have.
+        size = min(units.values())
+        found = []
+        for k in range(0, plan.bus_bytes, size):
+            (a, a_has), (b, b_has) = (
+                (word[k // unit][0][8 * (k % unit) :][: 8 * size], word[k // unit][1])
+                for unit, word in zip(units.values(), words.values(), strict=True)
+            )
+            found.append(Mux(a_has, a, 0) | Mux(b_has, b, 0) if padded else Mux(a_has, a, b))
+        return Cat(found)
 
-    def _lane(self, name: str, k: int, *, marked: bool = True) -> tuple[Value, Value]:
-        """Write a lane of a word; return its byte of the first beat, and whether there is one."""
+    def _lanes(self, name: str, k: int, unit: int, *, marked: bool) -> tuple[Value, Value]:
+        """Write lanes of a word, from lane k on.
+
+        Returns
+        -------
+        The bytes of the first beat, and whether they are there.
+        """
         m, ring, placed = self.m, self.ring, self.placed[name]
-        memory = LutMemory(m, f"{name}_{k}", 8, ring.depth)
+        memory = LutMemory(m, f"{name}_{k}", 8 * unit, ring.depth)
         write, read = memory.write, memory.reader()
         index = Signal(max(1, ring.lane_bits), name=f"{name}_index_{k}")
         used = Signal(name=f"{name}_used_{k}")
@@ -206,15 +223,15 @@ class _Circuit:
             index.eq(k - lane if ring.lane_bits else 0),
             used.eq(self.writes & (index < placed.size)),
             # Lanes in front of the first byte are of the next beat.
-            slot.eq(ring.slot(placed.start) + (lane > k if k < self.plan.bus_bytes - 1 else 0)),
+            slot.eq(ring.slot(placed.start) + (lane > k if k < self.plan.bus_bytes - unit else 0)),
             write.addr.eq(slot),
-            write.data.eq(placed.data[8 * k : 8 * k + 8]),
+            write.data.eq(placed.data[8 * k : 8 * (k + unit)]),
             write.en.eq(used),
             read.addr.eq(self.first),
         ]
         if not marked:
             return read.data, Const(1, 1)
-        # Which beats have this byte from this word.
+        # Which beats have these bytes from this word.
         has = Signal(ring.depth, name=f"{name}_has_{k}")
         for beat in range(ring.depth):
             with m.If(self.reads & (self.first[:-1] == beat)):

@@ -6,6 +6,7 @@ more. A plan whose words all start at bus words needs no rotator at all.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -49,6 +50,8 @@ class Geometry:
         By step.
     item_lanes, map_lanes : tuple of int
         Lanes at which the word of items and the word of the map may start, in ascending order.
+    item_unit, map_unit : int
+        Lanes of that word, and its sizes, are multiples of so many bytes; a power of two.
     aligns : bool
         Whether the circuit computes any padding.
     """
@@ -56,6 +59,8 @@ class Geometry:
     places: tuple[Place, ...]
     item_lanes: tuple[int, ...]
     map_lanes: tuple[int, ...]
+    item_unit: int
+    map_unit: int
     aligns: bool
 
 
@@ -63,21 +68,27 @@ def geometry(plan: Plan) -> Geometry:
     """Compute the geometry of a plan."""
     flow = _Flow(plan)
     places = flow.places()
+    bus = plan.bus_bytes
     item_lanes: set[int] = set()
     map_lanes: set[int] = set()
+    item_sizes, map_sizes = {bus}, {bus}
     for step, place in zip(plan.steps, places, strict=True):
+        map_sizes.add(step.bytes)
         if step.rest is not None:
             item_lanes.update(place.first)
+            item_sizes.add(plan.item_bytes(step.rest))
         if isinstance(step, RunStep) and plan.runs[step.run].counted:
             item_lanes.update(place.map)
         elif step.bytes or isinstance(step, RunStep):
             map_lanes.update(place.map)
-            if step.bytes > plan.bus_bytes:
+            if step.bytes > bus:
                 item_lanes.update(place.map)
     return Geometry(
         places=places,
         item_lanes=tuple(sorted(item_lanes)) or (0,),
         map_lanes=tuple(sorted(map_lanes)) or (0,),
+        item_unit=math.gcd(*item_lanes, *item_sizes),
+        map_unit=math.gcd(*map_lanes, *map_sizes),
         aligns=any(step.align > 1 for step in plan.steps)
         or any(isinstance(s.begin, BeginRun) and s.begin.align > 1 for s in plan.steps),
     )

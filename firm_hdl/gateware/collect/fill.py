@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 from amaranth.hdl import Cat, Const, Mux, Signal, Value
 from amaranth.lib import stream
@@ -12,6 +13,25 @@ from firm_hdl.gateware.positions import Ring, any_of, pick, raised_by
 from firm_hdl.plan import BeginRun, Fixed, Part, RunStep, Step
 
 __all__ = ["Filler"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Byte:
+    """A byte of a step's words.
+
+    Attributes
+    ----------
+    leaf : int or None
+        The leaf whose transfer it is of; `None` for a constant.
+    at : int
+        Its number in the transfer, or the value of the constant.
+    slot : int
+        The number of the transfer in the step; -1 if the step does not take one with this byte.
+    """
+
+    leaf: int | None
+    at: int
+    slot: int
 
 
 class Filler:
@@ -32,81 +52,85 @@ class Filler:
         self._gather()
         self._measure()
 
+    # Bytes.
+
     def _gather(self) -> None:
-        """Select each byte of the words by the step, until its leaf is taken."""
-        m = self.m
-        lanes: dict[tuple[str, int], list[tuple[int, int, Value | int]]] = {}
+        """Select the bytes of the words by the step, until their leaf is taken."""
+        m, now = self.m, self.now
+        lanes: dict[str, list[dict[int, _Byte]]] = {}
         for index, step in enumerate(self.plan.steps):
-            for name, lane, slot, value in self._bytes(step):
-                lanes.setdefault((name, lane), []).append((index, slot, value))
-        for (name, lane), cases in lanes.items():
-            byte = Signal(8, name=f"{name}_{lane}", reset_less=True)
-            taken = [
-                any_of([self.step[i] for i, s, _ in cases if s == slot]) & flag
-                for slot, flag in enumerate(self.now.served)
-                if any(s == slot for _, s, _ in cases)
-            ]
-            with m.If(self.now.free & ~any_of(taken)):
-                m.d.sync += byte.eq(self._byte([(i, value) for i, _, value in cases]))
-            m.d.comb += getattr(self.words.payload, name)[8 * lane : 8 * lane + 8].eq(byte)
+            for name, lane, byte in self._bytes(step):
+                word = lanes.setdefault(name, [{} for _ in range(self.plan.bus_bytes)])
+                word[lane][index] = byte
+        for name, word in lanes.items():
+            for lane, stretch in _stretches(word):
+                cases = stretch[0]
+                register = Signal(8 * len(stretch), name=f"{name}_{lane}", reset_less=True)
+                taken = [
+                    any_of([self.step[i] for i, byte in cases.items() if byte.slot == slot]) & flag
+                    for slot, flag in enumerate(now.served)
+                    if any(byte.slot == slot for byte in cases.values())
+                ]
+                with m.If(now.free & ~any_of(taken)):
+                    m.d.sync += register.eq(self._selected(stretch))
+                bits = getattr(self.words.payload, name)[8 * lane :]
+                m.d.comb += bits[: len(register)].eq(register)
 
-    def _byte(self, cases: list[tuple[int, Value | int]]) -> Value:
-        """Select a byte by the step; don't care where the step has no such byte."""
-        groups: dict[str, tuple[Value | int, list[Value]]] = {}
-        for index, value in cases:
-            groups.setdefault(repr(value), (value, []))[1].append(self.step[index])
+    def _selected(self, stretch: list[dict[int, _Byte]]) -> Value:
+        """Select a stretch by the step; don't care where the step has no such bytes."""
+        size = len(stretch)
+        groups: dict[tuple[int, int], tuple[Value, list[Value]]] = {}
+        for index, byte in stretch[0].items():
+            if byte.leaf is None:
+                constant = sum(lane[index].at << 8 * k for k, lane in enumerate(stretch))
+                key, value = (-1, constant), Value.cast(Const(constant, 8 * size))
+            else:
+                key = (byte.leaf, byte.at)
+                value = self._wire_bits(byte.leaf)[8 * byte.at : 8 * (byte.at + size)]
+            groups.setdefault(key, (value, []))[1].append(self.step[index])
         found = [(any_of(on), value) for value, on in groups.values()]
-        if len(found) == 1:
-            ((_, value),) = found
-            return Const(value, 8) if isinstance(value, int) else value
-        return pick(found, 8)
+        return found[0][1] if len(found) == 1 else pick(found, 8 * size)
 
-    def _bytes(self, step: Step) -> Iterator[tuple[str, int, int, Value | int]]:
-        """Yield the bytes of a step's words: the word, the lane, the slot, and the value.
-
-        Bytes that are not of a transfer that this step takes have the slot -1.
-        """
+    def _bytes(self, step: Step) -> Iterator[tuple[str, int, _Byte]]:
+        """Yield the bytes of a step's words: the word, the lane, and the byte."""
         plan, bus = self.plan, self.plan.bus_bytes
         slot = 0
         if step.rest is not None:
-            items = self._word(plan.runs[step.rest].items)
-            yield from (("items", k, slot, byte) for k, byte in enumerate(items))
+            yield from (("items", *each) for each in self._word(plan.runs[step.rest].items, slot))
             slot += 1
         for item in step.slices:
-            where = -1
-            values: list[Value | int] = [0] * item.bytes
+            found = [_Byte(None, 0, -1)] * item.bytes
             if isinstance(item, Fixed):
-                values = list(item.data)
+                found = [_Byte(None, value, -1) for value in item.data]
             elif isinstance(item, Part):
-                bits = self._bits(item)
-                first = item.first
-                values = [bits[8 * k : 8 * k + 8] for k in range(first, first + item.bytes)]
                 where = slot if item.completes else -1
+                found = [_Byte(item.leaf, item.first + k, where) for k in range(item.bytes)]
                 slot += item.completes
-            for k, value in enumerate(values, item.at):
+            for k, byte in enumerate(found, item.at):
                 name = "items" if step.bytes > bus > k else "map"
-                yield name, k % bus if step.bytes > bus else k, where, value
+                yield name, k % bus if step.bytes > bus else k, byte
         if isinstance(step, RunStep):
             run = plan.runs[step.run]
             name = "items" if run.counted else "map"
-            for k, byte in enumerate(self._word(run.items)):
-                yield name, k, slot, byte
+            yield from ((name, *each) for each in self._word(run.items, slot))
 
-    def _word(self, leaf: int) -> list[Value]:
-        """Return the bytes of a transfer of items."""
-        bits = Cat(_wire_bits(item) for item in self.now.streams[leaf].payload.data)
-        return [bits[k : k + 8] for k in range(0, len(bits), 8)]
+    def _word(self, leaf: int, slot: int) -> Iterator[tuple[int, _Byte]]:
+        """Yield the bytes of a transfer of items, with their lanes."""
+        items = self.plan.leaves[leaf]
+        return ((k, _Byte(leaf, k, slot)) for k in range(items.lanes * items.item_bytes))
 
-    def _bits(self, part: Part) -> Value:
-        """Return a transfer's bits on the wire."""
-        plan, payload = self.plan, self.now.streams[part.leaf].payload
-        match plan.leaves[part.leaf].kind:
+    def _wire_bits(self, leaf: int) -> Value:
+        """Return the bits of a leaf's transfer on the wire."""
+        plan, payload = self.plan, self.now.streams[leaf].payload
+        match plan.leaves[leaf].kind:
             case "items":
-                return Cat(_wire_bits(item) for item in payload.data)
+                return Cat(_item_bits(item) for item in payload.data)
             case "length":
-                return (payload + plan.has_nul(plan.counted[part.leaf]))[:32]
+                return (payload + plan.has_nul(plan.counted[leaf]))[:32]
             case _:
-                return _wire_bits(payload)
+                return _item_bits(payload)
+
+    # Sizes.
 
     def _measure(self) -> None:
         """Compute the sizes of the words, and their distances."""
@@ -168,7 +192,28 @@ class Filler:
         )
 
 
-def _wire_bits(item: Value) -> Value:
+def _stretches(word: list[dict[int, _Byte]]) -> Iterator[tuple[int, list[dict[int, _Byte]]]]:
+    """Divide a word into lanes in a row that are selected alike; yield the first lane and them."""
+    first = 0
+    for lane in range(1, len(word) + 1):
+        if lane < len(word) and _follows(word[lane - 1], word[lane]):
+            continue
+        if word[first]:
+            yield first, word[first:lane]
+        first = lane
+
+
+def _follows(before: dict[int, _Byte], after: dict[int, _Byte]) -> bool:
+    """Tell whether two lanes have bytes in a row of the same leaves, in the same steps."""
+    return before.keys() == after.keys() and all(
+        after[index] == replace(byte, at=byte.at + 1)
+        if byte.leaf is not None
+        else after[index].leaf is None
+        for index, byte in before.items()
+    )
+
+
+def _item_bits(item: Value) -> Value:
     """Return an item's bits on the wire; a bool takes a whole byte."""
     value = Value.cast(item)
     return Cat(value, Const(0, -len(value) % 8))
