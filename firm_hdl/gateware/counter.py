@@ -84,6 +84,7 @@ class Counter:
         self._downs.append(on)
 
     def add_logic(self, m: Module) -> None:
+        """Add the registers; after all calls of `load`, `load_by_default` and `down`."""
         loads, down = Signal(name=f"{self.name}_loads"), Signal(name=f"{self.name}_down")
         keeps = Signal(name=f"{self.name}_keeps")
         m.d.comb += [

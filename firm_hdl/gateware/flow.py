@@ -15,7 +15,7 @@ __all__ = ["Flow", "exceeds"]
 
 
 def exceeds(value: Value, limit: int) -> Value:
-    """Return whether a number is above a constant, as plain logic: no carry chain."""
+    """Return whether an unsigned number is above a constant, as plain logic: no carry chain."""
     if limit >> len(value):
         return Const(0, 1)
     result: Value = Const(0, 1)
@@ -40,6 +40,8 @@ class Flow:
 
     Parameters
     ----------
+    m : Module
+        Gets the logic.
     plan : Plan
     limit : function
         Gives the largest number that a length may have which begins a run or a loop.
@@ -55,6 +57,8 @@ class Flow:
     state : View
     step : Signal
         One bit per step.
+    start : int
+        The state in which a packet starts, as bits.
     exits : list of (Value, int, Jump)
         Each exit: that its step takes it if it is done, its step, and the jump. At most one of the
         conditions is high.
@@ -104,7 +108,7 @@ class Flow:
         )
 
     def encode(self, index: int | None) -> int:
-        """Return the state of a step, as bits."""
+        """Return the state of a step, as bits; `None` is the end of the packet."""
         number = len(self.plan.steps) if index is None else index
         fields = {"step": 1 << number if index is not None or self._has_end else 0}
         fields |= self._traits(index)
@@ -115,7 +119,7 @@ class Flow:
         return bits
 
     def on(self, test: Callable[[Step], bool]) -> Value:
-        """Return whether a test holds for the step."""
+        """Return, as one bit, whether a test holds for the step of this cycle."""
         return any_of([self.step[i] for i, s in enumerate(self.plan.steps) if test(s)])
 
     def rest_bytes(self, rest: Value) -> Value:

@@ -26,6 +26,14 @@ __all__ = [
 class Ring:
     """The shape of positions: a lane of a bus word, the word's place in the ring, and a lap bit.
 
+    A position is a number of `bits` bits, with the lane in the lowest ones. It counts bytes; so a
+    packet that is longer than the ring goes round it several times. Two positions that are less
+    than `depth` words apart are compared by the sign of their difference.
+
+    Parameters
+    ----------
+    plan : Plan
+
     Attributes
     ----------
     depth : int
@@ -43,9 +51,11 @@ class Ring:
         self.bits = self.lane_bits + self.beat_bits
 
     def position(self, name: str, *, init: int = 0) -> Signal:
+        """Make a signal for a position."""
         return Signal(self.bits, name=name, init=init)
 
     def lane(self, position: Value) -> Value:
+        """Return the lane of a byte in its bus word."""
         return position[: self.lane_bits]
 
     def beat(self, position: Value) -> Value:
@@ -83,7 +93,10 @@ def beat_layout(plan: Plan) -> data.StructLayout:
 
 
 def raised_by(align: int, phase: int, shift: int = 0) -> int:
-    """Return what to add so that clearing low bits rounds up; see `align_up`."""
+    """Return what to add so that clearing low bits rounds up; see `align_up`.
+
+    Parameters are those of `align_up`, with a constant phase.
+    """
     return align - 1 - phase % align + (phase % align + shift) // align * align
 
 
@@ -92,12 +105,16 @@ def align_up(
 ) -> Value:
     """Return `shift` bytes behind the first aligned position from `value + distance` on.
 
+    All positions are modulo the width of `value`.
+
     Parameters
     ----------
     align : int
-        A power of two. Positions are aligned that are a multiple of it behind `phase`.
+        A power of two, at most 8. Positions are aligned that are a multiple of it behind `phase`.
     phase : Value or int
         If it is a constant, there is one carry chain.
+    shift : int
+        A constant, so that one addition does both.
     """
     total = Signal(len(value))
     if align == 1:
@@ -117,7 +134,16 @@ def align_up(
 
 
 def pick(cases: Iterable[tuple[Value, Value | int]], width: int) -> Value:
-    """Select a value by signals of which at most one is high: an AND-OR without priority."""
+    """Select a value by signals of which at most one is high: an AND-OR without priority.
+
+    Parameters
+    ----------
+    cases : iterable of (Value, Value or int)
+        The signal, of one bit, and the value. Values that are shorter than `width` are extended
+        with zeros; longer ones are cut.
+    width : int
+        Bits of the result, which is 0 if no signal is high.
+    """
     constants: list[list[Value]] = [[] for _ in range(width)]
     picked: list[Value] = []
     for chosen, value in cases:
@@ -138,6 +164,7 @@ def pick(cases: Iterable[tuple[Value, Value | int]], width: int) -> Value:
 
 
 def any_of(values: Sequence[Value]) -> Value:
+    """Return whether any bit of the values is high; 0 if there are none."""
     return Cat(values).any() if values else Const(0, 1)
 
 
@@ -151,8 +178,14 @@ def rotate(
 
     Parameters
     ----------
+    value : Value
+        The bus word, 8 bits per lane.
+    lane : Value
+        Its width is that of a lane's number.
     lanes : sequence of int
         The lanes that are possible; others are don't care.
+    name : str
+        Stages are called by it, and by the bit of `lane` that each looks at.
     """
     count = len(value) // 8
 

@@ -97,6 +97,30 @@ class _Count:
 
 @dataclass(slots=True)
 class _Builder:
+    """What is planned so far, and the segment that grows.
+
+    Attributes
+    ----------
+    layout, bus_bytes, max_message_bytes
+        As of :func:`build_plan`.
+    has_lengths : bool
+        Whether any length is in the message.
+    leaves, runs : list
+        In wire order.
+    levels : int
+        Number of loop counters.
+    program : list of Step or Mark
+        In wire order. Steps get their exits and bodies at the end, from `link`.
+    segment : list of Slice
+        Values that have not been cut into steps.
+    segment_align : int
+        What the first step of the segment is aligned to, in the circuit.
+    rest : int or None
+        The run whose rest the next step takes.
+    depth : int
+        Number of open loops.
+    """
+
     layout: Layout
     bus_bytes: int
     max_message_bytes: int
@@ -104,11 +128,9 @@ class _Builder:
     leaves: list[Leaf] = field(default_factory=list)
     runs: list[Run] = field(default_factory=list)
     levels: int = 0
-    # Steps and marks in wire order. `link` fills in exits and bodies at the end.
     program: list[Step | Mark] = field(default_factory=list)
     segment: list[Slice] = field(default_factory=list)
     segment_align: int = 1
-    # The run whose rest the next step takes.
     rest: int | None = None
     depth: int = 0
 
@@ -154,6 +176,7 @@ class _Builder:
         return self.segment[-1].at + self.segment[-1].bytes if self.segment else 0
 
     def gap(self, gap: Gap) -> None:
+        """Add padding to the segment. If the circuit computes it, a new segment starts."""
         if gap.bytes is None:
             self.flush()
             self.segment_align = gap.align
@@ -177,6 +200,7 @@ class _Builder:
         return max(1, self.bus_bytes // item.bytes)
 
     def counted_run(self, node: RunNode) -> None:
+        """Plan a string or a sequence of primitives: a length, then a run or a loop."""
         assert node.gap is not None
         self.gap(node.gap)
         length = self.leaf(node.path, "length", LENGTH)
@@ -193,6 +217,7 @@ class _Builder:
             self.rest = run
 
     def array(self, node: RunNode) -> None:
+        """Plan an array of primitives: values of a segment, a run, or a loop."""
         assert node.count is not None
         items = self.leaf(node.path, "items", node.item, self.lanes(node.item))
         size = node.item.bytes
@@ -263,6 +288,7 @@ class _Builder:
         return level
 
     def leave_loop(self) -> None:
+        """End the body of the innermost loop."""
         self.flush()
         self.depth -= 1
         self.join_rest()
@@ -299,6 +325,7 @@ class _Builder:
     # Segments to steps.
 
     def take_align(self) -> int:
+        """Return the alignment of the step that comes; the one behind it has none."""
         align, self.segment_align = self.segment_align, 1
         return align
 

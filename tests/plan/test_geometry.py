@@ -47,6 +47,25 @@ def test_lanes_where_items_and_maps_start(fields, wire, bus_bytes, items, maps):
     assert (found.item_lanes, found.map_lanes) == (items, maps)
 
 
+@pytest.mark.parametrize(
+    ("fields", "wire", "bus_bytes", "items", "maps"),
+    [
+        ({"a": "uint64"}, "ros1", 8, 8, 8),
+        # 20 bytes: a bus word, then one of 12 bytes.
+        ({"a": "uint32", "b": "uint64", "c": "uint64"}, "ros1", 8, 8, 4),
+        # Starts are multiples of 4 bytes, and items have 2.
+        ({"a": "uint16[]", "b": "uint16"}, "cdr", 4, 2, 2),
+        ({"a": "uint64[]"}, "cdr", 8, 4, 8),
+        ({"s": "string", "n": "uint32"}, "cdr", 8, 1, 4),
+        ({"s": "string", "n": "uint8"}, "cdr", 8, 1, 1),
+        ({"p": (TRIPLE, "[]")}, "ros1", 8, 4, 4),
+    ],
+)
+def test_lanes_that_are_only_written_together(fields, wire, bus_bytes, items, maps):
+    found = needs(fields, wire, bus_bytes)
+    assert (found.item_unit, found.map_unit) == (items, maps)
+
+
 def test_places_of_a_rest_and_of_the_map_behind_it():
     found = needs({"s": "string", "n": "uint32"}, "cdr", 8)
     # Header and length; words of text; the rest of text from a bus word on, padding and `n`.

@@ -41,6 +41,9 @@ def shift_of(plan: Plan, step: int | None) -> int:
 class Meaning:
     """What a length means in one step: the names of the fields of an entry that belong to it.
 
+    Steps with the same meaning share a field. So the number of fields depends on how many kinds of
+    lengths there are, and not on how many lengths.
+
     Attributes
     ----------
     plan : Plan
