@@ -110,7 +110,7 @@ def _timing(figures: Timing) -> dict[str, Any]:
         "latency_cycles": dict(LATENCY_CYCLES),
         "shortest_packet": _cost(figures.shortest),
         "hardest_packet_tried": _cost(figures.hardest),
-        "long_arrays_clock_mhz": _clocks(Cost(bytes=figures.bus_bytes, beats=1, steps=1)),
+        "long_arrays_clock_mhz": _clocks(Cost(bytes=figures.bus_bytes, beats=1, steps=1, cycles=1)),
     }
 
 

@@ -1,8 +1,8 @@
 """The cycles that a converter takes for a packet, found by running its plan.
 
-A packet takes as many cycles as it has beats or steps, whichever is more. The packet with the most
-cycles per byte is searched for, not proved: short strings and few elements take a step each, for
-their length, and have few bytes.
+Cycles are those of the converter that takes more; see :mod:`firm_hdl.plan.cycles`. The packet with
+the most cycles per byte is searched for, not proved: short strings and few elements take a step
+each, for their length, and have few bytes.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import product
 
-from firm_hdl.plan import Payload, Plan, decode, encode
+from firm_hdl.plan import Payload, Plan, encode
+from firm_hdl.plan.cycles import Packet, cycles_between
 
 __all__ = ["LINE_RATES", "Cost", "Timing", "clock_mhz", "describe", "timing"]
 
@@ -27,16 +28,19 @@ MAX_TRANSFERS = 1 << 12
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cost:
-    """Size and cycles of one packet when packets come back to back."""
+    """Size and cycles of one packet when it is repeated back to back.
+
+    Attributes
+    ----------
+    bytes, beats, steps : int
+    cycles : int
+        Cycles from one packet to the next.
+    """
 
     bytes: int
     beats: int
     steps: int
-
-    @property
-    def cycles(self) -> int:
-        """Cycles from one packet to the next."""
-        return max(self.beats, self.steps)
+    cycles: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,11 +130,13 @@ def _cost(plan: Plan, elements: int, items: int, most: int | None = None) -> Cos
             payload = ((0,) * leaf.lanes, False)
         streams[index] = transfers(payload)
     # `last` is never set, which is an error; the serializer still writes all bytes.
-    packet, _ = encode(plan, streams)
+    data, _ = encode(plan, streams)
+    packet = Packet.of(plan, data)
     return Cost(
-        bytes=len(packet),
-        beats=max(1, -(-len(packet) // plan.bus_bytes)),
-        steps=len(decode(plan, packet).steps),
+        bytes=packet.bytes,
+        beats=packet.beats,
+        steps=len(packet.visits),
+        cycles=cycles_between(packet),
     )
 
 
@@ -145,7 +151,7 @@ def describe(name: str, plan: Plan, figures: Timing) -> str:
     varies = any(leaf.kind == "length" for leaf in plan.leaves)
     rows = [("every packet", short)]
     if varies:
-        long = Cost(bytes=plan.bus_bytes, beats=1, steps=1)
+        long = Cost(bytes=plan.bus_bytes, beats=1, steps=1, cycles=1)
         rows = [("long strings or arrays", long)] if _has_long(plan) else []
         which = "the shortest" if hard is short else _cost_text(hard)
         rows.append((f"the hardest packet tried ({which})", hard))
