@@ -107,7 +107,7 @@ class _Circuit:
         # What ends with these words.
         self.done, self.final = Signal(ring.beat_bits, name="done"), Signal(name="final")
         self.last_bytes = Signal(range(bus + 1), name="last_bytes")
-        self.marked = Signal(name="marked")
+        self.marked, self.waits = Signal(name="marked"), Signal(name="waits")
         held = may_end_empty(plan)
         sent = Mux(words.last | words.empty, self.end, self.end - 1) if held else self.end
         done = ring.beat(sent)
@@ -118,6 +118,7 @@ class _Circuit:
                 self.done.eq(done),
                 self.final.eq(words.last),
                 self.marked.eq(words.error),
+                self.waits.eq(words.waits),
                 self.last_bytes.eq(Mux(words.empty, 0, full[: ring.lane_bits] + 1)),
             ]
             if not isinstance(phase, int):
@@ -261,7 +262,8 @@ class _Circuit:
         # Which beats are the last ones of their packets.
         last, is_last = Signal(ring.depth, name="last"), Signal(name="is_last")
         m.d.comb += is_last.eq((last >> self.first[:-1])[0])
-        with m.If(self.writes):
+        # Beats that only have constants leave with the first leaf.
+        with m.If(self.writes & ~self.waits):
             m.d.sync += self.complete.eq(self.done)
             with m.If(self.final):
                 m.d.sync += last.bit_select(slot, 1).eq(1)

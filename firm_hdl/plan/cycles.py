@@ -14,11 +14,17 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil, inf
 
-from firm_hdl.plan.geometry import may_end_empty, most_beats, only_ends, ring_beats
+from firm_hdl.plan.geometry import first_step, may_end_empty, most_beats, only_ends, ring_beats
 from firm_hdl.plan.interpret import Visit, decode
 from firm_hdl.plan.ir import BeginRun, Plan, RunStep
 
-__all__ = ["Packet", "cycles_between", "deserializer_cycles", "serializer_cycles"]
+__all__ = [
+    "Packet",
+    "cycles_between",
+    "deserializer_cycles",
+    "packet_of",
+    "serializer_cycles",
+]
 
 FREED_AFTER = 5
 """Cycles from the deserializer's last step with a beat to the beat that takes its place."""
@@ -52,11 +58,6 @@ class Packet:
     visits: tuple[Visit, ...]
     bytes: int
 
-    @classmethod
-    def of(cls, plan: Plan, packet: bytes) -> Packet:
-        """Take a packet's steps from the interpreter."""
-        return cls(plan, decode(plan, packet).steps, len(packet))
-
     @property
     def beats(self) -> int:
         """Number of beats; an empty packet has one."""
@@ -76,6 +77,11 @@ class Packet:
         """Return where the step behind another one starts, or the items that it counts."""
         end = self.visits[index].end
         return end + (self.plan.header_bytes - end) % self.aligned_items(index)
+
+
+def packet_of(plan: Plan, packet: bytes) -> Packet:
+    """Take a packet's steps from the interpreter."""
+    return Packet(plan, decode(plan, packet).steps, len(packet))
 
 
 def cycles_between(packet: Packet) -> int:
@@ -160,13 +166,14 @@ class _Write:
 def serializer_cycles(packets: Sequence[Packet]) -> list[int]:
     """Return the cycle in which a serializer could take the last leaf of each packet.
 
-    Cycle 0 is that in which all leaves are offered. The packet's last beat is valid a latency
-    later; it may have waited for other beats. All that comes out is taken at once.
+    Cycle 0 is that in which all leaves are offered, after a pause. The packet's last beat is valid
+    a latency later; it may have waited for other beats. All that comes out is taken at once.
     """
     # Cycles in which beats leave the ring; in which the last step's leaves are taken, and in which
     # its words are.
     sent: list[int] = []
-    taken = placed = -1
+    # The first packet's constants are there before its leaves.
+    taken = placed = -1 - first_step(packets[0].plan) if packets else 0
     lengths: dict[int, int] = {}
     # Of the last step.
     start = end = most = base = 0
@@ -211,8 +218,13 @@ def _writes(packet: Packet) -> Iterator[_Write]:
         begin = plan.steps[visits[index].step].begin
         is_last = index == count - 1
         end = packet.beats * bus if is_last else packet.behind(index)
-        # A full beat waits where it may be the last one.
-        full = max(0, end - 1) if may_end_empty(plan) and not is_last else end
+        full = end
+        if visits[index].step < first_step(plan):
+            # Beats wait for the first leaf.
+            full = 0
+        elif may_end_empty(plan) and not is_last:
+            # A full beat may be the last one.
+            full = max(0, end - 1)
         yield _Write(
             length=None if begin is None else begin.length,
             full=full // bus,

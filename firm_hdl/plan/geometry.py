@@ -16,6 +16,7 @@ from firm_hdl.wire import residues as rs
 __all__ = [
     "Geometry",
     "Place",
+    "first_step",
     "geometry",
     "may_end_empty",
     "most_beats",
@@ -116,6 +117,12 @@ def _beats(plan: Plan, step: Step) -> int:
     if isinstance(step.begin, BeginRun):
         size += step.begin.align - 1
     return -(-(bus - 1 + size) // bus)
+
+
+def first_step(plan: Plan) -> int:
+    """Return the first step with a leaf of the message; those in front of it have constants."""
+    steps = enumerate(plan.steps)
+    return next(i for i, step in steps if step.parts or isinstance(step, RunStep))
 
 
 def only_ends(step: Step) -> bool:

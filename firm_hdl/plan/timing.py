@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from firm_hdl.plan import Payload, Plan, encode
-from firm_hdl.plan.cycles import Packet, cycles_between
+from firm_hdl.plan.cycles import cycles_between, packet_of
 
 __all__ = ["LINE_RATES", "Cost", "Timing", "clock_mhz", "describe", "timing"]
 
@@ -131,7 +131,7 @@ def _cost(plan: Plan, elements: int, items: int, most: int | None = None) -> Cos
         streams[index] = transfers(payload)
     # `last` is never set, which is an error; the serializer still writes all bytes.
     data, _ = encode(plan, streams)
-    packet = Packet.of(plan, data)
+    packet = packet_of(plan, data)
     return Cost(
         bytes=packet.bytes,
         beats=packet.beats,

@@ -10,14 +10,20 @@ import pytest
 from firm_hdl import Deserializer, Library, Serializer, load_message
 from firm_hdl.gateware.signatures import LATENCY_CYCLES
 from firm_hdl.plan import build_plan, decode, encode
-from firm_hdl.plan.cycles import Packet, cycles_between, deserializer_cycles, serializer_cycles
-from firm_hdl.sim import Harness, leaf_name, to_transfers
-from firm_hdl.sim.job import Job
+from firm_hdl.plan.cycles import (
+    cycles_between,
+    deserializer_cycles,
+    packet_of,
+    serializer_cycles,
+)
+from firm_hdl.sim import Harness, Stalls, leaf_name, to_transfers
+from firm_hdl.sim.job import Job, RunOptions
 from firm_hdl.sim.payloads import all_beats, encoder_of
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
 PACKETS = 40
+PAUSE = 16
 BLOB_BYTES = 1 << 16
 BOTH = sum(LATENCY_CYCLES.values())
 DISTROS = ("noetic", "foxy", "humble", "iron", "jazzy", "kilted", "lyrical")
@@ -58,7 +64,7 @@ def fixed_types():
 @pytest.mark.parametrize("message", list(fixed_types()))
 def test_types_of_fixed_size_run_at_line_rate(message):
     packets = fixed_packets(message, PACKETS)
-    found = Packet.of(build_plan(lay_out(message), bus_bytes=8), packets[0])
+    found = packet_of(build_plan(lay_out(message), bus_bytes=8), packets[0])
     assert cycles_between(found) == found.beats
     seen = run(message, packets)
     # Nothing per packet. The serializer may wait for the second half of a value, and its last step
@@ -116,9 +122,9 @@ def blob(name, frame_id):
 @pytest.mark.parametrize(
     ("name", "extra"),
     [
-        ("sensor_msgs/msg/Image", 7),
-        ("sensor_msgs/msg/CompressedImage", 7),
-        ("sensor_msgs/msg/PointCloud2", 15),
+        ("sensor_msgs/msg/Image", 12),
+        ("sensor_msgs/msg/CompressedImage", 11),
+        ("sensor_msgs/msg/PointCloud2", 14),
     ],
 )
 def test_blobs_of_64_kib_run_at_line_rate(name, extra):
@@ -136,8 +142,8 @@ def test_blobs_of_64_kib_run_at_line_rate(name, extra):
 # Each converter alone, against the plan.
 
 
-def events(harness, sources, finished):
-    """Return the cycles in which each stream transfers, without stalls."""
+def events(harness, sources, finished, stalls=None):
+    """Return the cycles in which each stream transfers."""
     found = {name: [] for name in harness.bench.names}
     harness.bench.run(
         Job(
@@ -145,6 +151,7 @@ def events(harness, sources, finished):
             takes={name: lambda cycle, bits, to=to: to.append(cycle) for name, to in found.items()},
             finished=lambda: finished(found),
             outstanding=lambda: "",
+            options=RunOptions(stalls=stalls),
         )
     )
     return found
@@ -159,7 +166,7 @@ def measure_deserializer(rx, packets):
 
 
 def measure_serializer(tx, packets):
-    """Return the cycle of each packet's last beat, from the first cycle with leaves on."""
+    """Return the cycle of each packet's last beat, from that in which all leaves are offered."""
     plan = tx.plan
     sources = {leaf_name(plan, leaf): [] for leaf in range(len(plan.leaves))}
     for packet in packets:
@@ -167,17 +174,22 @@ def measure_serializer(tx, packets):
             sources[leaf_name(plan, leaf)].append(encoder_of(plan.leaves[leaf])(payload))
     ends, beats = [], 0
     for packet in packets:
-        beats += Packet.of(plan, packet).beats
+        beats += packet_of(plan, packet).beats
         ends.append(beats - 1)
-    out = events(Harness(None, tx), sources, lambda found: len(found["packets_out"]) == beats)
-    return [out["packets_out"][beat] for beat in ends]
+    out = events(
+        Harness(None, tx),
+        sources,
+        lambda found: len(found["packets_out"]) == beats,
+        stalls={"message": Stalls.bits("0" * PAUSE + "1" * 100_000)},
+    )
+    return [out["packets_out"][beat] - PAUSE for beat in ends]
 
 
 def check(message, packets, bus_bytes):
     """Compare both converters with the plan; return the last cycle of each."""
     rx = Deserializer(message, bus_bytes=bus_bytes)
     tx = Serializer(message, bus_bytes=bus_bytes)
-    traffic = [Packet.of(rx.plan, packet) for packet in packets]
+    traffic = [packet_of(rx.plan, packet) for packet in packets]
     read, write = deserializer_cycles(traffic), serializer_cycles(traffic)
     want = [cycle + LATENCY_CYCLES["deserializer"] for cycle in read]
     assert measure_deserializer(rx, packets) == want
@@ -321,6 +333,6 @@ def test_table_of_cycles(name, bus_bytes, beats, steps, cycles, read, write):
     message = load_message(name)
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
     packet = encode(plan, to_transfers(plan, message, VALUES[name]))[0]
-    found = Packet.of(plan, packet)
+    found = packet_of(plan, packet)
     assert (found.beats, len(found.visits), cycles_between(found)) == (beats, steps, cycles)
     assert check(message, [packet] * 10, bus_bytes) == (read, write)

@@ -6,9 +6,9 @@ import pytest
 
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.cycles import (
-    Packet,
     cycles_between,
     deserializer_cycles,
+    packet_of,
     serializer_cycles,
 )
 from firm_hdl.plan.geometry import may_end_empty, most_beats, ring_beats
@@ -20,9 +20,9 @@ WIDE = make("ros1", {"x": "uint64", "y": "uint32"}, "Wide")
 EMPTY = make("ros1", {}, "Empty")
 
 
-def packet_of(fields, data, bus_bytes=8, dialect="ros1"):
+def made(fields, data, bus_bytes=8, dialect="ros1"):
     plan = build_plan(lay_out(make(dialect, fields)), bus_bytes=bus_bytes)
-    return Packet.of(plan, data)
+    return packet_of(plan, data)
 
 
 def both(packets):
@@ -36,7 +36,7 @@ def texts(*values):
 
 
 def test_a_beat_per_cycle():
-    packet = packet_of({"a": "uint64", "b": "uint64", "c": "uint64[2]"}, bytes(32))
+    packet = made({"a": "uint64", "b": "uint64", "c": "uint64[2]"}, bytes(32))
     # The two items of the array are a step each, as a leaf has one transfer per cycle.
     assert [visit.bytes for visit in packet.visits] == [8, 16, 8]
     assert both([packet] * 3) == ([3, 7, 11],) * 2
@@ -44,7 +44,7 @@ def test_a_beat_per_cycle():
 
 
 def test_a_step_of_two_beats_is_done_with_the_second_one():
-    packet = packet_of({"a": "uint32", "b": "uint64"}, bytes(12))
+    packet = made({"a": "uint32", "b": "uint64"}, bytes(12))
     assert (packet.beats, len(packet.visits)) == (2, 1)
     # The serializer takes the leaves at once, and sends both beats.
     assert both([packet] * 3) == ([1, 3, 5],) * 2
@@ -52,7 +52,7 @@ def test_a_step_of_two_beats_is_done_with_the_second_one():
 
 def test_a_step_per_cycle():
     # Three lengths in two beats are four steps; the last one only looks for what is left.
-    packet = packet_of({"a": "string", "b": "string", "c": "string"}, bytes(12))
+    packet = made({"a": "string", "b": "string", "c": "string"}, bytes(12))
     assert (packet.beats, len(packet.visits)) == (2, 4)
     # The third length ends in the second beat. The serializer decodes the first length in a cycle
     # of its own, and leaves out the last step.
@@ -62,7 +62,7 @@ def test_a_step_per_cycle():
 
 
 def test_the_same_length_again_costs_the_serializer_a_cycle():
-    packet = packet_of({"t": (TEXT, "[]")}, texts(b"", b"", b"", b""))
+    packet = made({"t": (TEXT, "[]")}, texts(b"", b"", b"", b""))
     assert len(packet.visits) == 6
     assert deserializer_cycles([packet]) == [5]
     # The number of texts, then a text in two cycles; the step behind them is left out.
@@ -70,7 +70,7 @@ def test_the_same_length_again_costs_the_serializer_a_cycle():
 
 
 def test_a_length_of_zero_that_ends_the_packet_costs_the_deserializer_a_cycle():
-    packet = packet_of({"a": "uint8", "w": (WIDE, "[]")}, b"\7\0\0\0\0")
+    packet = made({"a": "uint8", "w": (WIDE, "[]")}, b"\7\0\0\0\0")
     assert (packet.beats, len(packet.visits)) == (1, 1)
     assert deserializer_cycles([packet] * 3) == [1, 3, 5]
     # To the serializer, the length of the next packet is the same one again.
@@ -88,7 +88,7 @@ def test_a_length_of_zero_that_ends_the_packet_costs_the_deserializer_a_cycle():
 )
 def test_the_ring_is_full_where_one_of_the_two_is_slower_for_long(count, reads, writes):
     data = texts(*[b""] * count) + count.to_bytes(4, "little") + bytes(12 * count)
-    packet = packet_of({"t": (TEXT, "[]"), "w": (WIDE, "[]")}, data)
+    packet = made({"t": (TEXT, "[]"), "w": (WIDE, "[]")}, data)
     assert (packet.beats, len(packet.visits)) == (2 * count + 1, 2 * count + 2)
     assert both([packet]) == ([reads], [writes])
     assert cycles_between(packet) == writes - 1
@@ -96,14 +96,14 @@ def test_the_ring_is_full_where_one_of_the_two_is_slower_for_long(count, reads, 
 
 def test_a_full_beat_waits_where_it_may_be_the_last_one():
     # A trigger is a step without bytes.
-    packet = packet_of({"a": "uint32", "e": (EMPTY, "[]")}, b"\7\0\0\0\3\0\0\0")
+    packet = made({"a": "uint32", "e": (EMPTY, "[]")}, b"\7\0\0\0\3\0\0\0")
     assert may_end_empty(packet.plan)
     assert [visit.bytes for visit in packet.visits] == [8, 0, 0, 0]
     assert both([packet]) == ([3], [1 + 3])
 
 
 def test_packets_of_no_bytes_have_a_beat():
-    packet = packet_of({"e": EMPTY}, b"")
+    packet = made({"e": EMPTY}, b"")
     assert (packet.bytes, packet.beats) == (0, 1)
     assert both([packet] * 3) == ([0, 1, 2],) * 2
     assert cycles_between(packet) == 1

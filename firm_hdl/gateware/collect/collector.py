@@ -155,9 +155,6 @@ class _Circuit(Progress):
             for part in step.parts:
                 if not part.completes:
                     missing.append(self.step[index] & ~self.streams[part.leaf].valid)
-            if not self._readers(step) and step.slices and index < self._first_step:
-                # A packet begins only when the first leaf of its message is offered.
-                missing.append(self.step[index] & ~self.streams[0].valid)
         for leaf, cases in ready.items():
             m.d.comb += self.streams[leaf].ready.eq(any_of(cases))
         status_free = ~c.status.valid | c.status.ready
@@ -168,12 +165,6 @@ class _Circuit(Progress):
         for flag, cases in zip(self.served, goes, strict=True):
             m.d.sync += flag.eq((flag | any_of(cases)) & ~self.complete)
         self._judge(any_of(wrong))
-
-    @property
-    def _first_step(self) -> int:
-        """The first step with bytes of a leaf."""
-        steps = enumerate(self.plan.steps)
-        return next((i for i, step in steps if step.parts or isinstance(step, RunStep)), 0)
 
     def _judge(self, wrong_items: Value) -> None:
         """Keep the packet's first error, and report it with the last step."""

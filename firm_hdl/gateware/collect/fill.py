@@ -11,6 +11,7 @@ from amaranth.lib import stream
 from firm_hdl.gateware.collect.progress import Progress
 from firm_hdl.gateware.positions import Ring, any_of, pick, raised_by
 from firm_hdl.plan import BeginRun, Fixed, Part, RunStep, Step
+from firm_hdl.plan.geometry import first_step
 
 __all__ = ["Filler"]
 
@@ -171,6 +172,7 @@ class Filler:
                 words.end_mask.eq(end_mask),
                 words.last.eq(now.ends),
                 words.empty.eq(~begins),
+                words.waits.eq(any_of([self.step[i] for i in range(first_step(self.plan))])),
             ]
 
     def _items_align(self) -> tuple[Value, Value]:

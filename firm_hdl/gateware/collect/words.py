@@ -34,6 +34,8 @@ def words_layout(plan: Plan) -> data.StructLayout:
         The packet ends with this step.
     empty : unsigned(1)
         The packet has no byte so far.
+    waits : unsigned(1)
+        No leaf of the message was taken so far: the packet does not begin with this step.
     error : unsigned(1)
         The packet is marked with an error. Only looked at when `last` is set.
     """
@@ -52,6 +54,7 @@ def words_layout(plan: Plan) -> data.StructLayout:
             "max_beats": range((bus - 1 + (bus + 8) + (3 * bus + 8)) // bus + 1),
             "last": 1,
             "empty": 1,
+            "waits": 1,
             "error": 1,
         }
     )
