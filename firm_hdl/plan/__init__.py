@@ -16,8 +16,10 @@ from firm_hdl.plan.interpret import (
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
+    BeginArray,
     BeginLoop,
     BeginRun,
+    CountedBegin,
     Exits,
     Fixed,
     Jump,
@@ -30,6 +32,7 @@ from firm_hdl.plan.ir import (
     RunStep,
     Slice,
     Step,
+    Take,
 )
 from firm_hdl.plan.limits import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, check_bus_bytes
 from firm_hdl.plan.yaml import from_yaml, to_yaml
@@ -39,8 +42,10 @@ __all__ = [
     "DEFAULT_MAX_MESSAGE_BYTES",
     "RUN_COUNTER",
     "Begin",
+    "BeginArray",
     "BeginLoop",
     "BeginRun",
+    "CountedBegin",
     "DecodeStatus",
     "Decoded",
     "Edge",
@@ -58,6 +63,7 @@ __all__ = [
     "RunStep",
     "Slice",
     "Step",
+    "Take",
     "Transfer",
     "Visit",
     "build_plan",

@@ -5,14 +5,6 @@
 
 module geometry_msgs_msg_Twist_cdr_8_serializer_verilog(aresetn, m_axis_tready, linear_x_data, linear_x_valid, linear_y_data, linear_y_valid, linear_z_data, linear_z_valid, angular_x_data, angular_x_valid, angular_y_data, angular_y_valid, angular_z_data, angular_z_valid, m_axis_status_tready, m_axis_tdata, m_axis_tkeep, m_axis_tlast, m_axis_tuser, m_axis_tvalid, linear_x_ready
 , linear_y_ready, linear_z_ready, angular_x_ready, angular_y_ready, angular_z_ready, m_axis_status_tdata, m_axis_status_tvalid, aclk);
-  wire \$1 ;
-  wire \$2 ;
-  wire \$3 ;
-  wire \$4 ;
-  wire \$5 ;
-  wire \$6 ;
-  wire \$7 ;
-  wire \$8 ;
   input aclk;
   wire aclk;
   input [63:0] angular_x_data;
@@ -116,37 +108,35 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog(aresetn, m_axis_tready, 
   wire [2:0] status__payload;
   wire status__ready;
   wire status__valid;
-  assign \$1  = packets__payload[67:64] > 1'h0;
-  assign \$2  = packets__payload[67:64] > 1'h1;
-  assign \$3  = packets__payload[67:64] > 2'h2;
-  assign \$4  = packets__payload[67:64] > 2'h3;
-  assign \$5  = packets__payload[67:64] > 3'h4;
-  assign \$6  = packets__payload[67:64] > 3'h5;
-  assign \$7  = packets__payload[67:64] > 3'h6;
-  assign \$8  = packets__payload[67:64] > 3'h7;
+  assign m_axis_tkeep[0] = packets__payload[67:64] > 1'h0;
+  assign m_axis_tkeep[1] = packets__payload[67:64] > 1'h1;
+  assign m_axis_tkeep[2] = packets__payload[67:64] > 2'h2;
+  assign m_axis_tkeep[3] = packets__payload[67:64] > 2'h3;
+  assign m_axis_tkeep[4] = packets__payload[67:64] > 3'h4;
+  assign m_axis_tkeep[5] = packets__payload[67:64] > 3'h5;
+  assign m_axis_tkeep[6] = packets__payload[67:64] > 3'h6;
+  assign m_axis_tkeep[7] = packets__payload[67:64] > 3'h7;
   assign rst = ~ aresetn;
-  assign m_axis_tkeep = { \$8 , \$7 , \$6 , \$5 , \$4 , \$3 , \$2 , \$1  };
-  assign m_axis_status_tdata = { 5'h00, status__payload };
   \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core  core (
     .aclk(aclk),
-    .leaf_0__payload(linear_x_data),
-    .leaf_0__valid(linear_x_valid),
-    .leaf_1__payload(linear_y_data),
-    .leaf_1__valid(linear_y_valid),
-    .leaf_2__payload(linear_z_data),
-    .leaf_2__valid(linear_z_valid),
-    .leaf_3__payload(angular_x_data),
-    .leaf_3__valid(angular_x_valid),
-    .leaf_4__payload(angular_y_data),
-    .leaf_4__valid(angular_y_valid),
-    .leaf_5__payload(angular_z_data),
-    .leaf_5__valid(angular_z_valid),
+    .message__angular__x__payload(angular_x_data),
     .message__angular__x__ready(angular_x_ready),
+    .message__angular__x__valid(angular_x_valid),
+    .message__angular__y__payload(angular_y_data),
     .message__angular__y__ready(angular_y_ready),
+    .message__angular__y__valid(angular_y_valid),
+    .message__angular__z__payload(angular_z_data),
     .message__angular__z__ready(angular_z_ready),
+    .message__angular__z__valid(angular_z_valid),
+    .message__linear__x__payload(linear_x_data),
     .message__linear__x__ready(linear_x_ready),
+    .message__linear__x__valid(linear_x_valid),
+    .message__linear__y__payload(linear_y_data),
     .message__linear__y__ready(linear_y_ready),
+    .message__linear__y__valid(linear_y_valid),
+    .message__linear__z__payload(linear_z_data),
     .message__linear__z__ready(linear_z_ready),
+    .message__linear__z__valid(linear_z_valid),
     .packet_error(m_axis_tuser),
     .packets__payload(packets__payload),
     .packets__ready(m_axis_tready),
@@ -156,17 +146,18 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog(aresetn, m_axis_tready, 
     .status__ready(m_axis_status_tready),
     .status__valid(m_axis_status_tvalid)
   );
-  assign \packets__payload.last  = packets__payload[68];
-  assign \packets__payload.count  = packets__payload[67:64];
-  assign \packets__payload.data[7]  = packets__payload[63:56];
-  assign \packets__payload.data[6]  = packets__payload[55:48];
-  assign \packets__payload.data[5]  = packets__payload[47:40];
-  assign \packets__payload.data[4]  = packets__payload[39:32];
-  assign \packets__payload.data[3]  = packets__payload[31:24];
-  assign \packets__payload.data[2]  = packets__payload[23:16];
   assign \packets__payload.data[1]  = packets__payload[15:8];
   assign \packets__payload.data[0]  = packets__payload[7:0];
   assign \packets__payload.data  = packets__payload[63:0];
+  assign \packets__payload.data[2]  = packets__payload[23:16];
+  assign \packets__payload.data[3]  = packets__payload[31:24];
+  assign \packets__payload.data[4]  = packets__payload[39:32];
+  assign \packets__payload.data[5]  = packets__payload[47:40];
+  assign \packets__payload.data[6]  = packets__payload[55:48];
+  assign \packets__payload.data[7]  = packets__payload[63:56];
+  assign \packets__payload.count  = packets__payload[67:64];
+  assign \packets__payload.last  = packets__payload[68];
+  assign m_axis_status_tdata = { 5'h00, status__payload };
   assign m_axis_tlast = packets__payload[68];
   assign m_axis_tdata = packets__payload[63:0];
   assign message__angular__z__ready = angular_z_ready;
@@ -194,81 +185,337 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog(aresetn, m_axis_tready, 
   assign packet_error = m_axis_tuser;
 endmodule
 
-module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core (packets__ready, leaf_0__payload, leaf_0__valid, leaf_1__payload, leaf_1__valid, leaf_2__payload, leaf_2__valid, leaf_3__payload, leaf_3__valid, leaf_4__payload, leaf_4__valid, leaf_5__payload, leaf_5__valid, status__ready, rst, message__linear__x__ready, message__linear__y__ready, message__linear__z__ready, message__angular__x__ready, message__angular__y__ready, message__angular__z__ready
-, status__valid, status__payload, packets__valid, packets__payload, packet_error, aclk);
+module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core (packets__ready, message__linear__x__payload, message__linear__x__valid, message__linear__y__payload, message__linear__y__valid, message__linear__z__payload, message__linear__z__valid, message__angular__x__payload, message__angular__x__valid, message__angular__y__payload, message__angular__y__valid, message__angular__z__payload, message__angular__z__valid, status__ready, rst, packets__valid, packet_error, message__linear__x__ready, message__linear__y__ready, message__linear__z__ready, message__angular__x__ready
+, message__angular__y__ready, message__angular__z__ready, status__valid, status__payload, packets__payload, aclk);
+  wire [7:0] \$1 ;
+  wire [7:0] \$2 ;
+  wire [7:0] \$3 ;
+  wire [7:0] \$4 ;
+  wire \$43 ;
+  wire \$44 ;
+  wire \$47 ;
+  wire \$48 ;
+  wire \$49 ;
+  wire [7:0] \$5 ;
+  wire \$50 ;
+  wire \$51 ;
+  wire \$52 ;
+  wire \$53 ;
+  wire \$54 ;
+  wire \$55 ;
+  wire \$56 ;
+  wire \$57 ;
+  wire \$58 ;
+  wire \$59 ;
+  wire [7:0] \$6 ;
+  wire \$60 ;
+  wire \$61 ;
+  wire \$62 ;
+  wire \$63 ;
+  wire \$64 ;
+  wire \$65 ;
+  wire \$66 ;
+  (* unused_bits = "4" *)
+  wire [4:0] \$67 ;
+  wire \$68 ;
+  wire \$69 ;
+  wire [7:0] \$7 ;
+  wire \$70 ;
+  wire \$71 ;
+  wire \$72 ;
+  wire \$73 ;
+  wire [2:0] \$74 ;
+  wire [7:0] \$75 ;
+  wire [7:0] \$76 ;
+  wire [7:0] \$77 ;
+  wire [7:0] \$78 ;
+  wire [7:0] \$79 ;
+  wire [7:0] \$8 ;
+  wire [7:0] \$80 ;
+  wire [7:0] \$81 ;
+  wire [7:0] \$82 ;
+  wire [72:0] \$83 ;
+  wire [2:0] \$84 ;
+  wire [2:0] \$85 ;
+  wire [7:0] choice_101_Y ;
+  wire [7:0] choice_105_Y ;
+  wire [2:0] choice_109_Y ;
+  wire [2:0] choice_111_Y ;
+  wire [2:0] choice_113_Y ;
+  wire choice_117_Y ;
+  wire choice_121_Y ;
+  wire choice_129_Y ;
+  wire choice_131_Y ;
+  wire choice_133_Y ;
+  wire choice_145_Y ;
+  wire choice_148_CMP ;
+  wire choice_150_CMP ;
+  wire choice_152_CMP ;
+  wire choice_154_CMP ;
+  wire choice_156_CMP ;
+  wire choice_158_CMP ;
+  wire choice_160_CMP ;
+  wire choice_162_CMP ;
+  wire choice_163_CMP ;
+  wire choice_164_CMP ;
+  wire choice_165_CMP ;
+  wire choice_166_CMP ;
+  wire [2:0] choice_181_Y ;
+  wire choice_184_CMP ;
+  wire [2:0] choice_185_Y ;
+  wire choice_187_CMP ;
+  wire [2:0] choice_188_Y ;
+  wire choice_190_CMP ;
+  wire [2:0] choice_191_Y ;
+  wire choice_193_CMP ;
+  wire [2:0] choice_194_Y ;
+  wire choice_196_CMP ;
+  wire [2:0] choice_197_Y ;
+  wire choice_199_CMP ;
+  wire choice_201_CMP ;
+  wire choice_202_CMP ;
+  wire choice_203_CMP ;
+  wire choice_204_CMP ;
+  wire choice_205_CMP ;
+  wire choice_206_CMP ;
+  wire choice_207_CMP ;
+  wire choice_209_CMP ;
+  wire choice_210_CMP ;
+  wire choice_211_CMP ;
+  wire choice_212_CMP ;
+  wire choice_213_CMP ;
+  wire choice_214_CMP ;
+  wire choice_215_CMP ;
+  wire choice_217_CMP ;
+  wire choice_218_CMP ;
+  wire choice_219_CMP ;
+  wire choice_220_CMP ;
+  wire choice_221_CMP ;
+  wire choice_222_CMP ;
+  wire choice_223_CMP ;
+  wire [7:0] choice_224_Y ;
+  wire choice_227_CMP ;
+  wire [7:0] choice_228_Y ;
+  wire choice_230_CMP ;
+  wire [7:0] choice_231_Y ;
+  wire choice_233_CMP ;
+  wire [7:0] choice_234_Y ;
+  wire choice_236_CMP ;
+  wire [7:0] choice_237_Y ;
+  wire choice_239_CMP ;
+  wire [7:0] choice_240_Y ;
+  wire choice_242_CMP ;
+  wire [7:0] choice_243_Y ;
+  wire choice_246_CMP ;
+  wire [7:0] choice_247_Y ;
+  wire choice_249_CMP ;
+  wire [7:0] choice_250_Y ;
+  wire choice_252_CMP ;
+  wire [7:0] choice_253_Y ;
+  wire choice_255_CMP ;
+  wire [7:0] choice_256_Y ;
+  wire choice_258_CMP ;
+  wire [7:0] choice_259_Y ;
+  wire choice_261_CMP ;
+  wire [7:0] choice_262_Y ;
+  wire choice_265_CMP ;
+  wire [7:0] choice_266_Y ;
+  wire choice_268_CMP ;
+  wire [7:0] choice_269_Y ;
+  wire choice_271_CMP ;
+  wire [7:0] choice_272_Y ;
+  wire choice_274_CMP ;
+  wire [7:0] choice_275_Y ;
+  wire choice_277_CMP ;
+  wire [7:0] choice_278_Y ;
+  wire choice_280_CMP ;
+  wire [7:0] choice_281_Y ;
+  wire choice_284_CMP ;
+  wire [7:0] choice_285_Y ;
+  wire choice_287_CMP ;
+  wire [7:0] choice_288_Y ;
+  wire choice_290_CMP ;
+  wire [7:0] choice_291_Y ;
+  wire choice_293_CMP ;
+  wire [7:0] choice_294_Y ;
+  wire choice_296_CMP ;
+  wire [7:0] choice_297_Y ;
+  wire choice_299_CMP ;
+  wire [7:0] choice_300_Y ;
+  wire choice_303_CMP ;
+  wire [7:0] choice_304_Y ;
+  wire choice_306_CMP ;
+  wire [7:0] choice_307_Y ;
+  wire choice_309_CMP ;
+  wire [7:0] choice_310_Y ;
+  wire choice_312_CMP ;
+  wire [7:0] choice_313_Y ;
+  wire choice_315_CMP ;
+  wire [7:0] choice_316_Y ;
+  wire choice_318_CMP ;
+  wire choice_319_CMP ;
+  wire [7:0] choice_320_Y ;
+  wire choice_323_CMP ;
+  wire [7:0] choice_324_Y ;
+  wire choice_326_CMP ;
+  wire [7:0] choice_327_Y ;
+  wire choice_329_CMP ;
+  wire [7:0] choice_330_Y ;
+  wire choice_332_CMP ;
+  wire [7:0] choice_333_Y ;
+  wire choice_335_CMP ;
+  wire [7:0] choice_336_Y ;
+  wire choice_338_CMP ;
+  wire choice_339_CMP ;
+  wire [7:0] choice_340_Y ;
+  wire choice_343_CMP ;
+  wire [7:0] choice_344_Y ;
+  wire choice_346_CMP ;
+  wire [7:0] choice_347_Y ;
+  wire choice_349_CMP ;
+  wire [7:0] choice_350_Y ;
+  wire choice_352_CMP ;
+  wire [7:0] choice_353_Y ;
+  wire choice_355_CMP ;
+  wire [7:0] choice_356_Y ;
+  wire choice_358_CMP ;
+  wire choice_359_CMP ;
+  wire [7:0] choice_360_Y ;
+  wire choice_363_CMP ;
+  wire [7:0] choice_364_Y ;
+  wire choice_366_CMP ;
+  wire [7:0] choice_367_Y ;
+  wire choice_369_CMP ;
+  wire [7:0] choice_370_Y ;
+  wire choice_372_CMP ;
+  wire [7:0] choice_373_Y ;
+  wire choice_375_CMP ;
+  wire [7:0] choice_376_Y ;
+  wire choice_378_CMP ;
+  wire choice_379_CMP ;
+  wire [2:0] choice_49_Y ;
+  wire [2:0] choice_51_Y ;
+  wire [2:0] choice_55_Y ;
+  wire choice_59_Y ;
+  wire [2:0] choice_63_Y ;
+  wire [3:0] choice_67_Y ;
+  wire choice_73_Y ;
+  wire [7:0] choice_77_Y ;
+  wire [7:0] choice_81_Y ;
+  wire [7:0] choice_85_Y ;
+  wire [7:0] choice_89_Y ;
+  wire [7:0] choice_93_Y ;
+  wire [7:0] choice_97_Y ;
+  wire able_0;
+  wire able_1;
   input aclk;
   wire aclk;
+  wire [2:0] align;
+  wire all_served;
+  wire allowed;
+  wire [3:0] base;
+  wire complete;
+  wire done;
+  wire ends;
   wire error;
-  input [63:0] leaf_0__payload;
-  wire [63:0] leaf_0__payload;
-  wire leaf_0__ready;
-  input leaf_0__valid;
-  wire leaf_0__valid;
-  input [63:0] leaf_1__payload;
-  wire [63:0] leaf_1__payload;
-  wire leaf_1__ready;
-  input leaf_1__valid;
-  wire leaf_1__valid;
-  input [63:0] leaf_2__payload;
-  wire [63:0] leaf_2__payload;
-  wire leaf_2__ready;
-  input leaf_2__valid;
-  wire leaf_2__valid;
-  input [63:0] leaf_3__payload;
-  wire [63:0] leaf_3__payload;
-  wire leaf_3__ready;
-  input leaf_3__valid;
-  wire leaf_3__valid;
-  input [63:0] leaf_4__payload;
-  wire [63:0] leaf_4__payload;
-  wire leaf_4__ready;
-  input leaf_4__valid;
-  wire leaf_4__valid;
-  input [63:0] leaf_5__payload;
-  wire [63:0] leaf_5__payload;
-  wire leaf_5__ready;
-  input leaf_5__valid;
-  wire leaf_5__valid;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  wire [2:0] \error$80 ;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  reg [2:0] \error$81  = 3'h0;
+  wire final_sig;
+  reg full = 1'h0;
+  wire go_0;
+  wire go_1;
+  wire has_items;
+  reg [7:0] lane_0 = 8'h00;
+  reg [7:0] lane_1 = 8'h00;
+  reg [7:0] lane_2 = 8'h00;
+  reg [7:0] lane_3 = 8'h00;
+  reg [7:0] lane_4 = 8'h00;
+  reg [7:0] lane_5 = 8'h00;
+  reg [7:0] lane_6 = 8'h00;
+  reg [7:0] lane_7 = 8'h00;
+  wire [7:0] lane_used;
+  wire last_items;
+  wire leads;
+  reg led = 1'h0;
+  wire left;
+  input [63:0] message__angular__x__payload;
   wire [63:0] message__angular__x__payload;
   output message__angular__x__ready;
   wire message__angular__x__ready;
+  input message__angular__x__valid;
   wire message__angular__x__valid;
+  input [63:0] message__angular__y__payload;
   wire [63:0] message__angular__y__payload;
   output message__angular__y__ready;
   wire message__angular__y__ready;
+  input message__angular__y__valid;
   wire message__angular__y__valid;
+  input [63:0] message__angular__z__payload;
   wire [63:0] message__angular__z__payload;
   output message__angular__z__ready;
   wire message__angular__z__ready;
+  input message__angular__z__valid;
   wire message__angular__z__valid;
+  input [63:0] message__linear__x__payload;
   wire [63:0] message__linear__x__payload;
   output message__linear__x__ready;
   wire message__linear__x__ready;
+  input message__linear__x__valid;
   wire message__linear__x__valid;
+  input [63:0] message__linear__y__payload;
   wire [63:0] message__linear__y__payload;
   output message__linear__y__ready;
   wire message__linear__y__ready;
+  input message__linear__y__valid;
   wire message__linear__y__valid;
+  input [63:0] message__linear__z__payload;
   wire [63:0] message__linear__z__payload;
   output message__linear__z__ready;
   wire message__linear__z__ready;
+  input message__linear__z__valid;
   wire message__linear__z__valid;
+  wire [3:0] most_items;
+  wire [7:0] next_lane_0;
+  wire [7:0] next_lane_1;
+  wire [7:0] next_lane_2;
+  wire [7:0] next_lane_3;
+  wire [7:0] next_lane_4;
+  wire [7:0] next_lane_5;
+  wire [7:0] next_lane_6;
+  wire [7:0] next_lane_7;
+  wire [2:0] next_step;
   output packet_error;
   wire packet_error;
   output [68:0] packets__payload;
   wire [68:0] packets__payload;
-  wire [68:0] \packets__payload$43 ;
-  wire [3:0] \packets__payload$43.count ;
-  wire [63:0] \packets__payload$43.data ;
-  wire [7:0] \packets__payload$43.data[0] ;
-  wire [7:0] \packets__payload$43.data[1] ;
-  wire [7:0] \packets__payload$43.data[2] ;
-  wire [7:0] \packets__payload$43.data[3] ;
-  wire [7:0] \packets__payload$43.data[4] ;
-  wire [7:0] \packets__payload$43.data[5] ;
-  wire [7:0] \packets__payload$43.data[6] ;
-  wire [7:0] \packets__payload$43.data[7] ;
-  wire \packets__payload$43.last ;
+  wire [68:0] \packets__payload$1 ;
+  wire [3:0] \packets__payload$1.count ;
+  wire [63:0] \packets__payload$1.data ;
+  wire [7:0] \packets__payload$1.data[0] ;
+  wire [7:0] \packets__payload$1.data[1] ;
+  wire [7:0] \packets__payload$1.data[2] ;
+  wire [7:0] \packets__payload$1.data[3] ;
+  wire [7:0] \packets__payload$1.data[4] ;
+  wire [7:0] \packets__payload$1.data[5] ;
+  wire [7:0] \packets__payload$1.data[6] ;
+  wire [7:0] \packets__payload$1.data[7] ;
+  wire \packets__payload$1.last ;
   wire [3:0] \packets__payload.count ;
   wire [63:0] \packets__payload.data ;
   wire [7:0] \packets__payload.data[0] ;
@@ -282,544 +529,28 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core (packets__ready, l
   wire \packets__payload.last ;
   input packets__ready;
   wire packets__ready;
-  wire \packets__ready$47 ;
+  wire \packets__ready$5 ;
   output packets__valid;
   wire packets__valid;
-  wire \packets__valid$45 ;
+  wire \packets__valid$3 ;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  wire [2:0] raised;
+  wire reached_0;
+  wire reached_1;
   input rst;
   wire rst;
-  (* enum_base_type = "Status" *)
-  (* enum_value_000 = "OK" *)
-  (* enum_value_001 = "TRUNCATED" *)
-  (* enum_value_010 = "TRAILING" *)
-  (* enum_value_011 = "LENGTH" *)
-  (* enum_value_100 = "ENCAPSULATION" *)
-  (* enum_value_101 = "STRING" *)
-  (* enum_value_110 = "ITEMS" *)
-  output [2:0] status__payload;
-  wire [2:0] status__payload;
-  (* enum_base_type = "Status" *)
-  (* enum_value_000 = "OK" *)
-  (* enum_value_001 = "TRUNCATED" *)
-  (* enum_value_010 = "TRAILING" *)
-  (* enum_value_011 = "LENGTH" *)
-  (* enum_value_100 = "ENCAPSULATION" *)
-  (* enum_value_101 = "STRING" *)
-  (* enum_value_110 = "ITEMS" *)
-  wire [2:0] \status__payload$51 ;
-  input status__ready;
-  wire status__ready;
-  wire \status__ready$55 ;
-  output status__valid;
-  wire status__valid;
-  wire \status__valid$53 ;
-  (* unused_bits = "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63 64 65 66 67 68 69 70 71 72 73 74 75 76 77 78 79 80 81 82 83 84 85 86 87 88 89 90 91 92 93 94 95 96 97 98 99 100 101 102 103 104 105 106 107 108 109 110 111 112 113 114 115 116 117 118 119 120 121 122 123 124 125 126 127 128 129 130 131 132 133 134 135 136 137 138 139 140 141 142 143 144 145 146 147 148 149 150 151 152 153 154 155 156 157 158 159" *)
-  wire [159:0] words__payload;
-  (* unused_bits = "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63 64 65 66 67 68 69 70 71 72 73 74 75 76 77 78 79 80 81 82 83 84 85 86 87 88 89 90 91 92 93 94 95 96 97 98 99 100 101 102 103 104 105 106 107 108 109 110 111 112 113 114 115 116 117 118 119 120 121 122 123 124 125 126 127 128 129 130 131 132 133 134 135 136 137 138 139 140 141 142 143 144 145 146 147 148 149 150 151 152 153 154 155 156 157 158 159" *)
-  wire [159:0] \words__payload$37 ;
-  wire \words__payload$37.empty ;
-  wire [2:0] \words__payload$37.end_mask ;
-  wire \words__payload$37.error ;
-  wire [63:0] \words__payload$37.items ;
-  wire [3:0] \words__payload$37.items_bytes ;
-  wire \words__payload$37.last ;
-  wire \words__payload$37.lead ;
-  wire [63:0] \words__payload$37.map ;
-  wire [3:0] \words__payload$37.map_bytes ;
-  wire [2:0] \words__payload$37.map_mask ;
-  wire [2:0] \words__payload$37.max_beats ;
-  wire [5:0] \words__payload$37.to_end ;
-  wire [4:0] \words__payload$37.to_map ;
-  wire \words__payload.empty ;
-  wire [2:0] \words__payload.end_mask ;
-  wire \words__payload.error ;
-  wire [63:0] \words__payload.items ;
-  wire [3:0] \words__payload.items_bytes ;
-  wire \words__payload.last ;
-  wire \words__payload.lead ;
-  wire [63:0] \words__payload.map ;
-  wire [3:0] \words__payload.map_bytes ;
-  wire [2:0] \words__payload.map_mask ;
-  wire [2:0] \words__payload.max_beats ;
-  wire [5:0] \words__payload.to_end ;
-  wire [4:0] \words__payload.to_map ;
-  wire words__ready;
-  wire \words__ready$41 ;
-  wire words__valid;
-  wire \words__valid$39 ;
-  assign words__payload = { \words__payload$37.error , \words__payload$37.empty , \words__payload$37.last , \words__payload$37.max_beats , \words__payload$37.end_mask , \words__payload$37.to_end , \words__payload$37.map_mask , \words__payload$37.to_map , \words__payload$37.lead , \words__payload$37.map_bytes , \words__payload$37.items_bytes , \words__payload$37.map , \words__payload$37.items  };
-  assign \words__payload$37  = { \words__payload$37.error , \words__payload$37.empty , \words__payload$37.last , \words__payload$37.max_beats , \words__payload$37.end_mask , \words__payload$37.to_end , \words__payload$37.map_mask , \words__payload$37.to_map , \words__payload$37.lead , \words__payload$37.map_bytes , \words__payload$37.items_bytes , \words__payload$37.map , \words__payload$37.items  };
-  \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector  collector (
-    .aclk(aclk),
-    .leaf_0__payload(leaf_0__payload),
-    .leaf_0__ready(message__linear__x__ready),
-    .leaf_0__valid(leaf_0__valid),
-    .leaf_1__payload(leaf_1__payload),
-    .leaf_1__ready(message__linear__y__ready),
-    .leaf_1__valid(leaf_1__valid),
-    .leaf_2__payload(leaf_2__payload),
-    .leaf_2__ready(message__linear__z__ready),
-    .leaf_2__valid(leaf_2__valid),
-    .leaf_3__payload(leaf_3__payload),
-    .leaf_3__ready(message__angular__x__ready),
-    .leaf_3__valid(leaf_3__valid),
-    .leaf_4__payload(leaf_4__payload),
-    .leaf_4__ready(message__angular__y__ready),
-    .leaf_4__valid(leaf_4__valid),
-    .leaf_5__payload(leaf_5__payload),
-    .leaf_5__ready(message__angular__z__ready),
-    .leaf_5__valid(leaf_5__valid),
-    .rst(rst),
-    .status__payload(status__payload),
-    .status__ready(status__ready),
-    .status__valid(status__valid),
-    .words__payload_0({ \words__payload$37.map , \words__payload$37.items  }),
-    .words__payload_128({ \words__payload$37.error , \words__payload$37.empty , \words__payload$37.last , \words__payload$37.max_beats , \words__payload$37.end_mask , \words__payload$37.to_end , \words__payload$37.map_mask , \words__payload$37.to_map , \words__payload$37.lead , \words__payload$37.map_bytes , \words__payload$37.items_bytes  }),
-    .words__ready(words__ready),
-    .words__valid(words__valid)
-  );
-  \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer  packer (
-    .aclk(aclk),
-    .error(packet_error),
-    .packets__payload(packets__payload),
-    .packets__ready(packets__ready),
-    .packets__valid(packets__valid),
-    .rst(rst),
-    .words__payload_0({ \words__payload$37.map , \words__payload$37.items  }),
-    .words__payload_128({ \words__payload$37.error , \words__payload$37.empty , \words__payload$37.last , \words__payload$37.max_beats , \words__payload$37.end_mask , \words__payload$37.to_end , \words__payload$37.map_mask , \words__payload$37.to_map , \words__payload$37.lead , \words__payload$37.map_bytes , \words__payload$37.items_bytes  }),
-    .words__ready(words__ready),
-    .words__valid(words__valid)
-  );
-  assign \packets__payload$43.data[7]  = packets__payload[63:56];
-  assign \packets__payload$43.data[6]  = packets__payload[55:48];
-  assign \packets__payload$43.data[5]  = packets__payload[47:40];
-  assign \packets__payload$43.data[4]  = packets__payload[39:32];
-  assign \packets__payload$43.data[3]  = packets__payload[31:24];
-  assign \packets__payload$43.data[2]  = packets__payload[23:16];
-  assign \packets__payload$43.data[1]  = packets__payload[15:8];
-  assign \packets__payload$43.data[0]  = packets__payload[7:0];
-  assign \packets__payload$43.data  = packets__payload[63:0];
-  assign \packets__payload.last  = packets__payload[68];
-  assign \packets__payload.count  = packets__payload[67:64];
-  assign \packets__payload.data[7]  = packets__payload[63:56];
-  assign \packets__payload.data[6]  = packets__payload[55:48];
-  assign \packets__payload.data[5]  = packets__payload[47:40];
-  assign \packets__payload.data[4]  = packets__payload[39:32];
-  assign \packets__payload.data[3]  = packets__payload[31:24];
-  assign \packets__payload.data[2]  = packets__payload[23:16];
-  assign \packets__payload.data[1]  = packets__payload[15:8];
-  assign \packets__payload.data[0]  = packets__payload[7:0];
-  assign \packets__payload.data  = packets__payload[63:0];
-  assign \words__payload.error  = \words__payload$37.error ;
-  assign \words__payload.empty  = \words__payload$37.empty ;
-  assign \words__payload.last  = \words__payload$37.last ;
-  assign \words__payload.max_beats  = \words__payload$37.max_beats ;
-  assign \words__payload.end_mask  = \words__payload$37.end_mask ;
-  assign \words__payload.to_end  = \words__payload$37.to_end ;
-  assign \words__payload.map_mask  = \words__payload$37.map_mask ;
-  assign \words__payload.to_map  = \words__payload$37.to_map ;
-  assign \words__payload.lead  = \words__payload$37.lead ;
-  assign \words__payload.map_bytes  = \words__payload$37.map_bytes ;
-  assign \words__payload.items_bytes  = \words__payload$37.items_bytes ;
-  assign \words__payload.map  = \words__payload$37.map ;
-  assign \words__payload.items  = \words__payload$37.items ;
-  assign \packets__payload$43.count  = packets__payload[67:64];
-  assign \packets__payload$43.last  = packets__payload[68];
-  assign \status__ready$55  = status__ready;
-  assign \status__valid$53  = status__valid;
-  assign \status__payload$51  = status__payload;
-  assign error = packet_error;
-  assign \packets__ready$47  = packets__ready;
-  assign \packets__valid$45  = packets__valid;
-  assign \packets__payload$43  = packets__payload;
-  assign \words__ready$41  = words__ready;
-  assign \words__valid$39  = words__valid;
-  assign leaf_5__ready = message__angular__z__ready;
-  assign message__angular__z__valid = leaf_5__valid;
-  assign message__angular__z__payload = leaf_5__payload;
-  assign leaf_4__ready = message__angular__y__ready;
-  assign message__angular__y__valid = leaf_4__valid;
-  assign message__angular__y__payload = leaf_4__payload;
-  assign leaf_3__ready = message__angular__x__ready;
-  assign message__angular__x__valid = leaf_3__valid;
-  assign message__angular__x__payload = leaf_3__payload;
-  assign leaf_2__ready = message__linear__z__ready;
-  assign message__linear__z__valid = leaf_2__valid;
-  assign message__linear__z__payload = leaf_2__payload;
-  assign leaf_1__ready = message__linear__y__ready;
-  assign message__linear__y__valid = leaf_1__valid;
-  assign message__linear__y__payload = leaf_1__payload;
-  assign leaf_0__ready = message__linear__x__ready;
-  assign message__linear__x__valid = leaf_0__valid;
-  assign message__linear__x__payload = leaf_0__payload;
-endmodule
-
-module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector (leaf_0__payload, leaf_0__valid, leaf_1__payload, leaf_1__valid, leaf_2__payload, leaf_2__valid, leaf_3__payload, leaf_3__valid, leaf_4__payload, leaf_4__valid, leaf_5__payload, leaf_5__valid, status__ready, rst, leaf_0__ready, leaf_1__ready, leaf_2__ready, leaf_3__ready, leaf_4__ready, leaf_5__ready, words__payload_0
-, words__payload_128, status__valid, status__payload, words__valid, words__ready, aclk);
-  wire \$100 ;
-  wire \$101 ;
-  wire \$102 ;
-  wire \$104 ;
-  wire \$105 ;
-  wire \$106 ;
-  wire \$107 ;
-  wire [7:0] \$109 ;
-  wire [7:0] \$111 ;
-  wire [7:0] \$112 ;
-  wire [7:0] \$114 ;
-  wire [7:0] \$116 ;
-  wire [7:0] \$117 ;
-  wire [7:0] \$118 ;
-  wire [7:0] \$120 ;
-  wire [7:0] \$121 ;
-  wire \$122 ;
-  wire \$123 ;
-  wire \$125 ;
-  wire \$126 ;
-  wire \$127 ;
-  wire \$128 ;
-  wire \$13 ;
-  wire [7:0] \$130 ;
-  wire [7:0] \$132 ;
-  wire [7:0] \$133 ;
-  wire [7:0] \$135 ;
-  wire [7:0] \$137 ;
-  wire [7:0] \$138 ;
-  wire [7:0] \$139 ;
-  wire \$14 ;
-  wire [7:0] \$141 ;
-  wire [7:0] \$144 ;
-  wire [7:0] \$145 ;
-  wire \$146 ;
-  wire \$147 ;
-  wire \$149 ;
-  wire \$15 ;
-  wire \$150 ;
-  wire \$151 ;
-  wire \$152 ;
-  wire [7:0] \$154 ;
-  wire [7:0] \$156 ;
-  wire [7:0] \$157 ;
-  wire [7:0] \$159 ;
-  wire [7:0] \$161 ;
-  wire [7:0] \$162 ;
-  wire [7:0] \$163 ;
-  wire [7:0] \$165 ;
-  wire [7:0] \$166 ;
-  wire \$167 ;
-  wire \$168 ;
-  wire \$170 ;
-  wire \$171 ;
-  wire \$172 ;
-  wire \$173 ;
-  wire [7:0] \$175 ;
-  wire [7:0] \$177 ;
-  wire [7:0] \$178 ;
-  wire [7:0] \$180 ;
-  wire [7:0] \$182 ;
-  wire [7:0] \$183 ;
-  wire [7:0] \$184 ;
-  wire [7:0] \$186 ;
-  wire [7:0] \$187 ;
-  wire \$19 ;
-  wire [7:0] \$191 ;
-  wire [7:0] \$193 ;
-  wire [7:0] \$194 ;
-  wire [7:0] \$196 ;
-  wire [7:0] \$198 ;
-  wire [7:0] \$199 ;
-  wire \$20 ;
-  wire [7:0] \$200 ;
-  wire [7:0] \$202 ;
-  wire [7:0] \$203 ;
-  wire [7:0] \$207 ;
-  wire [7:0] \$209 ;
-  wire \$21 ;
-  wire [7:0] \$210 ;
-  wire [7:0] \$212 ;
-  wire [7:0] \$214 ;
-  wire [7:0] \$215 ;
-  wire [7:0] \$216 ;
-  wire [7:0] \$218 ;
-  wire [7:0] \$219 ;
-  wire [7:0] \$223 ;
-  wire [7:0] \$225 ;
-  wire [7:0] \$226 ;
-  wire [7:0] \$228 ;
-  wire [7:0] \$230 ;
-  wire [7:0] \$231 ;
-  wire [7:0] \$232 ;
-  wire [7:0] \$234 ;
-  wire [7:0] \$235 ;
-  wire [7:0] \$239 ;
-  wire [7:0] \$241 ;
-  wire [7:0] \$242 ;
-  wire [7:0] \$244 ;
-  wire [7:0] \$246 ;
-  wire [7:0] \$247 ;
-  wire [7:0] \$248 ;
-  wire \$25 ;
-  wire [7:0] \$250 ;
-  wire [7:0] \$251 ;
-  wire \$253 ;
-  wire \$255 ;
-  wire \$256 ;
-  wire \$258 ;
-  wire \$26 ;
-  wire \$260 ;
-  wire \$261 ;
-  wire \$263 ;
-  wire \$265 ;
-  wire \$266 ;
-  wire \$268 ;
-  wire \$27 ;
-  wire \$270 ;
-  wire \$271 ;
-  wire \$273 ;
-  wire \$275 ;
-  wire \$276 ;
-  wire \$278 ;
-  wire \$280 ;
-  wire \$281 ;
-  wire \$283 ;
-  wire \$285 ;
-  wire \$286 ;
-  wire \$288 ;
-  wire \$290 ;
-  wire \$291 ;
-  wire \$292 ;
-  wire \$293 ;
-  wire [6:0] \$294 ;
-  (* unused_bits = "0 1 2 6 7" *)
-  wire [7:0] \$295 ;
-  wire \$297 ;
-  wire \$31 ;
-  wire \$32 ;
-  wire \$33 ;
-  wire \$331 ;
-  wire \$333 ;
-  wire [26:0] \$335 ;
-  wire [26:0] \$336 ;
-  wire [31:0] \$338 ;
-  wire \$340 ;
-  wire \$341 ;
-  wire [2:0] \$342 ;
-  wire \$343 ;
-  wire [2:0] \$344 ;
-  wire [7:0] \$345 ;
-  wire [7:0] \$346 ;
-  wire [7:0] \$347 ;
-  wire [7:0] \$348 ;
-  wire [7:0] \$349 ;
-  wire [7:0] \$350 ;
-  wire [7:0] \$351 ;
-  wire [7:0] \$352 ;
-  wire [7:0] \$353 ;
-  wire [7:0] \$354 ;
-  wire [7:0] \$355 ;
-  wire [7:0] \$356 ;
-  wire [7:0] \$357 ;
-  wire [7:0] \$358 ;
-  wire [7:0] \$359 ;
-  wire [7:0] \$360 ;
-  wire \$361 ;
-  wire \$362 ;
-  wire \$363 ;
-  wire [26:0] \$365 ;
-  wire \$367 ;
-  wire \$37 ;
-  wire \$38 ;
-  wire \$39 ;
-  wire \$4 ;
-  wire \$43 ;
-  wire \$44 ;
-  wire \$45 ;
-  wire \$46 ;
-  wire \$48 ;
-  wire \$49 ;
-  wire \$50 ;
-  wire \$51 ;
-  wire \$52 ;
-  wire \$53 ;
-  wire \$54 ;
-  wire \$55 ;
-  wire \$56 ;
-  wire \$57 ;
-  wire \$58 ;
-  wire \$59 ;
-  wire \$60 ;
-  wire \$61 ;
-  wire \$62 ;
-  wire \$63 ;
-  wire \$64 ;
-  wire \$65 ;
-  wire \$66 ;
-  wire [3:0] \$72 ;
-  wire \$73 ;
-  wire \$74 ;
-  wire \$75 ;
-  wire \$76 ;
-  wire [3:0] \$77 ;
-  wire [4:0] \$78 ;
-  (* unused_bits = "5" *)
-  wire [5:0] \$79 ;
-  wire [5:0] \$80 ;
-  wire [5:0] \$81 ;
-  wire [5:0] \$82 ;
-  wire \$91 ;
-  wire \$92 ;
-  wire \$93 ;
-  wire \$94 ;
-  wire \$96 ;
-  wire \$97 ;
-  wire \$98 ;
-  wire \$99 ;
-  wire [26:0] choice_1013_Y ;
-  wire choice_1021_Y ;
-  wire choice_1025_Y ;
-  wire [2:0] choice_1061_Y ;
-  wire choice_1065_Y ;
-  wire choice_1067_Y ;
-  wire [2:0] choice_1071_Y ;
-  wire choice_1085_Y ;
-  wire [2:0] choice_1089_Y ;
-  wire [2:0] choice_1093_Y ;
-  wire [4:0] choice_1097_Y ;
-  wire [2:0] choice_1101_Y ;
-  wire [5:0] choice_1105_Y ;
-  wire choice_1109_Y ;
-  wire [3:0] choice_1113_Y ;
-  wire [3:0] choice_1117_Y ;
-  wire choice_1121_Y ;
-  wire choice_1125_Y ;
-  wire choice_991_Y ;
-  wire choice_993_Y ;
-  wire choice_996_Y ;
-  wire choice_998_Y ;
-  input aclk;
-  wire aclk;
-  wire begins;
-  reg begun = 1'h0;
-  wire complete;
-  wire done;
-  wire [2:0] end_mask;
-  wire ends;
-  (* enum_base_type = "Status" *)
-  (* enum_value_000 = "OK" *)
-  (* enum_value_001 = "TRUNCATED" *)
-  (* enum_value_010 = "TRAILING" *)
-  (* enum_value_011 = "LENGTH" *)
-  (* enum_value_100 = "ENCAPSULATION" *)
-  (* enum_value_101 = "STRING" *)
-  (* enum_value_110 = "ITEMS" *)
-  reg [2:0] error = 3'h0;
-  (* enum_base_type = "Status" *)
-  (* enum_value_000 = "OK" *)
-  (* enum_value_001 = "TRUNCATED" *)
-  (* enum_value_010 = "TRAILING" *)
-  (* enum_value_011 = "LENGTH" *)
-  (* enum_value_100 = "ENCAPSULATION" *)
-  (* enum_value_101 = "STRING" *)
-  (* enum_value_110 = "ITEMS" *)
-  wire [2:0] found;
-  wire free;
-  wire go_1_0;
-  wire go_2_0;
-  wire go_3_0;
-  wire go_4_0;
-  wire go_5_0;
-  wire go_5_1;
-  reg has_nul = 1'h0;
-  reg [7:0] items_0 = 8'h00;
-  reg [7:0] items_1 = 8'h00;
-  reg [7:0] items_2 = 8'h00;
-  reg [7:0] items_3 = 8'h00;
-  reg [7:0] items_4 = 8'h00;
-  reg [7:0] items_5 = 8'h00;
-  reg [7:0] items_6 = 8'h00;
-  reg [7:0] items_7 = 8'h00;
-  wire [3:0] items_size;
-  wire lacks_1_0;
-  wire lacks_2_0;
-  wire lacks_3_0;
-  wire lacks_4_0;
-  wire lacks_5_0;
-  wire lacks_5_1;
-  input [63:0] leaf_0__payload;
-  wire [63:0] leaf_0__payload;
-  output leaf_0__ready;
-  wire leaf_0__ready;
-  input leaf_0__valid;
-  wire leaf_0__valid;
-  input [63:0] leaf_1__payload;
-  wire [63:0] leaf_1__payload;
-  output leaf_1__ready;
-  wire leaf_1__ready;
-  input leaf_1__valid;
-  wire leaf_1__valid;
-  input [63:0] leaf_2__payload;
-  wire [63:0] leaf_2__payload;
-  output leaf_2__ready;
-  wire leaf_2__ready;
-  input leaf_2__valid;
-  wire leaf_2__valid;
-  input [63:0] leaf_3__payload;
-  wire [63:0] leaf_3__payload;
-  output leaf_3__ready;
-  wire leaf_3__ready;
-  input leaf_3__valid;
-  wire leaf_3__valid;
-  input [63:0] leaf_4__payload;
-  wire [63:0] leaf_4__payload;
-  output leaf_4__ready;
-  wire leaf_4__ready;
-  input leaf_4__valid;
-  wire leaf_4__valid;
-  input [63:0] leaf_5__payload;
-  wire [63:0] leaf_5__payload;
-  output leaf_5__ready;
-  wire leaf_5__ready;
-  input leaf_5__valid;
-  wire leaf_5__valid;
-  wire leaves_0;
-  wire leaves_1;
-  wire leaves_2;
-  wire leaves_3;
-  wire leaves_4;
-  wire leaves_5;
-  wire left_1_0;
-  wire left_2_0;
-  wire left_3_0;
-  wire left_4_0;
-  wire left_5_0;
-  wire left_5_1;
-  reg [7:0] map_0 = 8'h00;
-  reg [7:0] map_1 = 8'h00;
-  reg [7:0] map_2 = 8'h00;
-  reg [7:0] map_3 = 8'h00;
-  reg [7:0] map_4 = 8'h00;
-  reg [7:0] map_5 = 8'h00;
-  reg [7:0] map_6 = 8'h00;
-  reg [7:0] map_7 = 8'h00;
-  wire [4:0] map_size;
-  wire nul_now;
-  input rst;
-  wire rst;
+  wire [3:0] run_bytes;
+  wire running;
   reg served_0 = 1'h0;
   reg served_1 = 1'h0;
-  reg [26:0] state = 27'h0800201;
-  wire [3:0] \state.items_bytes ;
-  wire \state.lead ;
-  wire \state.loop_begin ;
-  wire [3:0] \state.map_bytes ;
-  wire [2:0] \state.mask ;
-  wire \state.plain ;
-  wire [2:0] \state.raised ;
-  wire \state.rest ;
-  wire \state.run_begin ;
-  wire [5:0] \state.step ;
-  wire \state.terminated ;
-  wire \state.words ;
+  wire [3:0] small_sig;
   (* enum_base_type = "Status" *)
   (* enum_value_000 = "OK" *)
   (* enum_value_001 = "TRUNCATED" *)
@@ -834,1633 +565,788 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector (leaf_0_
   wire status__ready;
   output status__valid;
   reg status__valid = 1'h0;
-  wire [5:0] to_end;
-  wire [4:0] to_map;
-  (* unused_bits = "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63 64 65 66 67 68 69 70 71 72 73 74 75 76 77 78 79 80 81 82 83 84 85 86 87 88 89 90 91 92 93 94 95 96 97 98 99 100 101 102 103 104 105 106 107 108 109 110 111 112 113 114 115 116 117 118 119 120 121 122 123 124 125 126 127 128 129 130 131 132 133 134 135 136 137 138 139 140 141 142 143 144 145 146 147 148 149 150 151 152 153 154 155 156 157 158 159" *)
-  wire [159:0] words__payload;
-  wire \words__payload.empty ;
-  wire [2:0] \words__payload.end_mask ;
-  wire \words__payload.error ;
-  wire [63:0] \words__payload.items ;
-  wire [3:0] \words__payload.items_bytes ;
-  wire \words__payload.last ;
-  wire \words__payload.lead ;
-  wire [63:0] \words__payload.map ;
-  wire [3:0] \words__payload.map_bytes ;
-  wire [2:0] \words__payload.map_mask ;
-  wire [2:0] \words__payload.max_beats ;
-  wire [5:0] \words__payload.to_end ;
-  wire [4:0] \words__payload.to_map ;
-  output [127:0] words__payload_0;
-  wire [127:0] words__payload_0;
-  output [31:0] words__payload_128;
-  reg [31:0] words__payload_128 = 32'd0;
-  input words__ready;
-  wire words__ready;
-  output words__valid;
-  reg words__valid = 1'h0;
-  wire words_down;
-  wire words_keeps;
-  reg words_last = 1'h1;
-  wire words_loads;
-  assign \$4  = state[22] & words_last;
-  assign done = state[23] | \$4 ;
-  assign ends = done & state[5];
-  assign \$13  = ~ served_0;
-  assign left_1_0 = state[1] & \$13 ;
-  assign \$14  = ~ leaf_0__valid;
-  assign lacks_1_0 = left_1_0 & \$14 ;
-  assign \$15  = left_1_0 & leaf_0__valid;
-  assign go_1_0 = \$15  & free;
-  assign \$19  = ~ served_0;
-  assign left_2_0 = state[2] & \$19 ;
-  assign \$20  = ~ leaf_1__valid;
-  assign lacks_2_0 = left_2_0 & \$20 ;
-  assign \$21  = left_2_0 & leaf_1__valid;
-  assign go_2_0 = \$21  & free;
-  assign \$25  = ~ served_0;
-  assign left_3_0 = state[3] & \$25 ;
-  assign \$26  = ~ leaf_2__valid;
-  assign lacks_3_0 = left_3_0 & \$26 ;
-  assign \$27  = left_3_0 & leaf_2__valid;
-  assign go_3_0 = \$27  & free;
-  assign \$31  = ~ served_0;
-  assign left_4_0 = state[4] & \$31 ;
-  assign \$32  = ~ leaf_3__valid;
-  assign lacks_4_0 = left_4_0 & \$32 ;
-  assign \$33  = left_4_0 & leaf_3__valid;
-  assign go_4_0 = \$33  & free;
-  assign \$37  = ~ served_0;
-  assign left_5_0 = state[5] & \$37 ;
-  assign \$38  = ~ leaf_4__valid;
-  assign lacks_5_0 = left_5_0 & \$38 ;
-  assign \$39  = left_5_0 & leaf_4__valid;
-  assign go_5_0 = \$39  & free;
-  assign \$43  = ~ served_1;
-  assign left_5_1 = state[5] & \$43 ;
-  assign \$44  = ~ leaf_5__valid;
-  assign lacks_5_1 = left_5_1 & \$44 ;
-  assign \$45  = left_5_1 & leaf_5__valid;
-  assign \$46  = \$45  & free;
-  assign \$48  = ~ lacks_5_0;
-  assign go_5_1 = \$46  & \$48 ;
-  assign \$49  = ~ words__valid;
-  assign free = \$49  | words__ready;
-  assign \$50  = ~ leaf_0__valid;
-  assign \$51  = state[0] & \$50 ;
-  assign \$52  = ~ leaf_1__valid;
-  assign \$53  = state[1] & \$52 ;
-  assign \$54  = ~ leaf_2__valid;
-  assign \$55  = state[2] & \$54 ;
-  assign \$56  = ~ leaf_3__valid;
-  assign \$57  = state[3] & \$56 ;
-  assign \$58  = ~ leaf_4__valid;
-  assign \$59  = state[4] & \$58 ;
-  assign \$60  = | { lacks_5_1, lacks_5_0, \$59 , lacks_4_0, \$57 , lacks_3_0, \$55 , lacks_2_0, \$53 , lacks_1_0, \$51  };
-  assign \$61  = ~ \$60 ;
-  assign \$62  = free & \$61 ;
-  assign \$63  = ~ ends;
-  assign \$64  = ~ status__valid;
-  assign \$65  = \$64  | status__ready;
-  assign \$66  = \$63  | \$65 ;
-  assign complete = \$62  & \$66 ;
-  assign items_size = state[24] ? 4'h0 : state[13:10];
-  assign \$72  = state[26] ? 4'h8 : 4'h0;
-  assign map_size = state[9:6] + \$72 ;
-  assign nul_now = has_nul & state[24];
-  assign \$73  = | items_size;
-  assign \$74  = begun | \$73 ;
-  assign \$75  = \$74  | nul_now;
-  assign \$76  = | state[9:6];
-  assign begins = \$75  | \$76 ;
-  assign \$77  = state[26] ? 4'h0 : items_size;
-  assign \$78  = \$77  + nul_now;
-  assign { \$79 [5], to_map } = \$78  + state[19:17];
-  assign \$80  = map_size + 3'h7;
-  assign \$81  = begins ? \$80  : 6'h08;
-  assign \$82  = map_size + 1'h0;
-  assign \$91  = | { go_5_0, go_4_0, go_3_0, go_2_0, go_1_0 };
-  assign \$92  = served_0 | \$91 ;
-  assign \$93  = ~ complete;
-  assign \$94  = \$92  & \$93 ;
-  assign \$96  = served_1 | go_5_1;
-  assign \$97  = ~ complete;
-  assign \$98  = \$96  & \$97 ;
-  assign \$99  = complete & ends;
-  assign \$100  = | error;
-  assign \$101  = | state[4:1];
-  assign \$102  = \$101  & served_0;
-  assign \$104  = state[5] & served_1;
-  assign \$105  = | { \$104 , \$102  };
-  assign \$106  = ~ \$105 ;
-  assign \$107  = free & \$106 ;
-  assign \$109  = state[1] ? leaf_0__payload[39:32] : 8'h00;
-  assign \$111  = state[2] ? leaf_1__payload[39:32] : 8'h00;
-  assign \$112  = \$109  | \$111 ;
-  assign \$114  = state[3] ? leaf_2__payload[39:32] : 8'h00;
-  assign \$116  = state[4] ? leaf_3__payload[39:32] : 8'h00;
-  assign \$117  = \$114  | \$116 ;
-  assign \$118  = \$112  | \$117 ;
-  assign \$120  = state[5] ? leaf_5__payload[39:32] : 8'h00;
-  assign \$121  = \$118  | \$120 ;
-  assign \$122  = | state[4:1];
-  assign \$123  = \$122  & served_0;
-  assign \$125  = state[5] & served_1;
-  assign \$126  = | { \$125 , \$123  };
-  assign \$127  = ~ \$126 ;
-  assign \$128  = free & \$127 ;
-  assign \$130  = state[1] ? leaf_0__payload[47:40] : 8'h00;
-  assign \$132  = state[2] ? leaf_1__payload[47:40] : 8'h00;
-  assign \$133  = \$130  | \$132 ;
-  assign \$135  = state[3] ? leaf_2__payload[47:40] : 8'h00;
-  assign \$137  = state[4] ? leaf_3__payload[47:40] : 8'h00;
-  assign \$138  = \$135  | \$137 ;
-  assign \$139  = \$133  | \$138 ;
-  assign \$141  = state[5] ? leaf_5__payload[47:40] : 8'h00;
-  assign \$144  = \$141  | { 7'h00, state[0] };
-  assign \$145  = \$139  | \$144 ;
-  assign \$146  = | state[4:1];
-  assign \$147  = \$146  & served_0;
-  assign \$149  = state[5] & served_1;
-  assign \$150  = | { \$149 , \$147  };
-  assign \$151  = ~ \$150 ;
-  assign \$152  = free & \$151 ;
-  assign \$154  = state[1] ? leaf_0__payload[55:48] : 8'h00;
-  assign \$156  = state[2] ? leaf_1__payload[55:48] : 8'h00;
-  assign \$157  = \$154  | \$156 ;
-  assign \$159  = state[3] ? leaf_2__payload[55:48] : 8'h00;
-  assign \$161  = state[4] ? leaf_3__payload[55:48] : 8'h00;
-  assign \$162  = \$159  | \$161 ;
-  assign \$163  = \$157  | \$162 ;
-  assign \$165  = state[5] ? leaf_5__payload[55:48] : 8'h00;
-  assign \$166  = \$163  | \$165 ;
-  assign \$167  = | state[4:1];
-  assign \$168  = \$167  & served_0;
-  assign \$170  = state[5] & served_1;
-  assign \$171  = | { \$170 , \$168  };
-  assign \$172  = ~ \$171 ;
-  assign \$173  = free & \$172 ;
-  assign \$175  = state[1] ? leaf_0__payload[63:56] : 8'h00;
-  assign \$177  = state[2] ? leaf_1__payload[63:56] : 8'h00;
-  assign \$178  = \$175  | \$177 ;
-  assign \$180  = state[3] ? leaf_2__payload[63:56] : 8'h00;
-  assign \$182  = state[4] ? leaf_3__payload[63:56] : 8'h00;
-  assign \$183  = \$180  | \$182 ;
-  assign \$184  = \$178  | \$183 ;
-  assign \$186  = state[5] ? leaf_5__payload[63:56] : 8'h00;
-  assign \$187  = \$184  | \$186 ;
-  assign \$191  = state[0] ? leaf_0__payload[7:0] : 8'h00;
-  assign \$193  = state[1] ? leaf_1__payload[7:0] : 8'h00;
-  assign \$194  = \$191  | \$193 ;
-  assign \$196  = state[2] ? leaf_2__payload[7:0] : 8'h00;
-  assign \$198  = state[3] ? leaf_3__payload[7:0] : 8'h00;
-  assign \$199  = \$196  | \$198 ;
-  assign \$200  = \$194  | \$199 ;
-  assign \$202  = state[4] ? leaf_4__payload[7:0] : 8'h00;
-  assign \$203  = \$200  | \$202 ;
-  assign \$207  = state[0] ? leaf_0__payload[15:8] : 8'h00;
-  assign \$209  = state[1] ? leaf_1__payload[15:8] : 8'h00;
-  assign \$210  = \$207  | \$209 ;
-  assign \$212  = state[2] ? leaf_2__payload[15:8] : 8'h00;
-  assign \$214  = state[3] ? leaf_3__payload[15:8] : 8'h00;
-  assign \$215  = \$212  | \$214 ;
-  assign \$216  = \$210  | \$215 ;
-  assign \$218  = state[4] ? leaf_4__payload[15:8] : 8'h00;
-  assign \$219  = \$216  | \$218 ;
-  assign \$223  = state[0] ? leaf_0__payload[23:16] : 8'h00;
-  assign \$225  = state[1] ? leaf_1__payload[23:16] : 8'h00;
-  assign \$226  = \$223  | \$225 ;
-  assign \$228  = state[2] ? leaf_2__payload[23:16] : 8'h00;
-  assign \$230  = state[3] ? leaf_3__payload[23:16] : 8'h00;
-  assign \$231  = \$228  | \$230 ;
-  assign \$232  = \$226  | \$231 ;
-  assign \$234  = state[4] ? leaf_4__payload[23:16] : 8'h00;
-  assign \$235  = \$232  | \$234 ;
-  assign \$239  = state[0] ? leaf_0__payload[31:24] : 8'h00;
-  assign \$241  = state[1] ? leaf_1__payload[31:24] : 8'h00;
-  assign \$242  = \$239  | \$241 ;
-  assign \$244  = state[2] ? leaf_2__payload[31:24] : 8'h00;
-  assign \$246  = state[3] ? leaf_3__payload[31:24] : 8'h00;
-  assign \$247  = \$244  | \$246 ;
-  assign \$248  = \$242  | \$247 ;
-  assign \$250  = state[4] ? leaf_4__payload[31:24] : 8'h00;
-  assign \$251  = \$248  | \$250 ;
-  assign \$253  = state[5] & served_0;
-  assign \$255  = ~ \$253 ;
-  assign \$256  = free & \$255 ;
-  assign \$258  = state[5] & served_0;
-  assign \$260  = ~ \$258 ;
-  assign \$261  = free & \$260 ;
-  assign \$263  = state[5] & served_0;
-  assign \$265  = ~ \$263 ;
-  assign \$266  = free & \$265 ;
-  assign \$268  = state[5] & served_0;
-  assign \$270  = ~ \$268 ;
-  assign \$271  = free & \$270 ;
-  assign \$273  = state[5] & served_1;
-  assign \$275  = ~ \$273 ;
-  assign \$276  = free & \$275 ;
-  assign \$278  = state[5] & served_1;
-  assign \$280  = ~ \$278 ;
-  assign \$281  = free & \$280 ;
-  assign \$283  = state[5] & served_1;
-  assign \$285  = ~ \$283 ;
-  assign \$286  = free & \$285 ;
-  assign \$288  = state[5] & served_1;
-  assign \$290  = ~ \$288 ;
-  assign \$291  = free & \$290 ;
-  assign \$292  = ~ ends;
-  assign \$293  = begins & \$292 ;
-  assign \$294  = to_map + to_end;
-  assign \$295  = \$294  + 3'h7;
-  assign \$297  = ~ begins;
-  assign \$331  = | state[3:0];
-  assign \$333  = | state[4:0];
-  assign \$335  = done ? { state[4], 2'h0, \$333 , 9'h000, state[4], 3'h0, \$331 , state[4], 2'h0, state[4:0], 1'h0 } : 27'h0000000;
-  assign \$336  = ends ? 27'h0800201 : \$335 ;
+  reg [2:0] step = 3'h0;
+  wire terminated;
+  wire [2:0] unit_log2;
+  reg [72:0] word = 73'h0000000000000000000;
+  wire [2:0] \word.align ;
+  wire [3:0] \word.count ;
+  wire [63:0] \word.data ;
+  wire [7:0] \word.data[0] ;
+  wire [7:0] \word.data[1] ;
+  wire [7:0] \word.data[2] ;
+  wire [7:0] \word.data[3] ;
+  wire [7:0] \word.data[4] ;
+  wire [7:0] \word.data[5] ;
+  wire [7:0] \word.data[6] ;
+  wire [7:0] \word.data[7] ;
+  wire \word.error ;
+  wire \word.last ;
+  wire [72:0] word__payload;
+  wire [2:0] \word__payload.align ;
+  wire [3:0] \word__payload.count ;
+  wire [63:0] \word__payload.data ;
+  wire [7:0] \word__payload.data[0] ;
+  wire [7:0] \word__payload.data[1] ;
+  wire [7:0] \word__payload.data[2] ;
+  wire [7:0] \word__payload.data[3] ;
+  wire [7:0] \word__payload.data[4] ;
+  wire [7:0] \word__payload.data[5] ;
+  wire [7:0] \word__payload.data[6] ;
+  wire [7:0] \word__payload.data[7] ;
+  wire \word__payload.error ;
+  wire \word__payload.last ;
+  wire word__ready;
+  wire word__valid;
+  wire writable;
+  assign \$43  = ~ served_0;
+  assign \$44  = writable & \$43 ;
+  assign go_0 = \$44  & able_0;
+  assign reached_0 = served_0 | able_0;
+  assign \$47  = ~ served_1;
+  assign \$48  = writable & \$47 ;
+  assign \$49  = \$48  & reached_0;
+  assign go_1 = \$49  & able_1;
+  assign \$50  = served_1 | able_1;
+  assign reached_1 = reached_0 & \$50 ;
+  assign \$51  = ~ led;
+  assign \$52  = \$51  | message__linear__x__valid;
+  assign word__valid = full & \$52 ;
+  assign \$53  = ~ full;
+  assign \$54  = word__valid & word__ready;
+  assign writable = \$53  | \$54 ;
+  assign \$55  = writable & reached_1;
+  assign \$56  = ~ ends;
+  assign \$57  = ~ status__valid;
+  assign \$58  = \$57  | status__ready;
+  assign \$59  = \$56  | \$58 ;
+  assign complete = \$55  & \$59 ;
+  assign \$60  = ! \error$81 ;
+  assign \error$80  = \$60  ? 3'h0 : \error$81 ;
+  assign \$61  = served_0 | go_0;
+  assign \$62  = ~ complete;
+  assign \$63  = \$61  & \$62 ;
+  assign \$64  = served_1 | go_1;
+  assign \$65  = ~ complete;
+  assign \$66  = \$64  & \$65 ;
+  assign \$67  = base + 4'h0;
+  assign \$68  = | \error$80 ;
   always @(posedge aclk)
-    words__payload_128 <= \$338 ;
+    status__valid <= \$69 ;
   always @(posedge aclk)
-    served_0 <= \$340 ;
+    served_0 <= \$70 ;
   always @(posedge aclk)
-    served_1 <= \$341 ;
+    served_1 <= \$71 ;
   always @(posedge aclk)
-    error <= \$342 ;
+    full <= \$72 ;
   always @(posedge aclk)
-    status__valid <= \$343 ;
+    led <= \$73 ;
   always @(posedge aclk)
-    status__payload <= \$344 ;
+    \error$81  <= \$74 ;
   always @(posedge aclk)
-    map_0 <= \$345 ;
+    lane_0 <= \$75 ;
   always @(posedge aclk)
-    map_1 <= \$346 ;
+    lane_1 <= \$76 ;
   always @(posedge aclk)
-    map_2 <= \$347 ;
+    lane_2 <= \$77 ;
   always @(posedge aclk)
-    map_3 <= \$348 ;
+    lane_3 <= \$78 ;
   always @(posedge aclk)
-    map_4 <= \$349 ;
+    lane_4 <= \$79 ;
   always @(posedge aclk)
-    map_5 <= \$350 ;
+    lane_5 <= \$80 ;
   always @(posedge aclk)
-    map_6 <= \$351 ;
+    lane_6 <= \$81 ;
   always @(posedge aclk)
-    map_7 <= \$352 ;
+    lane_7 <= \$82 ;
   always @(posedge aclk)
-    items_0 <= \$353 ;
+    word <= \$83 ;
   always @(posedge aclk)
-    items_1 <= \$354 ;
+    step <= \$84 ;
   always @(posedge aclk)
-    items_2 <= \$355 ;
-  always @(posedge aclk)
-    items_3 <= \$356 ;
-  always @(posedge aclk)
-    items_4 <= \$357 ;
-  always @(posedge aclk)
-    items_5 <= \$358 ;
-  always @(posedge aclk)
-    items_6 <= \$359 ;
-  always @(posedge aclk)
-    items_7 <= \$360 ;
-  always @(posedge aclk)
-    begun <= \$361 ;
-  always @(posedge aclk)
-    words__valid <= \$362 ;
-  always @(posedge aclk)
-    words_last <= \$363 ;
-  always @(posedge aclk)
-    state <= \$365 ;
-  always @(posedge aclk)
-    has_nul <= \$367 ;
-  assign \$367  = rst ? 1'h0 : choice_998_Y ;
-  assign choice_1013_Y  = complete ? \$336  : state;
-  assign \$365  = rst ? 27'h0800201 : choice_1013_Y ;
-  assign \$363  = rst ? 1'h1 : words_last;
-  assign choice_1021_Y  = free ? complete : words__valid;
-  assign \$362  = rst ? 1'h0 : choice_1021_Y ;
-  assign choice_1025_Y  = complete ? \$293  : begun;
-  assign \$361  = rst ? 1'h0 : choice_1025_Y ;
-  assign \$360  = \$291  ? leaf_5__payload[31:24] : items_7;
-  assign \$359  = \$286  ? leaf_5__payload[23:16] : items_6;
-  assign \$358  = \$281  ? leaf_5__payload[15:8] : items_5;
-  assign \$357  = \$276  ? leaf_5__payload[7:0] : items_4;
-  assign \$356  = \$271  ? leaf_4__payload[63:56] : items_3;
-  assign \$355  = \$266  ? leaf_4__payload[55:48] : items_2;
-  assign \$354  = \$261  ? leaf_4__payload[47:40] : items_1;
-  assign \$353  = \$256  ? leaf_4__payload[39:32] : items_0;
-  assign \$352  = free ? \$251  : map_7;
-  assign \$351  = free ? \$235  : map_6;
-  assign \$350  = free ? \$219  : map_5;
-  assign \$349  = free ? \$203  : map_4;
-  assign \$348  = \$173  ? \$187  : map_3;
-  assign \$347  = \$152  ? \$166  : map_2;
-  assign \$346  = \$128  ? \$145  : map_1;
-  assign \$345  = \$107  ? \$121  : map_0;
-  assign choice_1061_Y  = \$99  ? error : status__payload;
-  assign \$344  = rst ? 3'h0 : choice_1061_Y ;
-  assign choice_1065_Y  = status__ready ? 1'h0 : status__valid;
-  assign choice_1067_Y  = \$99  ? 1'h1 : choice_1065_Y ;
-  assign \$343  = rst ? 1'h0 : choice_1067_Y ;
-  assign choice_1071_Y  = \$99  ? 3'h0 : error;
-  assign \$342  = rst ? 3'h0 : choice_1071_Y ;
-  assign \$341  = rst ? 1'h0 : \$98 ;
-  assign \$340  = rst ? 1'h0 : \$94 ;
-  assign end_mask = ends ? (* full_case = 32'd1 *) 3'h7 : 3'h0;
-  assign to_end = ends ? (* full_case = 32'd1 *) \$81  : \$82 ;
-  assign choice_1085_Y  = free ? \$100  : words__payload_128[31];
-  assign \$338 [31] = rst ? 1'h0 : choice_1085_Y ;
-  assign choice_1089_Y  = free ? \$295 [5:3] : words__payload_128[28:26];
-  assign \$338 [28:26] = rst ? 3'h0 : choice_1089_Y ;
-  assign choice_1093_Y  = free ? state[16:14] : words__payload_128[16:14];
-  assign \$338 [16:14] = rst ? 3'h0 : choice_1093_Y ;
-  assign choice_1097_Y  = free ? to_map : words__payload_128[13:9];
-  assign \$338 [13:9] = rst ? 5'h00 : choice_1097_Y ;
-  assign choice_1101_Y  = free ? end_mask : words__payload_128[25:23];
-  assign \$338 [25:23] = rst ? 3'h0 : choice_1101_Y ;
-  assign choice_1105_Y  = free ? to_end : words__payload_128[22:17];
-  assign \$338 [22:17] = rst ? 6'h00 : choice_1105_Y ;
-  assign choice_1109_Y  = free ? state[26] : words__payload_128[8];
-  assign \$338 [8] = rst ? 1'h0 : choice_1109_Y ;
-  assign choice_1113_Y  = free ? state[9:6] : words__payload_128[7:4];
-  assign \$338 [7:4] = rst ? 4'h0 : choice_1113_Y ;
-  assign choice_1117_Y  = free ? items_size : words__payload_128[3:0];
-  assign \$338 [3:0] = rst ? 4'h0 : choice_1117_Y ;
-  assign choice_1121_Y  = free ? ends : words__payload_128[29];
-  assign \$338 [29] = rst ? 1'h0 : choice_1121_Y ;
-  assign choice_1125_Y  = free ? \$297  : words__payload_128[30];
-  assign \$338 [30] = rst ? 1'h0 : choice_1125_Y ;
-  assign choice_991_Y  = state[24] ? 1'h0 : has_nul;
-  assign choice_993_Y  = state[20] ? state[25] : choice_991_Y ;
-  assign choice_996_Y  = ends ? (* full_case = 32'd1 *) 1'h0 : choice_993_Y ;
-  assign choice_998_Y  = complete ? choice_996_Y  : has_nul;
-  assign words__payload = { words__payload_128, map_7, map_6, map_5, map_4, map_3, map_2, map_1, map_0, items_7, items_6, items_5, items_4, items_3, items_2, items_1, items_0 };
-  assign \state.plain  = state[23];
-  assign \state.rest  = state[24];
-  assign \state.terminated  = state[25];
-  assign \state.lead  = state[26];
-  assign \words__payload.items  = { items_7, items_6, items_5, items_4, items_3, items_2, items_1, items_0 };
-  assign \words__payload.map  = { map_7, map_6, map_5, map_4, map_3, map_2, map_1, map_0 };
-  assign \words__payload.items_bytes  = words__payload_128[3:0];
-  assign \words__payload.map_bytes  = words__payload_128[7:4];
-  assign \words__payload.lead  = words__payload_128[8];
-  assign \words__payload.to_map  = words__payload_128[13:9];
-  assign \words__payload.map_mask  = words__payload_128[16:14];
-  assign \words__payload.to_end  = words__payload_128[22:17];
-  assign \words__payload.end_mask  = words__payload_128[25:23];
-  assign \words__payload.max_beats  = words__payload_128[28:26];
-  assign \words__payload.last  = words__payload_128[29];
-  assign \words__payload.empty  = words__payload_128[30];
-  assign \words__payload.error  = words__payload_128[31];
-  assign \state.run_begin  = state[20];
-  assign \state.raised  = state[19:17];
-  assign \state.mask  = state[16:14];
-  assign \state.items_bytes  = state[13:10];
-  assign \state.map_bytes  = state[9:6];
-  assign \state.step  = state[5:0];
-  assign \state.loop_begin  = state[21];
-  assign \state.words  = state[22];
-  assign \$79 [4:0] = to_map;
-  assign words__payload_0 = { map_7, map_6, map_5, map_4, map_3, map_2, map_1, map_0, items_7, items_6, items_5, items_4, items_3, items_2, items_1, items_0 };
-  assign leaf_5__ready = go_5_1;
-  assign leaf_4__ready = go_5_0;
-  assign leaf_3__ready = go_4_0;
-  assign leaf_2__ready = go_3_0;
-  assign leaf_1__ready = go_2_0;
-  assign leaf_0__ready = go_1_0;
-  assign words_keeps = 1'h1;
-  assign words_down = 1'h0;
-  assign words_loads = 1'h0;
-  assign found = error;
-  assign leaves_5 = state[5];
-  assign leaves_4 = state[4];
-  assign leaves_3 = state[3];
-  assign leaves_2 = state[2];
-  assign leaves_1 = state[1];
-  assign leaves_0 = state[0];
+    status__payload <= \$85 ;
+  assign \$1  = served_0 ? lane_0 : 8'h00;
+  assign \$2  = served_0 ? lane_1 : 8'h00;
+  assign \$3  = served_0 ? lane_2 : 8'h00;
+  assign \$4  = served_0 ? lane_3 : 8'h00;
+  assign \$5  = served_0 ? lane_4 : 8'h00;
+  assign \$6  = served_0 ? lane_5 : 8'h00;
+  assign \$7  = served_0 ? lane_6 : 8'h00;
+  assign \$8  = served_0 ? lane_7 : 8'h00;
+  assign choice_101_Y  = writable ? next_lane_1 : lane_1;
+  assign \$76  = rst ? 8'h00 : choice_101_Y ;
+  assign choice_105_Y  = writable ? next_lane_0 : lane_0;
+  assign \$75  = rst ? 8'h00 : choice_105_Y ;
+  assign choice_109_Y  = writable ? \error$80  : \error$81 ;
+  assign choice_111_Y  = ends ? 3'h0 : choice_109_Y ;
+  assign choice_113_Y  = complete ? choice_111_Y  : choice_109_Y ;
+  assign \$74  = rst ? 3'h0 : choice_113_Y ;
+  assign choice_117_Y  = writable ? 1'h0 : led;
+  assign \$73  = rst ? 1'h0 : choice_117_Y ;
+  assign choice_121_Y  = writable ? complete : full;
+  assign \$72  = rst ? 1'h0 : choice_121_Y ;
+  assign \$71  = rst ? 1'h0 : \$66 ;
+  assign \$70  = rst ? 1'h0 : \$63 ;
+  assign choice_129_Y  = status__ready ? 1'h0 : status__valid;
+  assign choice_131_Y  = ends ? 1'h1 : choice_129_Y ;
+  assign choice_133_Y  = complete ? choice_131_Y  : choice_129_Y ;
+  assign \$69  = rst ? 1'h0 : choice_133_Y ;
+  assign choice_145_Y  = done ? 1'h1 : 1'h0;
+  assign ends = choice_148_CMP  ? choice_145_Y  : 1'h0;
+  assign choice_148_CMP  = step == 3'h6;
+  assign message__angular__z__ready = choice_150_CMP  ? go_0 : 1'h0;
+  assign choice_150_CMP  = step == 3'h6;
+  assign message__angular__y__ready = choice_152_CMP  ? go_0 : 1'h0;
+  assign choice_152_CMP  = step == 3'h5;
+  assign message__angular__x__ready = choice_154_CMP  ? go_0 : 1'h0;
+  assign choice_154_CMP  = step == 3'h4;
+  assign message__linear__z__ready = choice_156_CMP  ? go_0 : 1'h0;
+  assign choice_156_CMP  = step == 3'h3;
+  assign message__linear__y__ready = choice_158_CMP  ? go_0 : 1'h0;
+  assign choice_158_CMP  = step == 3'h2;
+  assign message__linear__x__ready = choice_160_CMP  ? go_0 : 1'h0;
+  assign choice_160_CMP  = step == 3'h1;
+  function [0:0] choice_161 ;
+    input [0:0] a;
+    input [4:0] b;
+    input [4:0] s;
+    (* parallel_case *)
+    casez (s)
+      5'b????1:
+        choice_161  = b[0:0];
+      5'b???1?:
+        choice_161  = b[1:1];
+      5'b??1??:
+        choice_161  = b[2:2];
+      5'b?1???:
+        choice_161  = b[3:3];
+      5'b1????:
+        choice_161  = b[4:4];
+      default:
+        choice_161  = a;
+    endcase
+  endfunction
+  assign able_1 = choice_161 (1'h1, { message__linear__y__valid, message__linear__z__valid, message__angular__x__valid, message__angular__y__valid, message__angular__z__valid }, { choice_166_CMP , choice_165_CMP , choice_164_CMP , choice_163_CMP , choice_162_CMP  });
+  assign choice_162_CMP  = step == 3'h5;
+  assign choice_163_CMP  = step == 3'h4;
+  assign choice_164_CMP  = step == 3'h3;
+  assign choice_165_CMP  = step == 3'h2;
+  assign choice_166_CMP  = step == 3'h1;
+  assign choice_181_Y  = done ? 3'h6 : 3'h0;
+  function [2:0] choice_183 ;
+    input [2:0] a;
+    input [17:0] b;
+    input [5:0] s;
+    (* parallel_case *)
+    casez (s)
+      6'b?????1:
+        choice_183  = b[2:0];
+      6'b????1?:
+        choice_183  = b[5:3];
+      6'b???1??:
+        choice_183  = b[8:6];
+      6'b??1???:
+        choice_183  = b[11:9];
+      6'b?1????:
+        choice_183  = b[14:12];
+      6'b1?????:
+        choice_183  = b[17:15];
+      default:
+        choice_183  = a;
+    endcase
+  endfunction
+  assign next_step = choice_183 (3'h0, { choice_197_Y , choice_194_Y , choice_191_Y , choice_188_Y , choice_185_Y , choice_181_Y  }, { choice_199_CMP , choice_196_CMP , choice_193_CMP , choice_190_CMP , choice_187_CMP , choice_184_CMP  });
+  assign choice_184_CMP  = step == 3'h5;
+  assign choice_185_Y  = done ? 3'h5 : 3'h0;
+  assign choice_187_CMP  = step == 3'h4;
+  assign choice_188_Y  = done ? 3'h4 : 3'h0;
+  assign choice_190_CMP  = step == 3'h3;
+  assign choice_191_Y  = done ? 3'h3 : 3'h0;
+  assign choice_193_CMP  = step == 3'h2;
+  assign choice_194_Y  = done ? 3'h2 : 3'h0;
+  assign choice_196_CMP  = step == 3'h1;
+  assign choice_197_Y  = done ? 3'h1 : 3'h0;
+  assign choice_199_CMP  = ! step;
+  function [0:0] choice_200 ;
+    input [0:0] a;
+    input [6:0] b;
+    input [6:0] s;
+    (* parallel_case *)
+    casez (s)
+      7'b??????1:
+        choice_200  = b[0:0];
+      7'b?????1?:
+        choice_200  = b[1:1];
+      7'b????1??:
+        choice_200  = b[2:2];
+      7'b???1???:
+        choice_200  = b[3:3];
+      7'b??1????:
+        choice_200  = b[4:4];
+      7'b?1?????:
+        choice_200  = b[5:5];
+      7'b1??????:
+        choice_200  = b[6:6];
+      default:
+        choice_200  = a;
+    endcase
+  endfunction
+  assign done = choice_200 (1'h0, 7'h7f, { choice_207_CMP , choice_206_CMP , choice_205_CMP , choice_204_CMP , choice_203_CMP , choice_202_CMP , choice_201_CMP  });
+  assign choice_201_CMP  = step == 3'h6;
+  assign choice_202_CMP  = step == 3'h5;
+  assign choice_203_CMP  = step == 3'h4;
+  assign choice_204_CMP  = step == 3'h3;
+  assign choice_205_CMP  = step == 3'h2;
+  assign choice_206_CMP  = step == 3'h1;
+  assign choice_207_CMP  = ! step;
+  function [3:0] choice_208 ;
+    input [3:0] a;
+    input [27:0] b;
+    input [6:0] s;
+    (* parallel_case *)
+    casez (s)
+      7'b??????1:
+        choice_208  = b[3:0];
+      7'b?????1?:
+        choice_208  = b[7:4];
+      7'b????1??:
+        choice_208  = b[11:8];
+      7'b???1???:
+        choice_208  = b[15:12];
+      7'b??1????:
+        choice_208  = b[19:16];
+      7'b?1?????:
+        choice_208  = b[23:20];
+      7'b1??????:
+        choice_208  = b[27:24];
+      default:
+        choice_208  = a;
+    endcase
+  endfunction
+  assign base = choice_208 (4'h0, 28'h8888884, { choice_215_CMP , choice_214_CMP , choice_213_CMP , choice_212_CMP , choice_211_CMP , choice_210_CMP , choice_209_CMP  });
+  assign choice_209_CMP  = step == 3'h6;
+  assign choice_210_CMP  = step == 3'h5;
+  assign choice_211_CMP  = step == 3'h4;
+  assign choice_212_CMP  = step == 3'h3;
+  assign choice_213_CMP  = step == 3'h2;
+  assign choice_214_CMP  = step == 3'h1;
+  assign choice_215_CMP  = ! step;
+  function [0:0] choice_216 ;
+    input [0:0] a;
+    input [6:0] b;
+    input [6:0] s;
+    (* parallel_case *)
+    casez (s)
+      7'b??????1:
+        choice_216  = b[0:0];
+      7'b?????1?:
+        choice_216  = b[1:1];
+      7'b????1??:
+        choice_216  = b[2:2];
+      7'b???1???:
+        choice_216  = b[3:3];
+      7'b??1????:
+        choice_216  = b[4:4];
+      7'b?1?????:
+        choice_216  = b[5:5];
+      7'b1??????:
+        choice_216  = b[6:6];
+      default:
+        choice_216  = a;
+    endcase
+  endfunction
+  assign able_0 = choice_216 (1'h1, { message__linear__x__valid, message__linear__x__valid, message__linear__y__valid, message__linear__z__valid, message__angular__x__valid, message__angular__y__valid, message__angular__z__valid }, { choice_223_CMP , choice_222_CMP , choice_221_CMP , choice_220_CMP , choice_219_CMP , choice_218_CMP , choice_217_CMP  });
+  assign choice_217_CMP  = step == 3'h6;
+  assign choice_218_CMP  = step == 3'h5;
+  assign choice_219_CMP  = step == 3'h4;
+  assign choice_220_CMP  = step == 3'h3;
+  assign choice_221_CMP  = step == 3'h2;
+  assign choice_222_CMP  = step == 3'h1;
+  assign choice_223_CMP  = ! step;
+  assign choice_224_Y  = go_1 ? message__angular__z__payload[31:24] : \$8 ;
+  function [7:0] choice_226 ;
+    input [7:0] a;
+    input [47:0] b;
+    input [5:0] s;
+    (* parallel_case *)
+    casez (s)
+      6'b?????1:
+        choice_226  = b[7:0];
+      6'b????1?:
+        choice_226  = b[15:8];
+      6'b???1??:
+        choice_226  = b[23:16];
+      6'b??1???:
+        choice_226  = b[31:24];
+      6'b?1????:
+        choice_226  = b[39:32];
+      6'b1?????:
+        choice_226  = b[47:40];
+      default:
+        choice_226  = a;
+    endcase
+  endfunction
+  assign next_lane_7 = choice_226 (\$8 , { choice_240_Y , choice_237_Y , choice_234_Y , choice_231_Y , choice_228_Y , choice_224_Y  }, { choice_242_CMP , choice_239_CMP , choice_236_CMP , choice_233_CMP , choice_230_CMP , choice_227_CMP  });
+  assign choice_227_CMP  = step == 3'h5;
+  assign choice_228_Y  = go_1 ? message__angular__y__payload[31:24] : \$8 ;
+  assign choice_230_CMP  = step == 3'h4;
+  assign choice_231_Y  = go_1 ? message__angular__x__payload[31:24] : \$8 ;
+  assign choice_233_CMP  = step == 3'h3;
+  assign choice_234_Y  = go_1 ? message__linear__z__payload[31:24] : \$8 ;
+  assign choice_236_CMP  = step == 3'h2;
+  assign choice_237_Y  = go_1 ? message__linear__y__payload[31:24] : \$8 ;
+  assign choice_239_CMP  = step == 3'h1;
+  assign choice_240_Y  = go_0 ? message__linear__x__payload[31:24] : \$8 ;
+  assign choice_242_CMP  = ! step;
+  assign choice_243_Y  = go_1 ? message__angular__z__payload[23:16] : \$7 ;
+  function [7:0] choice_245 ;
+    input [7:0] a;
+    input [47:0] b;
+    input [5:0] s;
+    (* parallel_case *)
+    casez (s)
+      6'b?????1:
+        choice_245  = b[7:0];
+      6'b????1?:
+        choice_245  = b[15:8];
+      6'b???1??:
+        choice_245  = b[23:16];
+      6'b??1???:
+        choice_245  = b[31:24];
+      6'b?1????:
+        choice_245  = b[39:32];
+      6'b1?????:
+        choice_245  = b[47:40];
+      default:
+        choice_245  = a;
+    endcase
+  endfunction
+  assign next_lane_6 = choice_245 (\$7 , { choice_259_Y , choice_256_Y , choice_253_Y , choice_250_Y , choice_247_Y , choice_243_Y  }, { choice_261_CMP , choice_258_CMP , choice_255_CMP , choice_252_CMP , choice_249_CMP , choice_246_CMP  });
+  assign choice_246_CMP  = step == 3'h5;
+  assign choice_247_Y  = go_1 ? message__angular__y__payload[23:16] : \$7 ;
+  assign choice_249_CMP  = step == 3'h4;
+  assign choice_250_Y  = go_1 ? message__angular__x__payload[23:16] : \$7 ;
+  assign choice_252_CMP  = step == 3'h3;
+  assign choice_253_Y  = go_1 ? message__linear__z__payload[23:16] : \$7 ;
+  assign choice_255_CMP  = step == 3'h2;
+  assign choice_256_Y  = go_1 ? message__linear__y__payload[23:16] : \$7 ;
+  assign choice_258_CMP  = step == 3'h1;
+  assign choice_259_Y  = go_0 ? message__linear__x__payload[23:16] : \$7 ;
+  assign choice_261_CMP  = ! step;
+  assign choice_262_Y  = go_1 ? message__angular__z__payload[15:8] : \$6 ;
+  function [7:0] choice_264 ;
+    input [7:0] a;
+    input [47:0] b;
+    input [5:0] s;
+    (* parallel_case *)
+    casez (s)
+      6'b?????1:
+        choice_264  = b[7:0];
+      6'b????1?:
+        choice_264  = b[15:8];
+      6'b???1??:
+        choice_264  = b[23:16];
+      6'b??1???:
+        choice_264  = b[31:24];
+      6'b?1????:
+        choice_264  = b[39:32];
+      6'b1?????:
+        choice_264  = b[47:40];
+      default:
+        choice_264  = a;
+    endcase
+  endfunction
+  assign next_lane_5 = choice_264 (\$6 , { choice_278_Y , choice_275_Y , choice_272_Y , choice_269_Y , choice_266_Y , choice_262_Y  }, { choice_280_CMP , choice_277_CMP , choice_274_CMP , choice_271_CMP , choice_268_CMP , choice_265_CMP  });
+  assign choice_265_CMP  = step == 3'h5;
+  assign choice_266_Y  = go_1 ? message__angular__y__payload[15:8] : \$6 ;
+  assign choice_268_CMP  = step == 3'h4;
+  assign choice_269_Y  = go_1 ? message__angular__x__payload[15:8] : \$6 ;
+  assign choice_271_CMP  = step == 3'h3;
+  assign choice_272_Y  = go_1 ? message__linear__z__payload[15:8] : \$6 ;
+  assign choice_274_CMP  = step == 3'h2;
+  assign choice_275_Y  = go_1 ? message__linear__y__payload[15:8] : \$6 ;
+  assign choice_277_CMP  = step == 3'h1;
+  assign choice_278_Y  = go_0 ? message__linear__x__payload[15:8] : \$6 ;
+  assign choice_280_CMP  = ! step;
+  assign choice_281_Y  = go_1 ? message__angular__z__payload[7:0] : \$5 ;
+  function [7:0] choice_283 ;
+    input [7:0] a;
+    input [47:0] b;
+    input [5:0] s;
+    (* parallel_case *)
+    casez (s)
+      6'b?????1:
+        choice_283  = b[7:0];
+      6'b????1?:
+        choice_283  = b[15:8];
+      6'b???1??:
+        choice_283  = b[23:16];
+      6'b??1???:
+        choice_283  = b[31:24];
+      6'b?1????:
+        choice_283  = b[39:32];
+      6'b1?????:
+        choice_283  = b[47:40];
+      default:
+        choice_283  = a;
+    endcase
+  endfunction
+  assign next_lane_4 = choice_283 (\$5 , { choice_297_Y , choice_294_Y , choice_291_Y , choice_288_Y , choice_285_Y , choice_281_Y  }, { choice_299_CMP , choice_296_CMP , choice_293_CMP , choice_290_CMP , choice_287_CMP , choice_284_CMP  });
+  assign choice_284_CMP  = step == 3'h5;
+  assign choice_285_Y  = go_1 ? message__angular__y__payload[7:0] : \$5 ;
+  assign choice_287_CMP  = step == 3'h4;
+  assign choice_288_Y  = go_1 ? message__angular__x__payload[7:0] : \$5 ;
+  assign choice_290_CMP  = step == 3'h3;
+  assign choice_291_Y  = go_1 ? message__linear__z__payload[7:0] : \$5 ;
+  assign choice_293_CMP  = step == 3'h2;
+  assign choice_294_Y  = go_1 ? message__linear__y__payload[7:0] : \$5 ;
+  assign choice_296_CMP  = step == 3'h1;
+  assign choice_297_Y  = go_0 ? message__linear__x__payload[7:0] : \$5 ;
+  assign choice_299_CMP  = ! step;
+  assign choice_300_Y  = go_0 ? message__angular__z__payload[63:56] : \$4 ;
+  function [7:0] choice_302 ;
+    input [7:0] a;
+    input [55:0] b;
+    input [6:0] s;
+    (* parallel_case *)
+    casez (s)
+      7'b??????1:
+        choice_302  = b[7:0];
+      7'b?????1?:
+        choice_302  = b[15:8];
+      7'b????1??:
+        choice_302  = b[23:16];
+      7'b???1???:
+        choice_302  = b[31:24];
+      7'b??1????:
+        choice_302  = b[39:32];
+      7'b?1?????:
+        choice_302  = b[47:40];
+      7'b1??????:
+        choice_302  = b[55:48];
+      default:
+        choice_302  = a;
+    endcase
+  endfunction
+  assign next_lane_3 = choice_302 (\$4 , { 8'h00, choice_316_Y , choice_313_Y , choice_310_Y , choice_307_Y , choice_304_Y , choice_300_Y  }, { choice_319_CMP , choice_318_CMP , choice_315_CMP , choice_312_CMP , choice_309_CMP , choice_306_CMP , choice_303_CMP  });
+  assign choice_303_CMP  = step == 3'h6;
+  assign choice_304_Y  = go_0 ? message__angular__y__payload[63:56] : \$4 ;
+  assign choice_306_CMP  = step == 3'h5;
+  assign choice_307_Y  = go_0 ? message__angular__x__payload[63:56] : \$4 ;
+  assign choice_309_CMP  = step == 3'h4;
+  assign choice_310_Y  = go_0 ? message__linear__z__payload[63:56] : \$4 ;
+  assign choice_312_CMP  = step == 3'h3;
+  assign choice_313_Y  = go_0 ? message__linear__y__payload[63:56] : \$4 ;
+  assign choice_315_CMP  = step == 3'h2;
+  assign choice_316_Y  = go_0 ? message__linear__x__payload[63:56] : \$4 ;
+  assign choice_318_CMP  = step == 3'h1;
+  assign choice_319_CMP  = ! step;
+  assign choice_320_Y  = go_0 ? message__angular__z__payload[55:48] : \$3 ;
+  function [7:0] choice_322 ;
+    input [7:0] a;
+    input [55:0] b;
+    input [6:0] s;
+    (* parallel_case *)
+    casez (s)
+      7'b??????1:
+        choice_322  = b[7:0];
+      7'b?????1?:
+        choice_322  = b[15:8];
+      7'b????1??:
+        choice_322  = b[23:16];
+      7'b???1???:
+        choice_322  = b[31:24];
+      7'b??1????:
+        choice_322  = b[39:32];
+      7'b?1?????:
+        choice_322  = b[47:40];
+      7'b1??????:
+        choice_322  = b[55:48];
+      default:
+        choice_322  = a;
+    endcase
+  endfunction
+  assign next_lane_2 = choice_322 (\$3 , { 8'h00, choice_336_Y , choice_333_Y , choice_330_Y , choice_327_Y , choice_324_Y , choice_320_Y  }, { choice_339_CMP , choice_338_CMP , choice_335_CMP , choice_332_CMP , choice_329_CMP , choice_326_CMP , choice_323_CMP  });
+  assign choice_323_CMP  = step == 3'h6;
+  assign choice_324_Y  = go_0 ? message__angular__y__payload[55:48] : \$3 ;
+  assign choice_326_CMP  = step == 3'h5;
+  assign choice_327_Y  = go_0 ? message__angular__x__payload[55:48] : \$3 ;
+  assign choice_329_CMP  = step == 3'h4;
+  assign choice_330_Y  = go_0 ? message__linear__z__payload[55:48] : \$3 ;
+  assign choice_332_CMP  = step == 3'h3;
+  assign choice_333_Y  = go_0 ? message__linear__y__payload[55:48] : \$3 ;
+  assign choice_335_CMP  = step == 3'h2;
+  assign choice_336_Y  = go_0 ? message__linear__x__payload[55:48] : \$3 ;
+  assign choice_338_CMP  = step == 3'h1;
+  assign choice_339_CMP  = ! step;
+  assign choice_340_Y  = go_0 ? message__angular__z__payload[47:40] : \$2 ;
+  function [7:0] choice_342 ;
+    input [7:0] a;
+    input [55:0] b;
+    input [6:0] s;
+    (* parallel_case *)
+    casez (s)
+      7'b??????1:
+        choice_342  = b[7:0];
+      7'b?????1?:
+        choice_342  = b[15:8];
+      7'b????1??:
+        choice_342  = b[23:16];
+      7'b???1???:
+        choice_342  = b[31:24];
+      7'b??1????:
+        choice_342  = b[39:32];
+      7'b?1?????:
+        choice_342  = b[47:40];
+      7'b1??????:
+        choice_342  = b[55:48];
+      default:
+        choice_342  = a;
+    endcase
+  endfunction
+  assign next_lane_1 = choice_342 (\$2 , { 8'h01, choice_356_Y , choice_353_Y , choice_350_Y , choice_347_Y , choice_344_Y , choice_340_Y  }, { choice_359_CMP , choice_358_CMP , choice_355_CMP , choice_352_CMP , choice_349_CMP , choice_346_CMP , choice_343_CMP  });
+  assign choice_343_CMP  = step == 3'h6;
+  assign choice_344_Y  = go_0 ? message__angular__y__payload[47:40] : \$2 ;
+  assign choice_346_CMP  = step == 3'h5;
+  assign choice_347_Y  = go_0 ? message__angular__x__payload[47:40] : \$2 ;
+  assign choice_349_CMP  = step == 3'h4;
+  assign choice_350_Y  = go_0 ? message__linear__z__payload[47:40] : \$2 ;
+  assign choice_352_CMP  = step == 3'h3;
+  assign choice_353_Y  = go_0 ? message__linear__y__payload[47:40] : \$2 ;
+  assign choice_355_CMP  = step == 3'h2;
+  assign choice_356_Y  = go_0 ? message__linear__x__payload[47:40] : \$2 ;
+  assign choice_358_CMP  = step == 3'h1;
+  assign choice_359_CMP  = ! step;
+  assign choice_360_Y  = go_0 ? message__angular__z__payload[39:32] : \$1 ;
+  function [7:0] choice_362 ;
+    input [7:0] a;
+    input [55:0] b;
+    input [6:0] s;
+    (* parallel_case *)
+    casez (s)
+      7'b??????1:
+        choice_362  = b[7:0];
+      7'b?????1?:
+        choice_362  = b[15:8];
+      7'b????1??:
+        choice_362  = b[23:16];
+      7'b???1???:
+        choice_362  = b[31:24];
+      7'b??1????:
+        choice_362  = b[39:32];
+      7'b?1?????:
+        choice_362  = b[47:40];
+      7'b1??????:
+        choice_362  = b[55:48];
+      default:
+        choice_362  = a;
+    endcase
+  endfunction
+  assign next_lane_0 = choice_362 (\$1 , { 8'h00, choice_376_Y , choice_373_Y , choice_370_Y , choice_367_Y , choice_364_Y , choice_360_Y  }, { choice_379_CMP , choice_378_CMP , choice_375_CMP , choice_372_CMP , choice_369_CMP , choice_366_CMP , choice_363_CMP  });
+  assign choice_363_CMP  = step == 3'h6;
+  assign choice_364_Y  = go_0 ? message__angular__y__payload[39:32] : \$1 ;
+  assign choice_366_CMP  = step == 3'h5;
+  assign choice_367_Y  = go_0 ? message__angular__x__payload[39:32] : \$1 ;
+  assign choice_369_CMP  = step == 3'h4;
+  assign choice_370_Y  = go_0 ? message__linear__z__payload[39:32] : \$1 ;
+  assign choice_372_CMP  = step == 3'h3;
+  assign choice_373_Y  = go_0 ? message__linear__y__payload[39:32] : \$1 ;
+  assign choice_375_CMP  = step == 3'h2;
+  assign choice_376_Y  = go_0 ? message__linear__x__payload[39:32] : \$1 ;
+  assign choice_378_CMP  = step == 3'h1;
+  assign choice_379_CMP  = ! step;
+  assign choice_49_Y  = ends ? \error$80  : status__payload;
+  assign choice_51_Y  = complete ? choice_49_Y  : status__payload;
+  assign \$85  = rst ? 3'h0 : choice_51_Y ;
+  assign choice_55_Y  = complete ? next_step : step;
+  assign \$84  = rst ? 3'h0 : choice_55_Y ;
+  assign choice_59_Y  = complete ? \$68  : word[72];
+  assign \$83 [72] = rst ? 1'h0 : choice_59_Y ;
+  assign choice_63_Y  = complete ? 3'h0 : word[70:68];
+  assign \$83 [70:68] = rst ? 3'h0 : choice_63_Y ;
+  assign choice_67_Y  = complete ? \$67 [3:0] : word[67:64];
+  assign \$83 [67:64] = rst ? 4'h0 : choice_67_Y ;
+  assign \$83 [63:0] = rst ? 64'h0000000000000000 : word[63:0];
+  assign choice_73_Y  = complete ? ends : word[71];
+  assign \$83 [71] = rst ? 1'h0 : choice_73_Y ;
+  assign choice_77_Y  = writable ? next_lane_7 : lane_7;
+  assign \$82  = rst ? 8'h00 : choice_77_Y ;
+  assign choice_81_Y  = writable ? next_lane_6 : lane_6;
+  assign \$81  = rst ? 8'h00 : choice_81_Y ;
+  assign choice_85_Y  = writable ? next_lane_5 : lane_5;
+  assign \$80  = rst ? 8'h00 : choice_85_Y ;
+  assign choice_89_Y  = writable ? next_lane_4 : lane_4;
+  assign \$79  = rst ? 8'h00 : choice_89_Y ;
+  assign choice_93_Y  = writable ? next_lane_3 : lane_3;
+  assign \$78  = rst ? 8'h00 : choice_93_Y ;
+  assign choice_97_Y  = writable ? next_lane_2 : lane_2;
+  assign \$77  = rst ? 8'h00 : choice_97_Y ;
+  \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer  packer (
+    .aclk(aclk),
+    .error(packet_error),
+    .packets__payload(packets__payload),
+    .packets__ready(packets__ready),
+    .packets__valid(packets__valid),
+    .rst(rst),
+    .word__payload({ word[72:64], lane_7, lane_6, lane_5, lane_4, lane_3, lane_2, lane_1, lane_0 }),
+    .word__ready(word__ready),
+    .word__valid(word__valid)
+  );
+  assign \word.error  = word[72];
+  assign \word.last  = word[71];
+  assign \word.align  = word[70:68];
+  assign \word.count  = word[67:64];
+  assign \word.data[7]  = word[63:56];
+  assign \word.data[6]  = word[55:48];
+  assign \word.data[5]  = word[47:40];
+  assign \word.data[4]  = word[39:32];
+  assign \word.data[3]  = word[31:24];
+  assign \word.data[2]  = word[23:16];
+  assign \word.data[1]  = word[15:8];
+  assign \word.data[0]  = word[7:0];
+  assign \word.data  = word[63:0];
+  assign \word__payload.error  = word[72];
+  assign \word__payload.last  = word[71];
+  assign \word__payload.align  = word[70:68];
+  assign \word__payload.count  = word[67:64];
+  assign \word__payload.data[7]  = lane_7;
+  assign \word__payload.data[6]  = lane_6;
+  assign \word__payload.data[5]  = lane_5;
+  assign \word__payload.data[4]  = lane_4;
+  assign \word__payload.data[3]  = lane_3;
+  assign \word__payload.data[2]  = lane_2;
+  assign \word__payload.data[1]  = lane_1;
+  assign \word__payload.data[0]  = lane_0;
+  assign \word__payload.data  = { lane_7, lane_6, lane_5, lane_4, lane_3, lane_2, lane_1, lane_0 };
+  assign \packets__payload$1.last  = packets__payload[68];
+  assign \packets__payload$1.count  = packets__payload[67:64];
+  assign \packets__payload$1.data[7]  = packets__payload[63:56];
+  assign \packets__payload$1.data[6]  = packets__payload[55:48];
+  assign \packets__payload$1.data[5]  = packets__payload[47:40];
+  assign \packets__payload$1.data[4]  = packets__payload[39:32];
+  assign \packets__payload$1.data[3]  = packets__payload[31:24];
+  assign \packets__payload$1.data[2]  = packets__payload[23:16];
+  assign \packets__payload$1.data[1]  = packets__payload[15:8];
+  assign \packets__payload$1.data[0]  = packets__payload[7:0];
+  assign \packets__payload$1.data  = packets__payload[63:0];
+  assign \packets__payload.last  = packets__payload[68];
+  assign \packets__payload.count  = packets__payload[67:64];
+  assign \packets__payload.data[7]  = packets__payload[63:56];
+  assign \packets__payload.data[6]  = packets__payload[55:48];
+  assign \packets__payload.data[5]  = packets__payload[47:40];
+  assign \packets__payload.data[4]  = packets__payload[39:32];
+  assign \packets__payload.data[3]  = packets__payload[31:24];
+  assign \packets__payload.data[2]  = packets__payload[23:16];
+  assign \packets__payload.data[1]  = packets__payload[15:8];
+  assign \packets__payload.data[0]  = packets__payload[7:0];
+  assign \packets__payload.data  = packets__payload[63:0];
+  assign leads = 1'h0;
+  assign raised = 3'h0;
+  assign word__payload = { word[72:64], lane_7, lane_6, lane_5, lane_4, lane_3, lane_2, lane_1, lane_0 };
+  assign all_served = reached_1;
+  assign lane_used = 8'h00;
+  assign last_items = 1'h1;
+  assign unit_log2 = 3'h0;
+  assign run_bytes = 4'h0;
+  assign running = 1'h0;
+  assign terminated = 1'h0;
+  assign allowed = 1'h0;
+  assign has_items = 1'h0;
+  assign most_items = 4'h0;
+  assign final_sig = 1'h1;
+  assign left = 1'h0;
+  assign small_sig = 4'h0;
+  assign align = 3'h0;
+  assign error = packet_error;
+  assign \packets__ready$5  = packets__ready;
+  assign \packets__valid$3  = packets__valid;
+  assign \packets__payload$1  = packets__payload;
 endmodule
 
-module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__ready, rst, words__payload_0, words__payload_128, words__valid, words__ready, packets__valid, packets__payload, error, aclk);
-  (* unused_bits = "7" *)
-  wire [7:0] \$1 ;
-  wire [2:0] \$10 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$100 ;
-  wire [6:0] \$101 ;
+module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__ready, rst, word__valid, packets__valid, error, word__ready, word__payload, packets__payload, aclk);
+  wire \$1 ;
+  wire \$10 ;
+  wire \$11 ;
   (* unused_bits = "3 4" *)
-  wire [4:0] \$102 ;
-  wire [3:0] \$103 ;
-  wire [3:0] \$104 ;
-  wire \$105 ;
-  (* unused_bits = "4" *)
-  wire [4:0] \$106 ;
-  wire \$107 ;
-  wire \$108 ;
-  wire \$109 ;
-  wire [2:0] \$11 ;
-  wire \$110 ;
-  wire \$111 ;
-  wire \$112 ;
-  wire \$113 ;
-  wire \$114 ;
-  wire \$115 ;
-  wire \$116 ;
-  wire \$117 ;
-  wire \$118 ;
-  wire \$119 ;
-  (* unused_bits = "7 8 9" *)
-  wire [9:0] \$12 ;
-  wire \$120 ;
-  wire \$121 ;
-  wire \$122 ;
-  wire \$123 ;
-  wire \$124 ;
-  wire \$125 ;
-  wire \$126 ;
-  wire \$127 ;
-  wire \$128 ;
-  wire \$129 ;
-  (* unused_bits = "4" *)
-  wire [4:0] \$13 ;
-  wire \$130 ;
-  wire \$131 ;
-  wire \$132 ;
-  wire \$133 ;
-  wire \$134 ;
-  wire \$135 ;
-  wire \$136 ;
-  wire \$137 ;
-  wire \$138 ;
-  wire \$139 ;
-  (* unused_bits = "3 4 5 6 7" *)
-  wire [7:0] \$14 ;
-  wire \$140 ;
-  wire \$141 ;
-  wire \$142 ;
-  wire \$143 ;
-  wire \$144 ;
-  wire \$145 ;
-  wire \$146 ;
-  wire \$147 ;
-  wire \$148 ;
-  wire \$149 ;
-  wire [2:0] \$15 ;
-  wire \$150 ;
-  wire \$151 ;
-  wire \$152 ;
-  wire \$153 ;
-  wire \$154 ;
-  wire \$155 ;
-  wire \$156 ;
-  wire \$157 ;
-  wire \$158 ;
-  wire \$159 ;
-  (* unused_bits = "4" *)
-  wire [4:0] \$16 ;
-  wire \$160 ;
-  wire \$161 ;
-  wire \$162 ;
-  wire \$163 ;
-  wire \$164 ;
-  wire \$165 ;
-  wire \$166 ;
-  wire \$167 ;
-  wire \$168 ;
-  wire \$169 ;
-  (* unused_bits = "0 1 2 4" *)
-  wire [4:0] \$17 ;
-  wire \$170 ;
-  wire \$171 ;
-  wire \$172 ;
-  wire \$173 ;
-  wire \$174 ;
-  wire \$175 ;
-  wire \$176 ;
-  wire \$177 ;
-  wire \$178 ;
-  wire \$179 ;
-  wire \$180 ;
-  wire \$181 ;
-  wire \$182 ;
-  wire \$183 ;
-  wire \$184 ;
-  wire \$185 ;
-  wire \$186 ;
-  wire \$187 ;
-  wire \$188 ;
-  wire \$189 ;
+  wire [4:0] \$12 ;
+  wire [3:0] \$13 ;
+  (* unused_bits = "3" *)
+  wire [3:0] \$14 ;
+  wire \$15 ;
+  (* unused_bits = "5" *)
+  wire [5:0] \$16 ;
+  (* unused_bits = "0 1 2" *)
+  wire [5:0] \$17 ;
   wire \$19 ;
-  wire \$190 ;
-  wire \$191 ;
-  wire \$192 ;
-  wire \$193 ;
-  wire \$194 ;
-  wire \$195 ;
-  wire \$196 ;
-  wire \$197 ;
-  wire \$198 ;
-  wire \$199 ;
-  (* unused_bits = "7" *)
-  wire [7:0] \$2 ;
-  wire \$200 ;
-  wire \$201 ;
-  wire \$202 ;
-  wire \$203 ;
-  wire \$204 ;
-  wire \$205 ;
-  wire \$206 ;
-  wire \$207 ;
-  wire \$208 ;
-  wire \$209 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$21 ;
-  wire \$210 ;
-  wire \$211 ;
-  wire \$212 ;
-  wire \$213 ;
-  wire \$214 ;
-  wire \$215 ;
-  wire \$216 ;
-  wire \$217 ;
-  wire \$218 ;
-  wire \$219 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$22 ;
-  wire \$220 ;
-  wire \$221 ;
-  wire \$222 ;
-  wire \$223 ;
-  wire \$224 ;
-  wire \$225 ;
-  wire \$226 ;
-  wire \$227 ;
-  wire \$228 ;
-  wire \$229 ;
-  wire \$230 ;
-  wire \$231 ;
-  wire \$232 ;
-  wire \$233 ;
-  wire \$234 ;
-  wire \$235 ;
-  wire \$236 ;
-  wire \$237 ;
-  wire \$238 ;
-  wire \$239 ;
+  wire \$2 ;
+  wire \$20 ;
+  wire \$21 ;
+  (* unused_bits = "5 6" *)
+  wire [6:0] \$22 ;
+  (* unused_bits = "2" *)
+  wire [2:0] \$23 ;
   wire \$24 ;
-  wire \$240 ;
-  wire \$241 ;
-  wire \$242 ;
-  wire \$243 ;
-  wire \$244 ;
-  wire \$245 ;
-  wire \$246 ;
-  wire \$247 ;
-  wire \$248 ;
-  wire \$249 ;
-  wire \$250 ;
-  wire \$251 ;
-  wire \$252 ;
-  wire \$253 ;
-  wire \$254 ;
-  wire \$255 ;
-  wire \$256 ;
-  wire \$257 ;
-  wire \$258 ;
-  wire \$259 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$26 ;
-  wire \$260 ;
-  wire \$261 ;
-  wire \$262 ;
-  wire \$263 ;
-  wire \$264 ;
-  wire \$265 ;
-  wire \$266 ;
-  wire \$267 ;
-  wire \$268 ;
-  wire \$269 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$27 ;
-  wire \$270 ;
-  wire \$271 ;
-  wire \$272 ;
-  wire \$273 ;
-  wire \$274 ;
-  wire \$275 ;
-  wire \$276 ;
-  wire \$277 ;
-  wire \$278 ;
-  wire \$279 ;
-  wire \$280 ;
-  wire \$281 ;
-  wire \$282 ;
-  wire \$283 ;
-  wire \$284 ;
-  wire \$285 ;
-  wire \$286 ;
-  wire \$287 ;
-  wire \$288 ;
-  wire \$289 ;
+  wire [63:0] \$25 ;
+  wire [5:0] \$26 ;
+  (* unused_bits = "5 6" *)
+  wire [6:0] \$27 ;
+  wire \$28 ;
   wire \$29 ;
-  wire \$290 ;
-  wire \$291 ;
-  wire \$292 ;
-  wire \$293 ;
-  wire \$294 ;
-  wire \$295 ;
-  wire \$296 ;
-  wire \$297 ;
-  wire \$298 ;
-  wire \$299 ;
-  wire [9:0] \$3 ;
-  wire \$300 ;
-  wire \$301 ;
-  wire \$302 ;
-  wire \$303 ;
-  wire \$304 ;
-  wire \$305 ;
-  wire \$306 ;
-  wire \$307 ;
-  wire \$308 ;
-  wire \$309 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$31 ;
-  wire \$310 ;
-  wire \$311 ;
-  wire \$312 ;
-  wire \$313 ;
-  wire \$314 ;
-  wire \$315 ;
-  wire \$316 ;
-  wire \$317 ;
-  wire \$318 ;
-  wire \$319 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$32 ;
-  wire \$320 ;
-  wire \$321 ;
-  wire \$322 ;
-  wire \$323 ;
-  wire \$324 ;
-  wire \$325 ;
-  wire \$326 ;
-  wire \$327 ;
-  wire \$328 ;
-  wire \$329 ;
-  wire \$330 ;
-  wire \$331 ;
-  wire \$332 ;
-  wire \$333 ;
-  wire \$334 ;
-  wire \$335 ;
-  wire \$336 ;
-  wire \$337 ;
-  wire \$338 ;
-  wire \$339 ;
+  wire \$30 ;
+  wire \$31 ;
+  wire \$33 ;
   wire \$34 ;
-  wire \$340 ;
-  wire \$341 ;
-  wire \$342 ;
-  wire \$343 ;
-  wire \$344 ;
-  wire \$345 ;
-  wire \$346 ;
-  wire \$347 ;
-  wire \$348 ;
-  wire \$349 ;
-  wire \$350 ;
-  wire \$351 ;
-  wire \$352 ;
-  wire \$353 ;
-  wire \$354 ;
-  wire \$355 ;
-  wire \$356 ;
-  wire \$357 ;
-  wire \$358 ;
-  wire \$359 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$36 ;
-  wire \$360 ;
-  wire \$361 ;
-  wire \$362 ;
-  wire \$363 ;
-  wire \$364 ;
-  wire \$365 ;
-  wire \$366 ;
-  wire \$367 ;
-  wire \$368 ;
-  wire \$369 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$37 ;
-  wire \$370 ;
-  wire \$371 ;
-  wire \$372 ;
-  wire \$373 ;
-  wire \$374 ;
-  wire \$375 ;
-  wire \$376 ;
-  wire \$377 ;
-  wire \$378 ;
-  wire \$379 ;
-  wire \$380 ;
-  wire \$381 ;
-  wire \$382 ;
-  wire \$383 ;
-  wire \$384 ;
-  wire \$385 ;
-  wire \$386 ;
-  wire \$387 ;
-  wire \$388 ;
-  wire \$389 ;
-  wire \$39 ;
-  wire \$390 ;
-  wire \$391 ;
-  wire \$392 ;
-  wire \$393 ;
-  wire \$394 ;
-  wire \$395 ;
-  wire \$396 ;
-  wire \$397 ;
-  wire \$398 ;
-  wire \$399 ;
-  wire [9:0] \$4 ;
-  wire \$400 ;
-  wire \$401 ;
-  wire \$402 ;
-  wire \$403 ;
-  wire \$404 ;
-  wire \$405 ;
-  wire \$406 ;
-  wire \$407 ;
-  wire \$408 ;
-  wire \$409 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$41 ;
-  wire \$410 ;
-  wire \$411 ;
-  wire \$412 ;
-  wire \$413 ;
-  wire \$414 ;
-  wire \$415 ;
-  wire \$416 ;
-  wire \$417 ;
-  wire \$418 ;
-  wire \$419 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$42 ;
-  wire \$420 ;
-  wire \$421 ;
-  wire \$422 ;
-  wire \$423 ;
-  wire \$424 ;
-  wire \$425 ;
-  wire \$426 ;
-  wire \$427 ;
-  wire \$428 ;
-  wire \$429 ;
-  wire \$430 ;
-  wire \$431 ;
-  wire \$432 ;
-  wire \$433 ;
-  wire \$434 ;
-  wire \$435 ;
-  wire \$436 ;
-  wire \$437 ;
-  wire \$438 ;
-  wire \$439 ;
-  wire \$44 ;
-  wire \$440 ;
-  wire \$441 ;
-  wire \$442 ;
-  wire \$443 ;
-  wire \$444 ;
-  wire \$445 ;
-  wire \$446 ;
-  wire \$447 ;
-  wire \$448 ;
-  wire \$449 ;
-  wire \$450 ;
-  wire \$451 ;
-  wire \$452 ;
-  wire \$453 ;
-  wire \$454 ;
-  wire \$455 ;
-  wire \$456 ;
-  wire \$457 ;
-  wire \$458 ;
-  wire \$459 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$46 ;
-  wire \$460 ;
-  wire \$461 ;
-  wire \$462 ;
-  wire \$463 ;
-  wire \$464 ;
-  wire \$465 ;
-  wire \$466 ;
-  wire \$467 ;
-  wire \$468 ;
-  wire \$469 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$47 ;
-  wire \$470 ;
-  wire \$471 ;
-  wire \$472 ;
-  wire \$473 ;
-  wire \$474 ;
-  wire \$475 ;
-  wire \$476 ;
-  wire \$477 ;
-  wire \$478 ;
-  wire \$479 ;
-  wire \$480 ;
-  wire \$481 ;
-  wire \$482 ;
-  wire \$483 ;
-  wire \$484 ;
-  wire \$485 ;
-  wire \$486 ;
-  wire \$487 ;
-  wire \$488 ;
-  wire \$489 ;
-  wire \$49 ;
-  wire \$490 ;
-  wire \$491 ;
-  wire \$492 ;
-  wire \$493 ;
-  wire \$494 ;
-  wire \$495 ;
-  wire \$496 ;
-  wire \$497 ;
-  wire \$498 ;
-  wire \$499 ;
-  wire \$500 ;
-  wire \$501 ;
-  wire \$502 ;
-  wire \$503 ;
-  wire \$504 ;
-  wire \$505 ;
-  wire \$506 ;
-  wire \$507 ;
-  wire \$508 ;
-  wire \$509 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$51 ;
-  wire \$510 ;
-  wire \$511 ;
-  wire \$512 ;
-  wire \$513 ;
-  wire \$514 ;
-  wire \$515 ;
-  wire \$516 ;
-  wire \$517 ;
-  wire \$518 ;
-  wire \$519 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$52 ;
-  wire \$520 ;
-  wire \$521 ;
-  wire \$522 ;
-  wire \$523 ;
-  wire \$524 ;
-  wire \$525 ;
-  wire \$526 ;
-  wire \$527 ;
-  wire \$528 ;
-  wire \$529 ;
-  wire \$530 ;
-  wire \$531 ;
-  wire \$532 ;
-  wire \$533 ;
-  wire \$534 ;
-  wire \$535 ;
-  wire \$536 ;
-  wire \$537 ;
-  wire \$538 ;
-  wire \$539 ;
-  wire \$54 ;
-  wire \$540 ;
-  wire \$541 ;
-  wire \$542 ;
-  wire \$543 ;
-  wire \$544 ;
-  wire \$545 ;
-  wire \$546 ;
-  wire \$547 ;
-  wire \$548 ;
-  wire \$549 ;
-  wire \$550 ;
-  wire \$551 ;
-  wire \$552 ;
-  wire \$553 ;
-  wire \$554 ;
-  wire \$555 ;
-  wire \$556 ;
-  wire \$557 ;
-  wire \$558 ;
-  wire \$559 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$56 ;
-  wire \$560 ;
-  wire \$561 ;
-  wire \$562 ;
-  wire \$563 ;
-  wire \$564 ;
-  wire \$565 ;
-  wire \$566 ;
-  wire \$567 ;
-  wire \$568 ;
-  wire \$569 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$57 ;
-  wire \$570 ;
-  wire \$571 ;
-  wire \$572 ;
-  wire \$573 ;
-  wire \$574 ;
-  wire \$575 ;
-  wire \$576 ;
-  wire \$577 ;
-  wire \$578 ;
-  wire \$579 ;
-  wire \$580 ;
-  wire \$581 ;
-  wire \$582 ;
-  wire \$583 ;
-  wire \$584 ;
-  wire \$585 ;
-  wire \$586 ;
-  wire \$587 ;
-  wire \$588 ;
-  wire \$589 ;
-  wire \$59 ;
-  wire \$590 ;
-  wire \$591 ;
-  wire \$592 ;
-  wire \$593 ;
-  wire \$594 ;
-  wire \$595 ;
-  wire \$596 ;
-  wire \$597 ;
-  wire \$598 ;
-  wire \$599 ;
-  wire \$600 ;
-  wire \$601 ;
-  wire \$602 ;
-  wire \$603 ;
-  wire \$604 ;
-  wire \$605 ;
-  wire \$606 ;
-  wire \$607 ;
-  wire \$608 ;
-  wire \$609 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$61 ;
-  wire \$610 ;
-  wire \$611 ;
-  wire \$612 ;
-  wire \$613 ;
-  wire \$614 ;
-  wire \$615 ;
-  wire \$616 ;
-  wire \$617 ;
-  wire \$618 ;
-  (* unused_bits = "3 4" *)
-  wire [4:0] \$619 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$62 ;
-  (* unused_bits = "4" *)
-  wire [4:0] \$620 ;
-  wire [7:0] \$621 ;
-  wire [7:0] \$622 ;
-  wire [7:0] \$623 ;
-  wire [7:0] \$624 ;
-  wire [7:0] \$625 ;
-  wire [7:0] \$626 ;
-  wire [7:0] \$627 ;
-  wire [7:0] \$628 ;
-  wire [7:0] \$629 ;
-  wire [7:0] \$630 ;
-  wire [7:0] \$631 ;
-  wire [7:0] \$632 ;
-  wire [7:0] \$633 ;
-  wire [7:0] \$634 ;
-  wire [7:0] \$635 ;
-  wire [7:0] \$636 ;
-  wire [7:0] \$637 ;
-  wire [7:0] \$638 ;
-  wire [7:0] \$639 ;
-  wire \$64 ;
-  wire [7:0] \$640 ;
-  wire [7:0] \$641 ;
-  wire [7:0] \$642 ;
-  wire [7:0] \$643 ;
-  wire [7:0] \$644 ;
-  wire [3:0] \$645 ;
-  wire \$646 ;
-  wire \$647 ;
-  wire [63:0] \$648 ;
-  wire [6:0] \$649 ;
-  wire [3:0] \$650 ;
-  wire [63:0] \$651 ;
-  wire [6:0] \$652 ;
-  wire [3:0] \$653 ;
-  wire [6:0] \$654 ;
-  wire [3:0] \$655 ;
-  wire \$656 ;
-  wire \$657 ;
-  wire [3:0] \$658 ;
-  wire \$659 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$66 ;
-  wire [3:0] \$660 ;
-  wire [7:0] \$661 ;
-  wire [7:0] \$662 ;
-  wire [7:0] \$663 ;
-  wire [7:0] \$664 ;
-  wire [7:0] \$665 ;
-  wire [7:0] \$666 ;
-  wire [7:0] \$667 ;
-  wire [7:0] \$668 ;
-  wire [7:0] \$669 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$67 ;
-  wire [7:0] \$670 ;
-  wire [7:0] \$671 ;
-  wire [7:0] \$672 ;
-  wire [7:0] \$673 ;
-  wire [7:0] \$674 ;
-  wire [7:0] \$675 ;
-  wire [7:0] \$676 ;
-  wire [3:0] \$677 ;
-  wire [7:0] \$678 ;
-  wire \$679 ;
-  wire [3:0] \$680 ;
-  wire [68:0] \$681 ;
-  wire \$682 ;
-  wire \$69 ;
-  (* unused_bits = "7 8 9" *)
-  wire [9:0] \$7 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$71 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$72 ;
-  wire \$74 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$76 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$77 ;
-  wire \$79 ;
-  wire [9:0] \$8 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$81 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$82 ;
-  wire \$84 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$86 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$87 ;
-  wire \$89 ;
-  wire [9:0] \$9 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$90 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$91 ;
-  wire \$93 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$94 ;
-  (* unused_bits = "1 2 3 4 5 6 7" *)
-  wire [7:0] \$95 ;
-  (* unused_bits = "3 4" *)
-  wire [4:0] \$96 ;
-  wire \$97 ;
-  wire \$98 ;
-  wire \$99 ;
-  wire choice_101_Y ;
-  wire choice_102_CMP ;
-  wire choice_103_Y ;
-  wire choice_113_Y ;
-  wire choice_114_CMP ;
-  wire choice_115_Y ;
-  wire choice_117_Y ;
-  wire choice_125_Y ;
-  wire choice_126_CMP ;
-  wire choice_127_Y ;
-  wire choice_138_Y ;
-  wire choice_139_CMP ;
+  wire \$35 ;
+  (* unused_bits = "3 4 5" *)
+  wire [5:0] \$36 ;
+  wire [3:0] \$37 ;
+  wire [3:0] \$38 ;
+  wire [63:0] \$39 ;
+  wire [5:0] \$4 ;
+  wire [4:0] \$40 ;
+  wire \$41 ;
+  wire [1:0] \$42 ;
+  wire \$43 ;
+  wire [3:0] \$44 ;
+  wire \$45 ;
+  (* unused_bits = "5" *)
+  wire [5:0] \$5 ;
+  wire \$7 ;
+  wire \$8 ;
+  wire \$9 ;
   wire choice_13_Y ;
-  wire choice_140_Y ;
-  wire choice_142_Y ;
-  wire choice_151_Y ;
-  wire choice_152_CMP ;
-  wire choice_153_Y ;
-  wire choice_158_Y ;
-  wire choice_159_CMP ;
-  wire choice_15_Y ;
-  wire choice_160_Y ;
-  wire choice_162_Y ;
-  wire choice_165_Y ;
-  wire choice_166_CMP ;
-  wire choice_167_Y ;
-  wire [3:0] choice_171_Y ;
-  wire choice_175_Y ;
-  wire choice_177_Y ;
-  wire choice_181_Y ;
-  wire choice_183_Y ;
-  wire choice_187_Y ;
-  wire choice_189_Y ;
-  wire choice_193_Y ;
-  wire choice_195_Y ;
-  wire choice_199_Y ;
-  wire choice_19_Y ;
-  wire choice_201_Y ;
-  wire choice_205_Y ;
-  wire choice_207_Y ;
-  wire choice_20_CMP ;
-  wire choice_211_Y ;
-  wire choice_213_Y ;
-  wire choice_217_Y ;
-  wire choice_219_Y ;
-  wire choice_21_Y ;
-  wire choice_223_Y ;
-  wire choice_225_Y ;
-  wire choice_229_Y ;
-  wire choice_231_Y ;
-  wire choice_235_Y ;
-  wire choice_237_Y ;
-  wire choice_23_Y ;
-  wire choice_241_Y ;
-  wire choice_243_Y ;
-  wire choice_247_Y ;
-  wire choice_249_Y ;
-  wire choice_253_Y ;
-  wire choice_255_Y ;
-  wire choice_259_Y ;
+  wire [1:0] choice_17_Y ;
+  wire [1:0] choice_19_Y ;
+  wire choice_1_Y ;
+  wire [1:0] choice_21_Y ;
   wire choice_25_Y ;
-  wire choice_261_Y ;
-  wire choice_265_Y ;
-  wire choice_267_Y ;
-  wire choice_26_CMP ;
-  wire choice_271_Y ;
-  wire choice_273_Y ;
-  wire choice_277_Y ;
-  wire choice_279_Y ;
   wire choice_27_Y ;
-  wire choice_283_Y ;
-  wire choice_285_Y ;
-  wire choice_289_Y ;
-  wire choice_291_Y ;
-  wire choice_295_Y ;
-  wire choice_297_Y ;
-  wire choice_301_Y ;
-  wire choice_303_Y ;
-  wire choice_307_Y ;
-  wire choice_309_Y ;
-  wire choice_313_Y ;
-  wire choice_315_Y ;
-  wire choice_319_Y ;
-  wire choice_321_Y ;
-  wire choice_325_Y ;
-  wire choice_327_Y ;
-  wire choice_331_Y ;
-  wire choice_333_Y ;
-  wire choice_337_Y ;
-  wire choice_339_Y ;
-  wire choice_33_Y ;
-  wire choice_343_Y ;
-  wire choice_345_Y ;
-  wire choice_349_Y ;
-  wire choice_34_CMP ;
-  wire choice_351_Y ;
-  wire choice_355_Y ;
-  wire choice_357_Y ;
-  wire choice_35_Y ;
-  wire choice_361_Y ;
-  wire choice_363_Y ;
-  wire choice_367_Y ;
-  wire choice_369_Y ;
-  wire choice_373_Y ;
-  wire choice_375_Y ;
-  wire choice_379_Y ;
-  wire choice_37_Y ;
-  wire choice_381_Y ;
-  wire choice_385_Y ;
-  wire choice_387_Y ;
-  wire choice_391_Y ;
-  wire choice_393_Y ;
-  wire choice_397_Y ;
-  wire choice_399_Y ;
-  wire choice_403_Y ;
-  wire choice_405_Y ;
-  wire choice_409_Y ;
-  wire choice_411_Y ;
-  wire choice_415_Y ;
-  wire choice_417_Y ;
-  wire choice_41_Y ;
-  wire choice_421_Y ;
-  wire choice_423_Y ;
-  wire choice_427_Y ;
-  wire choice_429_Y ;
-  wire choice_42_CMP ;
-  wire choice_433_Y ;
-  wire choice_435_Y ;
-  wire choice_439_Y ;
-  wire choice_43_Y ;
-  wire choice_441_Y ;
-  wire choice_445_Y ;
-  wire choice_447_Y ;
-  wire choice_451_Y ;
-  wire choice_453_Y ;
-  wire choice_457_Y ;
-  wire choice_459_Y ;
-  wire choice_463_Y ;
-  wire choice_465_Y ;
-  wire choice_469_Y ;
-  wire choice_471_Y ;
-  wire choice_475_Y ;
-  wire choice_477_Y ;
-  wire choice_481_Y ;
-  wire choice_483_Y ;
-  wire choice_487_Y ;
-  wire choice_489_Y ;
-  wire choice_493_Y ;
-  wire choice_495_Y ;
-  wire choice_499_Y ;
-  wire choice_501_Y ;
-  wire choice_505_Y ;
-  wire choice_507_Y ;
-  wire choice_50_Y ;
-  wire choice_511_Y ;
-  wire choice_513_Y ;
-  wire choice_517_Y ;
-  wire choice_519_Y ;
-  wire choice_51_CMP ;
-  wire choice_523_Y ;
-  wire choice_525_Y ;
-  wire choice_529_Y ;
-  wire choice_52_Y ;
-  wire choice_531_Y ;
-  wire choice_535_Y ;
-  wire choice_537_Y ;
-  wire choice_541_Y ;
-  wire choice_543_Y ;
-  wire choice_547_Y ;
-  wire choice_549_Y ;
-  wire choice_54_Y ;
-  wire choice_553_Y ;
-  wire choice_555_Y ;
-  wire choice_559_Y ;
-  wire choice_561_Y ;
-  wire choice_565_Y ;
-  wire choice_567_Y ;
-  wire choice_571_Y ;
-  wire choice_573_Y ;
-  wire choice_577_Y ;
-  wire choice_579_Y ;
-  wire choice_583_Y ;
-  wire choice_585_Y ;
-  wire choice_589_Y ;
-  wire choice_591_Y ;
-  wire choice_595_Y ;
-  wire choice_597_Y ;
-  wire choice_59_Y ;
-  wire choice_601_Y ;
-  wire choice_603_Y ;
-  wire choice_607_Y ;
-  wire choice_609_Y ;
-  wire choice_60_CMP ;
-  wire choice_613_Y ;
-  wire choice_615_Y ;
-  wire choice_619_Y ;
-  wire choice_61_Y ;
-  wire choice_621_Y ;
-  wire choice_625_Y ;
-  wire choice_627_Y ;
-  wire choice_631_Y ;
-  wire choice_633_Y ;
-  wire choice_637_Y ;
-  wire choice_639_Y ;
-  wire choice_643_Y ;
-  wire choice_645_Y ;
-  wire choice_649_Y ;
-  wire choice_651_Y ;
-  wire choice_655_Y ;
-  wire choice_657_Y ;
-  wire choice_661_Y ;
-  wire choice_663_Y ;
-  wire choice_667_Y ;
-  wire choice_669_Y ;
-  wire choice_673_Y ;
-  wire choice_675_Y ;
-  wire choice_679_Y ;
-  wire choice_681_Y ;
-  wire choice_685_Y ;
-  wire choice_687_Y ;
-  wire choice_691_Y ;
-  wire choice_693_Y ;
-  wire choice_697_Y ;
-  wire choice_699_Y ;
-  wire choice_69_Y ;
-  wire choice_703_Y ;
-  wire choice_705_Y ;
-  wire choice_709_Y ;
-  wire choice_70_CMP ;
-  wire choice_711_Y ;
-  wire choice_715_Y ;
-  wire choice_717_Y ;
-  wire choice_71_Y ;
-  wire choice_721_Y ;
-  wire choice_723_Y ;
-  wire choice_727_Y ;
-  wire choice_729_Y ;
-  wire choice_733_Y ;
-  wire choice_735_Y ;
-  wire choice_739_Y ;
-  wire choice_73_Y ;
-  wire choice_741_Y ;
-  wire choice_745_Y ;
-  wire choice_747_Y ;
-  wire choice_751_Y ;
-  wire choice_753_Y ;
-  wire choice_757_Y ;
-  wire choice_759_Y ;
-  wire choice_763_Y ;
-  wire choice_765_Y ;
-  wire choice_769_Y ;
-  wire choice_771_Y ;
-  wire choice_775_Y ;
-  wire choice_777_Y ;
-  wire choice_781_Y ;
-  wire choice_783_Y ;
-  wire choice_787_Y ;
-  wire choice_789_Y ;
-  wire choice_793_Y ;
-  wire choice_795_Y ;
-  wire choice_799_Y ;
-  wire choice_79_Y ;
-  wire choice_801_Y ;
-  wire choice_805_Y ;
-  wire choice_807_Y ;
-  wire choice_80_CMP ;
-  wire choice_811_Y ;
-  wire choice_813_Y ;
-  wire choice_817_Y ;
-  wire choice_819_Y ;
-  wire choice_81_Y ;
-  wire choice_823_Y ;
-  wire choice_825_Y ;
-  wire choice_829_Y ;
-  wire choice_831_Y ;
-  wire choice_835_Y ;
-  wire choice_837_Y ;
-  wire choice_841_Y ;
-  wire choice_843_Y ;
-  wire choice_847_Y ;
-  wire choice_849_Y ;
-  wire choice_853_Y ;
-  wire choice_855_Y ;
-  wire choice_859_Y ;
-  wire choice_861_Y ;
-  wire choice_865_Y ;
-  wire choice_867_Y ;
-  wire choice_871_Y ;
-  wire choice_873_Y ;
-  wire choice_877_Y ;
-  wire choice_879_Y ;
-  wire choice_883_Y ;
-  wire choice_885_Y ;
-  wire choice_889_Y ;
-  wire choice_891_Y ;
-  wire choice_895_Y ;
-  wire choice_897_Y ;
-  wire choice_901_Y ;
-  wire choice_903_Y ;
-  wire choice_907_Y ;
-  wire choice_909_Y ;
-  wire choice_90_Y ;
-  wire choice_913_Y ;
-  wire choice_915_Y ;
-  wire choice_919_Y ;
-  wire choice_91_CMP ;
-  wire choice_921_Y ;
-  wire choice_925_Y ;
-  wire choice_927_Y ;
-  wire choice_92_Y ;
-  wire choice_931_Y ;
-  wire choice_933_Y ;
-  wire choice_937_Y ;
-  wire choice_939_Y ;
-  wire [3:0] choice_943_Y ;
-  wire [3:0] choice_949_Y ;
-  wire choice_94_Y ;
-  wire choice_953_Y ;
-  wire choice_957_Y ;
-  wire [3:0] choice_961_Y ;
-  wire [6:0] choice_965_Y ;
-  wire [3:0] choice_969_Y ;
-  wire [6:0] choice_973_Y ;
-  wire [3:0] choice_979_Y ;
-  wire [6:0] choice_983_Y ;
+  wire [4:0] choice_31_Y ;
+  wire [4:0] choice_33_Y ;
+  wire [63:0] choice_37_Y ;
+  wire choice_3_Y ;
+  wire [4:0] choice_41_Y ;
+  wire [4:0] choice_45_Y ;
+  wire [3:0] choice_7_Y ;
   wire [3:0] choice_9_Y ;
+  wire [4:0] \$like ;
   input aclk;
   wire aclk;
-  reg [6:0] at = 7'h00;
-  wire [6:0] base;
-  reg [3:0] bound = 4'h5;
-  reg [3:0] complete = 4'h0;
-  reg [3:0] done = 4'h0;
-  wire [6:0] end_sig;
-  wire [2:0] ends__read__addr;
-  wire [4:0] ends__read__data;
-  wire [3:0] \ends__read__data.count ;
-  wire \ends__read__data.error ;
-  wire [2:0] ends__write__addr;
-  wire [4:0] ends__write__data;
-  wire [3:0] \ends__write__data.count ;
-  wire \ends__write__data.error ;
-  wire ends__write__en;
+  (* unused_bits = "2 3 4" *)
+  wire [4:0] beats;
+  reg [1:0] end_beats = 2'h0;
+  reg [3:0] end_count = 4'h0;
+  reg ending = 1'h0;
   output error;
-  reg error = 1'h0;
-  wire error_now;
-  reg final_sig = 1'h0;
-  reg [3:0] first = 4'h0;
+  wire error;
+  reg inside_sig = 1'h0;
   wire is_last;
-  wire [2:0] items_0__read__addr;
-  wire [7:0] items_0__read__data;
-  wire [2:0] items_0__write__addr;
-  wire [7:0] items_0__write__data;
-  wire items_0__write__en;
-  wire [2:0] items_1__read__addr;
-  wire [7:0] items_1__read__data;
-  wire [2:0] items_1__write__addr;
-  wire [7:0] items_1__write__data;
-  wire items_1__write__en;
-  wire [2:0] items_2__read__addr;
-  wire [7:0] items_2__read__data;
-  wire [2:0] items_2__write__addr;
-  wire [7:0] items_2__write__data;
-  wire items_2__write__en;
-  wire [2:0] items_3__read__addr;
-  wire [7:0] items_3__read__data;
-  wire [2:0] items_3__write__addr;
-  wire [7:0] items_3__write__data;
-  wire items_3__write__en;
-  wire [2:0] items_4__read__addr;
-  wire [7:0] items_4__read__data;
-  wire [2:0] items_4__write__addr;
-  wire [7:0] items_4__write__data;
-  wire items_4__write__en;
-  wire [2:0] items_5__read__addr;
-  wire [7:0] items_5__read__data;
-  wire [2:0] items_5__write__addr;
-  wire [7:0] items_5__write__data;
-  wire items_5__write__en;
-  wire [2:0] items_6__read__addr;
-  wire [7:0] items_6__read__data;
-  wire [2:0] items_6__write__addr;
-  wire [7:0] items_6__write__data;
-  wire items_6__write__en;
-  wire [2:0] items_7__read__addr;
-  wire [7:0] items_7__read__data;
-  wire [2:0] items_7__write__addr;
-  wire [7:0] items_7__write__data;
-  wire items_7__write__en;
-  reg [7:0] items_has_0 = 8'h00;
-  reg [7:0] items_has_1 = 8'h00;
-  reg [7:0] items_has_2 = 8'h00;
-  reg [7:0] items_has_3 = 8'h00;
-  reg [7:0] items_has_4 = 8'h00;
-  reg [7:0] items_has_5 = 8'h00;
-  reg [7:0] items_has_6 = 8'h00;
-  reg [7:0] items_has_7 = 8'h00;
-  wire items_here_0;
-  wire items_here_1;
-  wire items_here_2;
-  wire items_here_3;
-  wire items_here_4;
-  wire items_here_5;
-  wire items_here_6;
-  wire items_here_7;
-  wire [2:0] items_index_0;
-  wire [2:0] items_index_1;
-  wire [2:0] items_index_2;
-  wire [2:0] items_index_3;
-  wire [2:0] items_index_4;
-  wire [2:0] items_index_5;
-  wire [2:0] items_index_6;
-  wire [2:0] items_index_7;
-  reg [63:0] items_placed = 64'h0000000000000000;
-  reg [3:0] items_size = 4'h0;
-  wire [2:0] items_slot_0;
-  wire [2:0] items_slot_1;
-  wire [2:0] items_slot_2;
-  wire [2:0] items_slot_3;
-  wire [2:0] items_slot_4;
-  wire [2:0] items_slot_5;
-  wire [2:0] items_slot_6;
-  wire [2:0] items_slot_7;
-  reg [6:0] items_start = 7'h00;
-  wire items_used_0;
-  wire items_used_1;
-  wire items_used_2;
-  wire items_used_3;
-  wire items_used_4;
-  wire items_used_5;
-  wire items_used_6;
-  wire items_used_7;
-  reg [7:0] last = 8'h00;
-  reg [3:0] last_bytes = 4'h0;
-  wire [2:0] map_0__read__addr;
-  wire [7:0] map_0__read__data;
-  wire [2:0] map_0__write__addr;
-  wire [7:0] map_0__write__data;
-  wire map_0__write__en;
-  wire [2:0] map_1__read__addr;
-  wire [7:0] map_1__read__data;
-  wire [2:0] map_1__write__addr;
-  wire [7:0] map_1__write__data;
-  wire map_1__write__en;
-  wire [2:0] map_2__read__addr;
-  wire [7:0] map_2__read__data;
-  wire [2:0] map_2__write__addr;
-  wire [7:0] map_2__write__data;
-  wire map_2__write__en;
-  wire [2:0] map_3__read__addr;
-  wire [7:0] map_3__read__data;
-  wire [2:0] map_3__write__addr;
-  wire [7:0] map_3__write__data;
-  wire map_3__write__en;
-  wire [2:0] map_4__read__addr;
-  wire [7:0] map_4__read__data;
-  wire [2:0] map_4__write__addr;
-  wire [7:0] map_4__write__data;
-  wire map_4__write__en;
-  wire [2:0] map_5__read__addr;
-  wire [7:0] map_5__read__data;
-  wire [2:0] map_5__write__addr;
-  wire [7:0] map_5__write__data;
-  wire map_5__write__en;
-  wire [2:0] map_6__read__addr;
-  wire [7:0] map_6__read__data;
-  wire [2:0] map_6__write__addr;
-  wire [7:0] map_6__write__data;
-  wire map_6__write__en;
-  wire [2:0] map_7__read__addr;
-  wire [7:0] map_7__read__data;
-  wire [2:0] map_7__write__addr;
-  wire [7:0] map_7__write__data;
-  wire map_7__write__en;
-  (* unused_bits = "0 1 2 3 4 5 6" *)
-  wire [6:0] map_at;
-  (* unused_bits = "3 4 5 6" *)
-  wire [6:0] map_end;
-  reg [7:0] map_has_0 = 8'h00;
-  reg [7:0] map_has_1 = 8'h00;
-  reg [7:0] map_has_2 = 8'h00;
-  reg [7:0] map_has_3 = 8'h00;
-  reg [7:0] map_has_4 = 8'h00;
-  reg [7:0] map_has_5 = 8'h00;
-  reg [7:0] map_has_6 = 8'h00;
-  reg [7:0] map_has_7 = 8'h00;
-  wire map_here_0;
-  wire map_here_1;
-  wire map_here_2;
-  wire map_here_3;
-  wire map_here_4;
-  wire map_here_5;
-  wire map_here_6;
-  wire map_here_7;
-  wire [2:0] map_index_0;
-  wire [2:0] map_index_1;
-  wire [2:0] map_index_2;
-  wire [2:0] map_index_3;
-  wire [2:0] map_index_4;
-  wire [2:0] map_index_5;
-  wire [2:0] map_index_6;
-  wire [2:0] map_index_7;
-  reg [63:0] map_placed = 64'h0000000000000000;
-  reg [3:0] map_size = 4'h0;
-  wire [2:0] map_slot_0;
-  wire [2:0] map_slot_1;
-  wire [2:0] map_slot_2;
-  wire [2:0] map_slot_3;
-  wire [2:0] map_slot_4;
-  wire [2:0] map_slot_5;
-  wire [2:0] map_slot_6;
-  wire [2:0] map_slot_7;
-  reg [6:0] map_start = 7'h00;
-  wire map_used_0;
-  wire map_used_1;
-  wire map_used_2;
-  wire map_used_3;
-  wire map_used_4;
-  wire map_used_5;
-  wire map_used_6;
-  wire map_used_7;
+  wire [63:0] kept;
+  wire leaves;
+  reg [4:0] level = 5'h00;
   reg marked = 1'h0;
-  wire [3:0] newest;
   output [68:0] packets__payload;
-  reg [68:0] packets__payload = 69'h000000000000000000;
+  wire [68:0] packets__payload;
   wire [3:0] \packets__payload.count ;
   wire [63:0] \packets__payload.data ;
   wire [7:0] \packets__payload.data[0] ;
@@ -2475,1677 +1361,138 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   input packets__ready;
   wire packets__ready;
   output packets__valid;
-  reg packets__valid = 1'h0;
-  wire [68:0] payload;
-  wire [3:0] \payload.count ;
-  wire [63:0] \payload.data ;
-  wire [7:0] \payload.data[0] ;
-  wire [7:0] \payload.data[1] ;
-  wire [7:0] \payload.data[2] ;
-  wire [7:0] \payload.data[3] ;
-  wire [7:0] \payload.data[4] ;
-  wire [7:0] \payload.data[5] ;
-  wire [7:0] \payload.data[6] ;
-  wire [7:0] \payload.data[7] ;
-  wire \payload.last ;
-  wire reads;
-  wire ready;
-  (* unused_bits = "0 1 2" *)
-  wire [3:0] room;
+  wire packets__valid;
+  wire [2:0] pad;
+  wire [2:0] position;
+  wire [4:0] rest;
   input rst;
   wire rst;
-  wire takes;
-  wire [6:0] total;
-  wire [6:0] \total$6 ;
-  (* unused_bits = "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63 64 65 66 67 68 69 70 71 72 73 74 75 76 77 78 79 80 81 82 83 84 85 86 87 88 89 90 91 92 93 94 95 96 97 98 99 100 101 102 103 104 105 106 107 108 109 110 111 112 113 114 115 116 117 118 119 120 121 122 123 124 125 126 127 128 129 130 131 132 133 134 135 136 137 138 139 140 141 142 143 144 145 146 147 148 149 150 151 152 153 154 155 156 157 158 159" *)
-  wire [159:0] words__payload;
-  wire \words__payload.empty ;
-  wire [2:0] \words__payload.end_mask ;
-  wire \words__payload.error ;
-  wire [63:0] \words__payload.items ;
-  wire [3:0] \words__payload.items_bytes ;
-  wire \words__payload.last ;
-  wire \words__payload.lead ;
-  wire [63:0] \words__payload.map ;
-  wire [3:0] \words__payload.map_bytes ;
-  wire [2:0] \words__payload.map_mask ;
-  wire [2:0] \words__payload.max_beats ;
-  wire [5:0] \words__payload.to_end ;
-  wire [4:0] \words__payload.to_map ;
-  input [127:0] words__payload_0;
-  wire [127:0] words__payload_0;
-  input [31:0] words__payload_128;
-  wire [31:0] words__payload_128;
-  output words__ready;
-  reg words__ready = 1'h1;
-  input words__valid;
-  wire words__valid;
-  reg writes = 1'h0;
-  reg [4:0] ends [7:0];
-  initial begin
-    ends[0] = 5'h00;
-    ends[1] = 5'h00;
-    ends[2] = 5'h00;
-    ends[3] = 5'h00;
-    ends[4] = 5'h00;
-    ends[5] = 5'h00;
-    ends[6] = 5'h00;
-    ends[7] = 5'h00;
-  end
-  always @(posedge aclk) begin
-    if (ends__write__en)
-      ends[ends__write__addr] <= ends__write__data;
-  end
-  assign ends__read__data = ends[first[2:0]];
-  reg [7:0] items_0 [7:0];
-  initial begin
-    items_0[0] = 8'h00;
-    items_0[1] = 8'h00;
-    items_0[2] = 8'h00;
-    items_0[3] = 8'h00;
-    items_0[4] = 8'h00;
-    items_0[5] = 8'h00;
-    items_0[6] = 8'h00;
-    items_0[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (items_used_0)
-      items_0[items_0__write__addr] <= items_placed[7:0];
-  end
-  assign items_0__read__data = items_0[first[2:0]];
-  reg [7:0] items_1 [7:0];
-  initial begin
-    items_1[0] = 8'h00;
-    items_1[1] = 8'h00;
-    items_1[2] = 8'h00;
-    items_1[3] = 8'h00;
-    items_1[4] = 8'h00;
-    items_1[5] = 8'h00;
-    items_1[6] = 8'h00;
-    items_1[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (items_used_1)
-      items_1[items_1__write__addr] <= items_placed[15:8];
-  end
-  assign items_1__read__data = items_1[first[2:0]];
-  reg [7:0] items_2 [7:0];
-  initial begin
-    items_2[0] = 8'h00;
-    items_2[1] = 8'h00;
-    items_2[2] = 8'h00;
-    items_2[3] = 8'h00;
-    items_2[4] = 8'h00;
-    items_2[5] = 8'h00;
-    items_2[6] = 8'h00;
-    items_2[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (items_used_2)
-      items_2[items_2__write__addr] <= items_placed[23:16];
-  end
-  assign items_2__read__data = items_2[first[2:0]];
-  reg [7:0] items_3 [7:0];
-  initial begin
-    items_3[0] = 8'h00;
-    items_3[1] = 8'h00;
-    items_3[2] = 8'h00;
-    items_3[3] = 8'h00;
-    items_3[4] = 8'h00;
-    items_3[5] = 8'h00;
-    items_3[6] = 8'h00;
-    items_3[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (items_used_3)
-      items_3[items_3__write__addr] <= items_placed[31:24];
-  end
-  assign items_3__read__data = items_3[first[2:0]];
-  reg [7:0] items_4 [7:0];
-  initial begin
-    items_4[0] = 8'h00;
-    items_4[1] = 8'h00;
-    items_4[2] = 8'h00;
-    items_4[3] = 8'h00;
-    items_4[4] = 8'h00;
-    items_4[5] = 8'h00;
-    items_4[6] = 8'h00;
-    items_4[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (items_used_4)
-      items_4[items_4__write__addr] <= items_placed[39:32];
-  end
-  assign items_4__read__data = items_4[first[2:0]];
-  reg [7:0] items_5 [7:0];
-  initial begin
-    items_5[0] = 8'h00;
-    items_5[1] = 8'h00;
-    items_5[2] = 8'h00;
-    items_5[3] = 8'h00;
-    items_5[4] = 8'h00;
-    items_5[5] = 8'h00;
-    items_5[6] = 8'h00;
-    items_5[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (items_used_5)
-      items_5[items_5__write__addr] <= items_placed[47:40];
-  end
-  assign items_5__read__data = items_5[first[2:0]];
-  reg [7:0] items_6 [7:0];
-  initial begin
-    items_6[0] = 8'h00;
-    items_6[1] = 8'h00;
-    items_6[2] = 8'h00;
-    items_6[3] = 8'h00;
-    items_6[4] = 8'h00;
-    items_6[5] = 8'h00;
-    items_6[6] = 8'h00;
-    items_6[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (items_used_6)
-      items_6[items_6__write__addr] <= items_placed[55:48];
-  end
-  assign items_6__read__data = items_6[first[2:0]];
-  reg [7:0] items_7 [7:0];
-  initial begin
-    items_7[0] = 8'h00;
-    items_7[1] = 8'h00;
-    items_7[2] = 8'h00;
-    items_7[3] = 8'h00;
-    items_7[4] = 8'h00;
-    items_7[5] = 8'h00;
-    items_7[6] = 8'h00;
-    items_7[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (items_used_7)
-      items_7[items_7__write__addr] <= items_placed[63:56];
-  end
-  assign items_7__read__data = items_7[first[2:0]];
-  reg [7:0] map_0 [7:0];
-  initial begin
-    map_0[0] = 8'h00;
-    map_0[1] = 8'h00;
-    map_0[2] = 8'h00;
-    map_0[3] = 8'h00;
-    map_0[4] = 8'h00;
-    map_0[5] = 8'h00;
-    map_0[6] = 8'h00;
-    map_0[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (map_used_0)
-      map_0[map_0__write__addr] <= map_placed[7:0];
-  end
-  assign map_0__read__data = map_0[first[2:0]];
-  reg [7:0] map_1 [7:0];
-  initial begin
-    map_1[0] = 8'h00;
-    map_1[1] = 8'h00;
-    map_1[2] = 8'h00;
-    map_1[3] = 8'h00;
-    map_1[4] = 8'h00;
-    map_1[5] = 8'h00;
-    map_1[6] = 8'h00;
-    map_1[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (map_used_1)
-      map_1[map_1__write__addr] <= map_placed[15:8];
-  end
-  assign map_1__read__data = map_1[first[2:0]];
-  reg [7:0] map_2 [7:0];
-  initial begin
-    map_2[0] = 8'h00;
-    map_2[1] = 8'h00;
-    map_2[2] = 8'h00;
-    map_2[3] = 8'h00;
-    map_2[4] = 8'h00;
-    map_2[5] = 8'h00;
-    map_2[6] = 8'h00;
-    map_2[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (map_used_2)
-      map_2[map_2__write__addr] <= map_placed[23:16];
-  end
-  assign map_2__read__data = map_2[first[2:0]];
-  reg [7:0] map_3 [7:0];
-  initial begin
-    map_3[0] = 8'h00;
-    map_3[1] = 8'h00;
-    map_3[2] = 8'h00;
-    map_3[3] = 8'h00;
-    map_3[4] = 8'h00;
-    map_3[5] = 8'h00;
-    map_3[6] = 8'h00;
-    map_3[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (map_used_3)
-      map_3[map_3__write__addr] <= map_placed[31:24];
-  end
-  assign map_3__read__data = map_3[first[2:0]];
-  reg [7:0] map_4 [7:0];
-  initial begin
-    map_4[0] = 8'h00;
-    map_4[1] = 8'h00;
-    map_4[2] = 8'h00;
-    map_4[3] = 8'h00;
-    map_4[4] = 8'h00;
-    map_4[5] = 8'h00;
-    map_4[6] = 8'h00;
-    map_4[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (map_used_4)
-      map_4[map_4__write__addr] <= map_placed[39:32];
-  end
-  assign map_4__read__data = map_4[first[2:0]];
-  reg [7:0] map_5 [7:0];
-  initial begin
-    map_5[0] = 8'h00;
-    map_5[1] = 8'h00;
-    map_5[2] = 8'h00;
-    map_5[3] = 8'h00;
-    map_5[4] = 8'h00;
-    map_5[5] = 8'h00;
-    map_5[6] = 8'h00;
-    map_5[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (map_used_5)
-      map_5[map_5__write__addr] <= map_placed[47:40];
-  end
-  assign map_5__read__data = map_5[first[2:0]];
-  reg [7:0] map_6 [7:0];
-  initial begin
-    map_6[0] = 8'h00;
-    map_6[1] = 8'h00;
-    map_6[2] = 8'h00;
-    map_6[3] = 8'h00;
-    map_6[4] = 8'h00;
-    map_6[5] = 8'h00;
-    map_6[6] = 8'h00;
-    map_6[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (map_used_6)
-      map_6[map_6__write__addr] <= map_placed[55:48];
-  end
-  assign map_6__read__data = map_6[first[2:0]];
-  reg [7:0] map_7 [7:0];
-  initial begin
-    map_7[0] = 8'h00;
-    map_7[1] = 8'h00;
-    map_7[2] = 8'h00;
-    map_7[3] = 8'h00;
-    map_7[4] = 8'h00;
-    map_7[5] = 8'h00;
-    map_7[6] = 8'h00;
-    map_7[7] = 8'h00;
-  end
-  always @(posedge aclk) begin
-    if (map_used_7)
-      map_7[map_7__write__addr] <= map_placed[63:56];
-  end
-  assign map_7__read__data = map_7[first[2:0]];
-  assign \$299  = ! first[2:0];
-  assign \$300  = reads & \$299 ;
-  assign \$301  = ! items_3__write__addr;
-  assign \$302  = items_used_3 & \$301 ;
-  assign \$303  = first[2:0] == 1'h1;
-  assign \$304  = reads & \$303 ;
-  assign \$305  = items_3__write__addr == 1'h1;
-  assign \$306  = items_used_3 & \$305 ;
-  assign \$307  = first[2:0] == 2'h2;
-  assign \$308  = reads & \$307 ;
-  assign \$309  = items_3__write__addr == 2'h2;
-  assign \$310  = items_used_3 & \$309 ;
-  assign \$311  = first[2:0] == 2'h3;
-  assign \$312  = reads & \$311 ;
-  assign \$313  = items_3__write__addr == 2'h3;
-  assign \$314  = items_used_3 & \$313 ;
-  assign \$315  = first[2:0] == 3'h4;
-  assign \$316  = reads & \$315 ;
-  assign \$317  = items_3__write__addr == 3'h4;
-  assign \$318  = items_used_3 & \$317 ;
-  assign \$319  = first[2:0] == 3'h5;
-  assign \$320  = reads & \$319 ;
-  assign \$321  = items_3__write__addr == 3'h5;
-  assign \$322  = items_used_3 & \$321 ;
-  assign \$323  = first[2:0] == 3'h6;
-  assign \$324  = reads & \$323 ;
-  assign \$325  = items_3__write__addr == 3'h6;
-  assign \$326  = items_used_3 & \$325 ;
-  assign \$327  = first[2:0] == 3'h7;
-  assign \$328  = reads & \$327 ;
-  assign \$329  = items_3__write__addr == 3'h7;
-  assign \$330  = items_used_3 & \$329 ;
-  assign \$331  = ! first[2:0];
-  assign \$332  = reads & \$331 ;
-  assign \$333  = ! map_3__write__addr;
-  assign \$334  = map_used_3 & \$333 ;
-  assign \$335  = first[2:0] == 1'h1;
-  assign \$336  = reads & \$335 ;
-  assign \$337  = map_3__write__addr == 1'h1;
-  assign \$338  = map_used_3 & \$337 ;
-  assign \$339  = first[2:0] == 2'h2;
-  assign \$340  = reads & \$339 ;
-  assign \$341  = map_3__write__addr == 2'h2;
-  assign \$342  = map_used_3 & \$341 ;
-  assign \$343  = first[2:0] == 2'h3;
-  assign \$344  = reads & \$343 ;
-  assign \$345  = map_3__write__addr == 2'h3;
-  assign \$346  = map_used_3 & \$345 ;
-  assign \$347  = first[2:0] == 3'h4;
-  assign \$348  = reads & \$347 ;
-  assign \$349  = map_3__write__addr == 3'h4;
-  assign \$350  = map_used_3 & \$349 ;
-  assign \$351  = first[2:0] == 3'h5;
-  assign \$352  = reads & \$351 ;
-  assign \$353  = map_3__write__addr == 3'h5;
-  assign \$354  = map_used_3 & \$353 ;
-  assign \$355  = first[2:0] == 3'h6;
-  assign \$356  = reads & \$355 ;
-  assign \$357  = map_3__write__addr == 3'h6;
-  assign \$358  = map_used_3 & \$357 ;
-  assign \$359  = first[2:0] == 3'h7;
-  assign \$360  = reads & \$359 ;
-  assign \$361  = map_3__write__addr == 3'h7;
-  assign \$362  = map_used_3 & \$361 ;
-  assign \$363  = ! first[2:0];
-  assign \$364  = reads & \$363 ;
-  assign \$365  = ! items_4__write__addr;
-  assign \$366  = items_used_4 & \$365 ;
-  assign \$367  = first[2:0] == 1'h1;
-  assign \$368  = reads & \$367 ;
-  assign \$369  = items_4__write__addr == 1'h1;
-  assign \$370  = items_used_4 & \$369 ;
-  assign \$371  = first[2:0] == 2'h2;
-  assign \$372  = reads & \$371 ;
-  assign \$373  = items_4__write__addr == 2'h2;
-  assign \$374  = items_used_4 & \$373 ;
-  assign \$375  = first[2:0] == 2'h3;
-  assign \$376  = reads & \$375 ;
-  assign \$377  = items_4__write__addr == 2'h3;
-  assign \$378  = items_used_4 & \$377 ;
-  assign \$379  = first[2:0] == 3'h4;
-  assign \$380  = reads & \$379 ;
-  assign \$381  = items_4__write__addr == 3'h4;
-  assign \$382  = items_used_4 & \$381 ;
-  assign \$383  = first[2:0] == 3'h5;
-  assign \$384  = reads & \$383 ;
-  assign \$385  = items_4__write__addr == 3'h5;
-  assign \$386  = items_used_4 & \$385 ;
-  assign \$387  = first[2:0] == 3'h6;
-  assign \$388  = reads & \$387 ;
-  assign \$389  = items_4__write__addr == 3'h6;
-  assign \$390  = items_used_4 & \$389 ;
-  assign \$391  = first[2:0] == 3'h7;
-  assign \$392  = reads & \$391 ;
-  assign \$393  = items_4__write__addr == 3'h7;
-  assign \$394  = items_used_4 & \$393 ;
-  assign \$395  = ! first[2:0];
-  assign \$396  = reads & \$395 ;
-  assign \$397  = ! map_4__write__addr;
-  assign \$398  = map_used_4 & \$397 ;
-  assign \$399  = first[2:0] == 1'h1;
-  assign \$400  = reads & \$399 ;
-  assign \$401  = map_4__write__addr == 1'h1;
-  assign \$402  = map_used_4 & \$401 ;
-  assign \$403  = first[2:0] == 2'h2;
-  assign \$404  = reads & \$403 ;
-  assign \$405  = map_4__write__addr == 2'h2;
-  assign \$406  = map_used_4 & \$405 ;
-  assign \$407  = first[2:0] == 2'h3;
-  assign \$408  = reads & \$407 ;
-  assign \$409  = map_4__write__addr == 2'h3;
-  assign \$410  = map_used_4 & \$409 ;
-  assign \$411  = first[2:0] == 3'h4;
-  assign \$412  = reads & \$411 ;
-  assign \$413  = map_4__write__addr == 3'h4;
-  assign \$414  = map_used_4 & \$413 ;
-  assign \$415  = first[2:0] == 3'h5;
-  assign \$416  = reads & \$415 ;
-  assign \$417  = map_4__write__addr == 3'h5;
-  assign \$418  = map_used_4 & \$417 ;
-  assign \$419  = first[2:0] == 3'h6;
-  assign \$420  = reads & \$419 ;
-  assign \$421  = map_4__write__addr == 3'h6;
-  assign \$422  = map_used_4 & \$421 ;
-  assign \$423  = first[2:0] == 3'h7;
-  assign \$424  = reads & \$423 ;
-  assign \$425  = map_4__write__addr == 3'h7;
-  assign \$426  = map_used_4 & \$425 ;
-  assign \$427  = ! first[2:0];
-  assign \$428  = reads & \$427 ;
-  assign \$429  = ! items_5__write__addr;
-  assign \$430  = items_used_5 & \$429 ;
-  assign \$431  = first[2:0] == 1'h1;
-  assign \$432  = reads & \$431 ;
-  assign \$433  = items_5__write__addr == 1'h1;
-  assign \$434  = items_used_5 & \$433 ;
-  assign \$435  = first[2:0] == 2'h2;
-  assign \$436  = reads & \$435 ;
-  assign \$437  = items_5__write__addr == 2'h2;
-  assign \$438  = items_used_5 & \$437 ;
-  assign \$439  = first[2:0] == 2'h3;
-  assign \$440  = reads & \$439 ;
-  assign \$441  = items_5__write__addr == 2'h3;
-  assign \$442  = items_used_5 & \$441 ;
-  assign \$443  = first[2:0] == 3'h4;
-  assign \$444  = reads & \$443 ;
-  assign \$445  = items_5__write__addr == 3'h4;
-  assign \$446  = items_used_5 & \$445 ;
-  assign \$447  = first[2:0] == 3'h5;
-  assign \$448  = reads & \$447 ;
-  assign \$449  = items_5__write__addr == 3'h5;
-  assign \$450  = items_used_5 & \$449 ;
-  assign \$451  = first[2:0] == 3'h6;
-  assign \$452  = reads & \$451 ;
-  assign \$453  = items_5__write__addr == 3'h6;
-  assign \$454  = items_used_5 & \$453 ;
-  assign \$455  = first[2:0] == 3'h7;
-  assign \$456  = reads & \$455 ;
-  assign \$457  = items_5__write__addr == 3'h7;
-  assign \$458  = items_used_5 & \$457 ;
-  assign \$459  = ! first[2:0];
-  assign \$460  = reads & \$459 ;
-  assign \$461  = ! map_5__write__addr;
-  assign \$462  = map_used_5 & \$461 ;
-  assign \$463  = first[2:0] == 1'h1;
-  assign \$464  = reads & \$463 ;
-  assign \$465  = map_5__write__addr == 1'h1;
-  assign \$466  = map_used_5 & \$465 ;
-  assign \$467  = first[2:0] == 2'h2;
-  assign \$468  = reads & \$467 ;
-  assign \$469  = map_5__write__addr == 2'h2;
-  assign \$470  = map_used_5 & \$469 ;
-  assign \$471  = first[2:0] == 2'h3;
-  assign \$472  = reads & \$471 ;
-  assign \$473  = map_5__write__addr == 2'h3;
-  assign \$474  = map_used_5 & \$473 ;
-  assign \$475  = first[2:0] == 3'h4;
-  assign \$476  = reads & \$475 ;
-  assign \$477  = map_5__write__addr == 3'h4;
-  assign \$478  = map_used_5 & \$477 ;
-  assign \$479  = first[2:0] == 3'h5;
-  assign \$480  = reads & \$479 ;
-  assign \$481  = map_5__write__addr == 3'h5;
-  assign \$482  = map_used_5 & \$481 ;
-  assign \$483  = first[2:0] == 3'h6;
-  assign \$484  = reads & \$483 ;
-  assign \$485  = map_5__write__addr == 3'h6;
-  assign \$486  = map_used_5 & \$485 ;
-  assign \$487  = first[2:0] == 3'h7;
-  assign \$488  = reads & \$487 ;
-  assign \$489  = map_5__write__addr == 3'h7;
-  assign \$490  = map_used_5 & \$489 ;
-  assign \$491  = ! first[2:0];
-  assign \$492  = reads & \$491 ;
-  assign \$493  = ! items_6__write__addr;
-  assign \$494  = items_used_6 & \$493 ;
-  assign \$495  = first[2:0] == 1'h1;
-  assign \$496  = reads & \$495 ;
-  assign \$497  = items_6__write__addr == 1'h1;
-  assign \$498  = items_used_6 & \$497 ;
-  assign \$499  = first[2:0] == 2'h2;
-  assign \$500  = reads & \$499 ;
-  assign \$501  = items_6__write__addr == 2'h2;
-  assign \$502  = items_used_6 & \$501 ;
-  assign \$503  = first[2:0] == 2'h3;
-  assign \$504  = reads & \$503 ;
-  assign \$505  = items_6__write__addr == 2'h3;
-  assign \$506  = items_used_6 & \$505 ;
-  assign \$507  = first[2:0] == 3'h4;
-  assign \$508  = reads & \$507 ;
-  assign \$509  = items_6__write__addr == 3'h4;
-  assign \$510  = items_used_6 & \$509 ;
-  assign \$511  = first[2:0] == 3'h5;
-  assign \$512  = reads & \$511 ;
-  assign \$513  = items_6__write__addr == 3'h5;
-  assign \$514  = items_used_6 & \$513 ;
-  assign \$515  = first[2:0] == 3'h6;
-  assign \$516  = reads & \$515 ;
-  assign \$517  = items_6__write__addr == 3'h6;
-  assign \$518  = items_used_6 & \$517 ;
-  assign \$519  = first[2:0] == 3'h7;
-  assign \$520  = reads & \$519 ;
-  assign \$521  = items_6__write__addr == 3'h7;
-  assign \$522  = items_used_6 & \$521 ;
-  assign \$523  = ! first[2:0];
-  assign \$524  = reads & \$523 ;
-  assign \$525  = ! map_6__write__addr;
-  assign \$526  = map_used_6 & \$525 ;
-  assign \$527  = first[2:0] == 1'h1;
-  assign \$528  = reads & \$527 ;
-  assign \$529  = map_6__write__addr == 1'h1;
-  assign \$530  = map_used_6 & \$529 ;
-  assign \$531  = first[2:0] == 2'h2;
-  assign \$532  = reads & \$531 ;
-  assign \$533  = map_6__write__addr == 2'h2;
-  assign \$534  = map_used_6 & \$533 ;
-  assign \$535  = first[2:0] == 2'h3;
-  assign \$536  = reads & \$535 ;
-  assign \$537  = map_6__write__addr == 2'h3;
-  assign \$538  = map_used_6 & \$537 ;
-  assign \$539  = first[2:0] == 3'h4;
-  assign \$540  = reads & \$539 ;
-  assign \$541  = map_6__write__addr == 3'h4;
-  assign \$542  = map_used_6 & \$541 ;
-  assign \$543  = first[2:0] == 3'h5;
-  assign \$544  = reads & \$543 ;
-  assign \$545  = map_6__write__addr == 3'h5;
-  assign \$546  = map_used_6 & \$545 ;
-  assign \$547  = first[2:0] == 3'h6;
-  assign \$548  = reads & \$547 ;
-  assign \$549  = map_6__write__addr == 3'h6;
-  assign \$550  = map_used_6 & \$549 ;
-  assign \$551  = first[2:0] == 3'h7;
-  assign \$552  = reads & \$551 ;
-  assign \$553  = map_6__write__addr == 3'h7;
-  assign \$554  = map_used_6 & \$553 ;
-  assign \$555  = ! first[2:0];
-  assign \$556  = reads & \$555 ;
-  assign \$557  = ! items_7__write__addr;
-  assign \$558  = items_used_7 & \$557 ;
-  assign \$559  = first[2:0] == 1'h1;
-  assign \$560  = reads & \$559 ;
-  assign \$561  = items_7__write__addr == 1'h1;
-  assign \$562  = items_used_7 & \$561 ;
-  assign \$563  = first[2:0] == 2'h2;
-  assign \$564  = reads & \$563 ;
-  assign \$565  = items_7__write__addr == 2'h2;
-  assign \$566  = items_used_7 & \$565 ;
-  assign \$567  = first[2:0] == 2'h3;
-  assign \$568  = reads & \$567 ;
-  assign \$569  = items_7__write__addr == 2'h3;
-  assign \$570  = items_used_7 & \$569 ;
-  assign \$571  = first[2:0] == 3'h4;
-  assign \$572  = reads & \$571 ;
-  assign \$573  = items_7__write__addr == 3'h4;
-  assign \$574  = items_used_7 & \$573 ;
-  assign \$575  = first[2:0] == 3'h5;
-  assign \$576  = reads & \$575 ;
-  assign \$577  = items_7__write__addr == 3'h5;
-  assign \$578  = items_used_7 & \$577 ;
-  assign \$579  = first[2:0] == 3'h6;
-  assign \$580  = reads & \$579 ;
-  assign \$581  = items_7__write__addr == 3'h6;
-  assign \$582  = items_used_7 & \$581 ;
-  assign \$583  = first[2:0] == 3'h7;
-  assign \$584  = reads & \$583 ;
-  assign \$585  = items_7__write__addr == 3'h7;
-  assign \$586  = items_used_7 & \$585 ;
-  assign \$587  = ! first[2:0];
-  assign \$588  = reads & \$587 ;
-  assign \$589  = ! map_7__write__addr;
-  assign \$590  = map_used_7 & \$589 ;
-  assign \$591  = first[2:0] == 1'h1;
-  assign \$592  = reads & \$591 ;
-  assign \$593  = map_7__write__addr == 1'h1;
-  assign \$594  = map_used_7 & \$593 ;
-  assign \$595  = first[2:0] == 2'h2;
-  assign \$596  = reads & \$595 ;
-  assign \$597  = map_7__write__addr == 2'h2;
-  assign \$598  = map_used_7 & \$597 ;
-  assign \$599  = first[2:0] == 2'h3;
-  assign \$600  = reads & \$599 ;
-  assign \$601  = map_7__write__addr == 2'h3;
-  assign \$602  = map_used_7 & \$601 ;
-  assign \$603  = first[2:0] == 3'h4;
-  assign \$604  = reads & \$603 ;
-  assign \$605  = map_7__write__addr == 3'h4;
-  assign \$606  = map_used_7 & \$605 ;
-  assign \$607  = first[2:0] == 3'h5;
-  assign \$608  = reads & \$607 ;
-  assign \$609  = map_7__write__addr == 3'h5;
-  assign \$610  = map_used_7 & \$609 ;
-  assign \$611  = first[2:0] == 3'h6;
-  assign \$612  = reads & \$611 ;
-  assign \$613  = map_7__write__addr == 3'h6;
-  assign \$614  = map_used_7 & \$613 ;
-  assign \$615  = first[2:0] == 3'h7;
-  assign \$616  = reads & \$615 ;
-  assign \$617  = map_7__write__addr == 3'h7;
-  assign \$618  = map_used_7 & \$617 ;
-  assign \$619  = done - 1'h1;
-  assign \$620  = first + 1'h1;
-  assign \$621  = items_here_0 ? items_0__read__data : 8'h00;
-  assign \$622  = map_here_0 ? map_0__read__data : 8'h00;
-  assign \$623  = \$621  | \$622 ;
-  assign \$624  = items_here_1 ? items_1__read__data : 8'h00;
-  assign \$625  = map_here_1 ? map_1__read__data : 8'h00;
-  assign \$626  = \$624  | \$625 ;
-  assign \$627  = items_here_2 ? items_2__read__data : 8'h00;
-  assign \$628  = map_here_2 ? map_2__read__data : 8'h00;
-  assign \$629  = \$627  | \$628 ;
-  assign \$630  = items_here_3 ? items_3__read__data : 8'h00;
-  assign \$631  = map_here_3 ? map_3__read__data : 8'h00;
-  assign \$632  = \$630  | \$631 ;
-  assign \$633  = items_here_4 ? items_4__read__data : 8'h00;
-  assign \$634  = map_here_4 ? map_4__read__data : 8'h00;
-  assign \$635  = \$633  | \$634 ;
-  assign \$636  = items_here_5 ? items_5__read__data : 8'h00;
-  assign \$637  = map_here_5 ? map_5__read__data : 8'h00;
-  assign \$638  = \$636  | \$637 ;
-  assign \$639  = items_here_6 ? items_6__read__data : 8'h00;
-  assign \$640  = map_here_6 ? map_6__read__data : 8'h00;
-  assign \$641  = \$639  | \$640 ;
-  assign \$642  = items_here_7 ? items_7__read__data : 8'h00;
-  assign \$643  = map_here_7 ? map_7__read__data : 8'h00;
-  assign \$644  = \$642  | \$643 ;
-  assign \$645  = is_last ? ends__read__data[3:0] : 4'h8;
-  assign \$646  = is_last & ends__read__data[4];
+  wire still_ending;
+  reg [63:0] store = 64'h0000000000000000;
+  input [72:0] word__payload;
+  wire [72:0] word__payload;
+  wire [2:0] \word__payload.align ;
+  wire [3:0] \word__payload.count ;
+  wire [63:0] \word__payload.data ;
+  wire [7:0] \word__payload.data[0] ;
+  wire [7:0] \word__payload.data[1] ;
+  wire [7:0] \word__payload.data[2] ;
+  wire [7:0] \word__payload.data[3] ;
+  wire [7:0] \word__payload.data[4] ;
+  wire [7:0] \word__payload.data[5] ;
+  wire [7:0] \word__payload.data[6] ;
+  wire [7:0] \word__payload.data[7] ;
+  wire \word__payload.error ;
+  wire \word__payload.last ;
+  output word__ready;
+  wire word__ready;
+  input word__valid;
+  wire word__valid;
   always @(posedge aclk)
-    writes <= \$647 ;
+    end_beats <= \$42 ;
   always @(posedge aclk)
-    items_placed <= \$648 ;
+    inside_sig <= \$43 ;
   always @(posedge aclk)
-    items_start <= \$649 ;
+    end_count <= \$44 ;
   always @(posedge aclk)
-    items_size <= \$650 ;
+    marked <= \$45 ;
+  assign \$1  = level >= 4'h8;
+  assign packets__valid = ending | \$1 ;
+  assign \$2  = end_beats == 1'h1;
+  assign is_last = ending & \$2 ;
+  assign \packets__payload.count  = is_last ? end_count : 4'h8;
+  assign error = is_last & marked;
+  assign leaves = packets__valid & packets__ready;
+  assign \$4  = level - 4'h8;
+  assign { \$5 [5], rest } = leaves ? \$4  : { 1'h0, level };
+  assign kept = leaves ? 64'h0000000000000000 : store;
+  assign \$7  = leaves & is_last;
+  assign \$8  = ~ \$7 ;
+  assign still_ending = ending & \$8 ;
+  assign \$9  = rest <= 1'h0;
+  assign \$10  = still_ending & word__payload[71];
+  assign \$11  = ~ \$10 ;
+  assign word__ready = \$9  & \$11 ;
+  assign \$12  = 1'h0 + word__payload[67:64];
+  assign \$13  = - \$12 [2:0];
+  assign { \$14 [3], pad } = \$13  & { 1'h0, word__payload[70:68] };
+  assign \$15  = word__valid & word__ready;
+  assign \$16  = rest + word__payload[67:64];
+  assign \$17  = \$like  + 3'h7;
+  assign \$19  = ~ inside_sig;
+  assign \$20  = ! word__payload[67:64];
+  assign \$21  = \$19  & \$20 ;
+  assign \$22  = { 3'h0, \$17 [5:3] } + \$21 ;
+  assign \$23  = end_beats - 1'h1;
+  assign \$24  = word__valid & word__ready;
+  assign \$25  = kept | word__payload[63:0];
+  assign \$26  = rest + word__payload[67:64];
+  assign \$27  = \$26  + pad;
+  assign \$28  = ~ word__payload[71];
+  assign \$29  = | word__payload[67:64];
+  assign \$30  = inside_sig | \$29 ;
+  assign \$31  = \$28  & \$30 ;
+  assign \$33  = ~ inside_sig;
+  assign \$34  = ! word__payload[67:64];
+  assign \$35  = \$33  & \$34 ;
+  assign \$36  = \$like  - 1'h1;
+  assign \$37  = \$36 [2:0] + 1'h1;
+  assign \$38  = \$35  ? 4'h0 : \$37 ;
   always @(posedge aclk)
-    map_placed <= \$651 ;
+    store <= \$39 ;
   always @(posedge aclk)
-    map_start <= \$652 ;
+    level <= \$40 ;
   always @(posedge aclk)
-    map_size <= \$653 ;
-  always @(posedge aclk)
-    at <= \$654 ;
-  always @(posedge aclk)
-    done <= \$655 ;
-  always @(posedge aclk)
-    final_sig <= \$656 ;
-  always @(posedge aclk)
-    marked <= \$657 ;
-  always @(posedge aclk)
-    last_bytes <= \$658 ;
-  always @(posedge aclk)
-    words__ready <= \$659 ;
-  always @(posedge aclk)
-    bound <= \$660 ;
-  always @(posedge aclk)
-    items_has_0 <= \$661 ;
-  always @(posedge aclk)
-    map_has_0 <= \$662 ;
-  always @(posedge aclk)
-    items_has_1 <= \$663 ;
-  always @(posedge aclk)
-    map_has_1 <= \$664 ;
-  always @(posedge aclk)
-    items_has_2 <= \$665 ;
-  always @(posedge aclk)
-    map_has_2 <= \$666 ;
-  always @(posedge aclk)
-    items_has_3 <= \$667 ;
-  always @(posedge aclk)
-    map_has_3 <= \$668 ;
-  always @(posedge aclk)
-    items_has_4 <= \$669 ;
-  always @(posedge aclk)
-    map_has_4 <= \$670 ;
-  always @(posedge aclk)
-    items_has_5 <= \$671 ;
-  always @(posedge aclk)
-    map_has_5 <= \$672 ;
-  always @(posedge aclk)
-    items_has_6 <= \$673 ;
-  always @(posedge aclk)
-    map_has_6 <= \$674 ;
-  always @(posedge aclk)
-    items_has_7 <= \$675 ;
-  always @(posedge aclk)
-    map_has_7 <= \$676 ;
-  always @(posedge aclk)
-    complete <= \$677 ;
-  always @(posedge aclk)
-    last <= \$678 ;
-  always @(posedge aclk)
-    packets__valid <= \$679 ;
-  always @(posedge aclk)
-    first <= \$680 ;
-  always @(posedge aclk)
-    packets__payload <= \$681 ;
-  always @(posedge aclk)
-    error <= \$682 ;
-  assign takes = words__valid & words__ready;
-  assign { \$1 [7], total } = at + words__payload_128[13:9];
-  assign { \$2 [7], \total$6  } = base + words__payload_128[22:17];
-  assign \$3  = ~ { 7'h00, words__payload_128[16:14] };
-  assign \$4  = { 3'h0, total } & \$3 ;
-  assign { \$7 [9:7], base } = \$4  | { 7'h00, words__payload_128[16], 2'h0 };
-  assign \$8  = ~ { 7'h00, words__payload_128[25:23] };
-  assign \$9  = { 3'h0, \total$6  } & \$8 ;
-  assign \$10  = words__payload_128[29] ? 3'h0 : 3'h4;
-  assign \$11  = words__payload_128[25:23] & \$10 ;
-  assign { \$12 [9:7], end_sig } = \$9  | { 7'h00, \$11  };
-  assign \$13  = base[6:3] + words__payload_128[8];
-  assign { \$14 [7], map_end } = { \$13 [3:0], base[2:0] } + words__payload_128[7:4];
-  assign \$15  = takes ? words__payload_128[28:26] : 3'h0;
-  assign { \$16 [4], newest } = at[6:3] + \$15 ;
-  assign { \$17 [4], room } = bound - newest;
-  assign \$19  = 3'h0 < items_size;
-  assign items_used_0 = writes & \$19 ;
-  assign { \$21 [3], items_0__write__addr } = items_start[5:3] + 1'h0;
-  assign { \$22 [7:1], items_here_0 } = items_has_0 >> first[2:0];
-  assign \$24  = 3'h0 < map_size;
-  assign map_used_0 = writes & \$24 ;
-  assign { \$26 [3], map_0__write__addr } = map_start[5:3] + 1'h0;
-  assign { \$27 [7:1], map_here_0 } = map_has_0 >> first[2:0];
-  assign \$29  = 3'h1 < items_size;
-  assign items_used_1 = writes & \$29 ;
-  assign { \$31 [3], items_1__write__addr } = items_start[5:3] + 1'h0;
-  assign { \$32 [7:1], items_here_1 } = items_has_1 >> first[2:0];
-  assign \$34  = 3'h1 < map_size;
-  assign map_used_1 = writes & \$34 ;
-  assign { \$36 [3], map_1__write__addr } = map_start[5:3] + 1'h0;
-  assign { \$37 [7:1], map_here_1 } = map_has_1 >> first[2:0];
-  assign \$39  = 3'h2 < items_size;
-  assign items_used_2 = writes & \$39 ;
-  assign { \$41 [3], items_2__write__addr } = items_start[5:3] + 1'h0;
-  assign { \$42 [7:1], items_here_2 } = items_has_2 >> first[2:0];
-  assign \$44  = 3'h2 < map_size;
-  assign map_used_2 = writes & \$44 ;
-  assign { \$46 [3], map_2__write__addr } = map_start[5:3] + 1'h0;
-  assign { \$47 [7:1], map_here_2 } = map_has_2 >> first[2:0];
-  assign \$49  = 3'h3 < items_size;
-  assign items_used_3 = writes & \$49 ;
-  assign { \$51 [3], items_3__write__addr } = items_start[5:3] + 1'h0;
-  assign { \$52 [7:1], items_here_3 } = items_has_3 >> first[2:0];
-  assign \$54  = 3'h3 < map_size;
-  assign map_used_3 = writes & \$54 ;
-  assign { \$56 [3], map_3__write__addr } = map_start[5:3] + 1'h0;
-  assign { \$57 [7:1], map_here_3 } = map_has_3 >> first[2:0];
-  assign \$59  = 3'h4 < items_size;
-  assign items_used_4 = writes & \$59 ;
-  assign { \$61 [3], items_4__write__addr } = items_start[5:3] + 1'h0;
-  assign { \$62 [7:1], items_here_4 } = items_has_4 >> first[2:0];
-  assign \$64  = 3'h4 < map_size;
-  assign map_used_4 = writes & \$64 ;
-  assign { \$66 [3], map_4__write__addr } = map_start[5:3] + 1'h0;
-  assign { \$67 [7:1], map_here_4 } = map_has_4 >> first[2:0];
-  assign \$69  = 3'h5 < items_size;
-  assign items_used_5 = writes & \$69 ;
-  assign { \$71 [3], items_5__write__addr } = items_start[5:3] + 1'h0;
-  assign { \$72 [7:1], items_here_5 } = items_has_5 >> first[2:0];
-  assign \$74  = 3'h5 < map_size;
-  assign map_used_5 = writes & \$74 ;
-  assign { \$76 [3], map_5__write__addr } = map_start[5:3] + 1'h0;
-  assign { \$77 [7:1], map_here_5 } = map_has_5 >> first[2:0];
-  assign \$79  = 3'h6 < items_size;
-  assign items_used_6 = writes & \$79 ;
-  assign { \$81 [3], items_6__write__addr } = items_start[5:3] + 1'h0;
-  assign { \$82 [7:1], items_here_6 } = items_has_6 >> first[2:0];
-  assign \$84  = 3'h6 < map_size;
-  assign map_used_6 = writes & \$84 ;
-  assign { \$86 [3], map_6__write__addr } = map_start[5:3] + 1'h0;
-  assign { \$87 [7:1], map_here_6 } = map_has_6 >> first[2:0];
-  assign \$89  = 3'h7 < items_size;
-  assign items_used_7 = writes & \$89 ;
-  assign { \$90 [3], items_7__write__addr } = items_start[5:3] + 1'h0;
-  assign { \$91 [7:1], items_here_7 } = items_has_7 >> first[2:0];
-  assign \$93  = 3'h7 < map_size;
-  assign map_used_7 = writes & \$93 ;
-  assign { \$94 [3], map_7__write__addr } = map_start[5:3] + 1'h0;
-  assign { \$95 [7:1], map_here_7 } = map_has_7 >> first[2:0];
-  assign { \$96 [4:3], ends__write__addr } = done - 1'h1;
-  assign ends__write__en = writes & final_sig;
-  assign \$97  = complete != first;
-  assign \$98  = ~ packets__valid;
-  assign \$99  = \$98  | packets__ready;
-  assign reads = \$97  & \$99 ;
-  assign { \$100 [7:1], is_last } = last >> first[2:0];
-  assign \$101  = words__payload_128[8] ? base : at;
-  assign \$102  = map_end[2:0] - 1'h1;
-  assign \$103  = \$102 [2:0] + 1'h1;
-  assign \$104  = words__payload_128[30] ? 4'h0 : \$103 ;
-  assign \$105  = ~ room[3];
-  assign \$106  = bound + 1'h1;
-  assign \$107  = ! first[2:0];
-  assign \$108  = reads & \$107 ;
-  assign \$109  = ! items_0__write__addr;
-  assign \$110  = items_used_0 & \$109 ;
-  assign \$111  = first[2:0] == 1'h1;
-  assign \$112  = reads & \$111 ;
-  assign \$113  = items_0__write__addr == 1'h1;
-  assign \$114  = items_used_0 & \$113 ;
-  assign \$115  = first[2:0] == 2'h2;
-  assign \$116  = reads & \$115 ;
-  assign \$117  = items_0__write__addr == 2'h2;
-  assign \$118  = items_used_0 & \$117 ;
-  assign \$119  = first[2:0] == 2'h3;
-  assign \$120  = reads & \$119 ;
-  assign \$121  = items_0__write__addr == 2'h3;
-  assign \$122  = items_used_0 & \$121 ;
-  assign \$123  = first[2:0] == 3'h4;
-  assign \$124  = reads & \$123 ;
-  assign \$125  = items_0__write__addr == 3'h4;
-  assign \$126  = items_used_0 & \$125 ;
-  assign \$127  = first[2:0] == 3'h5;
-  assign \$128  = reads & \$127 ;
-  assign \$129  = items_0__write__addr == 3'h5;
-  assign \$130  = items_used_0 & \$129 ;
-  assign \$131  = first[2:0] == 3'h6;
-  assign \$132  = reads & \$131 ;
-  assign \$133  = items_0__write__addr == 3'h6;
-  assign \$134  = items_used_0 & \$133 ;
-  assign \$135  = first[2:0] == 3'h7;
-  assign \$136  = reads & \$135 ;
-  assign \$137  = items_0__write__addr == 3'h7;
-  assign \$138  = items_used_0 & \$137 ;
-  assign \$139  = ! first[2:0];
-  assign \$140  = reads & \$139 ;
-  assign \$141  = ! map_0__write__addr;
-  assign \$142  = map_used_0 & \$141 ;
-  assign \$143  = first[2:0] == 1'h1;
-  assign \$144  = reads & \$143 ;
-  assign \$145  = map_0__write__addr == 1'h1;
-  assign \$146  = map_used_0 & \$145 ;
-  assign \$147  = first[2:0] == 2'h2;
-  assign \$148  = reads & \$147 ;
-  assign \$149  = map_0__write__addr == 2'h2;
-  assign \$150  = map_used_0 & \$149 ;
-  assign \$151  = first[2:0] == 2'h3;
-  assign \$152  = reads & \$151 ;
-  assign \$153  = map_0__write__addr == 2'h3;
-  assign \$154  = map_used_0 & \$153 ;
-  assign \$155  = first[2:0] == 3'h4;
-  assign \$156  = reads & \$155 ;
-  assign \$157  = map_0__write__addr == 3'h4;
-  assign \$158  = map_used_0 & \$157 ;
-  assign \$159  = first[2:0] == 3'h5;
-  assign \$160  = reads & \$159 ;
-  assign \$161  = map_0__write__addr == 3'h5;
-  assign \$162  = map_used_0 & \$161 ;
-  assign \$163  = first[2:0] == 3'h6;
-  assign \$164  = reads & \$163 ;
-  assign \$165  = map_0__write__addr == 3'h6;
-  assign \$166  = map_used_0 & \$165 ;
-  assign \$167  = first[2:0] == 3'h7;
-  assign \$168  = reads & \$167 ;
-  assign \$169  = map_0__write__addr == 3'h7;
-  assign \$170  = map_used_0 & \$169 ;
-  assign \$171  = ! first[2:0];
-  assign \$172  = reads & \$171 ;
-  assign \$173  = ! items_1__write__addr;
-  assign \$174  = items_used_1 & \$173 ;
-  assign \$175  = first[2:0] == 1'h1;
-  assign \$176  = reads & \$175 ;
-  assign \$177  = items_1__write__addr == 1'h1;
-  assign \$178  = items_used_1 & \$177 ;
-  assign \$179  = first[2:0] == 2'h2;
-  assign \$180  = reads & \$179 ;
-  assign \$181  = items_1__write__addr == 2'h2;
-  assign \$182  = items_used_1 & \$181 ;
-  assign \$183  = first[2:0] == 2'h3;
-  assign \$184  = reads & \$183 ;
-  assign \$185  = items_1__write__addr == 2'h3;
-  assign \$186  = items_used_1 & \$185 ;
-  assign \$187  = first[2:0] == 3'h4;
-  assign \$188  = reads & \$187 ;
-  assign \$189  = items_1__write__addr == 3'h4;
-  assign \$190  = items_used_1 & \$189 ;
-  assign \$191  = first[2:0] == 3'h5;
-  assign \$192  = reads & \$191 ;
-  assign \$193  = items_1__write__addr == 3'h5;
-  assign \$194  = items_used_1 & \$193 ;
-  assign \$195  = first[2:0] == 3'h6;
-  assign \$196  = reads & \$195 ;
-  assign \$197  = items_1__write__addr == 3'h6;
-  assign \$198  = items_used_1 & \$197 ;
-  assign \$199  = first[2:0] == 3'h7;
-  assign \$200  = reads & \$199 ;
-  assign \$201  = items_1__write__addr == 3'h7;
-  assign \$202  = items_used_1 & \$201 ;
-  assign \$203  = ! first[2:0];
-  assign \$204  = reads & \$203 ;
-  assign \$205  = ! map_1__write__addr;
-  assign \$206  = map_used_1 & \$205 ;
-  assign \$207  = first[2:0] == 1'h1;
-  assign \$208  = reads & \$207 ;
-  assign \$209  = map_1__write__addr == 1'h1;
-  assign \$210  = map_used_1 & \$209 ;
-  assign \$211  = first[2:0] == 2'h2;
-  assign \$212  = reads & \$211 ;
-  assign \$213  = map_1__write__addr == 2'h2;
-  assign \$214  = map_used_1 & \$213 ;
-  assign \$215  = first[2:0] == 2'h3;
-  assign \$216  = reads & \$215 ;
-  assign \$217  = map_1__write__addr == 2'h3;
-  assign \$218  = map_used_1 & \$217 ;
-  assign \$219  = first[2:0] == 3'h4;
-  assign \$220  = reads & \$219 ;
-  assign \$221  = map_1__write__addr == 3'h4;
-  assign \$222  = map_used_1 & \$221 ;
-  assign \$223  = first[2:0] == 3'h5;
-  assign \$224  = reads & \$223 ;
-  assign \$225  = map_1__write__addr == 3'h5;
-  assign \$226  = map_used_1 & \$225 ;
-  assign \$227  = first[2:0] == 3'h6;
-  assign \$228  = reads & \$227 ;
-  assign \$229  = map_1__write__addr == 3'h6;
-  assign \$230  = map_used_1 & \$229 ;
-  assign \$231  = first[2:0] == 3'h7;
-  assign \$232  = reads & \$231 ;
-  assign \$233  = map_1__write__addr == 3'h7;
-  assign \$234  = map_used_1 & \$233 ;
-  assign \$235  = ! first[2:0];
-  assign \$236  = reads & \$235 ;
-  assign \$237  = ! items_2__write__addr;
-  assign \$238  = items_used_2 & \$237 ;
-  assign \$239  = first[2:0] == 1'h1;
-  assign \$240  = reads & \$239 ;
-  assign \$241  = items_2__write__addr == 1'h1;
-  assign \$242  = items_used_2 & \$241 ;
-  assign \$243  = first[2:0] == 2'h2;
-  assign \$244  = reads & \$243 ;
-  assign \$245  = items_2__write__addr == 2'h2;
-  assign \$246  = items_used_2 & \$245 ;
-  assign \$247  = first[2:0] == 2'h3;
-  assign \$248  = reads & \$247 ;
-  assign \$249  = items_2__write__addr == 2'h3;
-  assign \$250  = items_used_2 & \$249 ;
-  assign \$251  = first[2:0] == 3'h4;
-  assign \$252  = reads & \$251 ;
-  assign \$253  = items_2__write__addr == 3'h4;
-  assign \$254  = items_used_2 & \$253 ;
-  assign \$255  = first[2:0] == 3'h5;
-  assign \$256  = reads & \$255 ;
-  assign \$257  = items_2__write__addr == 3'h5;
-  assign \$258  = items_used_2 & \$257 ;
-  assign \$259  = first[2:0] == 3'h6;
-  assign \$260  = reads & \$259 ;
-  assign \$261  = items_2__write__addr == 3'h6;
-  assign \$262  = items_used_2 & \$261 ;
-  assign \$263  = first[2:0] == 3'h7;
-  assign \$264  = reads & \$263 ;
-  assign \$265  = items_2__write__addr == 3'h7;
-  assign \$266  = items_used_2 & \$265 ;
-  assign \$267  = ! first[2:0];
-  assign \$268  = reads & \$267 ;
-  assign \$269  = ! map_2__write__addr;
-  assign \$270  = map_used_2 & \$269 ;
-  assign \$271  = first[2:0] == 1'h1;
-  assign \$272  = reads & \$271 ;
-  assign \$273  = map_2__write__addr == 1'h1;
-  assign \$274  = map_used_2 & \$273 ;
-  assign \$275  = first[2:0] == 2'h2;
-  assign \$276  = reads & \$275 ;
-  assign \$277  = map_2__write__addr == 2'h2;
-  assign \$278  = map_used_2 & \$277 ;
-  assign \$279  = first[2:0] == 2'h3;
-  assign \$280  = reads & \$279 ;
-  assign \$281  = map_2__write__addr == 2'h3;
-  assign \$282  = map_used_2 & \$281 ;
-  assign \$283  = first[2:0] == 3'h4;
-  assign \$284  = reads & \$283 ;
-  assign \$285  = map_2__write__addr == 3'h4;
-  assign \$286  = map_used_2 & \$285 ;
-  assign \$287  = first[2:0] == 3'h5;
-  assign \$288  = reads & \$287 ;
-  assign \$289  = map_2__write__addr == 3'h5;
-  assign \$290  = map_used_2 & \$289 ;
-  assign \$291  = first[2:0] == 3'h6;
-  assign \$292  = reads & \$291 ;
-  assign \$293  = map_2__write__addr == 3'h6;
-  assign \$294  = map_used_2 & \$293 ;
-  assign \$295  = first[2:0] == 3'h7;
-  assign \$296  = reads & \$295 ;
-  assign \$297  = map_2__write__addr == 3'h7;
-  assign \$298  = map_used_2 & \$297 ;
-  assign \$682  = reads ? \$646  : error;
-  assign choice_101_Y  = choice_102_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_94_Y ;
-  assign choice_102_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h2;
-  assign choice_103_Y  = reads ? choice_101_Y  : choice_94_Y ;
-  assign \$678 [2] = rst ? 1'h0 : choice_103_Y ;
-  assign \$680  = rst ? 4'h0 : choice_9_Y ;
-  assign choice_113_Y  = choice_114_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[1];
-  assign choice_114_CMP  = \$619 [2:0] == (* full_case = 32'd1 *) 3'h1;
-  assign choice_115_Y  = final_sig ? choice_113_Y  : last[1];
-  assign choice_117_Y  = writes ? choice_115_Y  : last[1];
-  assign choice_125_Y  = choice_126_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_117_Y ;
-  assign choice_126_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h1;
-  assign choice_127_Y  = reads ? choice_125_Y  : choice_117_Y ;
-  assign \$678 [1] = rst ? 1'h0 : choice_127_Y ;
-  assign choice_13_Y  = packets__ready ? 1'h0 : packets__valid;
-  assign choice_138_Y  = choice_139_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[0];
-  assign choice_139_CMP  = ! (* full_case = 32'd1 *) \$619 [2:0];
-  assign choice_140_Y  = final_sig ? choice_138_Y  : last[0];
-  assign choice_142_Y  = writes ? choice_140_Y  : last[0];
-  assign choice_15_Y  = reads ? 1'h1 : choice_13_Y ;
-  assign choice_151_Y  = choice_152_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_142_Y ;
-  assign choice_152_CMP  = ! (* full_case = 32'd1 *) first[2:0];
-  assign choice_153_Y  = reads ? choice_151_Y  : choice_142_Y ;
-  assign \$678 [0] = rst ? 1'h0 : choice_153_Y ;
-  assign choice_158_Y  = choice_159_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[6];
-  assign choice_159_CMP  = \$619 [2:0] == (* full_case = 32'd1 *) 3'h6;
-  assign choice_160_Y  = final_sig ? choice_158_Y  : last[6];
-  assign choice_162_Y  = writes ? choice_160_Y  : last[6];
-  assign choice_165_Y  = choice_166_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_162_Y ;
-  assign choice_166_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h6;
-  assign choice_167_Y  = reads ? choice_165_Y  : choice_162_Y ;
-  assign \$678 [6] = rst ? 1'h0 : choice_167_Y ;
-  assign \$679  = rst ? 1'h0 : choice_15_Y ;
-  assign choice_171_Y  = writes ? done : complete;
-  assign \$677  = rst ? 4'h0 : choice_171_Y ;
-  assign choice_175_Y  = \$618  ? 1'h1 : map_has_7[7];
-  assign choice_177_Y  = \$616  ? 1'h0 : choice_175_Y ;
-  assign \$676 [7] = rst ? 1'h0 : choice_177_Y ;
-  assign choice_181_Y  = \$610  ? 1'h1 : map_has_7[5];
-  assign choice_183_Y  = \$608  ? 1'h0 : choice_181_Y ;
-  assign \$676 [5] = rst ? 1'h0 : choice_183_Y ;
-  assign choice_187_Y  = \$606  ? 1'h1 : map_has_7[4];
-  assign choice_189_Y  = \$604  ? 1'h0 : choice_187_Y ;
-  assign choice_19_Y  = choice_20_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[7];
-  assign \$676 [4] = rst ? 1'h0 : choice_189_Y ;
-  assign choice_193_Y  = \$602  ? 1'h1 : map_has_7[3];
-  assign choice_195_Y  = \$600  ? 1'h0 : choice_193_Y ;
-  assign \$676 [3] = rst ? 1'h0 : choice_195_Y ;
-  assign choice_199_Y  = \$598  ? 1'h1 : map_has_7[2];
-  assign choice_201_Y  = \$596  ? 1'h0 : choice_199_Y ;
-  assign \$676 [2] = rst ? 1'h0 : choice_201_Y ;
-  assign choice_205_Y  = \$594  ? 1'h1 : map_has_7[1];
-  assign choice_207_Y  = \$592  ? 1'h0 : choice_205_Y ;
-  assign \$676 [1] = rst ? 1'h0 : choice_207_Y ;
-  assign choice_20_CMP  = \$619 [2:0] == (* full_case = 32'd1 *) 3'h7;
-  assign choice_21_Y  = final_sig ? choice_19_Y  : last[7];
-  assign choice_211_Y  = \$590  ? 1'h1 : map_has_7[0];
-  assign choice_213_Y  = \$588  ? 1'h0 : choice_211_Y ;
-  assign \$676 [0] = rst ? 1'h0 : choice_213_Y ;
-  assign choice_217_Y  = \$614  ? 1'h1 : map_has_7[6];
-  assign choice_219_Y  = \$612  ? 1'h0 : choice_217_Y ;
-  assign \$676 [6] = rst ? 1'h0 : choice_219_Y ;
-  assign choice_223_Y  = \$586  ? 1'h1 : items_has_7[7];
-  assign choice_225_Y  = \$584  ? 1'h0 : choice_223_Y ;
-  assign \$675 [7] = rst ? 1'h0 : choice_225_Y ;
-  assign choice_229_Y  = \$578  ? 1'h1 : items_has_7[5];
-  assign choice_23_Y  = writes ? choice_21_Y  : last[7];
-  assign choice_231_Y  = \$576  ? 1'h0 : choice_229_Y ;
-  assign \$675 [5] = rst ? 1'h0 : choice_231_Y ;
-  assign choice_235_Y  = \$574  ? 1'h1 : items_has_7[4];
-  assign choice_237_Y  = \$572  ? 1'h0 : choice_235_Y ;
-  assign \$675 [4] = rst ? 1'h0 : choice_237_Y ;
-  assign choice_241_Y  = \$570  ? 1'h1 : items_has_7[3];
-  assign choice_243_Y  = \$568  ? 1'h0 : choice_241_Y ;
-  assign \$675 [3] = rst ? 1'h0 : choice_243_Y ;
-  assign choice_247_Y  = \$566  ? 1'h1 : items_has_7[2];
-  assign choice_249_Y  = \$564  ? 1'h0 : choice_247_Y ;
-  assign choice_25_Y  = choice_26_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_23_Y ;
-  assign \$675 [2] = rst ? 1'h0 : choice_249_Y ;
-  assign choice_253_Y  = \$562  ? 1'h1 : items_has_7[1];
-  assign choice_255_Y  = \$560  ? 1'h0 : choice_253_Y ;
-  assign \$675 [1] = rst ? 1'h0 : choice_255_Y ;
-  assign choice_259_Y  = \$558  ? 1'h1 : items_has_7[0];
-  assign choice_261_Y  = \$556  ? 1'h0 : choice_259_Y ;
-  assign \$675 [0] = rst ? 1'h0 : choice_261_Y ;
-  assign choice_265_Y  = \$582  ? 1'h1 : items_has_7[6];
-  assign choice_267_Y  = \$580  ? 1'h0 : choice_265_Y ;
-  assign \$675 [6] = rst ? 1'h0 : choice_267_Y ;
-  assign choice_26_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h7;
-  assign choice_27_Y  = reads ? choice_25_Y  : choice_23_Y ;
-  assign choice_271_Y  = \$554  ? 1'h1 : map_has_6[7];
-  assign choice_273_Y  = \$552  ? 1'h0 : choice_271_Y ;
-  assign \$674 [7] = rst ? 1'h0 : choice_273_Y ;
-  assign choice_277_Y  = \$546  ? 1'h1 : map_has_6[5];
-  assign choice_279_Y  = \$544  ? 1'h0 : choice_277_Y ;
-  assign \$674 [5] = rst ? 1'h0 : choice_279_Y ;
-  assign choice_283_Y  = \$542  ? 1'h1 : map_has_6[4];
-  assign choice_285_Y  = \$540  ? 1'h0 : choice_283_Y ;
-  assign \$674 [4] = rst ? 1'h0 : choice_285_Y ;
-  assign choice_289_Y  = \$538  ? 1'h1 : map_has_6[3];
-  assign \$678 [7] = rst ? 1'h0 : choice_27_Y ;
-  assign choice_291_Y  = \$536  ? 1'h0 : choice_289_Y ;
-  assign \$674 [3] = rst ? 1'h0 : choice_291_Y ;
-  assign choice_295_Y  = \$534  ? 1'h1 : map_has_6[2];
-  assign choice_297_Y  = \$532  ? 1'h0 : choice_295_Y ;
-  assign \$674 [2] = rst ? 1'h0 : choice_297_Y ;
-  assign \$681 [68] = reads ? is_last : packets__payload[68];
-  assign choice_301_Y  = \$530  ? 1'h1 : map_has_6[1];
-  assign choice_303_Y  = \$528  ? 1'h0 : choice_301_Y ;
-  assign \$674 [1] = rst ? 1'h0 : choice_303_Y ;
-  assign choice_307_Y  = \$526  ? 1'h1 : map_has_6[0];
-  assign choice_309_Y  = \$524  ? 1'h0 : choice_307_Y ;
-  assign \$674 [0] = rst ? 1'h0 : choice_309_Y ;
-  assign choice_313_Y  = \$550  ? 1'h1 : map_has_6[6];
-  assign choice_315_Y  = \$548  ? 1'h0 : choice_313_Y ;
-  assign \$674 [6] = rst ? 1'h0 : choice_315_Y ;
-  assign choice_319_Y  = \$522  ? 1'h1 : items_has_6[7];
-  assign choice_321_Y  = \$520  ? 1'h0 : choice_319_Y ;
-  assign \$673 [7] = rst ? 1'h0 : choice_321_Y ;
-  assign choice_325_Y  = \$514  ? 1'h1 : items_has_6[5];
-  assign choice_327_Y  = \$512  ? 1'h0 : choice_325_Y ;
-  assign \$673 [5] = rst ? 1'h0 : choice_327_Y ;
-  assign choice_33_Y  = choice_34_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[5];
-  assign choice_331_Y  = \$510  ? 1'h1 : items_has_6[4];
-  assign choice_333_Y  = \$508  ? 1'h0 : choice_331_Y ;
-  assign \$673 [4] = rst ? 1'h0 : choice_333_Y ;
-  assign choice_337_Y  = \$506  ? 1'h1 : items_has_6[3];
-  assign choice_339_Y  = \$504  ? 1'h0 : choice_337_Y ;
-  assign \$673 [3] = rst ? 1'h0 : choice_339_Y ;
-  assign choice_343_Y  = \$502  ? 1'h1 : items_has_6[2];
-  assign choice_345_Y  = \$500  ? 1'h0 : choice_343_Y ;
-  assign \$673 [2] = rst ? 1'h0 : choice_345_Y ;
-  assign choice_349_Y  = \$498  ? 1'h1 : items_has_6[1];
-  assign choice_34_CMP  = \$619 [2:0] == (* full_case = 32'd1 *) 3'h5;
-  assign choice_35_Y  = final_sig ? choice_33_Y  : last[5];
-  assign choice_351_Y  = \$496  ? 1'h0 : choice_349_Y ;
-  assign \$673 [1] = rst ? 1'h0 : choice_351_Y ;
-  assign choice_355_Y  = \$494  ? 1'h1 : items_has_6[0];
-  assign choice_357_Y  = \$492  ? 1'h0 : choice_355_Y ;
-  assign \$673 [0] = rst ? 1'h0 : choice_357_Y ;
-  assign choice_361_Y  = \$518  ? 1'h1 : items_has_6[6];
-  assign choice_363_Y  = \$516  ? 1'h0 : choice_361_Y ;
-  assign \$673 [6] = rst ? 1'h0 : choice_363_Y ;
-  assign choice_367_Y  = \$490  ? 1'h1 : map_has_5[7];
-  assign choice_369_Y  = \$488  ? 1'h0 : choice_367_Y ;
-  assign choice_37_Y  = writes ? choice_35_Y  : last[5];
-  assign \$672 [7] = rst ? 1'h0 : choice_369_Y ;
-  assign choice_373_Y  = \$482  ? 1'h1 : map_has_5[5];
-  assign choice_375_Y  = \$480  ? 1'h0 : choice_373_Y ;
-  assign \$672 [5] = rst ? 1'h0 : choice_375_Y ;
-  assign choice_379_Y  = \$478  ? 1'h1 : map_has_5[4];
-  assign choice_381_Y  = \$476  ? 1'h0 : choice_379_Y ;
-  assign \$672 [4] = rst ? 1'h0 : choice_381_Y ;
-  assign choice_385_Y  = \$474  ? 1'h1 : map_has_5[3];
-  assign choice_387_Y  = \$472  ? 1'h0 : choice_385_Y ;
-  assign \$672 [3] = rst ? 1'h0 : choice_387_Y ;
-  assign choice_391_Y  = \$470  ? 1'h1 : map_has_5[2];
-  assign choice_393_Y  = \$468  ? 1'h0 : choice_391_Y ;
-  assign \$672 [2] = rst ? 1'h0 : choice_393_Y ;
-  assign choice_397_Y  = \$466  ? 1'h1 : map_has_5[1];
-  assign choice_399_Y  = \$464  ? 1'h0 : choice_397_Y ;
-  assign \$672 [1] = rst ? 1'h0 : choice_399_Y ;
-  assign choice_403_Y  = \$462  ? 1'h1 : map_has_5[0];
-  assign choice_405_Y  = \$460  ? 1'h0 : choice_403_Y ;
-  assign \$672 [0] = rst ? 1'h0 : choice_405_Y ;
-  assign choice_409_Y  = \$486  ? 1'h1 : map_has_5[6];
-  assign choice_41_Y  = choice_42_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_37_Y ;
-  assign choice_411_Y  = \$484  ? 1'h0 : choice_409_Y ;
-  assign \$672 [6] = rst ? 1'h0 : choice_411_Y ;
-  assign choice_415_Y  = \$458  ? 1'h1 : items_has_5[7];
-  assign choice_417_Y  = \$456  ? 1'h0 : choice_415_Y ;
-  assign \$671 [7] = rst ? 1'h0 : choice_417_Y ;
-  assign choice_421_Y  = \$450  ? 1'h1 : items_has_5[5];
-  assign choice_423_Y  = \$448  ? 1'h0 : choice_421_Y ;
-  assign \$671 [5] = rst ? 1'h0 : choice_423_Y ;
-  assign choice_427_Y  = \$446  ? 1'h1 : items_has_5[4];
-  assign choice_429_Y  = \$444  ? 1'h0 : choice_427_Y ;
-  assign choice_42_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h5;
-  assign choice_43_Y  = reads ? choice_41_Y  : choice_37_Y ;
-  assign \$671 [4] = rst ? 1'h0 : choice_429_Y ;
-  assign choice_433_Y  = \$442  ? 1'h1 : items_has_5[3];
-  assign choice_435_Y  = \$440  ? 1'h0 : choice_433_Y ;
-  assign \$671 [3] = rst ? 1'h0 : choice_435_Y ;
-  assign choice_439_Y  = \$438  ? 1'h1 : items_has_5[2];
-  assign choice_441_Y  = \$436  ? 1'h0 : choice_439_Y ;
-  assign \$671 [2] = rst ? 1'h0 : choice_441_Y ;
-  assign choice_445_Y  = \$434  ? 1'h1 : items_has_5[1];
-  assign choice_447_Y  = \$432  ? 1'h0 : choice_445_Y ;
-  assign \$671 [1] = rst ? 1'h0 : choice_447_Y ;
-  assign \$678 [5] = rst ? 1'h0 : choice_43_Y ;
-  assign choice_451_Y  = \$430  ? 1'h1 : items_has_5[0];
-  assign choice_453_Y  = \$428  ? 1'h0 : choice_451_Y ;
-  assign \$671 [0] = rst ? 1'h0 : choice_453_Y ;
-  assign choice_457_Y  = \$454  ? 1'h1 : items_has_5[6];
-  assign choice_459_Y  = \$452  ? 1'h0 : choice_457_Y ;
-  assign \$671 [6] = rst ? 1'h0 : choice_459_Y ;
-  assign choice_463_Y  = \$426  ? 1'h1 : map_has_4[7];
-  assign choice_465_Y  = \$424  ? 1'h0 : choice_463_Y ;
-  assign \$670 [7] = rst ? 1'h0 : choice_465_Y ;
-  assign choice_469_Y  = \$418  ? 1'h1 : map_has_4[5];
-  assign choice_471_Y  = \$416  ? 1'h0 : choice_469_Y ;
-  assign \$670 [5] = rst ? 1'h0 : choice_471_Y ;
-  assign choice_475_Y  = \$414  ? 1'h1 : map_has_4[4];
-  assign choice_477_Y  = \$412  ? 1'h0 : choice_475_Y ;
-  assign \$670 [4] = rst ? 1'h0 : choice_477_Y ;
-  assign choice_481_Y  = \$410  ? 1'h1 : map_has_4[3];
-  assign choice_483_Y  = \$408  ? 1'h0 : choice_481_Y ;
-  assign \$670 [3] = rst ? 1'h0 : choice_483_Y ;
-  assign choice_487_Y  = \$406  ? 1'h1 : map_has_4[2];
-  assign choice_489_Y  = \$404  ? 1'h0 : choice_487_Y ;
-  assign \$670 [2] = rst ? 1'h0 : choice_489_Y ;
-  assign choice_493_Y  = \$402  ? 1'h1 : map_has_4[1];
-  assign choice_495_Y  = \$400  ? 1'h0 : choice_493_Y ;
-  assign \$670 [1] = rst ? 1'h0 : choice_495_Y ;
-  assign choice_499_Y  = \$398  ? 1'h1 : map_has_4[0];
-  assign \$681 [67:64] = reads ? \$645  : packets__payload[67:64];
-  assign choice_50_Y  = choice_51_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[4];
-  assign choice_501_Y  = \$396  ? 1'h0 : choice_499_Y ;
-  assign \$670 [0] = rst ? 1'h0 : choice_501_Y ;
-  assign choice_505_Y  = \$422  ? 1'h1 : map_has_4[6];
-  assign choice_507_Y  = \$420  ? 1'h0 : choice_505_Y ;
-  assign \$670 [6] = rst ? 1'h0 : choice_507_Y ;
-  assign choice_511_Y  = \$394  ? 1'h1 : items_has_4[7];
-  assign choice_513_Y  = \$392  ? 1'h0 : choice_511_Y ;
-  assign \$669 [7] = rst ? 1'h0 : choice_513_Y ;
-  assign choice_517_Y  = \$386  ? 1'h1 : items_has_4[5];
-  assign choice_519_Y  = \$384  ? 1'h0 : choice_517_Y ;
-  assign choice_51_CMP  = \$619 [2:0] == (* full_case = 32'd1 *) 3'h4;
-  assign choice_52_Y  = final_sig ? choice_50_Y  : last[4];
-  assign \$669 [5] = rst ? 1'h0 : choice_519_Y ;
-  assign choice_523_Y  = \$382  ? 1'h1 : items_has_4[4];
-  assign choice_525_Y  = \$380  ? 1'h0 : choice_523_Y ;
-  assign \$669 [4] = rst ? 1'h0 : choice_525_Y ;
-  assign choice_529_Y  = \$378  ? 1'h1 : items_has_4[3];
-  assign choice_531_Y  = \$376  ? 1'h0 : choice_529_Y ;
-  assign \$669 [3] = rst ? 1'h0 : choice_531_Y ;
-  assign choice_535_Y  = \$374  ? 1'h1 : items_has_4[2];
-  assign choice_537_Y  = \$372  ? 1'h0 : choice_535_Y ;
-  assign \$669 [2] = rst ? 1'h0 : choice_537_Y ;
-  assign choice_54_Y  = writes ? choice_52_Y  : last[4];
-  assign choice_541_Y  = \$370  ? 1'h1 : items_has_4[1];
-  assign choice_543_Y  = \$368  ? 1'h0 : choice_541_Y ;
-  assign \$669 [1] = rst ? 1'h0 : choice_543_Y ;
-  assign choice_547_Y  = \$366  ? 1'h1 : items_has_4[0];
-  assign choice_549_Y  = \$364  ? 1'h0 : choice_547_Y ;
-  assign \$669 [0] = rst ? 1'h0 : choice_549_Y ;
-  assign choice_553_Y  = \$390  ? 1'h1 : items_has_4[6];
-  assign choice_555_Y  = \$388  ? 1'h0 : choice_553_Y ;
-  assign \$669 [6] = rst ? 1'h0 : choice_555_Y ;
-  assign choice_559_Y  = \$362  ? 1'h1 : map_has_3[7];
-  assign choice_561_Y  = \$360  ? 1'h0 : choice_559_Y ;
-  assign \$668 [7] = rst ? 1'h0 : choice_561_Y ;
-  assign choice_565_Y  = \$354  ? 1'h1 : map_has_3[5];
-  assign choice_567_Y  = \$352  ? 1'h0 : choice_565_Y ;
-  assign \$668 [5] = rst ? 1'h0 : choice_567_Y ;
-  assign choice_571_Y  = \$350  ? 1'h1 : map_has_3[4];
-  assign choice_573_Y  = \$348  ? 1'h0 : choice_571_Y ;
-  assign \$668 [4] = rst ? 1'h0 : choice_573_Y ;
-  assign choice_577_Y  = \$346  ? 1'h1 : map_has_3[3];
-  assign choice_579_Y  = \$344  ? 1'h0 : choice_577_Y ;
-  assign \$668 [3] = rst ? 1'h0 : choice_579_Y ;
-  assign choice_583_Y  = \$342  ? 1'h1 : map_has_3[2];
-  assign choice_585_Y  = \$340  ? 1'h0 : choice_583_Y ;
-  assign \$668 [2] = rst ? 1'h0 : choice_585_Y ;
-  assign choice_589_Y  = \$338  ? 1'h1 : map_has_3[1];
-  assign choice_59_Y  = choice_60_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_54_Y ;
-  assign choice_591_Y  = \$336  ? 1'h0 : choice_589_Y ;
-  assign \$668 [1] = rst ? 1'h0 : choice_591_Y ;
-  assign choice_595_Y  = \$334  ? 1'h1 : map_has_3[0];
-  assign choice_597_Y  = \$332  ? 1'h0 : choice_595_Y ;
-  assign \$668 [0] = rst ? 1'h0 : choice_597_Y ;
-  assign choice_601_Y  = \$358  ? 1'h1 : map_has_3[6];
-  assign choice_603_Y  = \$356  ? 1'h0 : choice_601_Y ;
-  assign \$668 [6] = rst ? 1'h0 : choice_603_Y ;
-  assign choice_607_Y  = \$330  ? 1'h1 : items_has_3[7];
-  assign choice_609_Y  = \$328  ? 1'h0 : choice_607_Y ;
-  assign choice_60_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h4;
-  assign choice_61_Y  = reads ? choice_59_Y  : choice_54_Y ;
-  assign \$667 [7] = rst ? 1'h0 : choice_609_Y ;
-  assign choice_613_Y  = \$322  ? 1'h1 : items_has_3[5];
-  assign choice_615_Y  = \$320  ? 1'h0 : choice_613_Y ;
-  assign \$667 [5] = rst ? 1'h0 : choice_615_Y ;
-  assign choice_619_Y  = \$318  ? 1'h1 : items_has_3[4];
-  assign choice_621_Y  = \$316  ? 1'h0 : choice_619_Y ;
-  assign \$667 [4] = rst ? 1'h0 : choice_621_Y ;
-  assign choice_625_Y  = \$314  ? 1'h1 : items_has_3[3];
-  assign choice_627_Y  = \$312  ? 1'h0 : choice_625_Y ;
-  assign \$667 [3] = rst ? 1'h0 : choice_627_Y ;
-  assign \$678 [4] = rst ? 1'h0 : choice_61_Y ;
-  assign choice_631_Y  = \$310  ? 1'h1 : items_has_3[2];
-  assign choice_633_Y  = \$308  ? 1'h0 : choice_631_Y ;
-  assign \$667 [2] = rst ? 1'h0 : choice_633_Y ;
-  assign choice_637_Y  = \$306  ? 1'h1 : items_has_3[1];
-  assign choice_639_Y  = \$304  ? 1'h0 : choice_637_Y ;
-  assign \$667 [1] = rst ? 1'h0 : choice_639_Y ;
-  assign choice_643_Y  = \$302  ? 1'h1 : items_has_3[0];
-  assign choice_645_Y  = \$300  ? 1'h0 : choice_643_Y ;
-  assign \$667 [0] = rst ? 1'h0 : choice_645_Y ;
-  assign choice_649_Y  = \$326  ? 1'h1 : items_has_3[6];
-  assign choice_651_Y  = \$324  ? 1'h0 : choice_649_Y ;
-  assign \$667 [6] = rst ? 1'h0 : choice_651_Y ;
-  assign choice_655_Y  = \$298  ? 1'h1 : map_has_2[7];
-  assign choice_657_Y  = \$296  ? 1'h0 : choice_655_Y ;
-  assign \$666 [7] = rst ? 1'h0 : choice_657_Y ;
-  assign choice_661_Y  = \$290  ? 1'h1 : map_has_2[5];
-  assign choice_663_Y  = \$288  ? 1'h0 : choice_661_Y ;
-  assign \$666 [5] = rst ? 1'h0 : choice_663_Y ;
-  assign choice_667_Y  = \$286  ? 1'h1 : map_has_2[4];
-  assign choice_669_Y  = \$284  ? 1'h0 : choice_667_Y ;
-  assign \$666 [4] = rst ? 1'h0 : choice_669_Y ;
-  assign choice_673_Y  = \$282  ? 1'h1 : map_has_2[3];
-  assign choice_675_Y  = \$280  ? 1'h0 : choice_673_Y ;
-  assign \$666 [3] = rst ? 1'h0 : choice_675_Y ;
-  assign choice_679_Y  = \$278  ? 1'h1 : map_has_2[2];
-  assign choice_681_Y  = \$276  ? 1'h0 : choice_679_Y ;
-  assign \$666 [2] = rst ? 1'h0 : choice_681_Y ;
-  assign choice_685_Y  = \$274  ? 1'h1 : map_has_2[1];
-  assign choice_687_Y  = \$272  ? 1'h0 : choice_685_Y ;
-  assign \$666 [1] = rst ? 1'h0 : choice_687_Y ;
-  assign choice_69_Y  = choice_70_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[3];
-  assign choice_691_Y  = \$270  ? 1'h1 : map_has_2[0];
-  assign choice_693_Y  = \$268  ? 1'h0 : choice_691_Y ;
-  assign \$666 [0] = rst ? 1'h0 : choice_693_Y ;
-  assign choice_697_Y  = \$294  ? 1'h1 : map_has_2[6];
-  assign choice_699_Y  = \$292  ? 1'h0 : choice_697_Y ;
-  assign \$681 [63:0] = reads ? { \$644 , \$641 , \$638 , \$635 , \$632 , \$629 , \$626 , \$623  } : packets__payload[63:0];
-  assign \$666 [6] = rst ? 1'h0 : choice_699_Y ;
-  assign choice_703_Y  = \$266  ? 1'h1 : items_has_2[7];
-  assign choice_705_Y  = \$264  ? 1'h0 : choice_703_Y ;
-  assign \$665 [7] = rst ? 1'h0 : choice_705_Y ;
-  assign choice_709_Y  = \$258  ? 1'h1 : items_has_2[5];
-  assign choice_70_CMP  = \$619 [2:0] == (* full_case = 32'd1 *) 3'h3;
-  assign choice_71_Y  = final_sig ? choice_69_Y  : last[3];
-  assign choice_711_Y  = \$256  ? 1'h0 : choice_709_Y ;
-  assign \$665 [5] = rst ? 1'h0 : choice_711_Y ;
-  assign choice_715_Y  = \$254  ? 1'h1 : items_has_2[4];
-  assign choice_717_Y  = \$252  ? 1'h0 : choice_715_Y ;
-  assign \$665 [4] = rst ? 1'h0 : choice_717_Y ;
-  assign choice_721_Y  = \$250  ? 1'h1 : items_has_2[3];
-  assign choice_723_Y  = \$248  ? 1'h0 : choice_721_Y ;
-  assign \$665 [3] = rst ? 1'h0 : choice_723_Y ;
-  assign choice_727_Y  = \$246  ? 1'h1 : items_has_2[2];
-  assign choice_729_Y  = \$244  ? 1'h0 : choice_727_Y ;
-  assign choice_73_Y  = writes ? choice_71_Y  : last[3];
-  assign \$665 [2] = rst ? 1'h0 : choice_729_Y ;
-  assign choice_733_Y  = \$242  ? 1'h1 : items_has_2[1];
-  assign choice_735_Y  = \$240  ? 1'h0 : choice_733_Y ;
-  assign \$665 [1] = rst ? 1'h0 : choice_735_Y ;
-  assign choice_739_Y  = \$238  ? 1'h1 : items_has_2[0];
-  assign choice_741_Y  = \$236  ? 1'h0 : choice_739_Y ;
-  assign \$665 [0] = rst ? 1'h0 : choice_741_Y ;
-  assign choice_745_Y  = \$262  ? 1'h1 : items_has_2[6];
-  assign choice_747_Y  = \$260  ? 1'h0 : choice_745_Y ;
-  assign \$665 [6] = rst ? 1'h0 : choice_747_Y ;
-  assign choice_751_Y  = \$234  ? 1'h1 : map_has_1[7];
-  assign choice_753_Y  = \$232  ? 1'h0 : choice_751_Y ;
-  assign \$664 [7] = rst ? 1'h0 : choice_753_Y ;
-  assign choice_757_Y  = \$226  ? 1'h1 : map_has_1[5];
-  assign choice_759_Y  = \$224  ? 1'h0 : choice_757_Y ;
-  assign \$664 [5] = rst ? 1'h0 : choice_759_Y ;
-  assign choice_763_Y  = \$222  ? 1'h1 : map_has_1[4];
-  assign choice_765_Y  = \$220  ? 1'h0 : choice_763_Y ;
-  assign \$664 [4] = rst ? 1'h0 : choice_765_Y ;
-  assign choice_769_Y  = \$218  ? 1'h1 : map_has_1[3];
-  assign choice_771_Y  = \$216  ? 1'h0 : choice_769_Y ;
-  assign \$664 [3] = rst ? 1'h0 : choice_771_Y ;
-  assign choice_775_Y  = \$214  ? 1'h1 : map_has_1[2];
-  assign choice_777_Y  = \$212  ? 1'h0 : choice_775_Y ;
-  assign \$664 [2] = rst ? 1'h0 : choice_777_Y ;
-  assign choice_781_Y  = \$210  ? 1'h1 : map_has_1[1];
-  assign choice_783_Y  = \$208  ? 1'h0 : choice_781_Y ;
-  assign \$664 [1] = rst ? 1'h0 : choice_783_Y ;
-  assign choice_787_Y  = \$206  ? 1'h1 : map_has_1[0];
-  assign choice_789_Y  = \$204  ? 1'h0 : choice_787_Y ;
-  assign choice_79_Y  = choice_80_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_73_Y ;
-  assign \$664 [0] = rst ? 1'h0 : choice_789_Y ;
-  assign choice_793_Y  = \$230  ? 1'h1 : map_has_1[6];
-  assign choice_795_Y  = \$228  ? 1'h0 : choice_793_Y ;
-  assign \$664 [6] = rst ? 1'h0 : choice_795_Y ;
-  assign choice_799_Y  = \$202  ? 1'h1 : items_has_1[7];
-  assign choice_801_Y  = \$200  ? 1'h0 : choice_799_Y ;
-  assign \$663 [7] = rst ? 1'h0 : choice_801_Y ;
-  assign choice_805_Y  = \$194  ? 1'h1 : items_has_1[5];
-  assign choice_807_Y  = \$192  ? 1'h0 : choice_805_Y ;
-  assign \$663 [5] = rst ? 1'h0 : choice_807_Y ;
-  assign choice_80_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h3;
-  assign choice_81_Y  = reads ? choice_79_Y  : choice_73_Y ;
-  assign choice_811_Y  = \$190  ? 1'h1 : items_has_1[4];
-  assign choice_813_Y  = \$188  ? 1'h0 : choice_811_Y ;
-  assign \$663 [4] = rst ? 1'h0 : choice_813_Y ;
-  assign choice_817_Y  = \$186  ? 1'h1 : items_has_1[3];
-  assign choice_819_Y  = \$184  ? 1'h0 : choice_817_Y ;
-  assign \$663 [3] = rst ? 1'h0 : choice_819_Y ;
-  assign choice_823_Y  = \$182  ? 1'h1 : items_has_1[2];
-  assign choice_825_Y  = \$180  ? 1'h0 : choice_823_Y ;
-  assign \$663 [2] = rst ? 1'h0 : choice_825_Y ;
-  assign choice_829_Y  = \$178  ? 1'h1 : items_has_1[1];
-  assign \$678 [3] = rst ? 1'h0 : choice_81_Y ;
-  assign choice_831_Y  = \$176  ? 1'h0 : choice_829_Y ;
-  assign \$663 [1] = rst ? 1'h0 : choice_831_Y ;
-  assign choice_835_Y  = \$174  ? 1'h1 : items_has_1[0];
-  assign choice_837_Y  = \$172  ? 1'h0 : choice_835_Y ;
-  assign \$663 [0] = rst ? 1'h0 : choice_837_Y ;
-  assign choice_841_Y  = \$198  ? 1'h1 : items_has_1[6];
-  assign choice_843_Y  = \$196  ? 1'h0 : choice_841_Y ;
-  assign \$663 [6] = rst ? 1'h0 : choice_843_Y ;
-  assign choice_847_Y  = \$170  ? 1'h1 : map_has_0[7];
-  assign choice_849_Y  = \$168  ? 1'h0 : choice_847_Y ;
-  assign \$662 [7] = rst ? 1'h0 : choice_849_Y ;
-  assign choice_853_Y  = \$162  ? 1'h1 : map_has_0[5];
-  assign choice_855_Y  = \$160  ? 1'h0 : choice_853_Y ;
-  assign \$662 [5] = rst ? 1'h0 : choice_855_Y ;
-  assign choice_859_Y  = \$158  ? 1'h1 : map_has_0[4];
-  assign choice_861_Y  = \$156  ? 1'h0 : choice_859_Y ;
-  assign \$662 [4] = rst ? 1'h0 : choice_861_Y ;
-  assign choice_865_Y  = \$154  ? 1'h1 : map_has_0[3];
-  assign choice_867_Y  = \$152  ? 1'h0 : choice_865_Y ;
-  assign \$662 [3] = rst ? 1'h0 : choice_867_Y ;
-  assign choice_871_Y  = \$150  ? 1'h1 : map_has_0[2];
-  assign choice_873_Y  = \$148  ? 1'h0 : choice_871_Y ;
-  assign \$662 [2] = rst ? 1'h0 : choice_873_Y ;
-  assign choice_877_Y  = \$146  ? 1'h1 : map_has_0[1];
-  assign choice_879_Y  = \$144  ? 1'h0 : choice_877_Y ;
-  assign \$662 [1] = rst ? 1'h0 : choice_879_Y ;
-  assign choice_883_Y  = \$142  ? 1'h1 : map_has_0[0];
-  assign choice_885_Y  = \$140  ? 1'h0 : choice_883_Y ;
-  assign \$662 [0] = rst ? 1'h0 : choice_885_Y ;
-  assign choice_889_Y  = \$166  ? 1'h1 : map_has_0[6];
-  assign choice_891_Y  = \$164  ? 1'h0 : choice_889_Y ;
-  assign \$662 [6] = rst ? 1'h0 : choice_891_Y ;
-  assign choice_895_Y  = \$138  ? 1'h1 : items_has_0[7];
-  assign choice_897_Y  = \$136  ? 1'h0 : choice_895_Y ;
-  assign \$661 [7] = rst ? 1'h0 : choice_897_Y ;
-  assign choice_9_Y  = reads ? \$620 [3:0] : first;
-  assign choice_90_Y  = choice_91_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[2];
-  assign choice_901_Y  = \$130  ? 1'h1 : items_has_0[5];
-  assign choice_903_Y  = \$128  ? 1'h0 : choice_901_Y ;
-  assign \$661 [5] = rst ? 1'h0 : choice_903_Y ;
-  assign choice_907_Y  = \$126  ? 1'h1 : items_has_0[4];
-  assign choice_909_Y  = \$124  ? 1'h0 : choice_907_Y ;
-  assign \$661 [4] = rst ? 1'h0 : choice_909_Y ;
-  assign choice_913_Y  = \$122  ? 1'h1 : items_has_0[3];
-  assign choice_915_Y  = \$120  ? 1'h0 : choice_913_Y ;
-  assign \$661 [3] = rst ? 1'h0 : choice_915_Y ;
-  assign choice_919_Y  = \$118  ? 1'h1 : items_has_0[2];
-  assign choice_91_CMP  = \$619 [2:0] == (* full_case = 32'd1 *) 3'h2;
-  assign choice_92_Y  = final_sig ? choice_90_Y  : last[2];
-  assign choice_921_Y  = \$116  ? 1'h0 : choice_919_Y ;
-  assign \$661 [2] = rst ? 1'h0 : choice_921_Y ;
-  assign choice_925_Y  = \$114  ? 1'h1 : items_has_0[1];
-  assign choice_927_Y  = \$112  ? 1'h0 : choice_925_Y ;
-  assign \$661 [1] = rst ? 1'h0 : choice_927_Y ;
-  assign choice_931_Y  = \$110  ? 1'h1 : items_has_0[0];
-  assign choice_933_Y  = \$108  ? 1'h0 : choice_931_Y ;
-  assign \$661 [0] = rst ? 1'h0 : choice_933_Y ;
-  assign choice_937_Y  = \$134  ? 1'h1 : items_has_0[6];
-  assign choice_939_Y  = \$132  ? 1'h0 : choice_937_Y ;
-  assign choice_94_Y  = writes ? choice_92_Y  : last[2];
-  assign \$661 [6] = rst ? 1'h0 : choice_939_Y ;
-  assign choice_943_Y  = reads ? \$106 [3:0] : bound;
-  assign \$660  = rst ? 4'h5 : choice_943_Y ;
-  assign \$659  = rst ? 1'h1 : \$105 ;
-  assign choice_949_Y  = takes ? \$104  : last_bytes;
-  assign \$658  = rst ? 4'h0 : choice_949_Y ;
-  assign choice_953_Y  = takes ? words__payload_128[31] : marked;
-  assign \$657  = rst ? 1'h0 : choice_953_Y ;
-  assign choice_957_Y  = takes ? words__payload_128[29] : final_sig;
-  assign \$656  = rst ? 1'h0 : choice_957_Y ;
-  assign choice_961_Y  = takes ? end_sig[6:3] : done;
-  assign \$655  = rst ? 4'h0 : choice_961_Y ;
-  assign choice_965_Y  = takes ? end_sig : at;
-  assign \$654  = rst ? 7'h00 : choice_965_Y ;
-  assign choice_969_Y  = takes ? words__payload_128[7:4] : map_size;
-  assign \$653  = rst ? 4'h0 : choice_969_Y ;
-  assign choice_973_Y  = takes ? { \$13 [3:0], base[2:0] } : map_start;
-  assign \$652  = rst ? 7'h00 : choice_973_Y ;
-  assign \$651  = takes ? words__payload_0[127:64] : map_placed;
-  assign choice_979_Y  = takes ? words__payload_128[3:0] : items_size;
-  assign \$650  = rst ? 4'h0 : choice_979_Y ;
-  assign choice_983_Y  = takes ? \$101  : items_start;
-  assign \$649  = rst ? 7'h00 : choice_983_Y ;
-  assign \$648  = takes ? words__payload_0[63:0] : items_placed;
-  assign \$647  = rst ? 1'h0 : takes;
-  assign ends__write__data = { marked, last_bytes };
-  assign words__payload = { words__payload_128, words__payload_0 };
-  assign map_at = { \$13 [3:0], base[2:0] };
-  assign \ends__read__data.error  = ends__read__data[4];
-  assign \ends__read__data.count  = ends__read__data[3:0];
-  assign \payload.last  = packets__payload[68];
-  assign \payload.count  = packets__payload[67:64];
-  assign \payload.data[7]  = packets__payload[63:56];
-  assign \payload.data[6]  = packets__payload[55:48];
-  assign \payload.data[5]  = packets__payload[47:40];
-  assign \payload.data[4]  = packets__payload[39:32];
-  assign \payload.data[3]  = packets__payload[31:24];
-  assign \payload.data[2]  = packets__payload[23:16];
-  assign \payload.data[1]  = packets__payload[15:8];
-  assign \payload.data[0]  = packets__payload[7:0];
-  assign \payload.data  = packets__payload[63:0];
-  assign \packets__payload.last  = packets__payload[68];
-  assign \packets__payload.count  = packets__payload[67:64];
-  assign \packets__payload.data[7]  = packets__payload[63:56];
-  assign \packets__payload.data[6]  = packets__payload[55:48];
-  assign \packets__payload.data[5]  = packets__payload[47:40];
-  assign \packets__payload.data[4]  = packets__payload[39:32];
-  assign \packets__payload.data[3]  = packets__payload[31:24];
-  assign \packets__payload.data[2]  = packets__payload[23:16];
-  assign \packets__payload.data[1]  = packets__payload[15:8];
-  assign \packets__payload.data[0]  = packets__payload[7:0];
-  assign \packets__payload.data  = packets__payload[63:0];
-  assign \ends__write__data.error  = ends__write__data[4];
-  assign \ends__write__data.count  = ends__write__data[3:0];
-  assign \words__payload.error  = words__payload_128[31];
-  assign \words__payload.empty  = words__payload_128[30];
-  assign \words__payload.last  = words__payload_128[29];
-  assign \words__payload.max_beats  = words__payload_128[28:26];
-  assign \words__payload.end_mask  = words__payload_128[25:23];
-  assign \words__payload.to_end  = words__payload_128[22:17];
-  assign \words__payload.map_mask  = words__payload_128[16:14];
-  assign \words__payload.to_map  = words__payload_128[13:9];
-  assign \words__payload.lead  = words__payload_128[8];
-  assign \words__payload.map_bytes  = words__payload_128[7:4];
-  assign \words__payload.items_bytes  = words__payload_128[3:0];
-  assign \words__payload.map  = words__payload_0[127:64];
-  assign \words__payload.items  = words__payload_0[63:0];
-  assign \$100 [0] = is_last;
-  assign \$96 [2:0] = ends__write__addr;
-  assign \$95 [0] = map_here_7;
-  assign \$94 [2:0] = map_7__write__addr;
-  assign \$91 [0] = items_here_7;
-  assign \$90 [2:0] = items_7__write__addr;
-  assign \$87 [0] = map_here_6;
-  assign \$86 [2:0] = map_6__write__addr;
-  assign \$82 [0] = items_here_6;
-  assign \$81 [2:0] = items_6__write__addr;
-  assign \$77 [0] = map_here_5;
-  assign \$76 [2:0] = map_5__write__addr;
-  assign \$72 [0] = items_here_5;
-  assign \$71 [2:0] = items_5__write__addr;
-  assign \$67 [0] = map_here_4;
-  assign \$66 [2:0] = map_4__write__addr;
-  assign \$62 [0] = items_here_4;
-  assign \$61 [2:0] = items_4__write__addr;
-  assign \$57 [0] = map_here_3;
-  assign \$56 [2:0] = map_3__write__addr;
-  assign \$52 [0] = items_here_3;
-  assign \$51 [2:0] = items_3__write__addr;
-  assign \$47 [0] = map_here_2;
-  assign \$46 [2:0] = map_2__write__addr;
-  assign \$42 [0] = items_here_2;
-  assign \$41 [2:0] = items_2__write__addr;
-  assign \$37 [0] = map_here_1;
-  assign \$36 [2:0] = map_1__write__addr;
-  assign \$32 [0] = items_here_1;
-  assign \$31 [2:0] = items_1__write__addr;
-  assign \$27 [0] = map_here_0;
-  assign \$26 [2:0] = map_0__write__addr;
-  assign \$22 [0] = items_here_0;
-  assign \$21 [2:0] = items_0__write__addr;
-  assign \$17 [3:0] = room;
-  assign \$16 [3:0] = newest;
-  assign \$14 [6:0] = map_end;
-  assign \$12 [6:0] = end_sig;
-  assign \$7 [6:0] = base;
-  assign \$2 [6:0] = \total$6 ;
-  assign \$1 [6:0] = total;
-  assign error_now = error;
-  assign payload = packets__payload;
-  assign ends__read__addr = first[2:0];
-  assign map_7__read__addr = first[2:0];
-  assign map_7__write__en = map_used_7;
-  assign map_7__write__data = map_placed[63:56];
-  assign map_slot_7 = map_7__write__addr;
-  assign map_index_7 = 3'h7;
-  assign items_7__read__addr = first[2:0];
-  assign items_7__write__en = items_used_7;
-  assign items_7__write__data = items_placed[63:56];
-  assign items_slot_7 = items_7__write__addr;
-  assign items_index_7 = 3'h7;
-  assign map_6__read__addr = first[2:0];
-  assign map_6__write__en = map_used_6;
-  assign map_6__write__data = map_placed[55:48];
-  assign map_slot_6 = map_6__write__addr;
-  assign map_index_6 = 3'h6;
-  assign items_6__read__addr = first[2:0];
-  assign items_6__write__en = items_used_6;
-  assign items_6__write__data = items_placed[55:48];
-  assign items_slot_6 = items_6__write__addr;
-  assign items_index_6 = 3'h6;
-  assign map_5__read__addr = first[2:0];
-  assign map_5__write__en = map_used_5;
-  assign map_5__write__data = map_placed[47:40];
-  assign map_slot_5 = map_5__write__addr;
-  assign map_index_5 = 3'h5;
-  assign items_5__read__addr = first[2:0];
-  assign items_5__write__en = items_used_5;
-  assign items_5__write__data = items_placed[47:40];
-  assign items_slot_5 = items_5__write__addr;
-  assign items_index_5 = 3'h5;
-  assign map_4__read__addr = first[2:0];
-  assign map_4__write__en = map_used_4;
-  assign map_4__write__data = map_placed[39:32];
-  assign map_slot_4 = map_4__write__addr;
-  assign map_index_4 = 3'h4;
-  assign items_4__read__addr = first[2:0];
-  assign items_4__write__en = items_used_4;
-  assign items_4__write__data = items_placed[39:32];
-  assign items_slot_4 = items_4__write__addr;
-  assign items_index_4 = 3'h4;
-  assign map_3__read__addr = first[2:0];
-  assign map_3__write__en = map_used_3;
-  assign map_3__write__data = map_placed[31:24];
-  assign map_slot_3 = map_3__write__addr;
-  assign map_index_3 = 3'h3;
-  assign items_3__read__addr = first[2:0];
-  assign items_3__write__en = items_used_3;
-  assign items_3__write__data = items_placed[31:24];
-  assign items_slot_3 = items_3__write__addr;
-  assign items_index_3 = 3'h3;
-  assign map_2__read__addr = first[2:0];
-  assign map_2__write__en = map_used_2;
-  assign map_2__write__data = map_placed[23:16];
-  assign map_slot_2 = map_2__write__addr;
-  assign map_index_2 = 3'h2;
-  assign items_2__read__addr = first[2:0];
-  assign items_2__write__en = items_used_2;
-  assign items_2__write__data = items_placed[23:16];
-  assign items_slot_2 = items_2__write__addr;
-  assign items_index_2 = 3'h2;
-  assign map_1__read__addr = first[2:0];
-  assign map_1__write__en = map_used_1;
-  assign map_1__write__data = map_placed[15:8];
-  assign map_slot_1 = map_1__write__addr;
-  assign map_index_1 = 3'h1;
-  assign items_1__read__addr = first[2:0];
-  assign items_1__write__en = items_used_1;
-  assign items_1__write__data = items_placed[15:8];
-  assign items_slot_1 = items_1__write__addr;
-  assign items_index_1 = 3'h1;
-  assign map_0__read__addr = first[2:0];
-  assign map_0__write__en = map_used_0;
-  assign map_0__write__data = map_placed[7:0];
-  assign map_slot_0 = map_0__write__addr;
-  assign map_index_0 = 3'h0;
-  assign items_0__read__addr = first[2:0];
-  assign items_0__write__en = items_used_0;
-  assign items_0__write__data = items_placed[7:0];
-  assign items_slot_0 = items_0__write__addr;
-  assign items_index_0 = 3'h0;
-  assign ready = words__ready;
+    ending <= \$41 ;
+  assign choice_1_Y  = word__payload[71] ? word__payload[72] : marked;
+  assign \$44  = rst ? 4'h0 : choice_9_Y ;
+  assign choice_13_Y  = \$24  ? \$31  : inside_sig;
+  assign \$43  = rst ? 1'h0 : choice_13_Y ;
+  assign choice_17_Y  = leaves ? \$23 [1:0] : end_beats;
+  assign choice_19_Y  = word__payload[71] ? beats[1:0] : choice_17_Y ;
+  assign choice_21_Y  = \$24  ? choice_19_Y  : choice_17_Y ;
+  assign \$42  = rst ? 2'h0 : choice_21_Y ;
+  assign choice_25_Y  = word__payload[71] ? 1'h1 : still_ending;
+  assign choice_27_Y  = \$24  ? choice_25_Y  : still_ending;
+  assign \$41  = rst ? 1'h0 : choice_27_Y ;
+  assign choice_3_Y  = \$24  ? choice_1_Y  : marked;
+  assign choice_31_Y  = word__payload[71] ? { beats[1:0], 3'h0 } : \$27 [4:0];
+  assign choice_33_Y  = \$24  ? choice_31_Y  : rest;
+  assign \$40  = rst ? 5'h00 : choice_33_Y ;
+  assign choice_37_Y  = \$24  ? \$25  : kept;
+  assign \$39  = rst ? 64'h0000000000000000 : choice_37_Y ;
+  assign choice_41_Y  = word__payload[71] ? \$22 [4:0] : 5'h00;
+  assign beats = \$15  ? choice_41_Y  : 5'h00;
+  assign choice_45_Y  = word__payload[71] ? \$16 [4:0] : 5'h00;
+  assign \$like  = \$15  ? choice_45_Y  : 5'h00;
+  assign \$45  = rst ? 1'h0 : choice_3_Y ;
+  assign choice_7_Y  = word__payload[71] ? \$38  : end_count;
+  assign choice_9_Y  = \$24  ? choice_7_Y  : end_count;
+  assign \word__payload.error  = word__payload[72];
+  assign \word__payload.last  = word__payload[71];
+  assign \word__payload.align  = word__payload[70:68];
+  assign \word__payload.count  = word__payload[67:64];
+  assign \word__payload.data[7]  = word__payload[63:56];
+  assign \word__payload.data[6]  = word__payload[55:48];
+  assign \word__payload.data[5]  = word__payload[47:40];
+  assign \word__payload.data[4]  = word__payload[39:32];
+  assign \word__payload.data[3]  = word__payload[31:24];
+  assign \word__payload.data[2]  = word__payload[23:16];
+  assign \word__payload.data[1]  = word__payload[15:8];
+  assign \word__payload.data[0]  = word__payload[7:0];
+  assign \word__payload.data  = word__payload[63:0];
+  assign \packets__payload.last  = is_last;
+  assign \packets__payload.data[7]  = store[63:56];
+  assign \packets__payload.data[6]  = store[55:48];
+  assign \packets__payload.data[5]  = store[47:40];
+  assign \packets__payload.data[4]  = store[39:32];
+  assign \packets__payload.data[3]  = store[31:24];
+  assign \packets__payload.data[2]  = store[23:16];
+  assign \packets__payload.data[1]  = store[15:8];
+  assign \packets__payload.data[0]  = store[7:0];
+  assign \packets__payload.data  = store;
+  assign \$14 [2:0] = pad;
+  assign \$5 [4:0] = rest;
+  assign packets__payload = { is_last, \packets__payload.count , store };
+  assign position = 3'h0;
 endmodule
