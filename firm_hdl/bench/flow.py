@@ -153,7 +153,7 @@ def measure(
 
 
 def _area(device: Device, top: dict[str, Any]) -> Area:
-    """Count a mapped circuit's cells. A Yosys that renames its cells is an error, not zero cells."""
+    """Count a mapped circuit's cells. Unknown names of cells are an error, not zero cells."""
     counts = cell_counts(top)
     area = device.area(counts)
     if not area.lut and not area.ff:
