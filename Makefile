@@ -108,7 +108,7 @@ mutate: $(VENV)/.compiled tools ## faults in the program, and which tests notice
 	$(BIN)/python -m tools.mutation --first --jobs $(JOBS) --each 1 --most 90 $(MUTATE_ARGS)
 
 # Figures of circuits that did not change are kept in build/bench; BENCH_ARGS='--group beats' takes some.
-bench: $(VENV)/.installed-bench ## area, clock rate and cycles for docs/performance.md (an hour or two)
+bench: $(VENV)/.installed-bench oracles ## area, clock rate, cycles, times of software for docs/performance.md (an hour or two)
 	$(BIN)/python -m firm_hdl.bench --jobs $(JOBS) $(BENCH_ARGS)
 	$(BIN)/firm-hdl build --force geometry_msgs/msg/Twist
 

@@ -18,13 +18,13 @@ PLAN = {"wire": None, "bus_bytes": 8, "max_message_bytes": 16 << 20}
 TAKEN = {
     "build": (
         ["a/B"],
-        {**ORIGINS, **PLAN, "types": ["a/B"], "window_words": 1, "out": "vhdl_out"}
-        | {"ports": "records", "force": False},
+        {**ORIGINS, **PLAN, "types": ["a/B"], "out": "vhdl_out"}
+        | {"ports": "records", "force": False, "jobs": None},
     ),
     "list": ([], ORIGINS),
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
-    "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B", "window_words": 1}),
-    "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"], "window_words": 1}),
+    "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B"}),
+    "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"]}),
     "md5": ([], {**ORIGINS, "types": [], "all": False}),
     "hash": ([], {**ORIGINS, "types": [], "all": False}),
     "proto": ([], {**ORIGINS, "types": [], "all": False, "no_quotes": False}),
@@ -57,6 +57,7 @@ TAKEN = {
             "bus_bytes": None,
             "direction": None,
             "device": "ecp5",
+            "software": False,
             "seeds": [1, 2, 3],
             "mapping": "",
             "messages": 16,
@@ -111,6 +112,16 @@ def test_what_must_be_said_must_be(command, capsys):
     assert "required" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("words", [["--window-words", "2"], ["--window-words=1"], ["--window"]])
+@pytest.mark.parametrize("command", ["build", "plan", "info"])
+def test_an_option_that_is_gone_is_refused_with_the_reason(command, words, capsys):
+    assert refused(*words_of(command, *words))
+    err = capsys.readouterr().err
+    assert f"{command}: error: argument --window-words: there is no such option any more: " in err
+    assert "--window-words" not in err.partition("error: ")[0]
+    assert refused("prove", *words)
+
+
 @pytest.mark.parametrize("command", ["list", "show", "plan"])
 def test_nobody_takes_one_word_too_many(command, capsys):
     assert refused(command, *TAKEN[command][0], "more")
@@ -144,7 +155,6 @@ def test_folders_exclude_recordings(capsys):
         ("wire", ["ros1", "cdr"], ["ROS1", ""]),
         ("distro", "noetic foxy humble iron jazzy kilted lyrical".split(), ["melodic", "rolling"]),
         ("bus_bytes", ["1", "2", "4", "8", "16", "32", "64"], ["0", "3", "128", "-8"]),
-        ("window_words", ["1", "2"], ["0", "3"]),
         ("max_message_bytes", ["1", str((1 << 32) - 1)], ["0", str(1 << 32), "-1", "", "1.5"]),
         ("jobs", ["1", "1000"], ["0", "-1", "x"]),
         ("timeout", ["1", "9999999"], ["0", "-1"]),

@@ -69,28 +69,6 @@ def test_plans_are_made_with_all_options(here, capsys, left_out):
     assert f"on {plan.wire}, {8 * plan.bus_bytes}-bit bus: {len(plan.steps)} step" in head
 
 
-def test_two_words_in_a_cycle_are_an_option_of_plan_info_and_build(here, capsys):
-    words = ["p/A", "--path", ".", "--bus-bytes", "2"]
-    assert main(["plan", *words, "--window-words", "2"]) == 0
-    wide = from_yaml(capsys.readouterr().out)
-    assert wide == planned("p/A", bus_bytes=2, window_words=2)
-    assert wide != planned("p/A", bus_bytes=2)
-    assert main(["info", *words, "--window-words", "2"]) == 0
-    assert f": {len(wide.steps)} steps" in capsys.readouterr().out
-    texts = set()
-    for window in (["--window-words", "2"], []):
-        assert main(["build", *words, "--out", "out", *window]) == 0
-        assert capsys.readouterr().out.startswith("wrote")
-        (folder,) = here.glob("out/*/p_msg_A_cdr_2")
-        options = json.loads((folder / "manifest.json").read_text())["inputs"]["options"]
-        assert options.get("window_words") == (2 if window else None)
-        assert (from_yaml((folder / "plan.yaml").read_text()) == wide) is bool(window)
-        texts.add((folder / "p_msg_A_cdr_2_deserializer_verilog.v").read_text())
-        assert main(["build", *words, "--out", "out", *window]) == 0
-        assert capsys.readouterr().out.startswith("current")
-    assert len(texts) == 2
-
-
 def test_build_is_given_all_options(here, monkeypatch):
     given = {}
     monkeypatch.setattr(BUILD, "build", lambda types, out, **options: given.update(

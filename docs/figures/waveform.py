@@ -138,7 +138,7 @@ def deserializer() -> dict[str, Any]:
         await ctx.tick()
         ctx.set(message.stamp.sec.ready, 1)
 
-    seen = record(dut, ports, 8, feed, take)
+    seen = record(dut, ports, 12, feed, take)
     return drawing("Deserializer of std_msgs/msg/Header, 8-byte bus", seen)
 
 
@@ -164,7 +164,7 @@ def serializer() -> dict[str, Any]:
         ctx.set(dut.status.ready, 1)
         await ctx.tick()
 
-    seen = record(dut, ports, 7, feed, take)
+    seen = record(dut, ports, 10, feed, take)
     return drawing("Serializer of std_msgs/msg/Header, 8-byte bus", seen)
 
 

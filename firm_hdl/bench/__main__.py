@@ -15,6 +15,7 @@ from tqdm import tqdm
 
 from firm_hdl.arguments import add_jobs
 from firm_hdl.bench.compare import compared
+from firm_hdl.bench.cycles import DIRECTIONS
 from firm_hdl.bench.devices import DEVICES
 from firm_hdl.bench.estimates import estimates_json
 from firm_hdl.bench.page import (
@@ -26,12 +27,24 @@ from firm_hdl.bench.page import (
     write_page,
 )
 from firm_hdl.bench.plots import area_plot, beats_plot, clock_plot
-from firm_hdl.bench.results import Result, read_results, results_text
+from firm_hdl.bench.results import Converted, Result, read_results, results_text
 from firm_hdl.bench.run import BenchTask, run_tasks
-from firm_hdl.bench.standard import ALL_TYPES, MEASURED, Group, group_tasks
+from firm_hdl.bench.software import (
+    Compared,
+    compare_software,
+    library_versions,
+    machine,
+    made_on,
+    software_rows,
+    software_table,
+)
+from firm_hdl.bench.standard import ALL_TYPES, MEASURED, SOFTWARE, Group, group_tasks
 from firm_hdl.bench.tables import row
 from firm_hdl.bench.tools import BenchError, versions
 from firm_hdl.terminal import printable_streams
+
+PARTS = (*MEASURED, "beats", "software")
+"""Groups of figures, by what the command line calls them."""
 
 KEPT = "performance.json"
 """File of all measured figures, beside the page's plots."""
@@ -54,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--group",
         action="append",
-        choices=[*MEASURED, "beats"],
+        choices=PARTS,
         help="parts of the page to write; repeatable; default: all",
     )
     add_jobs(parser)
@@ -67,23 +80,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _measure_all(given: argparse.Namespace) -> int:
-    names = given.group or [*MEASURED, "beats"]
+    names = given.group or PARTS
     figures = Path(given.figures)
     groups = {name: group for name, group in MEASURED.items() if name in names}
     for device in {device for group in groups.values() for device in group.devices}:
         versions(DEVICES[device])
+    if "software" in names:
+        library_versions()
     results = {name: _run(name, group, given.jobs, given.cache) for name, group in groups.items()}
     sets = {}
     if "beats" in names:
         sets = {name: _run(name, group, given.jobs, None) for name, group in ALL_TYPES.items()}
+    groups_of_software = SOFTWARE if "software" in names else ()
+    software = [_run(group.title, group, given.jobs, None) for group in groups_of_software]
     wrong = [
-        each for found in (*results.values(), *sets.values()) for each in found if each.problem
+        each
+        for found in (*results.values(), *sets.values(), *software)
+        for each in found
+        if each.problem
     ]
     if wrong:
         print(*(f"{each.converter}: {each.problem}" for each in wrong), sep="\n", file=sys.stderr)
         return 1
     _write_plots(figures, results, sets)
-    _write_parts(Path(given.page), results, sets)
+    _write_parts(Path(given.page), results, sets, _compare_all(software))
     measured = [each for found in results.values() for each in found]
     if measured:
         _keep(figures / KEPT, Path(given.estimates), measured)
@@ -110,6 +130,24 @@ def _order(result: Result) -> tuple[str, ...]:
     return (device, what.type, what.wire, f"{what.bus_bytes:02}", what.direction)
 
 
+def _compare_all(software: list[list[Result]]) -> list[Compared]:
+    """Time libraries with the messages of converters, when nothing else runs."""
+    found: list[Compared] = []
+    for group, results in zip(SOFTWARE, software, strict=False):
+        for task in group_tasks(group):
+            if task.converter.direction != DIRECTIONS[0]:
+                continue
+            what = _type_of(task.converter)
+            same = [each for each in results if _type_of(each.converter) == what]
+            found.append(compare_software(task, same))
+            print(software_rows(found[-1]), flush=True)
+    return found
+
+
+def _type_of(what: Converted) -> tuple[str, str]:
+    return what.type, what.wire
+
+
 def _write_plots(
     folder: Path, results: Mapping[str, list[Result]], sets: Mapping[str, list[Result]]
 ) -> None:
@@ -125,7 +163,10 @@ def _write_plots(
 
 
 def _write_parts(
-    page: Path, results: Mapping[str, list[Result]], sets: Mapping[str, list[Result]]
+    page: Path,
+    results: Mapping[str, list[Result]],
+    sets: Mapping[str, list[Result]],
+    software: list[Compared],
 ) -> None:
     parts = {}
     for name, found in results.items():
@@ -135,6 +176,9 @@ def _write_parts(
         parts["figures: paths"] = path_list(results["figures"])
     if sets:
         parts["beats"] = beats_table(sets)
+    if software:
+        parts["software"] = software_table(software)
+        parts["software: made with"] = made_on(machine(), library_versions())
     write_page(page, parts)
 
 

@@ -9,10 +9,10 @@ from typing import Literal, TypeAlias
 from firm_hdl.bench.messages import STATED, Stated, values
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
-from firm_hdl.plan import Payload, encode
+from firm_hdl.plan import Payload, Plan, encode
 from firm_hdl.sim import Harness, RunResult, to_transfers
 
-__all__ = ["DIRECTIONS", "Converter", "Cycles", "Direction", "count_cycles"]
+__all__ = ["DIRECTIONS", "Converter", "Cycles", "Direction", "count_cycles", "stated_messages"]
 
 Direction: TypeAlias = Literal["deserializer", "serializer"]
 DIRECTIONS: tuple[Direction, ...] = ("deserializer", "serializer")
@@ -68,16 +68,7 @@ def count_cycles(converter: Converter, message: Message, stated: Stated = STATED
     message : Message
         Its type.
     """
-    plan = converter.plan
-    sent: list[dict[int, list[Payload]]] = []
-    packets: list[bytes] = []
-    beats: list[int] = []
-    for value in islice(values(message, stated), 1 + stated.count):
-        sent.append(to_transfers(plan, message, value))
-        packets.append(encode(plan, sent[-1])[0])
-        beats.append(max(1, -(-len(packets[-1]) // plan.bus_bytes)))
-        if sum(beats[1:]) >= MOST_BEATS:
-            break
+    sent, packets = stated_messages(converter.plan, message, stated)
 
     def run(count: int) -> RunResult:
         if isinstance(converter, Deserializer):
@@ -92,7 +83,30 @@ def count_cycles(converter: Converter, message: Message, stated: Stated = STATED
     return Cycles(
         messages=replace(stated, count=len(packets) - 1),
         bytes=sum(map(len, packets[1:])),
-        beats=sum(beats[1:]),
+        beats=sum(_beats(converter.plan, packet) for packet in packets[1:]),
         cycles=together.end_cycle - alone.end_cycle,
         latency=alone.latency,
     )
+
+
+def stated_messages(
+    plan: Plan, message: Message, stated: Stated = STATED
+) -> tuple[list[dict[int, list[Payload]]], list[bytes]]:
+    """Return the transfers of the stated messages, and their packets; the first is not measured.
+
+    They end with the one that makes `MOST_BEATS` of those that are measured.
+    """
+    sent: list[dict[int, list[Payload]]] = []
+    packets: list[bytes] = []
+    beats = 0
+    for value in islice(values(message, stated), 1 + stated.count):
+        sent.append(to_transfers(plan, message, value))
+        packets.append(encode(plan, sent[-1])[0])
+        beats += _beats(plan, packets[-1]) if len(packets) > 1 else 0
+        if beats >= MOST_BEATS:
+            break
+    return sent, packets
+
+
+def _beats(plan: Plan, packet: bytes) -> int:
+    return max(1, -(-len(packet) // plan.bus_bytes))

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from firm_hdl.bench.cycles import DIRECTIONS
-from firm_hdl.bench.messages import STATED
+from firm_hdl.bench.messages import STATED, Stated
 from firm_hdl.bench.results import Converted
 from firm_hdl.bench.run import BenchTask
 from firm_hdl.frontend import load_all, open_library
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
 
-__all__ = ["ALL_TYPES", "MEASURED", "Group", "group_tasks"]
+__all__ = ["ALL_TYPES", "MEASURED", "SOFTWARE", "Group", "group_tasks"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +29,8 @@ class Group:
     devices : tuple of str
         Empty: cycles only.
     seeds : tuple of int
+    stated : Stated
+        The messages.
     """
 
     title: str
@@ -36,6 +38,7 @@ class Group:
     bus_bytes: tuple[int, ...] = (8,)
     devices: tuple[str, ...] = ()
     seeds: tuple[int, ...] = (1,)
+    stated: Stated = STATED
 
 
 _FEW = (
@@ -86,6 +89,29 @@ ALL_TYPES = {
 }
 """Groups with cycles only, by what the page calls them."""
 
+_IMAGE = Stated(count=2, elements=(1 << 16, 1 << 16))
+
+SOFTWARE = (
+    Group(
+        title="messages of software",
+        types={
+            "lyrical": MEASURED["figures"].types["lyrical"],
+            # There, tf2_msgs is not in the distribution's set.
+            "noetic": tuple(
+                name.replace("/msg/", "/")
+                for name in MEASURED["figures"].types["lyrical"]
+                if not name.startswith("tf2_msgs/")
+            ),
+        },
+    ),
+    Group(
+        title="images of 64 KiB",
+        types={"lyrical": ("sensor_msgs/msg/Image",), "noetic": ("sensor_msgs/Image",)},
+        stated=_IMAGE,
+    ),
+)
+"""Converters whose messages libraries are timed with, too."""
+
 
 def group_tasks(group: Group, **options: Any) -> Iterator[BenchTask]:
     """Yield the tasks of a group.
@@ -113,6 +139,6 @@ def group_tasks(group: Group, **options: Any) -> Iterator[BenchTask]:
                             converter=replace(what, bus_bytes=bus_bytes, direction=direction),
                             device=device,
                             seeds=group.seeds,
-                            stated=STATED,
+                            stated=group.stated,
                             **options,
                         )

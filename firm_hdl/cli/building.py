@@ -6,7 +6,7 @@ import argparse
 import os
 from typing import TYPE_CHECKING
 
-from firm_hdl.arguments import add_options
+from firm_hdl.arguments import add_jobs, add_options
 from firm_hdl.cli.types import library_of
 
 if TYPE_CHECKING:
@@ -20,11 +20,19 @@ PORT_NAMES = ("records", "flat")
 """What ``--ports`` takes: `firm_hdl.export.backend.PORTS`, without the imports of that."""
 
 
+class _Gone(argparse.Action):
+    """An option that there is no more."""
+
+    def __call__(self, *_: object) -> None:
+        raise argparse.ArgumentError(
+            self, "there is no such option any more: converters take two bus words in each cycle"
+        )
+
+
 def add_build(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl build``."""
     _add_types(command)
-    add_options(command)
-    _add_window(command)
+    _add_options(command)
     command.add_argument("--out", default="vhdl_out", help="folder to write to (%(default)s)")
     command.add_argument(
         "--ports",
@@ -33,6 +41,7 @@ def add_build(command: argparse.ArgumentParser) -> None:
         help="whether the VHDL has records, or plain vectors only; default: %(default)s",
     )
     command.add_argument("--force", action="store_true", help="also write folders that are current")
+    add_jobs(command)
     command.set_defaults(run=_build)
 
 
@@ -65,12 +74,12 @@ def _build(args: argparse.Namespace) -> None:
             wire=args.wire,
             bus_bytes=args.bus_bytes,
             max_message_bytes=args.max_message_bytes,
-            window_words=args.window_words,
             ports=args.ports,
         ),
         force=args.force,
         stimuli=packets_of,
         report=report,
+        jobs=args.jobs,
     )
     for built in done:
         print(built.description)
@@ -79,8 +88,7 @@ def _build(args: argparse.Namespace) -> None:
 def add_plan(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl plan``."""
     command.add_argument("type", metavar="TYPE")
-    add_options(command)
-    _add_window(command)
+    _add_options(command)
     command.set_defaults(run=_plan)
 
 
@@ -96,8 +104,7 @@ def _plan(args: argparse.Namespace) -> None:
 def add_info(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl info``."""
     _add_types(command)
-    add_options(command)
-    _add_window(command)
+    _add_options(command)
     command.set_defaults(run=_info)
 
 
@@ -116,22 +123,14 @@ def _info(args: argparse.Namespace) -> None:
 def _planned(message: Message, args: argparse.Namespace) -> Plan:
     from firm_hdl.export.build import plan_of
 
-    return plan_of(
-        message, args.wire, args.bus_bytes, args.max_message_bytes, args.window_words
-    )
+    return plan_of(message, args.wire, args.bus_bytes, args.max_message_bytes)
+
+
+def _add_options(command: argparse.ArgumentParser) -> None:
+    add_options(command)
+    hidden = argparse.SUPPRESS
+    command.add_argument("--window-words", action=_Gone, nargs="?", default=hidden, help=hidden)
 
 
 def _add_types(command: argparse.ArgumentParser) -> None:
     command.add_argument("types", nargs="+", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
-
-
-def _add_window(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--window-words",
-        type=int,
-        choices=(1, 2),
-        default=1,
-        metavar="N",
-        help="bus words that are converted in one cycle: 1, or 2 for many short fields at a lower "
-        "clock rate; default: %(default)s",
-    )

@@ -12,6 +12,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, TypeAlias
 
+from amaranth.back import rtlil
+
 from firm_hdl.export.manifest import MANIFEST
 from firm_hdl.export.top import Direction, Top
 from firm_hdl.gateware import Deserializer, Serializer
@@ -19,7 +21,16 @@ from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
 from firm_hdl.wire import Wire
 
-__all__ = ["PORTS", "BackEnd", "Converters", "Options", "Output", "Ports"]
+__all__ = ["PORTS", "BackEnd", "Converters", "Options", "Output", "Ports", "module_name"]
+
+def module_name(folder: str, direction: Direction) -> str:
+    """Return the name of a converter's module in Verilog.
+
+    No VHDL entity has this name in any case, because simulators of both languages keep modules and
+    entities in one library and look them up regardless of case.
+    """
+    return f"{folder}_{direction}_verilog"
+
 
 Ports: TypeAlias = Literal["records", "flat"]
 PORTS: tuple[Ports, ...] = ("records", "flat")
@@ -33,7 +44,7 @@ class Options:
     ----------
     wire : "ros1", "cdr" or None
         Wire format; `None`: that of the distribution.
-    bus_bytes, max_message_bytes, window_words : int
+    bus_bytes, max_message_bytes : int
         As for the converters.
     ports : "records" or "flat"
         "records" adds entities with records and modules with structs; "flat" is for tools that do
@@ -43,7 +54,6 @@ class Options:
     wire: Wire | None = None
     bus_bytes: int = 8
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
-    window_words: int = 1
     ports: Ports = "records"
 
 
@@ -64,8 +74,9 @@ class Converters:
         :func:`firm_hdl.export.manifest.inputs_of`.
     stimuli : sequence of bytes
         Packets for test benches.
-    tops : mapping of direction to Top
-        Circuits with named ports; empty until :meth:`make_tops` has made them.
+    circuits : mapping of direction to str
+        RTLIL with named ports, from which all languages are written; empty until
+        :meth:`make_circuits` has made it.
     """
 
     message: Message
@@ -74,7 +85,7 @@ class Converters:
     options: Options = field(default_factory=Options)
     inputs: Mapping[str, Any] = field(default_factory=dict)
     stimuli: Sequence[bytes] = ()
-    tops: Mapping[Direction, Top] = field(default_factory=dict)
+    circuits: Mapping[Direction, str] = field(default_factory=dict)
 
     def parameters(self) -> dict[str, Any]:
         """Return the keyword arguments of `Deserializer` and `Serializer`."""
@@ -82,15 +93,18 @@ class Converters:
             "wire": self.plan.wire,
             "bus_bytes": self.plan.bus_bytes,
             "max_message_bytes": self.plan.max_message_bytes,
-            "window_words": self.options.window_words,
         }
 
-    def make_tops(self) -> dict[Direction, Top]:
-        """Make the circuits, with named ports."""
+    def make_circuits(self) -> dict[Direction, str]:
+        """Make the circuits. Back ends give their outermost modules other names."""
         parameters = self.parameters()
-        return {
+        tops: dict[Direction, Top] = {
             "deserializer": Top(Deserializer(self.message, **parameters)),
             "serializer": Top(Serializer(self.message, **parameters)),
+        }
+        return {
+            direction: rtlil.convert(top, name=f"{self.name}_{direction}", emit_src=False)
+            for direction, top in tops.items()
         }
 
     def header(self, name: str, what: str) -> str:

@@ -9,8 +9,8 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -25,6 +25,7 @@ from firm_hdl.export.tree import tree_of
 from firm_hdl.export.verilog import Verilog
 from firm_hdl.export.vhdl.backend import FOLDER, Vhdl
 from firm_hdl.frontend import Library, load_all
+from firm_hdl.jobs.executors import ExecutorError, run_each
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan, build_plan
@@ -88,6 +89,7 @@ def build(
     force: bool = False,
     stimuli: Callable[[Message, Plan], Sequence[bytes]] | None = None,
     report: Callable[[Built], None] | None = None,
+    jobs: int | None = 1,
 ) -> list[Built]:
     """Write the converters of types, each type into its own folder below ``out/distro``.
 
@@ -108,6 +110,9 @@ def build(
         themselves.
     report : callable or None
         Called with each type when it is done.
+    jobs : int or None
+        Number of processes (`None`: one per processor); 1 writes everything in this process. The
+        files do not depend on it.
 
     Raises
     ------
@@ -121,13 +126,7 @@ def build(
     options = Options() if options is None else options
     tasks = []
     for message in load_all(library, types):
-        plan = plan_of(
-            message,
-            options.wire,
-            options.bus_bytes,
-            options.max_message_bytes,
-            options.window_words,
-        )
+        plan = plan_of(message, options.wire, options.bus_bytes, options.max_message_bytes)
         check_size(plan)
         packets = list(stimuli(message, plan)) if stimuli is not None else []
         converters = _converters(library, message, plan, options, packets)
@@ -135,14 +134,35 @@ def build(
         tasks.append(_Task(converters=converters, folder=folder))
     _check_folders(tasks)
     _check_packages(tasks)
-    return [_build_and_report(task, force, report) for task in tasks]
+    return _build_all(tasks, force, jobs, report)
 
 
-def _build_and_report(task: _Task, force: bool, report: Callable[[Built], None] | None) -> Built:
-    built = _build_one(task, force)
-    if report is not None:
-        report(built)
-    return built
+def _build_all(
+    tasks: Sequence[_Task], force: bool, jobs: int | None, report: Callable[[Built], None] | None
+) -> list[Built]:
+    found: dict[int, Built] = {}
+    for number, built in _build_each(tasks, force, 1 if len(tasks) == 1 else jobs):
+        found[number] = built
+        if report is not None:
+            report(built)
+    return [found[number] for number in range(len(tasks))]
+
+
+def _build_each(
+    tasks: Sequence[_Task], force: bool, jobs: int | None
+) -> Iterator[tuple[int, Built]]:
+    """Build each type; yield its number and folder as they are done. The first error ends it."""
+    if jobs == 1:
+        yield from ((number, _build_one(task, force)) for number, task in enumerate(tasks))
+        return
+    work = [(number, (task, force)) for number, task in enumerate(tasks)]
+    with closing(run_each(_build_one, work, jobs=jobs)) as results:
+        for number, result in results:
+            if isinstance(result, ExecutorError):
+                raise BuildError(f"{tasks[number].name}: {result}")
+            if isinstance(result, Exception):
+                raise result
+            yield number, result
 
 
 def _converters(
@@ -155,8 +175,6 @@ def _converters(
         definition_sha256=library.definition_hash(message),
         ports=options.ports,
     )
-    if options.window_words != 1:
-        inputs["options"]["window_words"] = options.window_words
     inputs["stimuli_sha256"] = _digest(packets)
     inputs["back_ends"] = [each.name for each in BACK_ENDS]
     return Converters(
@@ -173,20 +191,11 @@ def _digest(packets: Sequence[bytes]) -> str:
     return hashlib.sha256("".join(f"{packet.hex()}\n" for packet in packets).encode()).hexdigest()
 
 
-def plan_of(
-    message: Message,
-    wire: Wire | None,
-    bus_bytes: int,
-    max_message_bytes: int,
-    window_words: int = 1,
-) -> Plan:
+def plan_of(message: Message, wire: Wire | None, bus_bytes: int, max_message_bytes: int) -> Plan:
     """Plan a type's converters; raise a `BuildError` if the options do not fit the type."""
     try:
         return build_plan(
-            lay_out(message, wire),
-            bus_bytes=bus_bytes,
-            max_message_bytes=max_message_bytes,
-            window_words=window_words,
+            lay_out(message, wire), bus_bytes=bus_bytes, max_message_bytes=max_message_bytes
         )
     except ValueError as error:
         raise BuildError(f"{message.name}: {error}") from None
@@ -280,7 +289,7 @@ def _write_folder(task: _Task, figures: Timing, force: bool) -> Built:
 
 def _files(converters: Converters, figures: Timing) -> dict[str, str]:
     """Write all files of a folder."""
-    converters = dataclasses.replace(converters, tops=converters.make_tops())
+    converters = dataclasses.replace(converters, circuits=converters.make_circuits())
     outputs = [each.write(converters) for each in BACK_ENDS]
     files = {name: text for output in outputs for name, text in output.files.items()}
     manifest = make_manifest(

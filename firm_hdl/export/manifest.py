@@ -107,12 +107,10 @@ def _dependencies(message: Message) -> list[str]:
 def _timing(figures: Timing) -> dict[str, Any]:
     return {
         "steps": figures.steps,
-        "window_bytes": figures.window_bytes,
-        "window_beats": figures.window_beats,
-        "latency_cycles": LATENCY_CYCLES,
+        "latency_cycles": dict(LATENCY_CYCLES),
         "shortest_packet": _cost(figures.shortest),
         "hardest_packet_tried": _cost(figures.hardest),
-        "long_arrays_clock_mhz": _clocks(Cost(bytes=figures.bus_bytes, beats=1, steps=1)),
+        "long_arrays_clock_mhz": _clocks(Cost(bytes=figures.bus_bytes, beats=1, steps=1, cycles=1)),
     }
 
 

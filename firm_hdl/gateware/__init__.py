@@ -1,6 +1,7 @@
 """Converters as Amaranth components."""
 
 from firm_hdl.gateware.deserializer import Deserializer
+from firm_hdl.gateware.parser import Parser
 from firm_hdl.gateware.record import RecordReader, RecordWriter
 from firm_hdl.gateware.record_layout import record_layout
 from firm_hdl.gateware.serializer import Serializer
@@ -10,6 +11,7 @@ __all__ = [
     "Deserializer",
     "MessageSignature",
     "PacketSignature",
+    "Parser",
     "RecordReader",
     "RecordWriter",
     "Serializer",

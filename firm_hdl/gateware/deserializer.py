@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Module
+from amaranth.hdl import Module, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.gateware.deserializer_circuit import DeserializerCircuit
 from firm_hdl.gateware.members import member_tree
+from firm_hdl.gateware.mover import Mover
+from firm_hdl.gateware.parse import Buffer, OrderQueue, Sequencer
 from firm_hdl.gateware.signatures import (
     MessageSignature,
     PacketSignature,
     StatusSignature,
+    leaf_streams,
 )
 from firm_hdl.model import Message
 from firm_hdl.plan import (
@@ -28,9 +30,9 @@ class Deserializer(wiring.Component):
 
     Every leaf has one register. A packet advances one step of the plan per cycle, while its bytes
     are present and the registers of the step's leaves are free or being read. Leaves become valid
-    in wire order. Latency from the beat that completes a leaf to its `valid`: 2 cycles.
-    `packets.ready` is a function of registers; all other outputs are registers. One clock domain,
-    `sync`; its reset discards all packets and messages inside.
+    in wire order, `LATENCY_CYCLES["deserializer"]` cycles after the last beat of their step. All
+    outputs are registers. One clock domain, `sync`; its reset discards all packets and messages
+    inside.
 
     Each packet ends in one transfer on `status`. After the first error in a packet, remaining
     scalars and lengths transfer as 0, the current sequence is completed with zeros, and the rest of
@@ -45,9 +47,6 @@ class Deserializer(wiring.Component):
         Bytes per beat: 1, 2, 4, 8, 16, 32 or 64.
     max_message_bytes : int
         A length that does not fit into a packet of this many bytes is an error.
-    window_words : 1 or 2
-        Most bus words per step, hence per cycle. 2 saves about one cycle for each string or
-        sequence, and makes the circuit larger and slower.
 
     Members
     -------
@@ -69,13 +68,11 @@ class Deserializer(wiring.Component):
         wire: Wire | None = None,
         bus_bytes: int = 8,
         max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
-        window_words: int = 1,
     ):
         self.plan = build_plan(
             lay_out(message, wire),
             bus_bytes=bus_bytes,
             max_message_bytes=max_message_bytes,
-            window_words=window_words,
         )
         self.tree = member_tree(leaf.path for leaf in self.plan.leaves)
         super().__init__(
@@ -87,4 +84,40 @@ class Deserializer(wiring.Component):
         )
 
     def elaborate(self, platform: object) -> Module:
-        return DeserializerCircuit(self).module
+        m = Module()
+        plan = self.plan
+        m.submodules.buffer = buffer = Buffer(plan)
+        m.submodules.sequencer = sequencer = Sequencer(plan)
+        m.submodules.queue = queue = OrderQueue(plan)
+        m.submodules.mover = mover = Mover(plan)
+        orders = queue.o
+        m.d.comb += [
+            buffer.packets.payload.eq(self.packets.payload),
+            buffer.packets.valid.eq(self.packets.valid),
+            self.packets.ready.eq(buffer.packets.ready),
+            sequencer.beat.eq(buffer.beat),
+            sequencer.limit.eq(buffer.limit),
+            sequencer.ended.eq(buffer.ended),
+            sequencer.following.eq(buffer.following),
+            buffer.next.eq(sequencer.next),
+            queue.i.payload.eq(sequencer.orders.payload),
+            queue.i.valid.eq(sequencer.orders.valid),
+            sequencer.orders.ready.eq(queue.i.ready),
+            mover.orders.payload.eq(orders.payload),
+            mover.orders.valid.eq(orders.valid),
+            orders.ready.eq(mover.orders.ready),
+            mover.beat.eq(buffer.beat),
+            queue.at.eq(sequencer.at),
+            buffer.freed.eq(queue.freed),
+            self.status.payload.eq(mover.status.payload),
+            self.status.valid.eq(mover.status.valid),
+            mover.status.ready.eq(self.status.ready),
+        ]
+        for leaf, interface in leaf_streams(self.message, self.tree).items():
+            made = getattr(mover, f"leaf_{leaf}")
+            m.d.comb += [
+                Value.cast(interface.payload).eq(Value.cast(made.payload)),
+                interface.valid.eq(made.valid),
+                made.ready.eq(interface.ready),
+            ]
+        return m

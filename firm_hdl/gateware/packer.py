@@ -1,60 +1,38 @@
-"""The packer joins words of any size to packets of full beats; it is the inverse of the window."""
+"""The packer: words to packets of full beats."""
 
 from __future__ import annotations
 
-from amaranth.hdl import Module, Mux, Signal, Value, unsigned
+from dataclasses import dataclass
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.collect import words_layout
+from firm_hdl.gateware.memories import LutMemory
+from firm_hdl.gateware.positions import Ring, known_lane_bits, rotate
 from firm_hdl.gateware.signatures import PacketSignature
 from firm_hdl.plan import Plan
-from firm_hdl.plan.geometry import geometry
+from firm_hdl.plan.geometry import geometry, may_end_empty, most_beats
 
-__all__ = ["Packer", "word_layout"]
-
-
-def word_layout(window_bytes: int, skip_bytes: int) -> data.StructLayout:
-    """Return the payload of a stream of words.
-
-    Members
-    -------
-    data : ArrayLayout(8, window_bytes)
-        The bytes of the word; the first one is in lane 0. Lanes from `count` on are 0.
-    count : range(skip_bytes + 1)
-        Bytes of the word. A count over `window_bytes` appends zeros.
-    align : unsigned(3)
-        Mask of the low bits of the position, counted from behind the encapsulation header, that
-        must be 0 behind the word. Padding is added up to there.
-    last : unsigned(1)
-        The packet ends with this word.
-    error : unsigned(1)
-        Mark the packet with an error. Only looked at when `last` is set.
-    """
-    return data.StructLayout(
-        {
-            "data": data.ArrayLayout(8, window_bytes),
-            "count": range(skip_bytes + 1),
-            "align": 3,
-            "last": 1,
-            "error": 1,
-        }
-    )
+__all__ = ["Packer"]
 
 
 class Packer(wiring.Component):
-    """Join words into packets.
+    """Write words to a ring of beats, and send the beats that are complete.
 
-    The packer takes one word and emits one beat per cycle; latency 1 cycle. `word.ready` depends
-    combinationally on `packets.ready`.
+    The first cycle computes the positions of both words and rotates the words to their lanes. The
+    second one writes the words to the ring, where lanes have a memory for either word. The third
+    one sends a beat. So two words are written and one beat is sent per cycle; latency 3 cycles.
 
     Parameters
     ----------
     plan : Plan
-        Decides all sizes.
 
     Members
     -------
-    word : In(stream.Signature(word_layout(window_bytes, skip_bytes)))
+    words : In(stream.Signature(words_layout(plan)))
+        `ready` is a register.
     packets : Out(PacketSignature(bus_bytes))
     error : Out(1)
         The packet is marked with an error. Set only with the last beat of the packet.
@@ -62,128 +40,245 @@ class Packer(wiring.Component):
 
     def __init__(self, plan: Plan):
         self.plan = plan
-        self.geometry = geometry(plan)
-        words = word_layout(self.geometry.window_bytes, self.geometry.skip_bytes)
         super().__init__(
             {
-                "word": In(stream.Signature(words)),
+                "words": In(stream.Signature(words_layout(plan))),
                 "packets": Out(PacketSignature(plan.bus_bytes)),
                 "error": Out(1),
             }
         )
 
     def elaborate(self, platform: object) -> Module:
-        m = Module()
-        bus, window_bytes = self.plan.bus_bytes, self.geometry.window_bytes
-        # A packet may end in a step without bytes. Its last beat must not have left by then.
-        holds = any(not step.most_bytes for step in self.plan.steps)
-        # Where words are not beats, one beat may wait while the next word comes, so that a short
-        # word, or the start of the next packet, does not leave a hole in the stream.
-        words_are_beats = self.geometry.start_alignment_bytes == bus >= window_bytes
-        most_kept = 0 if words_are_beats and not holds else bus
-        store = Signal(8 * max(bus, most_kept + window_bytes))
-        level = Signal(range(most_kept + self.geometry.skip_bytes + 8 + bus))
-        # The packet has at least one byte so far.
-        inside = Signal()
-        ending = Signal()
-        end_beats = Signal(range(len(store) // 8 // bus + 2))
-        end_count = Signal(range(bus + 1))
-        marked = Signal()
+        return _Circuit(self).m
 
-        payload = self.packets.payload
-        is_last = Signal()
+
+@dataclass(frozen=True, slots=True)
+class _Placed:
+    """A word in its lanes: its bytes, the position of the first one, and their number."""
+
+    data: Signal
+    start: Value
+    size: Signal
+
+
+class _Circuit:
+    """The packer's logic, built by one method for each part of it."""
+
+    def __init__(self, packer: Packer):
+        self.c, self.plan = packer, packer.plan
+        self.ring = ring = Ring(packer.plan)
+        self.m = m = Module()
+        # Beats in front of `complete` can be sent; `first` is the next one.
+        self.complete, self.first = (
+            Signal(ring.beat_bits, name=name) for name in ("complete", "first")
+        )
+        self.reads, self.writes = Signal(name="reads"), Signal(name="writes")
+        self.takes = Signal(name="takes")
+        m.d.comb += self.takes.eq(packer.words.valid & packer.words.ready)
+        m.d.sync += self.writes.eq(self.takes)
+        self._place()
+        self._wait()
+        self._send(self._beat())
+
+    # First cycle.
+
+    def _place(self) -> None:
+        """Compute where the words belong."""
+        m, ring, plan = self.m, self.ring, self.plan
+        words, bus = self.c.words.payload, plan.bus_bytes
+        self.at = ring.position("at")
+        self.end = ring.position("end")
+        base, map_at, map_end = (ring.position(name) for name in ("base", "map_at", "map_end"))
+        phase: Value | int = plan.header_bytes
+        if bus < 8:
+            phase = Signal(3, name="phase", init=plan.header_bytes % 8)
         m.d.comb += [
-            self.packets.valid.eq(ending | ((level > bus) if holds else (level >= bus))),
-            is_last.eq(ending & (end_beats == 1)),
-            payload.last.eq(is_last),
-            payload.count.eq(Mux(is_last, end_count, bus)),
-            Value.cast(payload.data).eq(store[: 8 * bus]),
-            self.error.eq(is_last & marked),
+            base.eq(self._rounded(self.at, words.to_map, words.map_mask, phase, Const(0))),
+            self.end.eq(self._rounded(base, words.to_end, words.end_mask, phase, words.last)),
+            map_at.eq(Cat(ring.lane(base), ring.beat(base) + words.lead)),
+            map_end.eq(map_at + words.map_bytes),
         ]
-        leaves = Signal()
-        rest = Signal.like(level)
-        kept = Signal.like(store)
-        word = self.word.payload
-        still_ending = Signal()
-        m.d.comb += [
-            leaves.eq(self.packets.valid & self.packets.ready),
-            rest.eq(Mux(leaves, level - bus, level)),
-            kept.eq(Mux(leaves, store >> (8 * bus), store)),
-            still_ending.eq(ending & ~(leaves & is_last)),
-            # The end of only one packet is remembered at a time.
-            self.word.ready.eq((rest <= most_kept) & ~(still_ending & word.last)),
-        ]
-        position = self._position(m, rest)
-        pad = Signal(3)
-        m.d.comb += pad.eq(-(position + word.count)[:3] & word.align)
-        m.d.sync += [store.eq(kept), level.eq(rest), ending.eq(still_ending)]
-        with m.If(leaves):
-            m.d.sync += end_beats.eq(end_beats - 1)
-        with m.If(self.word.valid & self.word.ready):
+        sizes = geometry(plan)
+        items_at = Mux(words.lead, base, self.at)
+        self.placed = {
+            "items": self._turned("items", items_at, words.items_bytes, sizes.item_lanes),
+            "map": self._turned("map", map_at, words.map_bytes, sizes.map_lanes),
+        }
+        # What ends with these words.
+        self.done, self.final = Signal(ring.beat_bits, name="done"), Signal(name="final")
+        self.last_bytes = Signal(range(bus + 1), name="last_bytes")
+        self.marked, self.waits = Signal(name="marked"), Signal(name="waits")
+        held = may_end_empty(plan)
+        sent = Mux(words.last | words.empty, self.end, self.end - 1) if held else self.end
+        done = ring.beat(sent)
+        full = Cat(ring.lane(map_end), Const(0, 1)) - 1
+        with m.If(self.takes):
             m.d.sync += [
-                store.eq(kept | self._placed(m, rest, most_kept)),
-                level.eq(rest + word.count + pad),
-                inside.eq(~word.last & (inside | (word.count != 0))),
+                self.at.eq(self.end),
+                self.done.eq(done),
+                self.final.eq(words.last),
+                self.marked.eq(words.error),
+                self.waits.eq(words.waits),
+                self.last_bytes.eq(Mux(words.empty, 0, full[: ring.lane_bits] + 1)),
             ]
-            with m.If(word.last):
-                self._end(m, inside, rest, level, ending, end_beats, end_count)
-                m.d.sync += marked.eq(word.error)
-        return m
+            if not isinstance(phase, int):
+                with m.If(words.last):
+                    m.d.sync += phase.eq(self.end + plan.header_bytes)
 
-    def _end(
-        self,
-        m: Module,
-        inside: Signal,
-        rest: Signal,
-        level: Signal,
-        ending: Signal,
-        end_beats: Signal,
-        end_count: Signal,
-    ) -> None:
-        """End the packet with the word being accepted; the next packet starts a new beat."""
-        bus = self.plan.bus_bytes
-        low = bus.bit_length() - 1
-        word = self.word.payload
-        total, beats = Signal.like(level), Signal.like(level)
-        empty = ~inside & (word.count == 0)
+    def _rounded(
+        self, value: Value, distance: Value, mask: Value, phase: Value | int, last: Value
+    ) -> Value:
+        """Return a position behind a distance, with low bits cleared by a mask.
+
+        Alignment counts from `phase`; the end of a packet (`last`) from the start of the ring.
+        """
+        m, size = self.m, len(value)
+        total = Signal(size)
+        m.d.comb += total.eq(value + distance)
+        if isinstance(phase, int):
+            return ((total & ~Cat(mask, Const(0, size))) | (mask & Mux(last, 0, phase)))[:size]
+        pad = Signal(3)
+        m.d.comb += pad.eq((phase - total) & mask)
+        return Mux(last, total & ~Cat(mask, Const(0, size - len(mask))), total + pad)[:size]
+
+    def _turned(
+        self, name: str, start: Value, size: Value, lanes: tuple[int, ...]
+    ) -> _Placed:
+        """Rotate a word so that its first byte is in the lane of its position."""
+        m, ring, bus = self.m, self.ring, self.plan.bus_bytes
+        word = rotate(
+            m,
+            getattr(self.c.words.payload, name),
+            ring.lane(start),
+            lanes,
+            f"{name}_rotated",
+            back=True,
+        )
+        register = ring.position(f"{name}_start")
+        first, known = known_lane_bits(lanes, bus)
+        placed = _Placed(
+            Signal(8 * bus, name=f"{name}_placed", reset_less=True),
+            Cat(Const(first, known), register[known:]),
+            Signal(range(bus + 1), name=f"{name}_size"),
+        )
+        with m.If(self.takes):
+            m.d.sync += [placed.data.eq(word), register.eq(start), placed.size.eq(size)]
+        return placed
+
+    def _wait(self) -> None:
+        """Take words only if there is room for those that may come in the next cycle."""
+        m, ring = self.m, self.ring
+        # The last beat in which a step may start.
+        bound = Signal(ring.beat_bits, name="bound", init=ring.depth - most_beats(self.plan))
+        newest, room = (Signal(ring.beat_bits, name=name) for name in ("newest", "room"))
+        ready = Signal(name="ready", init=1)
         m.d.comb += [
-            total.eq(rest + word.count),
-            beats.eq(((total + (bus - 1)) >> low) + empty),
+            newest.eq(ring.beat(self.at) + Mux(self.takes, self.c.words.payload.max_beats, 0)),
+            room.eq(bound - newest),
+            self.c.words.ready.eq(ready),
         ]
-        m.d.sync += [
-            level.eq(beats << low),
-            ending.eq(1),
-            end_beats.eq(beats),
-            end_count.eq(Mux(empty, 0, (total - 1)[:low] + 1)),
+        m.d.sync += ready.eq(~room[-1])
+        with m.If(self.reads):
+            m.d.sync += bound.eq(bound + 1)
+
+    # Second cycle.
+
+    def _beat(self) -> Value:
+        """Write words to the ring, and return the bytes of its first beat."""
+        plan = self.plan
+        sizes = geometry(plan)
+        units = {"items": sizes.item_unit, "map": sizes.map_unit}
+        # Without padding, a byte that is not of items is of a map, or behind the packet.
+        padded = bool(plan.header_bytes) or sizes.aligns
+        words = {
+            name: [self._lanes(name, k, unit, marked=padded or name == "items") for k in starts]
+            for name, unit in units.items()
+            for starts in [range(0, plan.bus_bytes, unit)]
+        }
+        # Groups of lanes that both words have.
+        size = min(units.values())
+        found = []
+        for k in range(0, plan.bus_bytes, size):
+            (a, a_has), (b, b_has) = (
+                (word[k // unit][0][8 * (k % unit) :][: 8 * size], word[k // unit][1])
+                for unit, word in zip(units.values(), words.values(), strict=True)
+            )
+            found.append(Mux(a_has, a, 0) | Mux(b_has, b, 0) if padded else Mux(a_has, a, b))
+        return Cat(found)
+
+    def _lanes(self, name: str, k: int, unit: int, *, marked: bool) -> tuple[Value, Value]:
+        """Write lanes of a word, from lane k on.
+
+        Returns
+        -------
+        The bytes of the first beat, and whether they are there.
+        """
+        m, ring, placed = self.m, self.ring, self.placed[name]
+        memory = LutMemory(m, f"{name}_{k}", 8 * unit, ring.depth)
+        write, read = memory.write, memory.reader()
+        index = Signal(max(1, ring.lane_bits), name=f"{name}_index_{k}")
+        used = Signal(name=f"{name}_used_{k}")
+        slot = Signal(ring.beat_bits - 1, name=f"{name}_slot_{k}")
+        lane = ring.lane(placed.start)
+        m.d.comb += [
+            index.eq(k - lane if ring.lane_bits else 0),
+            used.eq(self.writes & (index < placed.size)),
+            # Lanes in front of the first byte are of the next beat.
+            slot.eq(ring.slot(placed.start) + (lane > k if k < self.plan.bus_bytes - unit else 0)),
+            write.addr.eq(slot),
+            write.data.eq(placed.data[8 * k : 8 * (k + unit)]),
+            write.en.eq(used),
+            read.addr.eq(self.first),
         ]
+        if not marked:
+            return read.data, Const(1, 1)
+        # Which beats have these bytes from this word.
+        has = Signal(ring.depth, name=f"{name}_has_{k}")
+        for beat in range(ring.depth):
+            with m.If(self.reads & (self.first[:-1] == beat)):
+                m.d.sync += has[beat].eq(0)
+            with m.Elif(used & (slot == beat)):
+                m.d.sync += has[beat].eq(1)
+        here = Signal(name=f"{name}_here_{k}")
+        m.d.comb += here.eq((has >> self.first[:-1])[0])
+        return read.data, here
 
-    def _placed(self, m: Module, rest: Value, most_kept: int) -> Value:
-        """Return the word's bytes, shifted to the place behind the bytes that are kept."""
-        now: Value = Value.cast(self.word.payload.data)
-        for bit in range(most_kept.bit_length()):
-            if 1 << bit < self.geometry.start_alignment_bytes:
-                continue
-            moved = Signal(len(now) + (8 << bit), name=f"moved_{1 << bit}")
-            m.d.comb += moved.eq(Mux(rest[bit], now << (8 << bit), now))
-            now = moved
-        return now
+    # Third cycle.
 
-    def _position(self, m: Module, rest: Value) -> Signal:
-        """Return the position of the word behind the encapsulation header, modulo 8."""
-        header = self.plan.header_bytes
-        position = Signal(unsigned(3))
-        if not self.geometry.aligns:
-            return position
-        if self.plan.bus_bytes >= 8:
-            m.d.comb += position.eq(rest - header)
-            return position
-        now = Signal(unsigned(3), init=-header % 8)
-        m.d.comb += position.eq(now)
-        word = self.word.payload
-        with m.If(self.word.valid & self.word.ready):
-            behind = Signal(unsigned(3))
-            m.d.comb += behind.eq(now + word.count)
-            m.d.sync += now.eq(behind + (-behind & word.align))
-            with m.If(word.last):
-                m.d.sync += now.eq(-header % 8)
-        return position
+    def _send(self, beat: Value) -> None:
+        m, ring, packets = self.m, self.ring, self.c.packets
+        slot = (self.done - 1)[: ring.beat_bits - 1]
+        layout = data.StructLayout({"count": range(self.plan.bus_bytes + 1), "error": 1})
+        ends = LutMemory(m, "ends", layout, ring.depth)
+        write, read = ends.write, ends.reader()
+        m.d.comb += [
+            write.addr.eq(slot),
+            write.data.count.eq(self.last_bytes),
+            write.data.error.eq(self.marked),
+            write.en.eq(self.writes & self.final),
+            read.addr.eq(self.first),
+            self.reads.eq((self.complete != self.first) & (~packets.valid | packets.ready)),
+        ]
+        # Which beats are the last ones of their packets.
+        last, is_last = Signal(ring.depth, name="last"), Signal(name="is_last")
+        m.d.comb += is_last.eq((last >> self.first[:-1])[0])
+        # Beats that only have constants leave with the first leaf.
+        with m.If(self.writes & ~self.waits):
+            m.d.sync += self.complete.eq(self.done)
+            with m.If(self.final):
+                m.d.sync += last.bit_select(slot, 1).eq(1)
+        payload = Signal(packets.payload.shape(), name="payload", reset_less=True)
+        error = Signal(name="error_now", reset_less=True)
+        m.d.comb += [Value.cast(packets.payload).eq(Value.cast(payload)), self.c.error.eq(error)]
+        with m.If(packets.ready):
+            m.d.sync += packets.valid.eq(0)
+        with m.If(self.reads):
+            m.d.sync += [
+                packets.valid.eq(1),
+                self.first.eq(self.first + 1),
+                Value.cast(payload.data).eq(beat),
+                payload.last.eq(is_last),
+                payload.count.eq(Mux(is_last, read.data.count, self.plan.bus_bytes)),
+                error.eq(is_last & read.data.error),
+                last.bit_select(self.first[:-1], 1).eq(0),
+            ]

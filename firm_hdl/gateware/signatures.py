@@ -32,10 +32,10 @@ __all__ = [
     "signature_of",
 ]
 
-LATENCY_CYCLES = 2
-"""Latency of both converters. Deserializer: from the beat that completes a leaf to the transfer of
-the leaf. Serializer: from the leaf that fills a beat or ends a packet to the beat.
-``tests/gateware/test_latency.py`` measures it."""
+LATENCY_CYCLES = {"deserializer": 5, "serializer": 4}
+"""Latency by direction, as ``docs/interface.md`` describes it: from the last beat of a step to
+`valid` of the step's leaves, and from a step's last leaf to `valid` of the beat that it fills.
+``tests/gateware/test_latency.py`` measures both."""
 
 
 class Status(enum.Enum, shape=3):  # type: ignore[call-arg]

@@ -16,10 +16,8 @@ from firm_hdl.plan.interpret import (
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
-    BeginArray,
     BeginLoop,
     BeginRun,
-    CountedBegin,
     Exits,
     Fixed,
     Jump,
@@ -32,7 +30,6 @@ from firm_hdl.plan.ir import (
     RunStep,
     Slice,
     Step,
-    Take,
 )
 from firm_hdl.plan.limits import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, check_bus_bytes
 from firm_hdl.plan.yaml import from_yaml, to_yaml
@@ -42,10 +39,8 @@ __all__ = [
     "DEFAULT_MAX_MESSAGE_BYTES",
     "RUN_COUNTER",
     "Begin",
-    "BeginArray",
     "BeginLoop",
     "BeginRun",
-    "CountedBegin",
     "DecodeStatus",
     "Decoded",
     "Edge",
@@ -63,7 +58,6 @@ __all__ = [
     "RunStep",
     "Slice",
     "Step",
-    "Take",
     "Transfer",
     "Visit",
     "build_plan",

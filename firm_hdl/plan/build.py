@@ -2,8 +2,8 @@
 
 The layout is flattened into segments: bytes in a row whose map is static. A segment ends where a
 length decides what follows, where a loop starts or ends, or where padding is known in the circuit
-only. Segments are cut into steps (see :mod:`firm_hdl.plan.cut`). The step that holds a length also
-takes the first items of its run if the window has room for both.
+only. Segments are cut into steps (see :mod:`firm_hdl.plan.cut`). The last word of a run is its
+rest, which the step behind the run takes together with its own bytes.
 """
 
 from __future__ import annotations
@@ -11,14 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from firm_hdl.model import Primitive
-from firm_hdl.plan.cut import cut, split
+from firm_hdl.plan.cut import split, step_sizes
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
-    BeginArray,
     BeginLoop,
     BeginRun,
-    Exits,
     Fixed,
     Jump,
     Leaf,
@@ -37,6 +35,7 @@ from firm_hdl.plan.limits import (
     check_bus_bytes,
     check_max_message_bytes,
 )
+from firm_hdl.plan.link import END, NOWHERE, Mark, link
 from firm_hdl.wire import Layout, LoopNode, Node, Path, RunNode, Scalar, Trigger, walk
 from firm_hdl.wire.layout import LENGTH, OCTET, Gap
 
@@ -48,7 +47,6 @@ def build_plan(
     *,
     bus_bytes: int = 8,
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
-    window_words: int = 1,
 ) -> Plan:
     """Plan the converters of a layout.
 
@@ -59,11 +57,6 @@ def build_plan(
         Width of the packet stream: 1, 2, 4, 8, 16, 32 or 64 bytes.
     max_message_bytes : int
         A packet whose lengths promise more is an error; at most 2**32 - 1.
-    window_words : 1 or 2
-        Bus words that a step may take. With 2, the step that holds a length also takes the first
-        items, and remainders need no step of their own. This saves about one cycle for each string
-        or sequence, and costs a wider shifter and a longer path through it. Messages of fixed size
-        always have 2.
 
     Raises
     ------
@@ -74,41 +67,24 @@ def build_plan(
     """
     check_bus_bytes(bus_bytes)
     check_max_message_bytes(layout, max_message_bytes)
-    if not isinstance(window_words, int) or isinstance(window_words, bool):
-        raise TypeError(f"Window must have an integer number of words, not {window_words!r}")
-    if window_words not in (1, 2):
-        raise ValueError(f"Window must have 1 or 2 bus words, not {window_words!r}")
-    # Without lengths, a wide window does not slow the circuit down, and keeps the bus busy.
-    if not any(isinstance(n, RunNode | LoopNode) and n.count is None for n in walk(layout.nodes)):
-        window_words = 2
-    builder = _Builder(layout, bus_bytes, max_message_bytes, window_words * bus_bytes)
-    steps = builder.build()
+    has_lengths = any(
+        isinstance(node, RunNode | LoopNode) and node.count is None for node in walk(layout.nodes)
+    )
+    builder = _Builder(layout, bus_bytes, max_message_bytes, has_lengths)
+    start, steps = builder.build()
     return Plan(
         message=layout.message.name,
         wire=layout.rules.wire,
         bus_bytes=bus_bytes,
         max_message_bytes=max_message_bytes,
         header_bytes=layout.rules.header_bytes,
-        slack_bytes=layout.rules.slack_bytes,
+        max_trailing_bytes=layout.rules.max_trailing_bytes,
         leaves=tuple(builder.leaves),
         runs=tuple(builder.runs),
         levels=builder.levels,
-        start=builder.jump_to(0),
+        start=start,
         steps=steps,
     )
-
-
-@dataclass(slots=True, kw_only=True)
-class _Mark:
-    """A position between steps where a loop starts or ends, or a constant counter is loaded.
-
-    `kind` is "enter" (load `counter` with `count`), "loop" (the body of loop `counter` starts) or
-    "end" (the body ends).
-    """
-
-    kind: str
-    counter: int | str
-    count: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,22 +97,45 @@ class _Count:
 
 @dataclass(slots=True)
 class _Builder:
+    """What is planned so far, and the segment that grows.
+
+    Attributes
+    ----------
+    layout, bus_bytes, max_message_bytes
+        As of :func:`build_plan`.
+    has_lengths : bool
+        Whether any length is in the message.
+    leaves, runs : list
+        In wire order.
+    levels : int
+        Number of loop counters.
+    program : list of Step or Mark
+        In wire order. Steps get their exits and bodies at the end, from `link`.
+    segment : list of Slice
+        Values that have not been cut into steps.
+    segment_align : int
+        What the first step of the segment is aligned to, in the circuit.
+    rest : int or None
+        The run whose rest the next step takes.
+    depth : int
+        Number of open loops.
+    """
+
     layout: Layout
     bus_bytes: int
     max_message_bytes: int
-    window_bytes: int
+    has_lengths: bool
     leaves: list[Leaf] = field(default_factory=list)
     runs: list[Run] = field(default_factory=list)
     levels: int = 0
-    # Steps and marks in wire order. `link` fills in exits and bodies at the end.
-    program: list[Step | _Mark] = field(default_factory=list)
+    program: list[Step | Mark] = field(default_factory=list)
     segment: list[Slice] = field(default_factory=list)
     segment_align: int = 1
+    rest: int | None = None
     depth: int = 0
-    # Index of the step at each place of the program that is a step.
-    numbers: dict[int, int] = field(default_factory=dict)
 
-    def build(self) -> tuple[Step, ...]:
+    def build(self) -> tuple[Jump, tuple[Step, ...]]:
+        """Return the jump to the first step, and all steps."""
         rules = self.layout.rules
         if rules.header_bytes:
             self.segment.append(Fixed(at=0, data=rules.encapsulation, check=True))
@@ -144,9 +143,8 @@ class _Builder:
             self.segment.append(Fixed(at=len(rules.encapsulation), data=options, check=False))
         self.nodes(self.layout.nodes)
         self.flush()
-        places = [place for place, item in enumerate(self.program) if not isinstance(item, _Mark)]
-        self.numbers = {place: index for index, place in enumerate(places)}
-        return self.link()
+        self.flush_rest()
+        return link(self.program)
 
     # Nodes to segments.
 
@@ -178,6 +176,7 @@ class _Builder:
         return self.segment[-1].at + self.segment[-1].bytes if self.segment else 0
 
     def gap(self, gap: Gap) -> None:
+        """Add padding to the segment. If the circuit computes it, a new segment starts."""
         if gap.bytes is None:
             self.flush()
             self.segment_align = gap.align
@@ -201,6 +200,7 @@ class _Builder:
         return max(1, self.bus_bytes // item.bytes)
 
     def counted_run(self, node: RunNode) -> None:
+        """Plan a string or a sequence of primitives: a length, then a run or a loop."""
         assert node.gap is not None
         self.gap(node.gap)
         length = self.leaf(node.path, "length", LENGTH)
@@ -211,29 +211,42 @@ class _Builder:
             self.item_loop(node, items, _Count(length=length, limit=limit))
         else:
             run = self.new_run(items, terminated=node.terminated)
-            self.run(node, BeginRun(length=length, limit=limit, run=run, body=None))
+            align = node.item_gap.align if node.item_gap.bytes != 0 else 1
+            self.flush(BeginRun(length=length, limit=limit, run=run, align=align, body=END))
+            self.program.append(RunStep(run=run, exits=NOWHERE))
+            self.rest = run
 
     def array(self, node: RunNode) -> None:
+        """Plan an array of primitives: values of a segment, a run, or a loop."""
         assert node.count is not None
         items = self.leaf(node.path, "items", node.item, self.lanes(node.item))
         size = node.item.bytes
-        full, tail = divmod(node.count, self.lanes(node.item))
-        if node.count * size <= max(size, self.bus_bytes):
-            self.gap(node.item_gap)
-            self.value(items, node.count * size, last=True)
-            return
-        if size > self.bus_bytes:
+        if size > self.bus_bytes and node.count > 1:
             self.item_loop(node, items, node.count)
             return
         self.gap(node.item_gap)
-        run = self.new_run(items, last=not tail)
-        begin = BeginArray(count=full * self.lanes(node.item), run=run, body=None)
-        self.run(replace(node, item_gap=Gap(align=1, bytes=0)), begin)
+        lanes = self.lanes(node.item)
+        full, tail = divmod(node.count, lanes)
+        if node.count <= 2 * lanes:
+            # One or two transfers are as static as other values, and share steps with them.
+            left = node.count
+            if left > lanes:
+                self.value(items, lanes * size)
+                left -= lanes
+            self.value(items, left * size, last=True)
+            return
+        self.flush()
+        self.flush_rest()
+        run = self.new_run(items, counted=False, last=not tail)
+        self.program.append(Mark(kind="enter", counter=RUN_COUNTER, count=full * lanes))
+        self.program.append(RunStep(align=self.take_align(), run=run, exits=NOWHERE))
         if tail:
             self.value(items, tail * size, last=True)
 
-    def new_run(self, items: int, *, terminated: bool = False, last: bool = True) -> int:
-        self.runs.append(Run(items=items, terminated=terminated, last=last))
+    def new_run(
+        self, items: int, *, counted: bool = True, terminated: bool = False, last: bool = True
+    ) -> int:
+        self.runs.append(Run(items=items, counted=counted, terminated=terminated, last=last))
         return len(self.runs) - 1
 
     def item_loop(self, node: RunNode, items: int, count: int | _Count) -> None:
@@ -265,134 +278,90 @@ class _Builder:
         self.levels = max(self.levels, self.depth)
         if isinstance(count, int):
             self.flush()
-            self.program.append(_Mark(kind="enter", counter=level, count=count))
+            # The step behind would also be reached from the end of the loop's body.
+            self.flush_rest()
+            self.program.append(Mark(kind="enter", counter=level, count=count))
         else:
             length, limit = count.length, count.limit
-            self.flush(BeginLoop(length=length, limit=limit, level=level, body=_END))
-        self.program.append(_Mark(kind="loop", counter=level))
+            self.flush(BeginLoop(length=length, limit=limit, level=level, body=END))
+        self.program.append(Mark(kind="loop", counter=level))
         return level
 
     def leave_loop(self) -> None:
+        """End the body of the innermost loop."""
         self.flush()
         self.depth -= 1
-        self.program.append(_Mark(kind="end", counter=self.depth))
+        self.join_rest()
+        self.program.append(Mark(kind="end", counter=self.depth))
+
+    def join_rest(self) -> None:
+        """Let the first step of a body that ends take the rest of the body's last run."""
+        if self.rest is None:
+            return
+        place = self.body_start(self.depth)
+        first = self.program[place]
+        # A step has room for a rest and one bus word.
+        if (
+            isinstance(first, MapStep)
+            and first.bytes <= self.bus_bytes
+            and first.rest in (None, self.rest)
+        ):
+            self.program[place] = replace(first, rest=self.rest)
+        else:
+            self.flush_rest()
+
+    def body_start(self, level: int) -> int:
+        """Return the place of the first step of the body of the innermost open loop."""
+        marks = (
+            place
+            for place, item in reversed(list(enumerate(self.program)))
+            if isinstance(item, Mark) and item.kind == "loop" and item.counter == level
+        )
+        place = next(marks) + 1
+        while isinstance(self.program[place], Mark):
+            place += 1
+        return place
 
     # Segments to steps.
 
-    def run(self, node: RunNode, begin: BeginRun | BeginArray) -> None:
-        """End the segment with the start of a run, and add the run's body if it may be needed."""
-        at_once = self.bus_bytes + (1 if self.runs[begin.run].terminated else 0)
-        body = RunStep(run=begin.run, head=min(at_once, self.window_bytes), exits=_NOWHERE)
-        if isinstance(begin, BeginArray) and not self.segment:
-            self.flush()
-            self.program.append(_Mark(kind="enter", counter=RUN_COUNTER, count=begin.count))
-            self.program.append(replace(body, align=self.take_align()))
-            return
-        gap = node.item_gap.bytes
-        used = cut(self.segment, self.bus_bytes, self.bus_bytes)[-1] + (gap or 0)
-        head = min(at_once, self.window_bytes - used)
-        if gap is None or head < self.bus_bytes:
-            head = 0
-        self.flush(replace(begin, gap=gap or 0, head=head))
-        if not (isinstance(begin, BeginArray) and begin.count * node.item.bytes <= head):
-            self.program.append(replace(body, align=node.item_gap.align if gap is None else 1))
-
     def take_align(self) -> int:
+        """Return the alignment of the step that comes; the one behind it has none."""
         align, self.segment_align = self.segment_align, 1
         return align
+
+    def flush_rest(self) -> None:
+        """Take the rest of a run in a step of its own."""
+        if self.rest is not None:
+            self.program.append(MapStep(rest=self.rest, exits=NOWHERE))
+            self.rest = None
 
     def flush(self, begin: Begin | None = None) -> None:
         """Cut the segment into steps. The last step starts `begin`."""
         if not self.segment:
             assert begin is None
             return
-        heads = begin is not None and not isinstance(begin, BeginLoop) and begin.head > 0
-        bus = self.bus_bytes
-        if not self.program and not heads:
-            # From the start of the packet, cuts at bus words need no shifter.
-            sizes = [min(bus, self.segment_bytes - at) for at in range(0, self.segment_bytes, bus)]
-            sizes = sizes or [0]
-        else:
-            # Elsewhere the offset is dynamic. The last step may be longer, so that a remainder
-            # takes no cycle, unless that room is needed for the head of a run.
-            sizes = cut(self.segment, bus, bus if heads else self.window_bytes)
+        # A remainder would cost a cycle in each turn, or in each packet of few bytes.
+        may_be_wide = self.depth > 0 or not self.has_lengths
+        if not self.program:
+            may_be_wide |= self.layout.min_bytes <= 16 * self.bus_bytes
+        sizes = step_sizes(
+            self.segment,
+            self.bus_bytes,
+            at_start=not self.program,
+            may_be_wide=may_be_wide,
+            has_rest=self.rest is not None,
+        )
         align = self.take_align()
-        steps = split(self.segment, sizes)
-        for index, slices in enumerate(steps):
+        for index, slices in enumerate(split(self.segment, sizes)):
             self.program.append(
                 MapStep(
+                    rest=self.rest,
                     align=align if index == 0 else 1,
                     bytes=sizes[index],
                     slices=slices,
-                    begin=begin if index == len(steps) - 1 else None,
-                    exits=_NOWHERE,
+                    begin=begin if index == len(sizes) - 1 else None,
+                    exits=NOWHERE,
                 )
             )
+            self.rest = None
         self.segment = []
-
-    # Control flow.
-
-    def jump_to(self, place: int) -> Jump:
-        """Return the jump to the next step from a place of the program where no loop ends."""
-        enter: list[tuple[int | str, int]] = []
-        while place < len(self.program):
-            item = self.program[place]
-            if not isinstance(item, _Mark):
-                break
-            assert item.kind != "end"
-            if item.kind == "enter":
-                enter.append((item.counter, item.count))
-            place += 1
-        return Jump(enter=tuple(enter), step=self.numbers.get(place))
-
-    def exits_at(self, place: int, bodies: dict[int, int]) -> Exits:
-        """Return the exits of a step or run that ends in front of a place of the program."""
-        repeats: list[tuple[int, Jump]] = []
-        while place < len(self.program):
-            item = self.program[place]
-            if not isinstance(item, _Mark) or item.kind != "end":
-                break
-            assert isinstance(item.counter, int)
-            repeats.append((item.counter, self.jump_to(bodies[place])))
-            place += 1
-        return Exits(repeats=tuple(repeats), default=self.jump_to(place))
-
-    def link(self) -> tuple[Step, ...]:
-        bodies, ends = self.loop_places()
-        steps: list[Step] = []
-        for place, item in enumerate(self.program):
-            if isinstance(item, _Mark):
-                continue
-            after = place + 1
-            if item.begin is not None:
-                begin = item.begin
-                if isinstance(begin, BeginLoop):
-                    begin = replace(begin, body=self.jump_to(after))
-                    after = ends[after] + 1
-                elif after < len(self.program):
-                    # If the run has a body, it is the next step.
-                    next_step = self.program[after]
-                    if isinstance(next_step, RunStep) and next_step.run == begin.run:
-                        begin = replace(begin, body=self.jump_to(after))
-                        after += 1
-                item = replace(item, begin=begin)
-            steps.append(replace(item, exits=self.exits_at(after, bodies)))
-        return tuple(steps)
-
-    def loop_places(self) -> tuple[dict[int, int], dict[int, int]]:
-        """Return the start of each loop's body by the loop's end, and the end by its start."""
-        bodies: dict[int, int] = {}
-        ends: dict[int, int] = {}
-        open_loops: list[int] = []
-        for place, item in enumerate(self.program):
-            if isinstance(item, _Mark) and item.kind == "loop":
-                open_loops.append(place)
-            elif isinstance(item, _Mark) and item.kind == "end":
-                start = open_loops.pop()
-                bodies[place] = start + 1
-                ends[start] = place
-        return bodies, ends
-
-
-_END = Jump(step=None)
-_NOWHERE = Exits(default=_END)

@@ -1,24 +1,24 @@
 """The invariants of every plan, checked without knowing how the plan was built.
 
 A plan that passes can be transcribed without further checks: each byte is mapped once, every jump
-is sound, each loop ends at the level where it starts. :mod:`firm_hdl.plan.offsets` checks the
-offsets in the packet. Problems are sentences for people; an empty list means a good plan.
+is sound, each loop ends at the level where it starts, the rest of each run is taken.
+:mod:`firm_hdl.plan.offsets` checks the offsets in the packet. Problems are sentences for people; an
+empty list means a good plan.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from firm_hdl.model import PRIMITIVE_OF
 from firm_hdl.plan.conform import against_layout
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
-    BeginArray,
     BeginLoop,
     BeginRun,
-    CountedBegin,
     Fixed,
     Jump,
     Leaf,
@@ -40,7 +40,7 @@ def check(plan: Plan, layout: Layout | None = None) -> list[str]:
     """Return the problems of a plan: by itself and, if a layout is given, as a plan of it."""
     problems: list[str] = []
     # Each stage relies on the invariants that the stages before it have checked.
-    for stage in (_tables, _steps, _header, _transfers, _flow, check_offsets):
+    for stage in (_tables, _steps, _header, _transfers, _flow, _rests, check_offsets):
         problems.extend(stage(plan))
         if problems:
             return problems
@@ -52,8 +52,9 @@ def _tables(plan: Plan) -> Iterator[str]:
         yield f"a bus cannot have {plan.bus_bytes} bytes"
         return
     rules = RULES[plan.wire]
-    if (plan.header_bytes, plan.slack_bytes) != (rules.header_bytes, rules.slack_bytes):
-        yield f"header or slack is not that of {plan.wire}"
+    wanted = (rules.header_bytes, rules.max_trailing_bytes)
+    if (plan.header_bytes, plan.max_trailing_bytes) != wanted:
+        yield f"header or trailing bytes are not those of {plan.wire}"
     if len({leaf.path for leaf in plan.leaves}) != len(plan.leaves):
         yield "two leaves have one path"
     for leaf in plan.leaves:
@@ -67,6 +68,8 @@ def _tables(plan: Plan) -> Iterator[str]:
             yield f"run {index}: items are wider than the bus"
         elif run.terminated and plan.leaves[run.items].item_bytes != 1:
             yield f"run {index}: a NUL follows items that are not bytes"
+        elif run.terminated and not run.counted:
+            yield f"run {index}: a NUL follows items of a constant count"
 
 
 def _leaf(leaf: Leaf, bus_bytes: int) -> Iterator[str]:
@@ -95,7 +98,7 @@ def _steps(plan: Plan) -> Iterator[str]:
     if not plan.steps:
         yield "there are no steps"
     for index, step in enumerate(plan.steps):
-        problems = _body(plan, step) if isinstance(step, RunStep) else _map(plan, step)
+        problems = _run(plan, step.run) if isinstance(step, RunStep) else _map(plan, step)
         yield from (f"step {index}: {problem}" for problem in problems)
         if step.align not in (1, 2, 4, 8):
             yield f"step {index}: alignment to {step.align}"
@@ -113,18 +116,15 @@ def _header(plan: Plan) -> Iterator[str]:
         yield f"the header is not that of {plan.wire}"
 
 
-def _body(plan: Plan, step: RunStep) -> Iterator[str]:
-    if step.run not in range(len(plan.runs)):
-        yield f"there is no run {step.run}"
-    else:
-        yield from _head(plan, step.run, step.head)
+def _run(plan: Plan, run: int, *, counted: bool = False) -> Iterator[str]:
+    if run not in range(len(plan.runs)):
+        yield f"there is no run {run}"
+    elif counted and not plan.runs[run].counted:
+        yield f"{_items(plan, run)} has a constant count, which neither begins nor has a rest"
 
 
-def _head(plan: Plan, run: int, head: int) -> Iterator[str]:
-    leaf = plan.leaves[plan.runs[run].items]
-    word = leaf.lanes * leaf.item_bytes
-    if not word <= head <= word + (1 if plan.runs[run].terminated else 0):
-        yield f"{head} bytes of {leaf} per cycle do not fit words of {word}"
+def _items(plan: Plan, run: int) -> Leaf:
+    return plan.leaves[plan.runs[run].items]
 
 
 def _map(plan: Plan, step: MapStep) -> Iterator[str]:
@@ -139,17 +139,25 @@ def _map(plan: Plan, step: MapStep) -> Iterator[str]:
         at = item.at + item.bytes
     if at != step.bytes:
         yield f"the map has {at} bytes, the step {step.bytes}"
-    if step.most_bytes > 2 * plan.bus_bytes:
-        yield f"one cycle takes {step.most_bytes} bytes, more than two bus words"
-    for part in step.parts[:-1]:
-        if not part.completes:
-            yield f"{plan.leaves[part.leaf]} is cut by the next part"
+    if step.rest is not None:
+        yield from _run(plan, step.rest, counted=True)
+        if step.bytes > plan.bus_bytes:
+            yield f"the map behind a rest has {step.bytes} bytes, more than a bus word"
+    elif not step.slices:
+        yield "there is nothing to do"
+    if step.bytes > 2 * plan.bus_bytes:
+        yield f"the map has {step.bytes} bytes, more than two bus words"
+    for before, part in pairwise(step.parts):
+        if not before.completes:
+            yield f"{plan.leaves[before.leaf]} is cut by the next part"
+        elif before.leaf == part.leaf:
+            yield f"two transfers of {plan.leaves[part.leaf]} are in one cycle"
     for item in step.slices[1:]:
         if isinstance(item, Part) and item.first:
             yield f"{plan.leaves[item.leaf]} continues behind other bytes"
     lengths = [part.leaf for part in step.parts if plan.leaves[part.leaf].kind == "length"]
     done = [part.leaf for part in step.parts if part.completes and part.leaf in lengths]
-    counted = [step.begin.length] if isinstance(step.begin, CountedBegin) else []
+    counted = [] if step.begin is None else [step.begin.length]
     if done != counted or (done and step.slices[-1] is not step.parts[-1]):
         yield "a length must be complete in the step that starts what it counts, and in no other"
     if step.begin is not None:
@@ -171,36 +179,19 @@ def _slice(plan: Plan, item: Slice) -> Iterator[str]:
         yield f"a transfer of {leaf} has {item.size} bytes"
     if item.first < 0 or item.first + item.bytes > item.size or (size and item.bytes < 1):
         yield f"{leaf} has no bytes {item.first} to {item.first + item.bytes - 1}"
-    ends = item.last or item.last_level is not None
-    if ends != (leaf.kind == "items") or (item.last and item.last_level is not None):
-        yield f"{leaf} has too few or too many marks of its end"
+    marks = item.last + (item.last_level is not None)
+    if marks > (leaf.kind == "items"):
+        yield f"{leaf} has too many marks of its end"
 
 
 def _begin(plan: Plan, begin: Begin) -> Iterator[str]:
-    if isinstance(begin, BeginArray):
-        if begin.count < 1:
-            yield f"a constant count cannot be {begin.count}"
-    elif begin.limit < 0:
+    if begin.limit < 0:
         yield f"a count has the limit {begin.limit}"
-    if not isinstance(begin, BeginLoop):
-        if begin.run not in range(len(plan.runs)):
-            yield f"there is no run {begin.run}"
-        else:
-            yield from _begin_run(plan, begin)
-
-
-def _begin_run(plan: Plan, begin: BeginRun | BeginArray) -> Iterator[str]:
-    item_bytes = plan.item_bytes(begin.run)
-    if isinstance(begin, BeginArray) and plan.has_nul(begin):
-        yield "a constant run counts a NUL"
-    if begin.head:
-        yield from _head(plan, begin.run, begin.head)
-    if not 0 <= begin.gap < max(8, item_bytes):
-        yield f"a gap cannot have {begin.gap} bytes"
-    has_nul = plan.has_nul(begin)
-    most = (plan.most(begin) - has_nul) * item_bytes + has_nul
-    if begin.body is None and most > begin.head:
-        yield f"a run of {most} bytes needs a body"
+    if isinstance(begin, BeginLoop):
+        return
+    yield from _run(plan, begin.run, counted=True)
+    if begin.align not in (1, 2, 4, 8):
+        yield f"alignment of items to {begin.align}"
 
 
 # The transfers of each leaf.
@@ -216,25 +207,37 @@ def _transfers(plan: Plan) -> Iterator[str]:
             if part.completes:
                 parts.setdefault(part.leaf, []).append(part)
         owner = step if isinstance(step, RunStep) else step.begin
-        if isinstance(owner, RunStep | BeginRun | BeginArray):
+        if isinstance(owner, RunStep | BeginRun):
             order.append(plan.runs[owner.run].items)
             runs.setdefault(plan.runs[owner.run].items, set()).add(owner.run)
     for now, leaf in zip([-1, *order], order, strict=False):
         if leaf not in (now, now + 1):
             yield f"leaf {plan.leaves[leaf]} is out of order"
     for index, path in enumerate(plan.leaves):
-        ends = _ends(plan, parts.get(index, []), sorted(runs.get(index, ())))
+        ends = _ends(plan, index, parts.get(index, []), sorted(runs.get(index, ())))
         yield from (f"leaf {path}: {problem}" for problem in ends)
     yield from _joints(plan)
 
 
-def _ends(plan: Plan, parts: list[Part], runs: list[int]) -> Iterator[str]:
-    if len(parts) > 1 or len(runs) > 1 or not (parts or runs):
+def _ends(plan: Plan, leaf: int, parts: list[Part], runs: list[int]) -> Iterator[str]:
+    """Check the transfers of a leaf: parts, each of a whole transfer, behind at most one run."""
+    most = 2 if plan.leaves[leaf].kind == "items" and not runs else 1
+    if len(parts) > most or len(runs) > 1 or not (parts or runs):
         yield f"{len(parts)} transfers and {len(runs)} runs"
-    elif runs and plan.runs[runs[0]].last != (not parts):
+        return
+    if runs and plan.runs[runs[0]].last != (not parts):
         yield "its run and its tail disagree about its end"
-    elif runs and parts and parts[0].last_level is not None:
-        yield "the tail of a run is in a loop"
+    if plan.leaves[leaf].kind != "items" or not parts:
+        return
+    first, last = parts[0], parts[-1]
+    if not last.last and last.last_level is None:
+        yield "its last transfer has no mark of its end"
+    elif last.last_level is not None and (runs or len(parts) > 1):
+        yield "the last of several transfers is in a loop"
+    if len(parts) > 1:
+        word = plan.leaves[leaf].lanes * plan.leaves[leaf].item_bytes
+        if first.last or first.last_level is not None or first.size != word:
+            yield "its first transfer is not a full word, or has a mark of its end"
 
 
 def _joints(plan: Plan) -> Iterator[str]:
@@ -313,16 +316,16 @@ class _Walk:
 
     def step(self, index: int, spans: dict[Span, int]) -> None:
         step, state, who = self.plan.steps[index], self.states[index], f"step {index}"
-        loads = ("constant", step.run) if isinstance(step, RunStep) else (None,)
-        if self.loaded[index] not in loads:
+        loads: int | str | None = None
+        if isinstance(step, RunStep):
+            loads = step.run if self.plan.runs[step.run].counted else "constant"
+        if self.loaded[index] != loads:
             problem = "the counter of the run is not loaded, or needlessly loaded"
             self.problems.append(f"{who}: {problem}")
-        if (
-            isinstance(step, RunStep)
-            and self.loaded[index] == "constant"
-            and self.plan.runs[step.run].terminated
-        ):
-            self.problems.append(f"{who}: a constant run counts a NUL")
+        elif isinstance(step, RunStep) and loads == "constant":
+            count, leaf = self.counts[RUN_COUNTER, index], _items(self.plan, step.run)
+            if count % leaf.lanes:
+                self.problems.append(f"{who}: {count} items do not fill words of {leaf.lanes}")
         for part in step.parts:
             if part.last_level is not None and part.last_level != len(state) - 1:
                 self.problems.append(f"{who}: loop {part.last_level} is not the innermost")
@@ -333,7 +336,7 @@ class _Walk:
                 self.problems.append(f"{who}: loop {begin.level} inside {len(state)} loops")
             self.jump(begin.body, (*state, after), after, f"{who}, body", None)
             after = spans.get((len(state), after), after) + 1
-        elif begin is not None and begin.body is not None:
+        elif begin is not None:
             self.jump(begin.body, state, after, f"{who}, body", begin.run)
             after += 1
         for level, jump in step.exits.repeats:
@@ -358,3 +361,28 @@ def _flow(plan: Plan) -> list[str]:
     if depth != plan.levels:
         walker.problems.append(f"{plan.levels} loop counters, of which {depth} are used")
     return walker.problems + [f"step {index}: is never reached" for index in missed]
+
+
+def _rests(plan: Plan) -> Iterator[str]:
+    """Check that the step behind a run takes its rest, and no other step does."""
+    # The runs that may have been left in front of each step. `None`: the start, or no run.
+    left: dict[int | None, set[int | None]] = {plan.start.step: {None}}
+    for step in plan.steps:
+        run: int | None = None
+        if isinstance(step, RunStep):
+            run = step.run if plan.runs[step.run].counted else None
+        elif isinstance(step.begin, BeginRun):
+            run = step.begin.run
+        elif step.begin is not None:
+            left.setdefault(step.begin.body.step, set()).add(None)
+        for jump in (step.exits.default, *(jump for _, jump in step.exits.repeats)):
+            left.setdefault(jump.step, set()).add(run)
+    for index, step in enumerate(plan.steps):
+        # The body of a run that a step starts has only this step in front.
+        runs = left.get(index, set())
+        if step.rest is not None and step.rest not in runs:
+            yield f"step {index}: {_items(plan, step.rest)} has no rest here"
+        for run in sorted(run for run in runs if run not in (None, step.rest)):
+            yield f"step {index}: does not take the rest of {_items(plan, run)}"
+    for run in sorted(run for run in left.get(None, ()) if run is not None):
+        yield f"the end: no step takes the rest of {_items(plan, run)}"

@@ -1,7 +1,7 @@
 """The differences between two plans, by meaning and not by line.
 
 Plans are compared in their printed form, which is what people review. A step is identified by the
-leaf that it takes first, not by its number. So an additional step does not change the names of the
+first leaf of its map, not by its number. So an additional step does not change the names of the
 others. A jump is compared by the step to which it leads.
 """
 
@@ -31,8 +31,8 @@ class Change:
     Attributes
     ----------
     path : str
-        Place in the plan: ``steps[header.stamp.sec].begin.limit``. A step is named by the leaf that
-        it takes first.
+        Place in the plan: ``steps[header.stamp.sec].starts.limit``. A step is named by the first
+        leaf of its map.
     old, new : str or None
         The text at this place; `None` if the plan does not have it.
     """
@@ -122,7 +122,7 @@ def _facts(text: str) -> dict[str, str]:
 
 
 def _step_names(steps: Mapping[str, Any]) -> dict[str, str]:
-    """Name each step by the leaf that it takes first; equal names are numbered."""
+    """Name each step by the first leaf of its map; equal names are numbered."""
     seen: Counter[str] = Counter()
     names = {}
     for step, content in steps.items():
@@ -133,8 +133,8 @@ def _step_names(steps: Mapping[str, Any]) -> dict[str, str]:
 
 
 def _step_name(content: Mapping[Any, Any]) -> str:
-    if "run" in content:
-        return f"run of {str(content['run']).partition(',')[0]}"
+    if "words of" in content:
+        return f"words of {content['words of']}"
     slices = [value for key, value in content.items() if _PLACE.fullmatch(str(key))]
     flat = [text for s in slices for text in (s if isinstance(s, list) else [s])]
     for text in flat:
@@ -142,10 +142,7 @@ def _step_name(content: Mapping[Any, Any]) -> str:
             return str(text)
     if flat:
         return "header" if "checked" in str(flat[0]) else "padding"
-    begin = content.get("begin")
-    if isinstance(begin, Mapping):
-        return f"begin of {begin.get('run', begin.get('count', begin.get('constant')))}"
-    return "nothing"
+    return f"rest of {content['rest of']}" if "rest of" in content else "nothing"
 
 
 def _flatten(path: str, value: Any, names: Mapping[str, str]) -> Iterator[tuple[str, str]]:

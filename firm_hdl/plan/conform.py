@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from firm_hdl.plan.ir import RUN_COUNTER, BeginArray, Plan, RunStep
+from firm_hdl.plan.ir import RUN_COUNTER, Plan, RunStep
 from firm_hdl.wire import Layout, LoopNode, RunNode, Scalar, Trigger, walk
 
 __all__ = ["against_layout"]
@@ -90,8 +90,6 @@ def _totals(plan: Plan) -> dict[int, int]:
             if part.completes and plan.leaves[part.leaf].kind == "items":
                 count = part.size // plan.leaves[part.leaf].item_bytes
                 totals[part.leaf] = totals.get(part.leaf, 0) + count
-        if isinstance(step.begin, BeginArray):
-            runs[step.begin.run] = step.begin.count
     for jump in plan.jumps():
         target = None if jump.step is None else plan.steps[jump.step]
         for counter, count in jump.enter:

@@ -6,7 +6,55 @@ from dataclasses import replace
 
 from firm_hdl.plan.ir import Fixed, Pad, Part, Slice
 
-__all__ = ["cut", "split"]
+__all__ = ["cut", "split", "step_sizes"]
+
+
+def step_sizes(
+    segment: list[Slice], bus_bytes: int, *, at_start: bool, may_be_wide: bool, has_rest: bool
+) -> list[int]:
+    """Return step sizes for a segment.
+
+    A step takes up to a bus word. The last one may take two words if it takes no rest of a run. A
+    stream has one transfer per cycle, so that a step ends between two transfers of a leaf.
+
+    Parameters
+    ----------
+    segment : list of Slice
+        With at least one slice; all transfers in it are whole.
+    bus_bytes : int
+    at_start : bool
+        Whether the segment starts a packet. There it is cut at bus words, which needs no rotator.
+    may_be_wide : bool
+        Whether a last step may take two words.
+    has_rest : bool
+        Whether the first step takes the rest of a run.
+    """
+    sizes: list[int] = []
+    for piece in _pieces(segment):
+        total = piece[-1].at + piece[-1].bytes
+        if sizes or not at_start:
+            is_wide = may_be_wide and (bool(sizes) or not has_rest or total > 2 * bus_bytes)
+            sizes += cut(piece, bus_bytes, 2 * bus_bytes if is_wide else bus_bytes)
+            continue
+        sizes = [min(bus_bytes, total - at) for at in range(0, total, bus_bytes)] or [0]
+        if len(sizes) > 1 and may_be_wide:
+            sizes[-2:] = [sizes[-2] + sizes[-1]]
+    return sizes
+
+
+def _pieces(segment: list[Slice]) -> list[list[Slice]]:
+    """Divide a segment between transfers of the same leaf; each piece starts at 0."""
+    pieces: list[list[Slice]] = []
+    before: Slice | None = None
+    start = 0
+    for item in segment:
+        is_second = isinstance(before, Part) and isinstance(item, Part) and before.leaf == item.leaf
+        if is_second or not pieces:
+            pieces.append([])
+            start = item.at
+        pieces[-1].append(replace(item, at=item.at - start))
+        before = item
+    return pieces
 
 
 def cut(segment: list[Slice], bus_bytes: int, last_bytes: int) -> list[int]:

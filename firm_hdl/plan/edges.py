@@ -9,16 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from firm_hdl.plan.interpret import Edge
-from firm_hdl.plan.ir import (
-    RUN_COUNTER,
-    Begin,
-    BeginArray,
-    BeginLoop,
-    BeginRun,
-    Plan,
-    RunStep,
-    Step,
-)
+from firm_hdl.plan.ir import RUN_COUNTER, Begin, BeginLoop, BeginRun, Plan, RunStep, Step
 from firm_hdl.plan.offsets import paddings
 
 __all__ = ["edges"]
@@ -28,14 +19,15 @@ def edges(plan: Plan) -> frozenset[Edge]:
     """Return every decision that some legal packet takes.
 
     Decisions that limits exclude are left out, such as a second iteration of a loop that has at
-    most one element. :attr:`firm_hdl.plan.Decoded.edges` has the decisions of one packet.
+    most one element, or all of the body of a run that is at most a bus word long.
+    :attr:`firm_hdl.plan.Decoded.edges` has the decisions of one packet.
     """
     padding = paddings(plan)
-    most = _max_counts(plan)
+    counts = _max_counts(plan)
     return frozenset(
         Edge(index, way)
         for index, step in enumerate(plan.steps)
-        for way in _ways(plan, index, step, padding.get(index, frozenset()), most)
+        for way in _ways(plan, index, step, padding.get(index, frozenset()), counts)
     )
 
 
@@ -43,59 +35,58 @@ MaxCounts = dict[tuple["int | str", int], int]
 
 
 def _ways(
-    plan: Plan, index: int, step: Step, padding: frozenset[int], most: MaxCounts
+    plan: Plan, index: int, step: Step, padding: frozenset[int], counts: MaxCounts
 ) -> Iterator[str]:
+    if isinstance(step, RunStep) and not counts.get((RUN_COUNTER, index), 0):
+        return
+    if step.rest is not None:
+        yield "no rest"
+        if counts.get(("rest", step.rest), 0):
+            yield "rest"
     if step.align != 1:
         yield from (f"padding {count}" for count in padding)
-    if (
-        isinstance(step, RunStep)
-        and most.get((RUN_COUNTER, index), 0) * plan.item_bytes(step.run) > step.head
-    ):
+    if isinstance(step, RunStep) and counts[RUN_COUNTER, index] > _once(plan, step):
         yield "again"
-    begin = step.begin
-    if begin is not None and begin.body is not None and _may_need_body(plan, begin):
+    if step.begin is not None and _may_need_body(plan, step.begin):
         yield "body"
-    if begin is not None and begin.body is not None and not _may_finish(plan, begin):
-        return
     for level, jump in step.exits.repeats:
-        if jump.step is not None and most.get((level, jump.step), 0) > 1:
+        if jump.step is not None and counts.get((level, jump.step), 0) > 1:
             yield f"loop {level} again"
     yield "next"
 
 
 def _max_counts(plan: Plan) -> MaxCounts:
-    """Return the largest count of every loop and run, by counter and first step."""
-    most: MaxCounts = {}
+    """Return the largest count of each loop and body of a run, by counter and first step.
+
+    Also that of each run that a length counts, by "rest" and the index of the run.
+    """
+    counts: MaxCounts = {}
 
     def note(counter: int | str, step: int | None, count: int) -> None:
         if step is not None:
-            most[counter, step] = max(count, most.get((counter, step), 0))
+            counts[counter, step] = max(count, counts.get((counter, step), 0))
 
     for jump in plan.jumps():
         for counter, count in jump.enter:
             note(counter, jump.step, count)
     for step in plan.steps:
-        begin = step.begin
-        if begin is not None and begin.body is not None:
-            if isinstance(begin, BeginLoop):
+        match step.begin:
+            case BeginLoop() as begin:
                 note(begin.level, begin.body.step, begin.limit)
-            else:
-                left = plan.most(begin) - _head_items(plan, begin)
-                note(RUN_COUNTER, begin.body.step, left)
-    return most
+            case BeginRun() as begin:
+                note("rest", begin.run, plan.max_count(begin))
+                if _may_need_body(plan, begin):
+                    note(RUN_COUNTER, begin.body.step, plan.max_count(begin))
+    return counts
 
 
-def _head_items(plan: Plan, begin: BeginRun | BeginArray) -> int:
-    """Return the number of items that a step takes of a run that it does not finish."""
-    return plan.leaves[plan.runs[begin.run].items].lanes if begin.head else 0
+def _once(plan: Plan, step: RunStep) -> int:
+    """Return the largest count for which the body of a run takes one cycle."""
+    lanes = plan.leaves[plan.runs[step.run].items].lanes
+    return lanes + plan.word(step.run) if plan.runs[step.run].counted else lanes
 
 
 def _may_need_body(plan: Plan, begin: Begin) -> bool:
     if isinstance(begin, BeginLoop):
         return begin.limit > 0
-    return plan.most(begin) * plan.item_bytes(begin.run) > begin.head
-
-
-def _may_finish(plan: Plan, begin: Begin) -> bool:
-    """Return whether a step may also finish the loop or run that it starts."""
-    return not isinstance(begin, BeginArray) or not _may_need_body(plan, begin)
+    return plan.max_count(begin) > plan.word(begin.run)

@@ -1,18 +1,44 @@
-"""The window that a plan needs: its width, where steps may start, and how many beats they touch.
+"""Where steps may start in a bus word, and what a circuit needs for it.
 
 Residues of the position are followed through the control flow of the plan until no set grows any
-more. A plan whose steps all start at bus words needs no shifter at all.
+more. A plan whose words all start at bus words needs no rotator at all.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from firm_hdl.plan.ir import RUN_COUNTER, BeginArray, Exits, Jump, Plan, RunStep
+from firm_hdl.plan.ir import BeginRun, Exits, Jump, MapStep, Plan, RunStep, Step
 from firm_hdl.wire import residues as rs
 
-__all__ = ["Geometry", "geometry"]
+__all__ = [
+    "Geometry",
+    "Place",
+    "first_step",
+    "geometry",
+    "may_end_empty",
+    "most_beats",
+    "only_ends",
+    "ring_beats",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """The lanes of a bus word at which a step may start, in ascending order.
+
+    Attributes
+    ----------
+    first : tuple of int
+        Lanes of the first byte behind the step before: the rest of a run, or padding, starts here.
+    map : tuple of int
+        Lanes of the first byte of the map or of the word of a run.
+    """
+
+    first: tuple[int, ...]
+    map: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,82 +47,122 @@ class Geometry:
 
     Attributes
     ----------
-    window_bytes : int
-        Largest number of bytes that a step takes in one cycle; at least 1.
-    skip_bytes : int
-        Largest number of bytes by which a step advances, including padding of known size in front
-        of a run.
-    start_alignment_bytes : int
-        Every step starts at a multiple of this many bytes of a bus word; a power of two up to the
-        bus width.
-    window_beats : int
-        Largest number of beats that the bytes of one step touch; at least 1.
+    places : tuple of Place
+        By step.
+    item_lanes, map_lanes : tuple of int
+        Lanes at which the word of items and the word of the map may start, in ascending order.
+    item_unit, map_unit : int
+        Lanes of that word, and its sizes, are multiples of so many bytes; a power of two.
     aligns : bool
         Whether the circuit computes any padding.
     """
 
-    window_bytes: int
-    skip_bytes: int
-    start_alignment_bytes: int
-    window_beats: int
+    places: tuple[Place, ...]
+    item_lanes: tuple[int, ...]
+    map_lanes: tuple[int, ...]
+    item_unit: int
+    map_unit: int
     aligns: bool
 
 
 def geometry(plan: Plan) -> Geometry:
     """Compute the geometry of a plan."""
-    starts = _starts(plan)
+    flow = _Flow(plan)
+    places = flow.places()
     bus = plan.bus_bytes
-    offsets = {position % bus for residues in starts for position in rs.members(residues)}
-    alignment = bus
-    while any(offset % alignment for offset in offsets):
-        alignment //= 2
-    beats = 1
-    for step, residues in zip(plan.steps, starts, strict=True):
-        for position in rs.members(residues):
-            beats = max(beats, -(-(position % bus + step.most_bytes) // bus))
-    window = max((1, *(step.most_bytes for step in plan.steps)))
-    gaps = (step.bytes + step.gap for step in plan.steps if step.begin is not None)
+    item_lanes: set[int] = set()
+    map_lanes: set[int] = set()
+    item_sizes, map_sizes = {bus}, {bus}
+    for step, place in zip(plan.steps, places, strict=True):
+        map_sizes.add(step.bytes)
+        if step.rest is not None:
+            item_lanes.update(place.first)
+            item_sizes.add(plan.item_bytes(step.rest))
+        if isinstance(step, RunStep) and plan.runs[step.run].counted:
+            item_lanes.update(place.map)
+        elif step.bytes or isinstance(step, RunStep):
+            map_lanes.update(place.map)
+            if step.bytes > bus:
+                item_lanes.update(place.map)
     return Geometry(
-        window_bytes=window,
-        skip_bytes=max((window, *gaps)),
-        start_alignment_bytes=alignment,
-        window_beats=beats,
-        aligns=any(step.align > 1 for step in plan.steps),
+        places=places,
+        item_lanes=tuple(sorted(item_lanes)) or (0,),
+        map_lanes=tuple(sorted(map_lanes)) or (0,),
+        item_unit=math.gcd(*item_lanes, *item_sizes),
+        map_unit=math.gcd(*map_lanes, *map_sizes),
+        aligns=any(step.align > 1 for step in plan.steps)
+        or any(isinstance(s.begin, BeginRun) and s.begin.align > 1 for s in plan.steps),
     )
 
 
-def _starts(plan: Plan) -> list[int]:
-    """Return, per step, the set of positions where it may start, as a mask of residues."""
-    flow = _Flow(plan)
-    starts = [0] * len(plan.steps)
-    todo = [(plan.start, 1)]
-    while todo:
-        jump, residues = todo.pop()
-        if jump.step is None:
-            continue
-        residues = flow.aligned(residues, plan.steps[jump.step].align)
-        if residues & ~starts[jump.step]:
-            starts[jump.step] |= residues
-            todo.extend(flow.successors(jump.step, starts[jump.step]))
-    return starts
+def ring_beats(bus_bytes: int) -> int:
+    """Return the number of beats in the ring of a converter.
+
+    A power of two, and more beats than one step can touch.
+    """
+    return 8 if bus_bytes > 2 else 16
+
+
+def most_beats(plan: Plan) -> int:
+    """Return the largest number of beats that a step touches, the padding in it included."""
+    # An empty packet has a beat, too.
+    return max(1, *(_beats(plan, step) for step in plan.steps))
+
+
+def _beats(plan: Plan, step: Step) -> int:
+    bus = plan.bus_bytes
+    size = max(step.bytes, bus if isinstance(step, RunStep) else 0) + step.align - 1
+    if step.rest is not None:
+        size += bus + plan.runs[step.rest].terminated
+    if isinstance(step.begin, BeginRun):
+        size += step.begin.align - 1
+    return -(-(bus - 1 + size) // bus)
+
+
+def first_step(plan: Plan) -> int:
+    """Return the first step with a leaf of the message; those in front of it have constants."""
+    steps = enumerate(plan.steps)
+    return next(i for i, step in steps if step.parts or isinstance(step, RunStep))
+
+
+def only_ends(step: Step) -> bool:
+    """Tell whether a step ends the packet in any case, and takes a rest at most."""
+    ends = step.exits.default.step is None and not step.exits.repeats
+    return ends and step.rest is not None and not step.bytes
+
+
+def may_end_empty(plan: Plan) -> bool:
+    """Tell whether a packet may end in a step without bytes.
+
+    Then its last beat may be full before it is known to be the last one.
+    """
+    return any(
+        step.exits.default.step is None and not step.bytes and step.rest is None
+        for step in plan.steps
+        if not isinstance(step, RunStep)
+    )
 
 
 class _Flow:
     def __init__(self, plan: Plan):
         self.plan = plan
         self.modulus = max(rs.MODULUS, plan.bus_bytes)
-        entered = {
-            jump.step
-            for jump in plan.jumps()
-            if any(counter == RUN_COUNTER for counter, _ in jump.enter)
-        }
-        bodies = (plan.steps[index] for index in entered if index is not None)
-        begins = (step.begin for step in plan.steps)
-        # The planner cuts runs of constant count to whole bus words.
-        self.constant_runs = {
-            *(body.run for body in bodies if isinstance(body, RunStep)),
-            *(begin.run for begin in begins if isinstance(begin, BeginArray)),
-        }
+
+    def places(self) -> tuple[Place, ...]:
+        first = [0] * len(self.plan.steps)
+        todo = [(self.plan.start, 1)]
+        while todo:
+            jump, residues = todo.pop()
+            if jump.step is not None and residues & ~first[jump.step]:
+                first[jump.step] |= residues
+                todo.extend(self.successors(jump.step, first[jump.step]))
+        return tuple(
+            Place(self.lanes(residues), self.lanes(self.start(step, residues)))
+            for step, residues in zip(self.plan.steps, first, strict=True)
+        )
+
+    def lanes(self, residues: int) -> tuple[int, ...]:
+        return tuple(sorted({r % self.plan.bus_bytes for r in rs.members(residues)}))
 
     def advance(self, residues: int, count: int) -> int:
         return rs.advance(residues, count, self.modulus)
@@ -107,37 +173,37 @@ class _Flow:
         after_header = self.advance(residues, -header)
         return self.advance(rs.aligned(after_header, align, self.modulus), header)
 
-    def run_end(self, residues: int, run: int) -> int:
-        """Return the positions where a run may end if its last word starts at one of `residues`."""
-        if run in self.constant_runs:
-            return self.advance(residues, self.plan.bus_bytes)
-        return rs.spread(residues, self.plan.item_bytes(run), self.modulus)
+    def start(self, step: Step, residues: int) -> int:
+        """Return the positions where a step's own word may start."""
+        if step.rest is not None:
+            residues = rs.spread(residues, self.plan.item_bytes(step.rest), self.modulus)
+        return self.aligned(residues, step.align)
 
     def successors(self, index: int, residues: int) -> Iterator[tuple[Jump, int]]:
         step = self.plan.steps[index]
-        bus = self.plan.bus_bytes
+        start = self.start(step, residues)
         if isinstance(step, RunStep):
-            start = residues | self.advance(residues, bus)
-            # The body repeats itself without going through an exit.
-            yield from self.exits(step.exits, self.run_end(start, step.run))
-            yield Jump(step=index), start
+            yield from self.exits(step.exits, self.repeated(start))
             return
-        after = self.advance(residues, step.bytes)
-        begin = step.begin
-        if begin is None:
-            yield from self.exits(step.exits, after)
-            return
-        first = self.advance(after, step.gap)
-        ends = 0 if isinstance(begin, BeginArray) else after
-        if step.take is not None:
-            ends |= self.run_end(first, step.take.run)
-            first = self.advance(first, bus)
-        if ends:
-            yield from self.exits(step.exits, ends)
-        if begin.body is not None:
-            yield begin.body, first
+        yield from self.after_map(step, self.advance(start, step.bytes))
 
-    def exits(self, exits: Exits, residues: int) -> Iterator[tuple[Jump, int]]:
-        for _, jump in exits.repeats:
-            yield jump, residues
-        yield exits.default, residues
+    def repeated(self, start: int) -> int:
+        """Return the positions behind any number of words."""
+        found = 0
+        while start & ~found:
+            found |= start
+            start = self.advance(start, self.plan.bus_bytes)
+        return found
+
+    def after_map(self, step: MapStep, after: int) -> Iterator[tuple[Jump, int]]:
+        begin = step.begin
+        if isinstance(begin, BeginRun):
+            items = self.aligned(after, begin.align)
+            yield begin.body, items
+            after |= items
+        elif begin is not None:
+            yield begin.body, after
+        yield from self.exits(step.exits, after)
+
+    def exits(self, exits: Exits, residues: int) -> Iterable[tuple[Jump, int]]:
+        return [(jump, residues) for _, jump in exits.repeats] + [(exits.default, residues)]

@@ -13,7 +13,6 @@ from typing import TypeAlias
 
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
-    BeginArray,
     BeginLoop,
     BeginRun,
     Fixed,
@@ -54,6 +53,10 @@ def check_offsets(plan: Plan) -> list[str]:
     for index, step in enumerate(plan.steps):
         if step.align != 1 and not any(walk.skipped.get(index, ())):
             walk.report(f"step {index}: is aligned already")
+        begin = step.begin
+        if isinstance(begin, BeginRun) and begin.align != 1 and index not in walk.padded_runs:
+            leaf = plan.leaves[plan.runs[begin.run].items]
+            walk.report(f"step {index}: {leaf} is aligned already")
     return list(walk.problems)
 
 
@@ -81,6 +84,8 @@ class _Walk:
     problems: dict[str, None] = field(default_factory=dict)
     # Numbers of bytes that are skipped in front of each aligned step.
     skipped: dict[int, set[int]] = field(default_factory=dict)
+    # Steps that start a run with padding in front, at some offset.
+    padded_runs: set[int] = field(default_factory=set)
     max_align: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -158,7 +163,7 @@ class _Walk:
         if step.align != 1:
             self.check_padding_used(places, f"step {index}")
             self.check_step_align(index, step)
-            self.pad(index, places)
+            self.skipped.setdefault(index, set()).update(-r % step.align for r, _ in places)
             places = {((r + -r % step.align) % 8, 0) for r, _ in places}
         if isinstance(step, RunStep):
             return self.constant_run(index, step.run, places), index + 1
@@ -167,17 +172,12 @@ class _Walk:
         begin = step.begin
         if begin is None:
             return places, index + 1
-        if not isinstance(begin, BeginArray):
-            self.check_padding_used(places, f"step {index}")
+        self.check_padding_used(places, f"step {index}")
         if isinstance(begin, BeginLoop):
             end = self.spans.get((depth, index + 1), index + 1)
             most = begin.limit if self.limited else None
             return self.any_number(index + 1, end, depth + 1, places, most), end + 1
-        return self.begin_run(index, begin, places), index + (1 if begin.body is None else 2)
-
-    def pad(self, index: int, places: set[Place]) -> None:
-        align = self.plan.steps[index].align
-        self.skipped.setdefault(index, set()).update(-residue % align for residue, _ in places)
+        return self.begin_run(index, begin, places), index + 2
 
     def check_step_align(self, index: int, step: Step) -> None:
         """Check that a step has the alignment of the value that it starts with."""
@@ -213,35 +213,29 @@ class _Walk:
                 f"not {-residue % align}, at offset {residue} modulo 8"
             )
 
-    def begin_run(
-        self, index: int, begin: BeginRun | BeginArray, places: set[Place]
-    ) -> set[Place]:
+    def begin_run(self, index: int, begin: BeginRun, places: set[Place]) -> set[Place]:
+        """Run a whole run, the rest included that a later step takes."""
         leaf = self.plan.leaves[self.plan.runs[begin.run].items]
-        size = leaf.item_bytes
-        body_align = 1
-        if begin.body is not None:
-            body = self.plan.steps[index + 1]
-            body_align = body.align
-            if body_align != 1:
-                self.check_step_align(index + 1, body)
-                self.pad(index + 1, places)
-                if begin.gap or begin.head:
-                    self.report(f"step {index}: {leaf} starts here and in an aligned step, too")
-        result: set[Place] = set() if isinstance(begin, BeginArray) else set(places)
-        for residue, pad in places:
-            if body_align == 1:
-                self.expect(index, leaf, residue, pad + begin.gap)
-                start = residue + pad + begin.gap
-            else:
-                start = residue + -residue % body_align
-            result |= {((start + count * size) % 8, 0) for count in self.run_counts(begin)}
+        align = self.align(leaf)
+        if self.plan.steps[index + 1].align != 1:
+            self.report(f"step {index + 1}: is aligned within a run")
+        if begin.align not in (1, align):
+            self.report(f"step {index}: {leaf} is aligned to {begin.align}, not {align}")
+        # An empty run has neither items nor padding.
+        result = set(places)
+        for residue, _ in places:
+            padding = -residue % begin.align
+            if begin.align == 1:
+                self.expect(index, leaf, residue, 0)
+            elif padding:
+                self.padded_runs.add(index)
+            start = residue + padding
+            result |= {((start + n * leaf.item_bytes) % 8, 0) for n in self.run_counts(begin)}
         return result
 
-    def run_counts(self, begin: BeginRun | BeginArray) -> Sequence[int]:
+    def run_counts(self, begin: BeginRun) -> Sequence[int]:
         """Return the counts of a run that is not empty, as far as they give different offsets."""
-        if isinstance(begin, BeginArray):
-            return [begin.count]
-        most = self.plan.most(begin) if self.limited else 8
+        most = self.plan.max_count(begin) if self.limited else 8
         return range(1, min(most, 8) + 1)
 
     def constant_run(self, index: int, run: int, places: set[Place]) -> set[Place]:

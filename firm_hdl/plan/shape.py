@@ -12,7 +12,6 @@ from dataclasses import replace
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
-    BeginArray,
     BeginLoop,
     Fixed,
     Jump,
@@ -43,8 +42,10 @@ def constructs(plan: Plan) -> frozenset[str]:
         found.add(f"leaf {leaf.kind} {'signed ' if leaf.signed else ''}{leaf.type}")
     for run in plan.runs:
         size = plan.leaves[run.items].item_bytes
-        nul, tail = run.terminated, not run.last
-        found.add(f"run of {size} bytes{', NUL' if nul else ''}{', tail behind' if tail else ''}")
+        words = [f"run of {size} bytes", "counted" if run.counted else "constant count"]
+        words += ["NUL"] if run.terminated else []
+        words += [] if run.last else ["tail behind"]
+        found.add(", ".join(words))
     for step in plan.steps:
         found.update(_step(plan, step))
     return frozenset(found)
@@ -52,8 +53,12 @@ def constructs(plan: Plan) -> frozenset[str]:
 
 def _step(plan: Plan, step: Step) -> Iterator[str]:
     yield f"align {step.align}"
+    if step.rest is not None:
+        yield f"rest of a run{'' if step.slices else ' alone'}"
     if isinstance(step, RunStep):
-        yield f"body of a run, head {step.head - plan.bus_bytes:+}"
+        yield "words of a run"
+    elif step.bytes > plan.bus_bytes:
+        yield "map of two words"
     for item in step.slices:
         match item:
             case Pad():
@@ -64,8 +69,7 @@ def _step(plan: Plan, step: Step) -> Iterator[str]:
                 yield _part(plan, item)
     if step.begin is not None:
         yield _begin(plan, step.begin)
-        if step.begin.body is not None:
-            yield from _jump("body", step.begin.body)
+        yield from _jump("body", step.begin.body)
     yield f"{min(len(step.exits.repeats), 3)} loops may repeat"
     for _, jump in step.exits.repeats:
         yield from _jump("repeat", jump)
@@ -85,12 +89,9 @@ def _part(plan: Plan, part: Part) -> str:
 def _begin(plan: Plan, begin: Begin) -> str:
     if isinstance(begin, BeginLoop):
         return "begin loop, counted by a length"
-    constant = isinstance(begin, BeginArray)
-    words = ["run", "counted by a constant" if constant else "counted by a length"]
+    words = ["run, counted by a length"]
     words += ["NUL"] if plan.has_nul(begin) else []
-    words += [f"gap of {begin.gap}"] if begin.gap else []
-    words += ["head"] if begin.head else []
-    words += [] if begin.body is not None else ["no body"]
+    words += [f"aligned to {begin.align}"] if begin.align != 1 else []
     return f"begin {', '.join(words)}"
 
 

@@ -1,8 +1,8 @@
 """The cycles that a converter takes for a packet, found by running its plan.
 
-A packet takes as many cycles as it has beats or steps, whichever is more. The packet with the most
-cycles per byte is searched for, not proved: short strings and few elements take a step each and
-have few bytes.
+Cycles are those of the converter that takes more; see :mod:`firm_hdl.plan.cycles`. The packet with
+the most cycles per byte is searched for, not proved: short strings and few elements take a step
+each, for their length, and have few bytes.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import product
 
-from firm_hdl.plan import Payload, Plan, decode, encode
-from firm_hdl.plan.geometry import geometry
+from firm_hdl.plan import Payload, Plan, encode
+from firm_hdl.plan.cycles import cycles_between, packet_of
 
 __all__ = ["LINE_RATES", "Cost", "Timing", "clock_mhz", "describe", "timing"]
 
@@ -28,16 +28,19 @@ MAX_TRANSFERS = 1 << 12
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cost:
-    """Size and cycles of one packet when packets come back to back."""
+    """Size and cycles of one packet when it is repeated back to back.
+
+    Attributes
+    ----------
+    bytes, beats, steps : int
+    cycles : int
+        Cycles from one packet to the next.
+    """
 
     bytes: int
     beats: int
     steps: int
-
-    @property
-    def cycles(self) -> int:
-        """Cycles from one packet to the next."""
-        return max(self.beats, self.steps)
+    cycles: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,10 +52,6 @@ class Timing:
     bus_bytes : int
     steps : int
         Number of steps of the plan; each takes one cycle, or one cycle per bus word of a run.
-    window_bytes : int
-        Largest number of bytes that one cycle takes.
-    window_beats : int
-        Largest number of beats that these bytes touch.
     shortest : Cost
         Cost of the packet with every length 0.
     hardest : Cost
@@ -61,8 +60,6 @@ class Timing:
 
     bus_bytes: int
     steps: int
-    window_bytes: int
-    window_beats: int
     shortest: Cost
     hardest: Cost
 
@@ -70,13 +67,13 @@ class Timing:
 def timing(plan: Plan) -> Timing:
     """Compute the figures of a plan."""
     bus = plan.bus_bytes
-    sizes = geometry(plan)
     shortest = hardest = _cost(plan, 0, 0)
     # In a long packet, short strings are a small part.
     is_short = shortest.bytes < 1 << 14
     if is_short and any(leaf.kind == "length" for leaf in plan.leaves):
         counts = sorted({0, 1, MAX_ELEMENTS.get(plan.levels, 2)})
-        for elements, items in product(counts, sorted({0, 1, bus // 2, bus, bus + 1})):
+        # A run takes one cycle for each bus word, so that longer ones are not harder.
+        for elements, items in product(counts, sorted({0, 1, bus // 2})):
             try:
                 cost = _cost(plan, elements, items, MAX_TRANSFERS)
             except _TooLongError:
@@ -86,8 +83,6 @@ def timing(plan: Plan) -> Timing:
     return Timing(
         bus_bytes=bus,
         steps=len(plan.steps),
-        window_bytes=sizes.window_bytes,
-        window_beats=sizes.window_beats,
         shortest=shortest,
         hardest=hardest,
     )
@@ -135,11 +130,13 @@ def _cost(plan: Plan, elements: int, items: int, most: int | None = None) -> Cos
             payload = ((0,) * leaf.lanes, False)
         streams[index] = transfers(payload)
     # `last` is never set, which is an error; the serializer still writes all bytes.
-    packet, _ = encode(plan, streams)
+    data, _ = encode(plan, streams)
+    packet = packet_of(plan, data)
     return Cost(
-        bytes=len(packet),
-        beats=max(1, -(-len(packet) // plan.bus_bytes)),
-        steps=len(decode(plan, packet).steps),
+        bytes=packet.bytes,
+        beats=packet.beats,
+        steps=len(packet.visits),
+        cycles=cycles_between(packet),
     )
 
 
@@ -154,7 +151,7 @@ def describe(name: str, plan: Plan, figures: Timing) -> str:
     varies = any(leaf.kind == "length" for leaf in plan.leaves)
     rows = [("every packet", short)]
     if varies:
-        long = Cost(bytes=plan.bus_bytes, beats=1, steps=1)
+        long = Cost(bytes=plan.bus_bytes, beats=1, steps=1, cycles=1)
         rows = [("long strings or arrays", long)] if _has_long(plan) else []
         which = "the shortest" if hard is short else _cost_text(hard)
         rows.append((f"the hardest packet tried ({which})", hard))

@@ -1,6 +1,6 @@
 """Print plans as YAML, for people to review and for tools to read back.
 
-The text names leaves by their paths, and bytes by their offsets in a step's window. Each step shows
+The text names leaves by their paths, and bytes by their offsets in a step's map. Each step shows
 all that an FPGA engineer needs to review it. Comments help the reader and are not read back.
 Reading is in :mod:`firm_hdl.plan.yaml_reader`.
 """
@@ -14,9 +14,7 @@ from firm_hdl.model import PRIMITIVE_OF
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
-    BeginArray,
     BeginLoop,
-    BeginRun,
     Exits,
     Fixed,
     Jump,
@@ -34,15 +32,18 @@ from firm_hdl.plan.yaml_reader import from_yaml
 __all__ = ["from_yaml", "to_yaml"]
 
 LEGEND = """\
-# How to read it: a step is one cycle's work, on a window of bytes of the packet.
-#   4..7: stamp.sec     bytes 4 to 7 of the window are this leaf (least significant byte first)
+# How to read it: a step is one cycle's work on the next bytes of the packet, in this order:
+#   rest of: s.items    the last bus word of a run, which may be short, and the NUL behind it;
+#                       nothing if the run is empty or was not started
+#   align: 4            padding up to a multiple of 4 bytes, counted from behind the header
+#   4..7: stamp.sec     bytes 4 to 7 from here are this leaf (least significant byte first)
 #   at 8: x.trigger     a leaf without bytes, valid here
-#   begin               starts what a length or a constant counts: a run of items, of which the
-#                       bytes "head" may be taken in the same cycle, or a loop. A count of 0 goes
-#                       to "next" at once. "gap" is padding in front of the first item.
-#   run                 repeats the step, a bus word at a time, until the run is done
-#   align               the step starts at a multiple of this, counted from behind the header
-#   next                what follows; "loop 0 again" if that loop has elements left
+#   starts              a run of items or a loop over elements: as many as the length "count" says,
+#                       at most "limit"; "align" is padding in front of the first item. "body" is
+#                       the next step if the loop has elements, or the run more than one bus word.
+#   words of: s.items   a bus word of a run; repeated until only the rest is left, or, if the count
+#                       is constant, until the run is done
+#   next                the step in the next cycle; "loop 0 again" if that loop has elements left
 """
 COLUMNS = 100
 # Words that YAML 1.1 does not read as text.
@@ -75,7 +76,7 @@ class _Printer:
         yield f"bus_bytes: {plan.bus_bytes}"
         yield f"max_message_bytes: {plan.max_message_bytes}"
         yield f"header_bytes: {plan.header_bytes}"
-        yield f"slack_bytes: {plan.slack_bytes}"
+        yield f"max_trailing_bytes: {plan.max_trailing_bytes}"
         yield f"levels: {plan.levels}"
         yield "leaves:" if plan.leaves else "leaves: {}"
         for leaf, path in zip(plan.leaves, self.paths, strict=True):
@@ -92,16 +93,21 @@ class _Printer:
             yield from (f"    {line}" for line in self.step(step))
 
     def step(self, step: Step) -> Iterator[str]:
+        if step.rest is not None:
+            yield f"rest of: {self.run(step.rest)}"
         if step.align != 1:
             yield f"align: {step.align}"
         if step.bytes != sum(item.bytes for item in step.slices):
             yield f"bytes: {step.bytes}"
         yield from self.slices(step.slices)
         if isinstance(step, RunStep):
-            yield f"run: {self.paths[self.plan.runs[step.run].items]}, up to {_bytes(step.head)}"
+            yield f"words of: {self.run(step.run)}"
         if step.begin is not None:
-            yield from _short("begin", self.begin(step.begin, step.bytes))
+            yield from _short("starts", self.begin(step.begin))
         yield from _exits(step.exits)
+
+    def run(self, run: int) -> str:
+        return _plain(self.paths[self.plan.runs[run].items])
 
     def slices(self, slices: tuple[Slice, ...]) -> Iterator[str]:
         index = 0
@@ -142,34 +148,18 @@ class _Printer:
             text += f", last of loop {part.last_level}"
         return _plain(text)
 
-    def begin(self, begin: Begin, at: int) -> dict[str, str]:
-        entries: dict[str, str] = {}
-        match begin:
-            case BeginLoop(level=level):
-                entries["loop"] = str(level)
-            case BeginRun(run=run) | BeginArray(run=run):
-                entries["run"] = _plain(self.paths[self.plan.runs[run].items])
-        match begin:
-            case BeginLoop(length=length, limit=limit) | BeginRun(length=length, limit=limit):
-                entries |= {"count": _plain(self.paths[length]), "limit": str(limit)}
-            case BeginArray(count=count):
-                entries |= {"constant": str(count), "limit": str(count)}
-        if self.plan.has_nul(begin):
-            entries["terminated"] = "true"
-        if not isinstance(begin, BeginLoop):
-            entries |= {"gap": str(begin.gap)} if begin.gap else {}
-            entries |= {"head": _range(at + begin.gap, begin.head)} if begin.head else {}
-        if begin.body is not None:
-            entries["body"] = _jump(begin.body)
-        return entries
+    def begin(self, begin: Begin) -> dict[str, str]:
+        count = {"count": _plain(self.paths[begin.length]), "limit": str(begin.limit)}
+        if isinstance(begin, BeginLoop):
+            return {"loop": str(begin.level), **count, "body": _jump(begin.body)}
+        entries = {"run": self.run(begin.run), **count}
+        if begin.align != 1:
+            entries["align"] = str(begin.align)
+        return {**entries, "body": _jump(begin.body)}
 
 
 def _count(number: int, noun: str, plural: str = "") -> str:
     return f"{number} {noun if number == 1 else plural or noun + 's'}"
-
-
-def _bytes(number: int) -> str:
-    return _count(number, "byte")
 
 
 def _plain(text: str) -> str:
@@ -190,7 +180,8 @@ def _leaf(leaf: Leaf) -> str:
 
 
 def _run(run: Run) -> str:
-    words = ["NUL behind"] if run.terminated else []
+    words = ["counted" if run.counted else "constant count"]
+    words += ["NUL behind"] if run.terminated else []
     words += [] if run.last else ["tail behind"]
     return f"[{', '.join(words)}]"
 
@@ -259,30 +250,19 @@ def _places(plan: Plan) -> list[str]:
     """Return the bytes of the packet that each step takes, if they are the same in every packet."""
     places = [""] * len(plan.steps)
     repeated = {jump.step for step in plan.steps for _, jump in step.exits.repeats}
-    at, run_bytes, jump = 0, 0, plan.start
+    at, jump = 0, plan.start
     # Steps with fixed offsets form one chain: it ends at the first loop or variable length.
     while jump.step is not None and jump.step not in repeated:
         step = plan.steps[jump.step]
         size = step.bytes
         if isinstance(step, RunStep):
-            entered = dict(jump.enter).get(RUN_COUNTER)
-            size = run_bytes if entered is None else entered * plan.item_bytes(step.run)
+            size = dict(jump.enter).get(RUN_COUNTER, 0) * plan.item_bytes(step.run)
         if step.align != 1 or places[jump.step]:
             break
         noun = "byte" if size == 1 else "bytes"
         places[jump.step] = f"packet {noun} {_range(at, size)}" if size else ""
         at += size
-        begin, jump = step.begin, step.exits.default
-        if begin is None:
-            continue
-        if not isinstance(begin, BeginArray):
+        if step.begin is not None:
             break
-        at += begin.gap
-        run_bytes = begin.count * plan.item_bytes(begin.run)
-        if begin.body is None:
-            at += run_bytes
-            continue
-        in_head = plan.bus_bytes if begin.head else 0
-        at, run_bytes, jump = at + in_head, run_bytes - in_head, begin.body
+        jump = step.exits.default
     return places
-

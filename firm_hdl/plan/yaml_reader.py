@@ -16,7 +16,6 @@ from firm_hdl.model import PRIMITIVE_OF
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
-    BeginArray,
     BeginLoop,
     BeginRun,
     Exits,
@@ -39,16 +38,16 @@ __all__ = ["from_yaml"]
 Entries: TypeAlias = "dict[str, yaml.Node]"
 T = TypeVar("T")
 
-NUMBERS = ("bus_bytes", "max_message_bytes", "header_bytes", "slack_bytes", "levels")
+NUMBERS = ("bus_bytes", "max_message_bytes", "header_bytes", "max_trailing_bytes", "levels")
 KEYS = ("message", "wire", *NUMBERS, "leaves", "runs", "start", "steps")
 LEAF = re.compile(r"(?:(trigger|length)|(signed )?(\w+)(?: x (\d+))?)")
 RANGE = re.compile(r"(?:at (\d+)|(\d+)(?:\.\.(\d+))?)")
 FIXED = re.compile(r"\(((?:[0-9a-f]{2} )+)(checked|ignored)\)")
+RUN_WORDS = ("counted", "constant count", "NUL behind", "tail behind")
 PART = re.compile(
     r"([\w.]+)(?:, (\d+) items?)?(?:, bytes (\d+)(?:\.\.(\d+))? of (\d+))?"
     r"(, last)?(?:, last of loop (\d+))?"
 )
-BODY = re.compile(r"([\w.]+), up to (\d+) bytes?")
 JUMP = re.compile(r"(?:end|step (\d+))(?: with (.+))?")
 COUNTER = re.compile(r"(?:loop (\d+)|run) = (\d+)")
 
@@ -171,10 +170,14 @@ class _Reader:
     def run(self, path: str, node: yaml.Node) -> Run:
         items = node.value if isinstance(node, yaml.SequenceNode) else [node]
         words = [_text(item, f"run {path!r}") for item in items]
-        if not set(words) <= {"NUL behind", "tail behind"}:
-            raise _error(node, f"run {path!r} can have 'NUL behind' and 'tail behind' only")
+        for word in words:
+            if word not in RUN_WORDS:
+                raise _error(node, f"run {path!r} has no {word!r}")
+        if ("counted" in words) == ("constant count" in words):
+            raise _error(node, f"run {path!r} must have one of 'counted' and 'constant count'")
         return Run(
             items=self.index(self.indices, path, node),
+            counted="counted" in words,
             terminated="NUL behind" in words,
             last="tail behind" not in words,
         )
@@ -211,28 +214,26 @@ class _Reader:
         given = _take(entries, "align", _number)
         align = 1 if given is None else given
         size = _take(entries, "bytes", _number)
-        run = _take(entries, "run", lambda each, _: self.body(each))
-        begin = _take(entries, "begin", lambda each, _: each)
+        rest = _take(entries, "rest of", lambda each, _: self.path(self.run_indices, each))
+        run = _take(entries, "words of", lambda each, _: self.path(self.run_indices, each))
+        begin = _take(entries, "starts", lambda each, _: each)
         exits = _take(entries, "next", lambda each, _: self.exits(each))
         if exits is None:
             raise _error(node, "the step has no 'next'")
         slices = [item for key, each in entries.items() for item in self.slices(key, each)]
         if run is not None:
-            if begin is not None or slices or size:
-                raise _error(node, "the body of a run has bytes or a start of its own")
-            return RunStep(align=align, run=run[0], head=run[1], exits=exits)
+            if rest is not None or begin is not None or slices or size:
+                raise _error(node, "a step with 'words of' has no rest, bytes or start of its own")
+            return RunStep(align=align, run=run, exits=exits)
         total = sum(item.bytes for item in slices) if size is None else size
         return MapStep(
+            rest=rest,
             align=align,
             bytes=total,
             slices=tuple(slices),
-            begin=None if begin is None else self.begin(begin, total),
+            begin=None if begin is None else self.begin(begin),
             exits=exits,
         )
-
-    def body(self, node: yaml.Node) -> tuple[int, int]:
-        path, head = _match(BODY, node, "the body of a run").groups()
-        return self.index(self.run_indices, path, node), int(head)
 
     def exits(self, node: yaml.Node) -> Exits:
         if isinstance(node, yaml.ScalarNode):
@@ -249,50 +250,29 @@ class _Reader:
             repeats.append((int(found[1]), self.jump(value, key)))
         return Exits(repeats=tuple(repeats), default=default)
 
-    def begin(self, node: yaml.Node, at: int) -> Begin:
-        entries = _entries(node, "begin")
+    def begin(self, node: yaml.Node) -> Begin:
+        entries = _entries(node, "starts")
         run = _take(entries, "run", lambda each, _: self.path(self.run_indices, each))
         level = _take(entries, "loop", _number)
         length = _take(entries, "count", lambda each, _: self.path(self.indices, each))
-        count = _take(entries, "constant", _number)
         limit = _take(entries, "limit", _number)
+        align = _take(entries, "align", _number)
         body = _take(entries, "body", self.jump)
-        if limit is None:
-            raise _error(node, "begin has no 'limit'")
-        if (length is None) == (count is None):
-            raise _error(node, "begin has one of 'count' and 'constant'")
-        if (run is None) == (level is None):
-            raise _error(node, "begin has one of 'run' and 'loop'")
-        if run is None:
-            self.reject_others(entries, "begin")
-            if length is None or body is None or level is None:
-                raise _error(node, "begin of a loop needs 'count' and 'body'")
-            return BeginLoop(length=length, limit=limit, level=level, body=body)
-        terminated = _take(entries, "terminated", _text) == "true"
-        if terminated != self.runs[run].terminated:
-            raise _error(node, "begin and the run do not agree about a NUL")
-        gap = _take(entries, "gap", _number) or 0
-        head = _take(entries, "head", lambda each, _: self.head(each, at + gap)) or 0
-        self.reject_others(entries, "begin")
-        if count is None:
-            assert length is not None
-            return BeginRun(length=length, limit=limit, run=run, gap=gap, head=head, body=body)
-        if limit != count:
-            raise _error(node, f"a constant count of {count} has the limit {limit}")
-        return BeginArray(count=count, run=run, gap=gap, head=head, body=body)
-
-    def reject_others(self, entries: Entries, what: str) -> None:
         for key, value in entries.items():
-            raise _error(value, f"{what} has no {key!r}")
+            raise _error(value, f"starts has no {key!r}")
+        if length is None or limit is None or body is None:
+            raise _error(node, "starts needs 'count', 'limit' and 'body'")
+        if run is not None and level is None:
+            align = 1 if align is None else align
+            return BeginRun(length=length, limit=limit, run=run, align=align, body=body)
+        if level is None or run is not None:
+            raise _error(node, "starts has one of 'run' and 'loop'")
+        if align is not None:
+            raise _error(node, "a loop that starts has no 'align'")
+        return BeginLoop(length=length, limit=limit, level=level, body=body)
 
     def path(self, table: dict[str, int], node: yaml.Node) -> int:
         return self.index(table, _text(node, "a path"), node)
-
-    def head(self, node: yaml.Node, at: int) -> int:
-        _, first, last = _match(RANGE, node, "a range of bytes").groups()
-        if first is None or int(first) != at:
-            raise _error(node, f"the head must start at byte {at}, behind the step's own bytes")
-        return int(last or first) - at + 1
 
     def slices(self, key: str, node: yaml.Node) -> list[Slice]:
         found = RANGE.fullmatch(key)

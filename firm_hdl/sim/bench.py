@@ -19,11 +19,12 @@ from amaranth.hdl import Cat, ClockDomain, Elaboratable, Module, Signal, Value
 from amaranth.lib import stream
 from amaranth.sim import Simulator, SimulatorContext
 
+from firm_hdl.sim.drive import Drive
 from firm_hdl.sim.job import Job
 from firm_hdl.sim.stalls import stalls_of
 from firm_hdl.sim.watch import StreamRules
 
-__all__ = ["Bench", "DeadlineError", "Ports", "in_chunks"]
+__all__ = ["RESET_CYCLES", "Bench", "DeadlineError", "Ports", "in_chunks"]
 
 T = TypeVar("T")
 
@@ -31,6 +32,8 @@ WORD_BITS = 2048
 CHUNK = 24
 HALF_PERIOD = 5e-7
 LIMIT = 1_000_000
+RESET_CYCLES = 2
+"""Cycles of a reset between two runs of a bench that keeps its state."""
 
 
 class DeadlineError(AssertionError):
@@ -64,18 +67,6 @@ class Ports:
     payloads: Mapping[str, Value] = field(default_factory=dict)
 
 
-@dataclass(slots=True)
-class _Source:
-    """A stream that the bench sends on: the payload that is offered, and those after it."""
-
-    valid: int
-    word: int
-    at: int
-    payloads: Iterator[int]
-    stalled: Iterator[bool] | None
-    payload: int = 0
-
-
 class Bench:
     """A design with streams to the outside, ready to run jobs.
 
@@ -87,6 +78,9 @@ class Bench:
         Its streams.
     probes : sequence of Value
         Values that runs may observe.
+    keeps_state : bool
+        Between runs, the design is reset as hardware is: registers without a reset and memories
+        keep their values. Otherwise each run starts with the initial values of all.
 
     Attributes
     ----------
@@ -96,7 +90,14 @@ class Bench:
         Number of cycles of the last run, also if that run failed.
     """
 
-    def __init__(self, design: Elaboratable, ports: Ports, *, probes: Sequence[Value] = ()):
+    def __init__(
+        self,
+        design: Elaboratable,
+        ports: Ports,
+        *,
+        probes: Sequence[Value] = (),
+        keeps_state: bool = False,
+    ):
         self.sources, self.sinks = ports.sources, ports.sinks
         self.taps, self.gates = ports.taps, ports.gates
         # Sinks and taps first, because only they are checked and observed.
@@ -110,6 +111,8 @@ class Bench:
         self.words: list[Signal] = []
         self.job: Job | None = None
         self.cycles = 0
+        self._keeps_state = keeps_state
+        self._error: AssertionError | None = None
         top = self._top(design)
         # Probes become signals: the simulator compiles the drivers of signals, but interprets
         # expressions.
@@ -118,16 +121,31 @@ class Bench:
         self._used = False
 
     def run(self, job: Job) -> int:
-        """Run a job from reset; return the number of cycles, the settling included."""
-        if self._used:
-            self.simulator.reset()
-        else:
+        """Run a job from reset; return the number of cycles, the settling included.
+
+        Raises
+        ------
+        ValueError
+            If a bench that keeps its state shall write a waveform.
+        """
+        vcd = job.options.vcd
+        if vcd is not None and self._keeps_state:
+            raise ValueError("A bench that keeps its state writes no waveforms")
+        if not self._used:
             # Added only here, because Python warns of a testbench that never starts.
             self.simulator.add_testbench(self._testbench)
+        elif not self._keeps_state:
+            self.simulator.reset()
         self._used = True
         self.job = job
-        vcd = job.options.vcd
         self._delay = HALF_PERIOD if vcd is not None else 0.0
+        if self._keeps_state:
+            self._error = None
+            # The testbench waits at the end of each job.
+            self.simulator.advance()
+            if self._error is not None:
+                raise self._error
+            return self.cycles
         with nullcontext() if vcd is None else self.simulator.write_vcd(os.fspath(vcd)):
             self.simulator.run()
         return self.cycles
@@ -135,8 +153,8 @@ class Bench:
     def _top(self, design: Elaboratable) -> Module:
         m = Module()
         m.submodules.design = design
-        m.domains.sync = domain = ClockDomain("sync", reset_less=True)
-        self.clock = domain.clk
+        m.domains.sync = domain = ClockDomain("sync", reset_less=not self._keeps_state)
+        self.clock, self.reset = domain.clk, domain.rst
         self.handshakes = Signal(2 * len(self.ports))
         bits = [port.valid for port in self.ports] + [port.ready for port in self.ports]
         m.d.comb += self.handshakes.eq(Cat(_gathered(m, chunk) for chunk in in_chunks(bits)))
@@ -163,8 +181,31 @@ class Bench:
         return m
 
     async def _testbench(self, ctx: SimulatorContext) -> None:
+        if not self._keeps_state:
+            await self._run_job(ctx)
+            return
+        while True:
+            try:
+                await self._run_job(ctx)
+            except AssertionError as error:
+                self._error = error
+            await ctx.delay(HALF_PERIOD)
+            self._reset(ctx)
+
+    def _reset(self, ctx: SimulatorContext) -> None:
+        """End the last cycle of a run, and reset the design with its inputs as they are."""
+        for is_reset in (0, *[1] * RESET_CYCLES):
+            ctx.set(self.clock, 0)
+            ctx.set(self.reset, is_reset)
+            ctx.set(self.clock, 1)
+        ctx.set(self.clock, 0)
+        ctx.set(self.reset, 0)
+        for word in self.words:
+            ctx.set(word, 0)
+
+    async def _run_job(self, ctx: SimulatorContext) -> None:
         assert self.job is not None
-        drive = _Drive(self, self.job)
+        drive = Drive(self, self.job)
         watch = _Watch(self, self.job, ctx)
         observe = self.job.options.observe
         if observe is not None:
@@ -214,87 +255,6 @@ def _gathered(m: Module, bits: Sequence[Value]) -> Signal:
     part.d.comb += gathered.eq(together)
     m.submodules += part
     return gathered
-
-
-class _Drive:
-    """The inputs of a run: the values of the bench's words in each cycle."""
-
-    def __init__(self, bench: Bench, job: Job):
-        self.words = [0] * len(bench.words)
-        self.always, self.changing = 0, []
-        inputs = [*bench.sinks, *(bench.taps if bench.gates is not None else ())]
-        self.gates = (1 << len(inputs)) - (1 << len(bench.sinks))
-        for index, name in enumerate(inputs):
-            if stalls := stalls_of(job.options.stalls, name):
-                self.changing.append((1 << index, stalls.cycles(name)))
-            else:
-                self.always |= 1 << index
-        self.first = len(bench.ports) - len(bench.sources)
-        self.sources = []
-        for index, name in enumerate(bench.sources):
-            stalls = stalls_of(job.options.stalls, name)
-            word, at = bench.places[index]
-            source = _Source(
-                valid=1 << (len(inputs) + index),
-                word=word,
-                at=at,
-                payloads=iter(job.sources.get(name, ())),
-                stalled=stalls.cycles(name) if stalls else None,
-            )
-            self.sources.append(source)
-        self.idle = list(self.sources)
-        self.control = 0
-
-    def next(self, fired: int, held: int) -> int:
-        """Go to the next cycle; return the words that change, as a bit mask.
-
-        Parameters
-        ----------
-        fired : int
-            Bit mask of the ports that transferred in this cycle.
-        held : int
-            Bit mask of the ports that offered a transfer that was not taken.
-        """
-        held &= self.gates & self.control
-        control = self.control
-        changed = 0
-        fired >>= self.first
-        while fired:
-            low = fired & -fired
-            source = self.sources[low.bit_length() - 1]
-            fired ^= low
-            control &= ~source.valid
-            self.idle.append(source)
-        if self.idle:
-            control, changed = self._offer(control)
-        control |= self.always
-        for bit, stalled in self.changing:
-            control = control & ~bit if next(stalled) else control | bit
-        control |= held
-        if control != self.control:
-            self.words[0] ^= control ^ self.control
-            self.control = control
-            changed |= 1
-        return changed
-
-    def _offer(self, control: int) -> tuple[int, int]:
-        """Let every idle source offer its next payload, unless it is stalled or has no more."""
-        changed = 0
-        idle = []
-        for source in self.idle:
-            if source.stalled is not None and next(source.stalled):
-                idle.append(source)
-                continue
-            payload = next(source.payloads, None)
-            if payload is None:
-                continue
-            if payload != source.payload:
-                self.words[source.word] ^= (payload ^ source.payload) << source.at
-                source.payload = payload
-                changed |= 1 << source.word
-            control |= source.valid
-        self.idle = idle
-        return control, changed
 
 
 class _Watch:

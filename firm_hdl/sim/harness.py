@@ -43,6 +43,9 @@ class Harness:
         Leaf streams between the two can be stalled.
     probes : sequence of Value
         Values that a run may observe.
+    keeps_state : bool
+        Between runs, the converters are reset as hardware is, by their reset, and what has none
+        keeps its values. Otherwise each run starts with the initial values of all.
     """
 
     def __init__(
@@ -53,6 +56,7 @@ class Harness:
         message: Message | None = None,
         gated: bool = False,
         probes: Sequence[Value] = (),
+        keeps_state: bool = False,
     ):
         component = deserializer if deserializer is not None else serializer
         if component is None:
@@ -65,7 +69,8 @@ class Harness:
         self.leaf_ports = {names[leaf]: port for leaf, port in leaves.items()}
         self.gated = gated and deserializer is not None and serializer is not None
         circuit = _Circuit(deserializer, serializer, self.gated)
-        self.bench = Bench(circuit, self._ports(circuit.gates), probes=probes)
+        ports = self._ports(circuit.gates)
+        self.bench = Bench(circuit, ports, probes=probes, keeps_state=keeps_state)
 
     def run_packets(self, packets: Sequence[bytes], options: RunOptions = DEFAULTS) -> RunResult:
         """Send packets to the deserializer, back to back, and record the results.

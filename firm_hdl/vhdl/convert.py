@@ -11,7 +11,7 @@ each operator has its own flag for signed operands. Ports of the outermost entit
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,7 +22,7 @@ from firm_hdl.rtlil.read import parse
 from firm_hdl.rtlil.simplify import simplified
 from firm_hdl.vhdl.declare import part_names
 from firm_hdl.vhdl.module import EntityNames, ModuleWriter
-from firm_hdl.vhdl.names import Scope
+from firm_hdl.vhdl.names import AMS, Scope
 from firm_hdl.vhdl.package import PACKAGE, PACKAGE_NAME
 
 __all__ = ["EntityNames", "Vhdl", "convert"]
@@ -98,7 +98,7 @@ def convert(
     entities = Scope([PACKAGE_NAME]).give_all(
         {module: name + module.removeprefix(prefix) for module in netlist.modules}
     )
-    port_names = {module.name: _port_names(module, entities) for module in netlist.modules.values()}
+    port_names = _port_names(netlist, entities)
     remark = "".join(f"-- {line}".rstrip() + "\n" for line in header.splitlines())
     files = {f"{PACKAGE_NAME}.vhd": PACKAGE}
     names: dict[str, EntityNames] = {}
@@ -124,13 +124,24 @@ def _read(text: str) -> Design:
     return Design(modules={module.name: simplified(module) for module in netlist.modules.values()})
 
 
-def _port_names(module: Module, entities: Mapping[str, str]) -> dict[str, str]:
+def _port_names(netlist: Design, entities: Mapping[str, str]) -> dict[str, dict[str, str]]:
+    """Name the ports of all modules."""
+    return {
+        name: _names_of_ports(module, Scope([entities[name], "rtl"], _avoided(netlist, module)))
+        for name, module in netlist.modules.items()
+    }
+
+
+def _avoided(netlist: Design, module: Module) -> Collection[str]:
+    """Return words that are left to the ports of the outermost entity, which users see."""
+    return () if module is netlist.top else AMS
+
+
+def _names_of_ports(module: Module, scope: Scope) -> dict[str, str]:
     """Name the ports of a module, clocks and resets first."""
     ports = [wire.name for wire in module.wires.values() if wire.direction and wire.width]
     parts = part_names(module)
-    given = Scope([entities[module.name], "rtl"]).give_all(
-        {port: parts.get(port, port) for port in ports}
-    )
+    given = scope.give_all({port: parts.get(port, port) for port in ports})
     clocks = ("clk", "rst", "_clk", "_rst")
     first = [p for p in ports if p in clocks[:2] or p.endswith(clocks[2:])]
     return {port: given[port] for port in dict.fromkeys([*first, *ports])}

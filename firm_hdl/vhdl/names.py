@@ -10,12 +10,12 @@ IEEE Std 1076-2008, clause 15.4 (identifiers) and 12.2 (scope).
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from firm_hdl.names.identifiers import first_free, plain
 from firm_hdl.names.keywords import KEYWORDS
 
-__all__ = ["PREDEFINED", "USED", "Scope", "is_identifier", "legal"]
+__all__ = ["AMS", "PREDEFINED", "USED", "Scope", "is_identifier", "legal"]
 
 USED = frozenset(
     """
@@ -27,6 +27,17 @@ USED = frozenset(
     """.split()
 )
 """Identifiers that the generated text uses; a signal of the same name would hide them."""
+
+AMS = frozenset(
+    """
+    across limit nature noise procedural quantity reference spectrum subnature terminal through
+    tolerance
+    """.split()
+)
+"""Reserved words of VHDL-AMS (IEEE Std 1076.1) that are not reserved in VHDL.
+
+They are legal, but GHDL warns of them. Only ports of the outermost entity keep such names.
+"""
 
 PREDEFINED = frozenset(
     """
@@ -72,14 +83,17 @@ class Scope:
     ----------
     reserved : iterable of str
         Identifiers that are taken already.
+    avoided : collection of str
+        Legal identifiers that are not given, in lower case.
     """
 
-    def __init__(self, reserved: Iterable[str]) -> None:
+    def __init__(self, reserved: Iterable[str], avoided: Collection[str] = ()) -> None:
         self._taken = {name.lower() for name in reserved}
+        self._avoided = avoided
 
     def give(self, wanted: str) -> str:
         """Take the identifier nearest to `wanted` that is free."""
-        text = first_free(legal(wanted), self._taken)
+        text = first_free(self._legal(wanted), self._taken)
         self._taken.add(text.lower())
         return text
 
@@ -88,6 +102,10 @@ class Scope:
 
         Within each group, the order of `wanted` decides.
         """
-        given = {key: self.give(name) for key, name in wanted.items() if legal(name) == name}
+        given = {key: self.give(name) for key, name in wanted.items() if self._legal(name) == name}
         given.update((key, self.give(name)) for key, name in wanted.items() if key not in given)
         return {key: given[key] for key in wanted}
+
+    def _legal(self, name: str) -> str:
+        text = legal(name)
+        return f"{text}_sig" if text.lower() in self._avoided else text

@@ -19,5 +19,5 @@ CDR = WireRules(
     max_align=8,
     terminated=True,
     empty_member=EMPTY_MEMBER,
-    slack_bytes=3,
+    max_trailing_bytes=3,
 )

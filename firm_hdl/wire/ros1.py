@@ -16,5 +16,5 @@ ROS1 = WireRules(
     max_align=1,
     terminated=False,
     empty_member=None,
-    slack_bytes=0,
+    max_trailing_bytes=0,
 )

@@ -30,7 +30,7 @@ class WireRules:
     empty_member : str or None
         Name of the uint8 that represents a message without fields; `None`: such a message has no
         bytes.
-    slack_bytes : int
+    max_trailing_bytes : int
         Largest number of bytes that may follow a message in its packet.
     """
 
@@ -40,7 +40,7 @@ class WireRules:
     max_align: int
     terminated: bool
     empty_member: str | None
-    slack_bytes: int
+    max_trailing_bytes: int
 
     @property
     def header_bytes(self) -> int:

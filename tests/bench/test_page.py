@@ -24,6 +24,8 @@ from firm_hdl.bench.page import (
 from firm_hdl.bench.plots import area_plot, beats_plot, clock_plot
 from firm_hdl.bench.results import Result, read_results
 from firm_hdl.bench.run import BenchTask
+from firm_hdl.bench.software import Compared
+from firm_hdl.bench.software.sample import Timed
 from firm_hdl.bench.standard import ALL_TYPES, MEASURED, Group, group_tasks
 from tests.bench.results import result
 
@@ -153,7 +155,19 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
     monkeypatch.setattr(bench, "run_tasks", run)
     monkeypatch.setattr(bench, "versions", lambda device: {})
+    monkeypatch.setattr(bench, "library_versions", lambda: {"rosbags": {"rosbags": "0.11"}})
+    monkeypatch.setattr(bench, "compare_software", beside)
     return tmp_path
+
+
+def beside(task: BenchTask, results: Sequence[Result]) -> Compared:
+    assert {each.converter.type for each in results} == {task.converter.type}
+    return Compared(
+        bytes=100.0,
+        times={"rosbags": Timed(deserialize=1000.0, serialize=50.0)},
+        missing={"genpy": "it is not here"},
+        results=tuple(results),
+    )
 
 
 def ran(place: Path, *words: str) -> int:
@@ -165,9 +179,11 @@ def ran(place: Path, *words: str) -> int:
 def test_all_parts_of_the_page_are_written(place: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert ran(place) == 0
     text = (place / "page.md").read_text()
-    for name in [*MEASURED, "beats"]:
+    for name in bench.PARTS:
         assert len(text.split(f"<!-- {name} -->")[1].split("<!-- end")[0]) > 100
     assert "| sensor_msgs/msg/Imu | cdr | 8 | serializer | 100 | 50 |" in text
+    assert "| sensor_msgs/Imu | ros1 | 100 | serializer | 50 (16.0) |  |  | 40 (7.50) |" in text
+    assert "* rosbags: rosbags 0.11\n" in text
     files = {file.name for file in (place / "figures").iterdir()}
     assert files == {
         "bench_area.svg",

@@ -13,7 +13,7 @@ NAMES = ["geometry_msgs/msg/Point", "geometry_msgs/msg/Vector3", "std_msgs/msg/B
 def test_types_and_what_they_add_are_printed(capsys):
     assert main(["cover", *NAMES]) == 0
     out, err = capsys.readouterr()
-    assert [line.partition(":")[0] for line in out.splitlines()] == [NAMES[2], NAMES[0]]
+    assert [line.partition(":")[0] for line in out.splitlines()] == [NAMES[0], NAMES[2]]
     assert "definition: field bool" in out and "grammar: ros2 field: BOOL_TYPE FIELD_NAME" in out
     assert "branch: " not in out
     assert err.startswith("2 of 3 types have 100 % of the ")
@@ -23,7 +23,7 @@ def test_types_and_what_they_add_are_printed(capsys):
 def test_branches_are_counted_if_asked_for(capsys):
     assert main(["cover", "--branches", "std_msgs/msg/Bool"]) == 0
     out, err = capsys.readouterr()
-    assert "branch: plan/build.py " in out and "branch: gateware/deserializer_circuit.py " in out
+    assert "branch: plan/build.py " in out and "branch: gateware/parse/sequencer.py " in out
     assert ", branch " in err
 
 

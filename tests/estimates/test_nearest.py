@@ -39,7 +39,7 @@ IMU, STRING = "sensor_msgs/msg/Imu", "std_msgs/msg/String"
 
 
 def test_features_are_of_the_plan() -> None:
-    assert features_of(plan_of(TWIST)) == {"bits": 384, "steps": 7, "lengths": 0}
+    assert features_of(plan_of(TWIST)) == {"bits": 384, "steps": 6, "lengths": 0}
     found = features_of(plan_of(STRING))
     assert (found["bits"], found["lengths"]) == (32 + 64, 1)
 

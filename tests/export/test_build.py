@@ -96,11 +96,19 @@ def test_folder_is_complete(tmp_path):
         "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core.vhd",
-        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_window.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_queue.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_marks.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core.vhd",
-        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_window.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_buffer.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_mover.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_queue.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_sequencer.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_sequencer_marks.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_record.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_pkg.core",
         "vhdl/geometry_msgs_msg_twist_cdr_8_pkg.vhd",
@@ -108,10 +116,12 @@ def test_folder_is_complete(tmp_path):
         "vhdl/geometry_msgs_msg_twist_cdr_8_serializer.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_flat.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_flat_core.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core.vhd",
+        "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_collector.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_packer.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record.vhd",
         "vhdl/geometry_msgs_msg_twist_cdr_8_tb.vhd",
@@ -345,3 +355,19 @@ def test_output_is_the_same_everywhere(tmp_path):
     for text in trees[0].values():
         assert str(ROOT).encode() not in text
         assert str(tmp_path).encode() not in text
+
+
+def test_several_processes_write_the_same_files(tmp_path):
+    types = ["std_msgs/msg/Empty", "std_msgs/msg/String", "std_msgs/msg/Bool"]
+    reported = []
+    for jobs in (1, 2):
+        built = build(types, tmp_path / str(jobs), jobs=jobs, report=reported.append)
+        assert [each.name for each in built] == types
+    assert sorted(each.name for each in reported) == sorted(2 * types)
+    assert tree(tmp_path / "1") == tree(tmp_path / "2")
+
+
+def test_an_error_in_a_process_is_told(tmp_path):
+    (tmp_path / "lyrical").write_text("not a folder")
+    with pytest.raises(BuildError, match=r"^'.*lyrical.*' cannot be written: "):
+        build(["std_msgs/msg/Empty", "std_msgs/msg/Bool"], tmp_path, jobs=2)

@@ -199,16 +199,12 @@ def test_costs_are_those_of_packets(name, bus_bytes):
         assert hardest == cost
 
 
-def test_windows_and_hardest_packets_are_those_of_the_plan():
+def test_shortest_and_hardest_packets_are_those_of_the_plan():
     _, made = manifest_of(Library().message("diagnostic_msgs/msg/DiagnosticArray"), bus_bytes=8)
     figures = made["timing"]
-    # A window of one word, which starts in any lane, and so touches two beats.
-    assert (figures["window_bytes"], figures["window_beats"]) == (8, 2)
     # Header, stamp, frame_id without letters, no status: 4 + 8 + 4 + 1, padding, 4.
     shortest, hardest = figures["shortest_packet"], figures["hardest_packet_tried"]
     assert (shortest["bytes"], shortest["beats"]) == (24, 3)
     # Short strings of many elements: more bytes, and more cycles for each of them.
     assert hardest["bytes"] > shortest["bytes"]
     assert hardest["cycles"] * shortest["bytes"] > shortest["cycles"] * hardest["bytes"]
-    _, made = manifest_of(Library().message("geometry_msgs/msg/Twist"), bus_bytes=8)
-    assert (made["timing"]["window_bytes"], made["timing"]["window_beats"]) == (8, 1)

@@ -24,9 +24,7 @@ WIRES = ("ros1", "cdr")
 stall_plans = st.none() | st.builds(
     Stalls, probability=st.sampled_from([0.2, 0.5, 0.8]), seed=st.integers(0, 1000)
 )
-options = st.fixed_dictionaries(
-    {"bus_bytes": st.sampled_from(BUS_WIDTHS), "window_words": st.integers(1, 2)}
-)
+options = st.fixed_dictionaries({"bus_bytes": st.sampled_from(BUS_WIDTHS)})
 
 
 def expected(plan, packets):

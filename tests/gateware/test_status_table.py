@@ -17,9 +17,7 @@ from firm_hdl.sim.transfers import split_transfers, transfer_table
 from tests.strategies import BUS_WIDTHS, make
 
 some_buses = pytest.mark.parametrize("bus_bytes", [1, 4, 16])
-every_window = pytest.mark.parametrize(
-    ("bus_bytes", "window_words"), [*((width, 1) for width in BUS_WIDTHS), (2, 2), (8, 2)]
-)
+every_bus = pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
 # Nothing is slow; everything is, and who takes statuses above all.
 SLOW = Stalls(0.3, 1, 2, seed=5)
 STALLS = (
@@ -173,9 +171,9 @@ def check_reading(message, table, bus_bytes, **options):
             assert (said.name, from_transfers(rx.plan, message, got)) == (status, value), text
 
 
-@every_window
-def test_first_error_of_a_packet_in_wire_order_is_reported(bus_bytes, window_words):
-    check_reading(MESSAGE, READ, bus_bytes, window_words=window_words)
+@every_bus
+def test_first_error_of_a_packet_in_wire_order_is_reported(bus_bytes):
+    check_reading(MESSAGE, READ, bus_bytes)
 
 
 @some_buses
@@ -199,10 +197,8 @@ PLACES = {
 
 
 @pytest.mark.parametrize("dialect", PLACES)
-@every_window
-def test_items_that_are_not_whole_are_zero_whatever_is_in_their_lanes(
-    bus_bytes, window_words, dialect
-):
+@every_bus
+def test_items_that_are_not_whole_are_zero_whatever_is_in_their_lanes(bus_bytes, dialect):
     text, (x, a, b) = PLACES[dialect]
     whole = packet(text)
     table = []
@@ -219,7 +215,7 @@ def test_items_that_are_not_whole_are_zero_whatever_is_in_their_lanes(
         # Behind an error, they are zero though they are whole.
         nothing = {"x": False, "a": [0] * 4, "b": [False] * 3}
         table.append((WRONG + text.removeprefix(HEAD), "ENCAPSULATION", nothing))
-    check_reading(make(dialect, ARRAYS), table, bus_bytes, window_words=window_words)
+    check_reading(make(dialect, ARRAYS), table, bus_bytes)
 
 
 # Serializer. A leaf is given by its items and by where `last` is wrong.
@@ -283,9 +279,9 @@ def lanes_of(items, lanes, last, noise):
     return found
 
 
-@every_window
-def test_first_error_of_a_message_is_reported_and_marks_its_packet(bus_bytes, window_words):
-    tx = Serializer(SENT, bus_bytes=bus_bytes, window_words=window_words)
+@every_bus
+def test_first_error_of_a_message_is_reported_and_marks_its_packet(bus_bytes):
+    tx = Serializer(SENT, bus_bytes=bus_bytes)
     leaves = {str(leaf): number for number, leaf in enumerate(tx.plan.leaves)}
     noise = random.Random(bus_bytes)
     rows = [row for each in WRITE for row in (each, WRITE[0])]

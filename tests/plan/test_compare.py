@@ -38,7 +38,7 @@ def test_a_limit_is_one_change_with_its_place():
     new = plan("sensor_msgs/msg/Imu", max_message_bytes=4096)
     assert differences(old, new) == [
         "max_message_bytes: 16777216 -> 4096",
-        "steps[header.stamp.nanosec].begin.limit: 16776903 -> 3783",
+        "steps[header.stamp.nanosec].starts.limit: 16776903 -> 3783",
     ]
 
 
@@ -47,9 +47,22 @@ def test_a_step_in_front_renumbers_nothing():
     assert differences(old, new) == [
         "message: geometry_msgs/msg/Point -> geometry_msgs/msg/Quaternion",
         "leaves.w: new: float64",
-        "steps[z, bytes 4..7 of 8].4..7: new: w, bytes 0..3 of 8",
-        "steps[z, bytes 4..7 of 8].next: end -> step [w, bytes 4..7 of 8]",
-        "steps[w, bytes 4..7 of 8]: new: 0..3: w, bytes 4..7 of 8; next: end",
+        "steps[y, bytes 4..7 of 8].4..7: new: z, bytes 0..3 of 8",
+        "steps[y, bytes 4..7 of 8].next: end -> step [z, bytes 4..7 of 8]",
+        "steps[z, bytes 4..7 of 8]: new: 0..3: z, bytes 4..7 of 8; 4..11: w; next: end",
+        "steps[y, bytes 4..7 of 8].4..11: gone: z",
+    ]
+
+
+def test_a_rest_is_a_change_of_its_step():
+    old = plan("std_msgs/msg/Header")
+    *others, last = old.steps
+    gone = replace(old, steps=(*others, replace(last, rest=None)))
+    assert differences(old, gone) == [
+        "steps[stamp.sec].next: step [rest of frame_id.items] -> step [nothing]",
+        "steps[words of frame_id.items].next: step [rest of frame_id.items] -> step [nothing]",
+        "steps[nothing]: new: next: end",
+        "steps[rest of frame_id.items]: gone: rest of: frame_id.items; next: end",
     ]
 
 
@@ -65,7 +78,7 @@ def test_leaves_in_another_order_are_a_change():
 @pytest.mark.parametrize(
     "change",
     [
-        lambda p: replace(p, slack_bytes=0),
+        lambda p: replace(p, max_trailing_bytes=0),
         lambda p: replace(p, steps=(replace(p.steps[0], align=4), *p.steps[1:])),
         lambda p: replace(p, leaves=(replace(p.leaves[0], type="uint32"), *p.leaves[1:])),
         lambda p: replace(p, runs=(replace(p.runs[0], terminated=False), *p.runs[1:])),
@@ -82,7 +95,7 @@ def test_any_change_of_meaning_is_found(change):
 def test_kinds_leave_out_what_belongs_to_one_type():
     old, new = (plan("sensor_msgs/msg/Imu", max_message_bytes=n) for n in (4096, 8192))
     kinds = [change.kind for change in compare(to_yaml(old), to_yaml(new))]
-    assert kinds == ["max_message_bytes", "steps[*].begin.limit"]
+    assert kinds == ["max_message_bytes", "steps[*].starts.limit"]
 
 
 @pytest.mark.parametrize("text", ["", "a: [", "[]", "message: x"])

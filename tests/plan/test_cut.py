@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.plan.cut import cut
-from firm_hdl.plan.ir import Pad
+from firm_hdl.plan.cut import cut, split, step_sizes
+from firm_hdl.plan.ir import Pad, Part
 
 
 @pytest.mark.parametrize(
@@ -28,3 +28,49 @@ def test_steps_are_few_and_end_where_values_end(values, sizes):
 
 def test_the_last_step_may_be_larger():
     assert cut([Pad(at=0, bytes=4), Pad(at=4, bytes=6)], 4, 8) == [4, 6]
+
+
+def segment(*values):
+    """Values of leaves: their sizes, and for the transfers of an array the same negative leaf."""
+    slices, at = [], 0
+    for number, value in enumerate(values):
+        size, leaf = value if isinstance(value, tuple) else (value, number)
+        slices.append(Part(at=at, bytes=size, leaf=leaf, first=0, size=size))
+        at += size
+    return slices
+
+
+@pytest.mark.parametrize(
+    ("values", "start", "narrow_start", "wide", "narrow", "behind_a_rest"),
+    [
+        # The start, cut at bus words, with a last step of two words or one; the same elsewhere; and
+        # with the rest of a run in the first step.
+        ([4], [4], [4], [4], [4], [4]),
+        ([4, 4], [8], [4, 4], [8], [4, 4], [4, 4]),
+        ([4, 2], [6], [4, 2], [6], [4, 2], [4, 2]),
+        ([4, 4, 4], [4, 8], [4, 4, 4], [4, 8], [4, 4, 4], [4, 8]),
+        ([2, 4, 4], [4, 6], [4, 4, 2], [2, 8], [2, 4, 4], [2, 8]),
+        # A step ends between two transfers of an array.
+        ([(4, -1), (4, -1)], *([[4, 4]] * 5)),
+        ([(4, -1), (1, -1)], *([[4, 1]] * 5)),
+        ([2, (4, -1), (2, -1)], [6, 2], [4, 2, 2], [6, 2], [2, 4, 2], [2, 4, 2]),
+        ([2, (4, -1), (4, -1), 2], [6, 6], [4, 2, 4, 2], [6, 6], [2, 4, 4, 2], [2, 4, 6]),
+        ([(4, -1), (2, -1), 4], [4, 6], [4, 2, 4], [4, 6], [4, 2, 4], [4, 6]),
+        ([(4, -1), (2, -1), (4, -2), (2, -2)], *([[4, 6, 2], [4, 2, 4, 2]] * 2), [4, 6, 2]),
+    ],
+)
+def test_sizes_of_steps(values, start, narrow_start, wide, narrow, behind_a_rest):
+    slices = segment(*values)
+    for sizes, at_start, may_be_wide, has_rest in (
+        (start, True, True, False),
+        (narrow_start, True, False, False),
+        (wide, False, True, False),
+        (narrow, False, False, False),
+        (narrow, False, False, True),
+        (behind_a_rest, False, True, True),
+    ):
+        options = {"at_start": at_start, "may_be_wide": may_be_wide, "has_rest": has_rest}
+        assert step_sizes(slices, 4, **options) == sizes, options
+        for step in split(slices, sizes):
+            leaves = [part.leaf for part in step]
+            assert len(set(leaves)) == len(leaves)

@@ -10,6 +10,7 @@ from firm_hdl import load_message
 from firm_hdl.plan import Edge, build_plan, decode
 from firm_hdl.plan.edges import edges
 from firm_hdl.wire import lay_out
+from tests.strategies import make
 
 HEADER = b"\0\1\0\0"
 
@@ -24,31 +25,60 @@ def string(text):
 
 def test_a_fixed_type_leaves_nothing_to_the_packet_but_the_way_through():
     twist = plan("geometry_msgs/msg/Twist")
-    assert edges(twist) == {Edge(index, "next") for index in range(7)}
+    assert edges(twist) == {Edge(index, "next") for index in range(6)}
 
 
 def test_a_string_may_be_empty_long_and_bare():
     string_plan = plan("std_msgs/msg/String")
-    all_of_them = {Edge(0, "body"), Edge(0, "next"), Edge(1, "again"), Edge(1, "next")}
-    assert edges(string_plan) == all_of_them
-    took = [
-        decode(string_plan, HEADER + string(text)).edges for text in (b"", b"seven..", b"eight...")
-    ]
-    assert took[0] == took[1] == {Edge(0, "body"), Edge(1, "next")}
-    assert took[2] == {Edge(0, "body"), Edge(1, "next"), Edge(1, "again")}
+    start, words, rest = 0, 1, 2
+    assert edges(string_plan) == {
+        *(Edge(start, way) for way in ("body", "next")),
+        *(Edge(words, way) for way in ("again", "next")),
+        *(Edge(rest, way) for way in ("rest", "no rest", "next")),
+    }
+    end = {Edge(rest, "rest"), Edge(rest, "next")}
+    took = {
+        size: decode(string_plan, HEADER + string(bytes(size))).edges
+        for size in (0, 1, 8, 9, 16, 17)
+    }
+    # Up to a bus word and the NUL are the rest.
+    assert took[0] == took[1] == took[8] == {Edge(start, "next"), *end}
+    assert took[9] == took[16] == {Edge(start, "body"), Edge(words, "next"), *end}
+    assert took[17] == {*took[16], Edge(words, "again")}
     # A length of 0 on the wire: no NUL either.
     bare = decode(string_plan, HEADER + bytes(4))
     assert bare.status == "OK"
-    assert bare.edges == {Edge(0, "next")}
+    assert bare.edges == {Edge(start, "next"), Edge(rest, "no rest"), Edge(rest, "next")}
+
+
+def test_the_first_step_of_a_loop_has_a_rest_from_the_second_turn_on():
+    strings = plan("rcl_interfaces/msg/ListParametersResult")
+    found = edges(strings)
+    first = next(i for i, step in enumerate(strings.steps) if step.exits.repeats)
+    assert {Edge(first, way) for way in ("rest", "no rest", "loop 0 again")} <= found
+    none = HEADER + bytes(8)
+    one = HEADER + struct.pack("<I", 1) + string(b"abc") + bytes(4)
+    two = HEADER + struct.pack("<I", 2) + string(b"abc") * 2 + bytes(4)
+    ways = [
+        {edge.way for edge in decode(strings, packet).edges if edge.step == first}
+        for packet in (none, one, two)
+    ]
+    assert [decode(strings, packet).status for packet in (none, one, two)] == ["OK"] * 3
+    assert ways[0] == set()
+    assert ways[1] == {"no rest", "padding 0", "next"}
+    assert ways[2] == {*ways[1], "rest", "loop 0 again"}
 
 
 def test_paddings_are_those_that_can_be():
     # Behind a string anything goes; behind the length of `points`, which is aligned to 4, it does
     # not.
-    found = edges(plan("geometry_msgs/msg/PoseArray"))
+    poses = plan("geometry_msgs/msg/PoseArray")
+    found = edges(poses)
     paddings = sorted(edge for edge in found if edge.way.startswith("padding"))
-    assert [edge.way for edge in paddings if edge.step == 3] == [f"padding {n}" for n in range(4)]
-    assert [edge.way for edge in paddings if edge.step == 4] == ["padding 0", "padding 4"]
+    ways = {4: [f"padding {n}" for n in range(4)], 8: ["padding 0", "padding 4"]}
+    assert sorted({step.align for step in poses.steps}) == [1, 4, 8]
+    for index, step in enumerate(poses.steps):
+        assert [e.way for e in paddings if e.step == index] == ways.get(step.align, [])
 
 
 @pytest.mark.parametrize(("count", "again"), [(1, False), (2, True)])
@@ -62,11 +92,35 @@ def test_a_loop_that_cannot_turn_again_has_no_such_decision(tmp_path, count, aga
     assert any(edge.way == "loop 0 again" for edge in found) == again
 
 
-def test_what_limits_forbid_is_no_decision():
-    name = "std_msgs/msg/String"
-    assert Edge(1, "again") in edges(plan(name))
-    # 8 bytes of header and length leave 8 for text and NUL: one bus word.
-    assert Edge(1, "again") not in edges(plan(name, max_message_bytes=16))
+@pytest.mark.parametrize(
+    ("size", "ways"),
+    [
+        (1 << 24, {"body", "again"}),
+        # 8 bytes of header and length leave 18 for text and NUL: two bus words, the NUL, one byte.
+        (26, {"body", "again"}),
+        (25, {"body"}),
+        (18, {"body"}),
+        # A bus word and the NUL, which are the rest.
+        (17, set()),
+        (16, set()),
+    ],
+)
+def test_what_limits_forbid_is_no_decision(size, ways):
+    text = plan("std_msgs/msg/String", max_message_bytes=size)
+    found = {edge for edge in edges(text) if edge.step != 2}
+    body = {Edge(1, "next")} if "body" in ways else set()
+    again = {Edge(1, "again")} if "again" in ways else set()
+    start = {Edge(0, "next"), *([Edge(0, "body")] if "body" in ways else [])}
+    assert found == start | body | again
+
+
+@pytest.mark.parametrize(("bound", "rest"), [(1, True), (0, False)])
+def test_a_run_that_is_always_empty_has_no_rest(bound, rest):
+    layout = lay_out(make("ros2", {"a": "uint8[]"}))
+    # 8 bytes of header and length.
+    found = edges(build_plan(layout, max_message_bytes=8 + bound))
+    assert (Edge(2, "rest") in found) == rest
+    assert Edge(2, "no rest") in found
 
 
 @pytest.mark.parametrize(("bound", "ways"), [("<=1", {0}), ("<=2", {0, 3}), ("", {0, 3})])

@@ -1,41 +1,85 @@
-"""What plans need of their windows, worked out by hand."""
+"""Where the steps of plans may start in a bus word, worked out by hand."""
 
 from __future__ import annotations
 
 import pytest
 
 from firm_hdl.plan import build_plan
-from firm_hdl.plan.geometry import geometry
+from firm_hdl.plan.geometry import Place, geometry
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
+TRIPLE = make("ros2", {"x": "uint32", "y": "uint32", "z": "uint32"}, "Triple")
+TEXT = make("ros2", {"x": "uint16", "s": "string"}, "Text")
+ANY = tuple(range(8))
 
-def needs(fields, wire, bus_bytes, window_words=1):
-    layout = lay_out(make("ros2", fields), wire)
-    return geometry(build_plan(layout, bus_bytes=bus_bytes, window_words=window_words))
+
+def needs(fields, wire, bus_bytes):
+    return geometry(build_plan(lay_out(make("ros2", fields), wire), bus_bytes=bus_bytes))
 
 
 @pytest.mark.parametrize(
-    ("fields", "wire", "bus_bytes", "alignment", "beats"),
+    ("fields", "wire", "bus_bytes", "items", "maps"),
     [
-        # Steps are whole bus words.
-        ({"a": "uint64"}, "ros1", 8, 8, 1),
-        ({"a": "uint32", "b": "uint64", "c": "uint32"}, "ros1", 8, 8, 1),
-        ({"a": "uint8[3]", "b": "uint32"}, "ros1", 4, 4, 1),
+        # Maps are whole bus words, or two of them.
+        ({"a": "uint64"}, "ros1", 8, (0,), (0,)),
+        ({"a": "uint32", "b": "uint64", "c": "uint32"}, "ros1", 8, (0,), (0,)),
+        ({"a": "uint8[3]", "b": "uint32"}, "ros1", 4, (0,), (0,)),
         # Items start behind a length of four bytes, which CDR has behind a header of four.
-        ({"s": "string"}, "ros1", 4, 4, 1),
-        ({"s": "string"}, "ros1", 8, 4, 2),
-        ({"s": "string"}, "cdr", 8, 8, 1),
-        ({"a": "uint64[]"}, "cdr", 8, 4, 2),
+        ({"s": "string"}, "ros1", 4, (0,), (0,)),
+        ({"s": "string"}, "ros1", 8, (4,), (0,)),
+        ({"s": "string"}, "cdr", 8, (0,), (0,)),
+        # Items behind four bytes of padding, which an empty sequence does not have.
+        ({"a": "uint64[]"}, "cdr", 8, (0, 4), (0,)),
         # Anything may follow text; what follows items is where items end.
-        ({"s": "string", "n": "uint8"}, "ros1", 8, 1, 2),
-        ({"s": "string", "n": "uint8"}, "cdr", 8, 1, 1),
-        ({"a": "uint16[]", "b": "uint16"}, "cdr", 4, 2, 1),
+        ({"s": "string", "n": "uint8"}, "ros1", 8, (4,), ANY),
+        ({"s": "string", "n": "uint8"}, "cdr", 8, (0,), ANY),
+        ({"s": "string", "n": "uint32"}, "cdr", 8, (0,), (0, 4)),
+        ({"a": "uint16[]", "b": "uint16"}, "cdr", 4, (0,), (0, 2)),
+        # The words of an array are as static as a map.
+        ({"a": "uint8[20]"}, "cdr", 8, (0,), (0, 4)),
+        # A map of two words takes the first one from where items are.
+        ({"p": (TRIPLE, "[]")}, "ros1", 8, (0, 4), (0, 4)),
     ],
 )
-def test_where_steps_start_and_how_far_they_reach(fields, wire, bus_bytes, alignment, beats):
+def test_lanes_where_items_and_maps_start(fields, wire, bus_bytes, items, maps):
     found = needs(fields, wire, bus_bytes)
-    assert (found.start_alignment_bytes, found.window_beats) == (alignment, beats)
+    assert (found.item_lanes, found.map_lanes) == (items, maps)
+
+
+@pytest.mark.parametrize(
+    ("fields", "wire", "bus_bytes", "items", "maps"),
+    [
+        ({"a": "uint64"}, "ros1", 8, 8, 8),
+        # 20 bytes: a bus word, then one of 12 bytes.
+        ({"a": "uint32", "b": "uint64", "c": "uint64"}, "ros1", 8, 8, 4),
+        # Starts are multiples of 4 bytes, and items have 2.
+        ({"a": "uint16[]", "b": "uint16"}, "cdr", 4, 2, 2),
+        ({"a": "uint64[]"}, "cdr", 8, 4, 8),
+        ({"s": "string", "n": "uint32"}, "cdr", 8, 1, 4),
+        ({"s": "string", "n": "uint8"}, "cdr", 8, 1, 1),
+        ({"p": (TRIPLE, "[]")}, "ros1", 8, 4, 4),
+    ],
+)
+def test_lanes_that_are_only_written_together(fields, wire, bus_bytes, items, maps):
+    found = needs(fields, wire, bus_bytes)
+    assert (found.item_unit, found.map_unit) == (items, maps)
+
+
+def test_places_of_a_rest_and_of_the_map_behind_it():
+    found = needs({"s": "string", "n": "uint32"}, "cdr", 8)
+    # Header and length; words of text; the rest of text from a bus word on, padding and `n`.
+    assert found.places == (Place((0,), (0,)), Place((0,), (0,)), Place((0,), (0, 4)))
+
+
+def test_places_in_a_loop_are_those_of_all_turns():
+    found = needs({"t": (TEXT, "[]")}, "ros1", 8)
+    # The length; `x`, behind text from the second turn on; words of text; the rest of the last one.
+    start, turn, words, end = found.places
+    assert start == Place((0,), (0,))
+    # Behind the length, or from where words of text start.
+    assert turn == Place(ANY, ANY)
+    assert (words, end) == (Place(ANY, ANY), Place(ANY, ANY))
 
 
 def test_padding_that_is_computed():
@@ -44,17 +88,7 @@ def test_padding_that_is_computed():
     assert needs({"a": "uint64[]"}, "cdr", 4).aligns
 
 
-def test_bytes_that_a_step_takes_and_goes_forward():
-    found = needs({"a": "uint64[]"}, "cdr", 8)
-    # Encapsulation, length and four bytes of padding.
-    assert (found.window_bytes, found.skip_bytes) == (8, 12)
-    found = needs({"a": "uint32[]"}, "ros1", 8, window_words=2)
-    # The length and a bus word of items.
-    assert (found.window_bytes, found.skip_bytes) == (12, 12)
-
-
 def test_an_empty_run_ends_in_front_of_the_padding_of_items():
-    # Only from there do later steps reach into a third beat.
-    fields = {"a": "uint64[]", "b": "uint8", "c": "uint32[5]", "d": "uint32[]"}
-    assert needs(fields, "cdr", 8, window_words=2).window_beats == 3
-    assert needs(fields, "cdr", 16, window_words=2).window_beats == 3
+    # `b` stands behind the length at once, or behind items.
+    found = needs({"a": "uint64[]", "b": "uint8"}, "cdr", 8)
+    assert found.places[-1] == Place((0, 4), (0, 4))

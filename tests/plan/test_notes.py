@@ -1,7 +1,7 @@
 """What a plan's text says beside each step: its place in all packets, and the loops around it.
 
 An engineer who looks for a byte of a capture in the plan goes by these. Places are worked out by
-hand: header, fields at multiples of their sizes, a bus word of each run in the step that starts it.
+hand: header, fields at multiples of their sizes, the words of an array behind the fields in front.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ TWICE, POINTS = "in loop 0 (2 times)", "in loop 0 (p.length)"
 @pytest.mark.parametrize(
     ("dialect", "fields", "bus_bytes", "notes"),
     [
-        # A run in the middle of a chain: 8 of its 16 bytes come with the step that starts it.
+        # A run in the middle of a chain: two words of 8 bytes, and a tail of 5.
         (
             "ros2",
             {"a": "uint8", "b": "uint8[21]", "c": "uint16"},
             8,
-            ["packet bytes 0..4", "packet bytes 13..20", "packet bytes 21..27"],
+            ["packet bytes 0..4", "packet bytes 5..20", "packet bytes 21..27"],
         ),
         # A run that the start itself enters.
         (
@@ -41,12 +41,12 @@ TWICE, POINTS = "in loop 0 (2 times)", "in loop 0 (p.length)"
             "ros2",
             {"a": "uint8", "b": "float64[3]", "c": "uint8"},
             8,
-            ["packet bytes 0..4", "packet bytes 5..11", "packet bytes 20..35", "packet byte 36"],
+            ["packet bytes 0..11", "packet bytes 12..35", "packet byte 36"],
         ),
         # A single byte is called so.
-        ("ros1", {"a": "uint8", "c": "uint8[2]"}, 1, ["packet byte 0", "packet byte 2"]),
+        ("ros1", {"a": "uint8", "c": "uint8[2]"}, 1, ["packet bytes 0..1", "packet byte 2"]),
         # Nothing behind a text or a loop has one place.
-        ("ros2", {"s": "string", "b": "uint8[21]"}, 8, ["packet bytes 0..7", "", "", ""]),
+        ("ros2", {"s": "string", "b": "uint8[21]"}, 8, ["packet bytes 0..7", "", "", "", ""]),
         ("ros2", {"q": (PAIR, "[2]"), "b": "uint8"}, 8, ["packet bytes 0..3", TWICE, ""]),
         # Items wider than the bus are a loop, which nothing in the packet counts.
         ("ros1", {"b": "float32[3]", "c": "uint8"}, 2, ["in loop 0 (3 times)", ""]),
@@ -55,7 +55,7 @@ TWICE, POINTS = "in loop 0 (2 times)", "in loop 0 (p.length)"
             "ros2",
             {"n": "string", "q": (PAIR, "[2]"), "p": (POINT, "[]")},
             8,
-            ["packet bytes 0..7", "", TWICE, TWICE, "", POINTS, POINTS, POINTS],
+            ["packet bytes 0..7", "", "", TWICE, "", POINTS, POINTS, POINTS, ""],
         ),
     ],
 )

@@ -51,11 +51,11 @@ def named(plan: Plan, packet: bytes) -> tuple[list[Any], str]:
 
 @pytest.mark.parametrize("wire", WIRES)
 @slow
-@given(case=typed_values(), bus_bytes=st.sampled_from(BUS_WIDTHS), words=st.integers(1, 2))
-def test_bytes_and_leaves_are_those_of_rosbags(wire, case, bus_bytes, words):
+@given(case=typed_values(), bus_bytes=st.sampled_from(BUS_WIDTHS))
+def test_bytes_and_leaves_are_those_of_rosbags(wire, case, bus_bytes):
     definition, value = case
     decoded_by_rosbags, packet = serialize(definition, value, wire)
-    plan = plan_of(definition.message, wire, bus_bytes, window_words=words)
+    plan = plan_of(definition.message, wire, bus_bytes)
     want = to_transfers(plan, definition.message, decoded_by_rosbags)
     assert to_transfers(plan, definition.message, value) == want
     assert encode(plan, want) == (packet, "OK")
@@ -90,14 +90,8 @@ def test_any_packet_decodes_as_the_contract_says_on_every_bus(wire, case, data):
     definition, value = case
     layout = lay_out(definition.message, wire)
     plans = [
-        build_plan(
-            layout,
-            bus_bytes=width,
-            max_message_bytes=layout.min_bytes + 700,
-            window_words=words,
-        )
+        build_plan(layout, bus_bytes=width, max_message_bytes=layout.min_bytes + 700)
         for width in BUS_WIDTHS
-        for words in (1, 2)
     ]
     packet = encode(plans[3], to_transfers(plans[3], definition.message, value))[0]
     packet = data.draw(damaged(packet), label="packet")

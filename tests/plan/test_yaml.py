@@ -21,7 +21,7 @@ wire: cdr
 bus_bytes: 8
 max_message_bytes: 1000
 header_bytes: 4
-slack_bytes: 3
+max_trailing_bytes: 3
 levels: 1
 leaves:
   stamp: uint32
@@ -31,39 +31,35 @@ leaves:
   points.item.name.items: uint8 x 8
   grid.items: float32 x 2
 runs:
-  points.item.name.items: [NUL behind]
-  grid.items: [tail behind]
+  points.item.name.items: [counted, NUL behind]
+  grid.items: [constant count, tail behind]
 start: step 0
 steps:
-  step 0:  # packet bytes 0..7
+  step 0:  # packet bytes 0..11
     0..1: (00 01 checked)
     2..3: (00 00 ignored)
     4..7: stamp
-    next: step 1
-  step 1:  # packet bytes 8..11
-    0..3: points.length
-    begin: {loop: 0, count: points.length, limit: 5, body: step 2}
-    next: step 5 with run = 4
-  step 2:  # in loop 0 (points.length)
+    8..11: points.length
+    starts: {loop: 0, count: points.length, limit: 5, body: step 1}
+    next: step 4
+  step 1:  # in loop 0 (points.length)
+    rest of: points.item.name.items
     0: points.item.x
-    next: step 3
-  step 3:  # in loop 0 (points.length)
+    next: step 2
+  step 2:  # in loop 0 (points.length)
     align: 4
     0..3: points.item.name.length
-    begin:
-      run: points.item.name.items
-      count: points.item.name.length
-      limit: 967
-      terminated: true
-      head: 4..12
-      body: step 4
-    next: {loop 0 again: step 2, else: step 5 with run = 4}
-  step 4:  # in loop 0 (points.length)
-    run: points.item.name.items, up to 9 bytes
-    next: {loop 0 again: step 2, else: step 5 with run = 4}
+    starts: {run: points.item.name.items, count: points.item.name.length, limit: 967, body: step 3}
+    next: {loop 0 again: step 1, else: step 4}
+  step 3:  # in loop 0 (points.length)
+    words of: points.item.name.items
+    next: {loop 0 again: step 1, else: step 4}
+  step 4:
+    rest of: points.item.name.items
+    next: step 5 with run = 4
   step 5:
     align: 4
-    run: grid.items, up to 8 bytes
+    words of: grid.items
     next: step 6
   step 6:
     0..3: grid.items, 1 item, last
@@ -80,7 +76,7 @@ def body_of(text):
 
 
 def test_a_plan_prints_as_an_engineer_reads_it():
-    assert body_of(text_of(MESSAGE, max_message_bytes=1000, window_words=2)) == BODY
+    assert body_of(text_of(MESSAGE, max_message_bytes=1000)) == BODY
 
 
 def test_the_first_line_sums_it_up():
@@ -118,7 +114,7 @@ def test_every_step_names_the_loops_that_it_is_in():
     lines, points = "in loop 0 (lines.length)", "in loop 1 (lines.item.points.length)"
     both, more = f"{lines}, {points}", "in loop 0 (more.length)"
     assert re.findall(r"^  step \d+:(?:  # (.*))?$", text, re.MULTILINE) == [
-        "packet bytes 0..7", lines, both, both, both, "", more, more, more,
+        "packet bytes 0..7", lines, both, both, both, "", more, more, more, "",
     ]  # fmt: skip
 
 
@@ -133,7 +129,7 @@ def test_leaves_without_bytes_print_where_they_become_valid():
 
 
 def test_items_wider_than_the_bus_name_their_loop():
-    plan = build_plan(lay_out(make("ros1", {"a": "float64[]"})), bus_bytes=2, window_words=2)
+    plan = build_plan(lay_out(make("ros1", {"a": "float64[]"})), bus_bytes=2)
     text = to_yaml(plan)
     assert "    0..3: a.items, 1 item, bytes 4..7 of 8, last of loop 0\n" in text
     assert from_yaml(text) == plan
@@ -156,48 +152,42 @@ MISTAKES = [
     ("4..7: stamp", "4..7: stamp?", "Line 23: 'stamp?' is not a leaf, padding or fixed bytes"),
     ("4..7: stamp", "four: stamp", "Line 23: a step has no 'four'"),
     ("(00 01 checked)", "(00 checked)", "Line 21: 1 fixed bytes do not fill a slice of 2"),
-    ("next: step 1\n", "next: stop 1\n", "Line 24: 'stop 1' is not a jump (next)"),
-    ("    next: step 1\n", "", "Line 21: the step has no 'next'"),
-    ("with run = 4\n  step 2", "with run 4\n  step 2",
-     "Line 28: 'run 4' is not a counter and a number"),
-    ("with run = 4\n  step 2", "with run = 4 of 5\n  step 2",
-     "Line 28: 'run = 4 of 5' is not a counter and a number"),
-    ("with run = 4\n  step 2", "with a run = 4\n  step 2",
-     "Line 28: 'a run = 4' is not a counter and a number"),
-    ("  step 2:", "  step 9:", "Line 30: expected step 2, not 'step 9'"),
-    ("limit: 5, ", "", "Line 27: begin has no 'limit'"),
-    ("limit: 5, ", "limit: 5, most: 5, ", "Line 27: begin has no 'most'"),
-    ("limit: 5, ", "limit: 5, constant: 5, ", "Line 27: begin has one of 'count' and 'constant'"),
-    ("count: points.length, ", "", "Line 27: begin has one of 'count' and 'constant'"),
-    ("{loop: 0, ", "{", "Line 27: begin has one of 'run' and 'loop'"),
-    ("{loop: 0, ", "{loop: 0, run: grid.items, ", "Line 27: begin has one of 'run' and 'loop'"),
-    ("count: points.length, ", "constant: 5, ",
-     "Line 27: begin of a loop needs 'count' and 'body'"),
-    (", body: step 2}", "}", "Line 27: begin of a loop needs 'count' and 'body'"),
-    ("limit: 5, ", "limit: 5, terminated: true, ", "Line 27: begin has no 'terminated'"),
-    ("limit: 5, ", "limit: 5, gap: 1, ", "Line 27: begin has no 'gap'"),
-    ("limit: 5, ", "limit: 5, head: 4..7, ", "Line 27: begin has no 'head'"),
-    ("      terminated: true\n", "", "Line 36: begin and the run do not agree about a NUL"),
-    ("      terminated: true\n", "      terminated: false\n",
-     "Line 36: begin and the run do not agree about a NUL"),
-    ("count: points.item.name.length\n", "constant: 5\n",
-     "Line 36: a constant count of 5 has the limit 967"),
-    ("up to 9 bytes\n", "up to 9 bytes\n    0: points.item.x\n",
-     "Line 44: the body of a run has bytes or a start of its own"),
-    ("up to 9 bytes\n", "up to 9 bytes\n    bytes: 1\n",
-     "Line 44: the body of a run has bytes or a start of its own"),
-    ("up to 9 bytes\n", "up to 9 bytes\n    begin: {limit: 1}\n",
-     "Line 44: the body of a run has bytes or a start of its own"),
-    ("head: 4..12", "head: 5..13",
-     "Line 40: the head must start at byte 4, behind the step's own bytes"),
-    (", else: step 5 with run = 4}\n  step 4", "}\n  step 4", "Line 42: next has no 'else'"),
-    ("next: {loop 0 again: step 2, else: step 5 with run = 4}",
-     "next: {loops: step 2, else: step 5 with run = 4}", "Line 42: next has no 'loops'"),
+    ("next: step 4\n", "next: stop 4\n", "Line 26: 'stop 4' is not a jump (next)"),
+    ("    next: step 4\n", "", "Line 21: the step has no 'next'"),
+    ("with run = 4", "with run 4", "Line 41: 'run 4' is not a counter and a number"),
+    ("with run = 4", "with run = 4 of 5", "Line 41: 'run = 4 of 5' is not a counter and a number"),
+    ("with run = 4", "with a run = 4", "Line 41: 'a run = 4' is not a counter and a number"),
+    ("  step 2:", "  step 9:", "Line 32: expected step 2, not 'step 9'"),
+    ("limit: 5, ", "", "Line 25: starts needs 'count', 'limit' and 'body'"),
+    ("count: points.length, ", "", "Line 25: starts needs 'count', 'limit' and 'body'"),
+    (", body: step 1}", "}", "Line 25: starts needs 'count', 'limit' and 'body'"),
+    ("limit: 967, body: step 3", "limit: 967",
+     "Line 34: starts needs 'count', 'limit' and 'body'"),
+    ("limit: 5, ", "limit: 5, most: 5, ", "Line 25: starts has no 'most'"),
+    ("{loop: 0, ", "{", "Line 25: starts has one of 'run' and 'loop'"),
+    ("{loop: 0, ", "{loop: 0, run: grid.items, ", "Line 25: starts has one of 'run' and 'loop'"),
+    ("limit: 5, ", "limit: 5, align: 4, ", "Line 25: a loop that starts has no 'align'"),
+    ("limit: 967, ", "limit: 967, align: four, ", "Line 34: align must be a number, not 'four'"),
+    ("run: points.item.name.items, ", "run: points, ", "Line 34: the plan has no run 'points'"),
+    ("rest of: points.item.name.items", "rest of: points.item.x",
+     "Line 28: the plan has no run 'points.item.x'"),
+    ("words of: grid.items\n", "words of: grid\n", "Line 44: the plan has no run 'grid'"),
+    *[
+        ("words of: grid.items\n", f"words of: grid.items\n    {entry}\n",
+         "Line 43: a step with 'words of' has no rest, bytes or start of its own")
+        for entry in ("0: points.item.x", "bytes: 1", "starts: {limit: 1}", "rest of: grid.items")
+    ],
+    (", else: step 4}\n  step 3", "}\n  step 3", "Line 35: next has no 'else'"),
+    ("next: {loop 0 again: step 1, else: step 4}", "next: {loops: step 1, else: step 4}",
+     "Line 35: next has no 'loops'"),
     ("grid.items, 1 item, last", "grid.items, 1 item, bytes 0..2 of 4, last",
-     "Line 51: the bytes of 'grid.items' are not as many as those of the slice"),
-    ("run: grid.items, up", "run: grid, up", "Line 48: the plan has no run 'grid'"),
-    ("[NUL behind]", "[NUL there]",
-     "Line 16: run 'points.item.name.items' can have 'NUL behind' and 'tail behind' only"),
+     "Line 47: the bytes of 'grid.items' are not as many as those of the slice"),
+    ("[counted, NUL behind]", "[counted, NUL there]",
+     "Line 16: run 'points.item.name.items' has no 'NUL there'"),
+    ("[counted, NUL behind]", "[NUL behind]",
+     "Line 16: run 'points.item.name.items' must have one of 'counted' and 'constant count'"),
+    ("[counted, NUL behind]", "[counted, constant count]",
+     "Line 16: run 'points.item.name.items' must have one of 'counted' and 'constant count'"),
     ("wire: cdr", "wire: [cdr", "Line 3: not YAML: "),
     ("wire: cdr", "wire: \0cdr", "not YAML: "),
 ]  # fmt: skip

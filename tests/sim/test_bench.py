@@ -14,7 +14,7 @@ from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.sim import DeadlineError, StreamRuleError
-from firm_hdl.sim.bench import WORD_BITS, Bench, Ports
+from firm_hdl.sim.bench import RESET_CYCLES, WORD_BITS, Bench, Ports
 from firm_hdl.sim.harness import Harness
 from firm_hdl.sim.job import Job, RunOptions
 from firm_hdl.sim.stalls import Stalls
@@ -79,6 +79,58 @@ def test_a_bench_runs_job_after_job_from_reset():
     assert [run.go(), run.taken["o0"]] == [6, [(1, 5)]]
     run.taken["o0"].clear()
     assert [run.go(), run.taken["o0"]] == [6, [(1, 5)]]
+
+
+class Kept:
+    """A relay, a register without a reset that counts clock edges, and one with a reset."""
+
+    def __init__(self, *, keeps_state):
+        relay, top = Relay(8), Module()
+        self.edges, self.since = Signal(8, reset_less=True), Signal(8)
+        top.submodules.relay = relay
+        top.d.sync += [self.edges.eq(self.edges + 1), self.since.eq(self.since + 1)]
+        ports = Ports(sources={"i": relay.i}, sinks={"o": relay.o})
+        probes = [self.edges, self.since, relay.i.payload, relay.o.valid]
+        self.bench = Bench(top, ports, probes=probes, keeps_state=keeps_state)
+
+    def run(self, given, **options):
+        """Run until all is taken; return what each cycle showed."""
+        seen, taken = [], []
+        self.bench.run(
+            Job(
+                sources={"i": given},
+                takes={"o": lambda cycle, bits: taken.append(bits)},
+                finished=lambda: len(taken) >= len(given),
+                outstanding=lambda: "something",
+                options=RunOptions(observe=seen.append, **options),
+            )
+        )
+        assert taken == given
+        return seen
+
+
+@pytest.mark.parametrize("keeps_state", [True, False])
+def test_between_runs_is_a_reset_or_a_new_start(keeps_state):
+    kept = Kept(keeps_state=keeps_state)
+    first, second = kept.run([5, 6]), kept.run([7])
+    assert first[0] == [0, 0, 0, 0]
+    # The edge that ends the last cycle, and those of the reset.
+    edges = first[-1][0] + 1 + RESET_CYCLES if keeps_state else 0
+    assert second[0] == [edges, 0, 0, 0]
+    assert [row[1:] for row in second] == [row[1:] for row in Kept(keeps_state=False).run([7])]
+
+
+def test_a_run_that_failed_is_followed_by_a_reset():
+    kept = Kept(keeps_state=True)
+    with pytest.raises(DeadlineError, match="No end after 4 cycles"):
+        kept.run([5], stalls={"o": Stalls.bits("0" * 9 + "1")}, limit=4)
+    second = kept.run([7])
+    assert second[0] == [5 + 1 + RESET_CYCLES, 0, 0, 0]
+
+
+def test_a_bench_that_keeps_its_state_writes_no_waveforms(tmp_path):
+    with pytest.raises(ValueError, match=r"^A bench that keeps its state writes no waveforms$"):
+        Kept(keeps_state=True).run([5], vcd=tmp_path / "x.vcd")
 
 
 def test_nothing_to_do_is_over_after_the_silence():

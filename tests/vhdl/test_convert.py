@@ -29,7 +29,7 @@ from amaranth.lib import enum, wiring
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl import Deserializer, Serializer, load_message
+from firm_hdl import Deserializer, Parser, Serializer, load_message
 from firm_hdl.vhdl.convert import convert
 from tests.vhdl.ghdl import analyse, difference, expected, run, simulate, synthesize, vectors
 
@@ -251,6 +251,24 @@ def test_names_are_legal_and_never_merged(tmp_path: Path) -> None:
     analyse(vhdl, tmp_path)
 
 
+@pytest.mark.usefixtures("ghdl")
+def test_words_of_vhdl_ams_are_names_of_outermost_ports_only(tmp_path: Path) -> None:
+    top, inner = Module(), Module()
+    noise, limit, across = (Signal(8, name=name) for name in ("noise", "limit", "across"))
+    through = Signal(8, name="Through")
+    inner.d.sync += limit.eq(noise)
+    top.submodules.inner = inner
+    top.d.comb += [through.eq(limit + 1), across.eq(through)]
+    vhdl = convert(top, name="top", ports=[noise, across])
+    outer = vhdl.entities["top"]
+    assert outer.ports["noise"] == "noise" and outer.ports["across"] == "across"
+    assert outer.signals["Through"] == "Through_sig" and outer.signals["limit"] == "limit_sig"
+    (name,) = vhdl.entities.keys() - {"top"}
+    ports = vhdl.entities[name].ports
+    assert ports["limit"] == "limit_sig" and ports["noise"] == "noise_sig"
+    analyse(vhdl, tmp_path)
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [
@@ -392,7 +410,7 @@ def _ports(component: Any) -> tuple[dict[str, Value], dict[str, Value]]:
 
 @pytest.mark.usefixtures("ghdl")
 @pytest.mark.parametrize("bus_bytes", [1, 8, 64])
-@pytest.mark.parametrize("converter", [Deserializer, Serializer])
+@pytest.mark.parametrize("converter", [Deserializer, Serializer, Parser])
 @pytest.mark.parametrize(
     "name", ["geometry_msgs/msg/Twist", "sensor_msgs/msg/PointCloud2", "std_msgs/msg/Empty"]
 )

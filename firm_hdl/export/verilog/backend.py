@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from firm_hdl.export.backend import BackEnd, Converters, Output
+from firm_hdl.export.backend import BackEnd, Converters, Output, module_name
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
 from firm_hdl.export.verilog.template import template
 from firm_hdl.export.verilog.yosys import to_verilog
 from firm_hdl.plan import Plan
 
-__all__ = ["Verilog", "module_name", "section"]
+__all__ = ["Verilog", "section"]
 
 _WAIVERS = "waivers.vlt"
 """File with waivers of Verilator's warnings."""
@@ -36,21 +36,12 @@ class Verilog(BackEnd):
         for direction, module in modules.items():
             header = converters.header(module, f"the {direction}")
             files[f"{module}.v"] = to_verilog(
-                converters.tops[direction], module=module, header=header
+                converters.circuits[direction], module=module, header=header
             )
             files[f"{module}.veo"] = template(
                 converters.message, converters.plan, direction, module=module, header=header
             )
         return Output(files=files, manifest={"converters": section(converters.plan, name)})
-
-
-def module_name(folder: str, direction: Direction) -> str:
-    """Return the name of a converter's module.
-
-    No VHDL entity has this name in any case, because simulators of both languages keep modules and
-    entities in one library and look them up regardless of case.
-    """
-    return f"{folder}_{direction}_verilog"
 
 
 def _waivers(modules: Iterable[str]) -> str:

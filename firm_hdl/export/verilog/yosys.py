@@ -24,6 +24,8 @@ from amaranth.back import rtlil
 from firm_hdl.errors import UserError
 from firm_hdl.export.top import Top
 from firm_hdl.export.verilog.memories import settled_memories
+from firm_hdl.export.verilog.ports import named_ports
+from firm_hdl.export.verilog.vectors import whole_vectors
 from firm_hdl.names.identifiers import first_free
 from firm_hdl.names.keywords import KEYWORDS
 
@@ -43,7 +45,7 @@ attrmap {attributes}
 attrmap -modattr {attributes}
 write_verilog -norename
 """
-_ATTRIBUTES = "generator", "top", "src", "amaranth.hierarchy", "amaranth.decoding"
+_ATTRIBUTES = "generator", "top", "src", "keep", "amaranth.hierarchy", "amaranth.decoding"
 
 _NO_MEMORY = re.compile(
     r"mmap failed|Cannot allocate memory|bad_alloc|out of memory|memory allocation|MemoryError",
@@ -86,6 +88,8 @@ def _available() -> str:
     return f"{free / _GB:.1f} GB are free now"
 
 
+_TOP = re.compile(r"^attribute \\top 1\nmodule \\(\S+)", re.MULTILINE)
+
 # An error of the operating system, as the WebAssembly runtime reports it.
 _SYSTEM = re.compile(r"([^\n:]*)\(os error \d+\)")
 
@@ -95,12 +99,20 @@ def is_out_of_memory(message: str) -> bool:
     return bool(_NO_MEMORY.search(message))
 
 
-def to_verilog(top: Top, *, module: str, header: str) -> str:
+def _renamed(design: str, module: str) -> str:
+    """Give the outermost module of RTLIL a name, and the modules in it names that begin with it."""
+    found = _TOP.search(design)
+    assert found
+    return re.sub(rf"(?<=\\){re.escape(found[1])}(?=[.\s])", module, design)
+
+
+def to_verilog(top: Top | str, *, module: str, header: str) -> str:
     """Print a top level.
 
     Parameters
     ----------
-    top : Top
+    top : Top or str
+        Or its RTLIL.
     module : str
         Name of the module; submodules are called ``module.something``.
     header : str
@@ -111,8 +123,10 @@ def to_verilog(top: Top, *, module: str, header: str) -> str:
     UserError
         If there is not enough memory.
     """
-    design = settled_memories(rtlil.convert(top, name=module, emit_src=False))
-    design = _without_keywords(design)
+    if not isinstance(top, str):
+        top = rtlil.convert(top, name=module, emit_src=False)
+    design = settled_memories(_renamed(top, module))
+    design = whole_vectors(_without_keywords(named_ports(design)))
     script = _SCRIPT.format(
         rtlil=design, attributes=" ".join(f"-remove {name}" for name in _ATTRIBUTES)
     )

@@ -10,7 +10,7 @@ from firm_hdl.export.backend import BackEnd, Converters, Output
 from firm_hdl.export.packaging import packaging
 from firm_hdl.export.primitives import TYPES_NAME
 from firm_hdl.export.record_top import RecordTop, why_no_record
-from firm_hdl.export.top import DIRECTIONS, Direction, Top
+from firm_hdl.export.top import DIRECTIONS, Direction
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT, STIMULI, bench, run_script
 from firm_hdl.export.vhdl.bench_views import View, flat_view, record_view, stream_view
 from firm_hdl.export.vhdl.layer import flat_package, user_layer
@@ -53,8 +53,8 @@ class _Parts:
     benches: dict[str, str] = field(default_factory=dict)
     section: dict[str, Any] = field(default_factory=dict)
 
-    def core(self, top: Top, name: str) -> Core:
-        made = convert(top, name=name, header=self.header)
+    def core(self, circuit: str, name: str) -> Core:
+        made = convert(circuit, name=name, header=self.header)
         self.design.update(made.files)
         # The outermost entity is the last one.
         return Core(entity=made.top, names=list(made.entities.values())[-1].ports)
@@ -78,7 +78,7 @@ def to_vhdl(converters: Converters) -> Output:
     name, plan = converters.name, converters.plan
     parts = _Parts(base=identifier(name).lower(), header=converters.header(name, "converters"))
     cores = {
-        way: parts.core(converters.tops[way], f"{parts.base}_{way}_flat") for way in DIRECTIONS
+        way: parts.core(converters.circuits[way], f"{parts.base}_{way}_flat") for way in DIRECTIONS
     }
     ports = converters.options.ports
     if ports == "records":

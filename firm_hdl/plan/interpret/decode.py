@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple, TypeAlias
 
 from firm_hdl.plan.interpret.machine import Edge, Machine, Payload, Visit
 from firm_hdl.plan.ir import (
-    CountedBegin,
+    Begin,
     Fixed,
     Leaf,
     Part,
@@ -72,7 +72,7 @@ def decode(plan: Plan, packet: bytes) -> Decoded:
     """Decode a packet as the deserializer of a plan does."""
     reader = _Reader(plan=plan, packet=bytes(packet))
     reader.go()
-    if reader.status == "OK" and len(packet) - reader.position > plan.slack_bytes:
+    if reader.status == "OK" and len(packet) - reader.position > plan.max_trailing_bytes:
         reader.status = "TRAILING"
     return Decoded(
         transfers=tuple(reader.transfers),
@@ -133,7 +133,7 @@ class _Reader(Machine):
                 payload = self.count(self.begins[part.leaf], payload)
         self.transfers.append(Transfer(part.leaf, payload))
 
-    def count(self, begin: CountedBegin, wire: int) -> int:
+    def count(self, begin: Begin, wire: int) -> int:
         """Return the payload of a length, and keep the length on the wire."""
         length = wire - 1 if self.plan.has_nul(begin) and wire else wire
         if length > begin.limit:

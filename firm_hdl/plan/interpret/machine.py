@@ -8,9 +8,8 @@ from typing import NamedTuple, TypeAlias
 
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
-    BeginArray,
+    Begin,
     BeginLoop,
-    CountedBegin,
     Exits,
     Fixed,
     Jump,
@@ -20,7 +19,6 @@ from firm_hdl.plan.ir import (
     Plan,
     Run,
     RunStep,
-    Take,
 )
 
 __all__ = ["Edge", "Machine", "Payload", "Visit"]
@@ -30,10 +28,20 @@ Payload: TypeAlias = "int | tuple[tuple[int, ...], bool]"
 
 
 class Visit(NamedTuple):
-    """One cycle of a plan: the step, and the bytes that it takes, without padding in front."""
+    """One cycle of a plan.
+
+    Attributes
+    ----------
+    step : int
+    bytes : int
+        Bytes that the step takes, computed padding left out.
+    end : int
+        Bytes of the packet up to here.
+    """
 
     step: int
     bytes: int
+    end: int
 
 
 class Edge(NamedTuple):
@@ -43,9 +51,10 @@ class Edge(NamedTuple):
     ----------
     step : int
     way : str
-        ``padding N``: the step was aligned by skipping N bytes. ``again``: the body of a run was
-        repeated. ``body``: the loop or run that the step starts continues in its body. ``loop N
-        again`` and ``next``: the exit that was taken.
+        ``rest`` and ``no rest``: whether a run had a rest that the step took. ``padding N``: the
+        step was aligned by skipping N bytes. ``again``: the body of a run was repeated. ``body``:
+        the loop or run that the step starts continues in its body. ``loop N again`` and ``next``:
+        the exit that was taken.
     """
 
     step: int
@@ -63,7 +72,7 @@ class Machine(ABC):
     visits: list[Visit] = field(default_factory=list)
     edges: set[Edge] = field(default_factory=set)
     # The loop or run of each length. A length's first bytes may come some steps before its start.
-    begins: dict[int, CountedBegin] = field(init=False)
+    begins: dict[int, Begin] = field(init=False)
 
     def __post_init__(self) -> None:
         self.begins = self.plan.counted
@@ -106,11 +115,19 @@ class Machine(ABC):
     def step(self, index: int) -> int | None:
         """Run one step, all repetitions of a run's body included, and return the next one."""
         step = self.plan.steps[index]
-        if step.align != 1:
-            padding = (self.plan.header_bytes - self.offset) % step.align
-            self.edges.add(Edge(index, f"padding {padding}"))
-            self.skip(padding)
         start = self.offset
+        padding = 0
+        if step.rest is not None:
+            left = self.counters.get(RUN_COUNTER, 0)
+            self.edges.add(Edge(index, "rest" if left else "no rest"))
+            if left:
+                self.items_of(step.rest, left)
+        if step.align != 1:
+            padding = self.align(step.align)
+            self.edges.add(Edge(index, f"padding {padding}"))
+        if isinstance(step, RunStep):
+            self.words(index, step.run)
+            return self.leave(index, step.exits)
         for item in step.slices:
             match item:
                 case Pad():
@@ -119,20 +136,18 @@ class Machine(ABC):
                     self.fixed(item)
                 case Part():
                     self.part(item)
-        if isinstance(step, RunStep):
-            while self.counters[RUN_COUNTER]:
-                start = self.offset
-                self.take(step.take)
-                self.visits.append(Visit(index, self.offset - start))
-                if self.counters[RUN_COUNTER]:
-                    self.edges.add(Edge(index, "again"))
-            return self.leave(index, step.exits)
+        self.visits.append(Visit(index, self.offset - start - padding, self.offset))
         body = self.begin(step)
-        self.visits.append(Visit(index, self.offset - start))
         if body is None:
             return self.leave(index, step.exits)
         self.edges.add(Edge(index, "body"))
         return self.enter(body)
+
+    def align(self, align: int) -> int:
+        """Skip padding, and return its size."""
+        padding = (self.plan.header_bytes - self.offset) % align
+        self.skip(padding)
+        return padding
 
     def leave(self, index: int, exits: Exits) -> int | None:
         for level, jump in exits.repeats:
@@ -145,39 +160,41 @@ class Machine(ABC):
 
     def begin(self, step: MapStep) -> Jump | None:
         """Start the step's loop or run, and return the jump to its body, if it is needed."""
-        begin = step.begin
+        begin, count = step.begin, self.length
         if begin is None:
             return None
-        count = begin.count if isinstance(begin, BeginArray) else self.length
-        if not count:
-            return None
         if isinstance(begin, BeginLoop):
+            if not count:
+                return None
             self.counters[begin.level] = count
             return begin.body
         self.counters[RUN_COUNTER] = count
-        self.skip(begin.gap)
-        if step.take is not None:
-            self.take(step.take)
-        if not self.counters[RUN_COUNTER]:
-            return None
-        if begin.body is None:
-            raise ValueError("The plan starts a run that needs a body but has none")
-        return begin.body
+        if count:
+            self.align(begin.align)
+        return begin.body if count > self.plan.word(begin.run) else None
 
-    def take(self, take: Take) -> None:
-        """Process one cycle of a run: take its rest if that fits in the head, else all lanes."""
-        run = self.plan.runs[take.run]
-        leaf = self.plan.leaves[run.items]
-        left = self.counters[RUN_COUNTER]
-        finish = left * leaf.item_bytes <= take.head
-        count = left if finish else leaf.lanes
-        after = left - count
-        self.counters[RUN_COUNTER] = after
-        nul = 1 if run.terminated else 0
-        items = count - (nul if finish else 0)
+    def words(self, index: int, run: int) -> None:
+        """Process the full words of a run, one per cycle; the rest of a counted run is left."""
+        lanes = self.plan.leaves[self.plan.runs[run].items].lanes
+        keep = self.plan.word(run) if self.plan.runs[run].counted else 0
+        while True:
+            start = self.offset
+            self.items_of(run, lanes)
+            self.visits.append(Visit(index, self.offset - start, self.offset))
+            if self.counters[RUN_COUNTER] <= keep:
+                return
+            self.edges.add(Edge(index, "again"))
+
+    def items_of(self, index: int, count: int) -> None:
+        """Process one transfer of a run, with the NUL if the run ends with it."""
+        run = self.plan.runs[index]
+        left = self.counters[RUN_COUNTER] - count
+        self.counters[RUN_COUNTER] = left
+        has_nul = run.terminated and not left
+        items = count - has_nul
         if items:
-            self.items(run, items, run.last and after <= nul)
-        if finish and nul:
+            self.items(run, items, run.last and left <= run.terminated)
+        if has_nul:
             self.terminator()
 
     def is_last(self, part: Part) -> bool:

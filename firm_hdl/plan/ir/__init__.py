@@ -1,14 +1,18 @@
 """The plan: all decisions about a converter, as a list of steps that hardware transcribes.
 
-A plan is a small program over a window of wire bytes. Each step moves a fixed number of bytes whose
-map to leaves is static, and may end in the head of a run of items. One plan serves both directions:
-a deserializer takes the bytes of a step from its window and writes leaves, a serializer reads
-leaves and appends the bytes.
+A plan is a small program over the bytes of a packet. A :class:`MapStep` takes the rest of a run,
+then padding, then a fixed number of bytes whose map to leaves is static. A :class:`RunStep` takes a
+bus word of items. One plan serves both directions: a deserializer takes the bytes of a step from
+the packet and writes leaves, a serializer reads leaves and appends the bytes.
 
 Control flow: steps are in wire order. A step ends in its :class:`Exits`: loop counters are tried
 from the innermost outwards, and the first loop that has elements left is repeated. If no loop has,
 the plan continues at another step or ends the packet. `MapStep.begin` starts a loop over elements
-or a run of items, which a length or a constant counts.
+or a run of items that a length counts. Loops and runs of constant count start in the jump to them.
+
+Runs: only the last bus word of a run that a length counts may be short. It is the *rest*, which the
+step behind the run takes together with its own bytes, so that it costs no cycle of its own. The
+step knows the rest from the counter of the run, which is 0 if no run was started or it was empty.
 """
 
 from firm_hdl.plan.ir.leaves import Fixed, Leaf, LeafKind, Pad, Part, Run, Slice
@@ -16,25 +20,20 @@ from firm_hdl.plan.ir.plan import Plan
 from firm_hdl.plan.ir.steps import (
     RUN_COUNTER,
     Begin,
-    BeginArray,
     BeginLoop,
     BeginRun,
-    CountedBegin,
     Exits,
     Jump,
     MapStep,
     RunStep,
     Step,
-    Take,
 )
 
 __all__ = [
     "RUN_COUNTER",
     "Begin",
-    "BeginArray",
     "BeginLoop",
     "BeginRun",
-    "CountedBegin",
     "Exits",
     "Fixed",
     "Jump",
@@ -48,5 +47,4 @@ __all__ = [
     "RunStep",
     "Slice",
     "Step",
-    "Take",
 ]

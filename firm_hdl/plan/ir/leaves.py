@@ -93,6 +93,9 @@ class Part:
         For items: whether this transfer is always the last one of its array.
     last_level : int or None
         For items: the loop counter that is 1 if this transfer is the last one.
+
+    An array of constant count has one or two transfers in parts, of which the last one has `last`;
+    or a run of full words and then a part with the tail, if there is one.
     """
 
     at: int
@@ -120,6 +123,9 @@ class Run:
     ----------
     items : int
         Index of the leaf.
+    counted : bool
+        Whether a length counts the items. Then the last word, which may be short, is the rest that
+        the step behind the run takes. Otherwise the count is constant, and all words are full.
     terminated : bool
         Whether a NUL follows on the wire, where the length counts it.
     last : bool
@@ -128,5 +134,6 @@ class Run:
     """
 
     items: int
+    counted: bool = True
     terminated: bool = False
     last: bool = True

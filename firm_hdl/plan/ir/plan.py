@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from firm_hdl.model import Wire
 from firm_hdl.plan.ir.leaves import Leaf, Run
-from firm_hdl.plan.ir.steps import Begin, BeginArray, BeginLoop, CountedBegin, Jump, Step
+from firm_hdl.plan.ir.steps import Begin, BeginLoop, Jump, Step
 
 __all__ = ["Plan"]
 
@@ -27,7 +27,7 @@ class Plan:
         Size of the longest packet that lengths may promise, header included.
     header_bytes : int
         Bytes of the encapsulation header; alignment counts from its end.
-    slack_bytes : int
+    max_trailing_bytes : int
         Largest number of bytes that may follow the message in its packet.
     leaves : tuple of Leaf
         In wire order.
@@ -44,7 +44,7 @@ class Plan:
     bus_bytes: int
     max_message_bytes: int
     header_bytes: int
-    slack_bytes: int
+    max_trailing_bytes: int
     leaves: tuple[Leaf, ...]
     runs: tuple[Run, ...]
     levels: int
@@ -57,24 +57,25 @@ class Plan:
         for step in self.steps:
             yield step.exits.default
             yield from (jump for _, jump in step.exits.repeats)
-            if step.begin is not None and step.begin.body is not None:
+            if step.begin is not None:
                 yield step.begin.body
 
     @property
-    def counted(self) -> dict[int, CountedBegin]:
+    def counted(self) -> dict[int, Begin]:
         """The loop or run that each length counts, by the index of the length's leaf."""
-        begins = (step.begin for step in self.steps)
-        return {b.length: b for b in begins if isinstance(b, CountedBegin)}
+        return {step.begin.length: step.begin for step in self.steps if step.begin is not None}
 
     def has_nul(self, begin: Begin) -> bool:
         """Tell whether a count on the wire includes a NUL; the leaf's length never does."""
         return not isinstance(begin, BeginLoop) and self.runs[begin.run].terminated
 
-    def most(self, begin: Begin) -> int:
+    def max_count(self, begin: Begin) -> int:
         """Give the largest legal count on the wire, a NUL included."""
-        if isinstance(begin, BeginArray):
-            return begin.count
         return begin.limit + self.has_nul(begin)
+
+    def word(self, run: int) -> int:
+        """Give the largest count that is one word of a run, its NUL included."""
+        return self.leaves[self.runs[run].items].lanes + self.runs[run].terminated
 
     def item_bytes(self, run: int) -> int:
         """Give the bytes of one item of a run."""

@@ -10,16 +10,13 @@ from firm_hdl.plan.ir.leaves import Part, Slice
 __all__ = [
     "RUN_COUNTER",
     "Begin",
-    "BeginArray",
     "BeginLoop",
     "BeginRun",
-    "CountedBegin",
     "Exits",
     "Jump",
     "MapStep",
     "RunStep",
     "Step",
-    "Take",
 ]
 
 RUN_COUNTER = "run"
@@ -94,58 +91,37 @@ class BeginRun:
         Largest legal count: the declared bound, or the count that `max_message_bytes` can hold.
     run : int
         Index into `Plan.runs`.
-    gap : int
-        Padding bytes in front of the first item; an empty run has none.
-    head : int
-        Largest number of bytes of the run that this step itself takes; 0: none. They start `gap`
-        bytes after the step's own bytes. A run that is no longer ends in this step.
-    body : Jump or None
-        Taken if the run is longer than the head. `None`: it never is.
+    align : int
+        The first item starts at a multiple of this many bytes, counted from the end of the
+        encapsulation header. An empty run has no padding.
+    body : Jump
+        Taken if the run has more than one word. A deserializer takes it only if `limit` is more
+        than a word; a serializer writes any length.
     """
 
     length: int
     limit: int
     run: int
-    gap: int = 0
-    head: int = 0
-    body: Jump | None
+    align: int = 1
+    body: Jump
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BeginArray:
-    """The start of a run of constant count.
-
-    Attributes
-    ----------
-    count : int
-        Number of items, at least 1.
-    run, gap, head, body
-        As in `BeginRun`.
-    """
-
-    count: int
-    run: int
-    gap: int = 0
-    head: int = 0
-    body: Jump | None
-
-
-Begin: TypeAlias = BeginLoop | BeginRun | BeginArray
-"""The loop or run that a step starts."""
-
-CountedBegin: TypeAlias = BeginLoop | BeginRun
-"""A loop or run that a length counts."""
+Begin: TypeAlias = BeginLoop | BeginRun
+"""The loop or run that a step starts; a length counts it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapStep:
-    """One cycle's work on bytes whose map to leaves is static.
+    """One cycle's work: the rest of a run, and bytes whose map to leaves is static.
 
     Attributes
     ----------
+    rest : int or None
+        Run whose rest the step takes first: at most one bus word of items, and the NUL. There is
+        none if the step was reached without starting the run.
     align : int
-        The step starts at a multiple of this many bytes, counted from the end of the encapsulation
-        header. The step before has skipped the padding. 1 where padding is statically known.
+        The map starts at a multiple of this many bytes, counted from the end of the encapsulation
+        header. Padding up to there is skipped. 1 where padding is statically known.
     bytes : int
         Bytes of the static map.
     slices : tuple of Slice
@@ -153,9 +129,10 @@ class MapStep:
     begin : Begin or None
         The loop or run that the step starts after its map.
     exits : Exits
-        Taken when the step, and a run that it starts, is done.
+        Taken when the step, and the words of a run that it starts, are done.
     """
 
+    rest: int | None = None
     align: int = 1
     bytes: int = 0
     slices: tuple[Slice, ...] = ()
@@ -167,82 +144,34 @@ class MapStep:
         """The slices that belong to leaves."""
         return tuple(item for item in self.slices if isinstance(item, Part))
 
-    @property
-    def gap(self) -> int:
-        """Padding bytes between the map and the first item of a run that starts here."""
-        return 0 if self.begin is None or isinstance(self.begin, BeginLoop) else self.begin.gap
-
-    @property
-    def take(self) -> Take | None:
-        """The items that the step may take of a run that it starts."""
-        begin = self.begin
-        if begin is None or isinstance(begin, BeginLoop) or not begin.head:
-            return None
-        return Take(run=begin.run, at=self.bytes + begin.gap, head=begin.head)
-
-    @property
-    def most_bytes(self) -> int:
-        """Largest number of bytes that one cycle of the step can take."""
-        take = self.take
-        return self.bytes if take is None else take.at + take.head
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunStep:
-    """The body of a run: repeated, a bus word at a time, until the run is done.
+    """The body of a run: one bus word of items per cycle.
+
+    The step is repeated while more than one word is left, or while any item is left if the run has
+    a constant count.
 
     Attributes
     ----------
     align : int
-        As in `MapStep`, in front of the first repetition.
+        As in `MapStep`, in front of the first word.
     run : int
         Index into `Plan.runs`.
-    head : int
-        Largest number of bytes of the run per repetition.
     exits : Exits
-        Taken when the run is done.
+        Taken when the words are done. The next step takes the rest.
     """
 
     align: int = 1
     run: int
-    head: int
     exits: Exits
 
     # A body has no map, and starts no loop or run.
+    rest: ClassVar[None] = None
     bytes: ClassVar[int] = 0
     slices: ClassVar[tuple[Slice, ...]] = ()
     parts: ClassVar[tuple[Part, ...]] = ()
     begin: ClassVar[None] = None
-    gap: ClassVar[int] = 0
-
-    @property
-    def take(self) -> Take:
-        """The items that one repetition takes."""
-        return Take(run=self.run, at=0, head=self.head)
-
-    @property
-    def most_bytes(self) -> int:
-        """Largest number of bytes that one cycle of the step can take."""
-        return self.head
 
 
 Step: TypeAlias = MapStep | RunStep
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Take:
-    """Items of a run that one cycle of a step takes.
-
-    Attributes
-    ----------
-    run : int
-        Index into `Plan.runs`.
-    at : int
-        Offset of the first item in the step.
-    head : int
-        Largest number of bytes of these items.
-    """
-
-    run: int
-    at: int
-    head: int

@@ -47,12 +47,12 @@ def _shorter(plan: Plan, packet: bytes, rng: random.Random) -> bytes:
 
 
 def _longer(plan: Plan, packet: bytes, rng: random.Random) -> bytes:
-    return packet + rng.randbytes(plan.slack_bytes + rng.randint(1, 4 * plan.bus_bytes))
+    return packet + rng.randbytes(plan.max_trailing_bytes + rng.randint(1, 4 * plan.bus_bytes))
 
 
-def _slack(plan: Plan, packet: bytes, rng: random.Random) -> bytes:
+def _trailing(plan: Plan, packet: bytes, rng: random.Random) -> bytes:
     """Add as many bytes as are allowed, or one more."""
-    return packet + rng.randbytes(plan.slack_bytes + rng.randint(0, 1))
+    return packet + rng.randbytes(plan.max_trailing_bytes + rng.randint(0, 1))
 
 
 def _header(plan: Plan, packet: bytes, rng: random.Random) -> bytes:
@@ -90,7 +90,7 @@ DAMAGES: tuple[Callable[[Plan, bytes, random.Random], bytes], ...] = (
     _cut,
     _shorter,
     _longer,
-    _slack,
+    _trailing,
     _header,
     _change,
     _fill,

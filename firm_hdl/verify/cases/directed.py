@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from firm_hdl.plan import BeginRun, Edge, Plan, decode, encode
+from firm_hdl.plan import BeginLoop, BeginRun, Edge, Plan, RunStep, decode, encode
 from firm_hdl.plan.edges import edges
 from firm_hdl.verify.cases.make import Case, make_cases
 from firm_hdl.verify.references.oracle import RosbagsOracle
@@ -91,13 +91,17 @@ def bare_packets(plan: Plan, cases: Iterable[Case]) -> list[tuple[Case, bytes]]:
 
 
 def _bare_edges(plan: Plan) -> frozenset[Edge]:
-    """Return the decisions that only the length 0 of a CDR string takes."""
+    """Return the decisions that only the length 0 of a CDR string takes: not even a NUL is left."""
+    # Steps that a packet also reaches without a string in front have no rest anyway.
+    others = {plan.start.step}
+    for step in plan.steps:
+        if isinstance(step.begin, BeginLoop):
+            others.add(step.begin.body.step)
+        if not isinstance(step, RunStep) and not isinstance(step.begin, BeginRun):
+            others.add(step.exits.default.step)
+            others.update(jump.step for _, jump in step.exits.repeats)
     return frozenset(
-        edge
-        for edge in edges(plan)
-        if isinstance(begin := plan.steps[edge.step].begin, BeginRun)
-        and plan.has_nul(begin)
-        and not begin.head
-        and edge.way != "body"
-        and not edge.way.startswith("padding")
+        Edge(index, "no rest")
+        for index, step in enumerate(plan.steps)
+        if step.rest is not None and plan.runs[step.rest].terminated and index not in others
     )

@@ -23,13 +23,13 @@ from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.signatures import leaf_streams
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan
+from firm_hdl.sim.bench import RESET_CYCLES
 
 __all__ = ["ARESETN", "Device", "Pin", "Trace", "read_row"]
 
 ARESETN = 0
 """The number of the reset among the inputs; both converters share it."""
 
-RESET_CYCLES = 2
 CHUNK = 24
 """Pins that are looked at together: all are, when one of them changes."""
 

@@ -54,7 +54,19 @@ class Circuit:
             None if other is None else Crosscheck(other, (rx, tx), self._converters, message.name)
         )
         probes = () if self._cross is None else self._cross.trace.probes
-        self._harness = Harness(rx, tx, message=message, gated=options.stalled, probes=probes)
+        # Exported text runs on after a reset, and so does what it is compared with.
+        self._harness = Harness(
+            rx,
+            tx,
+            message=message,
+            gated=options.stalled,
+            probes=probes,
+            keeps_state=self._cross is not None,
+        )
+        self._waves = self._harness
+        if self._cross is not None and options.vcd is not None:
+            # Waveforms begin with a start, not with a reset.
+            self._waves = Harness(*self._converters(), message=message, gated=options.stalled)
 
     def _converters(self) -> tuple[Deserializer, Serializer]:
         wire, width, most = self._plan.wire, self._plan.bus_bytes, self._plan.max_message_bytes
@@ -74,7 +86,11 @@ class Circuit:
         observe = None if self._cross is None else self._cross.start(where)
         self._result.watch.enter("simulation")
         try:
-            options = RunOptions(stalls=stalls, observe=observe, vcd=self._waveform())
+            vcd = self._waveform()
+            if vcd is not None and self._waves is not self._harness:
+                self._waves.run_packets(packets, RunOptions(stalls=stalls, vcd=vcd))
+                vcd = None
+            options = RunOptions(stalls=stalls, observe=observe, vcd=vcd)
             seen = self._harness.run_packets(packets, options)
         except AssertionError as error:
             self._result.failures.append(f"{where}: {type(error).__name__}: {error}")

@@ -6,14 +6,14 @@ from __future__ import annotations
 import re
 import subprocess
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from firm_hdl import Deserializer, Serializer, load_message
+from firm_hdl import load_message
 from firm_hdl.export.backend import Converters, Options, Output, Ports
-from firm_hdl.export.top import Direction, Top
+from firm_hdl.export.top import Direction
 from firm_hdl.export.vhdl.backend import to_vhdl
 from firm_hdl.export.vhdl.layer import UserLayer, user_layer
 from firm_hdl.export.vhdl.wrapper import Core
@@ -80,11 +80,7 @@ def vhdl_of(
     stimuli: Iterable[bytes] = (),
     ports: Ports = "records",
 ) -> tuple[Output, Plan]:
-    tops: Any = {
-        "deserializer": Top(Deserializer(message, bus_bytes=bus_bytes)),
-        "serializer": Top(Serializer(message, bus_bytes=bus_bytes)),
-    }
-    plan = tops["deserializer"].core.plan
+    plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
     name = f"{message.name}_{plan.wire}_{bus_bytes}"
     made = Converters(
         message=message,
@@ -92,9 +88,8 @@ def vhdl_of(
         name=name,
         options=Options(bus_bytes=bus_bytes, ports=ports),
         stimuli=list(stimuli),
-        tops=tops,
     )
-    return to_vhdl(made), plan
+    return to_vhdl(replace(made, circuits=made.make_circuits())), plan
 
 
 def write(folder: Path, files: dict[str, str]) -> None:

@@ -69,10 +69,10 @@ def test_a_changed_plan_is_named_with_all_types_that_it_touches(folder):
     results = check_golden(read_golden(folder))
     changed = [result for result in results if isinstance(result.verdict, Failed)]
     assert [str(change) for change in changed[-1].changes] == [
-        "steps[data.length].begin.limit: 9 -> 16777207"
+        "steps[data.length].starts.limit: 9 -> 16777207"
     ]
     assert summarise(results) == {
-        "steps[*].begin.limit": ["sensor_msgs/msg/Imu", "std_msgs/msg/String"]
+        "steps[*].starts.limit": ["sensor_msgs/msg/Imu", "std_msgs/msg/String"]
     }
 
 

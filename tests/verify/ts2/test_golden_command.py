@@ -32,10 +32,10 @@ def test_a_change_fails_until_it_is_accepted(folder, capsys):
     assert main(["golden", "check", str(folder)]) == 1
     assert capsys.readouterr().out == (
         f"{paths[0]}: sensor_msgs/msg/Imu\n"
-        "    steps[header.stamp.nanosec].begin.limit: 9 -> 16776903\n"
+        "    steps[header.stamp.nanosec].starts.limit: 9 -> 16776903\n"
         f"{paths[1]}: std_msgs/msg/String\n"
-        "    steps[data.length].begin.limit: 9 -> 16777207\n"
-        "   2 types: steps[*].begin.limit\n"
+        "    steps[data.length].starts.limit: 9 -> 16777207\n"
+        "   2 types: steps[*].starts.limit\n"
         "2 golden plans, 2 differ\n"
     )
     assert [path.read_text() for path in paths] == before

@@ -127,9 +127,12 @@ def test_wrong_calls_are_refused(arguments, said, capsys):
     assert caught.value.code == 2 and said in capsys.readouterr().err
 
 
-def test_waveforms_are_written(tmp_path):
+@pytest.mark.parametrize("more", [[], ["--simulator", "iverilog"]])
+def test_waveforms_are_written(tmp_path, request, more):
+    if more:
+        request.getfixturevalue("iverilog")
     folder = tmp_path / "waves"
-    assert verify("--vcd", str(folder), "std_msgs/Bool") == 0
+    assert verify("--vcd", str(folder), *more, "std_msgs/Bool") == 0
     names = sorted(path.name for path in folder.iterdir())
     assert names == [f"std_msgs_msg_Bool_cdr_8_run{number}.vcd" for number in (1, 2, 3)]
     assert "packets" in (folder / names[0]).read_text()

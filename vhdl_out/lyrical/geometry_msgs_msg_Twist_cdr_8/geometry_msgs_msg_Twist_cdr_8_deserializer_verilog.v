@@ -39,6 +39,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog(aresetn, s_axis_tdata,
   wire \$39 ;
   wire \$4 ;
   wire \$40 ;
+  wire [3:0] \$42 ;
   wire \$5 ;
   wire \$6 ;
   wire \$7 ;
@@ -184,28 +185,30 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog(aresetn, s_axis_tdata,
   assign \$38  = \$36  & \$37 ;
   assign \$39  = | { \$38 , \$35 , \$32 , \$29  };
   assign \$40  = & s_axis_tkeep;
-  assign \packets__payload.count  = s_axis_tlast ? { \$40 , \$39 , \$26 , \$13  } : 4'h8;
+  assign \$42  = s_axis_tlast ? { \$40 , \$39 , \$26 , \$13  } : 4'h8;
+  assign packets__payload = { s_axis_tlast, \$42 , s_axis_tdata };
+  assign m_axis_status_tdata = { 5'h00, status__payload };
   \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core  core (
     .aclk(aclk),
+    .leaf_0__ready(linear_x_ready),
+    .leaf_1__ready(linear_y_ready),
+    .leaf_2__ready(linear_z_ready),
+    .leaf_3__ready(angular_x_ready),
+    .leaf_4__ready(angular_y_ready),
+    .leaf_5__ready(angular_z_ready),
     .message__angular__x__payload(angular_x_data),
-    .message__angular__x__ready(angular_x_ready),
     .message__angular__x__valid(angular_x_valid),
     .message__angular__y__payload(angular_y_data),
-    .message__angular__y__ready(angular_y_ready),
     .message__angular__y__valid(angular_y_valid),
     .message__angular__z__payload(angular_z_data),
-    .message__angular__z__ready(angular_z_ready),
     .message__angular__z__valid(angular_z_valid),
     .message__linear__x__payload(linear_x_data),
-    .message__linear__x__ready(linear_x_ready),
     .message__linear__x__valid(linear_x_valid),
     .message__linear__y__payload(linear_y_data),
-    .message__linear__y__ready(linear_y_ready),
     .message__linear__y__valid(linear_y_valid),
     .message__linear__z__payload(linear_z_data),
-    .message__linear__z__ready(linear_z_ready),
     .message__linear__z__valid(linear_z_valid),
-    .packets__payload({ s_axis_tlast, \packets__payload.count , s_axis_tdata }),
+    .packets__payload(packets__payload),
     .packets__ready(s_axis_tready),
     .packets__valid(s_axis_tvalid),
     .rst(rst),
@@ -213,17 +216,17 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog(aresetn, s_axis_tdata,
     .status__ready(m_axis_status_tready),
     .status__valid(m_axis_status_tvalid)
   );
-  assign \packets__payload.data[6]  = s_axis_tdata[55:48];
-  assign \packets__payload.data[5]  = s_axis_tdata[47:40];
-  assign \packets__payload.data[4]  = s_axis_tdata[39:32];
-  assign \packets__payload.data[3]  = s_axis_tdata[31:24];
-  assign \packets__payload.data[2]  = s_axis_tdata[23:16];
-  assign \packets__payload.data[1]  = s_axis_tdata[15:8];
-  assign \packets__payload.data[0]  = s_axis_tdata[7:0];
-  assign \packets__payload.data  = s_axis_tdata;
-  assign \packets__payload.data[7]  = s_axis_tdata[63:56];
-  assign \packets__payload.last  = s_axis_tlast;
-  assign m_axis_status_tdata = { 5'h00, status__payload };
+  assign \packets__payload.data[7]  = packets__payload[63:56];
+  assign \packets__payload.data[6]  = packets__payload[55:48];
+  assign \packets__payload.data[5]  = packets__payload[47:40];
+  assign \packets__payload.data[4]  = packets__payload[39:32];
+  assign \packets__payload.data[3]  = packets__payload[31:24];
+  assign \packets__payload.data[2]  = packets__payload[23:16];
+  assign \packets__payload.data[1]  = packets__payload[15:8];
+  assign \packets__payload.data[0]  = packets__payload[7:0];
+  assign \packets__payload.data  = packets__payload[63:0];
+  assign \packets__payload.count  = packets__payload[67:64];
+  assign \packets__payload.last  = packets__payload[68];
   assign message__angular__z__ready = angular_z_ready;
   assign message__angular__z__valid = angular_z_valid;
   assign message__angular__z__payload = angular_z_data;
@@ -246,337 +249,52 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog(aresetn, s_axis_tdata,
   assign status__valid = m_axis_status_tvalid;
   assign packets__ready = s_axis_tready;
   assign packets__valid = s_axis_tvalid;
-  assign packets__payload = { s_axis_tlast, \packets__payload.count , s_axis_tdata };
 endmodule
 
-module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid, message__linear__x__ready, message__linear__y__ready, message__linear__z__ready, message__angular__x__ready, message__angular__y__ready, message__angular__z__ready, status__ready, rst, packets__ready, packets__payload, message__linear__x__valid, message__linear__y__valid, message__linear__z__valid, message__angular__x__valid, message__angular__y__valid, message__angular__z__valid, status__valid, message__linear__x__payload, message__linear__y__payload, message__linear__z__payload
-, message__angular__x__payload, message__angular__y__payload, message__angular__z__payload, status__payload, aclk);
-  wire \$1 ;
-  wire \$10 ;
-  wire \$100 ;
-  wire \$101 ;
-  wire \$102 ;
-  wire \$105 ;
-  wire \$106 ;
-  wire \$107 ;
-  wire \$108 ;
-  wire \$109 ;
-  wire \$11 ;
-  (* unused_bits = "4" *)
-  wire [4:0] \$110 ;
-  wire \$111 ;
-  wire \$112 ;
-  wire \$113 ;
-  wire \$114 ;
-  wire \$115 ;
-  wire \$116 ;
-  (* unused_bits = "4" *)
-  wire [4:0] \$117 ;
-  wire \$118 ;
-  wire \$119 ;
-  wire \$12 ;
-  wire \$120 ;
-  wire \$121 ;
-  wire \$123 ;
-  wire \$124 ;
-  wire \$125 ;
-  wire \$126 ;
-  wire \$127 ;
-  wire \$128 ;
-  wire \$129 ;
-  wire \$13 ;
-  wire [63:0] \$130 ;
-  wire \$131 ;
-  wire \$132 ;
-  wire \$133 ;
-  wire \$134 ;
-  wire \$135 ;
-  wire [63:0] \$136 ;
-  wire \$137 ;
-  wire \$138 ;
-  wire \$139 ;
-  wire \$14 ;
-  wire \$140 ;
-  wire \$141 ;
-  wire [63:0] \$142 ;
-  wire \$143 ;
-  wire \$144 ;
-  wire \$145 ;
-  wire \$146 ;
-  wire \$147 ;
-  wire [63:0] \$148 ;
-  wire \$149 ;
-  wire \$15 ;
-  wire \$150 ;
-  wire \$151 ;
-  wire \$152 ;
-  wire \$153 ;
-  wire [63:0] \$154 ;
-  wire \$155 ;
-  wire \$156 ;
-  wire \$157 ;
-  wire \$158 ;
-  wire \$159 ;
-  wire \$16 ;
-  wire [63:0] \$160 ;
-  wire \$161 ;
-  wire \$162 ;
-  wire \$163 ;
-  wire [1:0] \$164 ;
-  wire [2:0] \$165 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$166 ;
-  wire \$167 ;
-  wire \$169 ;
-  wire \$17 ;
-  wire \$170 ;
-  wire \$171 ;
-  (* unused_bits = "3" *)
-  wire [3:0] \$172 ;
-  wire \$173 ;
-  wire \$174 ;
-  wire \$175 ;
-  wire \$176 ;
-  wire \$177 ;
-  wire \$178 ;
-  wire \$179 ;
-  wire [31:0] \$180 ;
-  wire [63:0] \$181 ;
-  wire [63:0] \$182 ;
-  wire [63:0] \$183 ;
-  wire [63:0] \$184 ;
-  wire [63:0] \$185 ;
-  wire [63:0] \$186 ;
-  wire \$187 ;
-  wire [2:0] \$188 ;
-  wire [2:0] \$189 ;
-  wire [2:0] \$190 ;
-  wire \$191 ;
-  wire [2:0] \$192 ;
-  wire \$2 ;
-  wire \$3 ;
-  wire \$4 ;
-  wire \$5 ;
-  wire \$52 ;
-  wire \$53 ;
-  wire \$6 ;
-  wire \$7 ;
-  wire \$8 ;
-  wire \$9 ;
-  wire \$94 ;
-  wire \$98 ;
-  wire \$99 ;
-  wire [2:0] choice_100_Y ;
-  wire [2:0] choice_102_Y ;
-  wire [2:0] choice_104_Y ;
-  wire [2:0] choice_106_Y ;
-  wire [2:0] choice_110_Y ;
-  wire [2:0] choice_112_Y ;
-  wire [2:0] choice_114_Y ;
-  wire [2:0] choice_116_Y ;
-  wire [2:0] choice_118_Y ;
-  wire [2:0] choice_120_Y ;
-  wire [2:0] choice_124_Y ;
-  wire [63:0] choice_130_Y ;
-  wire [63:0] choice_132_Y ;
-  wire choice_133_CMP ;
-  wire [63:0] choice_136_Y ;
-  wire [63:0] choice_138_Y ;
-  wire choice_139_CMP ;
-  wire [63:0] choice_142_Y ;
-  wire [63:0] choice_144_Y ;
-  wire choice_145_CMP ;
-  wire [63:0] choice_148_Y ;
-  wire [63:0] choice_150_Y ;
-  wire choice_151_CMP ;
-  wire [63:0] choice_154_Y ;
-  wire [63:0] choice_156_Y ;
-  wire choice_157_CMP ;
-  wire [63:0] choice_160_Y ;
-  wire [63:0] choice_162_Y ;
-  wire choice_163_CMP ;
-  wire [7:0] choice_166_Y ;
-  wire [7:0] choice_168_Y ;
-  wire choice_169_CMP ;
-  wire [7:0] choice_170_Y ;
-  wire choice_172_CMP ;
-  wire [7:0] choice_173_Y ;
-  wire choice_175_CMP ;
-  wire [7:0] choice_176_Y ;
-  wire choice_178_CMP ;
-  wire [7:0] choice_179_Y ;
-  wire choice_181_CMP ;
-  wire [7:0] choice_182_Y ;
-  wire choice_184_CMP ;
-  wire [7:0] choice_187_Y ;
-  wire [7:0] choice_189_Y ;
-  wire choice_190_CMP ;
-  wire [7:0] choice_191_Y ;
-  wire choice_193_CMP ;
-  wire [7:0] choice_194_Y ;
-  wire choice_196_CMP ;
-  wire [7:0] choice_197_Y ;
-  wire choice_199_CMP ;
-  wire [7:0] choice_200_Y ;
-  wire choice_202_CMP ;
-  wire [7:0] choice_203_Y ;
-  wire choice_205_CMP ;
-  wire [7:0] choice_208_Y ;
-  wire [7:0] choice_210_Y ;
-  wire choice_211_CMP ;
-  wire [7:0] choice_212_Y ;
-  wire choice_214_CMP ;
-  wire [7:0] choice_215_Y ;
-  wire choice_217_CMP ;
-  wire [7:0] choice_218_Y ;
-  wire choice_220_CMP ;
-  wire [7:0] choice_221_Y ;
-  wire choice_223_CMP ;
-  wire [7:0] choice_224_Y ;
-  wire choice_226_CMP ;
-  wire [7:0] choice_229_Y ;
-  wire [7:0] choice_231_Y ;
-  wire choice_232_CMP ;
-  wire [7:0] choice_233_Y ;
-  wire choice_235_CMP ;
-  wire [7:0] choice_236_Y ;
-  wire choice_238_CMP ;
-  wire [7:0] choice_239_Y ;
-  wire choice_241_CMP ;
-  wire [7:0] choice_242_Y ;
-  wire choice_244_CMP ;
-  wire [7:0] choice_245_Y ;
-  wire choice_247_CMP ;
-  wire choice_250_Y ;
-  wire choice_252_Y ;
-  wire choice_254_Y ;
-  wire choice_256_Y ;
-  wire choice_258_Y ;
-  wire choice_260_Y ;
-  wire choice_262_Y ;
-  wire choice_266_Y ;
-  wire choice_268_Y ;
-  wire choice_270_Y ;
-  wire choice_271_CMP ;
-  wire choice_274_Y ;
-  wire choice_276_Y ;
-  wire choice_278_Y ;
-  wire choice_279_CMP ;
-  wire choice_282_Y ;
-  wire choice_284_Y ;
-  wire choice_286_Y ;
-  wire choice_287_CMP ;
-  wire choice_290_Y ;
-  wire choice_292_Y ;
-  wire choice_294_Y ;
-  wire choice_295_CMP ;
-  wire choice_298_Y ;
-  wire choice_300_Y ;
-  wire choice_302_Y ;
-  wire choice_303_CMP ;
-  wire choice_306_Y ;
-  wire choice_308_Y ;
-  wire choice_310_Y ;
-  wire choice_311_CMP ;
-  wire choice_314_Y ;
-  wire choice_316_Y ;
-  wire [2:0] choice_326_Y ;
-  wire [2:0] choice_328_Y ;
-  wire [2:0] choice_330_Y ;
-  wire choice_342_Y ;
-  wire choice_345_CMP ;
-  wire choice_347_CMP ;
-  wire choice_348_CMP ;
-  wire choice_349_CMP ;
-  wire choice_350_CMP ;
-  wire choice_351_CMP ;
-  wire choice_352_CMP ;
-  wire [2:0] choice_367_Y ;
-  wire choice_370_CMP ;
-  wire [2:0] choice_371_Y ;
-  wire choice_373_CMP ;
-  wire [2:0] choice_374_Y ;
-  wire choice_376_CMP ;
-  wire [2:0] choice_377_Y ;
-  wire choice_379_CMP ;
-  wire [2:0] choice_380_Y ;
-  wire choice_382_CMP ;
-  wire [2:0] choice_383_Y ;
-  wire choice_385_CMP ;
-  wire choice_387_CMP ;
-  wire choice_388_CMP ;
-  wire choice_389_CMP ;
-  wire choice_390_CMP ;
-  wire choice_391_CMP ;
-  wire choice_392_CMP ;
-  wire choice_393_CMP ;
-  wire choice_395_CMP ;
-  wire choice_396_CMP ;
-  wire choice_397_CMP ;
-  wire choice_398_CMP ;
-  wire choice_399_CMP ;
-  wire choice_400_CMP ;
-  wire choice_401_CMP ;
-  wire choice_403_CMP ;
-  wire choice_405_CMP ;
-  wire choice_407_CMP ;
-  wire choice_408_CMP ;
-  wire choice_409_CMP ;
-  wire choice_410_CMP ;
-  wire choice_411_CMP ;
-  wire choice_412_CMP ;
-  wire choice_413_CMP ;
-  wire [2:0] choice_69_Y ;
-  wire [2:0] choice_71_Y ;
-  wire [2:0] choice_73_Y ;
-  wire [2:0] choice_75_Y ;
-  wire [2:0] choice_77_Y ;
-  wire choice_82_Y ;
-  wire choice_84_Y ;
-  wire choice_86_Y ;
-  wire choice_88_Y ;
-  wire choice_90_Y ;
-  wire choice_92_Y ;
-  wire [2:0] choice_96_Y ;
-  wire [2:0] choice_98_Y ;
-  (* enum_base_type = "Status" *)
-  (* enum_value_000 = "OK" *)
-  (* enum_value_001 = "TRUNCATED" *)
-  (* enum_value_010 = "TRAILING" *)
-  (* enum_value_011 = "LENGTH" *)
-  (* enum_value_100 = "ENCAPSULATION" *)
-  (* enum_value_101 = "STRING" *)
-  (* enum_value_110 = "ITEMS" *)
-  wire [2:0] \$signal ;
-  wire \$signal$50 ;
-  wire able_0;
+module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid, leaf_0__ready, leaf_1__ready, leaf_2__ready, leaf_3__ready, leaf_4__ready, leaf_5__ready, status__ready, rst, packets__payload, packets__ready, message__linear__x__valid, message__linear__y__valid, message__linear__z__valid, message__angular__x__valid, message__angular__y__valid, message__angular__z__valid, status__valid, status__payload, message__linear__x__payload, message__linear__y__payload
+, message__linear__z__payload, message__angular__x__payload, message__angular__y__payload, message__angular__z__payload, aclk);
   input aclk;
   wire aclk;
-  wire [2:0] align;
-  wire [2:0] \align$64 ;
-  wire all_served;
-  wire allowed;
-  wire [3:0] base;
-  wire [3:0] behind;
-  wire [3:0] \behind$51 ;
-  reg [31:0] carry = 32'd0;
-  wire complete;
-  wire [3:0] count;
-  wire [63:0] data;
-  wire [7:0] \data[0] ;
-  wire [7:0] \data[1] ;
-  wire [7:0] \data[2] ;
-  wire [7:0] \data[3] ;
-  wire [7:0] \data[4] ;
-  wire [7:0] \data[5] ;
-  wire [7:0] \data[6] ;
-  wire [7:0] \data[7] ;
-  wire done;
-  reg draining = 1'h0;
-  wire drop;
-  wire enable;
+  wire [3:0] at;
+  wire [3:0] \at$30 ;
+  wire [73:0] beat;
+  wire [73:0] \beat$28 ;
+  wire [3:0] \beat$28.at ;
+  wire [3:0] \beat$28.count ;
+  wire [63:0] \beat$28.data ;
+  wire \beat$28.last ;
+  wire \beat$28.valid ;
+  wire [73:0] \beat$7 ;
+  wire [3:0] \beat$7.at ;
+  wire [3:0] \beat$7.count ;
+  wire [63:0] \beat$7.data ;
+  wire \beat$7.last ;
+  wire \beat$7.valid ;
+  wire [3:0] \beat.at ;
+  wire [3:0] \beat.count ;
+  wire [63:0] \beat.data ;
+  wire \beat.last ;
+  wire \beat.valid ;
   wire ended;
-  wire ends;
+  wire \ended$11 ;
+  wire [3:0] following;
+  wire [3:0] \following$13 ;
+  wire [3:0] freed;
+  wire [3:0] \freed$32 ;
+  wire [41:0] i__payload;
+  wire \i__payload.blank ;
+  wire \i__payload.counted ;
+  wire \i__payload.ends ;
+  wire \i__payload.final ;
+  wire [3:0] \i__payload.first ;
+  wire \i__payload.items ;
+  wire [5:0] \i__payload.items_at ;
+  wire [3:0] \i__payload.items_bytes ;
+  wire [2:0] \i__payload.items_next ;
+  wire \i__payload.last ;
+  wire [5:0] \i__payload.map_at ;
+  wire [3:0] \i__payload.map_bytes ;
+  wire [2:0] \i__payload.map_next ;
   (* enum_base_type = "Status" *)
   (* enum_value_000 = "OK" *)
   (* enum_value_001 = "TRUNCATED" *)
@@ -585,71 +303,146 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   (* enum_value_100 = "ENCAPSULATION" *)
   (* enum_value_101 = "STRING" *)
   (* enum_value_110 = "ITEMS" *)
-  reg [2:0] error = 3'h0;
-  reg [2:0] extra = 3'h0;
-  wire final_sig;
-  wire finish;
-  (* enum_base_type = "Status" *)
-  (* enum_value_000 = "OK" *)
-  (* enum_value_001 = "TRUNCATED" *)
-  (* enum_value_010 = "TRAILING" *)
-  (* enum_value_011 = "LENGTH" *)
-  (* enum_value_100 = "ENCAPSULATION" *)
-  (* enum_value_101 = "STRING" *)
-  (* enum_value_110 = "ITEMS" *)
-  wire [2:0] finished;
-  wire [3:0] first_bytes;
-  wire first_last;
-  wire go_0;
-  wire has_items;
-  (* unused_bits = "2" *)
-  wire [11:0] have;
-  wire held;
-  wire [7:0] lane_used;
-  wire last_items;
-  wire left;
-  wire map_there;
+  wire [2:0] \i__payload.status ;
+  wire [2:0] \i__payload.step ;
+  wire i__ready;
+  wire i__valid;
+  wire [63:0] leaf_0__payload;
+  input leaf_0__ready;
+  wire leaf_0__ready;
+  wire leaf_0__valid;
+  wire [63:0] leaf_1__payload;
+  input leaf_1__ready;
+  wire leaf_1__ready;
+  wire leaf_1__valid;
+  wire [63:0] leaf_2__payload;
+  input leaf_2__ready;
+  wire leaf_2__ready;
+  wire leaf_2__valid;
+  wire [63:0] leaf_3__payload;
+  input leaf_3__ready;
+  wire leaf_3__ready;
+  wire leaf_3__valid;
+  wire [63:0] leaf_4__payload;
+  input leaf_4__ready;
+  wire leaf_4__ready;
+  wire leaf_4__valid;
+  wire [63:0] leaf_5__payload;
+  input leaf_5__ready;
+  wire leaf_5__ready;
+  wire leaf_5__valid;
+  wire [6:0] limit;
+  wire [6:0] \limit$9 ;
   output [63:0] message__angular__x__payload;
-  reg [63:0] message__angular__x__payload = 64'h0000000000000000;
-  input message__angular__x__ready;
+  wire [63:0] message__angular__x__payload;
   wire message__angular__x__ready;
   output message__angular__x__valid;
-  reg message__angular__x__valid = 1'h0;
+  wire message__angular__x__valid;
   output [63:0] message__angular__y__payload;
-  reg [63:0] message__angular__y__payload = 64'h0000000000000000;
-  input message__angular__y__ready;
+  wire [63:0] message__angular__y__payload;
   wire message__angular__y__ready;
   output message__angular__y__valid;
-  reg message__angular__y__valid = 1'h0;
+  wire message__angular__y__valid;
   output [63:0] message__angular__z__payload;
-  reg [63:0] message__angular__z__payload = 64'h0000000000000000;
-  input message__angular__z__ready;
+  wire [63:0] message__angular__z__payload;
   wire message__angular__z__ready;
   output message__angular__z__valid;
-  reg message__angular__z__valid = 1'h0;
+  wire message__angular__z__valid;
   output [63:0] message__linear__x__payload;
-  reg [63:0] message__linear__x__payload = 64'h0000000000000000;
-  input message__linear__x__ready;
+  wire [63:0] message__linear__x__payload;
   wire message__linear__x__ready;
   output message__linear__x__valid;
-  reg message__linear__x__valid = 1'h0;
+  wire message__linear__x__valid;
   output [63:0] message__linear__y__payload;
-  reg [63:0] message__linear__y__payload = 64'h0000000000000000;
-  input message__linear__y__ready;
+  wire [63:0] message__linear__y__payload;
   wire message__linear__y__ready;
   output message__linear__y__valid;
-  reg message__linear__y__valid = 1'h0;
+  wire message__linear__y__valid;
   output [63:0] message__linear__z__payload;
-  reg [63:0] message__linear__z__payload = 64'h0000000000000000;
-  input message__linear__z__ready;
+  wire [63:0] message__linear__z__payload;
   wire message__linear__z__ready;
   output message__linear__z__valid;
-  reg message__linear__z__valid = 1'h0;
-  wire mismatch;
-  wire [3:0] most_items;
-  wire [2:0] next_step;
-  wire nul_missing;
-  wire over;
+  wire message__linear__z__valid;
+  wire \next$15 ;
+  wire next_sig;
+  wire [41:0] o__payload;
+  wire \o__payload.blank ;
+  wire \o__payload.counted ;
+  wire \o__payload.ends ;
+  wire \o__payload.final ;
+  wire [3:0] \o__payload.first ;
+  wire \o__payload.items ;
+  wire [5:0] \o__payload.items_at ;
+  wire [3:0] \o__payload.items_bytes ;
+  wire [2:0] \o__payload.items_next ;
+  wire \o__payload.last ;
+  wire [5:0] \o__payload.map_at ;
+  wire [3:0] \o__payload.map_bytes ;
+  wire [2:0] \o__payload.map_next ;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  wire [2:0] \o__payload.status ;
+  wire [2:0] \o__payload.step ;
+  wire o__ready;
+  wire o__valid;
+  wire [41:0] orders__payload;
+  wire [41:0] \orders__payload$22 ;
+  wire \orders__payload$22.blank ;
+  wire \orders__payload$22.counted ;
+  wire \orders__payload$22.ends ;
+  wire \orders__payload$22.final ;
+  wire [3:0] \orders__payload$22.first ;
+  wire \orders__payload$22.items ;
+  wire [5:0] \orders__payload$22.items_at ;
+  wire [3:0] \orders__payload$22.items_bytes ;
+  wire [2:0] \orders__payload$22.items_next ;
+  wire \orders__payload$22.last ;
+  wire [5:0] \orders__payload$22.map_at ;
+  wire [3:0] \orders__payload$22.map_bytes ;
+  wire [2:0] \orders__payload$22.map_next ;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  wire [2:0] \orders__payload$22.status ;
+  wire [2:0] \orders__payload$22.step ;
+  wire \orders__payload.blank ;
+  wire \orders__payload.counted ;
+  wire \orders__payload.ends ;
+  wire \orders__payload.final ;
+  wire [3:0] \orders__payload.first ;
+  wire \orders__payload.items ;
+  wire [5:0] \orders__payload.items_at ;
+  wire [3:0] \orders__payload.items_bytes ;
+  wire [2:0] \orders__payload.items_next ;
+  wire \orders__payload.last ;
+  wire [5:0] \orders__payload.map_at ;
+  wire [3:0] \orders__payload.map_bytes ;
+  wire [2:0] \orders__payload.map_next ;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  wire [2:0] \orders__payload.status ;
+  wire [2:0] \orders__payload.step ;
+  wire orders__ready;
+  wire \orders__ready$27 ;
+  wire orders__valid;
+  wire \orders__valid$24 ;
   input [68:0] packets__payload;
   wire [68:0] packets__payload;
   wire [68:0] \packets__payload$1 ;
@@ -681,24 +474,8 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   input packets__valid;
   wire packets__valid;
   wire \packets__valid$3 ;
-  wire reached_0;
   input rst;
   wire rst;
-  wire [3:0] run_bytes;
-  wire [71:0] \run_bytes$54 ;
-  wire [12:0] run_have;
-  wire running;
-  reg served_0 = 1'h0;
-  wire [3:0] small_sig;
-  (* enum_base_type = "Status" *)
-  (* enum_value_000 = "OK" *)
-  (* enum_value_001 = "TRUNCATED" *)
-  (* enum_value_010 = "TRAILING" *)
-  (* enum_value_011 = "LENGTH" *)
-  (* enum_value_100 = "ENCAPSULATION" *)
-  (* enum_value_101 = "STRING" *)
-  (* enum_value_110 = "ITEMS" *)
-  wire [2:0] status;
   (* enum_base_type = "Status" *)
   (* enum_value_000 = "OK" *)
   (* enum_value_001 = "TRUNCATED" *)
@@ -708,590 +485,164 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   (* enum_value_101 = "STRING" *)
   (* enum_value_110 = "ITEMS" *)
   output [2:0] status__payload;
-  reg [2:0] status__payload = 3'h0;
+  wire [2:0] status__payload;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  wire [2:0] \status__payload$34 ;
   input status__ready;
   wire status__ready;
+  wire \status__ready$38 ;
   output status__valid;
-  reg status__valid = 1'h0;
-  reg [2:0] step = 3'h0;
-  wire take;
-  wire terminated;
-  wire [3:0] total;
-  wire [2:0] unit_log2;
-  assign \$1  = | data[7:0];
-  assign \$2  = have[0] & \$1 ;
-  assign \$3  = data[15:8] != 1'h1;
-  assign \$4  = have[1] & \$3 ;
-  assign \$5  = | { \$4 , \$2  };
-  assign \$6  = ~ message__linear__x__valid;
-  assign \$7  = \$6  | message__linear__x__ready;
-  assign \$8  = ~ message__linear__y__valid;
-  assign \$9  = \$8  | message__linear__y__ready;
-  assign \$10  = ~ message__linear__z__valid;
-  assign \$11  = \$10  | message__linear__z__ready;
-  assign \$12  = ~ message__angular__x__valid;
-  assign \$13  = \$12  | message__angular__x__ready;
-  assign \$14  = ~ message__angular__y__valid;
-  assign \$15  = \$14  | message__angular__y__ready;
-  assign \$16  = ~ message__angular__z__valid;
-  assign \$17  = \$16  | message__angular__z__ready;
-  assign \$52  = ~ served_0;
-  assign \$53  = enable & \$52 ;
-  assign go_0 = \$53  & able_0;
-  assign reached_0 = served_0 | able_0;
-  assign \$94  = | error;
-  assign \$98  = ~ draining;
-  assign \$99  = | error;
-  assign \$100  = map_there | ended;
-  assign \$101  = held & \$100 ;
-  assign \$102  = \$99  | \$101 ;
-  assign enable = \$98  & \$102 ;
-  assign \$105  = enable & reached_0;
-  assign \$106  = ~ ends;
-  assign \$107  = ~ status__valid;
-  assign \$108  = \$107  | status__ready;
-  assign \$109  = \$106  | \$108 ;
-  assign complete = \$105  & \$109 ;
-  assign { \$110 [4], count } = base + 4'h0;
-  assign \$111  = | error;
-  assign \$112  = ~ \$111 ;
-  assign \$113  = complete & \$112 ;
-  assign \$114  = ~ ends;
-  assign take = \$113  & \$114 ;
-  assign finish = complete & ends;
-  assign \$115  = ! \$signal ;
-  assign \$116  = \$115  & \behind$51 [3];
-  assign { \$117 [4], total } = extra + first_bytes;
-  assign \$118  = ! error;
-  assign \$119  = total > 2'h3;
-  assign \$120  = \$118  & \$119 ;
-  assign \$121  = draining & held;
-  assign \$123  = ~ status__valid;
-  assign \$124  = \$123  | status__ready;
-  assign \$125  = | error;
-  assign \$126  = ~ \$125 ;
-  assign \$127  = have[3] & \$126 ;
-  assign \$128  = ~ mismatch;
-  assign \$129  = \$127  & \$128 ;
-  assign \$130  = \$129  ? { data[31:0], carry } : 64'h0000000000000000;
-  assign \$131  = | error;
-  assign \$132  = ~ \$131 ;
-  assign \$133  = have[3] & \$132 ;
-  assign \$134  = ~ mismatch;
-  assign \$135  = \$133  & \$134 ;
-  assign \$136  = \$135  ? { data[31:0], carry } : 64'h0000000000000000;
-  assign \$137  = | error;
-  assign \$138  = ~ \$137 ;
-  assign \$139  = have[3] & \$138 ;
-  assign \$140  = ~ mismatch;
-  assign \$141  = \$139  & \$140 ;
-  assign \$142  = \$141  ? { data[31:0], carry } : 64'h0000000000000000;
-  assign \$143  = | error;
-  assign \$144  = ~ \$143 ;
-  assign \$145  = have[3] & \$144 ;
-  assign \$146  = ~ mismatch;
-  assign \$147  = \$145  & \$146 ;
-  assign \$148  = \$147  ? { data[31:0], carry } : 64'h0000000000000000;
-  assign \$149  = | error;
-  assign \$150  = ~ \$149 ;
-  assign \$151  = have[3] & \$150 ;
-  assign \$152  = ~ mismatch;
-  assign \$153  = \$151  & \$152 ;
-  assign \$154  = \$153  ? { data[31:0], carry } : 64'h0000000000000000;
-  assign \$155  = | error;
-  assign \$156  = ~ \$155 ;
-  assign \$157  = have[3] & \$156 ;
-  assign \$158  = ~ mismatch;
-  assign \$159  = \$157  & \$158 ;
-  assign \$160  = \$159  ? { data[31:0], carry } : 64'h0000000000000000;
-  assign \$161  = served_0 | go_0;
-  assign \$162  = ~ complete;
-  assign \$163  = \$161  & \$162 ;
-  assign \$164  = \behind$51 [0] + \behind$51 [1];
-  assign \$165  = \$164  + \behind$51 [2];
-  assign \$166  = \$165  + \behind$51 [3];
-  assign \$167  = draining & held;
-  assign \$169  = ~ status__valid;
-  assign \$170  = \$169  | status__ready;
-  assign \$171  = total > 2'h3;
-  assign \$172  = \$171  ? 4'h4 : total;
-  always @(posedge aclk)
-    message__linear__x__valid <= \$173 ;
-  always @(posedge aclk)
-    message__linear__y__valid <= \$174 ;
-  always @(posedge aclk)
-    message__linear__z__valid <= \$175 ;
-  always @(posedge aclk)
-    message__angular__x__valid <= \$176 ;
-  always @(posedge aclk)
-    message__angular__y__valid <= \$177 ;
-  always @(posedge aclk)
-    message__angular__z__valid <= \$178 ;
-  always @(posedge aclk)
-    status__valid <= \$179 ;
-  always @(posedge aclk)
-    carry <= \$180 ;
-  always @(posedge aclk)
-    message__linear__x__payload <= \$181 ;
-  always @(posedge aclk)
-    message__linear__y__payload <= \$182 ;
-  always @(posedge aclk)
-    message__linear__z__payload <= \$183 ;
-  always @(posedge aclk)
-    message__angular__x__payload <= \$184 ;
-  always @(posedge aclk)
-    message__angular__y__payload <= \$185 ;
-  always @(posedge aclk)
-    message__angular__z__payload <= \$186 ;
-  always @(posedge aclk)
-    served_0 <= \$187 ;
-  always @(posedge aclk)
-    step <= \$188 ;
-  always @(posedge aclk)
-    error <= \$189 ;
-  always @(posedge aclk)
-    status__payload <= \$190 ;
-  always @(posedge aclk)
-    draining <= \$191 ;
-  always @(posedge aclk)
-    extra <= \$192 ;
-  assign choice_100_Y  = complete ? choice_98_Y  : status__payload;
-  assign choice_102_Y  = \$170  ? status : choice_100_Y ;
-  assign choice_104_Y  = first_last ? choice_102_Y  : choice_100_Y ;
-  assign choice_106_Y  = \$167  ? choice_104_Y  : choice_100_Y ;
-  assign \$190  = rst ? 3'h0 : choice_106_Y ;
-  assign choice_110_Y  = ended ? 3'h0 : \$signal ;
-  assign choice_112_Y  = ends ? choice_110_Y  : \$signal ;
-  assign choice_114_Y  = complete ? choice_112_Y  : error;
-  assign choice_116_Y  = \$170  ? 3'h0 : choice_114_Y ;
-  assign choice_118_Y  = first_last ? choice_116_Y  : choice_114_Y ;
-  assign choice_120_Y  = \$167  ? choice_118_Y  : choice_114_Y ;
-  assign \$189  = rst ? 3'h0 : choice_120_Y ;
-  assign choice_124_Y  = complete ? next_step : step;
-  assign \$188  = rst ? 3'h0 : choice_124_Y ;
-  assign \$187  = rst ? 1'h0 : \$163 ;
-  assign choice_130_Y  = go_0 ? \$160  : message__angular__z__payload;
-  assign choice_132_Y  = choice_133_CMP  ? choice_130_Y  : message__angular__z__payload;
-  assign choice_133_CMP  = step == 3'h6;
-  assign \$186  = rst ? 64'h0000000000000000 : choice_132_Y ;
-  assign choice_136_Y  = go_0 ? \$154  : message__angular__y__payload;
-  assign choice_138_Y  = choice_139_CMP  ? choice_136_Y  : message__angular__y__payload;
-  assign choice_139_CMP  = step == 3'h5;
-  assign \$185  = rst ? 64'h0000000000000000 : choice_138_Y ;
-  assign choice_142_Y  = go_0 ? \$148  : message__angular__x__payload;
-  assign choice_144_Y  = choice_145_CMP  ? choice_142_Y  : message__angular__x__payload;
-  assign choice_145_CMP  = step == 3'h4;
-  assign \$184  = rst ? 64'h0000000000000000 : choice_144_Y ;
-  assign choice_148_Y  = go_0 ? \$142  : message__linear__z__payload;
-  assign choice_150_Y  = choice_151_CMP  ? choice_148_Y  : message__linear__z__payload;
-  assign choice_151_CMP  = step == 3'h3;
-  assign \$183  = rst ? 64'h0000000000000000 : choice_150_Y ;
-  assign choice_154_Y  = go_0 ? \$136  : message__linear__y__payload;
-  assign choice_156_Y  = choice_157_CMP  ? choice_154_Y  : message__linear__y__payload;
-  assign choice_157_CMP  = step == 3'h2;
-  assign \$182  = rst ? 64'h0000000000000000 : choice_156_Y ;
-  assign choice_160_Y  = go_0 ? \$130  : message__linear__x__payload;
-  assign choice_162_Y  = choice_163_CMP  ? choice_160_Y  : message__linear__x__payload;
-  assign choice_163_CMP  = step == 3'h1;
-  assign \$181  = rst ? 64'h0000000000000000 : choice_162_Y ;
-  assign choice_166_Y  = complete ? data[63:56] : carry[31:24];
-  function [7:0] choice_168 ;
-    input [7:0] a;
-    input [47:0] b;
-    input [5:0] s;
-    (* parallel_case *)
-    casez (s)
-      6'b?????1:
-        choice_168  = b[7:0];
-      6'b????1?:
-        choice_168  = b[15:8];
-      6'b???1??:
-        choice_168  = b[23:16];
-      6'b??1???:
-        choice_168  = b[31:24];
-      6'b?1????:
-        choice_168  = b[39:32];
-      6'b1?????:
-        choice_168  = b[47:40];
-      default:
-        choice_168  = a;
-    endcase
-  endfunction
-  assign choice_168_Y  = choice_168 (carry[31:24], { choice_182_Y , choice_179_Y , choice_176_Y , choice_173_Y , choice_170_Y , choice_166_Y  }, { choice_184_CMP , choice_181_CMP , choice_178_CMP , choice_175_CMP , choice_172_CMP , choice_169_CMP  });
-  assign choice_169_CMP  = step == 3'h5;
-  assign choice_170_Y  = complete ? data[63:56] : carry[31:24];
-  assign choice_172_CMP  = step == 3'h4;
-  assign choice_173_Y  = complete ? data[63:56] : carry[31:24];
-  assign choice_175_CMP  = step == 3'h3;
-  assign choice_176_Y  = complete ? data[63:56] : carry[31:24];
-  assign choice_178_CMP  = step == 3'h2;
-  assign choice_179_Y  = complete ? data[63:56] : carry[31:24];
-  assign choice_181_CMP  = step == 3'h1;
-  assign choice_182_Y  = complete ? data[63:56] : carry[31:24];
-  assign choice_184_CMP  = ! step;
-  assign \$180 [31:24] = rst ? 8'h00 : choice_168_Y ;
-  assign choice_187_Y  = complete ? data[47:40] : carry[15:8];
-  function [7:0] choice_189 ;
-    input [7:0] a;
-    input [47:0] b;
-    input [5:0] s;
-    (* parallel_case *)
-    casez (s)
-      6'b?????1:
-        choice_189  = b[7:0];
-      6'b????1?:
-        choice_189  = b[15:8];
-      6'b???1??:
-        choice_189  = b[23:16];
-      6'b??1???:
-        choice_189  = b[31:24];
-      6'b?1????:
-        choice_189  = b[39:32];
-      6'b1?????:
-        choice_189  = b[47:40];
-      default:
-        choice_189  = a;
-    endcase
-  endfunction
-  assign choice_189_Y  = choice_189 (carry[15:8], { choice_203_Y , choice_200_Y , choice_197_Y , choice_194_Y , choice_191_Y , choice_187_Y  }, { choice_205_CMP , choice_202_CMP , choice_199_CMP , choice_196_CMP , choice_193_CMP , choice_190_CMP  });
-  assign choice_190_CMP  = step == 3'h5;
-  assign choice_191_Y  = complete ? data[47:40] : carry[15:8];
-  assign choice_193_CMP  = step == 3'h4;
-  assign choice_194_Y  = complete ? data[47:40] : carry[15:8];
-  assign choice_196_CMP  = step == 3'h3;
-  assign choice_197_Y  = complete ? data[47:40] : carry[15:8];
-  assign choice_199_CMP  = step == 3'h2;
-  assign choice_200_Y  = complete ? data[47:40] : carry[15:8];
-  assign choice_202_CMP  = step == 3'h1;
-  assign choice_203_Y  = complete ? data[47:40] : carry[15:8];
-  assign choice_205_CMP  = ! step;
-  assign \$180 [15:8] = rst ? 8'h00 : choice_189_Y ;
-  assign choice_208_Y  = complete ? data[39:32] : carry[7:0];
-  function [7:0] choice_210 ;
-    input [7:0] a;
-    input [47:0] b;
-    input [5:0] s;
-    (* parallel_case *)
-    casez (s)
-      6'b?????1:
-        choice_210  = b[7:0];
-      6'b????1?:
-        choice_210  = b[15:8];
-      6'b???1??:
-        choice_210  = b[23:16];
-      6'b??1???:
-        choice_210  = b[31:24];
-      6'b?1????:
-        choice_210  = b[39:32];
-      6'b1?????:
-        choice_210  = b[47:40];
-      default:
-        choice_210  = a;
-    endcase
-  endfunction
-  assign choice_210_Y  = choice_210 (carry[7:0], { choice_224_Y , choice_221_Y , choice_218_Y , choice_215_Y , choice_212_Y , choice_208_Y  }, { choice_226_CMP , choice_223_CMP , choice_220_CMP , choice_217_CMP , choice_214_CMP , choice_211_CMP  });
-  assign choice_211_CMP  = step == 3'h5;
-  assign choice_212_Y  = complete ? data[39:32] : carry[7:0];
-  assign choice_214_CMP  = step == 3'h4;
-  assign choice_215_Y  = complete ? data[39:32] : carry[7:0];
-  assign choice_217_CMP  = step == 3'h3;
-  assign choice_218_Y  = complete ? data[39:32] : carry[7:0];
-  assign choice_220_CMP  = step == 3'h2;
-  assign choice_221_Y  = complete ? data[39:32] : carry[7:0];
-  assign choice_223_CMP  = step == 3'h1;
-  assign choice_224_Y  = complete ? data[39:32] : carry[7:0];
-  assign choice_226_CMP  = ! step;
-  assign \$180 [7:0] = rst ? 8'h00 : choice_210_Y ;
-  assign choice_229_Y  = complete ? data[55:48] : carry[23:16];
-  function [7:0] choice_231 ;
-    input [7:0] a;
-    input [47:0] b;
-    input [5:0] s;
-    (* parallel_case *)
-    casez (s)
-      6'b?????1:
-        choice_231  = b[7:0];
-      6'b????1?:
-        choice_231  = b[15:8];
-      6'b???1??:
-        choice_231  = b[23:16];
-      6'b??1???:
-        choice_231  = b[31:24];
-      6'b?1????:
-        choice_231  = b[39:32];
-      6'b1?????:
-        choice_231  = b[47:40];
-      default:
-        choice_231  = a;
-    endcase
-  endfunction
-  assign choice_231_Y  = choice_231 (carry[23:16], { choice_245_Y , choice_242_Y , choice_239_Y , choice_236_Y , choice_233_Y , choice_229_Y  }, { choice_247_CMP , choice_244_CMP , choice_241_CMP , choice_238_CMP , choice_235_CMP , choice_232_CMP  });
-  assign choice_232_CMP  = step == 3'h5;
-  assign choice_233_Y  = complete ? data[55:48] : carry[23:16];
-  assign choice_235_CMP  = step == 3'h4;
-  assign choice_236_Y  = complete ? data[55:48] : carry[23:16];
-  assign choice_238_CMP  = step == 3'h3;
-  assign choice_239_Y  = complete ? data[55:48] : carry[23:16];
-  assign choice_241_CMP  = step == 3'h2;
-  assign choice_242_Y  = complete ? data[55:48] : carry[23:16];
-  assign choice_244_CMP  = step == 3'h1;
-  assign choice_245_Y  = complete ? data[55:48] : carry[23:16];
-  assign choice_247_CMP  = ! step;
-  assign \$180 [23:16] = rst ? 8'h00 : choice_231_Y ;
-  assign choice_250_Y  = status__ready ? 1'h0 : status__valid;
-  assign choice_252_Y  = ended ? 1'h1 : choice_250_Y ;
-  assign choice_254_Y  = ends ? choice_252_Y  : choice_250_Y ;
-  assign choice_256_Y  = complete ? choice_254_Y  : choice_250_Y ;
-  assign choice_258_Y  = \$170  ? 1'h1 : choice_256_Y ;
-  assign choice_260_Y  = first_last ? choice_258_Y  : choice_256_Y ;
-  assign choice_262_Y  = \$167  ? choice_260_Y  : choice_256_Y ;
-  assign \$179  = rst ? 1'h0 : choice_262_Y ;
-  assign choice_266_Y  = message__angular__z__ready ? 1'h0 : message__angular__z__valid;
-  assign choice_268_Y  = go_0 ? 1'h1 : choice_266_Y ;
-  assign choice_270_Y  = choice_271_CMP  ? choice_268_Y  : choice_266_Y ;
-  assign choice_271_CMP  = step == 3'h6;
-  assign \$178  = rst ? 1'h0 : choice_270_Y ;
-  assign choice_274_Y  = message__angular__y__ready ? 1'h0 : message__angular__y__valid;
-  assign choice_276_Y  = go_0 ? 1'h1 : choice_274_Y ;
-  assign choice_278_Y  = choice_279_CMP  ? choice_276_Y  : choice_274_Y ;
-  assign choice_279_CMP  = step == 3'h5;
-  assign \$177  = rst ? 1'h0 : choice_278_Y ;
-  assign choice_282_Y  = message__angular__x__ready ? 1'h0 : message__angular__x__valid;
-  assign choice_284_Y  = go_0 ? 1'h1 : choice_282_Y ;
-  assign choice_286_Y  = choice_287_CMP  ? choice_284_Y  : choice_282_Y ;
-  assign choice_287_CMP  = step == 3'h4;
-  assign \$176  = rst ? 1'h0 : choice_286_Y ;
-  assign choice_290_Y  = message__linear__z__ready ? 1'h0 : message__linear__z__valid;
-  assign choice_292_Y  = go_0 ? 1'h1 : choice_290_Y ;
-  assign choice_294_Y  = choice_295_CMP  ? choice_292_Y  : choice_290_Y ;
-  assign choice_295_CMP  = step == 3'h3;
-  assign \$175  = rst ? 1'h0 : choice_294_Y ;
-  assign choice_298_Y  = message__linear__y__ready ? 1'h0 : message__linear__y__valid;
-  assign choice_300_Y  = go_0 ? 1'h1 : choice_298_Y ;
-  assign choice_302_Y  = choice_303_CMP  ? choice_300_Y  : choice_298_Y ;
-  assign choice_303_CMP  = step == 3'h2;
-  assign \$174  = rst ? 1'h0 : choice_302_Y ;
-  assign choice_306_Y  = message__linear__x__ready ? 1'h0 : message__linear__x__valid;
-  assign choice_308_Y  = go_0 ? 1'h1 : choice_306_Y ;
-  assign choice_310_Y  = choice_311_CMP  ? choice_308_Y  : choice_306_Y ;
-  assign choice_311_CMP  = step == 3'h1;
-  assign \$173  = rst ? 1'h0 : choice_310_Y ;
-  assign choice_314_Y  = \$124  ? 1'h1 : 1'h0;
-  assign choice_316_Y  = first_last ? choice_314_Y  : 1'h1;
-  assign drop = \$121  ? choice_316_Y  : 1'h0;
-  assign status = \$120  ? 3'h2 : error;
-  assign finished = \$116  ? 3'h2 : \$signal ;
-  assign choice_326_Y  = map_there ? error : 3'h1;
-  assign choice_328_Y  = map_there ? choice_326_Y  : 3'h1;
-  assign choice_330_Y  = mismatch ? 3'h4 : choice_328_Y ;
-  assign \$signal  = \$94  ? error : choice_330_Y ;
-  assign choice_342_Y  = done ? 1'h1 : 1'h0;
-  assign ends = choice_345_CMP  ? choice_342_Y  : 1'h0;
-  assign choice_345_CMP  = step == 3'h6;
-  function [0:0] choice_346 ;
-    input [0:0] a;
-    input [5:0] b;
-    input [5:0] s;
-    (* parallel_case *)
-    casez (s)
-      6'b?????1:
-        choice_346  = b[0:0];
-      6'b????1?:
-        choice_346  = b[1:1];
-      6'b???1??:
-        choice_346  = b[2:2];
-      6'b??1???:
-        choice_346  = b[3:3];
-      6'b?1????:
-        choice_346  = b[4:4];
-      6'b1?????:
-        choice_346  = b[5:5];
-      default:
-        choice_346  = a;
-    endcase
-  endfunction
-  assign able_0 = choice_346 (1'h1, { \$7 , \$9 , \$11 , \$13 , \$15 , \$17  }, { choice_352_CMP , choice_351_CMP , choice_350_CMP , choice_349_CMP , choice_348_CMP , choice_347_CMP  });
-  assign choice_347_CMP  = step == 3'h6;
-  assign choice_348_CMP  = step == 3'h5;
-  assign choice_349_CMP  = step == 3'h4;
-  assign choice_350_CMP  = step == 3'h3;
-  assign choice_351_CMP  = step == 3'h2;
-  assign choice_352_CMP  = step == 3'h1;
-  assign choice_367_Y  = done ? 3'h6 : 3'h0;
-  function [2:0] choice_369 ;
-    input [2:0] a;
-    input [17:0] b;
-    input [5:0] s;
-    (* parallel_case *)
-    casez (s)
-      6'b?????1:
-        choice_369  = b[2:0];
-      6'b????1?:
-        choice_369  = b[5:3];
-      6'b???1??:
-        choice_369  = b[8:6];
-      6'b??1???:
-        choice_369  = b[11:9];
-      6'b?1????:
-        choice_369  = b[14:12];
-      6'b1?????:
-        choice_369  = b[17:15];
-      default:
-        choice_369  = a;
-    endcase
-  endfunction
-  assign next_step = choice_369 (3'h0, { choice_383_Y , choice_380_Y , choice_377_Y , choice_374_Y , choice_371_Y , choice_367_Y  }, { choice_385_CMP , choice_382_CMP , choice_379_CMP , choice_376_CMP , choice_373_CMP , choice_370_CMP  });
-  assign choice_370_CMP  = step == 3'h5;
-  assign choice_371_Y  = done ? 3'h5 : 3'h0;
-  assign choice_373_CMP  = step == 3'h4;
-  assign choice_374_Y  = done ? 3'h4 : 3'h0;
-  assign choice_376_CMP  = step == 3'h3;
-  assign choice_377_Y  = done ? 3'h3 : 3'h0;
-  assign choice_379_CMP  = step == 3'h2;
-  assign choice_380_Y  = done ? 3'h2 : 3'h0;
-  assign choice_382_CMP  = step == 3'h1;
-  assign choice_383_Y  = done ? 3'h1 : 3'h0;
-  assign choice_385_CMP  = ! step;
-  function [0:0] choice_386 ;
-    input [0:0] a;
-    input [6:0] b;
-    input [6:0] s;
-    (* parallel_case *)
-    casez (s)
-      7'b??????1:
-        choice_386  = b[0:0];
-      7'b?????1?:
-        choice_386  = b[1:1];
-      7'b????1??:
-        choice_386  = b[2:2];
-      7'b???1???:
-        choice_386  = b[3:3];
-      7'b??1????:
-        choice_386  = b[4:4];
-      7'b?1?????:
-        choice_386  = b[5:5];
-      7'b1??????:
-        choice_386  = b[6:6];
-      default:
-        choice_386  = a;
-    endcase
-  endfunction
-  assign done = choice_386 (1'h0, 7'h7f, { choice_393_CMP , choice_392_CMP , choice_391_CMP , choice_390_CMP , choice_389_CMP , choice_388_CMP , choice_387_CMP  });
-  assign choice_387_CMP  = step == 3'h6;
-  assign choice_388_CMP  = step == 3'h5;
-  assign choice_389_CMP  = step == 3'h4;
-  assign choice_390_CMP  = step == 3'h3;
-  assign choice_391_CMP  = step == 3'h2;
-  assign choice_392_CMP  = step == 3'h1;
-  assign choice_393_CMP  = ! step;
-  function [3:0] choice_394 ;
-    input [3:0] a;
-    input [27:0] b;
-    input [6:0] s;
-    (* parallel_case *)
-    casez (s)
-      7'b??????1:
-        choice_394  = b[3:0];
-      7'b?????1?:
-        choice_394  = b[7:4];
-      7'b????1??:
-        choice_394  = b[11:8];
-      7'b???1???:
-        choice_394  = b[15:12];
-      7'b??1????:
-        choice_394  = b[19:16];
-      7'b?1?????:
-        choice_394  = b[23:20];
-      7'b1??????:
-        choice_394  = b[27:24];
-      default:
-        choice_394  = a;
-    endcase
-  endfunction
-  assign base = choice_394 (4'h0, 28'h8888884, { choice_401_CMP , choice_400_CMP , choice_399_CMP , choice_398_CMP , choice_397_CMP , choice_396_CMP , choice_395_CMP  });
-  assign choice_395_CMP  = step == 3'h6;
-  assign choice_396_CMP  = step == 3'h5;
-  assign choice_397_CMP  = step == 3'h4;
-  assign choice_398_CMP  = step == 3'h3;
-  assign choice_399_CMP  = step == 3'h2;
-  assign choice_400_CMP  = step == 3'h1;
-  assign choice_401_CMP  = ! step;
-  assign mismatch = choice_403_CMP  ? \$5  : 1'h0;
-  assign choice_403_CMP  = ! step;
-  assign \behind$51  = choice_405_CMP  ? have[7:4] : 4'h0;
-  assign choice_405_CMP  = step == 3'h6;
-  function [0:0] choice_406 ;
-    input [0:0] a;
-    input [6:0] b;
-    input [6:0] s;
-    (* parallel_case *)
-    casez (s)
-      7'b??????1:
-        choice_406  = b[0:0];
-      7'b?????1?:
-        choice_406  = b[1:1];
-      7'b????1??:
-        choice_406  = b[2:2];
-      7'b???1???:
-        choice_406  = b[3:3];
-      7'b??1????:
-        choice_406  = b[4:4];
-      7'b?1?????:
-        choice_406  = b[5:5];
-      7'b1??????:
-        choice_406  = b[6:6];
-      default:
-        choice_406  = a;
-    endcase
-  endfunction
-  assign map_there = choice_406 (1'h0, { have[7], have[7], have[7], have[7], have[7], have[7], have[3] }, { choice_413_CMP , choice_412_CMP , choice_411_CMP , choice_410_CMP , choice_409_CMP , choice_408_CMP , choice_407_CMP  });
-  assign choice_407_CMP  = step == 3'h6;
-  assign choice_408_CMP  = step == 3'h5;
-  assign choice_409_CMP  = step == 3'h4;
-  assign choice_410_CMP  = step == 3'h3;
-  assign choice_411_CMP  = step == 3'h2;
-  assign choice_412_CMP  = step == 3'h1;
-  assign choice_413_CMP  = ! step;
-  assign choice_69_Y  = ended ? (* full_case = 32'd1 *) extra : \$166 [2:0];
-  assign choice_71_Y  = ends ? choice_69_Y  : extra;
-  assign choice_73_Y  = complete ? choice_71_Y  : extra;
-  assign choice_75_Y  = first_last ? choice_73_Y  : \$172 [2:0];
-  assign choice_77_Y  = \$167  ? choice_75_Y  : choice_73_Y ;
-  assign \$192  = rst ? 3'h0 : choice_77_Y ;
-  assign choice_82_Y  = ended ? (* full_case = 32'd1 *) draining : 1'h1;
-  assign choice_84_Y  = ends ? choice_82_Y  : draining;
-  assign choice_86_Y  = complete ? choice_84_Y  : draining;
-  assign choice_88_Y  = \$170  ? 1'h0 : choice_86_Y ;
-  assign choice_90_Y  = first_last ? choice_88_Y  : choice_86_Y ;
-  assign choice_92_Y  = \$167  ? choice_90_Y  : choice_86_Y ;
-  assign \$191  = rst ? 1'h0 : choice_92_Y ;
-  assign choice_96_Y  = ended ? finished : status__payload;
-  assign choice_98_Y  = ends ? choice_96_Y  : status__payload;
-  \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.window  window (
+  wire status__valid;
+  wire \status__valid$36 ;
+  \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.buffer  buffer_sig (
     .aclk(aclk),
-    .count(count),
-    .data(data),
-    .drop(drop),
+    .beat(beat),
     .ended(ended),
-    .ends_0(first_last),
-    .finish(finish),
-    .first_bytes(first_bytes),
-    .held(held),
+    .following(following),
+    .freed(freed),
+    .limit(limit),
+    .next_sig(next_sig),
     .packets__payload(packets__payload),
     .packets__ready(packets__ready),
     .packets__valid(packets__valid),
-    .\port$341$0 (have[7:0]),
-    .rst(rst),
-    .take(take)
+    .rst(rst)
   );
-  assign \data[7]  = data[63:56];
-  assign \data[6]  = data[55:48];
-  assign \data[5]  = data[47:40];
-  assign \data[4]  = data[39:32];
-  assign \data[3]  = data[31:24];
-  assign \data[2]  = data[23:16];
-  assign \data[1]  = data[15:8];
-  assign \data[0]  = data[7:0];
+  \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover  mover (
+    .aclk(aclk),
+    .beat(beat),
+    .leaf_0__payload(message__linear__x__payload),
+    .leaf_0__ready(leaf_0__ready),
+    .leaf_0__valid(message__linear__x__valid),
+    .leaf_1__payload(message__linear__y__payload),
+    .leaf_1__ready(leaf_1__ready),
+    .leaf_1__valid(message__linear__y__valid),
+    .leaf_2__payload(message__linear__z__payload),
+    .leaf_2__ready(leaf_2__ready),
+    .leaf_2__valid(message__linear__z__valid),
+    .leaf_3__payload(message__angular__x__payload),
+    .leaf_3__ready(leaf_3__ready),
+    .leaf_3__valid(message__angular__x__valid),
+    .leaf_4__payload(message__angular__y__payload),
+    .leaf_4__ready(leaf_4__ready),
+    .leaf_4__valid(message__angular__y__valid),
+    .leaf_5__payload(message__angular__z__payload),
+    .leaf_5__ready(leaf_5__ready),
+    .leaf_5__valid(message__angular__z__valid),
+    .orders__payload(\orders__payload$22 ),
+    .orders__ready(o__ready),
+    .orders__valid(\orders__valid$24 ),
+    .rst(rst),
+    .status__payload(status__payload),
+    .status__ready(status__ready),
+    .status__valid(status__valid)
+  );
+  \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue  queue (
+    .aclk(aclk),
+    .at(at),
+    .freed(freed),
+    .i__payload(i__payload),
+    .i__ready(orders__ready),
+    .i__valid(i__valid),
+    .o__payload(\orders__payload$22 ),
+    .o__ready(o__ready),
+    .o__valid(\orders__valid$24 ),
+    .rst(rst)
+  );
+  \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer  sequencer (
+    .aclk(aclk),
+    .beat(beat),
+    .ended(ended),
+    .following(following),
+    .header_at(at),
+    .limit(limit),
+    .next_sig(next_sig),
+    .orders__payload(i__payload),
+    .orders__ready(orders__ready),
+    .orders__valid(i__valid),
+    .rst(rst)
+  );
+  assign \beat$28.valid  = beat[73];
+  assign \beat$28.at  = beat[72:69];
+  assign \beat$28.last  = beat[68];
+  assign \beat$28.count  = beat[67:64];
+  assign \beat$28.data  = beat[63:0];
+  assign \o__payload.status  = \orders__payload$22 [41:39];
+  assign \o__payload.ends  = \orders__payload$22 [38];
+  assign \o__payload.first  = \orders__payload$22 [37:34];
+  assign \o__payload.final  = \orders__payload$22 [33];
+  assign \o__payload.counted  = \orders__payload$22 [32];
+  assign \o__payload.last  = \orders__payload$22 [31];
+  assign \o__payload.items  = \orders__payload$22 [30];
+  assign \o__payload.map_bytes  = \orders__payload$22 [29:26];
+  assign \o__payload.items_bytes  = \orders__payload$22 [25:22];
+  assign \o__payload.map_next  = \orders__payload$22 [21:19];
+  assign \o__payload.items_next  = \orders__payload$22 [18:16];
+  assign \o__payload.map_at  = \orders__payload$22 [15:10];
+  assign \o__payload.items_at  = \orders__payload$22 [9:4];
+  assign \o__payload.blank  = \orders__payload$22 [3];
+  assign \o__payload.step  = \orders__payload$22 [2:0];
+  assign \orders__payload$22.status  = \orders__payload$22 [41:39];
+  assign \orders__payload$22.ends  = \orders__payload$22 [38];
+  assign \orders__payload$22.first  = \orders__payload$22 [37:34];
+  assign \orders__payload$22.final  = \orders__payload$22 [33];
+  assign \orders__payload$22.counted  = \orders__payload$22 [32];
+  assign \orders__payload$22.last  = \orders__payload$22 [31];
+  assign \orders__payload$22.items  = \orders__payload$22 [30];
+  assign \orders__payload$22.map_bytes  = \orders__payload$22 [29:26];
+  assign \orders__payload$22.items_bytes  = \orders__payload$22 [25:22];
+  assign \orders__payload$22.map_next  = \orders__payload$22 [21:19];
+  assign \orders__payload$22.items_next  = \orders__payload$22 [18:16];
+  assign \orders__payload$22.map_at  = \orders__payload$22 [15:10];
+  assign \orders__payload$22.items_at  = \orders__payload$22 [9:4];
+  assign \orders__payload$22.blank  = \orders__payload$22 [3];
+  assign \orders__payload$22.step  = \orders__payload$22 [2:0];
+  assign \orders__payload.status  = i__payload[41:39];
+  assign \orders__payload.ends  = i__payload[38];
+  assign \orders__payload.first  = i__payload[37:34];
+  assign \orders__payload.final  = i__payload[33];
+  assign \orders__payload.counted  = i__payload[32];
+  assign \orders__payload.last  = i__payload[31];
+  assign \orders__payload.items  = i__payload[30];
+  assign \orders__payload.map_bytes  = i__payload[29:26];
+  assign \orders__payload.items_bytes  = i__payload[25:22];
+  assign \orders__payload.map_next  = i__payload[21:19];
+  assign \orders__payload.items_next  = i__payload[18:16];
+  assign \orders__payload.map_at  = i__payload[15:10];
+  assign \orders__payload.items_at  = i__payload[9:4];
+  assign \orders__payload.blank  = i__payload[3];
+  assign \orders__payload.step  = i__payload[2:0];
+  assign \i__payload.status  = i__payload[41:39];
+  assign \i__payload.ends  = i__payload[38];
+  assign \i__payload.first  = i__payload[37:34];
+  assign \i__payload.final  = i__payload[33];
+  assign \i__payload.counted  = i__payload[32];
+  assign \i__payload.last  = i__payload[31];
+  assign \i__payload.items  = i__payload[30];
+  assign \i__payload.map_bytes  = i__payload[29:26];
+  assign \i__payload.items_bytes  = i__payload[25:22];
+  assign \i__payload.map_next  = i__payload[21:19];
+  assign \i__payload.items_next  = i__payload[18:16];
+  assign \i__payload.map_at  = i__payload[15:10];
+  assign \i__payload.items_at  = i__payload[9:4];
+  assign \i__payload.blank  = i__payload[3];
+  assign \i__payload.step  = i__payload[2:0];
+  assign \beat$7.valid  = beat[73];
+  assign \beat$7.at  = beat[72:69];
+  assign \beat$7.last  = beat[68];
+  assign \beat$7.count  = beat[67:64];
+  assign \beat$7.data  = beat[63:0];
+  assign \beat.valid  = beat[73];
+  assign \beat.at  = beat[72:69];
+  assign \beat.last  = beat[68];
+  assign \beat.count  = beat[67:64];
+  assign \beat.data  = beat[63:0];
   assign \packets__payload$1.last  = packets__payload[68];
   assign \packets__payload$1.count  = packets__payload[67:64];
   assign \packets__payload$1.data[7]  = packets__payload[63:56];
@@ -1314,66 +665,458 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   assign \packets__payload.data[1]  = packets__payload[15:8];
   assign \packets__payload.data[0]  = packets__payload[7:0];
   assign \packets__payload.data  = packets__payload[63:0];
-  assign \$117 [3:0] = total;
-  assign \$110 [3:0] = count;
-  assign \align$64  = 3'h0;
-  assign over = 1'h0;
-  assign \run_bytes$54  = 72'h000000000000000000;
-  assign nul_missing = 1'h0;
-  assign run_have = 13'h0000;
-  assign \$signal$50  = map_there;
-  assign all_served = reached_0;
-  assign lane_used = 8'h00;
-  assign last_items = 1'h1;
-  assign unit_log2 = 3'h0;
-  assign run_bytes = 4'h0;
-  assign running = 1'h0;
-  assign terminated = 1'h0;
-  assign allowed = 1'h0;
-  assign has_items = 1'h0;
-  assign most_items = 4'h0;
-  assign final_sig = 1'h1;
-  assign left = 1'h0;
-  assign small_sig = 4'h0;
-  assign align = 3'h0;
-  assign behind = \behind$51 ;
-  assign have[11:8] = 4'h0;
+  assign message__angular__z__ready = leaf_5__ready;
+  assign leaf_5__valid = message__angular__z__valid;
+  assign leaf_5__payload = message__angular__z__payload;
+  assign message__angular__y__ready = leaf_4__ready;
+  assign leaf_4__valid = message__angular__y__valid;
+  assign leaf_4__payload = message__angular__y__payload;
+  assign message__angular__x__ready = leaf_3__ready;
+  assign leaf_3__valid = message__angular__x__valid;
+  assign leaf_3__payload = message__angular__x__payload;
+  assign message__linear__z__ready = leaf_2__ready;
+  assign leaf_2__valid = message__linear__z__valid;
+  assign leaf_2__payload = message__linear__z__payload;
+  assign message__linear__y__ready = leaf_1__ready;
+  assign leaf_1__valid = message__linear__y__valid;
+  assign leaf_1__payload = message__linear__y__payload;
+  assign message__linear__x__ready = leaf_0__ready;
+  assign leaf_0__valid = message__linear__x__valid;
+  assign leaf_0__payload = message__linear__x__payload;
+  assign \status__ready$38  = status__ready;
+  assign \status__valid$36  = status__valid;
+  assign \status__payload$34  = status__payload;
+  assign \freed$32  = freed;
+  assign \at$30  = at;
+  assign \beat$28  = beat;
+  assign \orders__ready$27  = o__ready;
+  assign o__valid = \orders__valid$24 ;
+  assign o__payload = \orders__payload$22 ;
+  assign i__ready = orders__ready;
+  assign orders__valid = i__valid;
+  assign orders__payload = i__payload;
+  assign \next$15  = next_sig;
+  assign \following$13  = following;
+  assign \ended$11  = ended;
+  assign \limit$9  = limit;
+  assign \beat$7  = beat;
   assign \packets__ready$5  = packets__ready;
   assign \packets__valid$3  = packets__valid;
   assign \packets__payload$1  = packets__payload;
 endmodule
 
-module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.window (packets__valid, rst, count, take, finish, packets__ready, data, ends_0, \port$341$0 , ended, held, first_bytes, packets__payload, drop, aclk);
-  (* unused_bits = "1" *)
-  wire [1:0] \$1 ;
+module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.buffer (packets__valid, rst, next_sig, freed, packets__payload, beat, packets__ready, limit, following, ended, aclk);
+  (* unused_bits = "4" *)
+  wire [4:0] \$1 ;
   wire \$10 ;
-  wire [7:0] \$11 ;
+  wire \$11 ;
+  wire \$12 ;
   wire \$13 ;
   wire \$14 ;
-  wire \$15 ;
-  wire [1:0] \$16 ;
-  wire [2:0] \$17 ;
-  wire [3:0] \$18 ;
-  wire [4:0] \$19 ;
-  wire [5:0] \$20 ;
-  wire [6:0] \$21 ;
-  wire [7:0] \$22 ;
-  (* unused_bits = "4 5 6 7" *)
-  wire [7:0] \$23 ;
+  wire [10:0] \$15 ;
+  wire \$16 ;
+  wire \$17 ;
+  wire \$18 ;
+  wire [10:0] \$19 ;
+  (* unused_bits = "4" *)
+  wire [4:0] \$2 ;
+  wire \$20 ;
+  wire \$21 ;
+  wire \$22 ;
+  wire \$23 ;
+  (* unused_bits = "4" *)
+  wire [4:0] \$24 ;
+  wire \$25 ;
+  wire \$26 ;
+  (* unused_bits = "4" *)
+  wire [4:0] \$27 ;
+  wire \$28 ;
+  wire [3:0] \$29 ;
+  (* unused_bits = "7" *)
+  wire [7:0] \$3 ;
+  wire [3:0] \$30 ;
+  wire \$31 ;
+  wire [6:0] \$32 ;
+  wire [3:0] \$33 ;
+  wire \$34 ;
+  wire [10:0] \$35 ;
+  wire \$36 ;
+  wire [3:0] \$37 ;
+  wire [3:0] \$38 ;
+  wire [3:0] \$4 ;
+  wire [6:0] \$5 ;
+  (* unused_bits = "4" *)
+  wire [4:0] \$6 ;
+  (* unused_bits = "4" *)
+  wire [4:0] \$7 ;
+  wire \$8 ;
+  wire \$9 ;
+  wire [3:0] choice_271_Y ;
+  wire [3:0] choice_275_Y ;
+  wire [10:0] choice_281_Y ;
+  wire choice_285_Y ;
+  wire [3:0] choice_289_Y ;
+  wire [6:0] choice_293_Y ;
+  input aclk;
+  wire aclk;
+  reg [3:0] arrived = 4'h0;
+  wire arrives;
+  reg [3:0] at = 4'h0;
+  output [73:0] beat;
+  wire [73:0] beat;
+  wire [3:0] \beat.at ;
+  wire [3:0] \beat.count ;
+  wire [63:0] \beat.data ;
+  wire \beat.last ;
+  wire \beat.valid ;
+  wire [3:0] behind;
+  wire [3:0] \end.following ;
+  wire [6:0] \end.limit ;
+  wire [10:0] end_sig;
+  output ended;
+  reg ended = 1'h0;
+  wire [2:0] ends__read__addr;
+  wire [10:0] ends__read__data;
+  wire [3:0] \ends__read__data.following ;
+  wire [6:0] \ends__read__data.limit ;
+  wire [2:0] ends__write__addr;
+  wire [10:0] ends__write__data;
+  wire [3:0] \ends__write__data.following ;
+  wire [6:0] \ends__write__data.limit ;
+  wire ends__write__en;
+  wire ends_now;
+  output [3:0] following;
+  reg [3:0] following = 4'h0;
+  wire follows;
+  input [3:0] freed;
+  wire [3:0] freed;
+  reg full = 1'h0;
+  reg has_second = 1'h0;
+  output [6:0] limit;
+  reg [6:0] limit = 7'h00;
+  wire more;
+  wire [10:0] newest;
+  wire [3:0] \newest.following ;
+  wire [6:0] \newest.limit ;
+  input next_sig;
+  wire next_sig;
+  input [68:0] packets__payload;
+  wire [68:0] packets__payload;
+  wire [3:0] \packets__payload.count ;
+  wire [63:0] \packets__payload.data ;
+  wire [7:0] \packets__payload.data[0] ;
+  wire [7:0] \packets__payload.data[1] ;
+  wire [7:0] \packets__payload.data[2] ;
+  wire [7:0] \packets__payload.data[3] ;
+  wire [7:0] \packets__payload.data[4] ;
+  wire [7:0] \packets__payload.data[5] ;
+  wire [7:0] \packets__payload.data[6] ;
+  wire [7:0] \packets__payload.data[7] ;
+  wire \packets__payload.last ;
+  output packets__ready;
+  reg packets__ready = 1'h1;
+  input packets__valid;
+  wire packets__valid;
+  reg [68:0] payload = 69'h000000000000000000;
+  wire [3:0] \payload.count ;
+  wire [63:0] \payload.data ;
+  wire [7:0] \payload.data[0] ;
+  wire [7:0] \payload.data[1] ;
+  wire [7:0] \payload.data[2] ;
+  wire [7:0] \payload.data[3] ;
+  wire [7:0] \payload.data[4] ;
+  wire [7:0] \payload.data[5] ;
+  wire [7:0] \payload.data[6] ;
+  wire [7:0] \payload.data[7] ;
+  wire \payload.last ;
+  reg [3:0] popped = 4'h0;
+  reg [3:0] pushed = 4'h0;
+  wire room;
+  input rst;
+  wire rst;
+  reg [10:0] second = 11'h000;
+  wire [3:0] \second.following ;
+  wire [6:0] \second.limit ;
+  wire stored;
+  wire [3:0] used;
+  reg [10:0] ends [7:0];
+  initial begin
+    ends[0] = 11'h000;
+    ends[1] = 11'h000;
+    ends[2] = 11'h000;
+    ends[3] = 11'h000;
+    ends[4] = 11'h000;
+    ends[5] = 11'h000;
+    ends[6] = 11'h000;
+    ends[7] = 11'h000;
+  end
+  always @(posedge aclk) begin
+    ends[pushed[2:0]] <= end_sig;
+  end
+  assign ends__read__data = ends[popped[2:0]];
+  assign arrives = packets__valid & packets__ready;
+  assign { \$1 [4], used } = arrived - freed;
+  assign { \$2 [4], behind } = at + 1'h1;
+  assign ends_now = beat[73] & beat[68];
+  assign \$3  = { at, 3'h0 } + beat[67:64];
+  assign \$4  = beat[73] ? behind : at;
+  assign \$5  = ends_now ? end_sig[6:0] : { \$4 , 3'h0 };
+  assign stored = pushed != popped;
+  assign more = stored | ends_now;
+  assign follows = ended & ends_now;
+  assign \$6  = arrived + arrives;
+  assign \$7  = at + full;
+  assign \$8  = ~ used[3];
+  assign \$9  = used == 3'h7;
+  assign \$10  = \$9  & arrives;
+  assign \$11  = ~ \$10 ;
+  assign \$12  = \$8  & \$11 ;
+  assign \$13  = ~ ended;
+  assign \$14  = next_sig | \$13 ;
+  assign \$15  = has_second ? second : newest;
+  assign \$16  = has_second | ends_now;
+  assign \$17  = ~ has_second;
+  assign \$18  = next_sig | \$17 ;
+  assign \$19  = stored ? ends__read__data : end_sig;
+  assign \$20  = next_sig ? more : 1'h1;
+  assign \$21  = next_sig ? 1'h0 : follows;
+  assign \$22  = has_second ? \$20  : \$21 ;
+  assign \$23  = has_second & ends_now;
+  assign \$24  = pushed + 1'h1;
+  assign \$25  = next_sig & has_second;
+  assign \$26  = \$25  & more;
+  assign \$27  = popped + 1'h1;
+  always @(posedge aclk)
+    full <= \$28 ;
+  always @(posedge aclk)
+    payload <= packets__payload;
+  always @(posedge aclk)
+    arrived <= \$29 ;
+  always @(posedge aclk)
+    at <= \$30 ;
+  always @(posedge aclk)
+    packets__ready <= \$31 ;
+  always @(posedge aclk)
+    limit <= \$32 ;
+  always @(posedge aclk)
+    following <= \$33 ;
+  always @(posedge aclk)
+    ended <= \$34 ;
+  always @(posedge aclk)
+    second <= \$35 ;
+  always @(posedge aclk)
+    has_second <= \$36 ;
+  always @(posedge aclk)
+    pushed <= \$37 ;
+  always @(posedge aclk)
+    popped <= \$38 ;
+  assign choice_271_Y  = \$26  ? \$27 [3:0] : popped;
+  assign \$38  = rst ? 4'h0 : choice_271_Y ;
+  assign choice_275_Y  = \$23  ? \$24 [3:0] : pushed;
+  assign \$37  = rst ? 4'h0 : choice_275_Y ;
+  assign \$36  = rst ? 1'h0 : \$22 ;
+  assign choice_281_Y  = \$18  ? \$19  : second;
+  assign \$35  = rst ? 11'h000 : choice_281_Y ;
+  assign choice_285_Y  = \$14  ? \$16  : ended;
+  assign \$34  = rst ? 1'h0 : choice_285_Y ;
+  assign choice_289_Y  = \$14  ? \$15 [10:7] : following;
+  assign \$33  = rst ? 4'h0 : choice_289_Y ;
+  assign choice_293_Y  = \$14  ? \$15 [6:0] : limit;
+  assign \$32  = rst ? 7'h00 : choice_293_Y ;
+  assign \$31  = rst ? 1'h1 : \$12 ;
+  assign \$30  = rst ? 4'h0 : \$7 [3:0];
+  assign \$29  = rst ? 4'h0 : \$6 [3:0];
+  assign \$28  = rst ? 1'h0 : arrives;
+  assign beat = { full, at, payload };
+  assign end_sig = { behind, \$3 [6:0] };
+  assign newest = { behind, \$5  };
+  assign \ends__read__data.following  = ends__read__data[10:7];
+  assign \ends__read__data.limit  = ends__read__data[6:0];
+  assign \second.following  = second[10:7];
+  assign \second.limit  = second[6:0];
+  assign \packets__payload.last  = packets__payload[68];
+  assign \packets__payload.count  = packets__payload[67:64];
+  assign \packets__payload.data[7]  = packets__payload[63:56];
+  assign \packets__payload.data[6]  = packets__payload[55:48];
+  assign \packets__payload.data[5]  = packets__payload[47:40];
+  assign \packets__payload.data[4]  = packets__payload[39:32];
+  assign \packets__payload.data[3]  = packets__payload[31:24];
+  assign \packets__payload.data[2]  = packets__payload[23:16];
+  assign \packets__payload.data[1]  = packets__payload[15:8];
+  assign \packets__payload.data[0]  = packets__payload[7:0];
+  assign \packets__payload.data  = packets__payload[63:0];
+  assign \ends__write__data.following  = end_sig[10:7];
+  assign \ends__write__data.limit  = end_sig[6:0];
+  assign \newest.following  = newest[10:7];
+  assign \newest.limit  = newest[6:0];
+  assign \end.following  = end_sig[10:7];
+  assign \end.limit  = end_sig[6:0];
+  assign \payload.last  = payload[68];
+  assign \payload.count  = payload[67:64];
+  assign \payload.data[7]  = payload[63:56];
+  assign \payload.data[6]  = payload[55:48];
+  assign \payload.data[5]  = payload[47:40];
+  assign \payload.data[4]  = payload[39:32];
+  assign \payload.data[3]  = payload[31:24];
+  assign \payload.data[2]  = payload[23:16];
+  assign \payload.data[1]  = payload[15:8];
+  assign \payload.data[0]  = payload[7:0];
+  assign \payload.data  = payload[63:0];
+  assign \beat.valid  = beat[73];
+  assign \beat.at  = beat[72:69];
+  assign \beat.last  = beat[68];
+  assign \beat.count  = beat[67:64];
+  assign \beat.data  = beat[63:0];
+  assign \$2 [3:0] = behind;
+  assign \$1 [3:0] = used;
+  assign ends__read__addr = popped[2:0];
+  assign ends__write__en = 1'h1;
+  assign ends__write__data = end_sig;
+  assign ends__write__addr = pushed[2:0];
+  assign room = packets__ready;
+endmodule
+
+module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (leaf_0__ready, leaf_1__ready, leaf_2__ready, leaf_3__ready, leaf_4__ready, leaf_5__ready, status__ready, rst, orders__ready, beat, orders__valid, orders__payload, leaf_0__valid, leaf_1__valid, leaf_2__valid, leaf_3__valid, leaf_4__valid, leaf_5__valid, status__valid, status__payload, leaf_0__payload
+, leaf_1__payload, leaf_2__payload, leaf_3__payload, leaf_4__payload, leaf_5__payload, aclk);
+  wire \$1 ;
+  wire \$10 ;
+  wire \$100 ;
+  wire \$101 ;
+  wire \$102 ;
+  wire \$103 ;
+  wire \$104 ;
+  wire \$105 ;
+  wire \$106 ;
+  wire \$107 ;
+  wire \$108 ;
+  wire \$109 ;
+  wire \$110 ;
+  wire \$111 ;
+  wire \$112 ;
+  wire \$113 ;
+  wire \$114 ;
+  wire \$115 ;
+  wire \$116 ;
+  wire \$117 ;
+  wire \$118 ;
+  wire \$119 ;
+  wire \$120 ;
+  wire \$121 ;
+  wire \$122 ;
+  wire \$123 ;
+  wire \$124 ;
+  wire \$125 ;
+  wire \$126 ;
+  wire \$127 ;
+  wire \$128 ;
+  wire \$129 ;
+  wire \$13 ;
+  wire \$130 ;
+  wire \$131 ;
+  wire \$132 ;
+  wire \$133 ;
+  wire \$134 ;
+  wire \$135 ;
+  wire \$136 ;
+  wire \$137 ;
+  wire \$138 ;
+  wire \$139 ;
+  wire \$140 ;
+  wire \$141 ;
+  wire \$142 ;
+  wire \$143 ;
+  wire \$144 ;
+  wire \$145 ;
+  wire \$146 ;
+  wire \$147 ;
+  wire \$148 ;
+  wire \$149 ;
+  wire \$150 ;
+  wire \$151 ;
+  wire \$152 ;
+  wire \$153 ;
+  wire \$154 ;
+  wire \$155 ;
+  wire \$156 ;
+  wire \$157 ;
+  wire \$158 ;
+  wire \$159 ;
+  wire \$16 ;
+  wire \$160 ;
+  wire \$161 ;
+  wire \$162 ;
+  wire \$163 ;
+  wire \$164 ;
+  wire \$165 ;
+  wire \$166 ;
+  wire \$167 ;
+  wire \$168 ;
+  wire \$169 ;
+  wire \$17 ;
+  wire \$170 ;
+  wire \$171 ;
+  wire \$172 ;
+  wire \$173 ;
+  wire \$174 ;
+  wire \$175 ;
+  wire \$176 ;
+  wire \$177 ;
+  wire \$178 ;
+  wire \$179 ;
+  wire \$180 ;
+  wire \$181 ;
+  wire \$182 ;
+  wire \$183 ;
+  wire \$184 ;
+  wire \$185 ;
+  wire \$186 ;
+  wire \$187 ;
+  wire \$188 ;
+  wire \$189 ;
+  wire \$19 ;
+  wire \$190 ;
+  wire \$191 ;
+  wire [63:0] \$192 ;
+  wire [7:0] \$193 ;
+  wire [63:0] \$194 ;
+  wire [7:0] \$195 ;
+  wire \$199 ;
+  wire \$200 ;
+  wire \$201 ;
+  wire \$202 ;
+  wire \$203 ;
+  wire \$204 ;
+  wire \$205 ;
+  wire [2:0] \$206 ;
+  wire \$207 ;
+  wire [2:0] \$208 ;
+  wire \$209 ;
+  wire [31:0] \$210 ;
+  wire \$211 ;
+  wire \$212 ;
+  wire \$213 ;
+  wire \$214 ;
+  wire [63:0] \$215 ;
+  wire [63:0] \$216 ;
+  wire [63:0] \$217 ;
+  wire [63:0] \$218 ;
+  wire [63:0] \$219 ;
+  wire \$22 ;
+  wire [63:0] \$220 ;
+  wire \$23 ;
   wire \$24 ;
   wire \$25 ;
   wire \$26 ;
   wire \$27 ;
   wire \$28 ;
   wire \$29 ;
-  wire \$3 ;
   wire \$30 ;
   wire \$31 ;
   wire \$32 ;
   wire \$33 ;
   wire \$34 ;
-  (* unused_bits = "1" *)
-  wire [1:0] \$35 ;
+  wire \$35 ;
+  wire \$36 ;
   wire \$37 ;
   wire \$38 ;
   wire \$39 ;
@@ -1388,7 +1131,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.window (packets_
   wire \$47 ;
   wire \$48 ;
   wire \$49 ;
-  wire \$5 ;
   wire \$50 ;
   wire \$51 ;
   wire \$52 ;
@@ -1399,8 +1141,8 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.window (packets_
   wire \$57 ;
   wire \$58 ;
   wire \$59 ;
-  wire \$6 ;
   wire \$60 ;
+  wire \$61 ;
   wire \$62 ;
   wire \$63 ;
   wire \$64 ;
@@ -1420,312 +1162,1657 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.window (packets_
   wire \$77 ;
   wire \$78 ;
   wire \$79 ;
-  wire \$8 ;
   wire \$80 ;
   wire \$81 ;
   wire \$82 ;
   wire \$83 ;
   wire \$84 ;
   wire \$85 ;
-  wire [2:0] \$86 ;
+  wire \$86 ;
   wire \$87 ;
-  (* unused_bits = "2 3" *)
-  wire [3:0] \$88 ;
-  (* unused_bits = "1" *)
-  wire [1:0] \$89 ;
-  wire \$9 ;
+  wire \$88 ;
+  wire \$89 ;
   wire \$90 ;
-  (* unused_bits = "2 3" *)
-  wire [3:0] \$91 ;
-  (* unused_bits = "2" *)
-  wire [2:0] \$92 ;
+  wire \$91 ;
+  wire \$92 ;
   wire \$93 ;
-  wire [72:0] \$94 ;
-  wire [72:0] \$95 ;
-  wire [1:0] \$96 ;
+  wire \$94 ;
+  wire \$95 ;
+  wire \$96 ;
   wire \$97 ;
-  wire [4:0] \$98 ;
-  wire [2:0] choice_11_Y ;
-  wire choice_19_Y ;
-  wire choice_21_Y ;
-  wire [63:0] choice_25_Y ;
+  wire \$98 ;
+  wire \$99 ;
+  wire [2:0] choice_101_Y ;
+  wire [63:0] choice_12_Y ;
+  wire choice_139_Y ;
+  wire choice_141_Y ;
+  wire choice_143_Y ;
+  wire choice_147_Y ;
+  wire choice_149_Y ;
+  wire choice_153_Y ;
+  wire choice_155_Y ;
+  wire choice_159_Y ;
+  wire choice_161_Y ;
+  wire choice_165_Y ;
+  wire choice_167_Y ;
+  wire choice_171_Y ;
+  wire choice_173_Y ;
+  wire choice_177_Y ;
+  wire choice_179_Y ;
+  wire [63:0] choice_17_Y ;
+  wire [63:0] choice_22_Y ;
   wire [63:0] choice_27_Y ;
-  wire [1:0] choice_2_Y ;
-  wire [7:0] choice_31_Y ;
-  wire [7:0] choice_33_Y ;
-  wire choice_37_Y ;
+  wire [63:0] choice_2_Y ;
+  wire choice_31_Y ;
+  wire choice_35_Y ;
   wire choice_39_Y ;
-  wire [63:0] choice_43_Y ;
-  wire [63:0] choice_45_Y ;
+  wire choice_43_Y ;
+  wire [7:0] choice_47_Y ;
   wire [7:0] choice_49_Y ;
-  wire [1:0] choice_4_Y ;
   wire [7:0] choice_51_Y ;
-  wire choice_55_Y ;
-  wire choice_67_CMP ;
-  wire [2:0] choice_9_Y ;
+  wire [7:0] choice_53_Y ;
+  wire [7:0] choice_57_Y ;
+  wire [7:0] choice_59_Y ;
+  wire [7:0] choice_61_Y ;
+  wire [7:0] choice_63_Y ;
+  wire [7:0] choice_67_Y ;
+  wire [7:0] choice_69_Y ;
+  wire [7:0] choice_71_Y ;
+  wire [7:0] choice_73_Y ;
+  wire [7:0] choice_77_Y ;
+  wire [7:0] choice_79_Y ;
+  wire [63:0] choice_7_Y ;
+  wire [7:0] choice_81_Y ;
+  wire [7:0] choice_83_Y ;
+  wire choice_87_Y ;
+  wire [2:0] choice_91_Y ;
+  wire [2:0] choice_93_Y ;
+  wire choice_97_Y ;
   input aclk;
   wire aclk;
-  wire [72:0] beat_0;
-  wire [63:0] \beat_0.data ;
-  wire [7:0] \beat_0.keep ;
-  wire \beat_0.last ;
-  input [3:0] count;
-  wire [3:0] count;
-  output [63:0] data;
-  wire [63:0] data;
-  wire [7:0] \data[0] ;
-  wire [7:0] \data[1] ;
-  wire [7:0] \data[2] ;
-  wire [7:0] \data[3] ;
-  wire [7:0] \data[4] ;
-  wire [7:0] \data[5] ;
-  wire [7:0] \data[6] ;
-  wire [7:0] \data[7] ;
-  input drop;
-  wire drop;
-  output ended;
-  wire ended;
-  output ends_0;
-  wire ends_0;
-  reg [1:0] fill = 2'h0;
-  input finish;
-  wire finish;
-  reg first = 1'h0;
-  output [3:0] first_bytes;
-  wire [3:0] first_bytes;
-  wire first_last;
-  reg free = 1'h0;
-  wire [11:0] have;
-  output held;
-  wire held;
-  reg [4:0] offset = 5'h00;
-  input [68:0] packets__payload;
-  wire [68:0] packets__payload;
-  wire [3:0] \packets__payload.count ;
-  wire [63:0] \packets__payload.data ;
-  wire [7:0] \packets__payload.data[0] ;
-  wire [7:0] \packets__payload.data[1] ;
-  wire [7:0] \packets__payload.data[2] ;
-  wire [7:0] \packets__payload.data[3] ;
-  wire [7:0] \packets__payload.data[4] ;
-  wire [7:0] \packets__payload.data[5] ;
-  wire [7:0] \packets__payload.data[6] ;
-  wire [7:0] \packets__payload.data[7] ;
-  wire \packets__payload.last ;
-  output packets__ready;
-  wire packets__ready;
-  input packets__valid;
-  wire packets__valid;
+  reg active_0 = 1'h0;
+  reg active_1 = 1'h0;
+  reg active_2 = 1'h0;
+  reg active_3 = 1'h0;
+  reg active_4 = 1'h0;
+  reg active_5 = 1'h0;
+  input [73:0] beat;
+  wire [73:0] beat;
+  (* unused_bits = "3" *)
+  wire [3:0] \beat.at ;
+  (* unused_bits = "0 1 2 3" *)
+  wire [3:0] \beat.count ;
+  wire [63:0] \beat.data ;
+  (* unused_bits = "0" *)
+  wire \beat.last ;
+  wire \beat.valid ;
+  wire blocked_0;
+  wire blocked_1;
+  wire blocked_2;
+  wire blocked_3;
+  wire blocked_4;
+  wire blocked_5;
+  reg [31:0] carried = 32'd0;
+  reg cut_0 = 1'h0;
+  reg cut_1 = 1'h0;
+  reg cut_2 = 1'h0;
+  reg cut_3 = 1'h0;
+  reg cut_4 = 1'h0;
+  reg ends_now = 1'h0;
+  wire go_0;
+  wire go_1;
+  wire go_2;
+  wire go_3;
+  wire go_4;
+  wire go_5;
+  reg [7:0] items_have = 8'h00;
+  reg [63:0] items_word = 64'h0000000000000000;
+  wire [2:0] lane_0__items__addr;
+  wire [7:0] lane_0__items__data;
+  wire [2:0] lane_0__map__addr;
+  wire [7:0] lane_0__map__data;
+  wire [2:0] lane_0__write__addr;
+  wire [7:0] lane_0__write__data;
+  wire lane_0__write__en;
+  wire [2:0] lane_1__items__addr;
+  wire [7:0] lane_1__items__data;
+  wire [2:0] lane_1__map__addr;
+  wire [7:0] lane_1__map__data;
+  wire [2:0] lane_1__write__addr;
+  wire [7:0] lane_1__write__data;
+  wire lane_1__write__en;
+  wire [2:0] lane_2__items__addr;
+  wire [7:0] lane_2__items__data;
+  wire [2:0] lane_2__map__addr;
+  wire [7:0] lane_2__map__data;
+  wire [2:0] lane_2__write__addr;
+  wire [7:0] lane_2__write__data;
+  wire lane_2__write__en;
+  wire [2:0] lane_3__items__addr;
+  wire [7:0] lane_3__items__data;
+  wire [2:0] lane_3__map__addr;
+  wire [7:0] lane_3__map__data;
+  wire [2:0] lane_3__write__addr;
+  wire [7:0] lane_3__write__data;
+  wire lane_3__write__en;
+  wire [2:0] lane_4__items__addr;
+  wire [7:0] lane_4__items__data;
+  wire [2:0] lane_4__map__addr;
+  wire [7:0] lane_4__map__data;
+  wire [2:0] lane_4__write__addr;
+  wire [7:0] lane_4__write__data;
+  wire lane_4__write__en;
+  wire [2:0] lane_5__items__addr;
+  wire [7:0] lane_5__items__data;
+  wire [2:0] lane_5__map__addr;
+  wire [7:0] lane_5__map__data;
+  wire [2:0] lane_5__write__addr;
+  wire [7:0] lane_5__write__data;
+  wire lane_5__write__en;
+  wire [2:0] lane_6__items__addr;
+  wire [7:0] lane_6__items__data;
+  wire [2:0] lane_6__map__addr;
+  wire [7:0] lane_6__map__data;
+  wire [2:0] lane_6__write__addr;
+  wire [7:0] lane_6__write__data;
+  wire lane_6__write__en;
+  wire [2:0] lane_7__items__addr;
+  wire [7:0] lane_7__items__data;
+  wire [2:0] lane_7__map__addr;
+  wire [7:0] lane_7__map__data;
+  wire [2:0] lane_7__write__addr;
+  wire [7:0] lane_7__write__data;
+  wire lane_7__write__en;
+  output [63:0] leaf_0__payload;
+  reg [63:0] leaf_0__payload = 64'h0000000000000000;
+  input leaf_0__ready;
+  wire leaf_0__ready;
+  output leaf_0__valid;
+  reg leaf_0__valid = 1'h0;
+  output [63:0] leaf_1__payload;
+  reg [63:0] leaf_1__payload = 64'h0000000000000000;
+  input leaf_1__ready;
+  wire leaf_1__ready;
+  output leaf_1__valid;
+  reg leaf_1__valid = 1'h0;
+  output [63:0] leaf_2__payload;
+  reg [63:0] leaf_2__payload = 64'h0000000000000000;
+  input leaf_2__ready;
+  wire leaf_2__ready;
+  output leaf_2__valid;
+  reg leaf_2__valid = 1'h0;
+  output [63:0] leaf_3__payload;
+  reg [63:0] leaf_3__payload = 64'h0000000000000000;
+  input leaf_3__ready;
+  wire leaf_3__ready;
+  output leaf_3__valid;
+  reg leaf_3__valid = 1'h0;
+  output [63:0] leaf_4__payload;
+  reg [63:0] leaf_4__payload = 64'h0000000000000000;
+  input leaf_4__ready;
+  wire leaf_4__ready;
+  output leaf_4__valid;
+  reg leaf_4__valid = 1'h0;
+  output [63:0] leaf_5__payload;
+  reg [63:0] leaf_5__payload = 64'h0000000000000000;
+  input leaf_5__ready;
+  wire leaf_5__ready;
+  output leaf_5__valid;
+  reg leaf_5__valid = 1'h0;
+  reg [7:0] map_have = 8'h00;
+  reg [63:0] map_word = 64'h0000000000000000;
+  input [41:0] orders__payload;
+  wire [41:0] orders__payload;
+  wire \orders__payload.blank ;
+  (* unused_bits = "0" *)
+  wire \orders__payload.counted ;
+  wire \orders__payload.ends ;
+  (* unused_bits = "0" *)
+  wire \orders__payload.final ;
+  (* unused_bits = "0 1 2 3" *)
+  wire [3:0] \orders__payload.first ;
+  (* unused_bits = "0" *)
+  wire \orders__payload.items ;
   (* unused_bits = "0 1 2" *)
-  wire [5:0] past;
-  wire pops;
-  wire pops_finished;
-  wire pops_idle;
-  wire pops_taken;
-  output [7:0] \port$341$0 ;
-  wire [7:0] \port$341$0 ;
+  wire [5:0] \orders__payload.items_at ;
+  wire [3:0] \orders__payload.items_bytes ;
+  (* unused_bits = "0 1 2" *)
+  wire [2:0] \orders__payload.items_next ;
+  (* unused_bits = "0" *)
+  wire \orders__payload.last ;
+  (* unused_bits = "0 1 2" *)
+  wire [5:0] \orders__payload.map_at ;
+  wire [3:0] \orders__payload.map_bytes ;
+  (* unused_bits = "0 1 2" *)
+  wire [2:0] \orders__payload.map_next ;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  wire [2:0] \orders__payload.status ;
+  wire [2:0] \orders__payload.step ;
+  output orders__ready;
+  wire orders__ready;
+  input orders__valid;
+  wire orders__valid;
+  wire [63:0] payload_0;
+  wire [63:0] payload_1;
+  wire [63:0] payload_2;
+  wire [63:0] payload_3;
+  wire [63:0] payload_4;
+  wire [63:0] payload_5;
   input rst;
   wire rst;
-  reg [72:0] slot_0 = 73'h0000000000000000000;
-  wire [63:0] \slot_0.data ;
-  wire [7:0] \slot_0.keep ;
-  wire \slot_0.last ;
-  reg [72:0] slot_1 = 73'h0000000000000000000;
-  wire [63:0] \slot_1.data ;
-  wire [7:0] \slot_1.keep ;
-  wire \slot_1.last ;
-  input take;
+  reg slow = 1'h0;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  output [2:0] status__payload;
+  reg [2:0] status__payload = 3'h0;
+  input status__ready;
+  wire status__ready;
+  output status__valid;
+  reg status__valid = 1'h0;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  reg [2:0] status_now = 3'h0;
   wire take;
+  reg [7:0] lane_0 [7:0];
+  initial begin
+    lane_0[0] = 8'h00;
+    lane_0[1] = 8'h00;
+    lane_0[2] = 8'h00;
+    lane_0[3] = 8'h00;
+    lane_0[4] = 8'h00;
+    lane_0[5] = 8'h00;
+    lane_0[6] = 8'h00;
+    lane_0[7] = 8'h00;
+  end
+  always @(posedge aclk) begin
+    if (beat[73])
+      lane_0[beat[71:69]] <= beat[7:0];
+  end
+  assign lane_0__map__data = lane_0[orders__payload[15:13]];
+  assign lane_0__items__data = lane_0[orders__payload[9:7]];
+  reg [7:0] lane_1 [7:0];
+  initial begin
+    lane_1[0] = 8'h00;
+    lane_1[1] = 8'h00;
+    lane_1[2] = 8'h00;
+    lane_1[3] = 8'h00;
+    lane_1[4] = 8'h00;
+    lane_1[5] = 8'h00;
+    lane_1[6] = 8'h00;
+    lane_1[7] = 8'h00;
+  end
+  always @(posedge aclk) begin
+    if (beat[73])
+      lane_1[beat[71:69]] <= beat[15:8];
+  end
+  assign lane_1__map__data = lane_1[orders__payload[15:13]];
+  assign lane_1__items__data = lane_1[orders__payload[9:7]];
+  reg [7:0] lane_2 [7:0];
+  initial begin
+    lane_2[0] = 8'h00;
+    lane_2[1] = 8'h00;
+    lane_2[2] = 8'h00;
+    lane_2[3] = 8'h00;
+    lane_2[4] = 8'h00;
+    lane_2[5] = 8'h00;
+    lane_2[6] = 8'h00;
+    lane_2[7] = 8'h00;
+  end
+  always @(posedge aclk) begin
+    if (beat[73])
+      lane_2[beat[71:69]] <= beat[23:16];
+  end
+  assign lane_2__map__data = lane_2[orders__payload[15:13]];
+  assign lane_2__items__data = lane_2[orders__payload[9:7]];
+  reg [7:0] lane_3 [7:0];
+  initial begin
+    lane_3[0] = 8'h00;
+    lane_3[1] = 8'h00;
+    lane_3[2] = 8'h00;
+    lane_3[3] = 8'h00;
+    lane_3[4] = 8'h00;
+    lane_3[5] = 8'h00;
+    lane_3[6] = 8'h00;
+    lane_3[7] = 8'h00;
+  end
+  always @(posedge aclk) begin
+    if (beat[73])
+      lane_3[beat[71:69]] <= beat[31:24];
+  end
+  assign lane_3__map__data = lane_3[orders__payload[15:13]];
+  assign lane_3__items__data = lane_3[orders__payload[9:7]];
+  reg [7:0] lane_4 [7:0];
+  initial begin
+    lane_4[0] = 8'h00;
+    lane_4[1] = 8'h00;
+    lane_4[2] = 8'h00;
+    lane_4[3] = 8'h00;
+    lane_4[4] = 8'h00;
+    lane_4[5] = 8'h00;
+    lane_4[6] = 8'h00;
+    lane_4[7] = 8'h00;
+  end
+  always @(posedge aclk) begin
+    if (beat[73])
+      lane_4[beat[71:69]] <= beat[39:32];
+  end
+  assign lane_4__map__data = lane_4[orders__payload[15:13]];
+  assign lane_4__items__data = lane_4[orders__payload[9:7]];
+  reg [7:0] lane_5 [7:0];
+  initial begin
+    lane_5[0] = 8'h00;
+    lane_5[1] = 8'h00;
+    lane_5[2] = 8'h00;
+    lane_5[3] = 8'h00;
+    lane_5[4] = 8'h00;
+    lane_5[5] = 8'h00;
+    lane_5[6] = 8'h00;
+    lane_5[7] = 8'h00;
+  end
+  always @(posedge aclk) begin
+    if (beat[73])
+      lane_5[beat[71:69]] <= beat[47:40];
+  end
+  assign lane_5__map__data = lane_5[orders__payload[15:13]];
+  assign lane_5__items__data = lane_5[orders__payload[9:7]];
+  reg [7:0] lane_6 [7:0];
+  initial begin
+    lane_6[0] = 8'h00;
+    lane_6[1] = 8'h00;
+    lane_6[2] = 8'h00;
+    lane_6[3] = 8'h00;
+    lane_6[4] = 8'h00;
+    lane_6[5] = 8'h00;
+    lane_6[6] = 8'h00;
+    lane_6[7] = 8'h00;
+  end
+  always @(posedge aclk) begin
+    if (beat[73])
+      lane_6[beat[71:69]] <= beat[55:48];
+  end
+  assign lane_6__map__data = lane_6[orders__payload[15:13]];
+  assign lane_6__items__data = lane_6[orders__payload[9:7]];
+  reg [7:0] lane_7 [7:0];
+  initial begin
+    lane_7[0] = 8'h00;
+    lane_7[1] = 8'h00;
+    lane_7[2] = 8'h00;
+    lane_7[3] = 8'h00;
+    lane_7[4] = 8'h00;
+    lane_7[5] = 8'h00;
+    lane_7[6] = 8'h00;
+    lane_7[7] = 8'h00;
+  end
+  always @(posedge aclk) begin
+    if (beat[73])
+      lane_7[beat[71:69]] <= beat[63:56];
+  end
+  assign lane_7__map__data = lane_7[orders__payload[15:13]];
+  assign lane_7__items__data = lane_7[orders__payload[9:7]];
+  assign \$1  = ~ blocked_0;
+  assign go_0 = active_0 & \$1 ;
+  assign blocked_0 = active_0 & leaf_0__valid;
+  assign \$4  = ~ blocked_1;
+  assign go_1 = active_1 & \$4 ;
+  assign blocked_1 = active_1 & leaf_1__valid;
+  assign \$7  = ~ blocked_2;
+  assign go_2 = active_2 & \$7 ;
+  assign blocked_2 = active_2 & leaf_2__valid;
+  assign \$10  = ~ blocked_3;
+  assign go_3 = active_3 & \$10 ;
+  assign blocked_3 = active_3 & leaf_3__valid;
+  assign \$13  = ~ blocked_4;
+  assign go_4 = active_4 & \$13 ;
+  assign blocked_4 = active_4 & leaf_4__valid;
+  assign \$16  = ~ blocked_5;
+  assign \$17  = active_5 & \$16 ;
+  assign \$19  = ~ blocked_4;
+  assign go_5 = \$17  & \$19 ;
+  assign blocked_5 = active_5 & leaf_5__valid;
+  assign orders__ready = ~ slow;
+  assign \$22  = orders__payload[25:22] > 1'h0;
+  assign \$23  = orders__payload[25:22] > 1'h1;
+  assign \$24  = orders__payload[25:22] > 2'h2;
+  assign \$25  = orders__payload[25:22] > 2'h3;
+  assign \$26  = orders__payload[25:22] > 3'h4;
+  assign \$27  = orders__payload[25:22] > 3'h5;
+  assign \$28  = orders__payload[25:22] > 3'h6;
+  assign \$29  = orders__payload[25:22] > 3'h7;
+  assign \$30  = orders__payload[29:26] > 1'h0;
+  assign \$31  = orders__payload[29:26] > 1'h1;
+  assign \$32  = orders__payload[29:26] > 2'h2;
+  assign \$33  = orders__payload[29:26] > 2'h3;
+  assign \$34  = orders__payload[29:26] > 3'h4;
+  assign \$35  = orders__payload[29:26] > 3'h5;
+  assign \$36  = orders__payload[29:26] > 3'h6;
+  assign \$37  = orders__payload[29:26] > 3'h7;
+  assign \$38  = ~ orders__payload[3];
+  assign \$39  = orders__valid & \$38 ;
+  assign \$40  = orders__payload[2:0] == 1'h1;
+  assign \$41  = \$39  & \$40 ;
+  assign \$42  = ~ go_0;
+  assign \$43  = active_0 & \$42 ;
+  assign \$44  = slow ? \$43  : \$41 ;
+  assign \$45  = ~ orders__payload[3];
+  assign \$46  = orders__valid & \$45 ;
+  assign \$47  = orders__payload[2:0] == 2'h2;
+  assign \$48  = \$46  & \$47 ;
+  assign \$49  = ~ go_1;
+  assign \$50  = active_1 & \$49 ;
+  assign \$51  = slow ? \$50  : \$48 ;
+  assign \$52  = ~ orders__payload[3];
+  assign \$53  = orders__valid & \$52 ;
+  assign \$54  = orders__payload[2:0] == 2'h3;
+  assign \$55  = \$53  & \$54 ;
+  assign \$56  = ~ go_2;
+  assign \$57  = active_2 & \$56 ;
+  assign \$58  = slow ? \$57  : \$55 ;
+  assign \$59  = ~ orders__payload[3];
+  assign \$60  = orders__valid & \$59 ;
+  assign \$61  = orders__payload[2:0] == 3'h4;
+  assign \$62  = \$60  & \$61 ;
+  assign \$63  = ~ go_3;
+  assign \$64  = active_3 & \$63 ;
+  assign \$65  = slow ? \$64  : \$62 ;
+  assign \$66  = ~ orders__payload[3];
+  assign \$67  = orders__valid & \$66 ;
+  assign \$68  = orders__payload[2:0] == 3'h5;
+  assign \$69  = \$67  & \$68 ;
+  assign \$70  = ~ go_4;
+  assign \$71  = active_4 & \$70 ;
+  assign \$72  = slow ? \$71  : \$69 ;
+  assign \$73  = ~ orders__payload[3];
+  assign \$74  = orders__valid & \$73 ;
+  assign \$75  = orders__payload[2:0] == 3'h5;
+  assign \$76  = \$74  & \$75 ;
+  assign \$77  = ~ go_5;
+  assign \$78  = active_5 & \$77 ;
+  assign \$79  = slow ? \$78  : \$76 ;
+  assign \$80  = ~ orders__payload[3];
+  assign \$81  = orders__valid & \$80 ;
+  assign \$82  = orders__payload[2:0] == 1'h1;
+  assign \$83  = \$81  & \$82 ;
+  assign \$84  = \$83  & leaf_0__valid;
+  assign \$85  = ~ leaf_0__ready;
+  assign \$86  = \$84  & \$85 ;
+  assign \$87  = ~ orders__payload[3];
+  assign \$88  = orders__valid & \$87 ;
+  assign \$89  = orders__payload[2:0] == 2'h2;
+  assign \$90  = \$88  & \$89 ;
+  assign \$91  = \$90  & leaf_1__valid;
+  assign \$92  = ~ leaf_1__ready;
+  assign \$93  = \$91  & \$92 ;
+  assign \$94  = ~ orders__payload[3];
+  assign \$95  = orders__valid & \$94 ;
+  assign \$96  = orders__payload[2:0] == 2'h3;
+  assign \$97  = \$95  & \$96 ;
+  assign \$98  = \$97  & leaf_2__valid;
+  assign \$99  = ~ leaf_2__ready;
+  assign \$100  = \$98  & \$99 ;
+  assign \$101  = ~ orders__payload[3];
+  assign \$102  = orders__valid & \$101 ;
+  assign \$103  = orders__payload[2:0] == 3'h4;
+  assign \$104  = \$102  & \$103 ;
+  assign \$105  = \$104  & leaf_3__valid;
+  assign \$106  = ~ leaf_3__ready;
+  assign \$107  = \$105  & \$106 ;
+  assign \$108  = ~ orders__payload[3];
+  assign \$109  = orders__valid & \$108 ;
+  assign \$110  = orders__payload[2:0] == 3'h5;
+  assign \$111  = \$109  & \$110 ;
+  assign \$112  = \$111  & leaf_4__valid;
+  assign \$113  = ~ leaf_4__ready;
+  assign \$114  = \$112  & \$113 ;
+  assign \$115  = ~ orders__payload[3];
+  assign \$116  = orders__valid & \$115 ;
+  assign \$117  = orders__payload[2:0] == 3'h5;
+  assign \$118  = \$116  & \$117 ;
+  assign \$119  = \$118  & leaf_5__valid;
+  assign \$120  = ~ leaf_5__ready;
+  assign \$121  = \$119  & \$120 ;
+  assign \$122  = orders__valid & orders__payload[38];
+  assign \$123  = ~ status__ready;
+  assign \$124  = status__valid & \$123 ;
+  assign \$125  = \$122  & \$124 ;
+  assign \$126  = | { \$125 , \$121 , \$114 , \$107 , \$100 , \$93 , \$86  };
+  assign \$127  = ~ leaf_0__ready;
+  assign \$128  = blocked_0 & \$127 ;
+  assign \$129  = ~ leaf_1__ready;
+  assign \$130  = blocked_1 & \$129 ;
+  assign \$131  = ~ leaf_2__ready;
+  assign \$132  = blocked_2 & \$131 ;
+  assign \$133  = ~ leaf_3__ready;
+  assign \$134  = blocked_3 & \$133 ;
+  assign \$135  = ~ leaf_4__ready;
+  assign \$136  = blocked_4 & \$135 ;
+  assign \$137  = ~ leaf_5__ready;
+  assign \$138  = blocked_5 & \$137 ;
+  assign \$139  = ~ status__ready;
+  assign \$140  = status__valid & \$139 ;
+  assign \$141  = ends_now & \$140 ;
+  assign \$142  = | { \$141 , \$138 , \$136 , \$134 , \$132 , \$130 , \$128  };
+  assign \$143  = slow ? \$142  : \$126 ;
+  assign \$144  = orders__valid & orders__payload[38];
+  assign \$145  = ~ orders__payload[3];
+  assign \$146  = ! orders__payload[2:0];
+  assign \$147  = \$145  & \$146 ;
+  assign \$148  = orders__valid & \$147 ;
+  assign \$149  = orders__ready & cut_0;
+  assign \$150  = orders__ready & cut_0;
+  assign \$151  = orders__ready & cut_0;
+  assign \$152  = orders__ready & cut_0;
+  assign \$153  = ~ orders__payload[3];
+  assign \$154  = orders__payload[2:0] == 1'h1;
+  assign \$155  = \$153  & \$154 ;
+  assign \$156  = orders__valid & \$155 ;
+  assign \$157  = orders__ready & cut_1;
+  assign \$158  = orders__ready & cut_1;
+  assign \$159  = orders__ready & cut_1;
+  assign \$160  = orders__ready & cut_1;
+  assign \$161  = ~ orders__payload[3];
+  assign \$162  = orders__payload[2:0] == 2'h2;
+  assign \$163  = \$161  & \$162 ;
+  assign \$164  = orders__valid & \$163 ;
+  assign \$165  = orders__ready & cut_2;
+  assign \$166  = orders__ready & cut_2;
+  assign \$167  = orders__ready & cut_2;
+  assign \$168  = orders__ready & cut_2;
+  assign \$169  = ~ orders__payload[3];
+  assign \$170  = orders__payload[2:0] == 2'h3;
+  assign \$171  = \$169  & \$170 ;
+  assign \$172  = orders__valid & \$171 ;
+  assign \$173  = orders__ready & cut_3;
+  assign \$174  = orders__ready & cut_3;
+  assign \$175  = orders__ready & cut_3;
+  assign \$176  = orders__ready & cut_3;
+  assign \$177  = ~ orders__payload[3];
+  assign \$178  = orders__payload[2:0] == 3'h4;
+  assign \$179  = \$177  & \$178 ;
+  assign \$180  = orders__valid & \$179 ;
+  assign \$181  = orders__ready & cut_4;
+  assign \$182  = orders__ready & cut_4;
+  assign \$183  = orders__ready & cut_4;
+  assign \$184  = orders__ready & cut_4;
+  always @(posedge aclk)
+    leaf_0__valid <= \$185 ;
+  always @(posedge aclk)
+    leaf_1__valid <= \$186 ;
+  always @(posedge aclk)
+    leaf_2__valid <= \$187 ;
+  always @(posedge aclk)
+    leaf_3__valid <= \$188 ;
+  always @(posedge aclk)
+    leaf_4__valid <= \$189 ;
+  always @(posedge aclk)
+    leaf_5__valid <= \$190 ;
+  always @(posedge aclk)
+    status__valid <= \$191 ;
+  always @(posedge aclk)
+    items_word <= \$192 ;
+  always @(posedge aclk)
+    items_have <= \$193 ;
+  always @(posedge aclk)
+    map_word <= \$194 ;
+  always @(posedge aclk)
+    map_have <= \$195 ;
+  always @(posedge aclk)
+    active_0 <= \$199 ;
+  always @(posedge aclk)
+    active_1 <= \$200 ;
+  always @(posedge aclk)
+    active_2 <= \$201 ;
+  always @(posedge aclk)
+    active_3 <= \$202 ;
+  always @(posedge aclk)
+    active_4 <= \$203 ;
+  always @(posedge aclk)
+    active_5 <= \$204 ;
+  always @(posedge aclk)
+    slow <= \$205 ;
+  always @(posedge aclk)
+    status_now <= \$206 ;
+  always @(posedge aclk)
+    ends_now <= \$207 ;
+  always @(posedge aclk)
+    status__payload <= \$208 ;
+  always @(posedge aclk)
+    cut_0 <= \$209 ;
+  always @(posedge aclk)
+    carried <= \$210 ;
+  always @(posedge aclk)
+    cut_1 <= \$211 ;
+  always @(posedge aclk)
+    cut_2 <= \$212 ;
+  always @(posedge aclk)
+    cut_3 <= \$213 ;
+  always @(posedge aclk)
+    cut_4 <= \$214 ;
+  always @(posedge aclk)
+    leaf_0__payload <= \$215 ;
+  always @(posedge aclk)
+    leaf_1__payload <= \$216 ;
+  always @(posedge aclk)
+    leaf_2__payload <= \$217 ;
+  always @(posedge aclk)
+    leaf_3__payload <= \$218 ;
+  always @(posedge aclk)
+    leaf_4__payload <= \$219 ;
+  always @(posedge aclk)
+    leaf_5__payload <= \$220 ;
+  assign choice_101_Y  = slow ? status_now : orders__payload[41:39];
+  assign \$206  = rst ? 3'h0 : choice_101_Y ;
+  assign \$205  = rst ? 1'h0 : \$143 ;
+  assign \$204  = rst ? 1'h0 : \$79 ;
+  assign \$203  = rst ? 1'h0 : \$72 ;
+  assign \$202  = rst ? 1'h0 : \$65 ;
+  assign \$201  = rst ? 1'h0 : \$58 ;
+  assign \$200  = rst ? 1'h0 : \$51 ;
+  assign \$199  = rst ? 1'h0 : \$44 ;
+  assign choice_12_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
+  assign \$195  = slow ? map_have : { \$37 , \$36 , \$35 , \$34 , \$33 , \$32 , \$31 , \$30  };
+  assign \$194  = slow ? map_word : { lane_7__map__data, lane_6__map__data, lane_5__map__data, lane_4__map__data, lane_3__map__data, lane_2__map__data, lane_1__map__data, lane_0__map__data };
+  assign \$193  = slow ? items_have : { \$29 , \$28 , \$27 , \$26 , \$25 , \$24 , \$23 , \$22  };
+  assign \$192  = slow ? items_word : { lane_7__items__data, lane_6__items__data, lane_5__items__data, lane_4__items__data, lane_3__items__data, lane_2__items__data, lane_1__items__data, lane_0__items__data };
+  assign choice_139_Y  = status__ready ? 1'h0 : status__valid;
+  assign \$218  = go_3 ? choice_12_Y  : leaf_3__payload;
+  assign choice_141_Y  = ends_now ? 1'h1 : choice_139_Y ;
+  assign choice_143_Y  = slow ? choice_139_Y  : choice_141_Y ;
+  assign \$191  = rst ? 1'h0 : choice_143_Y ;
+  assign choice_147_Y  = leaf_5__ready ? 1'h0 : leaf_5__valid;
+  assign choice_149_Y  = go_5 ? 1'h1 : choice_147_Y ;
+  assign \$190  = rst ? 1'h0 : choice_149_Y ;
+  assign choice_153_Y  = leaf_4__ready ? 1'h0 : leaf_4__valid;
+  assign choice_155_Y  = go_4 ? 1'h1 : choice_153_Y ;
+  assign \$189  = rst ? 1'h0 : choice_155_Y ;
+  assign choice_159_Y  = leaf_3__ready ? 1'h0 : leaf_3__valid;
+  assign choice_161_Y  = go_3 ? 1'h1 : choice_159_Y ;
+  assign \$188  = rst ? 1'h0 : choice_161_Y ;
+  assign choice_165_Y  = leaf_2__ready ? 1'h0 : leaf_2__valid;
+  assign choice_167_Y  = go_2 ? 1'h1 : choice_165_Y ;
+  assign \$187  = rst ? 1'h0 : choice_167_Y ;
+  assign choice_17_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
+  assign choice_171_Y  = leaf_1__ready ? 1'h0 : leaf_1__valid;
+  assign choice_173_Y  = go_1 ? 1'h1 : choice_171_Y ;
+  assign \$186  = rst ? 1'h0 : choice_173_Y ;
+  assign choice_177_Y  = leaf_0__ready ? 1'h0 : leaf_0__valid;
+  assign choice_179_Y  = go_0 ? 1'h1 : choice_177_Y ;
+  assign \$185  = rst ? 1'h0 : choice_179_Y ;
+  assign \$217  = go_2 ? choice_17_Y  : leaf_2__payload;
+  assign choice_2_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], items_word[63:32] } : 64'h0000000000000000;
+  assign choice_22_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
+  assign \$216  = go_1 ? choice_22_Y  : leaf_1__payload;
+  assign choice_27_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
+  assign \$215  = go_0 ? choice_27_Y  : leaf_0__payload;
+  assign choice_31_Y  = slow ? cut_4 : \$180 ;
+  assign \$214  = rst ? 1'h0 : choice_31_Y ;
+  assign choice_35_Y  = slow ? cut_3 : \$172 ;
+  assign \$213  = rst ? 1'h0 : choice_35_Y ;
+  assign choice_39_Y  = slow ? cut_2 : \$164 ;
+  assign \$220  = go_5 ? choice_2_Y  : leaf_5__payload;
+  assign \$212  = rst ? 1'h0 : choice_39_Y ;
+  assign choice_43_Y  = slow ? cut_1 : \$156 ;
+  assign \$211  = rst ? 1'h0 : choice_43_Y ;
+  assign choice_47_Y  = \$152  ? map_word[63:56] : carried[31:24];
+  assign choice_49_Y  = \$160  ? map_word[63:56] : choice_47_Y ;
+  assign choice_51_Y  = \$168  ? map_word[63:56] : choice_49_Y ;
+  assign choice_53_Y  = \$176  ? map_word[63:56] : choice_51_Y ;
+  assign \$210 [31:24] = \$184  ? map_word[63:56] : choice_53_Y ;
+  assign choice_57_Y  = \$151  ? map_word[55:48] : carried[23:16];
+  assign choice_59_Y  = \$159  ? map_word[55:48] : choice_57_Y ;
+  assign choice_61_Y  = \$167  ? map_word[55:48] : choice_59_Y ;
+  assign choice_63_Y  = \$175  ? map_word[55:48] : choice_61_Y ;
+  assign \$210 [23:16] = \$183  ? map_word[55:48] : choice_63_Y ;
+  assign choice_67_Y  = \$150  ? map_word[47:40] : carried[15:8];
+  assign choice_69_Y  = \$158  ? map_word[47:40] : choice_67_Y ;
+  assign choice_7_Y  = items_have[3] ? (* full_case = 32'd1 *) { items_word[31:0], carried } : 64'h0000000000000000;
+  assign choice_71_Y  = \$166  ? map_word[47:40] : choice_69_Y ;
+  assign choice_73_Y  = \$174  ? map_word[47:40] : choice_71_Y ;
+  assign \$210 [15:8] = \$182  ? map_word[47:40] : choice_73_Y ;
+  assign choice_77_Y  = \$149  ? map_word[39:32] : carried[7:0];
+  assign choice_79_Y  = \$157  ? map_word[39:32] : choice_77_Y ;
+  assign choice_81_Y  = \$165  ? map_word[39:32] : choice_79_Y ;
+  assign choice_83_Y  = \$173  ? map_word[39:32] : choice_81_Y ;
+  assign \$210 [7:0] = \$181  ? map_word[39:32] : choice_83_Y ;
+  assign choice_87_Y  = slow ? cut_0 : \$148 ;
+  assign \$209  = rst ? 1'h0 : choice_87_Y ;
+  assign \$219  = go_4 ? choice_7_Y  : leaf_4__payload;
+  assign choice_91_Y  = ends_now ? status_now : status__payload;
+  assign choice_93_Y  = slow ? status__payload : choice_91_Y ;
+  assign \$208  = rst ? 3'h0 : choice_93_Y ;
+  assign choice_97_Y  = slow ? ends_now : \$144 ;
+  assign \$207  = rst ? 1'h0 : choice_97_Y ;
+  assign \orders__payload.status  = orders__payload[41:39];
+  assign \orders__payload.ends  = orders__payload[38];
+  assign \orders__payload.first  = orders__payload[37:34];
+  assign \orders__payload.final  = orders__payload[33];
+  assign \orders__payload.counted  = orders__payload[32];
+  assign \orders__payload.last  = orders__payload[31];
+  assign \orders__payload.items  = orders__payload[30];
+  assign \orders__payload.map_bytes  = orders__payload[29:26];
+  assign \orders__payload.items_bytes  = orders__payload[25:22];
+  assign \orders__payload.map_next  = orders__payload[21:19];
+  assign \orders__payload.items_next  = orders__payload[18:16];
+  assign \orders__payload.map_at  = orders__payload[15:10];
+  assign \orders__payload.items_at  = orders__payload[9:4];
+  assign \orders__payload.blank  = orders__payload[3];
+  assign \orders__payload.step  = orders__payload[2:0];
+  assign \beat.valid  = beat[73];
+  assign \beat.at  = beat[72:69];
+  assign \beat.last  = beat[68];
+  assign \beat.count  = beat[67:64];
+  assign \beat.data  = beat[63:0];
+  assign lane_7__map__addr = orders__payload[15:13];
+  assign lane_7__items__addr = orders__payload[9:7];
+  assign lane_7__write__en = beat[73];
+  assign lane_7__write__data = beat[63:56];
+  assign lane_7__write__addr = beat[71:69];
+  assign lane_6__map__addr = orders__payload[15:13];
+  assign lane_6__items__addr = orders__payload[9:7];
+  assign lane_6__write__en = beat[73];
+  assign lane_6__write__data = beat[55:48];
+  assign lane_6__write__addr = beat[71:69];
+  assign lane_5__map__addr = orders__payload[15:13];
+  assign lane_5__items__addr = orders__payload[9:7];
+  assign lane_5__write__en = beat[73];
+  assign lane_5__write__data = beat[47:40];
+  assign lane_5__write__addr = beat[71:69];
+  assign lane_4__map__addr = orders__payload[15:13];
+  assign lane_4__items__addr = orders__payload[9:7];
+  assign lane_4__write__en = beat[73];
+  assign lane_4__write__data = beat[39:32];
+  assign lane_4__write__addr = beat[71:69];
+  assign lane_3__map__addr = orders__payload[15:13];
+  assign lane_3__items__addr = orders__payload[9:7];
+  assign lane_3__write__en = beat[73];
+  assign lane_3__write__data = beat[31:24];
+  assign lane_3__write__addr = beat[71:69];
+  assign lane_2__map__addr = orders__payload[15:13];
+  assign lane_2__items__addr = orders__payload[9:7];
+  assign lane_2__write__en = beat[73];
+  assign lane_2__write__data = beat[23:16];
+  assign lane_2__write__addr = beat[71:69];
+  assign lane_1__map__addr = orders__payload[15:13];
+  assign lane_1__items__addr = orders__payload[9:7];
+  assign lane_1__write__en = beat[73];
+  assign lane_1__write__data = beat[15:8];
+  assign lane_1__write__addr = beat[71:69];
+  assign lane_0__map__addr = orders__payload[15:13];
+  assign lane_0__items__addr = orders__payload[9:7];
+  assign lane_0__write__en = beat[73];
+  assign lane_0__write__data = beat[7:0];
+  assign lane_0__write__addr = beat[71:69];
+  assign payload_5 = leaf_5__payload;
+  assign payload_4 = leaf_4__payload;
+  assign payload_3 = leaf_3__payload;
+  assign payload_2 = leaf_2__payload;
+  assign payload_1 = leaf_1__payload;
+  assign payload_0 = leaf_0__payload;
+  assign take = orders__ready;
+endmodule
+
+module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__valid, i__ready, freed, o__ready, i__payload, at, o__valid, o__payload, aclk);
+  wire [3:0] \$1 ;
+  wire \$2 ;
+  wire [41:0] \$3 ;
+  wire \$5 ;
+  wire [41:0] \$6 ;
+  wire \$7 ;
+  wire [41:0] \$8 ;
+  wire choice_185_Y ;
+  wire choice_187_Y ;
+  wire [41:0] choice_191_Y ;
+  wire choice_195_Y ;
+  input aclk;
+  wire aclk;
+  input [3:0] at;
+  wire [3:0] at;
+  output [3:0] freed;
+  wire [3:0] freed;
+  reg has_second = 1'h0;
+  input [41:0] i__payload;
+  wire [41:0] i__payload;
+  wire \i__payload.blank ;
+  wire \i__payload.counted ;
+  wire \i__payload.ends ;
+  wire \i__payload.final ;
+  wire [3:0] \i__payload.first ;
+  wire \i__payload.items ;
+  wire [5:0] \i__payload.items_at ;
+  wire [3:0] \i__payload.items_bytes ;
+  wire [2:0] \i__payload.items_next ;
+  wire \i__payload.last ;
+  wire [5:0] \i__payload.map_at ;
+  wire [3:0] \i__payload.map_bytes ;
+  wire [2:0] \i__payload.map_next ;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  wire [2:0] \i__payload.status ;
+  wire [2:0] \i__payload.step ;
+  output i__ready;
+  wire i__ready;
+  input i__valid;
+  wire i__valid;
+  output [41:0] o__payload;
+  reg [41:0] o__payload = 42'h00000000000;
+  wire \o__payload.blank ;
+  wire \o__payload.counted ;
+  wire \o__payload.ends ;
+  wire \o__payload.final ;
+  wire [3:0] \o__payload.first ;
+  wire \o__payload.items ;
+  wire [5:0] \o__payload.items_at ;
+  wire [3:0] \o__payload.items_bytes ;
+  wire [2:0] \o__payload.items_next ;
+  wire \o__payload.last ;
+  wire [5:0] \o__payload.map_at ;
+  wire [3:0] \o__payload.map_bytes ;
+  wire [2:0] \o__payload.map_next ;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  wire [2:0] \o__payload.status ;
+  wire [2:0] \o__payload.step ;
+  input o__ready;
+  wire o__ready;
+  output o__valid;
+  reg o__valid = 1'h0;
+  input rst;
+  wire rst;
+  reg [41:0] second = 42'h00000000000;
+  wire \second.blank ;
+  wire \second.counted ;
+  wire \second.ends ;
+  wire \second.final ;
+  wire [3:0] \second.first ;
+  wire \second.items ;
+  wire [5:0] \second.items_at ;
+  wire [3:0] \second.items_bytes ;
+  wire [2:0] \second.items_next ;
+  wire \second.last ;
+  wire [5:0] \second.map_at ;
+  wire [3:0] \second.map_bytes ;
+  wire [2:0] \second.map_next ;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  wire [2:0] \second.status ;
+  wire [2:0] \second.step ;
+  assign \$1  = has_second ? second[37:34] : at;
+  assign freed = o__valid ? o__payload[37:34] : \$1 ;
+  assign \$2  = i__valid | has_second;
+  assign \$3  = has_second ? second : i__payload;
+  always @(posedge aclk)
+    o__valid <= \$5 ;
+  always @(posedge aclk)
+    o__payload <= \$6 ;
+  always @(posedge aclk)
+    has_second <= \$7 ;
+  always @(posedge aclk)
+    second <= \$8 ;
+  assign i__ready = ~ has_second;
+  assign \$8  = has_second ? second : i__payload;
+  assign choice_185_Y  = i__valid ? 1'h1 : has_second;
+  assign choice_187_Y  = o__ready ? 1'h0 : choice_185_Y ;
+  assign \$7  = rst ? 1'h0 : choice_187_Y ;
+  assign choice_191_Y  = o__ready ? \$3  : o__payload;
+  assign \$6  = rst ? 42'h00000000000 : choice_191_Y ;
+  assign choice_195_Y  = o__ready ? \$2  : o__valid;
+  assign \$5  = rst ? 1'h0 : choice_195_Y ;
+  assign \i__payload.status  = i__payload[41:39];
+  assign \i__payload.ends  = i__payload[38];
+  assign \i__payload.first  = i__payload[37:34];
+  assign \i__payload.final  = i__payload[33];
+  assign \i__payload.counted  = i__payload[32];
+  assign \i__payload.last  = i__payload[31];
+  assign \i__payload.items  = i__payload[30];
+  assign \i__payload.map_bytes  = i__payload[29:26];
+  assign \i__payload.items_bytes  = i__payload[25:22];
+  assign \i__payload.map_next  = i__payload[21:19];
+  assign \i__payload.items_next  = i__payload[18:16];
+  assign \i__payload.map_at  = i__payload[15:10];
+  assign \i__payload.items_at  = i__payload[9:4];
+  assign \i__payload.blank  = i__payload[3];
+  assign \i__payload.step  = i__payload[2:0];
+  assign \o__payload.status  = o__payload[41:39];
+  assign \o__payload.ends  = o__payload[38];
+  assign \o__payload.first  = o__payload[37:34];
+  assign \o__payload.final  = o__payload[33];
+  assign \o__payload.counted  = o__payload[32];
+  assign \o__payload.last  = o__payload[31];
+  assign \o__payload.items  = o__payload[30];
+  assign \o__payload.map_bytes  = o__payload[29:26];
+  assign \o__payload.items_bytes  = o__payload[25:22];
+  assign \o__payload.map_next  = o__payload[21:19];
+  assign \o__payload.items_next  = o__payload[18:16];
+  assign \o__payload.map_at  = o__payload[15:10];
+  assign \o__payload.items_at  = o__payload[9:4];
+  assign \o__payload.blank  = o__payload[3];
+  assign \o__payload.step  = o__payload[2:0];
+  assign \second.status  = second[41:39];
+  assign \second.ends  = second[38];
+  assign \second.first  = second[37:34];
+  assign \second.final  = second[33];
+  assign \second.counted  = second[32];
+  assign \second.last  = second[31];
+  assign \second.items  = second[30];
+  assign \second.map_bytes  = second[29:26];
+  assign \second.items_bytes  = second[25:22];
+  assign \second.map_next  = second[21:19];
+  assign \second.items_next  = second[18:16];
+  assign \second.map_at  = second[15:10];
+  assign \second.items_at  = second[9:4];
+  assign \second.blank  = second[3];
+  assign \second.step  = second[2:0];
+endmodule
+
+module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, orders__valid, next_sig, orders__ready, beat, limit, following, ended, orders__payload, header_at, aclk);
+  (* unused_bits = "7" *)
+  wire [7:0] \$1 ;
+  wire \$10 ;
+  wire \$100 ;
+  wire \$101 ;
+  wire \$102 ;
+  wire \$103 ;
+  wire \$104 ;
+  wire \$105 ;
+  wire \$106 ;
+  wire \$107 ;
+  (* unused_bits = "3" *)
+  wire [3:0] \$108 ;
+  (* unused_bits = "3" *)
+  wire [3:0] \$109 ;
+  (* unused_bits = "7 8" *)
+  wire [8:0] \$11 ;
+  wire \$110 ;
+  wire \$111 ;
+  wire \$112 ;
+  wire [3:0] \$113 ;
+  wire [3:0] \$114 ;
+  wire \$116 ;
+  wire \$117 ;
+  wire \$118 ;
+  wire \$119 ;
+  wire [4:0] \$12 ;
+  wire \$120 ;
+  wire \$121 ;
+  wire [2:0] \$126 ;
+  wire [2:0] \$127 ;
+  (* unused_bits = "6 7" *)
+  wire [7:0] \$13 ;
+  wire \$134 ;
+  wire \$136 ;
+  wire \$137 ;
+  wire \$139 ;
+  wire \$142 ;
+  wire \$143 ;
+  wire [33:0] \$144 ;
+  wire \$15 ;
+  (* unused_bits = "7" *)
+  wire [7:0] \$154 ;
+  (* unused_bits = "7" *)
+  wire [7:0] \$157 ;
+  wire [7:0] \$160 ;
+  wire [6:0] \$161 ;
+  wire [6:0] \$162 ;
+  wire [6:0] \$163 ;
+  wire [6:0] \$167 ;
+  (* unused_bits = "7" *)
+  wire [7:0] \$168 ;
+  wire \$180 ;
+  wire \$181 ;
+  wire \$182 ;
+  wire \$183 ;
+  wire \$184 ;
+  (* unused_bits = "7" *)
+  wire [7:0] \$19 ;
+  wire \$193 ;
+  wire \$194 ;
+  wire \$195 ;
+  wire \$196 ;
+  wire \$197 ;
+  wire [6:0] \$2 ;
+  wire \$20 ;
+  wire [2:0] \$203 ;
+  wire [2:0] \$204 ;
+  wire [2:0] \$206 ;
+  wire \$207 ;
+  wire \$208 ;
+  wire \$209 ;
+  wire [2:0] \$210 ;
+  wire [3:0] \$211 ;
+  (* unused_bits = "0 1 2 3 4 5 7" *)
+  wire [7:0] \$212 ;
+  (* unused_bits = "7" *)
+  wire [7:0] \$213 ;
+  wire \$214 ;
+  (* unused_bits = "4 5 6 7" *)
+  wire [7:0] \$215 ;
+  wire [3:0] \$216 ;
+  wire [3:0] \$217 ;
+  wire \$218 ;
+  wire [3:0] \$219 ;
+  wire \$22 ;
+  wire [3:0] \$220 ;
+  wire [3:0] \$221 ;
+  wire [3:0] \$222 ;
+  wire \$223 ;
+  wire \$224 ;
+  wire \$225 ;
+  wire [3:0] \$226 ;
+  wire [3:0] \$227 ;
+  wire \$228 ;
+  wire \$229 ;
+  wire \$23 ;
+  wire [3:0] \$230 ;
+  wire [3:0] \$231 ;
+  wire \$232 ;
+  wire [3:0] \$233 ;
+  wire [3:0] \$234 ;
+  wire \$24 ;
+  wire \$27 ;
+  wire \$272 ;
+  wire \$273 ;
+  wire [6:0] \$274 ;
+  wire [6:0] \$275 ;
+  wire [6:0] \$276 ;
+  wire \$277 ;
+  wire \$278 ;
+  wire [2:0] \$279 ;
+  wire [3:0] \$280 ;
+  wire [3:0] \$281 ;
+  wire \$282 ;
+  wire [33:0] \$284 ;
+  wire \$285 ;
+  wire [6:0] \$287 ;
+  wire [6:0] \$288 ;
+  wire \$29 ;
+  (* unused_bits = "0 1 7" *)
+  wire [7:0] \$3 ;
+  wire [6:0] \$33 ;
+  wire \$4 ;
+  wire [6:0] \$41 ;
+  wire [5:0] \$42 ;
+  (* unused_bits = "0 1 2 3 4" *)
+  wire [5:0] \$43 ;
+  wire \$5 ;
+  wire [6:0] \$50 ;
+  wire [6:0] \$51 ;
+  wire [6:0] \$59 ;
+  wire \$6 ;
+  wire [5:0] \$60 ;
+  (* unused_bits = "0 1 2 3 4" *)
+  wire [5:0] \$61 ;
+  wire [6:0] \$68 ;
+  wire [6:0] \$69 ;
+  wire [6:0] \$70 ;
+  wire [5:0] \$78 ;
+  (* unused_bits = "0 1 2 3 4" *)
+  wire [5:0] \$79 ;
+  wire [6:0] \$86 ;
+  (* unused_bits = "6" *)
+  wire [6:0] \$87 ;
+  (* unused_bits = "7" *)
+  wire [7:0] \$88 ;
+  wire \$89 ;
+  wire \$90 ;
+  wire \$91 ;
+  wire \$92 ;
+  wire \$93 ;
+  wire \$94 ;
+  wire \$95 ;
+  wire \$96 ;
+  wire \$97 ;
+  wire \$98 ;
+  wire \$99 ;
+  wire [6:0] choice_199_Y ;
+  wire [6:0] choice_203_Y ;
+  wire choice_218_Y ;
+  wire choice_220_Y ;
+  wire choice_223_Y ;
+  wire choice_225_Y ;
+  wire [33:0] choice_229_Y ;
+  wire [3:0] choice_237_Y ;
+  wire [3:0] choice_239_Y ;
+  wire [3:0] choice_241_Y ;
+  wire [3:0] choice_245_Y ;
+  wire [3:0] choice_247_Y ;
+  wire [3:0] choice_249_Y ;
+  wire [2:0] choice_253_Y ;
+  wire choice_257_Y ;
+  wire choice_259_Y ;
+  wire choice_263_Y ;
+  wire choice_265_Y ;
+  wire choice_267_Y ;
+  input aclk;
+  wire aclk;
+  wire [3:0] at;
+  reg bad = 1'h0;
+  input [73:0] beat;
+  wire [73:0] beat;
+  wire [73:0] \beat$24 ;
+  wire [3:0] \beat$24.at ;
+  wire [3:0] \beat$24.count ;
+  wire [63:0] \beat$24.data ;
+  wire \beat$24.last ;
+  wire \beat$24.valid ;
+  wire [3:0] \beat.at ;
+  wire [3:0] \beat.count ;
+  wire [63:0] \beat.data ;
+  wire \beat.last ;
+  wire \beat.valid ;
+  wire [6:0] behind;
+  wire [6:0] behind_map;
+  wire blind;
+  wire [5:0] body_amount;
+  (* unused_bits = "0 1 2 3 4 5 6" *)
+  wire [6:0] body_low;
   (* unused_bits = "0 1 2" *)
-  wire [5:0] taken;
-  wire valid_0;
-  assign \$1  = first + 1'h0;
-  assign valid_0 = fill > 1'h0;
-  assign ends_0 = valid_0 & beat_0[72];
-  assign \$3  = ! offset[4:3];
-  assign \$4  = ! offset[4:3];
-  assign \$5  = ! offset[4:3];
-  assign \$6  = ! offset[4:3];
-  assign \$7  = ! offset[4:3];
-  assign \$8  = ! offset[4:3];
-  assign \$9  = ! offset[4:3];
-  assign \$10  = ! offset[4:3];
-  assign \$11  = beat_0[71:64] & { \$10 , \$9 , \$8 , \$7 , \$6 , \$5 , \$4 , \$3  };
-  assign \port$341$0  = \$11  & { valid_0, valid_0, valid_0, valid_0, valid_0, valid_0, valid_0, valid_0 };
-  assign \$13  = ! offset[4:3];
-  assign \$14  = \$13  | beat_0[72];
-  assign held = valid_0 & \$14 ;
-  assign \$15  = ! offset[4:3];
-  assign \$16  = beat_0[64] + beat_0[65];
-  assign \$17  = \$16  + beat_0[66];
-  assign \$18  = \$17  + beat_0[67];
-  assign \$19  = \$18  + beat_0[68];
-  assign \$20  = \$19  + beat_0[69];
-  assign \$21  = \$20  + beat_0[70];
-  assign \$22  = \$21  + beat_0[71];
-  assign { \$23 [7:4], first_bytes } = \$15  ? \$22  : 8'h00;
-  assign taken = offset + count;
-  assign \$24  = ~ ends_0;
-  assign \$25  = valid_0 & \$24 ;
-  assign \$26  = taken[5:3] > 1'h0;
-  assign \$27  = \$25  & \$26 ;
-  assign \$28  = ~ ends_0;
-  assign \$29  = valid_0 & \$28 ;
-  assign \$30  = offset[4:3] > 1'h0;
-  assign \$31  = \$29  & \$30 ;
-  assign \$32  = take ? pops_taken : pops_idle;
-  assign \$33  = drop ? 1'h1 : \$32 ;
-  assign pops = finish ? pops_finished : \$33 ;
-  assign \$34  = packets__valid & packets__ready;
-  assign \$35  = free + 1'h1;
-  assign \$37  = ~ packets__payload[68];
-  assign \$38  = packets__payload[67:64] > 1'h0;
-  assign \$39  = \$37  | \$38 ;
-  assign \$40  = ~ packets__payload[68];
-  assign \$41  = packets__payload[67:64] > 1'h1;
-  assign \$42  = \$40  | \$41 ;
-  assign \$43  = ~ packets__payload[68];
-  assign \$44  = packets__payload[67:64] > 2'h2;
-  assign \$45  = \$43  | \$44 ;
-  assign \$46  = ~ packets__payload[68];
-  assign \$47  = packets__payload[67:64] > 2'h3;
-  assign \$48  = \$46  | \$47 ;
-  assign \$49  = ~ packets__payload[68];
-  assign \$50  = packets__payload[67:64] > 3'h4;
-  assign \$51  = \$49  | \$50 ;
-  assign \$52  = ~ packets__payload[68];
-  assign \$53  = packets__payload[67:64] > 3'h5;
-  assign \$54  = \$52  | \$53 ;
-  assign \$55  = ~ packets__payload[68];
-  assign \$56  = packets__payload[67:64] > 3'h6;
-  assign \$57  = \$55  | \$56 ;
-  assign \$58  = ~ packets__payload[68];
-  assign \$59  = packets__payload[67:64] > 3'h7;
-  assign \$60  = \$58  | \$59 ;
-  assign \$62  = ~ packets__payload[68];
-  assign \$63  = packets__payload[67:64] > 1'h0;
-  assign \$64  = \$62  | \$63 ;
-  assign \$65  = ~ packets__payload[68];
-  assign \$66  = packets__payload[67:64] > 1'h1;
-  assign \$67  = \$65  | \$66 ;
-  assign \$68  = ~ packets__payload[68];
-  assign \$69  = packets__payload[67:64] > 2'h2;
-  assign \$70  = \$68  | \$69 ;
-  assign \$71  = ~ packets__payload[68];
-  assign \$72  = packets__payload[67:64] > 2'h3;
-  assign \$73  = \$71  | \$72 ;
-  assign \$74  = ~ packets__payload[68];
-  assign \$75  = packets__payload[67:64] > 3'h4;
-  assign \$76  = \$74  | \$75 ;
-  assign \$77  = ~ packets__payload[68];
-  assign \$78  = packets__payload[67:64] > 3'h5;
-  assign \$79  = \$77  | \$78 ;
-  assign \$80  = ~ packets__payload[68];
-  assign \$81  = packets__payload[67:64] > 3'h6;
-  assign \$82  = \$80  | \$81 ;
-  assign \$83  = ~ packets__payload[68];
-  assign \$84  = packets__payload[67:64] > 3'h7;
-  assign \$85  = \$83  | \$84 ;
-  assign \$86  = fill - pops;
-  assign \$87  = packets__valid & packets__ready;
-  assign \$88  = $signed(\$86 ) + $signed({ 1'h0, \$87  });
-  assign \$89  = first + pops;
-  assign \$90  = finish | drop;
-  assign \$91  = taken[5:3] - pops;
-  assign \$92  = offset[4:3] - pops;
+  wire [2:0] body_mask;
+  wire body_rest;
+  wire [6:0] body_sum;
+  wire closes;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  reg [2:0] code = 3'h0;
+  wire cut;
+  wire done;
+  wire [6:0] early_last;
+  input ended;
+  wire ended;
+  wire ends;
+  wire [5:0] exit_amount;
+  (* unused_bits = "0 1 2 3 4 5 6" *)
+  wire [6:0] exit_low;
+  wire [2:0] exit_mask;
+  wire exit_rest;
+  wire [6:0] exit_sum;
+  reg [6:0] first = 7'h00;
+  input [3:0] following;
+  wire [3:0] following;
+  wire good;
+  output [3:0] header_at;
+  wire [3:0] header_at;
+  wire [6:0] header_within;
+  wire issue;
+  (* unused_bits = "6" *)
+  wire [6:0] items_at;
+  reg [3:0] items_room = 4'h0;
+  wire [3:0] items_wanted;
+  reg [6:0] last = 7'h07;
+  wire leaves;
+  wire leaves_0;
+  wire leaves_1;
+  wire leaves_2;
+  wire leaves_3;
+  wire leaves_4;
+  wire leaves_5;
+  (* unused_bits = "0 1" *)
+  wire [6:0] left;
+  input [6:0] limit;
+  wire [6:0] limit;
+  wire [6:0] map_at;
+  reg [3:0] map_room = 4'h0;
+  wire mismatch;
+  wire \mismatch$34 ;
+  wire [6:0] next_last;
+  (* unused_bits = "0 1 2 3 4 5 6" *)
+  wire [6:0] next_packet;
+  output next_sig;
+  wire next_sig;
+  wire [33:0] next_state;
+  wire nonzero;
+  reg noted = 1'h0;
+  wire [6:0] nul_at;
+  wire [6:0] \nul_at$26 ;
+  output [41:0] orders__payload;
+  wire [41:0] orders__payload;
+  wire \orders__payload.blank ;
+  wire \orders__payload.counted ;
+  wire \orders__payload.ends ;
+  wire \orders__payload.final ;
+  wire [3:0] \orders__payload.first ;
+  wire \orders__payload.items ;
+  wire [5:0] \orders__payload.items_at ;
+  wire [3:0] \orders__payload.items_bytes ;
+  wire [2:0] \orders__payload.items_next ;
+  wire \orders__payload.last ;
+  wire [5:0] \orders__payload.map_at ;
+  wire [3:0] \orders__payload.map_bytes ;
+  wire [2:0] \orders__payload.map_next ;
+  (* enum_base_type = "Status" *)
+  (* enum_value_000 = "OK" *)
+  (* enum_value_001 = "TRUNCATED" *)
+  (* enum_value_010 = "TRAILING" *)
+  (* enum_value_011 = "LENGTH" *)
+  (* enum_value_100 = "ENCAPSULATION" *)
+  (* enum_value_101 = "STRING" *)
+  (* enum_value_110 = "ITEMS" *)
+  wire [2:0] \orders__payload.status ;
+  wire [2:0] \orders__payload.step ;
+  input orders__ready;
+  wire orders__ready;
+  output orders__valid;
+  wire orders__valid;
+  wire present;
+  reg rest = 1'h0;
+  input rst;
+  wire rst;
+  wire sighted;
+  reg [33:0] state = 34'h200840c81;
+  wire [4:0] \state.back ;
+  wire \state.counted ;
+  wire \state.end ;
+  wire [5:0] \state.exit_add ;
+  wire \state.exit_is ;
+  wire [2:0] \state.exit_low ;
+  wire [2:0] \state.exit_mask ;
+  wire \state.exit_rest ;
+  wire \state.lead ;
+  wire \state.loop_begin ;
+  wire \state.plain ;
+  wire \state.rest ;
+  wire \state.run_begin ;
+  wire [6:0] \state.step ;
+  wire \state.words ;
+  wire [5:0] tail;
+  (* unused_bits = "0 1" *)
+  wire [1:0] trailing;
+  wire \trailing$31 ;
+  wire words_down;
+  wire words_keeps;
+  reg words_last = 1'h1;
+  wire words_loads;
+  wire wrong_nul;
+  assign { \$1 [7], behind } = last + 1'h1;
+  assign \$2  = ~ last;
+  assign { \$3 [7], left } = limit + \$2 ;
+  assign present = ~ left[6];
+  assign \$4  = state[14] & words_last;
+  assign leaves = state[18] | \$4 ;
+  assign \$5  = state[12] | state[13];
+  assign \$6  = \$5  & bad;
+  assign done = leaves | \$6 ;
+  assign \$10  = state[5] & leaves;
+  assign ends = state[19] | \$10 ;
+  assign closes = ends & ended;
+  assign { \$11 [8:7], map_at } = $signed({ 1'h0, last }) + $signed(state[11:7]);
+  assign \$12  = map_at[6:3] - state[17];
+  assign { \$13 [7], items_at } = state[16] ? { 1'h0, first } : { \$12 , map_at[2:0] };
+  assign \$15  = | left[5:2];
+  assign \trailing$31  = present & \$15 ;
+  assign { \$19 [7], header_within } = limit - first;
+  assign \$20  = state[0] & \mismatch$34 ;
+  assign \$22  = ~ header_within[6];
+  assign \$23  = \$20  & \$22 ;
+  assign \$24  = | header_within;
+  assign mismatch = \$23  & \$24 ;
+  assign \$27  = state[0] & \mismatch$34 ;
+  assign \$29  = ~ \$27 ;
+  assign good = present & \$29 ;
+  assign cut = ended & left[6];
+  assign \$33  = ~ last;
+  assign \$41  = limit ^ \$33 ;
+  assign \$42  = $signed(2'h1) - $signed(state[11:7]);
+  assign \$43  = $signed(2'h1) - $signed(state[11:7]);
+  assign \$50  = \$41  ^ { \$43 [5], \$42  };
+  assign \$51  = ~ last;
+  assign \$59  = limit & \$51 ;
+  assign \$60  = $signed(2'h1) - $signed(state[11:7]);
+  assign \$61  = $signed(2'h1) - $signed(state[11:7]);
+  assign \$68  = limit & { \$61 [5], \$60  };
+  assign \$69  = \$59  | \$68 ;
+  assign \$70  = ~ last;
+  assign \$78  = $signed(2'h1) - $signed(state[11:7]);
+  assign \$79  = $signed(2'h1) - $signed(state[11:7]);
+  assign \$86  = \$70  & { \$79 [5], \$78  };
+  assign \$87  = \$69  | \$86 ;
+  assign { \$88 [7], behind_map } = \$50  + { \$87 [5:0], 1'h0 };
+  assign \$89  = ~ noted;
+  assign \$90  = bad & \$89 ;
+  assign \$91  = ~ state[19];
+  assign \$92  = \$91  | ended;
+  assign blind = \$90  & \$92 ;
+  assign \$93  = ~ bad;
+  assign \$94  = ~ ends;
+  assign \$95  = \$94  | ended;
+  assign sighted = \$93  & \$95 ;
+  assign \$96  = sighted & good;
+  assign orders__valid = blind | \$96 ;
+  assign \$97  = blind & orders__ready;
+  assign \$98  = sighted & orders__ready;
+  assign \$99  = \$98  & good;
+  assign issue = \$97  | \$99 ;
+  assign \$100  = blind & orders__ready;
+  assign \$101  = \$100  & closes;
+  assign \$102  = sighted & orders__ready;
+  assign \$103  = \$102  & closes;
+  assign \$104  = \$103  & good;
+  assign next_sig = \$101  | \$104 ;
+  assign items_wanted = state[16] ? 4'h0 : 4'h8;
+  assign \$105  = | { state[5], state[3], state[1] };
+  assign \$106  = | state[3:2];
+  assign \$107  = | state[5:4];
+  assign \$108  = items_at[5:3] + 1'h1;
+  assign \$109  = map_at[5:3] + 1'h1;
+  assign \$110  = items_room >= items_wanted;
+  assign \$111  = ~ \$110 ;
+  assign \$112  = bad & \$111 ;
+  assign \$113  = \$112  ? items_room : items_wanted;
+  assign \$114  = bad ? map_room : 4'h8;
+  assign \$116  = state[16] & rest;
+  assign \$117  = \$116  | state[15];
+  assign \$118  = ~ state[15];
+  assign \$119  = words_last & \$118 ;
+  assign \$120  = state[16] | \$119 ;
+  assign \$121  = ~ bad;
+  assign \$126  = \trailing$31  ? 3'h2 : 3'h0;
+  assign \$127  = bad ? code : \$126 ;
+  assign \$134  = | state[5:0];
+  assign \$136  = | state[4:0];
+  assign \$137  = | state[4:0];
+  assign \$139  = | state[4:0];
+  assign \$142  = | state[3:0];
+  assign \$143  = | state[4:0];
+  assign \$144  = done ? { \$143 , 9'h000, \$142 , state[3], 2'h0, state[5], \$139 , state[4], 5'h00, \$137 , \$136 , state[4], 1'h0, \$134 , state[5:0], 1'h0 } : 34'h000000000;
+  assign next_state = closes ? 34'h200840c81 : \$144 ;
+  assign exit_amount = state[32] ? 6'h00 : state[25:20];
+  assign { \$154 [7], exit_sum } = last + exit_amount;
+  assign { \$157 [7], body_sum } = last + 6'h00;
+  assign \$160  = { following, 3'h0 } + 3'h7;
+  assign \$161  = ~ { 4'h0, state[28:26] };
+  assign \$162  = exit_sum & \$161 ;
+  assign \$163  = \$162  | { 4'h0, state[31:29] };
+  assign \$167  = leaves ? \$163  : body_sum;
+  assign { \$168 [7], next_last } = closes ? \$160  : { 1'h0, \$167  };
+  assign \$180  = mismatch | cut;
+  assign \$181  = ~ ended;
+  assign \$182  = ends & \$181 ;
+  assign \$183  = \$182  & \trailing$31 ;
+  assign \$184  = \$180  | \$183 ;
+  assign \$193  = mismatch | cut;
+  assign \$194  = ~ ended;
+  assign \$195  = ends & \$194 ;
+  assign \$196  = \$195  & \trailing$31 ;
+  assign \$197  = \$193  | \$196 ;
+  assign \$203  = ends ? 3'h2 : 3'h3;
+  assign \$204  = cut ? 3'h1 : \$203 ;
+  assign \$206  = mismatch ? 3'h4 : \$204 ;
+  assign \$207  = blind & orders__ready;
+  assign \$208  = code == 1'h1;
+  assign \$209  = & behind_map[6:3];
+  assign \$210  = \$209  ? behind_map[2:0] : 3'h0;
+  assign \$211  = behind_map[6] ? { 1'h0, \$210  } : 4'h8;
+  assign \$212  = limit - first;
+  assign \$213  = limit - first;
+  assign \$214  = \$213 [6:0] >= 4'h8;
+  assign \$215  = limit - first;
+  assign \$216  = \$214  ? 4'h8 : \$215 [3:0];
+  assign \$217  = \$212 [6] ? 4'h0 : \$216 ;
+  assign \$218  = behind_map >= 4'h8;
+  assign \$219  = \$218  ? 4'h8 : behind_map[3:0];
+  assign \$220  = behind_map[6] ? 4'h0 : \$219 ;
+  assign \$221  = state[16] ? \$217  : \$220 ;
+  assign \$222  = state[17] ? \$211  : \$221 ;
+  assign \$223  = code == 2'h2;
+  assign \$224  = code == 3'h5;
+  assign \$225  = \$223  | \$224 ;
+  assign \$226  = \$225  ? 4'h8 : 4'h0;
+  assign \$227  = \$208  ? \$222  : \$226 ;
+  assign \$228  = code == 1'h1;
+  assign \$229  = behind_map >= 4'h8;
+  assign \$230  = \$229  ? 4'h8 : behind_map[3:0];
+  assign \$231  = behind_map[6] ? 4'h0 : \$230 ;
+  assign \$232  = code == 2'h2;
+  assign \$233  = \$232  ? 4'h8 : 4'h0;
+  assign \$234  = \$228  ? \$231  : \$233 ;
+  assign \$272  = bad & state[19];
+  assign \$273  = issue | \$272 ;
+  assign \$274  = state[19] ? limit : first;
+  assign \$275  = bad ? \$274  : behind;
+  assign \$276  = closes ? { following, 3'h0 } : \$275 ;
   always @(posedge aclk)
-    free <= \$93 ;
+    bad <= \$277 ;
   always @(posedge aclk)
-    slot_0 <= \$94 ;
+    noted <= \$278 ;
   always @(posedge aclk)
-    slot_1 <= \$95 ;
+    code <= \$279 ;
   always @(posedge aclk)
-    fill <= \$96 ;
+    items_room <= \$280 ;
   always @(posedge aclk)
-    first <= \$97 ;
+    map_room <= \$281 ;
   always @(posedge aclk)
-    offset <= \$98 ;
-  assign packets__ready = fill < 2'h2;
-  assign choice_11_Y  = \$90  ? (* full_case = 32'd1 *) 3'h0 : choice_9_Y ;
-  assign \$98 [2:0] = rst ? 3'h0 : choice_11_Y ;
-  assign \$97  = rst ? 1'h0 : \$89 [0];
-  assign \$96  = rst ? 2'h0 : \$88 [1:0];
-  assign choice_19_Y  = free ? packets__payload[68] : slot_1[72];
-  assign choice_2_Y  = take ? (* full_case = 32'd1 *) \$91 [1:0] : \$92 [1:0];
-  assign choice_21_Y  = \$34  ? choice_19_Y  : slot_1[72];
-  assign \$95 [72] = rst ? 1'h0 : choice_21_Y ;
-  assign choice_25_Y  = free ? packets__payload[63:0] : slot_1[63:0];
-  assign choice_27_Y  = \$34  ? choice_25_Y  : slot_1[63:0];
-  assign \$95 [63:0] = rst ? 64'h0000000000000000 : choice_27_Y ;
-  assign choice_31_Y  = free ? { \$85 , \$82 , \$79 , \$76 , \$73 , \$70 , \$67 , \$64  } : slot_1[71:64];
-  assign choice_33_Y  = \$34  ? choice_31_Y  : slot_1[71:64];
-  assign \$95 [71:64] = rst ? 8'h00 : choice_33_Y ;
-  assign choice_37_Y  = free ? slot_0[72] : packets__payload[68];
-  assign choice_39_Y  = \$34  ? choice_37_Y  : slot_0[72];
-  assign choice_4_Y  = \$90  ? (* full_case = 32'd1 *) 2'h0 : choice_2_Y ;
-  assign \$94 [72] = rst ? 1'h0 : choice_39_Y ;
-  assign choice_43_Y  = free ? slot_0[63:0] : packets__payload[63:0];
-  assign choice_45_Y  = \$34  ? choice_43_Y  : slot_0[63:0];
-  assign \$94 [63:0] = rst ? 64'h0000000000000000 : choice_45_Y ;
-  assign choice_49_Y  = free ? slot_0[71:64] : { \$60 , \$57 , \$54 , \$51 , \$48 , \$45 , \$42 , \$39  };
-  assign choice_51_Y  = \$34  ? choice_49_Y  : slot_0[71:64];
-  assign \$94 [71:64] = rst ? 8'h00 : choice_51_Y ;
-  assign choice_55_Y  = \$34  ? \$35 [0] : free;
-  assign \$93  = rst ? 1'h0 : choice_55_Y ;
-  assign pops_finished = valid_0 ? 1'h1 : 1'h0;
-  assign \$98 [4:3] = rst ? 2'h0 : choice_4_Y ;
-  assign pops_idle = \$31  ? 1'h1 : 1'h0;
-  assign pops_taken = \$27  ? 1'h1 : 1'h0;
-  function [72:0] choice_65 ;
-    input [72:0] a;
-    input [145:0] b;
-    input [1:0] s;
-    (* full_case = 32'd1 *)
-    (* parallel_case *)
-    casez (s)
-      2'b?1:
-        choice_65  = b[72:0];
-      2'b1?:
-        choice_65  = b[145:73];
-      default:
-        choice_65  = a;
-    endcase
-  endfunction
-  assign beat_0 = choice_65 (73'hxxxxxxxxxxxxxxxxxxx, { slot_0, slot_1 }, { choice_67_CMP , \$1 [0] });
-  assign choice_67_CMP  = ~ (* full_case = 32'd1 *) \$1 [0];
-  assign choice_9_Y  = take ? (* full_case = 32'd1 *) 3'h0 : offset[2:0];
-  assign \packets__payload.last  = packets__payload[68];
-  assign \packets__payload.count  = packets__payload[67:64];
-  assign \packets__payload.data[7]  = packets__payload[63:56];
-  assign \packets__payload.data[6]  = packets__payload[55:48];
-  assign \packets__payload.data[5]  = packets__payload[47:40];
-  assign \packets__payload.data[4]  = packets__payload[39:32];
-  assign \packets__payload.data[3]  = packets__payload[31:24];
-  assign \packets__payload.data[2]  = packets__payload[23:16];
-  assign \packets__payload.data[1]  = packets__payload[15:8];
-  assign \packets__payload.data[0]  = packets__payload[7:0];
-  assign \packets__payload.data  = packets__payload[63:0];
-  assign \data[7]  = beat_0[63:56];
-  assign \data[6]  = beat_0[55:48];
-  assign \data[5]  = beat_0[47:40];
-  assign \data[4]  = beat_0[39:32];
-  assign \data[3]  = beat_0[31:24];
-  assign \data[2]  = beat_0[23:16];
-  assign \data[1]  = beat_0[15:8];
-  assign \data[0]  = beat_0[7:0];
-  assign \slot_1.last  = slot_1[72];
-  assign \slot_1.keep  = slot_1[71:64];
-  assign \slot_1.data  = slot_1[63:0];
-  assign \slot_0.last  = slot_0[72];
-  assign \slot_0.keep  = slot_0[71:64];
-  assign \slot_0.data  = slot_0[63:0];
-  assign \beat_0.last  = beat_0[72];
-  assign \beat_0.keep  = beat_0[71:64];
-  assign \beat_0.data  = beat_0[63:0];
-  assign \$23 [3:0] = first_bytes;
-  assign ended = ends_0;
-  assign data = beat_0[63:0];
-  assign past = taken;
-  assign first_last = ends_0;
-  assign have = { 4'h0, \port$341$0  };
+    words_last <= \$282 ;
+  always @(posedge aclk)
+    state <= \$284 ;
+  always @(posedge aclk)
+    rest <= \$285 ;
+  always @(posedge aclk)
+    first <= \$287 ;
+  always @(posedge aclk)
+    last <= \$288 ;
+  assign choice_199_Y  = issue ? next_last : last;
+  assign \$288  = rst ? 7'h07 : choice_199_Y ;
+  assign choice_203_Y  = \$273  ? \$276  : first;
+  assign \$287  = rst ? 7'h00 : choice_203_Y ;
+  assign choice_218_Y  = state[16] ? 1'h0 : rest;
+  assign choice_220_Y  = state[12] ? 1'h0 : choice_218_Y ;
+  assign choice_223_Y  = closes ? (* full_case = 32'd1 *) 1'h0 : choice_220_Y ;
+  assign choice_225_Y  = issue ? choice_223_Y  : rest;
+  assign \$285  = rst ? 1'h0 : choice_225_Y ;
+  assign choice_229_Y  = issue ? next_state : state;
+  assign \$284  = rst ? 34'h200840c81 : choice_229_Y ;
+  assign \$282  = rst ? 1'h1 : words_last;
+  assign choice_237_Y  = \$207  ? 4'h0 : map_room;
+  assign choice_239_Y  = noted ? \$234  : choice_237_Y ;
+  assign choice_241_Y  = bad ? choice_239_Y  : map_room;
+  assign \$281  = rst ? 4'h0 : choice_241_Y ;
+  assign choice_245_Y  = \$207  ? 4'h0 : items_room;
+  assign choice_247_Y  = noted ? \$227  : choice_245_Y ;
+  assign choice_249_Y  = bad ? choice_247_Y  : items_room;
+  assign \$280  = rst ? 4'h0 : choice_249_Y ;
+  assign choice_253_Y  = bad ? code : \$206 ;
+  assign \$279  = rst ? 3'h0 : choice_253_Y ;
+  assign choice_257_Y  = bad ? noted : \$197 ;
+  assign choice_259_Y  = bad ? 1'h0 : choice_257_Y ;
+  assign \$278  = rst ? 1'h0 : choice_259_Y ;
+  assign choice_263_Y  = bad ? bad : \$184 ;
+  assign choice_265_Y  = closes ? 1'h0 : choice_263_Y ;
+  assign choice_267_Y  = issue ? choice_265_Y  : choice_263_Y ;
+  assign \$277  = rst ? 1'h0 : choice_267_Y ;
+  assign orders__payload = { \$127 , closes, first[6:3], 1'h0, \$121 , \$120 , \$117 , \$114 , \$113 , \$109 [2:0], \$108 [2:0], map_at[5:0], items_at[5:0], state[19], \$107 , \$106 , \$105  };
+  assign next_packet = { following, 3'h0 };
+  assign exit_low = { 4'h0, state[31:29] };
+  assign body_mask = 3'h0;
+  assign body_low = 7'h00;
+  \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer.marks  marks (
+    .aclk(aclk),
+    .beat(beat),
+    .header_at(first[6:3]),
+    .mismatch(\mismatch$34 ),
+    .rst(rst)
+  );
+  assign \state.step  = state[6:0];
+  assign \state.back  = state[11:7];
+  assign \state.run_begin  = state[12];
+  assign \state.loop_begin  = state[13];
+  assign \state.words  = state[14];
+  assign \state.counted  = state[15];
+  assign \state.rest  = state[16];
+  assign \state.lead  = state[17];
+  assign \state.plain  = state[18];
+  assign \state.end  = state[19];
+  assign \state.exit_add  = state[25:20];
+  assign \state.exit_mask  = state[28:26];
+  assign \state.exit_low  = state[31:29];
+  assign \state.exit_rest  = state[32];
+  assign \state.exit_is  = state[33];
+  assign \beat.data  = beat[63:0];
+  assign \beat.count  = beat[67:64];
+  assign \beat.last  = beat[68];
+  assign \$168 [6:0] = next_last;
+  assign \beat.at  = beat[72:69];
+  assign \beat.valid  = beat[73];
+  assign \beat$24.data  = beat[63:0];
+  assign \beat$24.count  = beat[67:64];
+  assign \beat$24.last  = beat[68];
+  assign \$157 [6:0] = body_sum;
+  assign \beat$24.at  = beat[72:69];
+  assign \beat$24.valid  = beat[73];
+  assign \$154 [6:0] = exit_sum;
+  assign \orders__payload.step  = orders__payload[2:0];
+  assign \orders__payload.blank  = orders__payload[3];
+  assign \orders__payload.items_at  = orders__payload[9:4];
+  assign \orders__payload.map_at  = orders__payload[15:10];
+  assign \orders__payload.items_next  = orders__payload[18:16];
+  assign \orders__payload.map_next  = orders__payload[21:19];
+  assign \orders__payload.items_bytes  = orders__payload[25:22];
+  assign \orders__payload.map_bytes  = orders__payload[29:26];
+  assign \orders__payload.items  = orders__payload[30];
+  assign \orders__payload.last  = orders__payload[31];
+  assign \orders__payload.counted  = orders__payload[32];
+  assign \orders__payload.final  = orders__payload[33];
+  assign \orders__payload.first  = orders__payload[37:34];
+  assign \orders__payload.ends  = orders__payload[38];
+  assign \orders__payload.status  = orders__payload[41:39];
+  assign \$88 [6:0] = behind_map;
+  assign \$19 [6:0] = header_within;
+  assign \$13 [6:0] = items_at;
+  assign \$11 [6:0] = map_at;
+  assign \$3 [6:0] = left;
+  assign \$1 [6:0] = behind;
+  assign header_at = first[6:3];
+  assign early_last = next_last;
+  assign body_amount = 6'h00;
+  assign body_rest = 1'h0;
+  assign exit_mask = state[28:26];
+  assign tail = 6'h00;
+  assign exit_rest = state[32];
+  assign words_keeps = 1'h1;
+  assign words_down = 1'h0;
+  assign words_loads = 1'h0;
+  assign at = first[6:3];
+  assign nonzero = 1'h0;
+  assign wrong_nul = 1'h0;
+  assign \nul_at$26  = 7'h00;
+  assign nul_at = 7'h00;
+  assign \beat$24  = beat;
+  assign trailing = left[1:0];
+  assign leaves_5 = state[5];
+  assign leaves_4 = state[4];
+  assign leaves_3 = state[3];
+  assign leaves_2 = state[2];
+  assign leaves_1 = state[1];
+  assign leaves_0 = state[0];
+endmodule
+
+module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer.marks (rst, mismatch, beat, header_at, aclk);
+  wire \$1 ;
+  wire \$10 ;
+  wire \$2 ;
+  wire \$3 ;
+  wire \$4 ;
+  wire \$5 ;
+  wire \$6 ;
+  wire \$7 ;
+  wire \$8 ;
+  wire \$9 ;
+  input aclk;
+  wire aclk;
+  input [73:0] beat;
+  wire [73:0] beat;
+  (* unused_bits = "3" *)
+  wire [3:0] \beat.at ;
+  wire [3:0] \beat.count ;
+  (* unused_bits = "16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63" *)
+  wire [63:0] \beat.data ;
+  wire \beat.last ;
+  wire \beat.valid ;
+  input [3:0] header_at;
+  wire [3:0] header_at;
+  wire [2:0] headers__read__addr;
+  wire headers__read__data;
+  wire [2:0] headers__write__addr;
+  wire headers__write__data;
+  wire headers__write__en;
+  output mismatch;
+  wire mismatch;
+  input rst;
+  wire rst;
+  reg [0:0] headers [7:0];
+  initial begin
+    headers[0] = 1'h0;
+    headers[1] = 1'h0;
+    headers[2] = 1'h0;
+    headers[3] = 1'h0;
+    headers[4] = 1'h0;
+    headers[5] = 1'h0;
+    headers[6] = 1'h0;
+    headers[7] = 1'h0;
+  end
+  always @(posedge aclk) begin
+    if (beat[73])
+      headers[beat[71:69]] <= headers__write__data;
+  end
+  assign mismatch = headers[header_at[2:0]];
+  assign \$1  = | beat[7:0];
+  assign \$2  = ~ beat[68];
+  assign \$3  = beat[67:64] > 1'h0;
+  assign \$4  = \$2  | \$3 ;
+  assign \$5  = \$1  & \$4 ;
+  assign \$6  = beat[15:8] != 1'h1;
+  assign \$7  = ~ beat[68];
+  assign \$8  = beat[67:64] > 1'h1;
+  assign \$9  = \$7  | \$8 ;
+  assign \$10  = \$6  & \$9 ;
+  assign headers__write__data = | { \$10 , \$5  };
+  assign \beat.valid  = beat[73];
+  assign \beat.at  = beat[72:69];
+  assign \beat.last  = beat[68];
+  assign \beat.count  = beat[67:64];
+  assign \beat.data  = beat[63:0];
+  assign headers__read__data = mismatch;
+  assign headers__read__addr = header_at[2:0];
+  assign headers__write__en = beat[73];
+  assign headers__write__addr = beat[71:69];
 endmodule

@@ -2,7 +2,7 @@
 -- lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
 -- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 -- What each port means: manifest.json.
--- Module geometry_msgs_msg_twist_cdr_8_deserializer_flat of the Amaranth design.
+-- Module geometry_msgs_msg_Twist_cdr_8_deserializer of the Amaranth design.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -90,18 +90,18 @@ begin
     port map (
       aclk                          => aclk,
       packets_valid                 => s_axis_tvalid,
-      message_linear_x_ready        => linear_x_ready,
-      message_linear_y_ready        => linear_y_ready,
-      message_linear_z_ready        => linear_z_ready,
-      message_angular_x_ready       => angular_x_ready,
-      message_angular_y_ready       => angular_y_ready,
-      message_angular_z_ready       => angular_z_ready,
+      leaf_0_ready                  => linear_x_ready,
+      leaf_1_ready                  => linear_y_ready,
+      leaf_2_ready                  => linear_z_ready,
+      leaf_3_ready                  => angular_x_ready,
+      leaf_4_ready                  => angular_y_ready,
+      leaf_5_ready                  => angular_z_ready,
       status_ready                  => m_axis_status_tready,
       rst                           => rst,
-      packets_ready                 => s_axis_tready,
       packets_payload(63 downto 0)  => unsigned(s_axis_tdata),
       packets_payload(67 downto 64) => packets_payload_64,
       packets_payload(68)           => s_axis_tlast,
+      packets_ready                 => s_axis_tready,
       message_linear_x_valid        => linear_x_valid,
       message_linear_y_valid        => linear_y_valid,
       message_linear_z_valid        => linear_z_valid,
@@ -109,13 +109,13 @@ begin
       message_angular_y_valid       => angular_y_valid,
       message_angular_z_valid       => angular_z_valid,
       status_valid                  => m_axis_status_tvalid,
+      status_payload                => status_payload,
       message_linear_x_payload      => linear_x_data_i,
       message_linear_y_payload      => linear_y_data_i,
       message_linear_z_payload      => linear_z_data_i,
       message_angular_x_payload     => angular_x_data_i,
       message_angular_y_payload     => angular_y_data_i,
-      message_angular_z_payload     => angular_z_data_i,
-      status_payload                => status_payload
+      message_angular_z_payload     => angular_z_data_i
     );
 
   rst <= not aresetn;

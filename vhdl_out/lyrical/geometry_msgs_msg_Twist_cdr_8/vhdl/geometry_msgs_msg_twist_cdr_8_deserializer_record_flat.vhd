@@ -37,14 +37,14 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_record_flat is
   signal message_angular_x_valid   : std_logic;
   signal message_angular_y_valid   : std_logic;
   signal message_angular_z_valid   : std_logic;
+  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  signal status_payload            : unsigned(2 downto 0);
   signal message_linear_x_payload  : unsigned(63 downto 0);
   signal message_linear_y_payload  : unsigned(63 downto 0);
   signal message_linear_z_payload  : unsigned(63 downto 0);
   signal message_angular_x_payload : unsigned(63 downto 0);
   signal message_angular_y_payload : unsigned(63 downto 0);
   signal message_angular_z_payload : unsigned(63 downto 0);
-  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal status_payload            : unsigned(2 downto 0);
   signal message_angular_x_ready   : std_logic;
   signal rst                       : std_logic;
   signal or_13                     : std_logic;
@@ -79,11 +79,11 @@ begin
       packets_valid                 => s_axis_tvalid,
       status_ready                  => m_axis_status_tready,
       rst                           => rst,
-      packets_ready                 => s_axis_tready,
-      message_linear_x_ready        => message_angular_x_ready,
+      leaf_0_ready                  => message_angular_x_ready,
       packets_payload(63 downto 0)  => unsigned(s_axis_tdata),
       packets_payload(67 downto 64) => packets_payload_64,
       packets_payload(68)           => s_axis_tlast,
+      packets_ready                 => s_axis_tready,
       message_linear_x_valid        => message_linear_x_valid,
       message_linear_y_valid        => message_linear_y_valid,
       message_linear_z_valid        => message_linear_z_valid,
@@ -91,13 +91,13 @@ begin
       message_angular_y_valid       => message_angular_y_valid,
       message_angular_z_valid       => message_angular_z_valid,
       status_valid                  => m_axis_status_tvalid,
+      status_payload                => status_payload,
       message_linear_x_payload      => message_linear_x_payload,
       message_linear_y_payload      => message_linear_y_payload,
       message_linear_z_payload      => message_linear_z_payload,
       message_angular_x_payload     => message_angular_x_payload,
       message_angular_y_payload     => message_angular_y_payload,
-      message_angular_z_payload     => message_angular_z_payload,
-      status_payload                => status_payload
+      message_angular_z_payload     => message_angular_z_payload
     );
 
   record_sig : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_record

@@ -2,7 +2,7 @@
 -- lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
 -- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 -- What each port means: manifest.json.
--- Module geometry_msgs_msg_twist_cdr_8_serializer_flat of the Amaranth design.
+-- Module geometry_msgs_msg_Twist_cdr_8_serializer of the Amaranth design.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -80,33 +80,33 @@ begin
 
   core : entity work.geometry_msgs_msg_twist_cdr_8_serializer_flat_core
     port map (
-      aclk                      => aclk,
-      packets_ready             => m_axis_tready,
-      message_linear_x_payload  => unsigned(linear_x_data),
-      message_linear_x_valid    => linear_x_valid,
-      message_linear_y_payload  => unsigned(linear_y_data),
-      message_linear_y_valid    => linear_y_valid,
-      message_linear_z_payload  => unsigned(linear_z_data),
-      message_linear_z_valid    => linear_z_valid,
-      message_angular_x_payload => unsigned(angular_x_data),
-      message_angular_x_valid   => angular_x_valid,
-      message_angular_y_payload => unsigned(angular_y_data),
-      message_angular_y_valid   => angular_y_valid,
-      message_angular_z_payload => unsigned(angular_z_data),
-      message_angular_z_valid   => angular_z_valid,
-      status_ready              => m_axis_status_tready,
-      rst                       => rst,
-      packets_valid             => m_axis_tvalid,
-      packet_error              => m_axis_tuser,
-      message_linear_x_ready    => linear_x_ready,
-      message_linear_y_ready    => linear_y_ready,
-      message_linear_z_ready    => linear_z_ready,
-      message_angular_x_ready   => angular_x_ready,
-      message_angular_y_ready   => angular_y_ready,
-      message_angular_z_ready   => angular_z_ready,
-      status_valid              => m_axis_status_tvalid,
-      status_payload            => status_payload,
-      packets_payload           => packets_payload
+      aclk                    => aclk,
+      packets_ready           => m_axis_tready,
+      leaf_0_payload          => unsigned(linear_x_data),
+      leaf_0_valid            => linear_x_valid,
+      leaf_1_payload          => unsigned(linear_y_data),
+      leaf_1_valid            => linear_y_valid,
+      leaf_2_payload          => unsigned(linear_z_data),
+      leaf_2_valid            => linear_z_valid,
+      leaf_3_payload          => unsigned(angular_x_data),
+      leaf_3_valid            => angular_x_valid,
+      leaf_4_payload          => unsigned(angular_y_data),
+      leaf_4_valid            => angular_y_valid,
+      leaf_5_payload          => unsigned(angular_z_data),
+      leaf_5_valid            => angular_z_valid,
+      status_ready            => m_axis_status_tready,
+      rst                     => rst,
+      message_linear_x_ready  => linear_x_ready,
+      message_linear_y_ready  => linear_y_ready,
+      message_linear_z_ready  => linear_z_ready,
+      message_angular_x_ready => angular_x_ready,
+      message_angular_y_ready => angular_y_ready,
+      message_angular_z_ready => angular_z_ready,
+      status_valid            => m_axis_status_tvalid,
+      status_payload          => status_payload,
+      packets_valid           => m_axis_tvalid,
+      packets_payload         => packets_payload,
+      packet_error            => m_axis_tuser
     );
 
   rst <= not aresetn;

@@ -17,6 +17,12 @@ entity geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record is
     aclk                      : in  std_logic;
     record_payload            : in  unsigned(383 downto 0);
     record_valid              : in  std_logic;
+    message_linear_x_ready    : in  std_logic;
+    message_linear_y_ready    : in  std_logic;
+    message_linear_z_ready    : in  std_logic;
+    message_angular_x_ready   : in  std_logic;
+    message_angular_y_ready   : in  std_logic;
+    message_angular_z_ready   : in  std_logic;
     message_linear_x_valid    : out std_logic;
     message_linear_y_valid    : out std_logic;
     message_linear_z_valid    : out std_logic;
@@ -24,12 +30,6 @@ entity geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record is
     message_angular_y_valid   : out std_logic;
     message_angular_z_valid   : out std_logic;
     taken                     : out std_logic;
-    message_linear_x_ready    : in  std_logic;
-    message_linear_y_ready    : in  std_logic;
-    message_linear_z_ready    : in  std_logic;
-    message_angular_x_ready   : in  std_logic;
-    message_angular_y_ready   : in  std_logic;
-    message_angular_z_ready   : in  std_logic;
     message_linear_x_payload  : out unsigned(63 downto 0);
     message_linear_y_payload  : out unsigned(63 downto 0);
     message_linear_z_payload  : out unsigned(63 downto 0);

@@ -1,0 +1,114 @@
+"""Time rosbags, in this Python, and genpy, in the one that it is installed for."""
+
+from __future__ import annotations
+
+import json
+import platform
+import subprocess
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+from firm_hdl.bench.software.sample import NoFigureError, Sample, Timed, check_written
+from firm_hdl.bench.software.timing import best_ns
+from firm_hdl.bench.tools import BenchError, MissingToolError
+from firm_hdl.verify.references.objects import full_text
+from firm_hdl.verify.references.user_oracle import oracle_name, resolved_oracle
+from firm_hdl.verify.results.verdict import NotJudgedError
+from firm_hdl.verify.ros_python.worker import ROS_PYTHON
+
+__all__ = ["genpy_versions", "rosbags_versions", "time_genpy", "time_rosbags"]
+
+_SCRIPT = Path(__file__).with_name("genpy_timing.py")
+
+
+def rosbags_versions() -> dict[str, str]:
+    """Return the versions of rosbags and of what it runs on."""
+    found = {name: metadata.version(name) for name in ("rosbags", "numpy")}
+    return {**found, "Python": platform.python_version()}
+
+
+def time_rosbags(sample: Sample) -> Timed:
+    """Time rosbags.
+
+    Raises
+    ------
+    NoFigureError
+        If it does not have the type.
+    BenchError
+        If it does not write what it has read.
+    """
+    try:
+        store = resolved_oracle(sample.message).store
+    except NotJudgedError as error:
+        raise NoFigureError(str(error)) from None
+    name = oracle_name(sample.message)
+    reader: Any = store.deserialize_ros1 if sample.wire == "ros1" else store.deserialize_cdr
+    writer: Any = store.serialize_ros1 if sample.wire == "ros1" else store.serialize_cdr
+
+    def read(packet: bytes) -> object:
+        return reader(packet, name)
+
+    def write(message: object) -> object:
+        return writer(message, name)
+
+    messages = [read(packet) for packet in sample.packets]
+    for message, packet in zip(messages, sample.packets, strict=True):
+        check_written("rosbags", sample, bytes(writer(message, name)), packet)
+    return Timed(deserialize=best_ns(read, sample.packets), serialize=best_ns(write, messages))
+
+
+@cache
+def genpy_versions() -> dict[str, str]:
+    """Return the versions of genpy and of its Python.
+
+    Raises
+    ------
+    MissingToolError
+    """
+    return dict(_ask({})["versions"])
+
+
+def time_genpy(sample: Sample) -> Timed:
+    """Time genpy.
+
+    Raises
+    ------
+    MissingToolError
+    NoFigureError
+        If it does not have the type.
+    BenchError
+        If it fails, or does not write what it has read.
+    """
+    if sample.wire != "ros1" or sample.message.dialect != "ros1":
+        raise NoFigureError("genpy has types and the wire format of ROS 1 only")
+    answer = _ask(
+        {
+            "name": sample.message.name,
+            "text": full_text(sample.message),
+            "packets": [packet.decode("latin-1") for packet in sample.packets],
+        }
+    )
+    if "wrong" in answer:
+        raise BenchError(f"genpy, {sample.message.name}: {answer['wrong']}")
+    return Timed(deserialize=answer["deserialize"], serialize=answer["serialize"])
+
+
+def _ask(request: dict[str, Any]) -> dict[str, Any]:
+    try:
+        done = subprocess.run(
+            [ROS_PYTHON, str(_SCRIPT)],
+            input=json.dumps(request),
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    except OSError as error:
+        raise MissingToolError(f"{ROS_PYTHON} cannot be run: {error.strerror}") from None
+    if done.returncode:
+        raise BenchError(f"genpy failed: {done.stderr.strip().splitlines()[-1:]}")
+    answer: dict[str, Any] = json.loads(done.stdout)
+    if "missing" in answer:
+        raise MissingToolError(f"genpy cannot be used: {answer['missing']} (Debian: python3-genpy)")
+    return answer

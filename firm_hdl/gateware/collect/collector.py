@@ -1,0 +1,228 @@
+"""The collector: leaves of a message to words, as the plan says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from amaranth.hdl import Const, Module, Mux, Signal, Value
+from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware.collect.fill import Filler
+from firm_hdl.gateware.collect.progress import COUNT_BITS, Progress
+from firm_hdl.gateware.collect.words import words_layout
+from firm_hdl.gateware.positions import any_of, pick
+from firm_hdl.gateware.signatures import Status, StatusSignature, leaf_shape
+from firm_hdl.plan import BeginRun, Plan, RunStep, Step
+from firm_hdl.plan.geometry import only_ends
+
+__all__ = ["Collector"]
+
+class Collector(wiring.Component):
+    """Take the leaves of each step of a plan, and put them into two words.
+
+    Leaves are taken in wire order, each as soon as it is offered. A length is decoded in the cycle
+    before it is taken, so it is taken one cycle after it is offered at the earliest. Latency 1
+    cycle from the last leaf of a step to its words.
+
+    Parameters
+    ----------
+    plan : Plan
+
+    Members
+    -------
+    leaf_0, leaf_1, ... : In(stream.Signature(leaf_shape(leaf)))
+        `ready` depends on the `valid` of this leaf and of earlier ones of the same step.
+    words : Out(stream.Signature(words_layout(plan)))
+    status : Out(StatusSignature)
+    """
+
+    def __init__(self, plan: Plan):
+        self.plan = plan
+        leaves = {
+            f"leaf_{k}": In(stream.Signature(leaf_shape(leaf)))
+            for k, leaf in enumerate(plan.leaves)
+        }
+        super().__init__(
+            {
+                **leaves,
+                "words": Out(stream.Signature(words_layout(plan))),
+                "status": Out(StatusSignature),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        return _Circuit(self).m
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Reader:
+    """A transfer that a step takes.
+
+    Attributes
+    ----------
+    leaf : int
+    last : Value
+        What `items.last` has to be.
+    optional : bool
+        It is the rest of a run, of which there may be none.
+    """
+
+    leaf: int
+    last: Value
+    optional: bool = False
+
+
+class _Circuit(Progress):
+    """The collector's logic, built by one method for each part of it."""
+
+    def __init__(self, collector: Collector):
+        streams = [getattr(collector, f"leaf_{k}") for k in range(len(collector.plan.leaves))]
+        super().__init__(Module(), collector.plan, streams)
+        self.c = collector
+        self._decide()
+        self._serve()
+        Filler(self, collector.words)
+        self._proceed()
+
+    # The step.
+
+    def _decide(self) -> None:
+        m, flow, state, plan = self.m, self.flow, self.state, self.plan
+        is_begin = state.run_begin | state.loop_begin
+        skips = self.of_length(lambda length: length.skips)
+        # A last step that only takes a rest is left out where there is none.
+        rests = {i for i, step in enumerate(plan.steps) if only_ends(step)}
+        to_rest = any_of([taken for taken, _, jump in flow.exits if jump.step in rests])
+        nothing = is_begin & self.zero & ~state.terminated & to_rest
+        m.d.comb += [
+            self.done.eq(state.plain | (is_begin & skips) | (state.words & flow.words.last)),
+            self.ends.eq(self.done & (flow.exit_ends | nothing)),
+        ]
+
+    def _readers(self, step: Step) -> list[_Reader]:
+        """Return the transfers of a step, in wire order."""
+        plan, flow = self.plan, self.flow
+        found = []
+        if step.rest is not None:
+            last = Const(1, 1)
+            found.append(_Reader(leaf=plan.runs[step.rest].items, last=last, optional=True))
+        for part in step.parts:
+            if part.completes:
+                level = part.last_level
+                last = Const(part.last, 1) if level is None else flow.levels[level].last
+                found.append(_Reader(leaf=part.leaf, last=last))
+        if isinstance(step, RunStep):
+            run = plan.runs[step.run]
+            last = Const(0, 1) if run.counted else flow.words.last & run.last
+            found.append(_Reader(leaf=run.items, last=last))
+        return found
+
+    def _serve(self) -> None:
+        """Take the leaves of a step in wire order, each as soon as it is offered.
+
+        A producer may offer a leaf only after an earlier one was taken. So a step must not wait
+        until all its leaves are offered; it remembers which are taken.
+        """
+        m, c = self.m, self.c
+        goes: list[list[Value]] = [[] for _ in self.served]
+        ready: dict[int, list[Value]] = {}
+        missing: list[Value] = []
+        wrong: list[Value] = []
+        for index, step in enumerate(self.plan.steps):
+            earlier: list[Value] = []
+            for slot, reader in enumerate(self._readers(step)):
+                port = self.streams[reader.leaf]
+                valid = port.valid
+                if reader.leaf in self.lengths:
+                    valid = valid & self.lengths[reader.leaf].known
+                left, lacks, go = (
+                    Signal(name=f"{name}_{index}_{slot}") for name in ("left", "lacks", "go")
+                )
+                wanted = self.rest.any() if reader.optional else Const(1, 1)
+                m.d.comb += [
+                    left.eq(self.step[index] & wanted & ~self.served[slot]),
+                    lacks.eq(left & ~valid),
+                    go.eq(left & valid & self.free & ~any_of(earlier)),
+                ]
+                earlier.append(lacks)
+                goes[slot].append(go)
+                ready.setdefault(reader.leaf, []).append(go)
+                if self.plan.leaves[reader.leaf].kind == "items":
+                    wrong.append(go & (port.payload.last != reader.last))
+            missing += earlier
+            # A transfer that goes on in the next step is taken there.
+            for part in step.parts:
+                if not part.completes:
+                    missing.append(self.step[index] & ~self.streams[part.leaf].valid)
+        for leaf, cases in ready.items():
+            m.d.comb += self.streams[leaf].ready.eq(any_of(cases))
+        status_free = ~c.status.valid | c.status.ready
+        m.d.comb += [
+            self.free.eq(~c.words.valid | c.words.ready),
+            self.complete.eq(self.free & ~any_of(missing) & (~self.ends | status_free)),
+        ]
+        for flag, cases in zip(self.served, goes, strict=True):
+            m.d.sync += flag.eq((flag | any_of(cases)) & ~self.complete)
+        self._judge(any_of(wrong))
+
+    def _judge(self, wrong_items: Value) -> None:
+        """Keep the packet's first error, and report it with the last step."""
+        m, c = self.m, self.c
+        error, found = Signal(Status, name="error"), Signal(Status, name="found")
+        took = any_of([self.streams[leaf].ready for leaf in self.lengths])
+        over = took & self.of_length(lambda length: length.over)
+        # In a step, items come before the length.
+        m.d.comb += found.eq(error)
+        with m.If((error == Status.OK) & wrong_items):
+            m.d.comb += found.eq(Status.ITEMS)
+        with m.Elif((error == Status.OK) & over):
+            m.d.comb += found.eq(Status.LENGTH)
+        m.d.sync += error.eq(found)
+        with m.If(c.status.ready):
+            m.d.sync += c.status.valid.eq(0)
+        with m.If(self.complete & self.ends):
+            m.d.sync += [
+                c.status.valid.eq(1),
+                c.status.payload.eq(found),
+                error.eq(Status.OK),
+            ]
+        with m.If(self.free):
+            m.d.sync += c.words.payload.error.eq(found != Status.OK)
+
+    # The next step.
+
+    def _proceed(self) -> None:
+        m, flow, state = self.m, self.flow, self.state
+        next_rest = self.of_length(lambda length: length.rest, len(self.rest), BeginRun)
+        single = self.of_length(lambda length: length.single)
+        count = self._count()
+        flow.count(
+            moves=self.complete,
+            ends=self.ends,
+            done=self.done,
+            count=count,
+            single=single,
+            nul=False,
+        )
+        with m.If(self.complete):
+            m.d.sync += Value.cast(state).eq(
+                Mux(self.ends, flow.start, Mux(self.done, flow.exit_state, flow.body_state))
+            )
+            with m.If(self.ends):
+                m.d.sync += [self.rest.eq(0), self.has_nul.eq(0)]
+            with m.Else():
+                with m.If(state.run_begin):
+                    m.d.sync += [self.rest.eq(next_rest), self.has_nul.eq(state.terminated)]
+                with m.Elif(state.rest):
+                    m.d.sync += [self.rest.eq(0), self.has_nul.eq(0)]
+
+    def _count(self) -> Value:
+        """Return the length of the step, as the leaf has it."""
+        cases = [
+            (self.step[i], self.streams[step.begin.length].payload)
+            for i, step in enumerate(self.plan.steps)
+            if step.begin is not None
+        ]
+        return pick(cases, COUNT_BITS)
+

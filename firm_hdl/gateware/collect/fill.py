@@ -1,0 +1,221 @@
+"""The two words that the collector hands to the packer: their bytes, sizes and distances."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from amaranth.hdl import Cat, Const, Mux, Signal, Value
+from amaranth.lib import stream
+
+from firm_hdl.gateware.collect.progress import Progress
+from firm_hdl.gateware.positions import Ring, any_of, pick, raised_by
+from firm_hdl.plan import BeginRun, Fixed, Part, RunStep, Step
+from firm_hdl.plan.geometry import first_step
+
+__all__ = ["Filler"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Byte:
+    """A byte of a step's words.
+
+    Attributes
+    ----------
+    leaf : int or None
+        The leaf whose transfer it is of; `None` for a constant.
+    at : int
+        Its number in the transfer, or the value of the constant.
+    slot : int
+        The number of the transfer in the step; -1 if the step does not take one with this byte.
+    """
+
+    leaf: int | None
+    at: int
+    slot: int
+
+
+class Filler:
+    """Fill the words of each step. Not a component: logic of one module.
+
+    It writes `words` in every cycle in which `now.free`, and `words.valid` with `now.complete`.
+
+    Parameters
+    ----------
+    now : Progress
+    words : stream.Interface
+        See :func:`words_layout`.
+    """
+
+    def __init__(self, now: Progress, words: stream.Interface):
+        self.m, self.now, self.words = now.m, now, words
+        self.plan, self.step = now.plan, now.step
+        self._gather()
+        self._measure()
+
+    # Bytes.
+
+    def _gather(self) -> None:
+        """Select the bytes of the words by the step, until their leaf is taken."""
+        m, now = self.m, self.now
+        lanes: dict[str, list[dict[int, _Byte]]] = {}
+        for index, step in enumerate(self.plan.steps):
+            for name, lane, byte in self._bytes(step):
+                word = lanes.setdefault(name, [{} for _ in range(self.plan.bus_bytes)])
+                word[lane][index] = byte
+        for name, word in lanes.items():
+            for lane, stretch in _stretches(word):
+                cases = stretch[0]
+                register = Signal(8 * len(stretch), name=f"{name}_{lane}", reset_less=True)
+                taken = [
+                    any_of([self.step[i] for i, byte in cases.items() if byte.slot == slot]) & flag
+                    for slot, flag in enumerate(now.served)
+                    if any(byte.slot == slot for byte in cases.values())
+                ]
+                with m.If(now.free & ~any_of(taken)):
+                    m.d.sync += register.eq(self._selected(stretch))
+                bits = getattr(self.words.payload, name)[8 * lane :]
+                m.d.comb += bits[: len(register)].eq(register)
+
+    def _selected(self, stretch: list[dict[int, _Byte]]) -> Value:
+        """Select a stretch by the step; don't care where the step has no such bytes."""
+        size = len(stretch)
+        groups: dict[tuple[int, int], tuple[Value, list[Value]]] = {}
+        for index, byte in stretch[0].items():
+            if byte.leaf is None:
+                constant = sum(lane[index].at << 8 * k for k, lane in enumerate(stretch))
+                key, value = (-1, constant), Value.cast(Const(constant, 8 * size))
+            else:
+                key = (byte.leaf, byte.at)
+                value = self._wire_bits(byte.leaf)[8 * byte.at : 8 * (byte.at + size)]
+            groups.setdefault(key, (value, []))[1].append(self.step[index])
+        found = [(any_of(on), value) for value, on in groups.values()]
+        return found[0][1] if len(found) == 1 else pick(found, 8 * size)
+
+    def _bytes(self, step: Step) -> Iterator[tuple[str, int, _Byte]]:
+        """Yield the bytes of a step's words: the word, the lane, and the byte."""
+        plan, bus = self.plan, self.plan.bus_bytes
+        slot = 0
+        if step.rest is not None:
+            yield from (("items", *each) for each in self._word(plan.runs[step.rest].items, slot))
+            slot += 1
+        for item in step.slices:
+            found = [_Byte(None, 0, -1)] * item.bytes
+            if isinstance(item, Fixed):
+                found = [_Byte(None, value, -1) for value in item.data]
+            elif isinstance(item, Part):
+                where = slot if item.completes else -1
+                found = [_Byte(item.leaf, item.first + k, where) for k in range(item.bytes)]
+                slot += item.completes
+            for k, byte in enumerate(found, item.at):
+                name = "items" if step.bytes > bus > k else "map"
+                yield name, k % bus if step.bytes > bus else k, byte
+        if isinstance(step, RunStep):
+            run = plan.runs[step.run]
+            name = "items" if run.counted else "map"
+            yield from ((name, *each) for each in self._word(run.items, slot))
+
+    def _word(self, leaf: int, slot: int) -> Iterator[tuple[int, _Byte]]:
+        """Yield the bytes of a transfer of items, with their lanes."""
+        items = self.plan.leaves[leaf]
+        return ((k, _Byte(leaf, k, slot)) for k in range(items.lanes * items.item_bytes))
+
+    def _wire_bits(self, leaf: int) -> Value:
+        """Return the bits of a leaf's transfer on the wire."""
+        plan, payload = self.plan, self.now.streams[leaf].payload
+        match plan.leaves[leaf].kind:
+            case "items":
+                return Cat(_item_bits(item) for item in payload.data)
+            case "length":
+                return (payload + plan.has_nul(plan.counted[leaf]))[:32]
+            case _:
+                return _item_bits(payload)
+
+    # Sizes.
+
+    def _measure(self) -> None:
+        """Compute the sizes of the words, and their distances."""
+        m, now, state, bus = self.m, self.now, self.now.state, self.plan.bus_bytes
+        words, ring = self.words.payload, Ring(self.plan)
+        items = Signal(range(bus + 1), name="items_size")
+        whole = Signal(range(2 * bus + 1), name="map_size")
+        nul = Signal(name="nul_now")
+        # The packet has bytes in front of this step, and behind it.
+        begun, begins = Signal(name="begun"), Signal(name="begins")
+        m.d.comb += [
+            items.eq(Mux(state.rest, now.flow.rest_bytes(now.rest), state.items_bytes)),
+            whole.eq(state.map_bytes + Mux(state.lead, bus, 0)),
+            nul.eq(now.has_nul & state.rest),
+            begins.eq(begun | items.any() | nul | state.map_bytes.any()),
+        ]
+        with m.If(now.complete):
+            m.d.sync += begun.eq(begins & ~now.ends)
+        raised, mask = self._items_align()
+        to_end = Signal.like(words.to_end, name="to_end")
+        end_mask = Signal(max(3, ring.lane_bits), name="end_mask")
+        to_map = Signal.like(words.to_map, name="to_map")
+        m.d.comb += to_map.eq(Mux(state.lead, 0, items) + nul + state.raised)
+        with m.If(now.ends):
+            m.d.comb += [to_end.eq(Mux(begins, whole + (bus - 1), bus)), end_mask.eq(bus - 1)]
+        with m.Else():
+            m.d.comb += [to_end.eq(whole + raised), end_mask.eq(mask)]
+        with m.If(now.free):
+            m.d.sync += [
+                self.words.valid.eq(now.complete),
+                words.items_bytes.eq(items),
+                words.map_bytes.eq(state.map_bytes),
+                words.lead.eq(state.lead),
+                words.to_map.eq(to_map),
+                words.max_beats.eq((to_map + to_end + (bus - 1)) >> ring.lane_bits),
+                words.map_mask.eq(state.mask),
+                words.to_end.eq(to_end),
+                words.end_mask.eq(end_mask),
+                words.last.eq(now.ends),
+                words.empty.eq(~begins),
+                words.waits.eq(any_of([self.step[i] for i in range(first_step(self.plan))])),
+            ]
+
+    def _items_align(self) -> tuple[Value, Value]:
+        """Return what aligns the items that the step counts: an addend, and the mask.
+
+        An empty run has no padding.
+        """
+        plan = self.plan
+        cases: list[tuple[Value, int, int]] = []
+        for index, step in enumerate(plan.steps):
+            if isinstance(step.begin, BeginRun) and step.begin.align > 1:
+                align = step.begin.align
+                raised = raised_by(align, plan.header_bytes) if plan.bus_bytes >= 8 else 0
+                some = self.step[index] & ~self.now.lengths[step.begin.length].zero
+                cases.append((some, raised, align - 1))
+        return (
+            pick([(some, raised) for some, raised, _ in cases], 3),
+            pick([(some, mask) for some, _, mask in cases], 3),
+        )
+
+
+def _stretches(word: list[dict[int, _Byte]]) -> Iterator[tuple[int, list[dict[int, _Byte]]]]:
+    """Divide a word into lanes in a row that are selected alike; yield the first lane and them."""
+    first = 0
+    for lane in range(1, len(word) + 1):
+        if lane < len(word) and _follows(word[lane - 1], word[lane]):
+            continue
+        if word[first]:
+            yield first, word[first:lane]
+        first = lane
+
+
+def _follows(before: dict[int, _Byte], after: dict[int, _Byte]) -> bool:
+    """Tell whether two lanes have bytes in a row of the same leaves, in the same steps."""
+    return before.keys() == after.keys() and all(
+        after[index] == replace(byte, at=byte.at + 1)
+        if byte.leaf is not None
+        else after[index].leaf is None
+        for index, byte in before.items()
+    )
+
+
+def _item_bits(item: Value) -> Value:
+    """Return an item's bits on the wire; a bool takes a whole byte."""
+    value = Value.cast(item)
+    return Cat(value, Const(0, -len(value) % 8))

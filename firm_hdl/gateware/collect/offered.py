@@ -1,0 +1,65 @@
+"""Lengths that producers offer, decoded ahead."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Const, Module, Mux, Signal, Value
+from amaranth.lib import stream
+
+from firm_hdl.gateware.flow import exceeds
+from firm_hdl.plan import BeginLoop, Plan
+
+__all__ = ["OfferedLength"]
+
+
+class OfferedLength:
+    """A length that is offered, decoded in registers. Not a component: logic of one module.
+
+    Parameters
+    ----------
+    leaf : int
+        The leaf of the length.
+    port : stream.Interface
+        Its stream.
+    taken : Value(1)
+        It is taken in this cycle.
+
+    Attributes
+    ----------
+    known : Signal(1)
+        The fields are those of the length that is offered now: one cycle after it is offered.
+    zero, over : Signal(1)
+        It is 0; it is above the largest legal one.
+    skips : Signal(1)
+        The body is skipped: there is none, or all of it is the rest.
+    single : Signal(1)
+        The body is one element, or one word in front of the rest.
+    rest : Signal(range(lanes + 1))
+        Items of the rest.
+    """
+
+    def __init__(self, m: Module, plan: Plan, leaf: int, port: stream.Interface, taken: Value):
+        begin, length = plan.counted[leaf], port.payload
+        self.known = Signal(name=f"known_{leaf}")
+        names = ("zero", "over", "skips", "single")
+        self.zero, self.over, self.skips, self.single = (
+            Signal(name=f"{name}_{leaf}", reset_less=True) for name in names
+        )
+        zero = ~length.any()
+        m.d.sync += [
+            self.known.eq(port.valid & ~taken),
+            self.zero.eq(zero),
+            self.over.eq(exceeds(length, begin.limit)),
+        ]
+        if isinstance(begin, BeginLoop):
+            self.rest = Signal(1, name=f"rest_{leaf}")
+            m.d.sync += [self.skips.eq(zero), self.single.eq(length == 1)]
+            return
+        lanes = plan.leaves[plan.runs[begin.run].items].lanes
+        low = length[: lanes.bit_length() - 1]
+        full = Mux(low.any(), low, lanes) if len(low) else Const(lanes)
+        self.rest = Signal(range(lanes + 1), name=f"rest_{leaf}", reset_less=True)
+        m.d.sync += [
+            self.skips.eq(~exceeds(length, lanes)),
+            self.single.eq(~exceeds(length, 2 * lanes)),
+            self.rest.eq(Mux(zero, 0, full)),
+        ]

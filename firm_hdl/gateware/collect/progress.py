@@ -1,0 +1,115 @@
+"""Where the collector is: its registers, and its decisions in this cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from amaranth.hdl import Module, Signal, Value
+from amaranth.lib import stream
+
+from firm_hdl.gateware.collect.offered import OfferedLength
+from firm_hdl.gateware.flow import Flow
+from firm_hdl.gateware.positions import pick
+from firm_hdl.plan import BeginLoop, BeginRun, Plan, RunStep
+
+__all__ = ["COUNT_BITS", "Progress"]
+
+COUNT_BITS = 32
+"""A length over its limit is counted, too."""
+
+
+class Progress:
+    """Where the collector is in the message and in the plan. Not a component: signals.
+
+    Attributes
+    ----------
+    m : Module
+    plan : Plan
+    streams : sequence of stream.Interface
+        By leaf.
+    lengths : dict of int to OfferedLength
+        By leaf.
+    flow : Flow
+        Has the step and the counters; `state` and `step` are its own.
+    rest : Signal(range(lanes + 1))
+        Items of the rest of a run that the step takes.
+    has_nul : Signal(1)
+        A NUL follows these items.
+    zero : Value(1)
+        The step's length is 0. Combinational, as all that follow.
+    done : Signal(1)
+        The step is left through one of its exits, and not into the body that it begins.
+    ends : Signal(1)
+        The message ends with this step.
+    free : Signal(1)
+        The words can be written.
+    complete : Signal(1)
+        They are written for the last time, and the step is left.
+    served : list of Signal(1)
+        The transfer with this number in its step has been taken. Registers.
+    """
+
+    def __init__(self, m: Module, plan: Plan, streams: Sequence[stream.Interface]):
+        self.m, self.plan, self.streams = m, plan, streams
+        self.lengths = {
+            leaf: OfferedLength(m, plan, leaf, streams[leaf], streams[leaf].ready)
+            for leaf in plan.counted
+        }
+        self.flow = self._flow()
+        self.state, self.step = self.flow.state, self.flow.step
+        lanes = max((plan.leaves[run.items].lanes for run in plan.runs), default=1)
+        self.rest, self.has_nul = Signal(range(lanes + 1), name="rest"), Signal(name="has_nul")
+        self.zero = self.of_length(lambda length: length.zero)
+        self.done, self.ends = Signal(name="done"), Signal(name="ends")
+        self.free, self.complete = Signal(name="free"), Signal(name="complete")
+        most = max(
+            (step.rest is not None)
+            + sum(part.completes for part in step.parts)
+            + isinstance(step, RunStep)
+            for step in plan.steps
+        )
+        self.served = [Signal(name=f"served_{k}") for k in range(most)]
+
+    def _flow(self) -> Flow:
+        size = self.plan.bus_bytes.bit_length()
+        flags = "run_begin loop_begin words plain rest terminated lead"
+        fields = {"map_bytes": size, "items_bytes": size, "mask": 3, "raised": 3}
+        fields |= dict.fromkeys(flags.split(), 1)
+        most = (1 << COUNT_BITS) - 1
+        return Flow(self.m, self.plan, lambda _: most, fields, self._traits, has_end=False)
+
+    def _traits(self, index: int | None) -> dict[str, int]:
+        if index is None:
+            return {}
+        plan, bus = self.plan, self.plan.bus_bytes
+        step = plan.steps[index]
+        is_words = isinstance(step, RunStep)
+        counted = isinstance(step, RunStep) and plan.runs[step.run].counted
+        lead = step.bytes > bus
+        begin = step.begin
+        raised = step.align - 1 - plan.header_bytes % step.align if bus >= 8 else 0
+        return {
+            "map_bytes": bus if is_words and not counted else step.bytes - bus * lead,
+            "items_bytes": bus if lead or counted else 0,
+            "mask": step.align - 1,
+            "raised": raised,
+            "run_begin": isinstance(begin, BeginRun),
+            "loop_begin": isinstance(begin, BeginLoop),
+            "words": is_words,
+            "plain": begin is None and not is_words,
+            "rest": step.rest is not None,
+            "terminated": isinstance(begin, BeginRun) and plan.runs[begin.run].terminated,
+            "lead": lead,
+        }
+
+    def of_length(
+        self, field: Callable[[OfferedLength], Value], width: int = 1, kind: type = object
+    ) -> Value:
+        """Select a field of the step's length; 0 if the step has none of the kind."""
+        begins = ((i, step.begin) for i, step in enumerate(self.plan.steps))
+        cases = [
+            (self.step[i], field(self.lengths[begin.length]))
+            for i, begin in begins
+            if begin is not None and isinstance(begin, kind)
+        ]
+        return pick(cases, width)

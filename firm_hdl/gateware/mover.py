@@ -1,0 +1,387 @@
+"""The mover: bytes from the packet buffer to the leaves, as the sequencer orders."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
+from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware.memories import LutMemory
+from firm_hdl.gateware.parse import order_layout
+from firm_hdl.gateware.positions import Ring, any_of, beat_layout, rotate
+from firm_hdl.gateware.signatures import StatusSignature, leaf_shape
+from firm_hdl.plan import Part, Plan, Run, RunStep, Step
+from firm_hdl.plan.geometry import geometry
+
+__all__ = ["Mover"]
+
+
+class Mover(wiring.Component):
+    """Read two words of the packet buffer per order, and write leaves from their lanes.
+
+    One cycle reads the words and rotates them to lane 0, the next one writes the leaves. So a leaf
+    is valid 2 cycles after its order. Leaves of a step become valid in wire order, each as soon as
+    its register is free. A leaf whose register is full delays only what follows it.
+
+    Parameters
+    ----------
+    plan : Plan
+
+    Members
+    -------
+    beat : In(beat_layout(plan))
+        The beat that is written to the packet buffer in this cycle.
+    orders : In(stream.Signature(order_layout(plan)))
+    leaf_0, leaf_1, ... : Out(stream.Signature(leaf_shape(leaf)))
+    status : Out(StatusSignature)
+    """
+
+    def __init__(self, plan: Plan):
+        self.plan = plan
+        leaves = {
+            f"leaf_{k}": Out(stream.Signature(leaf_shape(leaf)))
+            for k, leaf in enumerate(plan.leaves)
+        }
+        super().__init__(
+            {
+                "beat": In(beat_layout(plan)),
+                "orders": In(stream.Signature(order_layout(plan))),
+                **leaves,
+                "status": Out(StatusSignature),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        return _Circuit(self).m
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Writer:
+    """A transfer that a step may write.
+
+    Attributes
+    ----------
+    step : int
+    slot : int
+        Number of the transfer in its step, in wire order.
+    leaf : int
+    part : Part or None
+        Its bytes in the map of the step; `None` for a word or the rest of a run.
+    active : Signal
+        The order is of this step, and has this transfer.
+    blocked : Signal
+        The transfer is not written yet, and its register is not free.
+    go : Signal
+        The transfer is written in this cycle.
+    """
+
+    step: int
+    slot: int
+    leaf: int
+    part: Part | None
+    active: Signal
+    blocked: Signal
+    go: Signal
+
+
+class _Circuit:
+    """The mover's logic, built by one method for each part of it."""
+
+    def __init__(self, mover: Mover):
+        self.c, self.plan, self.ring = mover, mover.plan, Ring(mover.plan)
+        self.m = m = Module()
+        plan = self.plan
+        self.order = mover.orders.payload
+        self.take = Signal(name="take")
+        m.d.comb += mover.orders.ready.eq(self.take)
+        self.streams = [getattr(mover, f"leaf_{k}") for k in range(len(plan.leaves))]
+        # No reset: where an error writes 0, the reset of the flip-flop does it.
+        self.payloads = [
+            Signal(leaf_shape(leaf), name=f"payload_{k}", reset_less=True)
+            for k, leaf in enumerate(plan.leaves)
+        ]
+        for port, payload in zip(self.streams, self.payloads, strict=True):
+            m.d.comb += Value.cast(port.payload).eq(Value.cast(payload))
+        for port in (*self.streams, mover.status):
+            with m.If(port.ready):
+                m.d.sync += port.valid.eq(0)
+        # Words, and which of their bytes have their values: "items" and "map".
+        self.word: dict[str, Signal] = {}
+        self.have: dict[str, Signal] = {}
+        self._read()
+        self.counted, self.last = self._kept("counted"), self._kept("last")
+        self.final, self.ends = self._kept("final"), Signal(name="ends_now")
+        self.writers = list(self._writers())
+        self._serve()
+        self._carry()
+        for writer in self.writers:
+            with m.If(writer.go):
+                m.d.sync += self.streams[writer.leaf].valid.eq(1)
+                self._write(writer)
+
+    def _kept(self, name: str) -> Signal:
+        """Return a field of the order, while the order is executed."""
+        kept = Signal.like(getattr(self.order, name), name=f"{name}_now")
+        with self.m.If(self.take):
+            self.m.d.sync += kept.eq(getattr(self.order, name))
+        return kept
+
+    # Words.
+
+    def _read(self) -> None:
+        """Read the words of the order."""
+        m, plan, order, bus = self.m, self.plan, self.order, self.plan.bus_bytes
+        sizes = geometry(plan)
+        counted = [plan.runs[s.run].counted for s in plan.steps if isinstance(s, RunStep)]
+        ports = {}
+        if any(counted) or any(s.rest is not None or s.bytes > bus for s in plan.steps):
+            ports["items"] = (order.items_at, sizes.item_lanes, order.items_bytes)
+        if not all(counted) or any(s.bytes for s in plan.steps):
+            ports["map"] = (order.map_at, sizes.map_lanes, order.map_bytes)
+        lanes = self._memories({name: (at, starts) for name, (at, starts, _) in ports.items()})
+        for name, (at, starts, size) in ports.items():
+            lane = self.ring.lane(at)
+            word = rotate(m, Cat(lanes[name]), lane, starts, f"{name}_rotated")
+            self.word[name] = Signal(8 * bus, name=f"{name}_word", reset_less=True)
+            self.have[name] = Signal(bus, name=f"{name}_have", reset_less=True)
+            with m.If(self.take):
+                m.d.sync += [
+                    self.word[name].eq(word),
+                    self.have[name].eq(Cat(size > k for k in range(bus))),
+                ]
+
+    def _memories(
+        self, ports: dict[str, tuple[Value, tuple[int, ...]]]
+    ) -> dict[str, list[Value]]:
+        """Make a memory for each lane, which each word reads at its own address."""
+        m, ring, beat = self.m, self.ring, self.c.beat
+        found: dict[str, list[Value]] = {name: [] for name in ports}
+        order = self.order
+        following = {"items": order.items_next, "map": order.map_next}
+        for k in range(self.plan.bus_bytes):
+            memory = LutMemory(m, f"lane_{k}", 8, ring.depth)
+            write = memory.write
+            m.d.comb += [
+                write.addr.eq(beat.at),
+                write.data.eq(beat.data[8 * k : 8 * k + 8]),
+                write.en.eq(beat.valid),
+            ]
+            for name, (at, starts) in ports.items():
+                read = memory.reader(name)
+                # Lanes in front of the first byte are of the next beat.
+                address: Value = at[ring.lane_bits :]
+                if any(start > k for start in starts):
+                    address = Mux(ring.lane(at) > k, following[name], address)
+                m.d.comb += read.addr.eq(address)
+                found[name].append(read.data)
+        return found
+
+    # Service.
+
+    def _writers(self) -> Iterator[_Writer]:
+        plan = self.plan
+        number = 0
+        for index, step in enumerate(plan.steps):
+            for slot, (leaf, part) in enumerate(_transfers(plan, step)):
+                names = (f"{what}_{number}" for what in ("active", "blocked", "go"))
+                active, blocked, go = (Signal(name=name) for name in names)
+                yield _Writer(
+                    step=index,
+                    slot=slot,
+                    leaf=leaf,
+                    part=part,
+                    active=active,
+                    blocked=blocked,
+                    go=go,
+                )
+                number += 1
+
+    def _serve(self) -> None:
+        """Write the transfers of a step in wire order, each as soon as its register is free.
+
+        A consumer may take a leaf only after an earlier one, or only after one of the next message.
+        So a step must not wait until all its leaves are free; it remembers which are written.
+
+        Most leaves cannot transfer twice in a row, and their registers are free when it matters, if
+        the consumer always takes at once. Whether they are not is registered, and costs a cycle
+        more. Only leaves that may transfer in every cycle look at `ready` directly.
+        """
+        m, c, order = self.m, self.c, self.order
+        repeated, status_repeats = _repeated(self.plan)
+        slow, now, comes, waits = Signal(name="slow"), list[Value](), list[Value](), list[Value]()
+        wanted: dict[int, list[tuple[Value, Value]]] = {}
+        for writer in self.writers:
+            port = self.streams[writer.leaf]
+            chosen = c.orders.valid & ~order.blank & (order.step == writer.step)
+            if writer.part is None and self._run(writer).counted:
+                chosen = chosen & order.items
+            m.d.sync += writer.active.eq(Mux(self.take, chosen, writer.active & ~writer.go))
+            earlier = [
+                each.blocked
+                for each in self.writers
+                if each.step == writer.step and each.slot < writer.slot
+            ]
+            m.d.comb += writer.go.eq(writer.active & ~writer.blocked & ~any_of(earlier))
+            if writer.leaf in repeated:
+                m.d.comb += writer.blocked.eq(writer.active & port.valid & ~port.ready)
+                wanted.setdefault(writer.leaf, []).append((chosen, writer.go))
+            else:
+                m.d.comb += writer.blocked.eq(writer.active & port.valid)
+                waits.append(writer.blocked & ~port.ready)
+                comes.append(chosen & port.valid & ~port.ready)
+        for leaf, writers in wanted.items():
+            port, want = self.streams[leaf], Signal(name=f"want_{leaf}")
+            m.d.sync += want.eq(
+                Mux(
+                    self.take,
+                    any_of([chosen for chosen, _ in writers]),
+                    want & ~any_of([go for _, go in writers]),
+                )
+            )
+            now.append(want & port.valid & ~port.ready)
+        stuck, ends = c.status.valid & ~c.status.ready, c.orders.valid & order.ends
+        if status_repeats:
+            now.append(self.ends & stuck)
+        else:
+            waits.append(self.ends & stuck)
+            comes.append(ends & stuck)
+        if comes:
+            m.d.sync += slow.eq(Mux(self.take, any_of(comes), any_of(waits)))
+        m.d.comb += self.take.eq(~slow & ~any_of(now))
+        status = self._kept("status")
+        with m.If(self.take):
+            m.d.sync += self.ends.eq(ends)
+            with m.If(self.ends):
+                m.d.sync += [c.status.valid.eq(1), c.status.payload.eq(status)]
+
+    def _run(self, writer: _Writer) -> Run:
+        """Return the run of which the writer writes a word or the rest."""
+        step = self.plan.steps[writer.step]
+        index = step.run if isinstance(step, RunStep) else step.rest
+        assert index is not None
+        return self.plan.runs[index]
+
+    # Values.
+
+    def _byte(self, step: Step, at: int) -> tuple[Value, Value]:
+        """Return a byte of a step's map, and whether it has its value."""
+        bus = self.plan.bus_bytes
+        name = "items" if step.bytes > bus > at else "map"
+        at %= bus
+        return self.word[name][8 * at : 8 * at + 8], self.have[name][at]
+
+    def _carry(self) -> None:
+        """Keep the bytes of transfers that go on in the next step."""
+        m, plan = self.m, self.plan
+        most = max((part.first for step in plan.steps for part in step.parts), default=0)
+        self.carried = Signal(8 * most, name="carried", reset_less=True)
+        for index, step in enumerate(plan.steps):
+            cut = [part for part in step.parts if not part.completes]
+            if not cut:
+                continue
+            (part,) = cut
+            here = Signal(name=f"cut_{index}")
+            with m.If(self.take):
+                chosen = ~self.order.blank & (self.order.step == index)
+                m.d.sync += here.eq(self.c.orders.valid & chosen)
+            size = plan.leaves[part.leaf].item_bytes
+            for k in range(part.bytes):
+                value, _ = self._byte(step, part.at + k)
+                # An item that ends here is judged here: items in front of an error keep theirs.
+                end = (part.first + k) // size * size + size
+                if end <= part.first + part.bytes:
+                    _, good = self._byte(step, part.at + end - part.first - 1)
+                    value = Mux(good, value, 0)
+                at = 8 * (part.first + k)
+                with m.If(self.take & here):
+                    m.d.sync += self.carried[at : at + 8].eq(value)
+
+    def _whole(self, writer: _Writer, begin: int, end: int) -> tuple[Value, Value]:
+        """Return bytes of a transfer that is complete with this step, and whether they are good."""
+        part, step = writer.part, self.plan.steps[writer.step]
+        assert part is not None
+        carried = max(begin, min(end, part.first))
+        here = [self._byte(step, part.at + k - part.first) for k in range(carried, end)]
+        value = Cat(self.carried[8 * begin : 8 * carried], *(byte for byte, _ in here))
+        # The last byte is good only if those before it are.
+        return value, here[-1][1] if here else Const(1)
+
+    def _write(self, writer: _Writer) -> None:
+        m, plan = self.m, self.plan
+        leaf, payload, part = plan.leaves[writer.leaf], self.payloads[writer.leaf], writer.part
+        if part is None:
+            self._write_word(writer)
+        elif leaf.kind == "items":
+            self._write_items(writer, part)
+        elif leaf.kind == "trigger":
+            m.d.sync += payload.eq(1)
+        else:
+            value, good = self._whole(writer, 0, part.size)
+            if leaf.kind == "length":
+                value = value - plan.has_nul(plan.counted[writer.leaf])
+                good = good & self.counted
+            self._put(payload, value, good, leaf.type)
+
+    def _write_word(self, writer: _Writer) -> None:
+        """Write a word or the rest of a run."""
+        leaf, payload = self.plan.leaves[writer.leaf], self.payloads[writer.leaf]
+        run = self._run(writer)
+        name, size = "items" if run.counted else "map", leaf.item_bytes
+        self.m.d.sync += payload.last.eq(self.last & run.last)
+        for lane in range(leaf.lanes):
+            value = self.word[name][8 * lane * size : 8 * (lane + 1) * size]
+            self._put(payload.data[lane], value, self.have[name][(lane + 1) * size - 1], leaf.type)
+
+    def _write_items(self, writer: _Writer, part: Part) -> None:
+        """Write a transfer of static size."""
+        leaf, payload = self.plan.leaves[writer.leaf], self.payloads[writer.leaf]
+        size = leaf.item_bytes
+        last: Value = Const(part.last)
+        if part.last_level is not None:
+            last = self.final[part.last_level]
+        self.m.d.sync += payload.last.eq(last)
+        for lane in range(leaf.lanes):
+            value, good = Const(0), Const(1)
+            if (lane + 1) * size <= part.size:
+                value, good = self._whole(writer, lane * size, (lane + 1) * size)
+            self._put(payload.data[lane], value, good, leaf.type)
+
+    def _put(self, target: Value, value: Value, good: Value, type_: str) -> None:
+        """Write a value, or 0 if it is not good."""
+        if type_ == "bool":
+            value = value.any()
+        with self.m.If(good):
+            self.m.d.sync += Value.cast(target).eq(value)
+        with self.m.Else():
+            self.m.d.sync += Value.cast(target).eq(0)
+
+
+def _transfers(plan: Plan, step: Step) -> Iterator[tuple[int, Part | None]]:
+    """Yield the transfers of a step in wire order: the leaf, and its part of the map."""
+    if step.rest is not None:
+        yield plan.runs[step.rest].items, None
+    for part in step.parts:
+        if part.completes:
+            yield part.leaf, part
+    if isinstance(step, RunStep):
+        yield plan.runs[step.run].items, None
+
+
+def _repeated(plan: Plan) -> tuple[set[int], bool]:
+    """Return the leaves that may transfer in two steps in a row, and whether `status` may."""
+    leaves = [{leaf for leaf, _ in _transfers(plan, step)} for step in plan.steps]
+    start = plan.start.step or 0
+    repeated: set[int] = set()
+    for index, step in enumerate(plan.steps):
+        jumps = [step.exits.default, *(jump for _, jump in step.exits.repeats)]
+        if step.begin is not None and step.begin.body is not None:
+            jumps.append(step.begin.body)
+        following = {start if jump.step is None else jump.step for jump in jumps}
+        if isinstance(step, RunStep):
+            following.add(index)
+        for other in following:
+            repeated |= leaves[index] & leaves[other]
+    return repeated, plan.steps[start].exits.default.step is None

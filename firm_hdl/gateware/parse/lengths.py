@@ -1,0 +1,287 @@
+"""Lengths, decoded as beats arrive: at each place where a length can end, what would it mean?
+
+The sequencer has one cycle from a length to the position behind the items that the length counts.
+So whatever follows from the value of a length alone is computed here, before the sequencer comes
+there: comparisons, the size of the rest, and the position of the next step. What is left to the
+sequencer is to select an entry by a position, and fields of the entry by the step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
+from amaranth.lib import data, wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware.flow import exceeds
+from firm_hdl.gateware.memories import LutMemory
+from firm_hdl.gateware.positions import Ring, align_up, beat_layout, known_lane_bits
+from firm_hdl.plan import BeginLoop, BeginRun, Jump, MapStep, Plan, RunStep
+from firm_hdl.plan.geometry import Geometry
+
+__all__ = ["LENGTH_BYTES", "Lengths", "Meaning", "shift_of"]
+
+LENGTH_BYTES = 4
+
+
+def shift_of(plan: Plan, step: int | None) -> int:
+    """Return the distance from the start of a step's own bytes to the last one of them.
+
+    It is -1 if there are none, as at the end of the packet (`None`).
+    """
+    if step is None:
+        return -1
+    taken = plan.steps[step]
+    return (plan.bus_bytes if isinstance(taken, RunStep) else taken.bytes) - 1
+
+
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """What a length means in one step: the names of the fields of an entry that belong to it.
+
+    Steps with the same meaning share a field. So the number of fields depends on how many kinds of
+    lengths there are, and not on how many lengths.
+
+    Attributes
+    ----------
+    plan : Plan
+    step : MapStep
+        A step that begins a loop or a run.
+    has_leaves : bool
+        Whether steps without bytes matter, because they have leaves.
+    """
+
+    plan: Plan
+    step: MapStep
+    has_leaves: bool = True
+
+    @property
+    def run(self) -> BeginRun | None:
+        """The run, or `None` for a loop."""
+        return self.step.begin if isinstance(self.step.begin, BeginRun) else None
+
+    @property
+    def kind(self) -> str:
+        """What is counted: equal for lengths whose items have one size."""
+        if self.run is None:
+            return "nothing" if self.is_nothing else "loop"
+        terminated = self.plan.runs[self.run.run].terminated
+        return f"run_{self.plan.item_bytes(self.run.run)}{'_nul' if terminated else ''}"
+
+    @property
+    def is_nothing(self) -> bool:
+        """It counts elements without bytes, which do not matter."""
+        if self.has_leaves or not isinstance(self.step.begin, BeginLoop):
+            return False
+        body = self.plan.steps[self.step.begin.body.step or 0]
+        return isinstance(body, MapStep) and not body.bytes and body.begin is None
+
+    @property
+    def max_count(self) -> int:
+        """The largest legal value."""
+        assert self.step.begin is not None
+        return self.plan.max_count(self.step.begin)
+
+    @property
+    def over(self) -> str:
+        """The value is above `max_count`."""
+        return f"over_{self.max_count}"
+
+    @property
+    def skips(self) -> str:
+        """The body is skipped: there is none, all of it is the rest, or the length is wrong."""
+        return f"skips_{self.kind}_{self.max_count}"
+
+    @property
+    def single(self) -> str:
+        """The body is one element, or one word in front of the rest."""
+        return f"single_{self.kind}"
+
+    @property
+    def double(self) -> str:
+        """If the body is executed more than once, it is so twice."""
+        return f"double_{self.kind}"
+
+    @property
+    def rest(self) -> str:
+        """Items of the rest."""
+        return f"rest_{self.kind}"
+
+    def last(self, jump: Jump) -> str:
+        """The last byte of the step that follows if all items are in the rest."""
+        assert self.run is not None and jump.step is not None
+        align, shift = self.plan.steps[jump.step].align, shift_of(self.plan, jump.step)
+        return f"last_{self.kind}_{self.run.align}_{align}_{shift + 1}"
+
+    @property
+    def jumps(self) -> Iterator[Jump]:
+        """The exits to another step."""
+        jumps = [*(jump for _, jump in self.step.exits.repeats), self.step.exits.default]
+        return (jump for jump in jumps if jump.step is not None)
+
+
+class Lengths(wiring.Component):
+    """A table of decoded lengths, by the position of a length's last byte.
+
+    An entry is written when the beat with that byte is written to the packet buffer. Each lane in
+    which a length can end has a memory of its own; an entry is read without a cycle of delay.
+
+    Parameters
+    ----------
+    plan : Plan
+    geometry : Geometry
+    meanings : sequence of Meaning
+        Of the steps with a length.
+
+    Members
+    -------
+    beat : In(beat_layout(plan))
+        The beat that is written to the packet buffer in this cycle.
+    phase : In(3)
+        Position behind the encapsulation header of the beat's packet, modulo 8. Not used on a bus
+        of 8 bytes or more.
+    key : In(position)
+        Last byte of a length.
+    entry : Out
+        The fields that :class:`Meaning` names, and `zero`.
+    count : Out
+        The length that was looked up in the cycle before, as wide as legal values. Nothing has to
+        know the number at once; so memories of numbers do not load `key`, which is late.
+    """
+
+    def __init__(self, plan: Plan, geometry: Geometry, meanings: Sequence[Meaning]):
+        self.plan, self.ring, self.meanings = plan, Ring(plan), meanings
+        self.lanes = sorted(
+            {
+                (lane + step.bytes - 1) % plan.bus_bytes
+                for step, place in zip(plan.steps, geometry.places, strict=True)
+                if step.begin is not None
+                for lane in place.map
+            }
+        )
+        self.layout = data.StructLayout(self._fields())
+        self.count_bits = max((m.max_count.bit_length() for m in self.meanings), default=1)
+        super().__init__(
+            {
+                "beat": In(beat_layout(plan)),
+                "phase": In(3),
+                "key": In(self.ring.bits),
+                "entry": Out(self.layout),
+                "count": Out(self.count_bits),
+            }
+        )
+
+    def _fields(self) -> dict[str, int]:
+        fields = {"zero": 1}
+        for meaning in self.meanings:
+            fields |= {meaning.over: 1, meaning.skips: 1, meaning.single: 1, meaning.double: 1}
+            if meaning.run is not None:
+                fields[meaning.rest] = self._lanes_of(meaning).bit_length()
+                for jump in meaning.jumps:
+                    fields[meaning.last(jump)] = self.ring.bits
+        return fields
+
+    def _lanes_of(self, meaning: Meaning) -> int:
+        assert meaning.run is not None
+        return self.plan.leaves[self.plan.runs[meaning.run.run].items].lanes
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        ring = self.ring
+        # A length may have begun in earlier beats.
+        history = Signal(8 * (LENGTH_BYTES - 1), reset_less=True)
+        stream = Cat(history, self.beat.data)
+        with m.If(self.beat.valid):
+            m.d.sync += history.eq(stream[-len(history) :])
+        entries, counts = [], []
+        key = ring.position("key_before")
+        m.d.sync += key.eq(self.key)
+        for lane in self.lanes:
+            length = Signal(8 * LENGTH_BYTES, name=f"length_{lane}")
+            entry = Signal(self.layout, name=f"entry_{lane}")
+            m.d.comb += length.eq(stream[8 * lane : 8 * (lane + LENGTH_BYTES)])
+            self._decode(m, length, lane, entry)
+            entries.append(self._keep(m, f"entry_{lane}", Value.cast(entry), self.key))
+            counts.append(self._keep(m, f"count_{lane}", length[: self.count_bits], key))
+        self._select(m, Value.cast(self.entry), self.key, entries)
+        self._select(m, self.count, key, counts)
+        return m
+
+    def _keep(self, m: Module, name: str, value: Value, key: Value) -> Value:
+        """Write a value with each beat; return that of the beat with `key`."""
+        ring = self.ring
+        memory = LutMemory(m, name, len(value), ring.depth)
+        write, read = memory.write, memory.reader()
+        m.d.comb += [
+            write.addr.eq(self.beat.at),
+            write.data.eq(value),
+            write.en.eq(self.beat.valid),
+            read.addr.eq(ring.slot(key)),
+        ]
+        return read.data
+
+    def _select(self, m: Module, target: Value, key: Value, values: list[Value]) -> None:
+        """Select the value of the lane of `key`; others than those of lengths do not occur."""
+        _, known = known_lane_bits(self.lanes, self.plan.bus_bytes)
+        lane = self.ring.lane(key)[known:]
+        with m.Switch(lane):
+            for number, value in zip(self.lanes[:-1], values, strict=False):
+                with m.Case(number >> known):
+                    m.d.comb += target.eq(value)
+            with m.Default():
+                m.d.comb += target.eq(values[-1])
+
+    def _decode(self, m: Module, length: Signal, lane: int, entry: data.View) -> None:
+        zero = ~length.any()
+        m.d.comb += entry.zero.eq(zero)
+        for meaning in self.meanings:
+            over = exceeds(length, meaning.max_count)
+            if meaning.run is None:
+                skips = Const(1, 1) if meaning.is_nothing else zero
+                single, double = length == 1, length == 2
+            else:
+                lanes = self._lanes_of(meaning)
+                word = self.plan.word(meaning.run.run)
+                skips, single, double = (
+                    ~exceeds(length, n * lanes + word) for n in range(3)
+                )
+                m.d.comb += entry[meaning.rest].eq(self._rest(length, lanes, word - lanes))
+                self._places(m, length, lane, entry, meaning)
+            m.d.comb += [
+                entry[meaning.over].eq(over),
+                entry[meaning.skips].eq(skips | over),
+                entry[meaning.single].eq(single),
+                entry[meaning.double].eq(double),
+            ]
+
+    @staticmethod
+    def _rest(length: Value, lanes: int, nul: int) -> Value:
+        """Return the items of the last word; none if there is no item."""
+        low = (length[:8] - nul)[: lanes.bit_length() - 1]
+        full = Mux(low.any(), low, lanes) if len(low) else Const(lanes)
+        return Mux(exceeds(length, nul), full, 0)
+
+    def _places(
+        self, m: Module, length: Signal, lane: int, entry: data.View, meaning: Meaning
+    ) -> None:
+        """Decode where the next step ends if there is no word in front of the rest."""
+        ring, run = self.ring, meaning.run
+        assert run is not None
+        phase: Value | int = self.plan.header_bytes if self.plan.bus_bytes >= 8 else self.phase
+        unit = self.plan.item_bytes(run.run)
+        items = Signal(ring.bits, name=f"items_{lane}_{meaning.kind}")
+        behind = Signal(ring.bits, name=f"behind_{lane}_{meaning.kind}")
+        beat = Cat(Const(0, ring.lane_bits), self.beat.at)
+        count = length[: self.plan.word(run.run).bit_length()]
+        aligned = align_up(m, beat, lane + 1, run.align, phase)
+        m.d.comb += [
+            items.eq(Mux(length.any(), aligned, beat + (lane + 1)) if run.align > 1 else aligned),
+            behind.eq(items + (count << (unit.bit_length() - 1))),
+        ]
+        for jump in meaning.jumps:
+            assert jump.step is not None
+            align, shift = self.plan.steps[jump.step].align, shift_of(self.plan, jump.step)
+            last = align_up(m, behind, 0, align, phase, shift)
+            m.d.comb += entry[meaning.last(jump)].eq(last)

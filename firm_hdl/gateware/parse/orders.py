@@ -1,0 +1,114 @@
+"""Orders: what the sequencer tells the mover to do, one per step."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Module, Mux, Signal, Value
+from amaranth.lib import data, stream, wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware.positions import Ring
+from firm_hdl.gateware.signatures import Status
+from firm_hdl.plan import Plan
+
+__all__ = ["OrderQueue", "order_layout"]
+
+
+def order_layout(plan: Plan) -> data.StructLayout:
+    """Return the payload of orders, which come in wire order.
+
+    Members
+    -------
+    step : range(steps)
+    blank : unsigned(1)
+        No step: no leaf is written.
+    items_at, map_at : position, without the lap bit
+        First byte of the word of items, and of the map.
+    items_next, map_next : slot
+        The beats behind those of these bytes.
+    items_bytes, map_bytes : range(bus_bytes + 1)
+        Bytes of these words that have their values; what is behind them is 0.
+    items : unsigned(1)
+        Items of a counted run transfer.
+    last : unsigned(1)
+        The transfer is the last one of the run.
+    counted : unsigned(1)
+        The length has its value; otherwise it is 0.
+    final : unsigned(levels)
+        Bit k: the element of loop k is its last one.
+    first : beat
+        Beats in front of this one are not needed any more.
+    ends : unsigned(1)
+        The packet ends with this order.
+    status : Status
+        The result of the packet that ends.
+    """
+    ring, bus = Ring(plan), plan.bus_bytes
+    return data.StructLayout(
+        {
+            "step": range(max(2, len(plan.steps))),
+            "blank": 1,
+            "items_at": ring.bits - 1,
+            "map_at": ring.bits - 1,
+            "items_next": ring.beat_bits - 1,
+            "map_next": ring.beat_bits - 1,
+            "items_bytes": range(bus + 1),
+            "map_bytes": range(bus + 1),
+            "items": 1,
+            "last": 1,
+            "counted": 1,
+            "final": max(1, plan.levels),
+            "first": ring.beat_bits,
+            "ends": 1,
+            "status": Status,
+        }
+    )
+
+
+class OrderQueue(wiring.Component):
+    """A queue of two orders, so that `i.ready` is a register.
+
+    Members
+    -------
+    i : In(stream.Signature(order_layout(plan)))
+    o : Out(stream.Signature(order_layout(plan)))
+        Latency 1 cycle.
+    at : In(beat)
+        The first beat that the sender of orders still needs.
+    freed : Out(beat)
+        Beats in front of this one are needed by no one: the first beat of the oldest order.
+    """
+
+    def __init__(self, plan: Plan):
+        layout, beat = order_layout(plan), Ring(plan).beat_bits
+        super().__init__(
+            {
+                "i": In(stream.Signature(layout)),
+                "o": Out(stream.Signature(layout)),
+                "at": In(beat),
+                "freed": Out(beat),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        # The order that came while `o` was waiting.
+        second = Signal(self.i.payload.shape(), reset_less=True)
+        has_second = Signal()
+        m.d.comb += [
+            self.i.ready.eq(~has_second),
+            self.freed.eq(
+                Mux(self.o.valid, self.o.payload.first, Mux(has_second, second.first, self.at))
+            ),
+        ]
+        # `o` waits for `ready` even if it has no order: so `ready` alone enables its registers.
+        with m.If(self.o.ready):
+            m.d.sync += [
+                self.o.valid.eq(self.i.valid | has_second),
+                self.o.payload.eq(Mux(has_second, Value.cast(second), Value.cast(self.i.payload))),
+                has_second.eq(0),
+            ]
+        with m.Elif(self.i.valid):
+            m.d.sync += has_second.eq(1)
+        with m.If(~has_second):
+            m.d.sync += second.eq(self.i.payload)
+        return m

@@ -1,0 +1,222 @@
+"""Where the next step ends: the part of the sequencer that computes positions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
+from amaranth.lib import data
+
+from firm_hdl.gateware.flow import Flow
+from firm_hdl.gateware.parse.lengths import Meaning, shift_of
+from firm_hdl.gateware.positions import Ring, any_of, pick, raised_by
+from firm_hdl.plan import BeginRun, Jump, Plan, RunStep
+
+__all__ = ["NextPlace", "place_fields", "place_traits"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Way:
+    """A way out of a step.
+
+    Attributes
+    ----------
+    align : int
+        Alignment of the next step.
+    shift : int
+        Distance from the start of the next step to its last byte.
+    rest : bool
+        The step is the last word of a counted run, whose rest is behind it.
+    """
+
+    align: int
+    shift: int
+    rest: bool = False
+
+
+def _ways(plan: Plan, index: int) -> Iterator[tuple[str, _Way]]:
+    """Yield the ways out of a step: `exit`, `again_N` if loop N may go on, and `body`."""
+    step = plan.steps[index]
+    rest = isinstance(step, RunStep) and plan.runs[step.run].counted
+    exits = [("exit", step.exits.default)]
+    exits += [(f"again_{level}", jump) for level, jump in step.exits.repeats]
+    for name, jump in exits:
+        align = 1 if jump.step is None else plan.steps[jump.step].align
+        yield name, _Way(align=align, shift=shift_of(plan, jump.step), rest=rest)
+    if isinstance(step, RunStep):
+        yield "body", _Way(align=1, shift=plan.bus_bytes - 1)
+    elif step.begin is not None and step.begin.body is not None:
+        body = step.begin.body.step
+        assert body is not None
+        align = step.begin.align if isinstance(step.begin, BeginRun) else plan.steps[body].align
+        yield "body", _Way(align=align, shift=shift_of(plan, body))
+
+
+def _raised(plan: Plan, align: int, shift: int) -> int:
+    """Return what to add to the last byte, for the next one, its alignment, and a shift.
+
+    If the phase is not a constant, that is only the next byte.
+    """
+    if plan.bus_bytes < 8:
+        return 1
+    return 1 + (shift if align == 1 else raised_by(align, plan.header_bytes, shift))
+
+
+def place_traits(plan: Plan, index: int) -> dict[str, int]:
+    """Return the traits of a step from which the next position is computed.
+
+    For each way out of the step there are an addend, the mask of the low bits that the alignment
+    covers, and what these bits are (`low`); if the phase is not a constant, `low` is a distance.
+    `rest` tells that the addend is a distance that the parser keeps.
+    """
+    bus, traits = plan.bus_bytes, dict[str, int]()
+    for name, way in _ways(plan, index):
+        low = way.shift
+        if bus >= 8:
+            low = (plan.header_bytes + way.shift) % way.align
+        traits |= {
+            f"{name}_add": _raised(plan, way.align, way.shift),
+            f"{name}_mask": way.align - 1,
+            f"{name}_low": low,
+            f"{name}_rest": way.rest,
+            f"{name}_is": 1,
+        }
+    return traits
+
+
+def place_fields(plan: Plan) -> dict[str, int]:
+    """Return the widths of these traits, in bits."""
+    bus = plan.bus_bytes
+    widths = {"add": (3 * bus + 8).bit_length(), "mask": 3, "low": 3, "rest": 1, "is": 1}
+    if bus < 8:
+        widths["low"] = Ring(plan).bits
+    names = {name for index in range(len(plan.steps)) for name, _ in _ways(plan, index)}
+    return {
+        f"{name}_{what}": bits for name in sorted(names) for what, bits in widths.items()
+    }
+
+
+class NextPlace:
+    """The last byte of the step that follows. Not a component: logic of one module.
+
+    Parameters
+    ----------
+    flow : Flow
+    last : Signal
+        The last byte of the step's map or word.
+    phase : Value or int
+        Position behind the packet's encapsulation header, modulo 8.
+    meanings : mapping of int to Meaning
+        By step.
+    entry : View or None
+        The step's length, decoded; `None` if the plan has no lengths.
+
+    Attributes
+    ----------
+    exit : Value
+        If the step is left through an exit.
+    body : Value
+        If it goes on in the body of the run or loop that it begins.
+    after_rest : Value
+        If it is left through an exit, and begins a run that is all rest.
+    """
+
+    def __init__(
+        self,
+        m: Module,
+        flow: Flow,
+        last: Signal,
+        phase: Value | int,
+        meanings: Mapping[int, Meaning],
+        entry: data.View | None,
+    ):
+        self.m, self.flow, self.plan = m, flow, flow.plan
+        self.last, self.phase, self.meanings, self.entry = last, phase, meanings, entry
+        self.ring = Ring(self.plan)
+        self.names = [name.removesuffix("_is") for name in place_fields(self.plan) if "_is" in name]
+        tail = self._tail()
+        self.exit = self._sum("exit", self._exits(), tail)
+        self.body = self._sum("body", [(Const(1, 1), "body")], tail)
+        self.after_rest = self._after_rest()
+
+    def _trait(self, name: str) -> Value:
+        """Return a trait of the step: a register, or logic if positions are short."""
+        width = place_fields(self.plan).get(name)
+        if width is None:
+            return Const(0, 1)
+        if name in self.flow.layout.members:
+            return self.flow.state[name]
+        values = [place_traits(self.plan, k).get(name, 0) for k in range(len(self.plan.steps))]
+        return pick([(self.flow.step[k], value) for k, value in enumerate(values)], width)
+
+    def _exits(self) -> list[tuple[Value, str]]:
+        """Return the ways that leave the step: which is taken, and its name."""
+        found: list[tuple[Value, str]] = []
+        free: Value = Const(1, 1)
+        # The innermost loop goes on first.
+        for level in reversed(range(self.plan.levels)):
+            if f"again_{level}" in self.names:
+                again = self._trait(f"again_{level}_is") & ~self.flow.levels[level].last
+                found.append((free & again, f"again_{level}"))
+                free = free & ~again
+        return [*found, (free, "exit")]
+
+    def _sum(self, kind: str, ways: list[tuple[Value, str]], tail: Value) -> Value:
+        """Return the position of the way that is taken."""
+        m, ring = self.m, self.ring
+
+        def chosen(what: str, width: int) -> Value:
+            return pick([(on, self._trait(f"{name}_{what}")) for on, name in ways], width)
+
+        amount, total = Signal(len(tail), name=f"{kind}_amount"), ring.position(f"{kind}_sum")
+        mask, low = Signal(3, name=f"{kind}_mask"), ring.position(f"{kind}_low")
+        rest = Signal(name=f"{kind}_rest")
+        m.d.comb += [
+            rest.eq(chosen("rest", 1)),
+            amount.eq(Mux(rest, tail, chosen("add", len(tail)))),
+            total.eq(self.last + amount),
+            mask.eq(chosen("mask", 3)),
+            low.eq(chosen("low", len(low))),
+        ]
+        if isinstance(self.phase, int):
+            return (total & ~Cat(mask, Const(0, len(total) - 3))) | low
+        pad, result = Signal(3, name=f"{kind}_pad"), ring.position(f"{kind}_last")
+        m.d.comb += [pad.eq((self.phase - total) & mask), result.eq(total + pad + low)]
+        return result
+
+    def _tail(self) -> Value:
+        """Return how far it is from the last word of a run to the step behind the rest."""
+        plan, bus = self.plan, self.plan.bus_bytes
+        tail = Signal(range(5 * bus + 16), name="tail", reset_less=True)
+        sizes: list[tuple[Value, int]] = []
+        rests: list[tuple[Value, Value]] = []
+        for taken, step, _, meaning in self._rests():
+            raised = _raised(plan, plan.steps[step].align, shift_of(plan, step))
+            assert meaning.run is not None and self.entry is not None
+            sizes.append((taken, raised + plan.runs[meaning.run.run].terminated))
+            unit = plan.item_bytes(meaning.run.run)
+            rest = Value.cast(self.entry[meaning.rest]) << (unit.bit_length() - 1)
+            rests.append((taken, rest))
+        if sizes:
+            total = pick(sizes, len(tail)) + pick(rests, len(tail))
+            with self.m.If(self.flow.state.run_begin):
+                self.m.d.sync += tail.eq(total)
+        return tail
+
+    def _after_rest(self) -> Value:
+        cases: dict[str, list[Value]] = {}
+        for taken, _, jump, meaning in self._rests():
+            cases.setdefault(meaning.last(jump), []).append(taken)
+        if not cases:
+            return Const(0, self.ring.bits)
+        assert self.entry is not None
+        fields = [(any_of(on), Value.cast(self.entry[field])) for field, on in cases.items()]
+        return fields[0][1] if len(fields) == 1 else pick(fields, self.ring.bits)
+
+    def _rests(self) -> Iterator[tuple[Value, int, Jump, Meaning]]:
+        """Yield the exits of steps that begin a run with a rest: taken, next step, jump, length."""
+        for taken, index, jump in self.flow.exits:
+            meaning = self.meanings.get(index)
+            if meaning is not None and meaning.run is not None and jump.step is not None:
+                yield taken, jump.step, jump, meaning

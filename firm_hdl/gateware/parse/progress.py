@@ -1,0 +1,127 @@
+"""Where the sequencer is: its registers, and its decisions in this cycle."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Module, Signal, Value
+
+from firm_hdl.gateware.flow import Flow
+from firm_hdl.gateware.parse.lengths import Meaning, shift_of
+from firm_hdl.gateware.parse.places import place_fields, place_traits
+from firm_hdl.gateware.positions import Ring
+from firm_hdl.plan import BeginLoop, BeginRun, MapStep, Plan, RunStep
+
+__all__ = ["Progress"]
+
+
+class Progress:
+    """Where the sequencer is in the packet and in the plan. Not a component: signals.
+
+    Parameters
+    ----------
+    m : Module
+    plan : Plan
+    has_leaves : bool
+        As of :class:`Sequencer`.
+
+    Attributes
+    ----------
+    m : Module
+    plan : Plan
+    ring : Ring
+    meanings : dict of int to Meaning
+        What the length of a step means, by the step's index.
+    flow : Flow
+        Has the step and the counters; `state` and `step` are its own.
+    last : Signal(position)
+        Last byte of the step's map or word. If the step has a length, that is the length's.
+    first : Signal(position)
+        First byte behind the step before, or the first item of a run.
+    rest : Signal(range(lanes + 1))
+        Items of the rest of a run that the step takes.
+    nul_at : Signal(position)
+        The NUL behind these items.
+    has_nul : Signal(1)
+        There must be a NUL at `nul_at`.
+    phase : int or Signal(3)
+        Position behind the packet's encapsulation header, modulo 8.
+    bad : Signal(1)
+        An error was found in the packet.
+    noted : Signal(1)
+        It was found in the cycle before, in this step. The step has not been ordered.
+    items_at, map_at : Signal(position)
+        First byte of the word of items, and of the last word of the map. Combinational, as all that
+        follow.
+    behind : Signal(position)
+        Behind the step's map or word.
+    left : Signal(position)
+        Bytes that are in the buffer from `behind` on; negative if the step lacks bytes.
+    present : Signal(1)
+        All bytes of the step are in the buffer.
+    leaves : Signal(1)
+        The step is left through one of its exits, whatever its length is.
+    done : Signal(1)
+        It is, and not into the body that it begins.
+    ends : Signal(1)
+        The packet's message ends with this step.
+    closes : Signal(1)
+        So does the packet.
+    issue : Signal(1)
+        The step is ordered, and left.
+    blind : Signal(1)
+        It can be, because of an error: bytes do not matter any more.
+    """
+
+    def __init__(self, m: Module, plan: Plan, *, has_leaves: bool):
+        self.m, self.plan = m, plan
+        self.ring = ring = Ring(plan)
+        self.meanings = {
+            index: Meaning(plan, step, has_leaves)
+            for index, step in enumerate(plan.steps)
+            if isinstance(step, MapStep) and step.begin is not None
+        }
+        self.flow = self._flow()
+        self.state, self.step = self.flow.state, self.flow.step
+        self.last = ring.position("last", init=shift_of(plan, plan.start.step) % (1 << ring.bits))
+        self.first = ring.position("first")
+        lanes = max((plan.leaves[run.items].lanes for run in plan.runs), default=1)
+        self.rest = Signal(range(lanes + 1), name="rest")
+        self.nul_at, self.has_nul = ring.position("nul_at"), Signal(name="has_nul")
+        self.phase: Value | int = plan.header_bytes
+        if plan.bus_bytes < 8:
+            self.phase = Signal(3, name="phase", init=plan.header_bytes % 8)
+        self.bad, self.noted = Signal(name="bad"), Signal(name="noted")
+        self.items_at, self.map_at = ring.position("items_at"), ring.position("map_at")
+        self.behind, self.left = ring.position("behind"), ring.position("left")
+        self.present, self.done = Signal(name="present"), Signal(name="done")
+        self.leaves = Signal(name="leaves")
+        self.ends, self.closes = Signal(name="ends"), Signal(name="closes")
+        self.issue, self.blind = Signal(name="issue"), Signal(name="blind")
+
+    def _flow(self) -> Flow:
+        plan = self.plan
+        flags = "run_begin loop_begin words counted rest lead plain end"
+        # `back` is in two's complement.
+        fields = {"back": plan.bus_bytes.bit_length() + 1} | dict.fromkeys(flags.split(), 1)
+        # On a narrow bus, positions are short: their traits are not worth registers.
+        fields |= place_fields(plan) if plan.bus_bytes >= 8 else {}
+        return Flow(self.m, plan, plan.max_count, fields, self._traits, has_end=True)
+
+    def _traits(self, index: int | None) -> dict[str, int]:
+        plan, bus = self.plan, self.plan.bus_bytes
+        if index is None:
+            return {"end": 1, "back": 1}
+        step = plan.steps[index]
+        is_words = isinstance(step, RunStep)
+        is_lead = step.bytes > bus
+        return {
+            # From the last byte to the first one of the map's last word.
+            "back": is_lead * bus - shift_of(plan, index),
+            "run_begin": isinstance(step.begin, BeginRun),
+            "loop_begin": isinstance(step.begin, BeginLoop),
+            "words": is_words,
+            "counted": isinstance(step, RunStep) and plan.runs[step.run].counted,
+            "rest": step.rest is not None,
+            "lead": is_lead,
+            "plain": step.begin is None and not is_words,
+            **(place_traits(plan, index) if bus >= 8 else {}),
+        }

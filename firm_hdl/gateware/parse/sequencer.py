@@ -1,0 +1,256 @@
+"""The sequencer: the control flow of a plan over the packets of a buffer, without their data."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
+from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware.parse.judge import Judge
+from firm_hdl.gateware.parse.lengths import shift_of
+from firm_hdl.gateware.parse.orders import order_layout
+from firm_hdl.gateware.parse.places import NextPlace
+from firm_hdl.gateware.parse.progress import Progress
+from firm_hdl.gateware.parse.step_length import StepLength
+from firm_hdl.gateware.positions import (
+    Ring,
+    align_up,
+    any_of,
+    beat_layout,
+    pick,
+)
+from firm_hdl.gateware.signatures import Status
+from firm_hdl.plan import BeginRun, Plan
+
+__all__ = ["Sequencer"]
+
+
+class Sequencer(wiring.Component):
+    """Run a plan over the packets of a buffer: check them, and order what is to be done.
+
+    An order is issued for each step when all bytes of the step are in the buffer. The sequencer
+    waits for nothing but bytes and `orders.ready`, and a packet is judged when its last order is
+    issued.
+
+    An error is noted first, and takes two cycles. Then the step is executed with what is good of
+    it, and the steps behind it with no data and all lengths 0. What is left of the packet is
+    dropped.
+
+    Parameters
+    ----------
+    plan : Plan
+    has_leaves : bool
+        Whether orders write leaves. If they do not, only the last order of a packet counts, the one
+        that `ends`: after an error no more steps are executed, and elements without bytes are
+        skipped.
+
+    Members
+    -------
+    beat : In(beat_layout(plan))
+        The beat that is written to the buffer in this cycle.
+    limit : In(position)
+        Bytes of the packet in front of this position are in the buffer.
+    ended : In(1)
+        The packet ends at `limit`.
+    following : In(beat)
+        Where the next packet starts, if `ended`.
+    next : Out(1)
+        The packet is done.
+    trailing : Out(2)
+        Bytes behind the message, if the packet is done and its status is `OK`.
+    at : Out(beat)
+        Beats in front of this one are not needed by the sequencer.
+    orders : Out(stream.Signature(order_layout(plan)))
+        `valid` does not depend on `ready`; the payload is stable only with `valid`.
+    """
+
+    def __init__(self, plan: Plan, *, has_leaves: bool = True):
+        self.plan, self.has_leaves = plan, has_leaves
+        ring = Ring(plan)
+        super().__init__(
+            {
+                "beat": In(beat_layout(plan)),
+                "limit": In(ring.bits),
+                "ended": In(1),
+                "following": In(ring.beat_bits),
+                "next": Out(1),
+                "trailing": Out(2),
+                "at": Out(ring.beat_bits),
+                "orders": Out(stream.Signature(order_layout(plan))),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        return _Circuit(self).m
+
+
+class _Circuit(Progress):
+    """The sequencer's logic, built by one method for each part of it.
+
+    Decisions that come late in a cycle are few: whether a length is skipped, whether all bytes are
+    present, and whether a NUL is missing. All else that a decision selects from is ready before.
+    """
+
+    def __init__(self, sequencer: Sequencer):
+        super().__init__(Module(), sequencer.plan, has_leaves=sequencer.has_leaves)
+        self.c = c = sequencer
+        self.length = StepLength(self, c.beat)
+        self._decide()
+        self.judge = Judge(self, self.length, c.beat, c.limit, c.ended, c.orders.ready)
+        self._order()
+        self._proceed()
+        self._move_on()
+
+    # The step.
+
+    def _decide(self) -> None:
+        """Decide whether all bytes are present, and which way the step is left."""
+        m, c, state, flow = self.m, self.c, self.state, self.flow
+        is_begin = state.run_begin | state.loop_begin
+        ring = self.ring
+        word_before = Cat(ring.lane(self.map_at), ring.beat(self.map_at) - state.lead)
+        m.d.comb += [
+            self.behind.eq(self.last + 1),
+            # limit - last - 1.
+            self.left.eq(c.limit + ~self.last),
+            c.trailing.eq(self.left),
+            self.present.eq(~self.left[-1]),
+            self.leaves.eq(state.plain | (state.words & flow.words.last)),
+            self.done.eq(
+                self.leaves
+                | (is_begin & self.bad)
+                | self.length.run_skips
+                | self.length.loop_skips
+            ),
+            # Where a length ends the packet, the end is a step of its own: it is known too late.
+            self.ends.eq(state.end | (flow.exit_ends & self.leaves)),
+            self.closes.eq(self.ends & c.ended),
+            self.map_at.eq(self.last + state.back.as_signed()),
+            self.items_at.eq(Mux(state.rest, self.first, word_before)),
+        ]
+
+    def _order(self) -> None:
+        m, c, state, flow = self.m, self.c, self.state, self.flow
+        order, bus, bad = c.orders.payload, self.plan.bus_bytes, self.bad
+        # After an error, steps look at nothing; before, at whether all is here and good. What is
+        # late in the cycle is kept apart, as `ready` and `closes` are early.
+        blind, sighted = self.blind, Signal(name="sighted")
+        ready, good = c.orders.ready, self.judge.good
+        m.d.comb += [
+            blind.eq(bad & ~self.noted & (~state.end | c.ended)),
+            sighted.eq(~bad & (~self.ends | c.ended)),
+            c.orders.valid.eq(blind | (sighted & good)),
+            self.issue.eq((blind & ready) | (sighted & ready & good)),
+            c.next.eq((blind & ready & self.closes) | (sighted & ready & self.closes & good)),
+        ]
+        wanted = Signal(range(bus + 1), name="items_wanted")
+        fits = self.judge.items_room >= wanted
+        m.d.comb += [
+            wanted.eq(Mux(state.rest, self.flow.rest_bytes(self.rest), bus)),
+            order.step.eq(
+                pick([(self.step[i], i) for i in range(len(self.plan.steps))], len(order.step))
+            ),
+            order.blank.eq(state.end),
+            order.items_at.eq(self.items_at),
+            order.map_at.eq(self.map_at),
+            order.items_next.eq(self.ring.slot(self.items_at) + 1),
+            order.map_next.eq(self.ring.slot(self.map_at) + 1),
+            order.items_bytes.eq(Mux(bad & ~fits, self.judge.items_room, wanted)),
+            order.map_bytes.eq(Mux(bad, self.judge.map_room, bus)),
+            order.items.eq((state.rest & self.rest.any()) | state.counted),
+            order.last.eq(state.rest | (flow.words.last & ~state.counted)),
+            order.counted.eq(~bad & ~self.length.zero & ~self.length.over),
+            order.final.eq(Cat(level.last for level in flow.levels)),
+            order.first.eq(self.ring.beat(self.first)),
+            order.ends.eq(self.closes),
+            order.status.eq(
+                Mux(bad, self.judge.code, Mux(self.judge.trailing, Status.TRAILING, Status.OK))
+            ),
+            c.at.eq(self.ring.beat(self.first)),
+        ]
+
+    # The next step.
+
+    def _proceed(self) -> None:
+        """Go to the next step, and count."""
+        m, state, flow = self.m, self.state, self.flow
+        next_state = Signal(flow.layout.size, name="next_state")
+        following = Mux(self.done, flow.exit_state, flow.body_state)
+        if not self.c.has_leaves:
+            following = Mux(self.bad, flow.encode(None), following)
+        m.d.comb += next_state.eq(Mux(self.closes, flow.start, following))
+        flow.count(
+            moves=self.issue,
+            ends=self.closes,
+            done=self.done,
+            count=self.length.count,
+            single=self.length.single,
+            double=self.length.double,
+            nul=True,
+        )
+        with m.If(self.issue):
+            m.d.sync += Value.cast(state).eq(next_state)
+            with m.If(self.closes):
+                m.d.sync += [self.bad.eq(0), self.rest.eq(0), self.has_nul.eq(0)]
+            with m.Else():
+                self._begin_run()
+
+    def _begin_run(self) -> None:
+        """Keep the rest of a run that begins; a rest is gone after its step."""
+        m = self.m
+        good = ~self.bad & ~self.length.over
+        terminated = self.flow.on(
+            lambda s: isinstance(s.begin, BeginRun) and self.plan.runs[s.begin.run].terminated
+        )
+        with m.If(self.state.run_begin):
+            m.d.sync += [
+                self.rest.eq(Mux(good, self.length.rest, 0)),
+                self.has_nul.eq(terminated & good & ~self.length.zero),
+            ]
+        with m.Elif(self.state.rest):
+            m.d.sync += [self.rest.eq(0), self.has_nul.eq(0)]
+
+    def _move_on(self) -> None:
+        """Compute the positions of the next step."""
+        m, c, ring, plan = self.m, self.c, self.ring, self.plan
+        start = Signal(ring.bits, name="next_packet")
+        m.d.comb += start.eq(Cat(Const(0, ring.lane_bits), c.following))
+        ways = NextPlace(m, self.flow, self.last, self.phase, self.meanings, self.length.entry)
+        # What a length decides is late. After an error, positions have no meaning.
+        early, last = ring.position("early_last"), ring.position("next_last")
+        begin = start + shift_of(plan, plan.start.step)
+        m.d.comb += [
+            early.eq(Mux(self.closes, begin, Mux(self.leaves, ways.exit, ways.body))),
+            last.eq(
+                Mux(
+                    self.length.run_skips,
+                    ways.after_rest,
+                    Mux(self.length.loop_skips, ways.exit, early),
+                )
+            ),
+        ]
+        # After an error, nothing is read; the end step drops what is left of the packet.
+        kept = Mux(self.state.end, c.limit, self.first)
+        first = Mux(self.closes, start, Mux(self.bad, kept, self._items_start()))
+        with m.If(self.issue | (self.bad & self.state.end)):
+            m.d.sync += self.first.eq(first)
+        with m.If(self.issue):
+            m.d.sync += self.last.eq(last)
+            if any(run.terminated for run in plan.runs):
+                rest = Mux(self.state.words, self.rest, self.length.rest)
+                m.d.sync += self.nul_at.eq(self.behind + rest)
+            if not isinstance(self.phase, int):
+                with m.If(self.closes):
+                    m.d.sync += self.phase.eq(start + plan.header_bytes)
+
+    def _items_start(self) -> Value:
+        """Return where items start that the step counts; else where the step ends."""
+        start: Value = self.behind
+        aligns = {s.begin.align for s in self.plan.steps if isinstance(s.begin, BeginRun)} - {1}
+        for align in sorted(aligns):
+            steps = enumerate(self.plan.steps)
+            runs = [(i, s.begin) for i, s in steps if isinstance(s.begin, BeginRun)]
+            chosen = any_of([self.step[i] for i, begin in runs if begin.align == align])
+            aligned = align_up(self.m, self.behind, 0, align, self.phase)
+            start = Mux(chosen & ~self.length.zero, aligned, start)
+        return start

@@ -1,0 +1,104 @@
+"""The length that a step begins a run or a loop with, decoded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from amaranth.hdl import Cat, Const, Signal, Value
+from amaranth.lib import data
+
+from firm_hdl.gateware.parse.lengths import Lengths, Meaning
+from firm_hdl.gateware.parse.progress import Progress
+from firm_hdl.gateware.positions import any_of, pick
+from firm_hdl.plan.geometry import geometry
+
+__all__ = ["StepLength"]
+
+
+class StepLength:
+    """The length of the step, looked up in a table. Not a component: logic of one module.
+
+    All values are combinational: of registers, and of a memory that is read at `last`. In a
+    step without a length, `over`, `run_skips` and `loop_skips` are 0, and others have no meaning.
+
+    Parameters
+    ----------
+    now : Progress
+    beat : Value(beat_layout(plan))
+        The beat that is written to the packet buffer in this cycle.
+
+    Attributes
+    ----------
+    entry : View or None
+        The fields that :class:`Meaning` names; `None` if the plan has no lengths.
+    count : Value
+        The length on the wire, a cycle later. Of a `string` of CDR, it includes the NUL.
+    zero, over : Value(1)
+        The length is 0; it is above the largest legal one.
+    run_skips, loop_skips : Value(1)
+        The body of the run or the loop is skipped: there is none, all of it is the rest, or the
+        length is wrong.
+    single : Value(1)
+        The body is one element, or one word in front of the rest.
+    double : Value(1)
+        If it is executed more than once, it is so twice.
+    rest : Value(range(lanes + 1))
+        Items of the rest.
+    """
+
+    def __init__(self, now: Progress, beat: data.View):
+        self.now = now
+        self.entry: data.View | None = None
+        self.zero: Value = Const(0, 1)
+        self.over = self.run_skips = self.loop_skips = self.zero
+        self.single = self.double = self.count = self.rest = self.zero
+        if not now.meanings:
+            return
+        self.entry = self._look_up(beat)
+        self.zero = self.entry.zero
+        self.over = self._select(lambda meaning: meaning.over)
+        self.run_skips = self._select(
+            lambda meaning: meaning.skips if meaning.run is not None else None, exact=True
+        )
+        self.loop_skips = self._select(
+            lambda meaning: meaning.skips if meaning.run is None else None, exact=True
+        )
+        self.single = self._select(lambda meaning: meaning.single)
+        self.double = self._select(lambda meaning: meaning.double)
+        self.rest = self._select(
+            lambda meaning: meaning.rest if meaning.run is not None else None, len(now.rest)
+        )
+
+    def _look_up(self, beat: data.View) -> data.View:
+        """Return the entry of the step's length."""
+        m, plan, ring = self.now.m, self.now.plan, self.now.ring
+        m.submodules.lengths = lengths = Lengths(
+            plan, geometry(plan), list(self.now.meanings.values())
+        )
+        m.d.comb += [lengths.beat.eq(beat), lengths.key.eq(self.now.last)]
+        self.count = lengths.count
+        if plan.bus_bytes < 8:
+            # The phase of the packet that arrives.
+            phase = Signal(3, name="arriving_phase", init=plan.header_bytes % 8)
+            m.d.comb += lengths.phase.eq(phase)
+            with m.If(beat.valid & beat.last):
+                at = Cat(Const(0, ring.lane_bits), beat.at)
+                m.d.sync += phase.eq(at + plan.bus_bytes + plan.header_bytes)
+        return lengths.entry
+
+    def _select(
+        self, name: Callable[[Meaning], str | None], width: int = 1, *, exact: bool = False
+    ) -> Value:
+        """Select a field of the entry by the step; 0 where the step has none, if `exact`."""
+        assert self.entry is not None
+        fields: dict[str, list[Value]] = {}
+        for index, meaning in self.now.meanings.items():
+            field = name(meaning)
+            if field is not None:
+                fields.setdefault(field, []).append(self.now.step[index])
+        if len(fields) == 1 and not exact:
+            return Value.cast(self.entry[next(iter(fields))])
+        return pick(
+            [(any_of(chosen), Value.cast(self.entry[field])) for field, chosen in fields.items()],
+            width,
+        )

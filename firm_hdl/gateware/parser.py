@@ -1,0 +1,185 @@
+"""The parser: packets in, a status and sizes of each packet out."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
+from amaranth.lib import data, wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware.memories import LutMemory
+from firm_hdl.gateware.parse import Buffer, Sequencer
+from firm_hdl.gateware.positions import Ring, beat_layout
+from firm_hdl.gateware.signatures import PacketSignature, Status, StatusSignature
+from firm_hdl.model import Message
+from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan, check_bus_bytes
+from firm_hdl.plan.outline import outline
+from firm_hdl.wire import Wire, lay_out
+
+__all__ = ["Parser", "sizes_layout"]
+
+SIZE_BITS = 32
+
+
+def sizes_layout() -> data.StructLayout:
+    """Return the sizes of a packet.
+
+    Members
+    -------
+    packet : unsigned(32)
+        Bytes of the packet, the encapsulation header included; 2**32 - 1 if there are more.
+    trailing : unsigned(2)
+        Bytes of the packet behind the message, if the status is `OK`.
+    """
+    return data.StructLayout({"packet": SIZE_BITS, "trailing": 2})
+
+
+class Parser(wiring.Component):
+    """Judge packets, without taking the messages out of them.
+
+    Each packet ends in one transfer on `status`, which is that of a :class:`Deserializer` with the
+    same parameters. `status` becomes valid 3 cycles after the transfer of the packet's last beat,
+    if one step of `plan` ends in this beat. Each further step adds a cycle, and an error at most 4.
+
+    One step takes one cycle, and one beat per cycle is taken. Only where a bus word has several
+    lengths, it has several steps: two empty strings on a bus of 8 bytes have two. So a packet
+    occupies the parser for as many cycles as it has beats, or steps in front of its first error,
+    whichever is more, and for an error at most 4 cycles more. Bytes that lengths claim and that do
+    not come cost nothing. 8 beats (16 on a bus of 1 or 2 bytes) may wait for a parser that is
+    behind; then `packets.ready` is low.
+
+    `packets.ready`, `status.valid`, `status.payload` and `sizes` are registers; no path leads from
+    an input to an output. While a status is not taken, only one more packet can end. One clock
+    domain, `sync`; its reset discards all packets inside.
+
+    Parameters
+    ----------
+    message, wire, bus_bytes, max_message_bytes
+        As for :class:`Deserializer`.
+
+    Members
+    -------
+    packets : In(PacketSignature(bus_bytes))
+    status : Out(StatusSignature)
+    sizes : Out(sizes_layout())
+        Sizes of the packet whose status is offered.
+
+    Attributes
+    ----------
+    plan : Plan
+        Of the outline of the message: arrays of bytes stand for all that is between lengths.
+    """
+
+    def __init__(
+        self,
+        message: Message,
+        *,
+        wire: Wire | None = None,
+        bus_bytes: int = 8,
+        max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+    ):
+        layout = lay_out(message, wire)
+        check_bus_bytes(bus_bytes)
+        self.plan = build_plan(
+            outline(layout, bus_bytes),
+            bus_bytes=bus_bytes,
+            max_message_bytes=max_message_bytes,
+        )
+        super().__init__(
+            {
+                "packets": In(PacketSignature(bus_bytes)),
+                "status": Out(StatusSignature),
+                "sizes": Out(sizes_layout()),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.submodules.buffer = buffer = Buffer(self.plan)
+        m.submodules.sequencer = sequencer = Sequencer(self.plan, has_leaves=False)
+        m.submodules.packet_sizes = sizes = PacketSizes(self.plan)
+        order = sequencer.orders.payload
+        # A judgement that comes while `status` waits; so no path leads from `status.ready` to the
+        # sequencer.
+        layout = data.StructLayout({"status": Status, "trailing": 2})
+        judged, second = Signal(layout), Signal(layout, reset_less=True)
+        has_second, takes = Signal(), Signal()
+        m.d.comb += [
+            buffer.packets.payload.eq(self.packets.payload),
+            buffer.packets.valid.eq(self.packets.valid),
+            self.packets.ready.eq(buffer.packets.ready),
+            sequencer.beat.eq(buffer.beat),
+            sequencer.limit.eq(buffer.limit),
+            sequencer.ended.eq(buffer.ended),
+            sequencer.following.eq(buffer.following),
+            buffer.next.eq(sequencer.next),
+            buffer.freed.eq(sequencer.at),
+            sizes.beat.eq(buffer.beat),
+            judged.status.eq(order.status),
+            judged.trailing.eq(sequencer.trailing),
+            takes.eq(~self.status.valid | self.status.ready),
+            sizes.next.eq(takes & (has_second | sequencer.next)),
+            sequencer.orders.ready.eq(~(order.ends & has_second)),
+        ]
+        with m.If(takes):
+            m.d.sync += [
+                has_second.eq(0),
+                self.status.valid.eq(has_second | sequencer.next),
+                Cat(Value.cast(self.status.payload), self.sizes.trailing).eq(
+                    Mux(has_second, Value.cast(second), Value.cast(judged))
+                ),
+                self.sizes.packet.eq(sizes.bytes),
+            ]
+        with m.Elif(sequencer.next):
+            m.d.sync += has_second.eq(1)
+        with m.If(~has_second):
+            m.d.sync += second.eq(judged)
+        return m
+
+
+class PacketSizes(wiring.Component):
+    """Count the bytes of packets, and keep the counts until the packets are judged.
+
+    Parameters
+    ----------
+    plan : Plan
+
+    Members
+    -------
+    beat : In(beat_layout(plan))
+        The beat that is written to the packet buffer in this cycle.
+    next : In(1)
+        Forget the oldest packet.
+    bytes : Out(32)
+        Bytes of the oldest packet that has ended, a cycle after its last beat; 2**32 - 1 if there
+        are more. Combinational from a memory.
+    """
+
+    def __init__(self, plan: Plan):
+        self.ring = Ring(plan)
+        super().__init__({"beat": In(beat_layout(plan)), "next": In(1), "bytes": Out(SIZE_BITS)})
+        # Of the packet that arrives, in front of this beat.
+        self.beats = Signal(SIZE_BITS - self.ring.lane_bits)
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        ring, beat = self.ring, self.beat
+        # There are too many beats to count.
+        over, total = Signal(), Signal(SIZE_BITS + 1)
+        # A packet has at least a beat, so the ring has no more packets than words. Two that are
+        # judged may wait.
+        memory = LutMemory(m, "ends", SIZE_BITS, 2 * ring.depth)
+        write, read = memory.write, memory.reader()
+        m.d.comb += [
+            total.eq(Cat(Const(0, ring.lane_bits), self.beats) + beat.count),
+            write.data.eq(total[:SIZE_BITS] | (over | total[SIZE_BITS]).replicate(SIZE_BITS)),
+            write.en.eq(beat.valid & beat.last),
+            self.bytes.eq(read.data),
+        ]
+        with m.If(beat.valid):
+            with m.If(beat.last):
+                m.d.sync += [self.beats.eq(0), over.eq(0), write.addr.eq(write.addr + 1)]
+            with m.Else():
+                m.d.sync += [self.beats.eq(self.beats + 1), over.eq(over | self.beats.all())]
+        with m.If(self.next):
+            m.d.sync += read.addr.eq(read.addr + 1)
+        return m

@@ -1,0 +1,218 @@
+"""Positions of bytes in the packet buffer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
+from amaranth.lib import data
+
+from firm_hdl.plan import Plan
+from firm_hdl.plan.geometry import ring_beats
+
+__all__ = [
+    "Ring",
+    "align_up",
+    "any_of",
+    "beat_layout",
+    "known_lane_bits",
+    "pick",
+    "raised_by",
+    "rotate",
+    "sum_of_three",
+]
+
+
+class Ring:
+    """The shape of positions: a lane of a bus word, the word's place in the ring, and a lap bit.
+
+    A position is a number of `bits` bits, with the lane in the lowest ones. It counts bytes; so a
+    packet that is longer than the ring goes round it several times. Two positions that are less
+    than `depth` words apart are compared by the sign of their difference.
+
+    Parameters
+    ----------
+    plan : Plan
+
+    Attributes
+    ----------
+    depth : int
+        Words of the ring; a power of two. More than the words that one step can touch.
+    lane_bits, beat_bits, bits : int
+        Bits of the lane, of the word (the lap bit included), and of a whole position.
+    """
+
+    def __init__(self, plan: Plan):
+        self.plan = plan
+        self.bus = plan.bus_bytes
+        self.depth = ring_beats(self.bus)
+        self.lane_bits = self.bus.bit_length() - 1
+        self.beat_bits = self.depth.bit_length()
+        self.bits = self.lane_bits + self.beat_bits
+
+    def position(self, name: str, *, init: int = 0) -> Signal:
+        """Make a signal for a position."""
+        return Signal(self.bits, name=name, init=init)
+
+    def lane(self, position: Value) -> Value:
+        """Return the lane of a byte in its bus word."""
+        return position[: self.lane_bits]
+
+    def beat(self, position: Value) -> Value:
+        """Return the word with its lap bit."""
+        return position[self.lane_bits :]
+
+    def slot(self, position: Value) -> Value:
+        """Return the place of the word in the ring."""
+        return position[self.lane_bits : self.bits - 1]
+
+
+def beat_layout(plan: Plan) -> data.StructLayout:
+    """Return a beat on its way into the packet buffer.
+
+    Members
+    -------
+    data : unsigned(8 * bus_bytes)
+    count : range(bus_bytes + 1)
+        Valid bytes; only used if `last`.
+    last : unsigned(1)
+    at : beat
+        Where it is written, with the lap bit.
+    valid : unsigned(1)
+    """
+    bus = plan.bus_bytes
+    return data.StructLayout(
+        {
+            "data": 8 * bus,
+            "count": range(bus + 1),
+            "last": 1,
+            "at": Ring(plan).beat_bits,
+            "valid": 1,
+        }
+    )
+
+
+def raised_by(align: int, phase: int, shift: int = 0) -> int:
+    """Return what to add so that clearing low bits rounds up; see `align_up`.
+
+    Parameters are those of `align_up`, with a constant phase.
+    """
+    return align - 1 - phase % align + (phase % align + shift) // align * align
+
+
+def align_up(
+    m: Module, value: Value, distance: Value | int, align: int, phase: Value | int, shift: int = 0
+) -> Value:
+    """Return `shift` bytes behind the first aligned position from `value + distance` on.
+
+    All positions are modulo the width of `value`.
+
+    Parameters
+    ----------
+    align : int
+        A power of two, at most 8. Positions are aligned that are a multiple of it behind `phase`.
+    phase : Value or int
+        If it is a constant, there is one carry chain.
+    shift : int
+        A constant, so that one addition does both.
+    """
+    total = Signal(len(value))
+    if align == 1:
+        m.d.comb += total.eq(value + distance + shift)
+        return total
+    if isinstance(phase, int):
+        low = align.bit_length() - 1
+        m.d.comb += total.eq(value + (distance + raised_by(align, phase, shift)))
+        return Cat(Const((phase + shift) % align, low), total[low:])
+    pad, result = Signal(3), Signal(len(value))
+    m.d.comb += [
+        total.eq(value + distance),
+        pad.eq((phase - total) & (align - 1)),
+        result.eq(total + pad + shift),
+    ]
+    return result
+
+
+def pick(cases: Iterable[tuple[Value, Value | int]], width: int) -> Value:
+    """Select a value by signals of which at most one is high: an AND-OR without priority.
+
+    Parameters
+    ----------
+    cases : iterable of (Value, Value or int)
+        The signal, of one bit, and the value. Values that are shorter than `width` are extended
+        with zeros; longer ones are cut.
+    width : int
+        Bits of the result, which is 0 if no signal is high.
+    """
+    constants: list[list[Value]] = [[] for _ in range(width)]
+    picked: list[Value] = []
+    for chosen, value in cases:
+        if isinstance(value, int):
+            for k in range(width):
+                if value >> k & 1:
+                    constants[k].append(chosen)
+        else:
+            picked.append(Mux(chosen, value[:width], 0))
+    if any(constants) or not picked:
+        picked.append(Cat(any_of(column) for column in constants))
+    # A tree: a plan has hundreds of steps, and expressions must not be nested so deeply.
+    while len(picked) > 1:
+        pairs = zip(picked[::2], picked[1::2], strict=False)
+        picked = [a | b for a, b in pairs] + picked[len(picked) & ~1 :]
+    (result,) = picked
+    return result[:width] if len(result) >= width else Cat(result, Const(0, width - len(result)))
+
+
+def any_of(values: Sequence[Value]) -> Value:
+    """Return whether any bit of the values is high; 0 if there are none."""
+    return Cat(values).any() if values else Const(0, 1)
+
+
+def rotate(
+    m: Module, value: Value, lane: Value, lanes: Sequence[int], name: str, *, back: bool = False
+) -> Value:
+    """Rotate a bus word so that the byte of a lane comes first.
+
+    With `back`, the first byte comes to the lane. There is one stage for each bit of `lane`: fewer
+    stages of wider selections need more cells, and are not faster.
+
+    Parameters
+    ----------
+    value : Value
+        The bus word, 8 bits per lane.
+    lane : Value
+        Its width is that of a lane's number.
+    lanes : sequence of int
+        The lanes that are possible; others are don't care.
+    name : str
+        Stages are called by it, and by the bit of `lane` that each looks at.
+    """
+    count = len(value) // 8
+
+    def turned(value: Value, lane: int) -> Value:
+        at = 8 * ((-lane if back else lane) % count)
+        return Cat(value, value)[at : at + len(value)]
+
+    first, known = known_lane_bits(lanes, count)
+    now = turned(value, first)
+    for bit in reversed(range(known, count.bit_length() - 1)):
+        result = Signal(len(value), name=f"{name}_{bit}")
+        m.d.comb += result.eq(Mux(lane[bit], turned(now, 1 << bit), now))
+        now = result
+    return now
+
+
+def known_lane_bits(lanes: Sequence[int], bus_bytes: int) -> tuple[int, int]:
+    """Return the low bits that all lanes have in common: their value, and how many there are."""
+    common = bus_bytes
+    while any(lane % common != lanes[0] % common for lane in lanes):
+        common //= 2
+    return lanes[0] % common, common.bit_length() - 1
+
+
+def sum_of_three(a: Value, b: Value, c: Value) -> Value:
+    """Return a sum modulo the width of `a`, with one carry chain; `b` and `c` are sign-extended."""
+    width = len(a)
+    b, c = (Cat(x, x[-1].replicate(width))[:width] for x in (b, c))
+    carry = (a & b) | (a & c) | (b & c)
+    return (a ^ b ^ c) + Cat(Const(0, 1), carry[:-1])

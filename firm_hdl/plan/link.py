@@ -1,0 +1,108 @@
+"""Link steps: where the control flow of a plan goes from each step.
+
+:mod:`firm_hdl.plan.build` makes a program: steps in wire order, and marks between them where loops
+start and end, and where counters of constant counts are loaded. Marks take no cycle. So they become
+parts of the jumps from step to step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from firm_hdl.plan.ir import BeginLoop, Exits, Jump, Step
+
+__all__ = ["END", "NOWHERE", "Mark", "link"]
+
+END = Jump(step=None)
+"""The jump to the end of the packet; also in place of a jump that is not linked yet."""
+
+NOWHERE = Exits(default=END)
+"""The exits of a step that is not linked yet."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mark:
+    """A position between steps where a loop starts or ends, or a constant counter is loaded.
+
+    Attributes
+    ----------
+    kind : "enter", "loop" or "end"
+        "enter": `counter` is loaded with `count`. "loop": the body of loop `counter` starts.
+        "end": the body ends.
+    counter : int or RUN_COUNTER
+        The level of a loop, or the counter of the items of a run.
+    count : int
+        Elements or items; only for "enter".
+    """
+
+    kind: str
+    counter: int | str
+    count: int = 0
+
+
+def link(program: Sequence[Step | Mark]) -> tuple[Jump, tuple[Step, ...]]:
+    """Return the jump to the first step of a program, and its steps with bodies and exits."""
+    linker = _Linker(program)
+    return linker.jump_to(0), linker.steps()
+
+
+class _Linker:
+    """A program, with the places of its steps and loops."""
+
+    def __init__(self, program: Sequence[Step | Mark]):
+        self.program = program
+        places = [place for place, item in enumerate(program) if not isinstance(item, Mark)]
+        # Index of the step at each place of the program that is a step.
+        self.numbers = {place: index for index, place in enumerate(places)}
+        # The start of each loop's body by the loop's end, and the end by the loop's start.
+        self.bodies: dict[int, int] = {}
+        self.ends: dict[int, int] = {}
+        open_loops: list[int] = []
+        for place, item in enumerate(program):
+            if isinstance(item, Mark) and item.kind == "loop":
+                open_loops.append(place)
+            elif isinstance(item, Mark) and item.kind == "end":
+                start = open_loops.pop()
+                self.bodies[place] = start + 1
+                self.ends[start] = place
+
+    def jump_to(self, place: int) -> Jump:
+        """Return the jump to the next step from a place of the program where no loop ends."""
+        enter: list[tuple[int | str, int]] = []
+        while place < len(self.program):
+            item = self.program[place]
+            if not isinstance(item, Mark):
+                break
+            assert item.kind != "end"
+            if item.kind == "enter":
+                enter.append((item.counter, item.count))
+            place += 1
+        return Jump(enter=tuple(enter), step=self.numbers.get(place))
+
+    def exits_at(self, place: int) -> Exits:
+        """Return the exits of a step or run that ends in front of a place of the program."""
+        repeats: list[tuple[int, Jump]] = []
+        while place < len(self.program):
+            item = self.program[place]
+            if not isinstance(item, Mark) or item.kind != "end":
+                break
+            assert isinstance(item.counter, int)
+            repeats.append((item.counter, self.jump_to(self.bodies[place])))
+            place += 1
+        return Exits(repeats=tuple(repeats), default=self.jump_to(place))
+
+    def steps(self) -> tuple[Step, ...]:
+        """Return the steps of the program, linked."""
+        found: list[Step] = []
+        for place, item in enumerate(self.program):
+            if isinstance(item, Mark):
+                continue
+            after = place + 1
+            if item.begin is not None:
+                # The body is behind: that of a loop up to the loop's end, that of a run one step.
+                body = self.jump_to(after)
+                item = replace(item, begin=replace(item.begin, body=body))
+                after = self.ends[after] + 1 if isinstance(item.begin, BeginLoop) else after + 1
+            found.append(replace(item, exits=self.exits_at(after)))
+        return tuple(found)

@@ -1,0 +1,137 @@
+"""The outline of a layout: what a parser has to know of a message whose values nobody takes.
+
+Only lengths decide where a packet goes on and whether it is good. What stands between them has a
+fixed size, whatever fields it consists of. In the outline, it is an array of bytes, and a plan of
+the outline has a step or two for it instead of one per bus word. Lengths, their bounds, alignment
+and the size of the smallest message are those of the layout, so that both plans give every packet
+the same status.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import count
+
+from firm_hdl.model import PRIMITIVES
+from firm_hdl.wire import Layout, LoopNode, Node, Path, RunNode, Scalar, Trigger
+from firm_hdl.wire.layout import OCTET, Gap
+
+__all__ = ["outline"]
+
+NO_GAP = Gap(align=1, bytes=0)
+
+
+def outline(layout: Layout, bus_bytes: int) -> Layout:
+    """Return a layout with the same lengths, and with bytes in place of all else.
+
+    Parameters
+    ----------
+    layout : Layout
+    bus_bytes : int
+        Bytes are cut so that a plan for a bus of this width has few steps.
+    """
+    numbers = count()
+    nodes = tuple(_outline(layout.nodes, bus_bytes, numbers))
+    # A plan has at least one step.
+    return replace(layout, nodes=nodes or (Trigger(path=_path(numbers)),))
+
+
+@dataclass(slots=True)
+class _Stretch:
+    """Bytes in a row: the padding in front of them, and their number."""
+
+    gap: Gap
+    bytes: int
+
+
+def _outline(nodes: tuple[Node, ...], bus_bytes: int, numbers: Iterator[int]) -> Iterator[Node]:
+    open_: _Stretch | None = None
+    for node in nodes:
+        fixed = _fixed(node)
+        if fixed is not None and open_ is not None and fixed.gap.bytes is not None:
+            open_.bytes += fixed.gap.bytes + fixed.bytes
+            continue
+        if open_ is not None:
+            yield from _bytes(open_, bus_bytes, numbers)
+        open_ = fixed
+        if isinstance(node, LoopNode) and fixed is None:
+            body = tuple(_outline(node.body, bus_bytes, numbers))
+            # An element without bytes; the number of them is checked nevertheless.
+            yield replace(node, body=body or (Trigger(path=_path(numbers)),))
+        elif fixed is None:
+            yield node
+    if open_ is not None:
+        yield from _bytes(open_, bus_bytes, numbers)
+
+
+def _bytes(stretch: _Stretch, bus_bytes: int, numbers: Iterator[int]) -> Iterator[Node]:
+    """Yield a stretch as arrays of bytes.
+
+    An array of many bytes is a run, which takes one step for any number of bus words, but cannot
+    share it with what is in front. So its first bytes are a value of their own.
+    """
+    gap, left = stretch.gap, stretch.bytes
+    if gap.bytes is None:
+        # A plan aligns a step only in front of a value that needs it.
+        number = PRIMITIVES["ros2"][f"uint{8 * gap.align}"]
+        yield Scalar(path=_path(numbers), gap=gap, type=number)
+        gap, left = NO_GAP, left - gap.align
+    if left > 4 * bus_bytes:
+        sizes = [bus_bytes, left - bus_bytes]
+    else:
+        sizes = [min(bus_bytes, left - at) for at in range(0, left, bus_bytes)]
+    for size in sizes:
+        yield _array(size, gap, numbers)
+        gap = NO_GAP
+
+
+def _array(size: int, gap: Gap, numbers: Iterator[int]) -> RunNode:
+    return RunNode(
+        path=_path(numbers),
+        gap=None,
+        item_gap=gap,
+        item=OCTET,
+        count=size,
+        bound=None,
+        terminated=False,
+    )
+
+
+def _path(numbers: Iterator[int]) -> Path:
+    # No field of a message has such a name.
+    return (f"bytes {next(numbers)}",)
+
+
+def _fixed(node: Node) -> _Stretch | None:
+    """Return a node as a stretch if it has the same bytes in every packet, but for their values."""
+    match node:
+        case Scalar():
+            return _Stretch(node.gap, node.type.bytes)
+        case Trigger():
+            return _Stretch(NO_GAP, 0)
+        case RunNode(count=int() as size):
+            return _Stretch(node.item_gap, size * node.item.bytes)
+        case LoopNode(count=int() as size):
+            return _fixed_loop(node, size)
+        case _:
+            return None
+
+
+def _fixed_loop(node: LoopNode, times: int) -> _Stretch | None:
+    """Return a loop as a stretch if the padding in and between its elements is always the same."""
+    found: _Stretch | None = None
+    for part in node.body:
+        fixed = _fixed(part)
+        if fixed is None or (found is not None and fixed.gap.bytes is None):
+            return None
+        if found is None:
+            found = fixed
+        else:
+            assert fixed.gap.bytes is not None
+            found.bytes += fixed.gap.bytes + fixed.bytes
+    assert found is not None
+    between = 0 if times == 1 else found.gap.bytes
+    if between is None:
+        return None
+    return replace(found, bytes=times * found.bytes + (times - 1) * between)

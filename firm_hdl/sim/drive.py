@@ -1,0 +1,108 @@
+"""The inputs of a bench in each cycle of a run: offers of sources, and readiness of sinks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from firm_hdl.sim.job import Job
+from firm_hdl.sim.stalls import stalls_of
+
+if TYPE_CHECKING:
+    from firm_hdl.sim.bench import Bench
+
+__all__ = ["Drive"]
+
+
+@dataclass(slots=True)
+class _Source:
+    """A stream that the bench sends on: the payload that is offered, and those after it."""
+
+    valid: int
+    word: int
+    at: int
+    payloads: Iterator[int]
+    stalled: Iterator[bool] | None
+    payload: int = 0
+
+
+class Drive:
+    """The inputs of a run: the values of the bench's words in each cycle."""
+
+    def __init__(self, bench: Bench, job: Job):
+        self.words = [0] * len(bench.words)
+        self.always, self.changing = 0, []
+        inputs = [*bench.sinks, *(bench.taps if bench.gates is not None else ())]
+        self.gates = (1 << len(inputs)) - (1 << len(bench.sinks))
+        for index, name in enumerate(inputs):
+            if stalls := stalls_of(job.options.stalls, name):
+                self.changing.append((1 << index, stalls.cycles(name)))
+            else:
+                self.always |= 1 << index
+        self.first = len(bench.ports) - len(bench.sources)
+        self.sources = []
+        for index, name in enumerate(bench.sources):
+            stalls = stalls_of(job.options.stalls, name)
+            word, at = bench.places[index]
+            source = _Source(
+                valid=1 << (len(inputs) + index),
+                word=word,
+                at=at,
+                payloads=iter(job.sources.get(name, ())),
+                stalled=stalls.cycles(name) if stalls else None,
+            )
+            self.sources.append(source)
+        self.idle = list(self.sources)
+        self.control = 0
+
+    def next(self, fired: int, held: int) -> int:
+        """Go to the next cycle; return the words that change, as a bit mask.
+
+        Parameters
+        ----------
+        fired : int
+            Bit mask of the ports that transferred in this cycle.
+        held : int
+            Bit mask of the ports that offered a transfer that was not taken.
+        """
+        held &= self.gates & self.control
+        control = self.control
+        changed = 0
+        fired >>= self.first
+        while fired:
+            low = fired & -fired
+            source = self.sources[low.bit_length() - 1]
+            fired ^= low
+            control &= ~source.valid
+            self.idle.append(source)
+        if self.idle:
+            control, changed = self._offer(control)
+        control |= self.always
+        for bit, stalled in self.changing:
+            control = control & ~bit if next(stalled) else control | bit
+        control |= held
+        if control != self.control:
+            self.words[0] ^= control ^ self.control
+            self.control = control
+            changed |= 1
+        return changed
+
+    def _offer(self, control: int) -> tuple[int, int]:
+        """Let every idle source offer its next payload, unless it is stalled or has no more."""
+        changed = 0
+        idle = []
+        for source in self.idle:
+            if source.stalled is not None and next(source.stalled):
+                idle.append(source)
+                continue
+            payload = next(source.payloads, None)
+            if payload is None:
+                continue
+            if payload != source.payload:
+                self.words[source.word] ^= (payload ^ source.payload) << source.at
+                source.payload = payload
+                changed |= 1 << source.word
+            control |= source.valid
+        self.idle = idle
+        return control, changed

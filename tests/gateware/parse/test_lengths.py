@@ -1,0 +1,145 @@
+# amaranth: UnusedElaboratable=no
+"""Decoded lengths against plain arithmetic, for each lane and each meaning."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+from amaranth.sim import Simulator
+
+from firm_hdl.gateware.parse.lengths import LENGTH_BYTES, Lengths, Meaning, shift_of
+from firm_hdl.gateware.positions import Ring
+from firm_hdl.plan import MapStep, build_plan
+from firm_hdl.plan.geometry import geometry
+from firm_hdl.wire import lay_out
+from tests.strategies import make
+
+TEXT = make("ros2", {"s": "string", "d": "float64[]"}, "Text")
+MESSAGES = {
+    "string": make("ros1", {"s": "string", "t": "string", "x": "uint8"}),
+    "cdr": make("ros2", {"s": "string<=9", "a": "uint16[]", "t": (TEXT, "[<=3]"), "x": "float64"}),
+    "words": make("ros1", {"a": "uint32[]", "b": "float64[]", "c": "uint8[]", "x": "uint8"}),
+}
+
+
+def plan_of(name, bus_bytes):
+    return build_plan(lay_out(MESSAGES[name]), bus_bytes=bus_bytes, max_message_bytes=1 << 12)
+
+
+def expected(plan, meaning, length, key, phase):
+    """Return what a length means, by the names of the fields.
+
+    Parameters
+    ----------
+    key : int
+        Position of the length's last byte.
+    phase : int
+        Position behind the header, modulo 8.
+    """
+    over = length > meaning.max_count
+    if meaning.run is None:
+        found = {"skips": length == 0, "single": length == 1, "double": length == 2}
+        fields = {name: int(value) for name, value in found.items()}
+    else:
+        run = plan.runs[meaning.run.run]
+        lanes, nul = plan.leaves[run.items].lanes, int(run.terminated)
+        items = max(0, length - nul)
+        words = -(-items // lanes)
+        # All words but the last one are the body.
+        fields = {"skips": words <= 1, "single": words <= 2, "double": words <= 3}
+        rest = items - (words - 1) * lanes if items else 0
+        fields = {name: int(value) for name, value in fields.items()} | {"rest": rest}
+    named = {
+        "zero": int(length == 0),
+        meaning.over: int(over),
+        meaning.skips: int(fields["skips"] or over),
+        meaning.single: fields["single"],
+        meaning.double: fields["double"],
+    }
+    if meaning.run is not None:
+        named[meaning.rest] = fields["rest"]
+        if length <= plan.word(meaning.run.run):
+            named |= places(plan, meaning, length, key, phase)
+    return named
+
+
+def places(plan, meaning, length, key, phase):
+    """Return the last byte of each step that may follow, if all items are in the rest."""
+
+    def aligned(position, align):
+        return position + (phase - position) % align
+
+    ring = Ring(plan)
+    start = aligned(key + 1, meaning.run.align) if length else key + 1
+    behind = start + length * plan.item_bytes(meaning.run.run)
+    return {
+        meaning.last(jump): (
+            aligned(behind, plan.steps[jump.step].align) + shift_of(plan, jump.step)
+        )
+        % (1 << ring.bits)
+        for jump in meaning.jumps
+    }
+
+
+def compare(plan, tamper=lambda name, value: value):
+    """Write random lengths to each lane, and look them up; return how many values were compared."""
+    meanings = [Meaning(plan, s) for s in plan.steps if isinstance(s, MapStep) and s.begin]
+    dut = Lengths(plan, geometry(plan), meanings)
+    bus, ring, rng = plan.bus_bytes, Ring(plan), random.Random(plan.bus_bytes)
+    edges = {m.max_count + d for m in meanings for d in (-1, 0, 1)} | {0, 1, 2, (1 << 32) - 1}
+    values = sorted(edges | set(range(4 * bus if bus < 16 else 70)))
+    compared = 0
+
+    async def testbench(ctx):
+        nonlocal compared
+        stream = bytearray(rng.randbytes(8))
+        beat = 0
+        for length in values:
+            for lane in dut.lanes:
+                phase = plan.header_bytes % 8 if bus >= 8 else rng.randrange(8)
+                ctx.set(dut.phase, phase)
+                # The length ends in this lane of the second, third, ... beat from here on.
+                count = -(-(LENGTH_BYTES + bus) // bus)
+                data = bytearray(rng.randbytes(count * bus))
+                end = (count - 1) * bus + lane + 1
+                data[end - LENGTH_BYTES : end] = length.to_bytes(LENGTH_BYTES, "little")
+                for k in range(count):
+                    word = int.from_bytes(data[k * bus : (k + 1) * bus], "little")
+                    at = (beat + k) % (2 * ring.depth)
+                    ctx.set(dut.beat, {"data": word, "at": at, "valid": 1})
+                    await ctx.tick()
+                ctx.set(dut.beat.valid, 0)
+                key = ((beat + count - 1) % (2 * ring.depth)) * bus + lane
+                beat += count
+                ctx.set(dut.key, key)
+                for meaning in meanings:
+                    for name, want in expected(plan, meaning, length, key, phase).items():
+                        found = ctx.get(dut.entry[name])
+                        assert tamper(name, found) == want, (name, length, lane)
+                        compared += 1
+                await ctx.tick()
+                ctx.set(dut.key, 0)
+                assert ctx.get(dut.count) == length % (1 << dut.count_bits)
+        del stream
+
+    simulator = Simulator(dut)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(testbench)
+    simulator.run()
+    return compared
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8, 16])
+@pytest.mark.parametrize("name", MESSAGES)
+def test_lengths_are_decoded(name, bus_bytes):
+    assert compare(plan_of(name, bus_bytes)) > 100
+
+
+@pytest.mark.parametrize("field", ["zero", "over", "skips", "single", "double", "rest", "last"])
+def test_each_field_matters(field):
+    def tamper(name, value):
+        return value ^ 1 if name.startswith(field) else value
+
+    with pytest.raises(AssertionError):
+        compare(plan_of("cdr", 8), tamper)

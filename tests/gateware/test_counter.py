@@ -1,0 +1,73 @@
+"""The counter of words and elements: loads, late numbers, and the flag of the last one."""
+
+from __future__ import annotations
+
+import pytest
+from amaranth.hdl import Const, Module, Signal
+from amaranth.lib.wiring import Component, In, Out
+from amaranth.sim import Simulator
+
+from firm_hdl.gateware.counter import Counter
+
+
+class _Counting(Component):
+    """A counter with a load of 9, and a load by default of a number that comes late, or not."""
+
+    def __init__(self, *, late: bool):
+        self.late = late
+        inputs = {"nine": In(1), "begins": In(1), "number": In(8), "down": In(1)}
+        super().__init__({**inputs, "last": Out(1)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        counter = Counter(255, "counter")
+        value, double = self.number, None
+        if self.late:
+            value, double = Signal(8), self.number == 2
+            m.d.sync += value.eq(self.number)
+        counter.load(self.nine, 9)
+        counter.load_by_default(self.begins, value, self.number == 1, double, Const(0, 1))
+        counter.down(self.down)
+        counter.add_logic(m)
+        m.d.comb += self.last.eq(counter.last)
+        return m
+
+
+def _counts(counting: _Counting, number: int, *, nine: bool, pause: int = 0) -> int:
+    """Return after how many times counting the last one is told."""
+    found = 0
+
+    async def use(ctx) -> None:  # type: ignore[no-untyped-def]
+        nonlocal found
+        ctx.set(counting.begins, 1)
+        ctx.set(counting.nine, nine)
+        ctx.set(counting.number, number)
+        await ctx.tick()
+        ctx.set(counting.begins, 0)
+        ctx.set(counting.nine, 0)
+        ctx.set(counting.number, 0x55)
+        while not ctx.get(counting.last) and found < 300:
+            await ctx.tick().repeat(pause) if pause else None
+            ctx.set(counting.down, 1)
+            await ctx.tick()
+            ctx.set(counting.down, 0)
+            found += 1
+
+    simulator = Simulator(counting)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(use)
+    simulator.run()
+    return found
+
+
+@pytest.mark.parametrize("pause", [0, 1, 2])
+@pytest.mark.parametrize("late", [False, True])
+def test_the_last_one_is_told_a_cycle_ahead(late: bool, pause: int) -> None:
+    for number in (1, 2, 3, 4, 5, 8, 9, 17, 255):
+        assert _counts(_Counting(late=late), number, nine=False, pause=pause) == number - 1
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_a_constant_is_loaded_before_a_number(late: bool) -> None:
+    for number in (0, 1, 2, 3, 200):
+        assert _counts(_Counting(late=late), number, nine=True) == 8

@@ -1,0 +1,120 @@
+"""Cycles of packets by hand: where beats limit them, where steps do, and where the ring is full."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.plan import build_plan
+from firm_hdl.plan.cycles import (
+    cycles_between,
+    deserializer_cycles,
+    packet_of,
+    serializer_cycles,
+)
+from firm_hdl.plan.geometry import may_end_empty, most_beats, ring_beats
+from firm_hdl.wire import lay_out
+from tests.strategies import make
+
+TEXT = make("ros1", {"s": "string"}, "Text")
+WIDE = make("ros1", {"x": "uint64", "y": "uint32"}, "Wide")
+EMPTY = make("ros1", {}, "Empty")
+
+
+def made(fields, data, bus_bytes=8, dialect="ros1"):
+    plan = build_plan(lay_out(make(dialect, fields)), bus_bytes=bus_bytes)
+    return packet_of(plan, data)
+
+
+def both(packets):
+    return deserializer_cycles(packets), serializer_cycles(packets)
+
+
+def texts(*values):
+    """Return the bytes of a sequence of strings in ROS 1."""
+    parts = [len(value).to_bytes(4, "little") + value for value in values]
+    return len(values).to_bytes(4, "little") + b"".join(parts)
+
+
+def test_a_beat_per_cycle():
+    packet = made({"a": "uint64", "b": "uint64", "c": "uint64[2]"}, bytes(32))
+    # The two items of the array are a step each, as a leaf has one transfer per cycle.
+    assert [visit.bytes for visit in packet.visits] == [8, 16, 8]
+    assert both([packet] * 3) == ([3, 7, 11],) * 2
+    assert cycles_between(packet) == 4
+
+
+def test_a_step_of_two_beats_is_done_with_the_second_one():
+    packet = made({"a": "uint32", "b": "uint64"}, bytes(12))
+    assert (packet.beats, len(packet.visits)) == (2, 1)
+    # The serializer takes the leaves at once, and sends both beats.
+    assert both([packet] * 3) == ([1, 3, 5],) * 2
+
+
+def test_a_step_per_cycle():
+    # Three lengths in two beats are four steps; the last one only looks for what is left.
+    packet = made({"a": "string", "b": "string", "c": "string"}, bytes(12))
+    assert (packet.beats, len(packet.visits)) == (2, 4)
+    # The third length ends in the second beat. The serializer decodes the first length in a cycle
+    # of its own, and leaves out the last step.
+    assert deserializer_cycles([packet] * 3) == [3, 7, 11]
+    assert serializer_cycles([packet] * 3) == [3, 6, 9]
+    assert cycles_between(packet) == 4
+
+
+def test_the_same_length_again_costs_the_serializer_a_cycle():
+    packet = made({"t": (TEXT, "[]")}, texts(b"", b"", b"", b""))
+    assert len(packet.visits) == 6
+    assert deserializer_cycles([packet]) == [5]
+    # The number of texts, then a text in two cycles; the step behind them is left out.
+    assert serializer_cycles([packet]) == [1 + 1 + 2 * 3]
+
+
+def test_a_length_of_zero_that_ends_the_packet_costs_the_deserializer_a_cycle():
+    packet = made({"a": "uint8", "w": (WIDE, "[]")}, b"\7\0\0\0\0")
+    assert (packet.beats, len(packet.visits)) == (1, 1)
+    assert deserializer_cycles([packet] * 3) == [1, 3, 5]
+    # To the serializer, the length of the next packet is the same one again.
+    assert serializer_cycles([packet] * 3) == [1, 3, 5]
+
+
+@pytest.mark.parametrize(
+    ("count", "reads", "writes"),
+    [
+        # Two texts are a beat, and two elements are three. So there are as many beats as steps.
+        (8, 18, 16 + 12 + 1),
+        # But the bus waits for the texts, and the elements wait for the bus.
+        (100, 100 + 150 - 2, 200 + 150 + 1),
+    ],
+)
+def test_the_ring_is_full_where_one_of_the_two_is_slower_for_long(count, reads, writes):
+    data = texts(*[b""] * count) + count.to_bytes(4, "little") + bytes(12 * count)
+    packet = made({"t": (TEXT, "[]"), "w": (WIDE, "[]")}, data)
+    assert (packet.beats, len(packet.visits)) == (2 * count + 1, 2 * count + 2)
+    assert both([packet]) == ([reads], [writes])
+    assert cycles_between(packet) == writes - 1
+
+
+def test_a_full_beat_waits_where_it_may_be_the_last_one():
+    # A trigger is a step without bytes.
+    packet = made({"a": "uint32", "e": (EMPTY, "[]")}, b"\7\0\0\0\3\0\0\0")
+    assert may_end_empty(packet.plan)
+    assert [visit.bytes for visit in packet.visits] == [8, 0, 0, 0]
+    assert both([packet]) == ([3], [1 + 3])
+
+
+def test_packets_of_no_bytes_have_a_beat():
+    packet = made({"e": EMPTY}, b"")
+    assert (packet.bytes, packet.beats) == (0, 1)
+    assert both([packet] * 3) == ([0, 1, 2],) * 2
+    assert cycles_between(packet) == 1
+
+
+@pytest.mark.parametrize(("bus_bytes", "ring"), [(1, 16), (2, 16), (4, 8), (8, 8), (64, 8)])
+def test_the_ring_is_larger_than_a_step(bus_bytes, ring):
+    assert ring_beats(bus_bytes) == ring
+    for dialect, align in (("ros1", 0), ("ros2", 7)):
+        text = make(dialect, {"s": "string", "x": "float64"}, "T")
+        plan = build_plan(lay_out(make(dialect, {"t": (text, "[]")})), bus_bytes=bus_bytes)
+        # A text's last word, its NUL, padding, and a word of the map, at any lane.
+        assert most_beats(plan) < ring
+        assert most_beats(plan) <= -(-(3 * bus_bytes + 1 + align) // bus_bytes)
