@@ -6,15 +6,15 @@ from __future__ import annotations
 import random
 
 import pytest
-from amaranth.hdl import Const, Module, Mux, Signal, Value
+from amaranth.hdl import Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.sim import Simulator
 
 from firm_hdl.gateware.flow import Flow, exceeds
-from firm_hdl.plan import RunStep, build_plan, decode, encode
+from firm_hdl.plan import RunStep, build_plan, decode
 from firm_hdl.wire import lay_out
-from tests.gateware.test_throughput import random_packets
+from tests.gateware.traffic import random_packets
 from tests.strategies import make
 
 TEXT = make("ros1", {"s": "string"}, "Text")
@@ -37,18 +37,18 @@ class Walk(wiring.Component):
     begins : In(1)
         The step begins a run or a loop, of `count` words or elements.
     count : In(16)
-    skips : In(1)
-        The body is left out.
+    single, skips : In(1)
+        The body has one word or element; it is left out.
     step : Out(steps)
         One bit per step.
-    words_last : Out(1)
-        One word of the run is left.
+    trait : Out(1)
+        The trait of the step: it is the body of a run.
     """
 
     def __init__(self, plan):
         self.plan = plan
-        inputs = {"moves": In(1), "begins": In(1), "count": In(16), "single": In(1), "skips": In(1)}
-        outputs = {"step": Out(len(plan.steps)), "trait": Out(1), "words_last": Out(1)}
+        inputs = dict.fromkeys(("moves", "begins", "single", "skips"), In(1)) | {"count": In(16)}
+        outputs = {"step": Out(len(plan.steps)), "trait": Out(1)}
         super().__init__(inputs | outputs)
 
     def elaborate(self, platform):
@@ -68,7 +68,6 @@ class Walk(wiring.Component):
             ends.eq(done & flow.exit_ends),
             self.step.eq(flow.step),
             self.trait.eq(flow.state.is_run),
-            self.words_last.eq(flow.words.last),
         ]
         flow.count(
             moves=self.moves,
@@ -78,9 +77,9 @@ class Walk(wiring.Component):
             single=self.single,
             nul=False,
         )
-        following = Mux(ends, Const(flow.start, flow.layout.size), Mux(done, flow.exit_state, flow.body_state))
+        following = Mux(done, flow.exit_state, flow.body_state)
         with m.If(self.moves):
-            m.d.sync += Value.cast(flow.state).eq(following)
+            m.d.sync += Value.cast(flow.state).eq(Mux(ends, flow.start, following))
         return m
 
 

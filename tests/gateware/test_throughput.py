@@ -20,6 +20,7 @@ from firm_hdl.sim import Harness, Stalls, leaf_name, to_transfers
 from firm_hdl.sim.job import Job, RunOptions
 from firm_hdl.sim.payloads import all_beats, encoder_of
 from firm_hdl.wire import lay_out
+from tests.gateware.traffic import random_packets
 from tests.strategies import make
 
 PACKETS = 40
@@ -196,29 +197,6 @@ def check(message, packets, bus_bytes):
     want = [cycle + LATENCY_CYCLES["serializer"] for cycle in write]
     assert measure_serializer(tx, packets) == want
     return read[-1], write[-1]
-
-
-def random_packets(plan, count, seed=0):
-    """Return packets with strings of 0 to 12 characters and sequences of 0 to 4 elements."""
-    rng = random.Random(f"{plan.message}/{seed}")
-    strings = {
-        leaf.path[:-1] for leaf in plan.leaves if leaf.kind == "items" and leaf.item_bytes == 1
-    }
-
-    def payloads(index, leaf):
-        bits = 1 if leaf.type == "bool" else 8 * max(1, leaf.item_bytes)
-        low = -(1 << (bits - 1)) if leaf.signed else 0
-        while True:
-            if leaf.kind == "length":
-                most = 12 if leaf.path[:-1] in strings else 4
-                yield rng.randint(0, min(most, plan.counted[index].limit))
-            elif leaf.kind == "items":
-                yield tuple(rng.getrandbits(bits) + low for _ in range(leaf.lanes)), False
-            else:
-                yield 1 if leaf.kind == "trigger" else rng.getrandbits(bits) + low
-
-    streams = {index: payloads(index, leaf) for index, leaf in enumerate(plan.leaves)}
-    return [encode(plan, streams)[0] for _ in range(count)]
 
 
 # Strings alone and in sequences, arrays in sequences, alignment, an empty end, and no rotator.

@@ -93,7 +93,6 @@ def compare(plan, tamper=lambda name, value: value):
 
     async def testbench(ctx):
         nonlocal compared
-        stream = bytearray(rng.randbytes(8))
         beat = 0
         for length in values:
             for lane in dut.lanes:
@@ -121,7 +120,6 @@ def compare(plan, tamper=lambda name, value: value):
                 await ctx.tick()
                 ctx.set(dut.key, 0)
                 assert ctx.get(dut.count) == length % (1 << dut.count_bits)
-        del stream
 
     simulator = Simulator(dut)
     simulator.add_clock(1e-6)
@@ -133,7 +131,7 @@ def compare(plan, tamper=lambda name, value: value):
 @pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8, 16])
 @pytest.mark.parametrize("name", MESSAGES)
 def test_lengths_are_decoded(name, bus_bytes):
-    assert compare(plan_of(name, bus_bytes)) > 100
+    assert compare(plan_of(name, bus_bytes)) >= 100
 
 
 @pytest.mark.parametrize("field", ["zero", "over", "skips", "single", "double", "rest", "last"])

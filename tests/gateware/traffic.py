@@ -1,0 +1,32 @@
+"""Random packets for tests of parts of converters."""
+
+from __future__ import annotations
+
+import random
+
+from firm_hdl.plan import Plan, encode
+
+__all__ = ["random_packets"]
+
+
+def random_packets(plan: Plan, count: int, seed: int = 0) -> list[bytes]:
+    """Return packets with strings of 0 to 12 characters and sequences of 0 to 4 elements."""
+    rng = random.Random(f"{plan.message}/{seed}")
+    strings = {
+        leaf.path[:-1] for leaf in plan.leaves if leaf.kind == "items" and leaf.item_bytes == 1
+    }
+
+    def payloads(index, leaf):
+        bits = 1 if leaf.type == "bool" else 8 * max(1, leaf.item_bytes)
+        low = -(1 << (bits - 1)) if leaf.signed else 0
+        while True:
+            if leaf.kind == "length":
+                most = 12 if leaf.path[:-1] in strings else 4
+                yield rng.randint(0, min(most, plan.counted[index].limit))
+            elif leaf.kind == "items":
+                yield tuple(rng.getrandbits(bits) + low for _ in range(leaf.lanes)), False
+            else:
+                yield 1 if leaf.kind == "trigger" else rng.getrandbits(bits) + low
+
+    streams = {index: payloads(index, leaf) for index, leaf in enumerate(plan.leaves)}
+    return [encode(plan, streams)[0] for _ in range(count)]
