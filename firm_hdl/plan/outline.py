@@ -72,8 +72,8 @@ def _bytes(stretch: _Stretch, bus_bytes: int, numbers: Iterator[int]) -> Iterato
     share it with what is in front. So its first bytes are a value of their own.
     """
     gap, left = stretch.gap, stretch.bytes
-    if gap.bytes is None:
-        # A plan aligns a step only in front of a value that needs it.
+    if gap.bytes != 0:
+        # Padding stands only in front of a value that needs the alignment.
         number = PRIMITIVES["ros2"][f"uint{8 * gap.align}"]
         yield Scalar(path=_path(numbers), gap=gap, type=number)
         gap, left = NO_GAP, left - gap.align

@@ -14,7 +14,7 @@ from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import lay_out, walk
 from firm_hdl.wire.layout import LoopNode, RunNode, Trigger
 from tests.plan.test_random_messages import damaged, typed_values
-from tests.strategies import BUS_WIDTHS
+from tests.strategies import BUS_WIDTHS, make
 
 slow = settings(
     deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
@@ -56,6 +56,15 @@ def test_lengths_and_their_limits_stay(wire, bus_bytes):
     ]
     # A sequence of numbers that are wider than the bus is a loop in both.
     assert names[0] == names[1]
+
+
+@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+def test_padding_within_the_first_element_of_a_loop(bus_bytes):
+    element = make("ros2", {"a": "float32", "b": "string"}, "Element")
+    _, short = plans_of(
+        message_of("p/msg/T", a=UINT8, b=Array(element=element, count=1)), "cdr", bus_bytes
+    )
+    assert check(short) == []
 
 
 @pytest.mark.parametrize(
