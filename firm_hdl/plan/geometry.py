@@ -126,9 +126,9 @@ def first_step(plan: Plan) -> int:
 
 
 def only_ends(step: Step) -> bool:
-    """Tell whether a step ends the packet in any case, and takes a rest at most."""
+    """Tell whether a step ends the packet in any case, and takes nothing but a rest."""
     ends = step.exits.default.step is None and not step.exits.repeats
-    return ends and step.rest is not None and not step.bytes
+    return ends and step.rest is not None and not step.slices
 
 
 def may_end_empty(plan: Plan) -> bool:
@@ -137,7 +137,7 @@ def may_end_empty(plan: Plan) -> bool:
     Then its last beat may be full before it is known to be the last one.
     """
     return any(
-        step.exits.default.step is None and not step.bytes and step.rest is None
+        step.exits.default.step is None and not step.bytes and not only_ends(step)
         for step in plan.steps
         if not isinstance(step, RunStep)
     )

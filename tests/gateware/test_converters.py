@@ -12,7 +12,7 @@ from firm_hdl.plan import decode, encode
 from firm_hdl.sim import Harness, RunOptions, Stalls, to_transfers
 from firm_hdl.sim.transfers import join_transfers
 from tests.plan.test_random_messages import damaged, serialize, typed_values
-from tests.strategies import BUS_WIDTHS, values
+from tests.strategies import BUS_WIDTHS, make, values
 
 few = settings(
     deadline=None,
@@ -54,6 +54,43 @@ def test_messages_come_through_byte_for_byte(wire, data, case, options, stalls):
     assert carried(seen.transfers) == expected(rx.plan, packets)[0]
     assert set(seen.statuses) | set(seen.sent_statuses) == {Status.OK}
     assert not any(seen.packet_errors)
+
+
+LAST = make("ros1", {"a": "uint64", "s": "string", "b": "uint8", "t": "string"}, "Last")
+NOTHING = make("ros1", {}, "Nothing")
+ENDS = {
+    "the last string of a sequence": make("ros1", {"h": "uint32[4]", "a": (LAST, "[]")}),
+    "a trigger behind a string": make("ros1", {"a": "uint32", "s": "string", "e": NOTHING}),
+    "a sequence of triggers": make("ros1", {"a": "uint32", "e": (NOTHING, "[]")}),
+}
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 8, 16])
+@pytest.mark.parametrize("end", ENDS)
+def test_a_packet_may_end_in_a_step_without_bytes(end, bus_bytes):
+    rx, tx = (kind(ENDS[end], bus_bytes=bus_bytes) for kind in (Deserializer, Serializer))
+    # Strings of 0 and 3 characters, behind a whole number of beats and not.
+    empty, text = bytes(8), bytes(4) + b"\3\0\0\0abc"
+    if end == "the last string of a sequence":
+        ends = [bytes(13) + each[4:] for each in (empty, text)]
+        bodies = ([], [0], [1], [1, 0], *[[0] * 4] * 3, [1] * 4 + [0])
+        packets = [
+            bytes(16) + len(body).to_bytes(4, "little") + b"".join(ends[k] for k in body)
+            for body in bodies
+        ]
+    elif end == "a trigger behind a string":
+        packets = [empty, text] * 3
+    else:
+        packets = [bytes(4) + count.to_bytes(4, "little") for count in (0, 1, 5)]
+    packets *= 5
+    messages = [decode(tx.plan, packet).streams for packet in packets]
+    for stalls in (None, Stalls(probability=0.5, seed=1)):
+        seen = Harness(rx, tx, gated=True).run_packets(packets, RunOptions(stalls=stalls))
+        assert seen.packets == packets
+        assert carried(seen.transfers) == expected(rx.plan, packets)[0]
+    # Beats leave at once, and may not overtake their end.
+    slow = RunOptions(stalls={"message": Stalls(probability=0.5, max_cycles=6)})
+    assert Harness(None, tx).run_messages(messages, slow).packets == packets
 
 
 @pytest.mark.parametrize("wire", WIRES)
