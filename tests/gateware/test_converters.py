@@ -61,13 +61,14 @@ NOTHING = make("ros1", {}, "Nothing")
 ENDS = {
     "the last string of a sequence": make("ros1", {"h": "uint32[4]", "a": (LAST, "[]")}),
     "a trigger behind a string": make("ros1", {"a": "uint32", "s": "string", "e": NOTHING}),
+    "a string": make("ros1", {"a": "uint32", "s": "string"}),
     "a sequence of triggers": make("ros1", {"a": "uint32", "e": (NOTHING, "[]")}),
 }
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 8, 16])
 @pytest.mark.parametrize("end", ENDS)
-def test_a_packet_may_end_in_a_step_without_bytes(end, bus_bytes):
+def test_a_packet_may_end_with_a_length_or_a_step_without_bytes(end, bus_bytes):
     rx, tx = (kind(ENDS[end], bus_bytes=bus_bytes) for kind in (Deserializer, Serializer))
     # Strings of 0 and 3 characters, behind a whole number of beats and not.
     empty, text = bytes(8), bytes(4) + b"\3\0\0\0abc"
@@ -78,7 +79,7 @@ def test_a_packet_may_end_in_a_step_without_bytes(end, bus_bytes):
             bytes(16) + len(body).to_bytes(4, "little") + b"".join(ends[k] for k in body)
             for body in bodies
         ]
-    elif end == "a trigger behind a string":
+    elif "string" in end:
         packets = [empty, text] * 3
     else:
         packets = [bytes(4) + count.to_bytes(4, "little") for count in (0, 1, 5)]
@@ -88,9 +89,10 @@ def test_a_packet_may_end_in_a_step_without_bytes(end, bus_bytes):
         seen = Harness(rx, tx, gated=True).run_packets(packets, RunOptions(stalls=stalls))
         assert seen.packets == packets
         assert carried(seen.transfers) == expected(rx.plan, packets)[0]
-    # Beats leave at once, and may not overtake their end.
-    slow = RunOptions(stalls={"message": Stalls(probability=0.5, max_cycles=6)})
-    assert Harness(None, tx).run_messages(messages, slow).packets == packets
+    # Beats leave at once, and may not overtake their end; or a status waits for long.
+    for stalled in ("message", "status"):
+        slow = RunOptions(stalls={stalled: Stalls(probability=0.5, max_cycles=6)})
+        assert Harness(None, tx).run_messages(messages, slow).packets == packets
 
 
 @pytest.mark.parametrize("wire", WIRES)

@@ -136,6 +136,11 @@ class _Circuit(Progress):
                 valid = port.valid
                 if reader.leaf in self.lengths:
                     valid = valid & self.lengths[reader.leaf].known
+                if step.begin is not None and reader.leaf == step.begin.length:
+                    # A length that was taken is no longer decoded, so the step is left with it. A
+                    # length comes every second cycle at most: a status that is taken at once does
+                    # not delay it.
+                    valid = valid & (~self.ends | ~c.status.valid)
                 left, lacks, go = (
                     Signal(name=f"{name}_{index}_{slot}") for name in ("left", "lacks", "go")
                 )
