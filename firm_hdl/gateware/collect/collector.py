@@ -129,6 +129,7 @@ class _Circuit(Progress):
         ready: dict[int, list[Value]] = {}
         missing: list[Value] = []
         wrong: list[Value] = []
+        held: dict[int, list[Value]] = {leaf: [] for leaf in self.lengths}
         for index, step in enumerate(self.plan.steps):
             earlier: list[Value] = []
             for slot, reader in enumerate(self._readers(step)):
@@ -136,11 +137,6 @@ class _Circuit(Progress):
                 valid = port.valid
                 if reader.leaf in self.lengths:
                     valid = valid & self.lengths[reader.leaf].known
-                if step.begin is not None and reader.leaf == step.begin.length:
-                    # A length that was taken is no longer decoded, so the step is left with it. A
-                    # length comes every second cycle at most: a status that is taken at once does
-                    # not delay it.
-                    valid = valid & (~self.ends | ~c.status.valid)
                 left, lacks, go = (
                     Signal(name=f"{name}_{index}_{slot}") for name in ("left", "lacks", "go")
                 )
@@ -152,6 +148,9 @@ class _Circuit(Progress):
                 ]
                 earlier.append(lacks)
                 goes[slot].append(go)
+                if reader.leaf in self.lengths and self._waits(step):
+                    taken = go | (self.step[index] & self.served[slot])
+                    held[reader.leaf].append(taken & ~self.complete)
                 ready.setdefault(reader.leaf, []).append(go)
                 if self.plan.leaves[reader.leaf].kind == "items":
                     wrong.append(go & (port.payload.last != reader.last))
@@ -162,6 +161,8 @@ class _Circuit(Progress):
                     missing.append(self.step[index] & ~self.streams[part.leaf].valid)
         for leaf, cases in ready.items():
             m.d.comb += self.streams[leaf].ready.eq(any_of(cases))
+        for leaf, cases in held.items():
+            m.d.comb += self.lengths[leaf].held.eq(any_of(cases))
         status_free = ~c.status.valid | c.status.ready
         m.d.comb += [
             self.free.eq(~c.words.valid | c.words.ready),
@@ -170,6 +171,13 @@ class _Circuit(Progress):
         for flag, cases in zip(self.served, goes, strict=True):
             m.d.sync += flag.eq((flag | any_of(cases)) & ~self.complete)
         self._judge(any_of(wrong))
+
+    def _waits(self, step: Step) -> bool:
+        """Tell whether a step may have taken its length, and wait for the status of a packet."""
+        jumps = [step.exits.default, *(jump for _, jump in step.exits.repeats)]
+        return step.begin is not None and any(
+            jump.step is None or only_ends(self.plan.steps[jump.step]) for jump in jumps
+        )
 
     def _judge(self, wrong_items: Value) -> None:
         """Keep the packet's first error, and report it with the last step."""

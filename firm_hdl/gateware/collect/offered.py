@@ -6,7 +6,7 @@ from amaranth.hdl import Const, Module, Mux, Signal, Value
 from amaranth.lib import stream
 
 from firm_hdl.gateware.flow import exceeds
-from firm_hdl.plan import BeginLoop, Plan
+from firm_hdl.plan import BeginLoop, BeginRun, Plan
 
 __all__ = ["OfferedLength"]
 
@@ -35,29 +35,37 @@ class OfferedLength:
         The body is one element, or one word in front of the rest.
     rest : Signal(range(lanes + 1))
         Items of the rest.
+    held : Signal(1)
+        To be driven: the fields stay in the next cycle, because the step of a length that was taken
+        is not left yet.
     """
 
     def __init__(self, m: Module, plan: Plan, leaf: int, port: stream.Interface, taken: Value):
         begin, length = plan.counted[leaf], port.payload
+        self.leaf = leaf
         self.known = Signal(name=f"known_{leaf}")
         names = ("zero", "over", "skips", "single")
         self.zero, self.over, self.skips, self.single = (
             Signal(name=f"{name}_{leaf}", reset_less=True) for name in names
         )
+        self.held = Signal(name=f"held_{leaf}")
+        m.d.sync += self.known.eq(port.valid & ~taken & ~self.held)
+        with m.If(~self.held):
+            self._decode(m, plan, begin, length)
+
+    def _decode(
+        self, m: Module, plan: Plan, begin: BeginRun | BeginLoop, length: Value
+    ) -> None:
         zero = ~length.any()
-        m.d.sync += [
-            self.known.eq(port.valid & ~taken),
-            self.zero.eq(zero),
-            self.over.eq(exceeds(length, begin.limit)),
-        ]
+        m.d.sync += [self.zero.eq(zero), self.over.eq(exceeds(length, begin.limit))]
         if isinstance(begin, BeginLoop):
-            self.rest = Signal(1, name=f"rest_{leaf}")
+            self.rest = Signal(1, name=f"rest_{self.leaf}")
             m.d.sync += [self.skips.eq(zero), self.single.eq(length == 1)]
             return
         lanes = plan.leaves[plan.runs[begin.run].items].lanes
         low = length[: lanes.bit_length() - 1]
         full = Mux(low.any(), low, lanes) if len(low) else Const(lanes)
-        self.rest = Signal(range(lanes + 1), name=f"rest_{leaf}", reset_less=True)
+        self.rest = Signal(range(lanes + 1), name=f"rest_{self.leaf}", reset_less=True)
         m.d.sync += [
             self.skips.eq(~exceeds(length, lanes)),
             self.single.eq(~exceeds(length, 2 * lanes)),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import takewhile
+
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
@@ -20,7 +22,7 @@ from firm_hdl.gateware.positions import (
     pick,
 )
 from firm_hdl.gateware.signatures import Status
-from firm_hdl.plan import BeginRun, Plan
+from firm_hdl.plan import BeginRun, Plan, RunStep
 
 __all__ = ["Sequencer"]
 
@@ -138,7 +140,7 @@ class _Circuit(Progress):
         ready, good = c.orders.ready, self.judge.good
         m.d.comb += [
             blind.eq(bad & ~self.noted & (~state.end | c.ended)),
-            sighted.eq(~bad & (~self.ends | c.ended)),
+            sighted.eq(~bad & (~self.ends | c.ended) & ~self._too_early()),
             c.orders.valid.eq(blind | (sighted & good)),
             self.issue.eq((blind & ready) | (sighted & ready & good)),
             c.next.eq((blind & ready & self.closes) | (sighted & ready & self.closes & good)),
@@ -168,6 +170,14 @@ class _Circuit(Progress):
             ),
             c.at.eq(self.ring.beat(self.first)),
         ]
+
+    def _too_early(self) -> Value:
+        """Return whether a step in front of all bytes would come before its packet."""
+        leading = takewhile(
+            lambda i: not isinstance(self.plan.steps[i], RunStep) and not self.plan.steps[i].bytes,
+            range(len(self.plan.steps)),
+        )
+        return any_of([self.step[i] for i in leading]) & ~self.left.any() & ~self.c.ended
 
     # The next step.
 
