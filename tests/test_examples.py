@@ -113,6 +113,9 @@ def test_commands_print_what_is_quoted(here, capsys, text):
         if arguments[0] == "prove":
             # Proofs that run at the same time end in any order.
             out, output = (in_order(text) for text in (out, output))
+        if arguments[0] == "build":
+            # So are folders that are written at the same time.
+            out, output = (written_in_order(text) for text in (out, output))
         # A line `...` stands for any number of lines.
         parts = re.split(r"^\.\.\.\n", output.strip("\n"), flags=re.MULTILINE)
         pattern = r"(?:.*\n)*?".join(map(re.escape, parts))
@@ -126,6 +129,13 @@ def test_commands_print_what_is_quoted(here, capsys, text):
 def in_order(text: str) -> str:
     """Return lines in the order of what they say besides times."""
     return "\n".join(sorted(text.splitlines(), key=lambda line: line.split("s  ")[-1]))
+
+
+def written_in_order(text: str) -> str:
+    """Return lines with those in front that name folders in the order of these."""
+    lines = text.splitlines()
+    count = next((n for n, line in enumerate(lines) if not line.startswith("wrote ")), len(lines))
+    return "\n".join([*sorted(lines[:count]), *lines[count:]])
 
 
 def test_links_lead_somewhere():

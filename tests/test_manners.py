@@ -82,9 +82,10 @@ def test_what_a_type_depends_on_is_found(command, capsys):
 
 
 def test_info_says_what_was_tried_and_of_long_arrays_only_where_there_are_some(capsys):
-    assert main(["info", "geometry_msgs/msg/Polygon", "sensor_msgs/msg/Image"]) == 0
+    types = ["geometry_msgs/msg/PolygonInstance", "sensor_msgs/msg/Image"]
+    assert main(["info", "--bus-bytes", "16", *types]) == 0
     polygon, image = capsys.readouterr().out.split("sensor_msgs/msg/Image")
-    assert "clock for the hardest packet tried (20 bytes, 3 beats, 3 cycles): " in polygon
+    assert "clock for the hardest packet tried (28 bytes, 2 beats, 3 cycles): " in polygon
     assert "long" not in polygon
     assert "clock for long strings or arrays: " in image
 

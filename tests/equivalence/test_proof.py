@@ -165,10 +165,12 @@ def test_converters_are_proved_equal(
     assert proof.registers > 100
 
 
-@pytest.mark.parametrize("direction", DIRECTIONS)
-def test_a_broken_converter_is_found(direction: Direction, tools: Tools) -> None:
+@pytest.mark.parametrize(
+    ("direction", "part"), [("deserializer", "mover"), ("serializer", "collector")]
+)
+def test_a_broken_converter_is_found(direction: Direction, part: str, tools: Tools) -> None:
     rtlil, vhdl = converter_vhdl(load_message("std_msgs/msg/String"), direction)
-    twins = [twin for twin in broken_vhdl(vhdl, f"{vhdl.top}_core") if " is or" in twin[0]]
+    twins = [twin for twin in broken_vhdl(vhdl, f"{vhdl.top}_core_{part}") if " is or" in twin[0]]
     assert prove(rtlil, twins[0][1], tools=tools).result == "unequal"
 
 

@@ -123,20 +123,36 @@ def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
     [
         # A condition, an operator, a limit that costs nothing but cycles; what registers hold
         # initially, and after a reset.
-        ("deserializer_flat_core.vhd", r"(?<=if )mismatch = '1'", "mismatch = '0'", "instead of"),
-        ("serializer_flat_core_packer.vhd", r"(?<=rest )\+", "-", "of the serializer is"),
-        ("deserializer_flat_core_window.vhd", r"(?<=fill < )2", "1", "s_axis_tready of the des"),
         (
-            "_deserializer_flat_core.vhd",
-            r"(stamp_sec_payload_q +: .*):= \(others => '0'\)",
+            "deserializer_flat_core_sequencer.vhd",
+            r"(?<=if )mismatch = '1'",
+            "mismatch = '0'",
+            "instead of",
+        ),
+        (
+            "serializer_flat_core_packer.vhd",
+            r"(?<= total <= at )\+",
+            "-",
+            "of the serializer is",
+        ),
+        (
+            "deserializer_flat_core_buffer.vhd",
+            r"(?<=used )= 7",
+            ">= 3",
+            "s_axis_tready of the des",
+        ),
+        (
+            "_deserializer_flat_core_mover.vhd",
+            r"(leaf_0_payload_q +: .*):= \(others => '0'\)",
             r"\1:= (0 => '1', others => '0')",
             "hardware, cycle 0: stamp_sec_data of the deserializer is 0x1 instead of 0x0",
         ),
+        # Of what is offered, only the status is reset: all others keep what they last held.
         (
-            "_deserializer_flat_core.vhd",
-            r"message_stamp_sec_payload_q( +)<= \(others => '0'\);",
-            r"message_stamp_sec_payload_q\1<= (0 => '1', others => '0');",
-            "cycle 0: stamp_sec_data of the deserializer is 0x1 instead of 0x0",
+            "_deserializer_flat_core_mover.vhd",
+            r"status_payload_q( +)<= \(others => '0'\);",
+            r"status_payload_q\1<= (0 => '1', others => '0');",
+            "cycle 0: m_axis_status_tdata of the deserializer is 0x1 instead of 0x0",
         ),
         # An output that means nothing while nothing is offered.
         (

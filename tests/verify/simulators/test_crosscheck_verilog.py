@@ -206,14 +206,19 @@ def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
     monkeypatch.setattr(verilog, "to_verilog", changed)
 
 
-INITIAL = r"(?<=reg \[31:0\] message__stamp__sec__payload) = 32'd0"
+INITIAL = r"(?<=reg \[31:0\] leaf_0__payload) = 32'd0"
 STATUS = r"(?<=assign m_axis_status_tdata = )\{.*\}"
 
 CHANGES = {
     # A condition, an operator, a limit that costs nothing but cycles.
     "condition": ("_deserializer", r"(?<== )mismatch \?", "~ mismatch ?", "instead of"),
-    "operator": ("_serializer", r"(?<=level )-", "+", "of the serializer is"),
-    "limit": ("_deserializer", r"(?<=fill < )2'h2", "2'h1", "s_axis_tready of the deserializer"),
+    "operator": ("_serializer", r"(?<=total } = at )\+", "-", "of the serializer is"),
+    "limit": (
+        "_deserializer",
+        r"(?<=used )== 3'h7",
+        ">= 3'h3",
+        "s_axis_tready of the deserializer",
+    ),
     # What registers hold initially, and after a reset.
     "initial value": (
         "_deserializer",
@@ -229,14 +234,16 @@ CHANGES = {
     ),
     "no reset": (
         "_deserializer",
-        r"(?<== )rst(?= \? 32'd0 :)",
+        # The position of the next beat. Leaves that a port shows are not reset, and what else it
+        # shows is 0 at the end of a run.
+        r"(?<== )rst(?= \? 4'h0 : \S+ \[3:0\])",
         "1'h0",
-        "cycle 0: frame_id_length_data of the deserializer is",
+        "hardware, nothing taken, cycle 7: stamp_sec_data of the deserializer is",
     ),
     # An output that means nothing while nothing is offered.
     "payload": (
         "_deserializer",
-        r"(?<=reg \[64:0\] message__frame_id__items__payload = 65'h)0+",
+        r"(?<=reg \[64:0\] leaf_3__payload = 65'h)0+",
         "0ffffffffffffffff",
         "cycle 0: frame_id_items_data of the deserializer is 0xffffffffffffffff instead of 0x0",
     ),

@@ -179,7 +179,17 @@ FLIP = str.maketrans("01", "10")
         ("serializer", "m_axis_tdata", lambda bits: bits[:-1] + "1", "packets differ: number 0"),
         ("serializer", "m_axis_tdata", lambda bits: bits[:-1] + "X", "packets differ: number 0"),
         ("serializer", "m_axis_tlast", lambda bits: "0", "packets differ: number 0 of 3 is []"),
-        ("serializer", "m_axis_tvalid", lambda bits: "1", "packets differ: number 0 of 3"),
+        # Before the first packet, that is a beat without a byte; behind a packet, its last beat
+        # again. Only in the second run are there pauses between packets.
+        (
+            "serializer",
+            "m_axis_tvalid",
+            lambda bits: "1",
+            (
+                "packets differ: number 3 of 3 is [b'\\x01'] instead of []",
+                "packets differ: number 1 of 3 is [b'\\x01'] instead of ",
+            ),
+        ),
         ("serializer", "m_axis_tuser", lambda bits: "1", "tuser differ: number 0 of 3"),
         ("serializer", "m_axis_status_tdata", lambda bits: bits[:-1] + "1", "statuses of the ser"),
         ("serializer", "m_axis_status_tvalid", lambda bits: "1", "statuses of the serializer"),
@@ -194,9 +204,10 @@ FLIP = str.maketrans("01", "10")
 def test_traffic_is_what_the_ports_showed(recorded, direction, name, change, said):
     trace, seen = recorded
     rows = doctored(trace, direction, name, change)
-    for run, right in zip(traffic(trace, rows), seen, strict=True):
+    each = said if isinstance(said, tuple) else (said,) * len(seen)
+    for run, right, start in zip(traffic(trace, rows), seen, each, strict=True):
         found = run.difference(right)
-        assert found is not None and found.startswith(said)
+        assert found is not None and found.startswith(start)
     assert first_difference(trace, rows) is not None
 
 
