@@ -68,23 +68,23 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal sighted       : std_logic;
   signal issue         : std_logic;
   signal items_wanted  : unsigned(3 downto 0);
-  signal mux_144       : unsigned(33 downto 0);
+  signal mux_151       : unsigned(33 downto 0);
   signal next_state    : unsigned(33 downto 0);
   signal step_leaves   : std_logic;
   signal step_stays    : std_logic;
   signal exit_amount   : unsigned(5 downto 0);
   signal exit_sum      : unsigned(6 downto 0);
-  signal mux_167       : unsigned(6 downto 0);
+  signal mux_174       : unsigned(6 downto 0);
   signal early_last    : unsigned(6 downto 0);
-  signal mux_206       : unsigned(2 downto 0);
-  signal and_207       : std_logic;
-  signal sub_212       : unsigned(6 downto 0);
-  signal mux_217       : unsigned(3 downto 0);
-  signal mux_221       : unsigned(3 downto 0);
-  signal mux_222       : unsigned(3 downto 0);
-  signal mux_227       : unsigned(3 downto 0);
+  signal mux_213       : unsigned(2 downto 0);
+  signal and_214       : std_logic;
+  signal sub_219       : unsigned(6 downto 0);
+  signal mux_224       : unsigned(3 downto 0);
+  signal mux_228       : unsigned(3 downto 0);
+  signal mux_229       : unsigned(3 downto 0);
   signal mux_234       : unsigned(3 downto 0);
-  signal mux_276       : unsigned(6 downto 0);
+  signal mux_241       : unsigned(3 downto 0);
+  signal mux_283       : unsigned(6 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal leaves_0      : std_logic;
@@ -154,32 +154,32 @@ begin
   issue <= (blind and orders_ready) or (sighted and orders_ready and good);
   next_sig <= (blind and orders_ready and closes) or (sighted and orders_ready and closes and good);
   items_wanted <= (others => '0') when state(16) = '1' else "1000";
-  mux_144 <= (or state(4 downto 0)) & 9x"000" & (or state(3 downto 0)) & state(3) & "00" &
+  mux_151 <= (or state(4 downto 0)) & 9x"000" & (or state(3 downto 0)) & state(3) & "00" &
       state(5) & (or state(4 downto 0)) & state(4) & "00000" & (or state(4 downto 0)) &
       (or state(4 downto 0)) & state(4) & '0' & (or state(5 downto 0)) & state(5 downto 0) &
       '0' when done = '1' else (others => '0');
-  next_state <= 34x"200840C81" when closes = '1' else mux_144;
+  next_state <= 34x"200840C81" when closes = '1' else mux_151;
   step_leaves <= issue and not closes and done;
   step_stays <= issue and not closes and not done;
   exit_amount <= (others => '0') when state(32) = '1' else state(25 downto 20);
   exit_sum <= last + exit_amount;
-  mux_167 <= (exit_sum and not resize(state(28 downto 26), 7)) or resize(state(31 downto 29),
+  mux_174 <= (exit_sum and not resize(state(28 downto 26), 7)) or resize(state(31 downto 29),
       7) when leaves = '1' else last;
-  early_last <= unsigned'(following & "000") + 7 when closes = '1' else mux_167;
-  mux_206 <= "100" when mismatch = '1' else mux(cut, "001", mux(ends, "010", "011"));
-  and_207 <= blind and orders_ready;
-  sub_212 <= limit_sig - first;
-  mux_217 <= (others => '0') when sub_212(6) = '1' else mux(to_std_logic(limit_sig - first >= 8),
+  early_last <= unsigned'(following & "000") + 7 when closes = '1' else mux_174;
+  mux_213 <= "100" when mismatch = '1' else mux(cut, "001", mux(ends, "010", "011"));
+  and_214 <= blind and orders_ready;
+  sub_219 <= limit_sig - first;
+  mux_224 <= (others => '0') when sub_219(6) = '1' else mux(to_std_logic(limit_sig - first >= 8),
       "1000", limit_sig(3 downto 0) - first(3 downto 0));
-  mux_221 <= mux_217 when state(16) = '1' else mux(behind_map(6), "0000",
+  mux_228 <= mux_224 when state(16) = '1' else mux(behind_map(6), "0000",
       mux(to_std_logic(behind_map >= 8), "1000", behind_map(3 downto 0)));
-  mux_222 <= mux(behind_map(6), resize(mux(and behind_map(6 downto 3), behind_map(2 downto 0),
-      "000"), 4), "1000") when state(17) = '1' else mux_221;
-  mux_227 <= mux_222 when code = 1 else mux(to_std_logic(code = 2) or to_std_logic(code = 5),
+  mux_229 <= mux(behind_map(6), resize(mux(and behind_map(6 downto 3), behind_map(2 downto 0),
+      "000"), 4), "1000") when state(17) = '1' else mux_228;
+  mux_234 <= mux_229 when code = 1 else mux(to_std_logic(code = 2) or to_std_logic(code = 5),
       "1000", "0000");
-  mux_234 <= mux(behind_map(6), "0000", mux(to_std_logic(behind_map >= 8), "1000",
+  mux_241 <= mux(behind_map(6), "0000", mux(to_std_logic(behind_map >= 8), "1000",
       behind_map(3 downto 0))) when code = 1 else mux(to_std_logic(code = 2), "1000", "0000");
-  mux_276 <= following & "000" when closes = '1' else mux(bad, mux(state(19), limit_sig, first),
+  mux_283 <= following & "000" when closes = '1' else mux(bad, mux(state(19), limit_sig, first),
       behind);
 
   p_aclk : process (aclk)
@@ -202,7 +202,7 @@ begin
         if bad = '0' then
           bad <= mismatch or cut or (ends and not ended and trailing_31);
           noted <= mismatch or cut or (ends and not ended and trailing_31);
-          code <= mux_206;
+          code <= mux_213;
         end if;
         if issue = '1' then
           if closes = '1' then
@@ -223,9 +223,9 @@ begin
         if bad = '1' then
           noted <= '0';
           if noted = '1' then
-            items_room <= mux_227;
-            map_room <= mux_234;
-          elsif and_207 = '1' then
+            items_room <= mux_234;
+            map_room <= mux_241;
+          elsif and_214 = '1' then
             items_room <= (others => '0');
             map_room <= (others => '0');
           end if;
@@ -233,7 +233,7 @@ begin
         words_last <= words_last;
         words_less <= words_less;
         if issue = '1' or (bad = '1' and state(19) = '1') then
-          first <= mux_276;
+          first <= mux_283;
         end if;
       end if;
     end if;

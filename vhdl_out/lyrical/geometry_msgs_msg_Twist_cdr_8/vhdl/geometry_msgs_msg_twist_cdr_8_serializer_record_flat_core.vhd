@@ -47,7 +47,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core is
 
   -- Combinational signals.
   signal words_payload_0   : unsigned(127 downto 0);
-  signal words_payload_128 : unsigned(31 downto 0);
+  signal words_payload_128 : unsigned(32 downto 0);
   signal words_valid       : std_logic;
   signal words_ready       : std_logic;
 
@@ -70,8 +70,8 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core is
   signal message_angular_z_payload : unsigned(63 downto 0);
   signal message_angular_z_valid   : std_logic;
   signal leaf_5_ready              : std_logic;
-  signal words_payload             : unsigned(159 downto 0);
-  signal words_payload_37          : unsigned(159 downto 0);
+  signal words_payload             : unsigned(160 downto 0);
+  signal words_payload_37          : unsigned(160 downto 0);
   signal error_sig                 : std_logic;
 begin
 
@@ -92,8 +92,8 @@ begin
       leaf_3_valid   => leaf_3_valid,
       leaf_4_valid   => leaf_4_valid,
       leaf_5_valid   => leaf_5_valid,
-      port_1661_0    => words_payload_0,
-      port_1665_0    => words_payload_128,
+      port_635_0     => words_payload_0,
+      port_639_0     => words_payload_128,
       status_valid   => status_valid,
       status_payload => status_payload,
       words_valid    => words_valid,

@@ -4,7 +4,7 @@
 -- What each port means: manifest.json.
 -- Module geometry_msgs_msg_twist_cdr_8_serializer_record_flat.core.collector of the Amaranth design.
 -- 13 registers at rising_edge(aclk), synchronous reset rst = '1'.
--- 16 registers at rising_edge(aclk), no reset.
+-- 4 registers at rising_edge(aclk), no reset.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -29,8 +29,8 @@ entity geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_collector is
     leaf_3_valid   : in  std_logic;
     leaf_4_valid   : in  std_logic;
     leaf_5_valid   : in  std_logic;
-    port_1661_0    : out unsigned(127 downto 0);
-    port_1665_0    : out unsigned(31 downto 0);
+    port_635_0     : out unsigned(127 downto 0);
+    port_639_0     : out unsigned(32 downto 0);
     status_valid   : out std_logic;
     -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
     status_payload : out unsigned(2 downto 0);
@@ -48,7 +48,7 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_collector is
 
   -- Registers.
-  signal port_1665_0_q    : unsigned(31 downto 0) := (others => '0');
+  signal port_639_0_q     : unsigned(32 downto 0) := (others => '0');
   signal status_valid_q   : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal status_payload_q : unsigned(2 downto 0) := (others => '0');
@@ -57,22 +57,10 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_co
   signal served_1         : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal error_sig        : unsigned(2 downto 0) := (others => '0');
-  signal map_0            : unsigned(7 downto 0) := (others => '0');
-  signal map_1            : unsigned(7 downto 0) := (others => '0');
-  signal map_2            : unsigned(7 downto 0) := (others => '0');
-  signal map_3            : unsigned(7 downto 0) := (others => '0');
-  signal map_4            : unsigned(7 downto 0) := (others => '0');
-  signal map_5            : unsigned(7 downto 0) := (others => '0');
-  signal map_6            : unsigned(7 downto 0) := (others => '0');
-  signal map_7            : unsigned(7 downto 0) := (others => '0');
-  signal items_0          : unsigned(7 downto 0) := (others => '0');
-  signal items_1          : unsigned(7 downto 0) := (others => '0');
-  signal items_2          : unsigned(7 downto 0) := (others => '0');
-  signal items_3          : unsigned(7 downto 0) := (others => '0');
-  signal items_4          : unsigned(7 downto 0) := (others => '0');
-  signal items_5          : unsigned(7 downto 0) := (others => '0');
-  signal items_6          : unsigned(7 downto 0) := (others => '0');
-  signal items_7          : unsigned(7 downto 0) := (others => '0');
+  signal map_0            : unsigned(31 downto 0) := (others => '0');
+  signal map_4            : unsigned(31 downto 0) := (others => '0');
+  signal items_0          : unsigned(31 downto 0) := (others => '0');
+  signal items_4          : unsigned(31 downto 0) := (others => '0');
   signal begun            : std_logic := '0';
   signal words_last       : std_logic := '1';
   signal words_less       : std_logic := '0';
@@ -108,16 +96,11 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_co
   signal step_stays  : std_logic;
   signal and_94      : std_logic;
   signal and_99      : std_logic;
-  signal or_118      : unsigned(7 downto 0);
-  signal or_139      : unsigned(7 downto 0);
-  signal or_163      : unsigned(7 downto 0);
-  signal or_184      : unsigned(7 downto 0);
-  signal or_200      : unsigned(7 downto 0);
-  signal or_216      : unsigned(7 downto 0);
-  signal or_232      : unsigned(7 downto 0);
-  signal or_248      : unsigned(7 downto 0);
-  signal add_295     : unsigned(5 downto 0);
-  signal mux_335     : unsigned(26 downto 0);
+  signal or_118      : unsigned(31 downto 0);
+  signal or_124      : unsigned(31 downto 0);
+  signal or_137      : unsigned(31 downto 0);
+  signal add_154     : unsigned(5 downto 0);
+  signal mux_194     : unsigned(26 downto 0);
   signal to_end      : unsigned(5 downto 0);
   signal end_mask    : unsigned(2 downto 0);
 
@@ -128,7 +111,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_co
   signal leaves_3      : std_logic;
   signal leaves_4      : std_logic;
   signal leaves_5      : std_logic;
-  signal words_payload : unsigned(159 downto 0);
+  signal words_payload : unsigned(160 downto 0);
   signal words_loads   : std_logic;
   signal go_1_0        : std_logic;
   signal go_2_0        : std_logic;
@@ -178,32 +161,16 @@ begin
   and_94 <= (served_0 or (or unsigned'(leaf_4_ready & leaf_3_ready & leaf_2_ready & leaf_1_ready &
       leaf_0_ready))) and not complete;
   and_99 <= complete and ends;
-  or_118 <= mux(state(1), leaf_0_payload(39 downto 32), "00000000") or mux(state(2),
-      leaf_1_payload(39 downto 32), "00000000") or mux(state(3), leaf_2_payload(39 downto 32),
-      "00000000") or mux(state(4), leaf_3_payload(39 downto 32), "00000000");
-  or_139 <= mux(state(1), leaf_0_payload(47 downto 40), "00000000") or mux(state(2),
-      leaf_1_payload(47 downto 40), "00000000") or mux(state(3), leaf_2_payload(47 downto 40),
-      "00000000") or mux(state(4), leaf_3_payload(47 downto 40), "00000000");
-  or_163 <= mux(state(1), leaf_0_payload(55 downto 48), "00000000") or mux(state(2),
-      leaf_1_payload(55 downto 48), "00000000") or mux(state(3), leaf_2_payload(55 downto 48),
-      "00000000") or mux(state(4), leaf_3_payload(55 downto 48), "00000000");
-  or_184 <= mux(state(1), leaf_0_payload(63 downto 56), "00000000") or mux(state(2),
-      leaf_1_payload(63 downto 56), "00000000") or mux(state(3), leaf_2_payload(63 downto 56),
-      "00000000") or mux(state(4), leaf_3_payload(63 downto 56), "00000000");
-  or_200 <= mux(state(0), leaf_0_payload(7 downto 0), "00000000") or mux(state(1),
-      leaf_1_payload(7 downto 0), "00000000") or mux(state(2), leaf_2_payload(7 downto 0),
-      "00000000") or mux(state(3), leaf_3_payload(7 downto 0), "00000000");
-  or_216 <= mux(state(0), leaf_0_payload(15 downto 8), "00000000") or mux(state(1),
-      leaf_1_payload(15 downto 8), "00000000") or mux(state(2), leaf_2_payload(15 downto 8),
-      "00000000") or mux(state(3), leaf_3_payload(15 downto 8), "00000000");
-  or_232 <= mux(state(0), leaf_0_payload(23 downto 16), "00000000") or mux(state(1),
-      leaf_1_payload(23 downto 16), "00000000") or mux(state(2), leaf_2_payload(23 downto 16),
-      "00000000") or mux(state(3), leaf_3_payload(23 downto 16), "00000000");
-  or_248 <= mux(state(0), leaf_0_payload(31 downto 24), "00000000") or mux(state(1),
-      leaf_1_payload(31 downto 24), "00000000") or mux(state(2), leaf_2_payload(31 downto 24),
-      "00000000") or mux(state(3), leaf_3_payload(31 downto 24), "00000000");
-  add_295 <= to_map + to_end + 7;
-  mux_335 <= state(4) & "00" & (or state(4 downto 0)) & 9x"000" & state(4) & "000" &
+  or_118 <= mux(state(0), x"00000100", x"00000000") or mux(state(1), leaf_0_payload(63 downto 32),
+      x"00000000") or mux(state(2), leaf_1_payload(63 downto 32), x"00000000") or mux(state(3),
+      leaf_2_payload(63 downto 32), x"00000000");
+  or_124 <= or_118 or mux(state(4), leaf_3_payload(63 downto 32), x"00000000") or mux(state(5),
+      leaf_5_payload(63 downto 32), x"00000000");
+  or_137 <= mux(state(0), leaf_0_payload(31 downto 0), x"00000000") or mux(state(1),
+      leaf_1_payload(31 downto 0), x"00000000") or mux(state(2), leaf_2_payload(31 downto 0),
+      x"00000000") or mux(state(3), leaf_3_payload(31 downto 0), x"00000000");
+  add_154 <= to_map + to_end + 7;
+  mux_194 <= state(4) & "00" & (or state(4 downto 0)) & 9x"000" & state(4) & "000" &
       (or state(3 downto 0)) & state(4) & "00" & state(4 downto 0) & '0' when done = '1' else
       (others => '0');
 
@@ -217,7 +184,7 @@ begin
   begin
     if rising_edge(aclk) then
       if rst = '1' then
-        port_1665_0_q <= (others => '0');
+        port_639_0_q <= (others => '0');
         served_0 <= '0';
         served_1 <= '0';
         error_sig <= (others => '0');
@@ -232,14 +199,14 @@ begin
         has_nul <= '0';
       else
         if free = '1' then
-          port_1665_0_q(31) <= to_std_logic(error_sig /= 0);
+          port_639_0_q(32) <= to_std_logic(error_sig /= 0);
           words_valid_q <= complete;
         end if;
         if free = '1' then
-          port_1665_0_q(13 downto 0) <= to_map & state(26) & state(9 downto 6) & items_size;
-          port_1665_0_q(28 downto 26) <= add_295(5 downto 3);
-          port_1665_0_q(25 downto 14) <= end_mask & to_end & state(16 downto 14);
-          port_1665_0_q(30 downto 29) <= not begins & ends;
+          port_639_0_q(13 downto 0) <= to_map & state(26) & state(9 downto 6) & items_size;
+          port_639_0_q(28 downto 26) <= add_154(5 downto 3);
+          port_639_0_q(25 downto 14) <= end_mask & to_end & state(16 downto 14);
+          port_639_0_q(31 downto 29) <= resize(unsigned'(not begins & ends), 3);
         end if;
         served_0 <= and_94;
         served_1 <= (served_1 or go_5_1) and not complete;
@@ -258,7 +225,7 @@ begin
           if ends = '1' then
             state <= 27x"0800201";
           else
-            state <= mux_335;
+            state <= mux_194;
           end if;
           if ends = '1' then
             rest <= '0';
@@ -284,59 +251,24 @@ begin
     if rising_edge(aclk) then
       if free = '1' and unsigned'((state(5) and served_1) & ((or state(4 downto 1)) and
           served_0)) = 0 then
-        map_0 <= or_118 or mux(state(5), leaf_5_payload(39 downto 32), "00000000");
-      end if;
-      if free = '1' and unsigned'((state(5) and served_1) & ((or state(4 downto 1)) and
-          served_0)) = 0 then
-        map_1 <= or_139 or mux(state(5), leaf_5_payload(47 downto 40), "00000000") or
-            resize(state(0), 8);
-      end if;
-      if free = '1' and unsigned'((state(5) and served_1) & ((or state(4 downto 1)) and
-          served_0)) = 0 then
-        map_2 <= or_163 or mux(state(5), leaf_5_payload(55 downto 48), "00000000");
-      end if;
-      if free = '1' and unsigned'((state(5) and served_1) & ((or state(4 downto 1)) and
-          served_0)) = 0 then
-        map_3 <= or_184 or mux(state(5), leaf_5_payload(63 downto 56), "00000000");
+        map_0 <= or_124;
       end if;
       if free = '1' then
-        map_4 <= or_200 or mux(state(4), leaf_4_payload(7 downto 0), "00000000");
-        map_5 <= or_216 or mux(state(4), leaf_4_payload(15 downto 8), "00000000");
-        map_6 <= or_232 or mux(state(4), leaf_4_payload(23 downto 16), "00000000");
-        map_7 <= or_248 or mux(state(4), leaf_4_payload(31 downto 24), "00000000");
+        map_4 <= or_137 or mux(state(4), leaf_4_payload(31 downto 0), x"00000000");
       end if;
       if free = '1' and (state(5) = '0' or served_0 = '0') then
-        items_0 <= leaf_4_payload(39 downto 32);
-      end if;
-      if free = '1' and (state(5) = '0' or served_0 = '0') then
-        items_1 <= leaf_4_payload(47 downto 40);
-      end if;
-      if free = '1' and (state(5) = '0' or served_0 = '0') then
-        items_2 <= leaf_4_payload(55 downto 48);
-      end if;
-      if free = '1' and (state(5) = '0' or served_0 = '0') then
-        items_3 <= leaf_4_payload(63 downto 56);
+        items_0 <= leaf_4_payload(63 downto 32);
       end if;
       if free = '1' and (state(5) = '0' or served_1 = '0') then
-        items_4 <= leaf_5_payload(7 downto 0);
-      end if;
-      if free = '1' and (state(5) = '0' or served_1 = '0') then
-        items_5 <= leaf_5_payload(15 downto 8);
-      end if;
-      if free = '1' and (state(5) = '0' or served_1 = '0') then
-        items_6 <= leaf_5_payload(23 downto 16);
-      end if;
-      if free = '1' and (state(5) = '0' or served_1 = '0') then
-        items_7 <= leaf_5_payload(31 downto 24);
+        items_4 <= leaf_5_payload(31 downto 0);
       end if;
     end if;
   end process;
 
-  port_1661_0 <= map_7 & map_6 & map_5 & map_4 & map_3 & map_2 & map_1 & map_0 & items_7 & items_6 &
-      items_5 & items_4 & items_3 & items_2 & items_1 & items_0;
+  port_635_0 <= map_4 & map_0 & items_4 & items_0;
   leaf_5_ready <= go_5_1;
 
-  port_1665_0 <= port_1665_0_q;
+  port_639_0 <= port_639_0_q;
   status_valid <= status_valid_q;
   status_payload <= status_payload_q;
   words_valid <= words_valid_q;
@@ -347,8 +279,7 @@ begin
   leaves_3 <= state(3);
   leaves_4 <= state(4);
   leaves_5 <= state(5);
-  words_payload <= port_1665_0_q & map_7 & map_6 & map_5 & map_4 & map_3 & map_2 & map_1 & map_0 &
-      items_7 & items_6 & items_5 & items_4 & items_3 & items_2 & items_1 & items_0;
+  words_payload <= port_639_0_q & map_4 & map_0 & items_4 & items_0;
   words_loads <= '0';
   go_1_0 <= leaf_0_ready;
   go_2_0 <= leaf_1_ready;

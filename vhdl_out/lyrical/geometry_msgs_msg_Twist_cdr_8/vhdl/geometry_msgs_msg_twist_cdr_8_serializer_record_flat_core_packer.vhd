@@ -3,7 +3,7 @@
 -- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 -- What each port means: manifest.json.
 -- Module geometry_msgs_msg_twist_cdr_8_serializer_record_flat.core.packer of the Amaranth design.
--- 32 registers at rising_edge(aclk), synchronous reset rst = '1'.
+-- 20 registers at rising_edge(aclk), synchronous reset rst = '1'.
 -- 4 registers at rising_edge(aclk), no reset.
 
 library ieee;
@@ -18,7 +18,7 @@ entity geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_packer is
     aclk              : in  std_logic;
     packets_ready     : in  std_logic;
     words_payload_0   : in  unsigned(127 downto 0);
-    words_payload_128 : in  unsigned(31 downto 0);
+    words_payload_128 : in  unsigned(32 downto 0);
     words_valid       : in  std_logic;
     words_ready       : out std_logic;
     packets_valid     : out std_logic;
@@ -30,42 +30,30 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_packer is
 
   -- Registers.
-  signal words_ready_q     : std_logic := '1';
-  signal packets_valid_q   : std_logic := '0';
-  signal packets_payload_q : unsigned(68 downto 0) := (others => '0');
-  signal error_sig_q       : std_logic := '0';
-  signal writes            : std_logic := '0';
-  signal items_placed      : unsigned(63 downto 0) := (others => '0');
-  signal items_start       : unsigned(6 downto 0) := (others => '0');
-  signal items_size        : unsigned(3 downto 0) := (others => '0');
-  signal map_placed        : unsigned(63 downto 0) := (others => '0');
-  signal map_start         : unsigned(6 downto 0) := (others => '0');
-  signal map_size          : unsigned(3 downto 0) := (others => '0');
-  signal at                : unsigned(6 downto 0) := (others => '0');
-  signal done              : unsigned(3 downto 0) := (others => '0');
-  signal final_sig         : std_logic := '0';
-  signal marked            : std_logic := '0';
-  signal last_bytes        : unsigned(3 downto 0) := (others => '0');
-  signal bound             : unsigned(3 downto 0) := "0101";
-  signal items_has_0       : unsigned(7 downto 0) := (others => '0');
-  signal map_has_0         : unsigned(7 downto 0) := (others => '0');
-  signal items_has_1       : unsigned(7 downto 0) := (others => '0');
-  signal map_has_1         : unsigned(7 downto 0) := (others => '0');
-  signal items_has_2       : unsigned(7 downto 0) := (others => '0');
-  signal map_has_2         : unsigned(7 downto 0) := (others => '0');
-  signal items_has_3       : unsigned(7 downto 0) := (others => '0');
-  signal map_has_3         : unsigned(7 downto 0) := (others => '0');
-  signal items_has_4       : unsigned(7 downto 0) := (others => '0');
-  signal map_has_4         : unsigned(7 downto 0) := (others => '0');
-  signal items_has_5       : unsigned(7 downto 0) := (others => '0');
-  signal map_has_5         : unsigned(7 downto 0) := (others => '0');
-  signal items_has_6       : unsigned(7 downto 0) := (others => '0');
-  signal map_has_6         : unsigned(7 downto 0) := (others => '0');
-  signal items_has_7       : unsigned(7 downto 0) := (others => '0');
-  signal map_has_7         : unsigned(7 downto 0) := (others => '0');
-  signal complete          : unsigned(3 downto 0) := (others => '0');
-  signal last              : unsigned(7 downto 0) := (others => '0');
-  signal first             : unsigned(3 downto 0) := (others => '0');
+  signal words_ready_q      : std_logic := '1';
+  signal packets_valid_q    : std_logic := '0';
+  signal packets_payload_q  : unsigned(68 downto 0) := (others => '0');
+  signal error_sig_q        : std_logic := '0';
+  signal writes             : std_logic := '0';
+  signal items_0_write_data : unsigned(63 downto 0) := (others => '0');
+  signal items_start        : unsigned(6 downto 0) := (others => '0');
+  signal items_size         : unsigned(3 downto 0) := (others => '0');
+  signal map_placed         : unsigned(63 downto 0) := (others => '0');
+  signal map_start          : unsigned(6 downto 0) := (others => '0');
+  signal map_size           : unsigned(3 downto 0) := (others => '0');
+  signal at                 : unsigned(6 downto 0) := (others => '0');
+  signal done               : unsigned(3 downto 0) := (others => '0');
+  signal final_sig          : std_logic := '0';
+  signal marked             : std_logic := '0';
+  signal waits              : std_logic := '0';
+  signal last_bytes         : unsigned(3 downto 0) := (others => '0');
+  signal bound              : unsigned(3 downto 0) := "0101";
+  signal items_has_0        : unsigned(7 downto 0) := (others => '0');
+  signal map_has_0          : unsigned(7 downto 0) := (others => '0');
+  signal map_has_4          : unsigned(7 downto 0) := (others => '0');
+  signal complete           : unsigned(3 downto 0) := (others => '0');
+  signal last               : unsigned(7 downto 0) := (others => '0');
+  signal first              : unsigned(3 downto 0) := (others => '0');
 
   -- Combinational signals.
   signal takes             : std_logic;
@@ -81,209 +69,54 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_pa
   signal items_here_0      : std_logic;
   signal map_used_0        : std_logic;
   signal map_here_0        : std_logic;
-  signal items_used_1      : std_logic;
-  signal items_here_1      : std_logic;
-  signal map_used_1        : std_logic;
-  signal map_here_1        : std_logic;
-  signal items_used_2      : std_logic;
-  signal items_here_2      : std_logic;
-  signal map_used_2        : std_logic;
-  signal map_here_2        : std_logic;
-  signal items_used_3      : std_logic;
-  signal items_here_3      : std_logic;
-  signal map_used_3        : std_logic;
-  signal map_here_3        : std_logic;
-  signal items_used_4      : std_logic;
-  signal items_here_4      : std_logic;
   signal map_used_4        : std_logic;
   signal map_here_4        : std_logic;
-  signal items_used_5      : std_logic;
-  signal items_here_5      : std_logic;
-  signal map_used_5        : std_logic;
-  signal map_here_5        : std_logic;
-  signal items_used_6      : std_logic;
-  signal items_here_6      : std_logic;
-  signal map_used_6        : std_logic;
-  signal map_here_6        : std_logic;
-  signal items_used_7      : std_logic;
-  signal items_here_7      : std_logic;
-  signal map_used_7        : std_logic;
-  signal map_here_7        : std_logic;
   signal ends_write_addr   : unsigned(2 downto 0);
   signal ends_write_en     : std_logic;
   signal reads             : std_logic;
   signal is_last           : std_logic;
-  signal sub_619           : unsigned(2 downto 0);
-  signal items_0_read_data : unsigned(7 downto 0);
-  signal map_0_read_data   : unsigned(7 downto 0);
-  signal items_1_read_data : unsigned(7 downto 0);
-  signal map_1_read_data   : unsigned(7 downto 0);
-  signal items_2_read_data : unsigned(7 downto 0);
-  signal map_2_read_data   : unsigned(7 downto 0);
-  signal items_3_read_data : unsigned(7 downto 0);
-  signal map_3_read_data   : unsigned(7 downto 0);
-  signal items_4_read_data : unsigned(7 downto 0);
-  signal map_4_read_data   : unsigned(7 downto 0);
-  signal items_5_read_data : unsigned(7 downto 0);
-  signal map_5_read_data   : unsigned(7 downto 0);
-  signal items_6_read_data : unsigned(7 downto 0);
-  signal map_6_read_data   : unsigned(7 downto 0);
-  signal items_7_read_data : unsigned(7 downto 0);
-  signal map_7_read_data   : unsigned(7 downto 0);
+  signal and_139           : std_logic;
+  signal sub_140           : unsigned(2 downto 0);
+  signal items_0_read_data : unsigned(63 downto 0);
+  signal map_0_read_data   : unsigned(31 downto 0);
+  signal map_4_read_data   : unsigned(31 downto 0);
   signal ends_read_data    : unsigned(4 downto 0);
 
   -- Signals that no logic reads, for simulation.
-  signal words_payload      : unsigned(159 downto 0);
+  signal words_payload      : unsigned(160 downto 0);
   signal map_at             : unsigned(6 downto 0);
   signal ready              : std_logic;
   signal items_index_0      : unsigned(2 downto 0);
   signal items_slot_0       : unsigned(2 downto 0);
   signal items_0_write_addr : unsigned(2 downto 0);
-  signal items_0_write_data : unsigned(7 downto 0);
+  signal items_placed       : unsigned(63 downto 0);
   signal items_0_write_en   : std_logic;
   signal items_0_read_addr  : unsigned(2 downto 0);
   signal map_index_0        : unsigned(2 downto 0);
   signal map_slot_0         : unsigned(2 downto 0);
   signal map_0_write_addr   : unsigned(2 downto 0);
-  signal map_0_write_data   : unsigned(7 downto 0);
+  signal map_0_write_data   : unsigned(31 downto 0);
   signal map_0_write_en     : std_logic;
   signal map_0_read_addr    : unsigned(2 downto 0);
-  signal items_index_1      : unsigned(2 downto 0);
-  signal items_slot_1       : unsigned(2 downto 0);
-  signal items_1_write_addr : unsigned(2 downto 0);
-  signal items_1_write_data : unsigned(7 downto 0);
-  signal items_1_write_en   : std_logic;
-  signal items_1_read_addr  : unsigned(2 downto 0);
-  signal map_index_1        : unsigned(2 downto 0);
-  signal map_slot_1         : unsigned(2 downto 0);
-  signal map_1_write_addr   : unsigned(2 downto 0);
-  signal map_1_write_data   : unsigned(7 downto 0);
-  signal map_1_write_en     : std_logic;
-  signal map_1_read_addr    : unsigned(2 downto 0);
-  signal items_index_2      : unsigned(2 downto 0);
-  signal items_slot_2       : unsigned(2 downto 0);
-  signal items_2_write_addr : unsigned(2 downto 0);
-  signal items_2_write_data : unsigned(7 downto 0);
-  signal items_2_write_en   : std_logic;
-  signal items_2_read_addr  : unsigned(2 downto 0);
-  signal map_index_2        : unsigned(2 downto 0);
-  signal map_slot_2         : unsigned(2 downto 0);
-  signal map_2_write_addr   : unsigned(2 downto 0);
-  signal map_2_write_data   : unsigned(7 downto 0);
-  signal map_2_write_en     : std_logic;
-  signal map_2_read_addr    : unsigned(2 downto 0);
-  signal items_index_3      : unsigned(2 downto 0);
-  signal items_slot_3       : unsigned(2 downto 0);
-  signal items_3_write_addr : unsigned(2 downto 0);
-  signal items_3_write_data : unsigned(7 downto 0);
-  signal items_3_write_en   : std_logic;
-  signal items_3_read_addr  : unsigned(2 downto 0);
-  signal map_index_3        : unsigned(2 downto 0);
-  signal map_slot_3         : unsigned(2 downto 0);
-  signal map_3_write_addr   : unsigned(2 downto 0);
-  signal map_3_write_data   : unsigned(7 downto 0);
-  signal map_3_write_en     : std_logic;
-  signal map_3_read_addr    : unsigned(2 downto 0);
-  signal items_index_4      : unsigned(2 downto 0);
-  signal items_slot_4       : unsigned(2 downto 0);
-  signal items_4_write_addr : unsigned(2 downto 0);
-  signal items_4_write_data : unsigned(7 downto 0);
-  signal items_4_write_en   : std_logic;
-  signal items_4_read_addr  : unsigned(2 downto 0);
   signal map_index_4        : unsigned(2 downto 0);
   signal map_slot_4         : unsigned(2 downto 0);
   signal map_4_write_addr   : unsigned(2 downto 0);
-  signal map_4_write_data   : unsigned(7 downto 0);
+  signal map_4_write_data   : unsigned(31 downto 0);
   signal map_4_write_en     : std_logic;
   signal map_4_read_addr    : unsigned(2 downto 0);
-  signal items_index_5      : unsigned(2 downto 0);
-  signal items_slot_5       : unsigned(2 downto 0);
-  signal items_5_write_addr : unsigned(2 downto 0);
-  signal items_5_write_data : unsigned(7 downto 0);
-  signal items_5_write_en   : std_logic;
-  signal items_5_read_addr  : unsigned(2 downto 0);
-  signal map_index_5        : unsigned(2 downto 0);
-  signal map_slot_5         : unsigned(2 downto 0);
-  signal map_5_write_addr   : unsigned(2 downto 0);
-  signal map_5_write_data   : unsigned(7 downto 0);
-  signal map_5_write_en     : std_logic;
-  signal map_5_read_addr    : unsigned(2 downto 0);
-  signal items_index_6      : unsigned(2 downto 0);
-  signal items_slot_6       : unsigned(2 downto 0);
-  signal items_6_write_addr : unsigned(2 downto 0);
-  signal items_6_write_data : unsigned(7 downto 0);
-  signal items_6_write_en   : std_logic;
-  signal items_6_read_addr  : unsigned(2 downto 0);
-  signal map_index_6        : unsigned(2 downto 0);
-  signal map_slot_6         : unsigned(2 downto 0);
-  signal map_6_write_addr   : unsigned(2 downto 0);
-  signal map_6_write_data   : unsigned(7 downto 0);
-  signal map_6_write_en     : std_logic;
-  signal map_6_read_addr    : unsigned(2 downto 0);
-  signal items_index_7      : unsigned(2 downto 0);
-  signal items_slot_7       : unsigned(2 downto 0);
-  signal items_7_write_addr : unsigned(2 downto 0);
-  signal items_7_write_data : unsigned(7 downto 0);
-  signal items_7_write_en   : std_logic;
-  signal items_7_read_addr  : unsigned(2 downto 0);
-  signal map_index_7        : unsigned(2 downto 0);
-  signal map_slot_7         : unsigned(2 downto 0);
-  signal map_7_write_addr   : unsigned(2 downto 0);
-  signal map_7_write_data   : unsigned(7 downto 0);
-  signal map_7_write_en     : std_logic;
-  signal map_7_read_addr    : unsigned(2 downto 0);
   signal ends_read_addr     : unsigned(2 downto 0);
   signal payload            : unsigned(68 downto 0);
   signal error_now          : std_logic;
   signal ends_write_data    : unsigned(4 downto 0);
 
-  type items_0_array is array (0 to 7) of unsigned(7 downto 0);
+  type items_0_array is array (0 to 7) of unsigned(63 downto 0);
   signal items_0 : items_0_array := (others => (others => '0'));
 
-  type map_0_array is array (0 to 7) of unsigned(7 downto 0);
+  type map_0_array is array (0 to 7) of unsigned(31 downto 0);
   signal map_0 : map_0_array := (others => (others => '0'));
 
-  type items_1_array is array (0 to 7) of unsigned(7 downto 0);
-  signal items_1 : items_1_array := (others => (others => '0'));
-
-  type map_1_array is array (0 to 7) of unsigned(7 downto 0);
-  signal map_1 : map_1_array := (others => (others => '0'));
-
-  type items_2_array is array (0 to 7) of unsigned(7 downto 0);
-  signal items_2 : items_2_array := (others => (others => '0'));
-
-  type map_2_array is array (0 to 7) of unsigned(7 downto 0);
-  signal map_2 : map_2_array := (others => (others => '0'));
-
-  type items_3_array is array (0 to 7) of unsigned(7 downto 0);
-  signal items_3 : items_3_array := (others => (others => '0'));
-
-  type map_3_array is array (0 to 7) of unsigned(7 downto 0);
-  signal map_3 : map_3_array := (others => (others => '0'));
-
-  type items_4_array is array (0 to 7) of unsigned(7 downto 0);
-  signal items_4 : items_4_array := (others => (others => '0'));
-
-  type map_4_array is array (0 to 7) of unsigned(7 downto 0);
+  type map_4_array is array (0 to 7) of unsigned(31 downto 0);
   signal map_4 : map_4_array := (others => (others => '0'));
-
-  type items_5_array is array (0 to 7) of unsigned(7 downto 0);
-  signal items_5 : items_5_array := (others => (others => '0'));
-
-  type map_5_array is array (0 to 7) of unsigned(7 downto 0);
-  signal map_5 : map_5_array := (others => (others => '0'));
-
-  type items_6_array is array (0 to 7) of unsigned(7 downto 0);
-  signal items_6 : items_6_array := (others => (others => '0'));
-
-  type map_6_array is array (0 to 7) of unsigned(7 downto 0);
-  signal map_6 : map_6_array := (others => (others => '0'));
-
-  type items_7_array is array (0 to 7) of unsigned(7 downto 0);
-  signal items_7 : items_7_array := (others => (others => '0'));
-
-  type map_7_array is array (0 to 7) of unsigned(7 downto 0);
-  signal map_7 : map_7_array := (others => (others => '0'));
 
   type ends_array is array (0 to 7) of unsigned(4 downto 0);
   signal ends : ends_array := (others => (others => '0'));
@@ -304,45 +137,20 @@ begin
   items_here_0 <= lsb(resize(shift_right(items_has_0, to_integer(first(2 downto 0))), 1));
   map_used_0 <= '1' when writes = '1' and map_size > 0 else '0';
   map_here_0 <= lsb(resize(shift_right(map_has_0, to_integer(first(2 downto 0))), 1));
-  items_used_1 <= '1' when writes = '1' and items_size > 1 else '0';
-  items_here_1 <= lsb(resize(shift_right(items_has_1, to_integer(first(2 downto 0))), 1));
-  map_used_1 <= '1' when writes = '1' and map_size > 1 else '0';
-  map_here_1 <= lsb(resize(shift_right(map_has_1, to_integer(first(2 downto 0))), 1));
-  items_used_2 <= '1' when writes = '1' and items_size > 2 else '0';
-  items_here_2 <= lsb(resize(shift_right(items_has_2, to_integer(first(2 downto 0))), 1));
-  map_used_2 <= '1' when writes = '1' and map_size > 2 else '0';
-  map_here_2 <= lsb(resize(shift_right(map_has_2, to_integer(first(2 downto 0))), 1));
-  items_used_3 <= '1' when writes = '1' and items_size > 3 else '0';
-  items_here_3 <= lsb(resize(shift_right(items_has_3, to_integer(first(2 downto 0))), 1));
-  map_used_3 <= '1' when writes = '1' and map_size > 3 else '0';
-  map_here_3 <= lsb(resize(shift_right(map_has_3, to_integer(first(2 downto 0))), 1));
-  items_used_4 <= '1' when writes = '1' and items_size > 4 else '0';
-  items_here_4 <= lsb(resize(shift_right(items_has_4, to_integer(first(2 downto 0))), 1));
   map_used_4 <= '1' when writes = '1' and map_size > 4 else '0';
   map_here_4 <= lsb(resize(shift_right(map_has_4, to_integer(first(2 downto 0))), 1));
-  items_used_5 <= '1' when writes = '1' and items_size > 5 else '0';
-  items_here_5 <= lsb(resize(shift_right(items_has_5, to_integer(first(2 downto 0))), 1));
-  map_used_5 <= '1' when writes = '1' and map_size > 5 else '0';
-  map_here_5 <= lsb(resize(shift_right(map_has_5, to_integer(first(2 downto 0))), 1));
-  items_used_6 <= '1' when writes = '1' and items_size > 6 else '0';
-  items_here_6 <= lsb(resize(shift_right(items_has_6, to_integer(first(2 downto 0))), 1));
-  map_used_6 <= '1' when writes = '1' and map_size > 6 else '0';
-  map_here_6 <= lsb(resize(shift_right(map_has_6, to_integer(first(2 downto 0))), 1));
-  items_used_7 <= '1' when writes = '1' and items_size > 7 else '0';
-  items_here_7 <= lsb(resize(shift_right(items_has_7, to_integer(first(2 downto 0))), 1));
-  map_used_7 <= '1' when writes = '1' and map_size > 7 else '0';
-  map_here_7 <= lsb(resize(shift_right(map_has_7, to_integer(first(2 downto 0))), 1));
   ends_write_addr <= done(2 downto 0) - 1;
   ends_write_en <= writes and final_sig;
   reads <= '1' when complete /= first and (packets_valid_q = '0' or packets_ready = '1') else '0';
   is_last <= lsb(resize(shift_right(last, to_integer(first(2 downto 0))), 1));
-  sub_619 <= done(2 downto 0) - 1;
+  and_139 <= writes and not waits;
+  sub_140 <= done(2 downto 0) - 1;
 
   process (aclk)
   begin
     if rising_edge(aclk) then
       if items_used_0 = '1' then
-        items_0(to_integer(items_start(5 downto 3))) <= items_placed(7 downto 0);
+        items_0(to_integer(items_start(5 downto 3))) <= items_0_write_data;
       end if;
     end if;
   end process;
@@ -353,7 +161,7 @@ begin
   begin
     if rising_edge(aclk) then
       if map_used_0 = '1' then
-        map_0(to_integer(map_start(5 downto 3))) <= map_placed(7 downto 0);
+        map_0(to_integer(map_start(5 downto 3))) <= map_placed(31 downto 0);
       end if;
     end if;
   end process;
@@ -363,156 +171,13 @@ begin
   process (aclk)
   begin
     if rising_edge(aclk) then
-      if items_used_1 = '1' then
-        items_1(to_integer(items_start(5 downto 3))) <= items_placed(15 downto 8);
-      end if;
-    end if;
-  end process;
-
-  items_1_read_data <= items_1(to_integer(first(2 downto 0)));
-
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
-      if map_used_1 = '1' then
-        map_1(to_integer(map_start(5 downto 3))) <= map_placed(15 downto 8);
-      end if;
-    end if;
-  end process;
-
-  map_1_read_data <= map_1(to_integer(first(2 downto 0)));
-
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
-      if items_used_2 = '1' then
-        items_2(to_integer(items_start(5 downto 3))) <= items_placed(23 downto 16);
-      end if;
-    end if;
-  end process;
-
-  items_2_read_data <= items_2(to_integer(first(2 downto 0)));
-
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
-      if map_used_2 = '1' then
-        map_2(to_integer(map_start(5 downto 3))) <= map_placed(23 downto 16);
-      end if;
-    end if;
-  end process;
-
-  map_2_read_data <= map_2(to_integer(first(2 downto 0)));
-
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
-      if items_used_3 = '1' then
-        items_3(to_integer(items_start(5 downto 3))) <= items_placed(31 downto 24);
-      end if;
-    end if;
-  end process;
-
-  items_3_read_data <= items_3(to_integer(first(2 downto 0)));
-
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
-      if map_used_3 = '1' then
-        map_3(to_integer(map_start(5 downto 3))) <= map_placed(31 downto 24);
-      end if;
-    end if;
-  end process;
-
-  map_3_read_data <= map_3(to_integer(first(2 downto 0)));
-
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
-      if items_used_4 = '1' then
-        items_4(to_integer(items_start(5 downto 3))) <= items_placed(39 downto 32);
-      end if;
-    end if;
-  end process;
-
-  items_4_read_data <= items_4(to_integer(first(2 downto 0)));
-
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
       if map_used_4 = '1' then
-        map_4(to_integer(map_start(5 downto 3))) <= map_placed(39 downto 32);
+        map_4(to_integer(map_start(5 downto 3))) <= map_placed(63 downto 32);
       end if;
     end if;
   end process;
 
   map_4_read_data <= map_4(to_integer(first(2 downto 0)));
-
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
-      if items_used_5 = '1' then
-        items_5(to_integer(items_start(5 downto 3))) <= items_placed(47 downto 40);
-      end if;
-    end if;
-  end process;
-
-  items_5_read_data <= items_5(to_integer(first(2 downto 0)));
-
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
-      if map_used_5 = '1' then
-        map_5(to_integer(map_start(5 downto 3))) <= map_placed(47 downto 40);
-      end if;
-    end if;
-  end process;
-
-  map_5_read_data <= map_5(to_integer(first(2 downto 0)));
-
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
-      if items_used_6 = '1' then
-        items_6(to_integer(items_start(5 downto 3))) <= items_placed(55 downto 48);
-      end if;
-    end if;
-  end process;
-
-  items_6_read_data <= items_6(to_integer(first(2 downto 0)));
-
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
-      if map_used_6 = '1' then
-        map_6(to_integer(map_start(5 downto 3))) <= map_placed(55 downto 48);
-      end if;
-    end if;
-  end process;
-
-  map_6_read_data <= map_6(to_integer(first(2 downto 0)));
-
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
-      if items_used_7 = '1' then
-        items_7(to_integer(items_start(5 downto 3))) <= items_placed(63 downto 56);
-      end if;
-    end if;
-  end process;
-
-  items_7_read_data <= items_7(to_integer(first(2 downto 0)));
-
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
-      if map_used_7 = '1' then
-        map_7(to_integer(map_start(5 downto 3))) <= map_placed(63 downto 56);
-      end if;
-    end if;
-  end process;
-
-  map_7_read_data <= map_7(to_integer(first(2 downto 0)));
 
   process (aclk)
   begin
@@ -538,25 +203,13 @@ begin
         done <= (others => '0');
         final_sig <= '0';
         marked <= '0';
+        waits <= '0';
         last_bytes <= (others => '0');
         words_ready_q <= '1';
         bound <= "0101";
         items_has_0 <= (others => '0');
         map_has_0 <= (others => '0');
-        items_has_1 <= (others => '0');
-        map_has_1 <= (others => '0');
-        items_has_2 <= (others => '0');
-        map_has_2 <= (others => '0');
-        items_has_3 <= (others => '0');
-        map_has_3 <= (others => '0');
-        items_has_4 <= (others => '0');
         map_has_4 <= (others => '0');
-        items_has_5 <= (others => '0');
-        map_has_5 <= (others => '0');
-        items_has_6 <= (others => '0');
-        map_has_6 <= (others => '0');
-        items_has_7 <= (others => '0');
-        map_has_7 <= (others => '0');
         complete <= (others => '0');
         last <= (others => '0');
         packets_valid_q <= '0';
@@ -575,7 +228,8 @@ begin
           at <= end_sig;
           done <= end_sig(6 downto 3);
           final_sig <= words_payload_128(29);
-          marked <= words_payload_128(31);
+          marked <= words_payload_128(32);
+          waits <= words_payload_128(31);
           if words_payload_128(30) = '1' then
             last_bytes <= (others => '0');
           else
@@ -668,286 +322,6 @@ begin
           map_has_0(7) <= '1';
         end if;
         if reads = '1' and first(2 downto 0) = 0 then
-          items_has_1(0) <= '0';
-        elsif items_used_1 = '1' and items_start(5 downto 3) = 0 then
-          items_has_1(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          items_has_1(1) <= '0';
-        elsif items_used_1 = '1' and items_start(5 downto 3) = 1 then
-          items_has_1(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          items_has_1(2) <= '0';
-        elsif items_used_1 = '1' and items_start(5 downto 3) = 2 then
-          items_has_1(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          items_has_1(3) <= '0';
-        elsif items_used_1 = '1' and items_start(5 downto 3) = 3 then
-          items_has_1(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          items_has_1(4) <= '0';
-        elsif items_used_1 = '1' and items_start(5 downto 3) = 4 then
-          items_has_1(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          items_has_1(5) <= '0';
-        elsif items_used_1 = '1' and items_start(5 downto 3) = 5 then
-          items_has_1(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          items_has_1(6) <= '0';
-        elsif items_used_1 = '1' and items_start(5 downto 3) = 6 then
-          items_has_1(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          items_has_1(7) <= '0';
-        elsif items_used_1 = '1' and items_start(5 downto 3) = 7 then
-          items_has_1(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          map_has_1(0) <= '0';
-        elsif map_used_1 = '1' and map_start(5 downto 3) = 0 then
-          map_has_1(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          map_has_1(1) <= '0';
-        elsif map_used_1 = '1' and map_start(5 downto 3) = 1 then
-          map_has_1(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          map_has_1(2) <= '0';
-        elsif map_used_1 = '1' and map_start(5 downto 3) = 2 then
-          map_has_1(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          map_has_1(3) <= '0';
-        elsif map_used_1 = '1' and map_start(5 downto 3) = 3 then
-          map_has_1(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          map_has_1(4) <= '0';
-        elsif map_used_1 = '1' and map_start(5 downto 3) = 4 then
-          map_has_1(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          map_has_1(5) <= '0';
-        elsif map_used_1 = '1' and map_start(5 downto 3) = 5 then
-          map_has_1(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          map_has_1(6) <= '0';
-        elsif map_used_1 = '1' and map_start(5 downto 3) = 6 then
-          map_has_1(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          map_has_1(7) <= '0';
-        elsif map_used_1 = '1' and map_start(5 downto 3) = 7 then
-          map_has_1(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          items_has_2(0) <= '0';
-        elsif items_used_2 = '1' and items_start(5 downto 3) = 0 then
-          items_has_2(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          items_has_2(1) <= '0';
-        elsif items_used_2 = '1' and items_start(5 downto 3) = 1 then
-          items_has_2(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          items_has_2(2) <= '0';
-        elsif items_used_2 = '1' and items_start(5 downto 3) = 2 then
-          items_has_2(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          items_has_2(3) <= '0';
-        elsif items_used_2 = '1' and items_start(5 downto 3) = 3 then
-          items_has_2(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          items_has_2(4) <= '0';
-        elsif items_used_2 = '1' and items_start(5 downto 3) = 4 then
-          items_has_2(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          items_has_2(5) <= '0';
-        elsif items_used_2 = '1' and items_start(5 downto 3) = 5 then
-          items_has_2(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          items_has_2(6) <= '0';
-        elsif items_used_2 = '1' and items_start(5 downto 3) = 6 then
-          items_has_2(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          items_has_2(7) <= '0';
-        elsif items_used_2 = '1' and items_start(5 downto 3) = 7 then
-          items_has_2(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          map_has_2(0) <= '0';
-        elsif map_used_2 = '1' and map_start(5 downto 3) = 0 then
-          map_has_2(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          map_has_2(1) <= '0';
-        elsif map_used_2 = '1' and map_start(5 downto 3) = 1 then
-          map_has_2(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          map_has_2(2) <= '0';
-        elsif map_used_2 = '1' and map_start(5 downto 3) = 2 then
-          map_has_2(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          map_has_2(3) <= '0';
-        elsif map_used_2 = '1' and map_start(5 downto 3) = 3 then
-          map_has_2(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          map_has_2(4) <= '0';
-        elsif map_used_2 = '1' and map_start(5 downto 3) = 4 then
-          map_has_2(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          map_has_2(5) <= '0';
-        elsif map_used_2 = '1' and map_start(5 downto 3) = 5 then
-          map_has_2(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          map_has_2(6) <= '0';
-        elsif map_used_2 = '1' and map_start(5 downto 3) = 6 then
-          map_has_2(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          map_has_2(7) <= '0';
-        elsif map_used_2 = '1' and map_start(5 downto 3) = 7 then
-          map_has_2(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          items_has_3(0) <= '0';
-        elsif items_used_3 = '1' and items_start(5 downto 3) = 0 then
-          items_has_3(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          items_has_3(1) <= '0';
-        elsif items_used_3 = '1' and items_start(5 downto 3) = 1 then
-          items_has_3(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          items_has_3(2) <= '0';
-        elsif items_used_3 = '1' and items_start(5 downto 3) = 2 then
-          items_has_3(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          items_has_3(3) <= '0';
-        elsif items_used_3 = '1' and items_start(5 downto 3) = 3 then
-          items_has_3(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          items_has_3(4) <= '0';
-        elsif items_used_3 = '1' and items_start(5 downto 3) = 4 then
-          items_has_3(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          items_has_3(5) <= '0';
-        elsif items_used_3 = '1' and items_start(5 downto 3) = 5 then
-          items_has_3(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          items_has_3(6) <= '0';
-        elsif items_used_3 = '1' and items_start(5 downto 3) = 6 then
-          items_has_3(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          items_has_3(7) <= '0';
-        elsif items_used_3 = '1' and items_start(5 downto 3) = 7 then
-          items_has_3(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          map_has_3(0) <= '0';
-        elsif map_used_3 = '1' and map_start(5 downto 3) = 0 then
-          map_has_3(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          map_has_3(1) <= '0';
-        elsif map_used_3 = '1' and map_start(5 downto 3) = 1 then
-          map_has_3(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          map_has_3(2) <= '0';
-        elsif map_used_3 = '1' and map_start(5 downto 3) = 2 then
-          map_has_3(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          map_has_3(3) <= '0';
-        elsif map_used_3 = '1' and map_start(5 downto 3) = 3 then
-          map_has_3(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          map_has_3(4) <= '0';
-        elsif map_used_3 = '1' and map_start(5 downto 3) = 4 then
-          map_has_3(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          map_has_3(5) <= '0';
-        elsif map_used_3 = '1' and map_start(5 downto 3) = 5 then
-          map_has_3(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          map_has_3(6) <= '0';
-        elsif map_used_3 = '1' and map_start(5 downto 3) = 6 then
-          map_has_3(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          map_has_3(7) <= '0';
-        elsif map_used_3 = '1' and map_start(5 downto 3) = 7 then
-          map_has_3(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          items_has_4(0) <= '0';
-        elsif items_used_4 = '1' and items_start(5 downto 3) = 0 then
-          items_has_4(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          items_has_4(1) <= '0';
-        elsif items_used_4 = '1' and items_start(5 downto 3) = 1 then
-          items_has_4(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          items_has_4(2) <= '0';
-        elsif items_used_4 = '1' and items_start(5 downto 3) = 2 then
-          items_has_4(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          items_has_4(3) <= '0';
-        elsif items_used_4 = '1' and items_start(5 downto 3) = 3 then
-          items_has_4(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          items_has_4(4) <= '0';
-        elsif items_used_4 = '1' and items_start(5 downto 3) = 4 then
-          items_has_4(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          items_has_4(5) <= '0';
-        elsif items_used_4 = '1' and items_start(5 downto 3) = 5 then
-          items_has_4(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          items_has_4(6) <= '0';
-        elsif items_used_4 = '1' and items_start(5 downto 3) = 6 then
-          items_has_4(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          items_has_4(7) <= '0';
-        elsif items_used_4 = '1' and items_start(5 downto 3) = 7 then
-          items_has_4(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
           map_has_4(0) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 0 then
           map_has_4(0) <= '1';
@@ -987,250 +361,10 @@ begin
         elsif map_used_4 = '1' and map_start(5 downto 3) = 7 then
           map_has_4(7) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          items_has_5(0) <= '0';
-        elsif items_used_5 = '1' and items_start(5 downto 3) = 0 then
-          items_has_5(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          items_has_5(1) <= '0';
-        elsif items_used_5 = '1' and items_start(5 downto 3) = 1 then
-          items_has_5(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          items_has_5(2) <= '0';
-        elsif items_used_5 = '1' and items_start(5 downto 3) = 2 then
-          items_has_5(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          items_has_5(3) <= '0';
-        elsif items_used_5 = '1' and items_start(5 downto 3) = 3 then
-          items_has_5(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          items_has_5(4) <= '0';
-        elsif items_used_5 = '1' and items_start(5 downto 3) = 4 then
-          items_has_5(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          items_has_5(5) <= '0';
-        elsif items_used_5 = '1' and items_start(5 downto 3) = 5 then
-          items_has_5(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          items_has_5(6) <= '0';
-        elsif items_used_5 = '1' and items_start(5 downto 3) = 6 then
-          items_has_5(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          items_has_5(7) <= '0';
-        elsif items_used_5 = '1' and items_start(5 downto 3) = 7 then
-          items_has_5(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          map_has_5(0) <= '0';
-        elsif map_used_5 = '1' and map_start(5 downto 3) = 0 then
-          map_has_5(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          map_has_5(1) <= '0';
-        elsif map_used_5 = '1' and map_start(5 downto 3) = 1 then
-          map_has_5(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          map_has_5(2) <= '0';
-        elsif map_used_5 = '1' and map_start(5 downto 3) = 2 then
-          map_has_5(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          map_has_5(3) <= '0';
-        elsif map_used_5 = '1' and map_start(5 downto 3) = 3 then
-          map_has_5(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          map_has_5(4) <= '0';
-        elsif map_used_5 = '1' and map_start(5 downto 3) = 4 then
-          map_has_5(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          map_has_5(5) <= '0';
-        elsif map_used_5 = '1' and map_start(5 downto 3) = 5 then
-          map_has_5(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          map_has_5(6) <= '0';
-        elsif map_used_5 = '1' and map_start(5 downto 3) = 6 then
-          map_has_5(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          map_has_5(7) <= '0';
-        elsif map_used_5 = '1' and map_start(5 downto 3) = 7 then
-          map_has_5(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          items_has_6(0) <= '0';
-        elsif items_used_6 = '1' and items_start(5 downto 3) = 0 then
-          items_has_6(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          items_has_6(1) <= '0';
-        elsif items_used_6 = '1' and items_start(5 downto 3) = 1 then
-          items_has_6(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          items_has_6(2) <= '0';
-        elsif items_used_6 = '1' and items_start(5 downto 3) = 2 then
-          items_has_6(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          items_has_6(3) <= '0';
-        elsif items_used_6 = '1' and items_start(5 downto 3) = 3 then
-          items_has_6(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          items_has_6(4) <= '0';
-        elsif items_used_6 = '1' and items_start(5 downto 3) = 4 then
-          items_has_6(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          items_has_6(5) <= '0';
-        elsif items_used_6 = '1' and items_start(5 downto 3) = 5 then
-          items_has_6(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          items_has_6(6) <= '0';
-        elsif items_used_6 = '1' and items_start(5 downto 3) = 6 then
-          items_has_6(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          items_has_6(7) <= '0';
-        elsif items_used_6 = '1' and items_start(5 downto 3) = 7 then
-          items_has_6(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          map_has_6(0) <= '0';
-        elsif map_used_6 = '1' and map_start(5 downto 3) = 0 then
-          map_has_6(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          map_has_6(1) <= '0';
-        elsif map_used_6 = '1' and map_start(5 downto 3) = 1 then
-          map_has_6(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          map_has_6(2) <= '0';
-        elsif map_used_6 = '1' and map_start(5 downto 3) = 2 then
-          map_has_6(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          map_has_6(3) <= '0';
-        elsif map_used_6 = '1' and map_start(5 downto 3) = 3 then
-          map_has_6(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          map_has_6(4) <= '0';
-        elsif map_used_6 = '1' and map_start(5 downto 3) = 4 then
-          map_has_6(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          map_has_6(5) <= '0';
-        elsif map_used_6 = '1' and map_start(5 downto 3) = 5 then
-          map_has_6(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          map_has_6(6) <= '0';
-        elsif map_used_6 = '1' and map_start(5 downto 3) = 6 then
-          map_has_6(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          map_has_6(7) <= '0';
-        elsif map_used_6 = '1' and map_start(5 downto 3) = 7 then
-          map_has_6(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          items_has_7(0) <= '0';
-        elsif items_used_7 = '1' and items_start(5 downto 3) = 0 then
-          items_has_7(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          items_has_7(1) <= '0';
-        elsif items_used_7 = '1' and items_start(5 downto 3) = 1 then
-          items_has_7(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          items_has_7(2) <= '0';
-        elsif items_used_7 = '1' and items_start(5 downto 3) = 2 then
-          items_has_7(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          items_has_7(3) <= '0';
-        elsif items_used_7 = '1' and items_start(5 downto 3) = 3 then
-          items_has_7(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          items_has_7(4) <= '0';
-        elsif items_used_7 = '1' and items_start(5 downto 3) = 4 then
-          items_has_7(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          items_has_7(5) <= '0';
-        elsif items_used_7 = '1' and items_start(5 downto 3) = 5 then
-          items_has_7(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          items_has_7(6) <= '0';
-        elsif items_used_7 = '1' and items_start(5 downto 3) = 6 then
-          items_has_7(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          items_has_7(7) <= '0';
-        elsif items_used_7 = '1' and items_start(5 downto 3) = 7 then
-          items_has_7(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          map_has_7(0) <= '0';
-        elsif map_used_7 = '1' and map_start(5 downto 3) = 0 then
-          map_has_7(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          map_has_7(1) <= '0';
-        elsif map_used_7 = '1' and map_start(5 downto 3) = 1 then
-          map_has_7(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          map_has_7(2) <= '0';
-        elsif map_used_7 = '1' and map_start(5 downto 3) = 2 then
-          map_has_7(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          map_has_7(3) <= '0';
-        elsif map_used_7 = '1' and map_start(5 downto 3) = 3 then
-          map_has_7(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          map_has_7(4) <= '0';
-        elsif map_used_7 = '1' and map_start(5 downto 3) = 4 then
-          map_has_7(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          map_has_7(5) <= '0';
-        elsif map_used_7 = '1' and map_start(5 downto 3) = 5 then
-          map_has_7(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          map_has_7(6) <= '0';
-        elsif map_used_7 = '1' and map_start(5 downto 3) = 6 then
-          map_has_7(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          map_has_7(7) <= '0';
-        elsif map_used_7 = '1' and map_start(5 downto 3) = 7 then
-          map_has_7(7) <= '1';
-        end if;
-        if writes = '1' then
+        if and_139 = '1' then
           complete <= done;
           if final_sig = '1' then
-            case sub_619 is
+            case sub_140 is
               when "000" =>
                 last(0) <= '1';
               when "001" =>
@@ -1288,20 +422,14 @@ begin
   begin
     if rising_edge(aclk) then
       if takes = '1' then
-        items_placed <= words_payload_0(63 downto 0);
+        items_0_write_data <= words_payload_0(63 downto 0);
         map_placed <= words_payload_0(127 downto 64);
       end if;
       if reads = '1' then
-        packets_payload_q(63 downto 0) <= (mux(items_here_7, items_7_read_data, "00000000") or
-            mux(map_here_7, map_7_read_data, "00000000")) & (mux(items_here_6, items_6_read_data,
-            "00000000") or mux(map_here_6, map_6_read_data, "00000000")) & (mux(items_here_5,
-            items_5_read_data, "00000000") or mux(map_here_5, map_5_read_data, "00000000")) &
-            (mux(items_here_4, items_4_read_data, "00000000") or mux(map_here_4, map_4_read_data,
-            "00000000")) & (mux(items_here_3, items_3_read_data, "00000000") or mux(map_here_3,
-            map_3_read_data, "00000000")) & (mux(items_here_2, items_2_read_data, "00000000") or
-            mux(map_here_2, map_2_read_data, "00000000")) & (mux(items_here_1, items_1_read_data,
-            "00000000") or mux(map_here_1, map_1_read_data, "00000000")) & (mux(items_here_0,
-            items_0_read_data, "00000000") or mux(map_here_0, map_0_read_data, "00000000"));
+        packets_payload_q(63 downto 0) <= (mux(items_here_0, items_0_read_data(63 downto 32),
+            x"00000000") or mux(map_here_4, map_4_read_data, x"00000000")) & (mux(items_here_0,
+            items_0_read_data(31 downto 0), x"00000000") or mux(map_here_0, map_0_read_data,
+            x"00000000"));
         packets_payload_q(68) <= is_last;
         if is_last = '1' then
           packets_payload_q(67 downto 64) <= ends_read_data(3 downto 0);
@@ -1324,99 +452,21 @@ begin
   items_index_0 <= (others => '0');
   items_slot_0 <= items_start(5 downto 3);
   items_0_write_addr <= items_start(5 downto 3);
-  items_0_write_data <= items_placed(7 downto 0);
+  items_placed <= items_0_write_data;
   items_0_write_en <= items_used_0;
   items_0_read_addr <= first(2 downto 0);
   map_index_0 <= (others => '0');
   map_slot_0 <= map_start(5 downto 3);
   map_0_write_addr <= map_start(5 downto 3);
-  map_0_write_data <= map_placed(7 downto 0);
+  map_0_write_data <= map_placed(31 downto 0);
   map_0_write_en <= map_used_0;
   map_0_read_addr <= first(2 downto 0);
-  items_index_1 <= "001";
-  items_slot_1 <= items_start(5 downto 3);
-  items_1_write_addr <= items_start(5 downto 3);
-  items_1_write_data <= items_placed(15 downto 8);
-  items_1_write_en <= items_used_1;
-  items_1_read_addr <= first(2 downto 0);
-  map_index_1 <= "001";
-  map_slot_1 <= map_start(5 downto 3);
-  map_1_write_addr <= map_start(5 downto 3);
-  map_1_write_data <= map_placed(15 downto 8);
-  map_1_write_en <= map_used_1;
-  map_1_read_addr <= first(2 downto 0);
-  items_index_2 <= "010";
-  items_slot_2 <= items_start(5 downto 3);
-  items_2_write_addr <= items_start(5 downto 3);
-  items_2_write_data <= items_placed(23 downto 16);
-  items_2_write_en <= items_used_2;
-  items_2_read_addr <= first(2 downto 0);
-  map_index_2 <= "010";
-  map_slot_2 <= map_start(5 downto 3);
-  map_2_write_addr <= map_start(5 downto 3);
-  map_2_write_data <= map_placed(23 downto 16);
-  map_2_write_en <= map_used_2;
-  map_2_read_addr <= first(2 downto 0);
-  items_index_3 <= "011";
-  items_slot_3 <= items_start(5 downto 3);
-  items_3_write_addr <= items_start(5 downto 3);
-  items_3_write_data <= items_placed(31 downto 24);
-  items_3_write_en <= items_used_3;
-  items_3_read_addr <= first(2 downto 0);
-  map_index_3 <= "011";
-  map_slot_3 <= map_start(5 downto 3);
-  map_3_write_addr <= map_start(5 downto 3);
-  map_3_write_data <= map_placed(31 downto 24);
-  map_3_write_en <= map_used_3;
-  map_3_read_addr <= first(2 downto 0);
-  items_index_4 <= "100";
-  items_slot_4 <= items_start(5 downto 3);
-  items_4_write_addr <= items_start(5 downto 3);
-  items_4_write_data <= items_placed(39 downto 32);
-  items_4_write_en <= items_used_4;
-  items_4_read_addr <= first(2 downto 0);
   map_index_4 <= "100";
   map_slot_4 <= map_start(5 downto 3);
   map_4_write_addr <= map_start(5 downto 3);
-  map_4_write_data <= map_placed(39 downto 32);
+  map_4_write_data <= map_placed(63 downto 32);
   map_4_write_en <= map_used_4;
   map_4_read_addr <= first(2 downto 0);
-  items_index_5 <= "101";
-  items_slot_5 <= items_start(5 downto 3);
-  items_5_write_addr <= items_start(5 downto 3);
-  items_5_write_data <= items_placed(47 downto 40);
-  items_5_write_en <= items_used_5;
-  items_5_read_addr <= first(2 downto 0);
-  map_index_5 <= "101";
-  map_slot_5 <= map_start(5 downto 3);
-  map_5_write_addr <= map_start(5 downto 3);
-  map_5_write_data <= map_placed(47 downto 40);
-  map_5_write_en <= map_used_5;
-  map_5_read_addr <= first(2 downto 0);
-  items_index_6 <= "110";
-  items_slot_6 <= items_start(5 downto 3);
-  items_6_write_addr <= items_start(5 downto 3);
-  items_6_write_data <= items_placed(55 downto 48);
-  items_6_write_en <= items_used_6;
-  items_6_read_addr <= first(2 downto 0);
-  map_index_6 <= "110";
-  map_slot_6 <= map_start(5 downto 3);
-  map_6_write_addr <= map_start(5 downto 3);
-  map_6_write_data <= map_placed(55 downto 48);
-  map_6_write_en <= map_used_6;
-  map_6_read_addr <= first(2 downto 0);
-  items_index_7 <= "111";
-  items_slot_7 <= items_start(5 downto 3);
-  items_7_write_addr <= items_start(5 downto 3);
-  items_7_write_data <= items_placed(63 downto 56);
-  items_7_write_en <= items_used_7;
-  items_7_read_addr <= first(2 downto 0);
-  map_index_7 <= "111";
-  map_slot_7 <= map_start(5 downto 3);
-  map_7_write_addr <= map_start(5 downto 3);
-  map_7_write_data <= map_placed(63 downto 56);
-  map_7_write_en <= map_used_7;
-  map_7_read_addr <= first(2 downto 0);
   ends_read_addr <= first(2 downto 0);
   payload <= packets_payload_q;
   error_now <= error_sig_q;
