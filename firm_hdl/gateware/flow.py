@@ -63,7 +63,7 @@ class Flow:
         Each exit: that its step takes it if it is done, its step, and the jump. At most one of the
         conditions is high.
     exit_state, body_state : Value
-        The state behind the exit, and in the body of the run or loop that the step begins.
+        The state after the exit, and in the body of the run or loop that the step begins.
     words : Counter
     levels : list of Counter
     """

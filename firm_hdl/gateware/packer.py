@@ -128,7 +128,7 @@ class _Circuit:
     def _rounded(
         self, value: Value, distance: Value, mask: Value, phase: Value | int, last: Value
     ) -> Value:
-        """Return a position behind a distance, with low bits cleared by a mask.
+        """Return a position after a distance, with low bits cleared by a mask.
 
         Alignment counts from `phase`; the end of a packet (`last`) from the start of the ring.
         """
@@ -188,7 +188,7 @@ class _Circuit:
         plan = self.plan
         sizes = geometry(plan)
         units = {"items": sizes.item_unit, "map": sizes.map_unit}
-        # Without padding, a byte that is not of items is of a map, or behind the packet.
+        # Without padding, a byte that is not of items is of a map, or after the packet.
         padded = bool(plan.header_bytes) or sizes.aligns
         words = {
             name: [self._lanes(name, k, unit, marked=padded or name == "items") for k in starts]

@@ -28,7 +28,7 @@ def sizes_layout() -> data.StructLayout:
     packet : unsigned(32)
         Bytes of the packet, the encapsulation header included; 2**32 - 1 if there are more.
     trailing : unsigned(2)
-        Bytes of the packet behind the message, if the status is `OK`.
+        Bytes of the packet after the message, if the status is `OK`.
     """
     return data.StructLayout({"packet": SIZE_BITS, "trailing": 2})
 
@@ -45,7 +45,7 @@ class Parser(wiring.Component):
     occupies the parser for as many cycles as it has beats, or steps in front of its first error,
     whichever is more, and for an error at most 4 cycles more. Bytes that lengths claim and that do
     not come cost nothing. 8 beats (16 on a bus of 1 or 2 bytes) may wait for a parser that is
-    behind; then `packets.ready` is low.
+    after; then `packets.ready` is low.
 
     `packets.ready`, `status.valid`, `status.payload` and `sizes` are registers; no path leads from
     an input to an output. While a status is not taken, only one more packet can end. One clock

@@ -12,12 +12,12 @@ from firm_hdl.plan.geometry import ring_beats
 
 __all__ = [
     "Ring",
+    "align_addend",
     "align_up",
     "any_of",
     "beat_layout",
     "known_lane_bits",
     "pick",
-    "raised_by",
     "rotate",
     "sum_of_three",
 ]
@@ -92,7 +92,7 @@ def beat_layout(plan: Plan) -> data.StructLayout:
     )
 
 
-def raised_by(align: int, phase: int, shift: int = 0) -> int:
+def align_addend(align: int, phase: int, shift: int = 0) -> int:
     """Return what to add so that clearing low bits rounds up; see `align_up`.
 
     Parameters are those of `align_up`, with a constant phase.
@@ -103,14 +103,14 @@ def raised_by(align: int, phase: int, shift: int = 0) -> int:
 def align_up(
     m: Module, value: Value, distance: Value | int, align: int, phase: Value | int, shift: int = 0
 ) -> Value:
-    """Return `shift` bytes behind the first aligned position from `value + distance` on.
+    """Return `shift` bytes after the first aligned position from `value + distance` on.
 
     All positions are modulo the width of `value`.
 
     Parameters
     ----------
     align : int
-        A power of two, at most 8. Positions are aligned that are a multiple of it behind `phase`.
+        A power of two, at most 8. Positions are aligned that are a multiple of it after `phase`.
     phase : Value or int
         If it is a constant, there is one carry chain.
     shift : int
@@ -122,7 +122,7 @@ def align_up(
         return total
     if isinstance(phase, int):
         low = align.bit_length() - 1
-        m.d.comb += total.eq(value + (distance + raised_by(align, phase, shift)))
+        m.d.comb += total.eq(value + (distance + align_addend(align, phase, shift)))
         return Cat(Const((phase + shift) % align, low), total[low:])
     pad, result = Signal(3), Signal(len(value))
     m.d.comb += [

@@ -73,8 +73,8 @@ class Packet:
         is_some = isinstance(after, RunStep) or following.bytes > after.bytes
         return begin.align if is_some else 1
 
-    def behind(self, index: int) -> int:
-        """Return where the step behind another one starts, or the items that it counts."""
+    def next_start(self, index: int) -> int:
+        """Return where the step after another one starts, or the items that it counts."""
         end = self.visits[index].end
         return end + (self.plan.header_bytes - end) % self.aligned_items(index)
 
@@ -126,7 +126,7 @@ def deserializer_cycles(packets: Sequence[Packet]) -> list[int]:
 def _reads(packet: Packet) -> list[tuple[int, int]]:
     """Return the first and the last beat of each step of a deserializer."""
     bus, visits = packet.plan.bus_bytes, packet.visits
-    starts = [0, *(packet.behind(index) for index in range(len(visits) - 1))]
+    starts = [0, *(packet.next_start(index) for index in range(len(visits) - 1))]
     beats = [
         (start // bus, max(0, -(-visit.end // bus) - 1))
         for start, visit in zip(starts, visits, strict=True)
@@ -152,7 +152,7 @@ class _Write:
     full : int
         Beats that can be sent after it.
     next : int
-        Where the next step starts; behind the last step, the next packet.
+        Where the next step starts; after the last step, the next packet.
     most : int
         Most beats from the step's own start to `next`, as the circuit estimates it.
     """
@@ -186,7 +186,7 @@ def serializer_cycles(packets: Sequence[Packet]) -> list[int]:
                 taken = max(taken, lengths.get(step.length, -1) + REPEATED_LENGTH)
                 lengths[step.length] = taken
             now = taken + 1
-            # In the cycle behind a step, only an estimate of its size is known.
+            # In the cycle after a step, only an estimate of its size is known.
             if now == placed + 1 and now < _sent(sent, start + most - room) + ROOM_AFTER:
                 now += 1
             if now > placed + 1:
@@ -217,7 +217,7 @@ def _writes(packet: Packet) -> Iterator[_Write]:
     for index in range(count):
         begin = plan.steps[visits[index].step].begin
         is_last = index == count - 1
-        end = packet.beats * bus if is_last else packet.behind(index)
+        end = packet.beats * bus if is_last else packet.next_start(index)
         full = end
         if visits[index].step < first_step(plan):
             # Beats wait for the first leaf.
@@ -238,8 +238,8 @@ def _most(packet: Packet, index: int, is_last: bool) -> int:
     plan, bus = packet.plan, packet.plan.bus_bytes
     visit = packet.visits[index]
     step = plan.steps[visit.step]
-    raised = step.align - 1 - plan.header_bytes % step.align if bus >= 8 else 0
-    size = bus - 1 + visit.bytes + raised
+    addend = step.align - 1 - plan.header_bytes % step.align if bus >= 8 else 0
+    size = bus - 1 + visit.bytes + addend
     if is_last:
         size += bus - 1 if visit.end else bus
     elif bus >= 8:

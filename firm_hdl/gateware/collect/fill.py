@@ -9,7 +9,7 @@ from amaranth.hdl import Cat, Const, Mux, Signal, Value
 from amaranth.lib import stream
 
 from firm_hdl.gateware.collect.progress import Progress
-from firm_hdl.gateware.positions import Ring, any_of, pick, raised_by
+from firm_hdl.gateware.positions import Ring, align_addend, any_of, pick
 from firm_hdl.plan import BeginRun, Fixed, Part, RunStep, Step
 from firm_hdl.plan.geometry import first_step
 
@@ -140,7 +140,7 @@ class Filler:
         items = Signal(range(bus + 1), name="items_size")
         whole = Signal(range(2 * bus + 1), name="map_size")
         nul = Signal(name="nul_now")
-        # The packet has bytes in front of this step, and behind it.
+        # The packet has bytes in front of this step, and after it.
         begun, begins = Signal(name="begun"), Signal(name="begins")
         m.d.comb += [
             items.eq(Mux(state.rest, now.flow.rest_bytes(now.rest), state.items_bytes)),
@@ -150,15 +150,15 @@ class Filler:
         ]
         with m.If(now.complete):
             m.d.sync += begun.eq(begins & ~now.ends)
-        raised, mask = self._items_align()
+        addend, mask = self._items_align()
         to_end = Signal.like(words.to_end, name="to_end")
         end_mask = Signal(max(3, ring.lane_bits), name="end_mask")
         to_map = Signal.like(words.to_map, name="to_map")
-        m.d.comb += to_map.eq(Mux(state.lead, 0, items) + nul + state.raised)
+        m.d.comb += to_map.eq(Mux(state.lead, 0, items) + nul + state.map_addend)
         with m.If(now.ends):
             m.d.comb += [to_end.eq(Mux(begins, whole + (bus - 1), bus)), end_mask.eq(bus - 1)]
         with m.Else():
-            m.d.comb += [to_end.eq(whole + raised), end_mask.eq(mask)]
+            m.d.comb += [to_end.eq(whole + addend), end_mask.eq(mask)]
         with m.If(now.free):
             m.d.sync += [
                 self.words.valid.eq(now.complete),
@@ -185,12 +185,12 @@ class Filler:
         for index, step in enumerate(plan.steps):
             if isinstance(step.begin, BeginRun) and step.begin.align > 1:
                 align = step.begin.align
-                raised = raised_by(align, plan.header_bytes) if plan.bus_bytes >= 8 else 0
-                some = self.step[index] & ~self.now.lengths[step.begin.length].zero
-                cases.append((some, raised, align - 1))
+                addend = align_addend(align, plan.header_bytes) if plan.bus_bytes >= 8 else 0
+                not_empty = self.step[index] & ~self.now.lengths[step.begin.length].zero
+                cases.append((not_empty, addend, align - 1))
         return (
-            pick([(some, raised) for some, raised, _ in cases], 3),
-            pick([(some, mask) for some, _, mask in cases], 3),
+            pick([(not_empty, addend) for not_empty, addend, _ in cases], 3),
+            pick([(not_empty, mask) for not_empty, _, mask in cases], 3),
         )
 
 

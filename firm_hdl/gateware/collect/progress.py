@@ -73,7 +73,7 @@ class Progress:
     def _flow(self) -> Flow:
         size = self.plan.bus_bytes.bit_length()
         flags = "run_begin loop_begin words plain rest terminated lead"
-        fields = {"map_bytes": size, "items_bytes": size, "mask": 3, "raised": 3}
+        fields = {"map_bytes": size, "items_bytes": size, "mask": 3, "map_addend": 3}
         fields |= dict.fromkeys(flags.split(), 1)
         most = (1 << COUNT_BITS) - 1
         return Flow(self.m, self.plan, lambda _: most, fields, self._traits, has_end=False)
@@ -87,12 +87,12 @@ class Progress:
         counted = isinstance(step, RunStep) and plan.runs[step.run].counted
         lead = step.bytes > bus
         begin = step.begin
-        raised = step.align - 1 - plan.header_bytes % step.align if bus >= 8 else 0
+        map_addend = step.align - 1 - plan.header_bytes % step.align if bus >= 8 else 0
         return {
             "map_bytes": bus if is_words and not counted else step.bytes - bus * lead,
             "items_bytes": bus if lead or counted else 0,
             "mask": step.align - 1,
-            "raised": raised,
+            "map_addend": map_addend,
             "run_begin": isinstance(begin, BeginRun),
             "loop_begin": isinstance(begin, BeginLoop),
             "words": is_words,

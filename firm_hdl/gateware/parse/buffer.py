@@ -18,7 +18,7 @@ class Buffer(wiring.Component):
     """Give each beat its place in the ring, and tell how much of the packet being read is there.
 
     The bytes are kept by those who read them: the sequencer keeps lengths, the mover lanes. They
-    write `beat` to their memories, and can read it in the cycle behind.
+    write `beat` to their memories, and can read it in the cycle after.
 
     Latency 1 cycle from `packets` to `beat`, and 2 cycles to `limit`.
 
@@ -62,20 +62,20 @@ class Buffer(wiring.Component):
         m = Module()
         ring, beat = self.ring, self.beat
         at = self._receive(m)
-        behind = Signal(ring.beat_bits)
+        next_beat = Signal(ring.beat_bits)
         ends_now = Signal()
         layout = data.StructLayout({"limit": ring.bits, "following": ring.beat_bits})
         end = Signal(layout)
         # Where the packet that arrives ends, if it ends now; else, how far it is there.
         newest = Signal(layout)
-        here = Mux(beat.valid, behind, at)
+        here = Mux(beat.valid, next_beat, at)
         m.d.comb += [
-            behind.eq(at + 1),
+            next_beat.eq(at + 1),
             ends_now.eq(beat.valid & beat.last),
             end.limit.eq(Cat(Const(0, ring.lane_bits), at) + beat.count),
-            end.following.eq(behind),
+            end.following.eq(next_beat),
             newest.limit.eq(Mux(ends_now, end.limit, Cat(Const(0, ring.lane_bits), here))),
-            newest.following.eq(behind),
+            newest.following.eq(next_beat),
         ]
         self._follow(m, layout, ends_now, end, newest)
         return m

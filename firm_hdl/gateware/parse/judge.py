@@ -18,7 +18,7 @@ __all__ = ["Judge"]
 class Judge:
     """Find the packet's first error in wire order. Not a component: logic of one module.
 
-    It writes `now.bad` and `now.noted`; the sequencer clears `now.bad` behind the packet.
+    It writes `now.bad` and `now.noted`; the sequencer clears `now.bad` after the packet.
 
     Parameters
     ----------
@@ -116,14 +116,14 @@ class Judge:
         m, now, ring, bus = self.m, self.now, self.now.ring, self.now.plan.bus_bytes
         state = now.state
         # Bytes from the first one of the map's last word to the packet's end.
-        behind_map = ring.position("behind_map")
+        map_left = ring.position("map_left")
         back = state.back.as_signed()
-        m.d.comb += behind_map.eq(sum_of_three(self.limit, ~now.last, (1 - back)))
-        map_room = self._room(behind_map)
+        m.d.comb += map_left.eq(sum_of_three(self.limit, ~now.last, (1 - back)))
+        map_room = self._room(map_left)
         items_room = Mux(state.rest, self._room(self.limit - now.first), map_room)
         # Of two words, that of items is in front of the map's.
-        in_front = Mux(ring.beat(behind_map).all(), ring.lane(behind_map), 0)
-        items_room = Mux(state.lead, Mux(behind_map[-1], in_front, bus), items_room)
+        in_front = Mux(ring.beat(map_left).all(), ring.lane(map_left), 0)
+        items_room = Mux(state.lead, Mux(map_left[-1], in_front, bus), items_room)
         is_cut, trails = self.code == Status.TRUNCATED, self.code == Status.TRAILING
         whole = Mux(trails | (self.code == Status.STRING), bus, 0)
         with m.If(now.bad):

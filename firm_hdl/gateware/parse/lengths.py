@@ -1,6 +1,6 @@
 """Lengths, decoded as beats arrive: at each place where a length can end, what would it mean?
 
-The sequencer has one cycle from a length to the position behind the items that the length counts.
+The sequencer has one cycle from a length to the position after the items that the length counts.
 So whatever follows from the value of a length alone is computed here, before the sequencer comes
 there: comparisons, the size of the rest, and the position of the next step. What is left to the
 sequencer is to select an entry by a position, and fields of the entry by the step.
@@ -140,7 +140,7 @@ class Lengths(wiring.Component):
     beat : In(beat_layout(plan))
         The beat that is written to the packet buffer in this cycle.
     phase : In(3)
-        Position behind the encapsulation header of the beat's packet, modulo 8. Not used on a bus
+        Position after the encapsulation header of the beat's packet, modulo 8. Not used on a bus
         of 8 bytes or more.
     key : In(position)
         Last byte of a length.
@@ -272,16 +272,16 @@ class Lengths(wiring.Component):
         phase: Value | int = self.plan.header_bytes if self.plan.bus_bytes >= 8 else self.phase
         unit = self.plan.item_bytes(run.run)
         items = Signal(ring.bits, name=f"items_{lane}_{meaning.kind}")
-        behind = Signal(ring.bits, name=f"behind_{lane}_{meaning.kind}")
+        items_end = Signal(ring.bits, name=f"items_end_{lane}_{meaning.kind}")
         beat = Cat(Const(0, ring.lane_bits), self.beat.at)
         count = length[: self.plan.word(run.run).bit_length()]
         aligned = align_up(m, beat, lane + 1, run.align, phase)
         m.d.comb += [
             items.eq(Mux(length.any(), aligned, beat + (lane + 1)) if run.align > 1 else aligned),
-            behind.eq(items + (count << (unit.bit_length() - 1))),
+            items_end.eq(items + (count << (unit.bit_length() - 1))),
         ]
         for jump in meaning.jumps:
             assert jump.step is not None
             align, shift = self.plan.steps[jump.step].align, shift_of(self.plan, jump.step)
-            last = align_up(m, behind, 0, align, phase, shift)
+            last = align_up(m, items_end, 0, align, phase, shift)
             m.d.comb += entry[meaning.last(jump)].eq(last)

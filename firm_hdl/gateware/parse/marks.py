@@ -35,7 +35,7 @@ class Marks(wiring.Component):
         The byte there is not NUL.
     header_at : In(beat)
     mismatch : Out(max(1, len(steps)))
-        Bit k: the beat there does not have the bytes that are checked in `steps[k]`. Bytes behind
+        Bit k: the beat there does not have the bytes that are checked in `steps[k]`. Bytes after
         the packet's end are not compared.
     """
 

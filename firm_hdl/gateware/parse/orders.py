@@ -24,9 +24,9 @@ def order_layout(plan: Plan) -> data.StructLayout:
     items_at, map_at : position, without the lap bit
         First byte of the word of items, and of the map.
     items_next, map_next : slot
-        The beats behind those of these bytes.
+        The beats after those of these bytes.
     items_bytes, map_bytes : range(bus_bytes + 1)
-        Bytes of these words that have their values; what is behind them is 0.
+        Bytes of these words that have their values; what is after them is 0.
     items : unsigned(1)
         Items of a counted run transfer.
     last : unsigned(1)

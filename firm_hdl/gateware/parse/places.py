@@ -10,7 +10,7 @@ from amaranth.lib import data
 
 from firm_hdl.gateware.flow import Flow
 from firm_hdl.gateware.parse.lengths import Meaning, shift_of
-from firm_hdl.gateware.positions import Ring, any_of, pick, raised_by
+from firm_hdl.gateware.positions import Ring, align_addend, any_of, pick
 from firm_hdl.plan import BeginRun, Jump, Plan, RunStep
 
 __all__ = ["NextPlace", "place_fields", "place_traits"]
@@ -27,7 +27,7 @@ class _Way:
     shift : int
         Distance from the start of the next step to its last byte.
     rest : bool
-        The step is the last word of a counted run, whose rest is behind it.
+        The step is the last word of a counted run, whose rest is after it.
     """
 
     align: int
@@ -53,14 +53,14 @@ def _ways(plan: Plan, index: int) -> Iterator[tuple[str, _Way]]:
         yield "body", _Way(align=align, shift=shift_of(plan, body))
 
 
-def _raised(plan: Plan, align: int, shift: int) -> int:
+def _align_addend(plan: Plan, align: int, shift: int) -> int:
     """Return what to add to the last byte, for the next one, its alignment, and a shift.
 
     If the phase is not a constant, that is only the next byte.
     """
     if plan.bus_bytes < 8:
         return 1
-    return 1 + (shift if align == 1 else raised_by(align, plan.header_bytes, shift))
+    return 1 + (shift if align == 1 else align_addend(align, plan.header_bytes, shift))
 
 
 def place_traits(plan: Plan, index: int) -> dict[str, int]:
@@ -76,7 +76,7 @@ def place_traits(plan: Plan, index: int) -> dict[str, int]:
         if bus >= 8:
             low = (plan.header_bytes + way.shift) % way.align
         traits |= {
-            f"{name}_add": _raised(plan, way.align, way.shift),
+            f"{name}_add": _align_addend(plan, way.align, way.shift),
             f"{name}_mask": way.align - 1,
             f"{name}_low": low,
             f"{name}_rest": way.rest,
@@ -106,7 +106,7 @@ class NextPlace:
     last : Signal
         The last byte of the step's map or word.
     phase : Value or int
-        Position behind the packet's encapsulation header, modulo 8.
+        Position after the packet's encapsulation header, modulo 8.
     meanings : mapping of int to Meaning
         By step.
     entry : View or None
@@ -186,15 +186,15 @@ class NextPlace:
         return result
 
     def _tail(self) -> Value:
-        """Return how far it is from the last word of a run to the step behind the rest."""
+        """Return how far it is from the last word of a run to the step after the rest."""
         plan, bus = self.plan, self.plan.bus_bytes
         tail = Signal(range(5 * bus + 16), name="tail", reset_less=True)
         sizes: list[tuple[Value, int]] = []
         rests: list[tuple[Value, Value]] = []
         for taken, step, _, meaning in self._rests():
-            raised = _raised(plan, plan.steps[step].align, shift_of(plan, step))
+            addend = _align_addend(plan, plan.steps[step].align, shift_of(plan, step))
             assert meaning.run is not None and self.entry is not None
-            sizes.append((taken, raised + plan.runs[meaning.run.run].terminated))
+            sizes.append((taken, addend + plan.runs[meaning.run.run].terminated))
             unit = plan.item_bytes(meaning.run.run)
             rest = Value.cast(self.entry[meaning.rest]) << (unit.bit_length() - 1)
             rests.append((taken, rest))

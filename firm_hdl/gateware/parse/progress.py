@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Module, Signal, Value
+from amaranth.hdl import Const, Module, Signal, Value
 
 from firm_hdl.gateware.flow import Flow
 from firm_hdl.gateware.parse.lengths import Meaning, shift_of
 from firm_hdl.gateware.parse.places import place_fields, place_traits
 from firm_hdl.gateware.positions import Ring
 from firm_hdl.plan import BeginLoop, BeginRun, MapStep, Plan, RunStep
+from firm_hdl.plan.geometry import geometry
 
 __all__ = ["Progress"]
 
@@ -35,15 +36,16 @@ class Progress:
     last : Signal(position)
         Last byte of the step's map or word. If the step has a length, that is the length's.
     first : Signal(position)
-        First byte behind the step before, or the first item of a run.
+        First byte after the step before, or the first item of a run.
     rest : Signal(range(lanes + 1))
         Items of the rest of a run that the step takes.
     nul_at : Signal(position)
-        The NUL behind these items.
+        The NUL after these items.
     has_nul : Signal(1)
         There must be a NUL at `nul_at`.
-    phase : int or Signal(3)
-        Position behind the packet's encapsulation header, modulo 8.
+    phase : int, Const or Signal(3)
+        Position after the packet's encapsulation header, modulo 8: an `int` on a bus of 8 bytes or
+        more, and a signal on others if anything is aligned to it.
     bad : Signal(1)
         An error was found in the packet.
     noted : Signal(1)
@@ -51,10 +53,10 @@ class Progress:
     items_at, map_at : Signal(position)
         First byte of the word of items, and of the last word of the map. Combinational, as all that
         follow.
-    behind : Signal(position)
+    step_end : Signal(position)
         Behind the step's map or word.
     left : Signal(position)
-        Bytes that are in the buffer from `behind` on; negative if the step lacks bytes.
+        Bytes that are in the buffer from `step_end` on; negative if the step lacks bytes.
     present : Signal(1)
         All bytes of the step are in the buffer.
     leaves : Signal(1)
@@ -88,10 +90,12 @@ class Progress:
         self.nul_at, self.has_nul = ring.position("nul_at"), Signal(name="has_nul")
         self.phase: Value | int = plan.header_bytes
         if plan.bus_bytes < 8:
-            self.phase = Signal(3, name="phase", init=plan.header_bytes % 8)
+            header = plan.header_bytes % 8
+            aligns = geometry(plan).aligns
+            self.phase = Signal(3, name="phase", init=header) if aligns else Const(header, 3)
         self.bad, self.noted = Signal(name="bad"), Signal(name="noted")
         self.items_at, self.map_at = ring.position("items_at"), ring.position("map_at")
-        self.behind, self.left = ring.position("behind"), ring.position("left")
+        self.step_end, self.left = ring.position("step_end"), ring.position("left")
         self.present, self.done = Signal(name="present"), Signal(name="done")
         self.leaves = Signal(name="leaves")
         self.ends, self.closes = Signal(name="ends"), Signal(name="closes")

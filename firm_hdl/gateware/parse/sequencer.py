@@ -35,7 +35,7 @@ class Sequencer(wiring.Component):
     issued.
 
     An error is noted first, and takes two cycles. Then the step is executed with what is good of
-    it, and the steps behind it with no data and all lengths 0. What is left of the packet is
+    it, and the steps after it with no data and all lengths 0. What is left of the packet is
     dropped.
 
     Parameters
@@ -59,7 +59,7 @@ class Sequencer(wiring.Component):
     next : Out(1)
         The packet is done.
     trailing : Out(2)
-        Bytes behind the message, if the packet is done and its status is `OK`.
+        Bytes after the message, if the packet is done and its status is `OK`.
     at : Out(beat)
         Beats in front of this one are not needed by the sequencer.
     orders : Out(stream.Signature(order_layout(plan)))
@@ -112,7 +112,7 @@ class _Circuit(Progress):
         ring = self.ring
         word_before = Cat(ring.lane(self.map_at), ring.beat(self.map_at) - state.lead)
         m.d.comb += [
-            self.behind.eq(self.last + 1),
+            self.step_end.eq(self.last + 1),
             # limit - last - 1.
             self.left.eq(c.limit + ~self.last),
             c.trailing.eq(self.left),
@@ -248,19 +248,19 @@ class _Circuit(Progress):
             m.d.sync += self.last.eq(last)
             if any(run.terminated for run in plan.runs):
                 rest = Mux(self.state.words, self.rest, self.length.rest)
-                m.d.sync += self.nul_at.eq(self.behind + rest)
-            if not isinstance(self.phase, int):
+                m.d.sync += self.nul_at.eq(self.step_end + rest)
+            if isinstance(self.phase, Signal):
                 with m.If(self.closes):
                     m.d.sync += self.phase.eq(start + plan.header_bytes)
 
     def _items_start(self) -> Value:
         """Return where items start that the step counts; else where the step ends."""
-        start: Value = self.behind
+        start: Value = self.step_end
         aligns = {s.begin.align for s in self.plan.steps if isinstance(s.begin, BeginRun)} - {1}
         for align in sorted(aligns):
             steps = enumerate(self.plan.steps)
             runs = [(i, s.begin) for i, s in steps if isinstance(s.begin, BeginRun)]
             chosen = any_of([self.step[i] for i, begin in runs if begin.align == align])
-            aligned = align_up(self.m, self.behind, 0, align, self.phase)
+            aligned = align_up(self.m, self.step_end, 0, align, self.phase)
             start = Mux(chosen & ~self.length.zero, aligned, start)
         return start

@@ -77,7 +77,7 @@ class StepLength:
         )
         m.d.comb += [lengths.beat.eq(beat), lengths.key.eq(self.now.last)]
         self.count = lengths.count
-        if plan.bus_bytes < 8:
+        if isinstance(self.now.phase, Signal):
             # The phase of the packet that arrives.
             phase = Signal(3, name="arriving_phase", init=plan.header_bytes % 8)
             m.d.comb += lengths.phase.eq(phase)
