@@ -769,7 +769,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.buffer (packets_
   wire [63:0] \beat.data ;
   wire \beat.last ;
   wire \beat.valid ;
-  wire [3:0] behind;
   wire [3:0] \end.following ;
   wire [6:0] \end.limit ;
   wire [10:0] end_sig;
@@ -798,6 +797,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.buffer (packets_
   wire [10:0] newest;
   wire [3:0] \newest.following ;
   wire [6:0] \newest.limit ;
+  wire [3:0] next_beat;
   input next_sig;
   wire next_sig;
   input [68:0] packets__payload;
@@ -856,10 +856,10 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.buffer (packets_
   assign ends__read__data = ends[popped[2:0]];
   assign arrives = packets__valid & packets__ready;
   assign { \$1 [4], used } = arrived - freed;
-  assign { \$2 [4], behind } = at + 1'h1;
+  assign { \$2 [4], next_beat } = at + 1'h1;
   assign ends_now = beat[73] & beat[68];
   assign \$3  = { at, 3'h0 } + beat[67:64];
-  assign \$4  = beat[73] ? behind : at;
+  assign \$4  = beat[73] ? next_beat : at;
   assign \$5  = ends_now ? end_sig[6:0] : { \$4 , 3'h0 };
   assign stored = pushed != popped;
   assign more = stored | ends_now;
@@ -928,8 +928,8 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.buffer (packets_
   assign \$29  = rst ? 4'h0 : \$6 [3:0];
   assign \$28  = rst ? 1'h0 : arrives;
   assign beat = { full, at, payload };
-  assign end_sig = { behind, \$3 [6:0] };
-  assign newest = { behind, \$5  };
+  assign end_sig = { next_beat, \$3 [6:0] };
+  assign newest = { next_beat, \$5  };
   assign \ends__read__data.following  = ends__read__data[10:7];
   assign \ends__read__data.limit  = ends__read__data[6:0];
   assign \second.following  = second[10:7];
@@ -967,7 +967,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.buffer (packets_
   assign \beat.last  = beat[68];
   assign \beat.count  = beat[67:64];
   assign \beat.data  = beat[63:0];
-  assign \$2 [3:0] = behind;
+  assign \$2 [3:0] = next_beat;
   assign \$1 [3:0] = used;
   assign ends__read__addr = popped[2:0];
   assign ends__write__en = 1'h1;
@@ -2335,8 +2335,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   wire [63:0] \beat.data ;
   wire \beat.last ;
   wire \beat.valid ;
-  wire [6:0] behind;
-  wire [6:0] behind_map;
   wire blind;
   wire [5:0] body_amount;
   (* unused_bits = "0 1 2 3 4 5 6" *)
@@ -2392,6 +2390,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   input [6:0] limit;
   wire [6:0] limit;
   wire [6:0] map_at;
+  wire [6:0] map_left;
   reg [3:0] map_room = 4'h0;
   wire mismatch;
   wire \mismatch$34 ;
@@ -2455,6 +2454,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   wire \state.run_begin ;
   wire [6:0] \state.step ;
   wire \state.words ;
+  wire [6:0] step_end;
   wire [5:0] tail;
   (* unused_bits = "0 1" *)
   wire [1:0] trailing;
@@ -2464,7 +2464,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   reg words_last = 1'h1;
   wire words_loads;
   wire wrong_nul;
-  assign { \$1 [7], behind } = last + 1'h1;
+  assign { \$1 [7], step_end } = last + 1'h1;
   assign \$2  = ~ last;
   assign { \$3 [7], left } = limit + \$2 ;
   assign present = ~ left[6];
@@ -2507,7 +2507,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \$79  = $signed(2'h1) - $signed(state[11:7]);
   assign \$86  = \$70  & { \$79 [5], \$78  };
   assign \$87  = \$69  | \$86 ;
-  assign { \$88 [7], behind_map } = \$50  + { \$87 [5:0], 1'h0 };
+  assign { \$88 [7], map_left } = \$50  + { \$87 [5:0], 1'h0 };
   assign \$89  = ~ noted;
   assign \$90  = bad & \$89 ;
   assign \$91  = ~ state[19];
@@ -2580,18 +2580,18 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \$213  = mismatch ? 3'h4 : \$211 ;
   assign \$214  = blind & orders__ready;
   assign \$215  = code == 1'h1;
-  assign \$216  = & behind_map[6:3];
-  assign \$217  = \$216  ? behind_map[2:0] : 3'h0;
-  assign \$218  = behind_map[6] ? { 1'h0, \$217  } : 4'h8;
+  assign \$216  = & map_left[6:3];
+  assign \$217  = \$216  ? map_left[2:0] : 3'h0;
+  assign \$218  = map_left[6] ? { 1'h0, \$217  } : 4'h8;
   assign \$219  = limit - first;
   assign \$220  = limit - first;
   assign \$221  = \$220 [6:0] >= 4'h8;
   assign \$222  = limit - first;
   assign \$223  = \$221  ? 4'h8 : \$222 [3:0];
   assign \$224  = \$219 [6] ? 4'h0 : \$223 ;
-  assign \$225  = behind_map >= 4'h8;
-  assign \$226  = \$225  ? 4'h8 : behind_map[3:0];
-  assign \$227  = behind_map[6] ? 4'h0 : \$226 ;
+  assign \$225  = map_left >= 4'h8;
+  assign \$226  = \$225  ? 4'h8 : map_left[3:0];
+  assign \$227  = map_left[6] ? 4'h0 : \$226 ;
   assign \$228  = state[16] ? \$224  : \$227 ;
   assign \$229  = state[17] ? \$218  : \$228 ;
   assign \$230  = code == 2'h2;
@@ -2600,16 +2600,16 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \$233  = \$232  ? 4'h8 : 4'h0;
   assign \$234  = \$215  ? \$229  : \$233 ;
   assign \$235  = code == 1'h1;
-  assign \$236  = behind_map >= 4'h8;
-  assign \$237  = \$236  ? 4'h8 : behind_map[3:0];
-  assign \$238  = behind_map[6] ? 4'h0 : \$237 ;
+  assign \$236  = map_left >= 4'h8;
+  assign \$237  = \$236  ? 4'h8 : map_left[3:0];
+  assign \$238  = map_left[6] ? 4'h0 : \$237 ;
   assign \$239  = code == 2'h2;
   assign \$240  = \$239  ? 4'h8 : 4'h0;
   assign \$241  = \$235  ? \$238  : \$240 ;
   assign \$279  = bad & state[19];
   assign \$280  = issue | \$279 ;
   assign \$281  = state[19] ? limit : first;
-  assign \$282  = bad ? \$281  : behind;
+  assign \$282  = bad ? \$281  : step_end;
   assign \$283  = closes ? { following, 3'h0 } : \$282 ;
   always @(posedge aclk)
     bad <= \$284 ;
@@ -2715,12 +2715,12 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \orders__payload.first  = orders__payload[37:34];
   assign \orders__payload.ends  = orders__payload[38];
   assign \orders__payload.status  = orders__payload[41:39];
-  assign \$88 [6:0] = behind_map;
+  assign \$88 [6:0] = map_left;
   assign \$19 [6:0] = header_within;
   assign \$13 [6:0] = items_at;
   assign \$11 [6:0] = map_at;
   assign \$3 [6:0] = left;
-  assign \$1 [6:0] = behind;
+  assign \$1 [6:0] = step_end;
   assign header_at = first[6:3];
   assign early_last = next_last;
   assign body_amount = 6'h00;

@@ -702,10 +702,10 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector (leaf_0_
   wire [3:0] \state.items_bytes ;
   wire \state.lead ;
   wire \state.loop_begin ;
+  wire [2:0] \state.map_addend ;
   wire [3:0] \state.map_bytes ;
   wire [2:0] \state.mask ;
   wire \state.plain ;
-  wire [2:0] \state.raised ;
   wire \state.rest ;
   wire \state.run_begin ;
   wire [5:0] \state.step ;
@@ -985,7 +985,7 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector (leaf_0_
   assign \state.words  = state[22];
   assign \state.loop_begin  = state[21];
   assign \state.run_begin  = state[20];
-  assign \state.raised  = state[19:17];
+  assign \state.map_addend  = state[19:17];
   assign \state.mask  = state[16:14];
   assign \state.items_bytes  = state[13:10];
   assign words__payload_0 = { map_4, map_0, items_4, items_0 };

@@ -47,7 +47,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer 
   -- Combinational signals.
   signal arrives        : std_logic;
   signal used           : unsigned(3 downto 0);
-  signal behind         : unsigned(3 downto 0);
+  signal next_beat      : unsigned(3 downto 0);
   signal ends_now       : std_logic;
   signal add_3          : unsigned(6 downto 0);
   signal newest_0       : unsigned(6 downto 0);
@@ -74,21 +74,21 @@ begin
 
   arrives <= packets_valid and packets_ready_q;
   used <= arrived - freed;
-  behind <= at + 1;
+  next_beat <= at + 1;
   ends_now <= full and payload(68);
   add_3 <= unsigned'(at & "000") + payload(67 downto 64);
-  newest_0 <= add_3 when ends_now = '1' else mux(full, behind, at) & "000";
+  newest_0 <= add_3 when ends_now = '1' else mux(full, next_beat, at) & "000";
   stored <= '1' when pushed /= popped else '0';
   more <= stored or ends_now;
   follows <= ended_q and ends_now;
   or_14 <= next_sig or not ended_q;
-  mux_15 <= second when has_second = '1' else behind & newest_0;
+  mux_15 <= second when has_second = '1' else next_beat & newest_0;
   mux_22 <= mux(next_sig, more, '1') when has_second = '1' else mux(next_sig, '0', follows);
 
   process (aclk)
   begin
     if rising_edge(aclk) then
-      ends(to_integer(pushed(2 downto 0))) <= behind & add_3;
+      ends(to_integer(pushed(2 downto 0))) <= next_beat & add_3;
     end if;
   end process;
 
@@ -123,7 +123,7 @@ begin
           if stored = '1' then
             second <= ends_read_data;
           else
-            second <= behind & add_3;
+            second <= next_beat & add_3;
           end if;
         end if;
         has_second <= mux_22;
@@ -153,10 +153,10 @@ begin
 
   room <= packets_ready_q;
   ends_write_addr <= pushed(2 downto 0);
-  ends_write_data <= behind & add_3;
+  ends_write_data <= next_beat & add_3;
   ends_write_en <= '1';
   ends_read_addr <= popped(2 downto 0);
-  end_sig <= behind & add_3;
-  newest <= behind & newest_0;
+  end_sig <= next_beat & add_3;
+  newest <= next_beat & newest_0;
 
 end architecture;

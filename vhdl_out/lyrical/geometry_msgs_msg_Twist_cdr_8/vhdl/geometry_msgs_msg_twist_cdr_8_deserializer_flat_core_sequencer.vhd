@@ -46,7 +46,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
 
   -- Combinational signals.
   signal mismatch_34   : std_logic;
-  signal behind        : unsigned(6 downto 0);
+  signal step_end      : unsigned(6 downto 0);
   signal left          : unsigned(6 downto 0);
   signal present       : std_logic;
   signal leaves        : std_logic;
@@ -63,7 +63,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal begins        : std_logic;
   signal sub_43        : unsigned(5 downto 0);
   signal or_87         : unsigned(5 downto 0);
-  signal behind_map    : unsigned(6 downto 0);
+  signal map_left      : unsigned(6 downto 0);
   signal blind         : std_logic;
   signal sighted       : std_logic;
   signal issue         : std_logic;
@@ -127,7 +127,7 @@ begin
       header_at => first(6 downto 3)
     );
 
-  behind <= last + 1;
+  step_end <= last + 1;
   left <= limit_sig + not last;
   present <= not left(6);
   leaves <= state(18) or (state(14) and words_last);
@@ -146,7 +146,7 @@ begin
   or_87 <= (limit_sig(5 downto 0) and not last(5 downto 0)) or (limit_sig(5 downto 0) and
       unsigned'("000001") - sign_extend(state(11 downto 7), 6)) or (not last(5 downto 0) and
       unsigned'("000001") - sign_extend(state(11 downto 7), 6));
-  behind_map <= (limit_sig xor not last xor unsigned'(sub_43(5) &
+  map_left <= (limit_sig xor not last xor unsigned'(sub_43(5) &
       (unsigned'("000001") - sign_extend(state(11 downto 7), 6)))) + unsigned'(or_87 & '0');
   blind <= bad and not noted and (not state(19) or ended);
   sighted <= not bad and (not ends or ended);
@@ -171,16 +171,16 @@ begin
   sub_219 <= limit_sig - first;
   mux_224 <= (others => '0') when sub_219(6) = '1' else mux(to_std_logic(limit_sig - first >= 8),
       "1000", limit_sig(3 downto 0) - first(3 downto 0));
-  mux_228 <= mux_224 when state(16) = '1' else mux(behind_map(6), "0000",
-      mux(to_std_logic(behind_map >= 8), "1000", behind_map(3 downto 0)));
-  mux_229 <= mux(behind_map(6), resize(mux(and behind_map(6 downto 3), behind_map(2 downto 0),
-      "000"), 4), "1000") when state(17) = '1' else mux_228;
+  mux_228 <= mux_224 when state(16) = '1' else mux(map_left(6), "0000",
+      mux(to_std_logic(map_left >= 8), "1000", map_left(3 downto 0)));
+  mux_229 <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0), "000"), 4),
+      "1000") when state(17) = '1' else mux_228;
   mux_234 <= mux_229 when code = 1 else mux(to_std_logic(code = 2) or to_std_logic(code = 5),
       "1000", "0000");
-  mux_241 <= mux(behind_map(6), "0000", mux(to_std_logic(behind_map >= 8), "1000",
-      behind_map(3 downto 0))) when code = 1 else mux(to_std_logic(code = 2), "1000", "0000");
+  mux_241 <= mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8), "1000",
+      map_left(3 downto 0))) when code = 1 else mux(to_std_logic(code = 2), "1000", "0000");
   mux_283 <= following & "000" when closes = '1' else mux(bad, mux(state(19), limit_sig, first),
-      behind);
+      step_end);
 
   p_aclk : process (aclk)
   begin
