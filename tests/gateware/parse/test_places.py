@@ -99,7 +99,7 @@ def expected(plan, packets):
                 order["status"] = Status.OK.value
             orders.append(order)
             if index < len(packet.visits) - 1:
-                behind = packet.behind(index)
+                behind = packet.next_start(index)
         if step.begin is not None:
             orders.append({"blank": 1, "ends": 1, "status": Status.OK.value})
         base += packet.beats * bus
