@@ -21,6 +21,7 @@ from amaranth.sim import Simulator, SimulatorContext
 
 from firm_hdl.sim.drive import Drive
 from firm_hdl.sim.job import Job
+from firm_hdl.sim.levels import divided
 from firm_hdl.sim.stalls import stalls_of
 from firm_hdl.sim.watch import StreamRules
 
@@ -117,8 +118,11 @@ class Bench:
         # Probes become signals: the simulator compiles the drivers of signals, but interprets
         # expressions.
         self.probes = [_gathered(top, [value]) for value in probes]
-        self.simulator = Simulator(top)
-        self._used = False
+        self._circuit = top
+        self._simulator = Simulator(divided(top))
+        # A waveform shows modules as they were written.
+        self._for_waveforms: Simulator | None = None
+        self._started: set[Simulator] = set()
 
     def run(self, job: Job) -> int:
         """Run a job from reset; return the number of cycles, the settling included.
@@ -131,23 +135,26 @@ class Bench:
         vcd = job.options.vcd
         if vcd is not None and self._keeps_state:
             raise ValueError("A bench that keeps its state writes no waveforms")
-        if not self._used:
+        simulator = self._simulator
+        if vcd is not None:
+            simulator = self._for_waveforms = self._for_waveforms or Simulator(self._circuit)
+        if simulator not in self._started:
             # Added only here, because Python warns of a testbench that never starts.
-            self.simulator.add_testbench(self._testbench)
+            simulator.add_testbench(self._testbench)
+            self._started.add(simulator)
         elif not self._keeps_state:
-            self.simulator.reset()
-        self._used = True
+            simulator.reset()
         self.job = job
         self._delay = HALF_PERIOD if vcd is not None else 0.0
         if self._keeps_state:
             self._error = None
             # The testbench waits at the end of each job.
-            self.simulator.advance()
+            simulator.advance()
             if self._error is not None:
                 raise self._error
             return self.cycles
-        with nullcontext() if vcd is None else self.simulator.write_vcd(os.fspath(vcd)):
-            self.simulator.run()
+        with nullcontext() if vcd is None else simulator.write_vcd(os.fspath(vcd)):
+            simulator.run()
         return self.cycles
 
     def _top(self, design: Elaboratable) -> Module:

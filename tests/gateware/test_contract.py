@@ -211,17 +211,18 @@ def test_padding_may_come_long_after_the_message(bus_bytes, slack):
     fixed = make("ros2", {"x": "uint16"})
     text = make("ros2", {"x": "uint16", "s": "string"})
     start = [0, 1, 0, 0, 7, 7]
-    cases = [(fixed, start)]
-    for count in range(9):
-        cases.append((text, [*start, 0, 0, count + 1, 0, 0, 0, *range(1, count + 1), 0]))
-    for message, packet in cases:
+    texts = [
+        [*start, 0, 0, count + 1, 0, 0, 0, *range(1, count + 1), 0] for count in range(9)
+    ]
+    for message, packets in ((fixed, [start]), (text, texts)):
         statuses = loopback(
             message,
-            [bytes([*packet, *[0xFF] * slack])] * 2,
+            [bytes([*packet, *[0xFF] * slack]) for packet in packets for _ in range(2)],
             bus_bytes=bus_bytes,
             stalls={"packets_in": Stalls.bits("10000")},
         ).statuses
-        assert statuses == [Status.OK if slack <= 3 else Status.TRAILING] * 2
+        wanted = Status.OK if slack <= 3 else Status.TRAILING
+        assert statuses == [wanted] * (2 * len(packets))
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 8, 32])

@@ -188,7 +188,7 @@ def test_another_status_is_noticed():
 )
 def test_damaged_packets_of_ros_types(name, distro, bus_bytes):
     message = load_message(name, distro=distro)
-    plan, packets = random_packets(message, bus_bytes, 8)
+    plan, packets = random_packets(message, bus_bytes, 4)
     parser = Parser(message, bus_bytes=bus_bytes, max_message_bytes=MOST)
     for stalls in (None, {"status": Stalls.bits("0000001")}):
         agree(plan, packets, run(parser, packets, stalls=stalls))

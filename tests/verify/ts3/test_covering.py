@@ -24,7 +24,7 @@ KEPT = {distro: read_chosen(FOLDER / f"{distro}.txt") for distro in DISTROS}
 # The generator's branches of all types take a minute: `make cover` looks at them.
 STRIDE = 20
 # All cases of these take as long as those of all others together: `make verify` has them.
-LARGE = ("InteractiveMarker", "InteractiveMarkerControl")
+LARGE = ("InteractiveMarker", "InteractiveMarkerControl", "InteractiveMarkerInit")
 MOST_CASES = 4
 KNOWN = {("lyrical", "sensor_msgs/msg/Joy"): (NAN_KEY,)}
 

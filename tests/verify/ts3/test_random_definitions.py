@@ -20,7 +20,7 @@ MOST_WORK = 5_000
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 # Shrinking would simulate for many minutes; the message of a failure says how to repeat it.
 @settings(
-    max_examples=15,
+    max_examples=8,
     deadline=None,
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
     suppress_health_check=list(HealthCheck),
