@@ -124,16 +124,16 @@ class RecordReader(_Adapter):
         m = Module()
         self._pass_on(m)
         taken = Signal()
-        there: list[Value] = []
+        present: list[Value] = []
         parts: dict[int, Value] = {}
         for transfers, leaf in self._streams():
             if len(transfers) == 1:
                 kept = _values(leaf)
                 m.d.comb += leaf.ready.eq(taken)
-                there.append(leaf.valid)
+                present.append(leaf.valid)
             else:
                 kept, full = self._collect(m, len(transfers), leaf, taken)
-                there.append(full)
+                present.append(full)
             for number, places in enumerate(transfers):
                 bits = self._record.bits_of(places)
                 first = number * len(_values(leaf))
@@ -142,7 +142,7 @@ class RecordReader(_Adapter):
             # One assignment, because elaborating n assignments to slices takes quadratic time.
 
             Value.cast(self.record.payload).eq(Cat(parts[bit] for bit in sorted(parts))),
-            self.record.valid.eq(Cat(there).all()),
+            self.record.valid.eq(Cat(present).all()),
             taken.eq(self.record.valid & self.record.ready),
         ]
         return m

@@ -28,14 +28,14 @@ def guarded(package: str, text: Iterable[str]) -> str:
 
 
 def struct(name: str, members: Sequence[tuple[str, str, str, Iterable[str]]]) -> Iterator[str]:
-    """Yield a struct; its members are given by name, type, comment behind, and lines above."""
+    """Yield a struct; its members are given by name, type, comment after it, and lines above."""
     # Types of other packages are long, and do not count for the columns.
     width = max((len(kind) for _, kind, *_ in members if "::" not in kind), default=0)
     yield "\n  typedef struct packed {\n"
     for member, kind, remark, above in members:
         yield from above
-        behind = f"  // {remark}" if remark else ""
-        yield f"    {kind:{width}} {member};{behind}\n"
+        comment = f"  // {remark}" if remark else ""
+        yield f"    {kind:{width}} {member};{comment}\n"
     yield f"  }} {name};\n"
 
 

@@ -11,15 +11,15 @@ __all__ = ["record_elements", "stream_record"]
 
 
 def record_elements(elements: Sequence[tuple[str, str, str, Iterable[str]]]) -> Iterator[str]:
-    """Yield elements of a record, given by name, type, comment behind, and lines above."""
+    """Yield elements of a record, given by name, type, comment after it, and lines above."""
     width = max(len(name) for name, *_ in elements)
     # Types of other packages are long, and do not count for the columns.
     short = [len(kind) for _, kind, *_ in elements if not kind.startswith("work.")]
     kinds = max(short, default=0) + 1
     for name, kind, remark, above in elements:
         yield from above
-        behind = f"  -- {remark}" if remark else ""
-        yield f"    {name:{width}} : {kind + ';':{kinds}}{behind}".rstrip() + "\n"
+        comment = f"  -- {remark}" if remark else ""
+        yield f"    {name:{width}} : {kind + ';':{kinds}}{comment}".rstrip() + "\n"
 
 
 def stream_record(record: Record) -> Iterator[str]:

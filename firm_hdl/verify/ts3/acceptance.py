@@ -280,9 +280,9 @@ class Acceptance:
 
     def broken(self, cases: Sequence[Case]) -> None:
         """Check the hardware against the golden model on packets that are wrong."""
-        some = list(cases[:: max(1, len(cases) // len(DAMAGES))])
-        broken = list(broken_packets(self.plan, some, self._random))
-        packets = list(chain.from_iterable(zip(broken, (c.packet for c in some), strict=True)))
+        sample = list(cases[:: max(1, len(cases) // len(DAMAGES))])
+        broken = list(broken_packets(self.plan, sample, self._random))
+        packets = list(chain.from_iterable(zip(broken, (c.packet for c in sample), strict=True)))
         stalls = stalls_for(self._random.random()) if self._options.stalled else None
         where = f"hardware, broken packets, {stalls}"
         seen = self.circuit.send(where, packets, stalls)

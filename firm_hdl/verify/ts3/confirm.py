@@ -65,14 +65,14 @@ def confirm(
     here = references_here(wanted)
     unable = {name: f"{name} has no wire '{wire}'" for name in here if wire not in WRITERS[name]}
     names = [name for name in here if name not in unable]
-    some = _some(cases)
-    values = [from_objects(message, case.value) for case in some] if names else []
+    sample = _sample(cases)
+    values = [from_objects(message, case.value) for case in sample] if names else []
     by: list[str] = []
     failures: list[str] = []
     known: dict[str, None] = {}
     for name in names:
         try:
-            found, keys = _differences(message, wire, some, values, name)
+            found, keys = _differences(message, wire, sample, values, name)
         except ClientDiedError as error:
             failures.append(f"{name} broke down: {error}")
             continue
@@ -85,7 +85,7 @@ def confirm(
     return Confirmation(by=tuple(by), failures=tuple(failures), known=tuple(known), unable=unable)
 
 
-def _some(cases: Sequence[Case]) -> list[Case]:
+def _sample(cases: Sequence[Case]) -> list[Case]:
     found: list[Case] = []
     size = 0
     for case in cases:

@@ -92,8 +92,8 @@ def _replay(message: Message, judge: Judge, options: Options, result: Result) ->
         return
     run.good(cases, None)
     if options.stalled:
-        some = cases[::LARGE_STRIDE] if is_large(run.plan, cases) else cases
-        run.good(some, stalls_for(f"{options.seed}/{judge.name}"))
+        sample = cases[::LARGE_STRIDE] if is_large(run.plan, cases) else cases
+        run.good(sample, stalls_for(f"{options.seed}/{judge.name}"))
     run.circuit.crosscheck()
 
 

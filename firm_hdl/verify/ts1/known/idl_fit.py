@@ -70,10 +70,10 @@ def _without_includes(case: DefinitionCase) -> str:
 
     def meaning(match: re.Match[str]) -> str:
         before = code[: match.start()].rstrip()[-1:]
-        behind = code[match.end() :].lstrip()[:1]
-        if match[1] in values and before in tuple("<[,(=+-*/%&|^~") and behind not in ("", "="):
+        following = code[match.end() :].lstrip()[:1]
+        if match[1] in values and before in tuple("<[,(=+-*/%&|^~") and following not in ("", "="):
             return str(values[match[1]])
-        is_type = match[1] in kinds and behind not in tuple(";=,[")
+        is_type = match[1] in kinds and following not in tuple(";=,[")
         return kinds[match[1]] if is_type else match[0]
 
     if not case.included:
