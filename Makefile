@@ -57,7 +57,7 @@ simulate: ghdl ## the benches that `make generate` wrote, in GHDL
 
 # Results and their report go to VERIFY_OUT. `make verify RESUME=1` goes on with a run that was stopped.
 VERIFY_OUT ?= build/verify
-verify: $(VENV)/.installed oracles ## every type of every distribution through TS1, TS2 and TS3 (15 minutes)
+verify: $(VENV)/.installed oracles ## every type of every distribution through TS1, TS2 and TS3 (over 15 minutes)
 	$(if $(RESUME),,rm -f $(VERIFY_OUT)/results.jsonl)
 	$(BIN)/python -m firm_hdl.verify --systems ts1,ts2,ts3 $(VERIFY_ARGS) \
 	  --results $(VERIFY_OUT)/results.jsonl --report $(VERIFY_OUT)/report.html
