@@ -1,4 +1,4 @@
-"""The parser: packets in, a status and sizes of each packet out."""
+"""The parser: packets in; status and sizes of each packet out."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ def sizes_layout() -> data.StructLayout:
     Members
     -------
     packet : unsigned(32)
-        Bytes of the packet, the encapsulation header included; 2**32 - 1 if there are more.
+        Bytes of the packet with its encapsulation header, at most 2**32 - 1: larger packets count
+        as this size.
     trailing : unsigned(2)
         Bytes of the packet after the message, if the status is `OK`.
     """
@@ -34,22 +35,22 @@ def sizes_layout() -> data.StructLayout:
 
 
 class Parser(wiring.Component):
-    """Judge packets, without taking the messages out of them.
+    """Judge packets, without extracting their messages.
 
-    Each packet ends in one transfer on `status`, which is that of a :class:`Deserializer` with the
+    Each packet ends in one transfer on `status`, the same as from a :class:`Deserializer` with the
     same parameters. `status` becomes valid 3 cycles after the transfer of the packet's last beat,
     if one step of `plan` ends in this beat. Each further step adds a cycle, and an error at most 4.
 
-    One step takes one cycle, and one beat per cycle is taken. Only where a bus word has several
-    lengths, it has several steps: two empty strings on a bus of 8 bytes have two. So a packet
-    occupies the parser for as many cycles as it has beats, or steps in front of its first error,
-    whichever is more, and for an error at most 4 cycles more. Bytes that lengths claim and that do
-    not come cost nothing. 8 beats (16 on a bus of 1 or 2 bytes) may wait for a parser that is
-    after; then `packets.ready` is low.
+    Each step takes a cycle, and one beat per cycle is accepted. A bus word with several lengths has
+    several steps: for example two for two empty strings on a bus of 8 bytes. So a packet occupies
+    the parser for as many cycles as it has beats, or steps before its first error, whichever is
+    more, and for at most 4 cycles more after an error. Bytes that lengths claim but that never
+    arrive cost nothing. Up to 8 beats (16 on a bus of 1 or 2 bytes) wait in a buffer while the
+    parser catches up; then `packets.ready` goes low.
 
     `packets.ready`, `status.valid`, `status.payload` and `sizes` are registers; no path leads from
-    an input to an output. While a status is not taken, only one more packet can end. One clock
-    domain, `sync`; its reset discards all packets inside.
+    an input to an output. While a status waits, only one more packet can end. One clock domain,
+    `sync`; its reset discards all packets inside.
 
     Parameters
     ----------
@@ -61,12 +62,12 @@ class Parser(wiring.Component):
     packets : In(PacketSignature(bus_bytes))
     status : Out(StatusSignature)
     sizes : Out(sizes_layout())
-        Sizes of the packet whose status is offered.
+        Sizes of the packet of `status`; valid with `status`.
 
     Attributes
     ----------
     plan : Plan
-        Of the outline of the message: arrays of bytes stand for all that is between lengths.
+        The plan of the message's outline: arrays of bytes stand for the fields between lengths.
     """
 
     def __init__(
@@ -98,8 +99,8 @@ class Parser(wiring.Component):
         m.submodules.sequencer = sequencer = Sequencer(self.plan, has_leaves=False)
         m.submodules.packet_sizes = sizes = PacketSizes(self.plan)
         order = sequencer.orders.payload
-        # A judgement that comes while `status` waits; so no path leads from `status.ready` to the
-        # sequencer.
+        # `second` holds the result of a packet that ends while `status` waits. So no path leads
+        # from `status.ready` to the sequencer.
         layout = data.StructLayout({"status": Status, "trailing": 2})
         judged, second = Signal(layout), Signal(layout, reset_less=True)
         has_second, takes = Signal(), Signal()
@@ -137,7 +138,7 @@ class Parser(wiring.Component):
 
 
 class PacketSizes(wiring.Component):
-    """Count the bytes of packets, and keep the counts until the packets are judged.
+    """Count the bytes of packets, and store the counts until the packets are judged.
 
     Parameters
     ----------
@@ -148,25 +149,25 @@ class PacketSizes(wiring.Component):
     beat : In(beat_layout(plan))
         The beat that is written to the packet buffer in this cycle.
     next : In(1)
-        Forget the oldest packet.
+        Drop the oldest count.
     bytes : Out(32)
-        Bytes of the oldest packet that has ended, a cycle after its last beat; 2**32 - 1 if there
-        are more. Combinational from a memory.
+        Bytes of the oldest packet that has ended, a cycle after its last beat; at most 2**32 - 1.
+        Combinational from a memory.
     """
 
     def __init__(self, plan: Plan):
         self.ring = Ring(plan)
         super().__init__({"beat": In(beat_layout(plan)), "next": In(1), "bytes": Out(SIZE_BITS)})
-        # Of the packet that arrives, in front of this beat.
+        # Beats of the arriving packet before the current one.
         self.beats = Signal(SIZE_BITS - self.ring.lane_bits)
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
         ring, beat = self.ring, self.beat
-        # There are too many beats to count.
+        # The counter of beats has overflowed.
         over, total = Signal(), Signal(SIZE_BITS + 1)
-        # A packet has at least a beat, so the ring has no more packets than words. Two that are
-        # judged may wait.
+        # A packet has at least one beat, so the ring holds at most `depth` packets. Two packets
+        # that are judged may wait as well.
         memory = LutMemory(m, "ends", SIZE_BITS, 2 * ring.depth)
         write, read = memory.write, memory.reader()
         m.d.comb += [

@@ -1,4 +1,4 @@
-"""The packet buffer: beats as they arrive, and where their packets end."""
+"""The packet buffer: the position of each arriving beat, and the ends of packets."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ __all__ = ["Buffer"]
 
 
 class Buffer(wiring.Component):
-    """Give each beat its place in the ring, and tell how much of the packet being read is there.
+    """Give each beat a position in the ring; tell how many bytes of the current packet arrived.
 
-    The bytes are kept by those who read them: the sequencer keeps lengths, the mover lanes. They
-    write `beat` to their memories, and can read it in the cycle after.
+    The buffer itself stores no bytes: its readers write `beat` to memories of their own, and read
+    it from the next cycle on. The sequencer stores decoded lengths, and the mover lanes.
 
     Latency 1 cycle from `packets` to `beat`, and 2 cycles to `limit`.
 
@@ -32,15 +32,15 @@ class Buffer(wiring.Component):
         `ready` is a register.
     beat : Out(beat_layout(plan))
     limit : Out(position)
-        Bytes in front of this position are there, as far as they are of the packet being read.
+        All bytes of the current packet before this position have arrived.
     ended : Out(1)
         The packet ends at `limit`.
     following : Out(beat)
-        Where the next packet starts, if `ended`.
+        First beat of the next packet, if `ended`.
     next : In(1)
         Go to the next packet; only if `ended`.
     freed : In(beat)
-        Beats in front of this one are not needed any more.
+        No reader needs a beat before this one.
     """
 
     def __init__(self, plan: Plan):
@@ -66,25 +66,25 @@ class Buffer(wiring.Component):
         ends_now = Signal()
         layout = data.StructLayout({"limit": ring.bits, "following": ring.beat_bits})
         end = Signal(layout)
-        # Where the packet that arrives ends, if it ends now; else, how far it is there.
+        # The end of the arriving packet if its last beat is written now; else how far it has come.
         newest = Signal(layout)
-        here = Mux(beat.valid, next_beat, at)
+        first_missing = Mux(beat.valid, next_beat, at)
         m.d.comb += [
             next_beat.eq(at + 1),
             ends_now.eq(beat.valid & beat.last),
             end.limit.eq(Cat(Const(0, ring.lane_bits), at) + beat.count),
             end.following.eq(next_beat),
-            newest.limit.eq(Mux(ends_now, end.limit, Cat(Const(0, ring.lane_bits), here))),
+            newest.limit.eq(Mux(ends_now, end.limit, Cat(Const(0, ring.lane_bits), first_missing))),
             newest.following.eq(next_beat),
         ]
         self._follow(m, layout, ends_now, end, newest)
         return m
 
     def _receive(self, m: Module) -> Signal:
-        """Register a beat if there is room for it; return where it is written."""
+        """Register a beat if the ring has room; return the ring position it is written to."""
         ring, packets = self.ring, self.packets
         payload = Signal(packets.payload.shape(), name="payload", reset_less=True)
-        # Beats that have arrived, and those that are written.
+        # Counts of beats: transferred on `packets`, and written to the ring.
         arrived, at = Signal(ring.beat_bits, name="arrived"), Signal(ring.beat_bits, name="at")
         used, full = Signal(ring.beat_bits, name="used"), Signal(name="full")
         room, arrives = Signal(name="room", init=1), Signal(name="arrives")
@@ -115,9 +115,10 @@ class Buffer(wiring.Component):
         end: data.View,
         newest: data.View,
     ) -> None:
-        """Queue the ends of packets: two in registers, so that `next` is only a select, then more.
+        """Queue the ends of packets: the first two in registers, the others in a memory.
 
-        There are as many as there are beats, because a packet may have one beat.
+        With two registers, `next` only selects. The memory has a word for each beat of the ring,
+        because a packet may have one beat.
         """
         ends = LutMemory(m, "ends", layout, self.ring.depth)
         write, read = ends.write, ends.reader()
@@ -132,8 +133,8 @@ class Buffer(wiring.Component):
             write.en.eq(1),
             read.addr.eq(popped),
         ]
-        # `next` is late, so it only selects or enables. It comes only if `ended`, and `has_second`
-        # is never without `ended`.
+        # `next` is late in the cycle, so it only selects or enables. It is high only if `ended`;
+        # `has_second` implies `ended`.
         first = Mux(has_second, Value.cast(second), Value.cast(newest))
         more, follows = Signal(name="more"), Signal(name="follows")
         m.d.comb += [more.eq(stored | ends_now), follows.eq(self.ended & ends_now)]
@@ -147,7 +148,7 @@ class Buffer(wiring.Component):
         m.d.sync += has_second.eq(
             Mux(has_second, Mux(self.next, more, 1), Mux(self.next, 0, follows))
         )
-        # An end that `second` takes as it comes is pushed and popped.
+        # An end that `second` takes in the cycle of its arrival is both pushed and popped.
         with m.If(has_second & ends_now):
             m.d.sync += pushed.eq(pushed + 1)
         with m.If(self.next & has_second & more):

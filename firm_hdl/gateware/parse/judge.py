@@ -1,4 +1,4 @@
-"""The checks of a packet, and what is good of it after an error."""
+"""The checks of a packet, and which bytes are good after an error."""
 
 from __future__ import annotations
 
@@ -18,27 +18,28 @@ __all__ = ["Judge"]
 class Judge:
     """Find the packet's first error in wire order. Not a component: logic of one module.
 
-    It writes `now.bad` and `now.noted`; the sequencer clears `now.bad` after the packet.
+    The judge sets `now.bad` and `now.new_error`. The sequencer clears `now.bad` after the packet.
 
     Parameters
     ----------
     now : Progress
     length : StepLength
     beat, limit, ended
-        As of :class:`Sequencer`.
+        As for :class:`Sequencer`.
     ready : Value(1)
-        The order of the step would be taken.
+        An order of this step would be taken in this cycle.
 
     Attributes
     ----------
     good : Signal(1)
-        All bytes of the step are there, and none of them is wrong. Combinational.
+        All bytes of the step are in the buffer, and none of them is wrong. Combinational.
     trailing : Signal(1)
-        They are there, and too many bytes follow. Combinational.
+        All bytes of the step are in the buffer, and more bytes follow than may follow the message.
+        Combinational.
     code : Signal(Status)
         The error, if `now.bad`.
     items_room, map_room : Signal(range(bus_bytes + 1))
-        Bytes of the word of items and of the map that are good, if `now.bad` and not `now.noted`.
+        Good bytes of the word of items and of the map, if `now.bad` and not `now.new_error`.
     """
 
     def __init__(
@@ -63,7 +64,7 @@ class Judge:
         self._keep_good(ready)
 
     def _look(self, beat: data.View) -> None:
-        """Look at the bytes of the step."""
+        """Check the bytes of the step."""
         m, now, ring = self.m, self.now, self.now.ring
         m.submodules.marks = marks = Marks(now.plan)
         too_many = exceeds(now.left[:-1], now.plan.max_trailing_bytes)
@@ -77,7 +78,7 @@ class Judge:
         headers = [now.step[i] & marks.mismatch[k] for k, i in enumerate(marks.steps)]
         wrong_header = any_of(headers)
         if headers:
-            # Nothing is in front of the bytes of a header that is checked.
+            # The checked bytes of a header are the first bytes of its step.
             begun = ring.position("header_within")
             m.d.comb += [
                 begun.eq(self.limit - now.first),
@@ -86,7 +87,7 @@ class Judge:
         m.d.comb += self.good.eq(now.present & ~self.wrong_nul & ~wrong_header)
 
     def _judge(self) -> None:
-        """Find the error of the step, if any; the first one in wire order counts."""
+        """Find the first error of the step in wire order."""
         m, now = self.m, self.now
         within, cut = now.ring.position("nul_within"), Signal(name="cut")
         begins = Signal(name="begins")
@@ -95,24 +96,24 @@ class Judge:
             cut.eq(self.ended & ~now.present),
             begins.eq(now.issue & (now.state.run_begin | now.state.loop_begin)),
         ]
-        # The string has its last byte, although the step may lack others.
+        # The string's last byte is in the buffer, even if later bytes of the step are not.
         missing_nul = self.wrong_nul & (now.present | (~within[-1] & within.any()))
-        overrun = now.ends & ~self.ended & self.trailing
+        overrun = now.ends_message & ~self.ended & self.trailing
         early = self.mismatch | missing_nul | cut | overrun
-        code = Mux(now.ends, Status.TRAILING, Status.LENGTH)
+        code = Mux(now.ends_message, Status.TRAILING, Status.LENGTH)
         code = Mux(cut, Status.TRUNCATED, code)
         code = Mux(missing_nul, Status.STRING, code)
         code = Mux(self.mismatch, Status.ENCAPSULATION, code)
         with m.If(~now.bad):
-            # A length over its limit does not stop the step: the step is as if it was 0.
+            # A length above its limit does not stop the step; the step takes the length as 0.
             m.d.sync += [
                 now.bad.eq(early | (begins & self.length.over)),
-                now.noted.eq(early),
+                now.new_error.eq(early),
                 self.code.eq(code),
             ]
 
     def _keep_good(self, ready: Value) -> None:
-        """After an error, find out how much of the step's words is good."""
+        """After an error, compute how many bytes of the step's words are good."""
         m, now, ring, bus = self.m, self.now, self.now.ring, self.now.plan.bus_bytes
         state = now.state
         # Bytes from the first one of the map's last word to the packet's end.
@@ -121,22 +122,28 @@ class Judge:
         m.d.comb += map_left.eq(sum_of_three(self.limit, ~now.last, (1 - back)))
         map_room = self._room(map_left)
         items_room = Mux(state.rest, self._room(self.limit - now.first), map_room)
-        # Of two words, that of items is in front of the map's.
+        # If the map has two words, the word of items is the first one.
         in_front = Mux(ring.beat(map_left).all(), ring.lane(map_left), 0)
         items_room = Mux(state.lead, Mux(map_left[-1], in_front, bus), items_room)
         is_cut, trails = self.code == Status.TRUNCATED, self.code == Status.TRAILING
         whole = Mux(trails | (self.code == Status.STRING), bus, 0)
         with m.If(now.bad):
-            m.d.sync += now.noted.eq(0)
-            with m.If(now.noted):
+            m.d.sync += now.new_error.eq(0)
+            with m.If(now.new_error):
                 m.d.sync += [
                     self.items_room.eq(Mux(is_cut, items_room, whole)),
                     self.map_room.eq(Mux(is_cut, map_room, Mux(trails, bus, 0))),
                 ]
-            with m.Elif(now.blind & ready):
+            with m.Elif(now.drains & ready):
                 m.d.sync += [self.items_room.eq(0), self.map_room.eq(0)]
 
     def _room(self, room: Value) -> Value:
-        """Return how many bytes of a word are in front of the packet's end, from its start on."""
+        """Return how many bytes of a word come before the packet's end.
+
+        Parameters
+        ----------
+        room : Value
+            Distance from the word's first byte to the packet's end; may be negative.
+        """
         bus, room = self.now.plan.bus_bytes, room[: self.now.ring.bits]
         return Mux(room[-1], 0, Mux(room >= bus, bus, room[: bus.bit_length()]))

@@ -1,9 +1,9 @@
-"""Lengths, decoded as beats arrive: at each place where a length can end, what would it mean?
+"""Predecode: a length in every lane where one can end, decoded as beats arrive.
 
 The sequencer has one cycle from a length to the position after the items that the length counts.
-So whatever follows from the value of a length alone is computed here, before the sequencer comes
-there: comparisons, the size of the rest, and the position of the next step. What is left to the
-sequencer is to select an entry by a position, and fields of the entry by the step.
+So all that follows from the value alone is computed here, before the sequencer needs it:
+comparisons, the size of the rest, and the position of the next step. The sequencer then selects an
+entry by its position, and fields of the entry by its step.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ def shift_of(plan: Plan, step: int | None) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Meaning:
-    """What a length means in one step: the names of the fields of an entry that belong to it.
+    """What a length means in one step: the names of its fields in a table entry.
 
-    Steps with the same meaning share a field. So the number of fields depends on how many kinds of
-    lengths there are, and not on how many lengths.
+    Steps with the same meaning share a field. So the number of fields grows with the kinds of
+    lengths, not with the number of lengths.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Meaning:
 
     @property
     def is_nothing(self) -> bool:
-        """It counts elements without bytes, which do not matter."""
+        """The length counts elements that have no bytes, and leaves do not matter."""
         if self.has_leaves or not isinstance(self.step.begin, BeginLoop):
             return False
         body = self.plan.steps[self.step.begin.body.step or 0]
@@ -91,17 +91,17 @@ class Meaning:
 
     @property
     def skips(self) -> str:
-        """The body is skipped: there is none, all of it is the rest, or the length is wrong."""
+        """The body is skipped: no element, no word before the rest, or an illegal length."""
         return f"skips_{self.kind}_{self.max_count}"
 
     @property
     def single(self) -> str:
-        """The body is one element, or one word in front of the rest."""
+        """The body is one element, or one word before the rest."""
         return f"single_{self.kind}"
 
     @property
     def double(self) -> str:
-        """If the body is executed more than once, it is so twice."""
+        """The body is two elements, or two words before the rest; only if not `single`."""
         return f"double_{self.kind}"
 
     @property
@@ -125,8 +125,8 @@ class Meaning:
 class Lengths(wiring.Component):
     """A table of decoded lengths, by the position of a length's last byte.
 
-    An entry is written when the beat with that byte is written to the packet buffer. Each lane in
-    which a length can end has a memory of its own; an entry is read without a cycle of delay.
+    An entry is written together with the beat of that byte. Each lane in which a length can end
+    has a memory of its own. Entries are read combinationally.
 
     Parameters
     ----------
@@ -147,8 +147,8 @@ class Lengths(wiring.Component):
     entry : Out
         The fields that :class:`Meaning` names, and `zero`.
     count : Out
-        The length that was looked up in the cycle before, as wide as legal values. Nothing has to
-        know the number at once; so memories of numbers do not load `key`, which is late.
+        The length that was looked up in the cycle before, as wide as legal values. The number is
+        not needed earlier, and its memories do not load `key`, which is late in the cycle.
     """
 
     def __init__(self, plan: Plan, geometry: Geometry, meanings: Sequence[Meaning]):
@@ -190,7 +190,7 @@ class Lengths(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         ring = self.ring
-        # A length may have begun in earlier beats.
+        # The first bytes of a length may be in earlier beats.
         history = Signal(8 * (LENGTH_BYTES - 1), reset_less=True)
         stream = Cat(history, self.beat.data)
         with m.If(self.beat.valid):
@@ -223,7 +223,7 @@ class Lengths(wiring.Component):
         return read.data
 
     def _select(self, m: Module, target: Value, key: Value, values: list[Value]) -> None:
-        """Select the value of the lane of `key`; others than those of lengths do not occur."""
+        """Select the value of the lane of `key`; only lanes in which lengths end occur."""
         _, known = known_lane_bits(self.lanes, self.plan.bus_bytes)
         lane = self.ring.lane(key)[known:]
         with m.Switch(lane):
@@ -258,7 +258,7 @@ class Lengths(wiring.Component):
 
     @staticmethod
     def _rest(length: Value, lanes: int, nul: int) -> Value:
-        """Return the items of the last word; none if there is no item."""
+        """Return the number of items in the last word; 0 if the length counts no item."""
         low = (length[:8] - nul)[: lanes.bit_length() - 1]
         full = Mux(low.any(), low, lanes) if len(low) else Const(lanes)
         return Mux(exceeds(length, nul), full, 0)
@@ -266,7 +266,7 @@ class Lengths(wiring.Component):
     def _places(
         self, m: Module, length: Signal, lane: int, entry: data.View, meaning: Meaning
     ) -> None:
-        """Decode where the next step ends if there is no word in front of the rest."""
+        """Decode the last byte of the next step, if no word comes before the rest."""
         ring, run = self.ring, meaning.run
         assert run is not None
         phase: Value | int = self.plan.header_bytes if self.plan.bus_bytes >= 8 else self.phase

@@ -1,4 +1,4 @@
-"""Marks of beats that the sequencer looks at: bytes that are not NUL, headers that are wrong."""
+"""Marks of beats for the sequencer: bytes that are not NUL, headers that are wrong."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["Marks"]
 class Marks(wiring.Component):
     """One bit for each byte of the packet buffer, and one for each header.
 
-    Bits are written with their beat, and read without a cycle of delay.
+    Marks are written together with their beat, and read combinationally.
 
     Parameters
     ----------
@@ -32,11 +32,11 @@ class Marks(wiring.Component):
     beat : In(beat_layout(plan))
     nul_at : In(position)
     nonzero : Out(1)
-        The byte there is not NUL.
+        The byte at `nul_at` is not NUL.
     header_at : In(beat)
     mismatch : Out(max(1, len(steps)))
-        Bit k: the beat there does not have the bytes that are checked in `steps[k]`. Bytes after
-        the packet's end are not compared.
+        Bit k: the beat at `header_at` differs from the checked bytes of `steps[k]`. Bytes after the
+        packet's end are not compared.
     """
 
     def __init__(self, plan: Plan):

@@ -20,23 +20,23 @@ def order_layout(plan: Plan) -> data.StructLayout:
     -------
     step : range(steps)
     blank : unsigned(1)
-        No step: no leaf is written.
+        The order has no step, and writes no leaf.
     items_at, map_at : position, without the lap bit
         First byte of the word of items, and of the map.
     items_next, map_next : slot
-        The beats after those of these bytes.
+        The beats after the beats of these bytes.
     items_bytes, map_bytes : range(bus_bytes + 1)
-        Bytes of these words that have their values; what is after them is 0.
+        Good bytes of these words; values with later bytes transfer as 0.
     items : unsigned(1)
         Items of a counted run transfer.
     last : unsigned(1)
-        The transfer is the last one of the run.
+        The transfer of items is the last one of the run.
     counted : unsigned(1)
-        The length has its value; otherwise it is 0.
+        The length is good; otherwise it transfers as 0.
     final : unsigned(levels)
-        Bit k: the element of loop k is its last one.
+        Bit k: the current element of loop k is its last one.
     first : beat
-        Beats in front of this one are not needed any more.
+        Neither this order nor a later one needs a beat before this one.
     ends : unsigned(1)
         The packet ends with this order.
     status : Status
@@ -73,9 +73,9 @@ class OrderQueue(wiring.Component):
     o : Out(stream.Signature(order_layout(plan)))
         Latency 1 cycle.
     at : In(beat)
-        The first beat that the sender of orders still needs.
+        The first beat that the sequencer still needs.
     freed : Out(beat)
-        Beats in front of this one are needed by no one: the first beat of the oldest order.
+        The first beat that any order or the sequencer still needs.
     """
 
     def __init__(self, plan: Plan):

@@ -27,7 +27,7 @@ class _Way:
     shift : int
         Distance from the start of the next step to its last byte.
     rest : bool
-        The step is the last word of a counted run, whose rest is after it.
+        The step is the last word of a counted run, and the run's rest comes before the next step.
     """
 
     align: int
@@ -54,9 +54,9 @@ def _ways(plan: Plan, index: int) -> Iterator[tuple[str, _Way]]:
 
 
 def _align_addend(plan: Plan, align: int, shift: int) -> int:
-    """Return what to add to the last byte, for the next one, its alignment, and a shift.
+    """Return the distance from one step's last byte to the next one's, before alignment.
 
-    If the phase is not a constant, that is only the next byte.
+    If the phase is not a constant, the distance is 1: alignment and shift are added later.
     """
     if plan.bus_bytes < 8:
         return 1
@@ -66,9 +66,9 @@ def _align_addend(plan: Plan, align: int, shift: int) -> int:
 def place_traits(plan: Plan, index: int) -> dict[str, int]:
     """Return the traits of a step from which the next position is computed.
 
-    For each way out of the step there are an addend, the mask of the low bits that the alignment
-    covers, and what these bits are (`low`); if the phase is not a constant, `low` is a distance.
-    `rest` tells that the addend is a distance that the parser keeps.
+    Each way out of the step has an addend (`add`), the `mask` of the bits that alignment clears,
+    and the value of these bits (`low`); if the phase is not a constant, `low` is a distance. `rest`
+    replaces the addend by the distance over the rest, which a register holds.
     """
     bus, traits = plan.bus_bytes, dict[str, int]()
     for name, way in _ways(plan, index):
@@ -115,11 +115,11 @@ class NextPlace:
     Attributes
     ----------
     exit : Value
-        If the step is left through an exit.
+        If the next step is an exit.
     body : Value
-        If it goes on in the body of the run or loop that it begins.
+        If the next step is the body of the run or loop that the step begins.
     after_rest : Value
-        If it is left through an exit, and begins a run that is all rest.
+        If the next step is an exit, and the step begins a run whose items are all in the rest.
     """
 
     def __init__(
@@ -151,7 +151,7 @@ class NextPlace:
         return pick([(self.flow.step[k], value) for k, value in enumerate(values)], width)
 
     def _exits(self) -> list[tuple[Value, str]]:
-        """Return the ways that leave the step: which is taken, and its name."""
+        """Return the ways through exits: whether each is taken, and its name."""
         found: list[tuple[Value, str]] = []
         free: Value = Const(1, 1)
         # The innermost loop goes on first.
@@ -186,7 +186,7 @@ class NextPlace:
         return result
 
     def _tail(self) -> Value:
-        """Return how far it is from the last word of a run to the step after the rest."""
+        """Return the distance from the last word of a run to the step after the rest."""
         plan, bus = self.plan, self.plan.bus_bytes
         tail = Signal(range(5 * bus + 16), name="tail", reset_less=True)
         sizes: list[tuple[Value, int]] = []

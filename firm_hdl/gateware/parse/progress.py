@@ -34,11 +34,12 @@ class Progress:
     flow : Flow
         Has the step and the counters; `state` and `step` are its own.
     last : Signal(position)
-        Last byte of the step's map or word. If the step has a length, that is the length's.
+        Last byte of the step's map or word. A length of the step is the end of its map; so this is
+        the length's last byte, too.
     first : Signal(position)
-        First byte after the step before, or the first item of a run.
+        First byte after the previous step, or the first item of a run.
     rest : Signal(range(lanes + 1))
-        Items of the rest of a run that the step takes.
+        Items in the rest of the run that the step takes.
     nul_at : Signal(position)
         The NUL after these items.
     has_nul : Signal(1)
@@ -48,29 +49,29 @@ class Progress:
         more, and a signal on others if anything is aligned to it.
     bad : Signal(1)
         An error was found in the packet.
-    noted : Signal(1)
-        It was found in the cycle before, in this step. The step has not been ordered.
+    new_error : Signal(1)
+        The error was found in the cycle before, in this step. The step has no order yet.
     items_at, map_at : Signal(position)
-        First byte of the word of items, and of the last word of the map. Combinational, as all that
-        follow.
+        First byte of the word of items, and of the last word of the map. Combinational, as are all
+        attributes below.
     step_end : Signal(position)
-        Behind the step's map or word.
+        First byte after the step's map or word.
     left : Signal(position)
-        Bytes that are in the buffer from `step_end` on; negative if the step lacks bytes.
+        Bytes in the buffer from `step_end` on; negative if bytes of the step are missing.
     present : Signal(1)
         All bytes of the step are in the buffer.
-    leaves : Signal(1)
-        The step is left through one of its exits, whatever its length is.
+    exits_always : Signal(1)
+        The next step is an exit of this one, whatever the step's length is.
     done : Signal(1)
-        It is, and not into the body that it begins.
-    ends : Signal(1)
-        The packet's message ends with this step.
-    closes : Signal(1)
-        So does the packet.
+        The next step is an exit of this one, not the body of a run or loop that it begins.
+    ends_message : Signal(1)
+        The message ends with this step.
+    ends_packet : Signal(1)
+        The message ends with this step, and the packet has ended.
     issue : Signal(1)
-        The step is ordered, and left.
-    blind : Signal(1)
-        It can be, because of an error: bytes do not matter any more.
+        The step's order is taken in this cycle, and the next step follows.
+    drains : Signal(1)
+        The packet has an error, and the step is ordered whatever its bytes are.
     """
 
     def __init__(self, m: Module, plan: Plan, *, has_leaves: bool):
@@ -93,13 +94,14 @@ class Progress:
             header = plan.header_bytes % 8
             aligns = geometry(plan).aligns
             self.phase = Signal(3, name="phase", init=header) if aligns else Const(header, 3)
-        self.bad, self.noted = Signal(name="bad"), Signal(name="noted")
+        self.bad, self.new_error = Signal(name="bad"), Signal(name="new_error")
         self.items_at, self.map_at = ring.position("items_at"), ring.position("map_at")
         self.step_end, self.left = ring.position("step_end"), ring.position("left")
         self.present, self.done = Signal(name="present"), Signal(name="done")
-        self.leaves = Signal(name="leaves")
-        self.ends, self.closes = Signal(name="ends"), Signal(name="closes")
-        self.issue, self.blind = Signal(name="issue"), Signal(name="blind")
+        self.exits_always = Signal(name="exits_always")
+        self.ends_message = Signal(name="ends_message")
+        self.ends_packet = Signal(name="ends_packet")
+        self.issue, self.drains = Signal(name="issue"), Signal(name="drains")
 
     def _flow(self) -> Flow:
         plan = self.plan

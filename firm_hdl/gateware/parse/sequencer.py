@@ -1,4 +1,4 @@
-"""The sequencer: the control flow of a plan over the packets of a buffer, without their data."""
+"""The sequencer: the control flow of a plan over the packets in the buffer, without their data."""
 
 from __future__ import annotations
 
@@ -28,40 +28,38 @@ __all__ = ["Sequencer"]
 
 
 class Sequencer(wiring.Component):
-    """Run a plan over the packets of a buffer: check them, and order what is to be done.
+    """Run a plan over the packets in the buffer: check them, and give orders to the mover.
 
-    An order is issued for each step when all bytes of the step are in the buffer. The sequencer
-    waits for nothing but bytes and `orders.ready`, and a packet is judged when its last order is
-    issued.
+    Each step gives one order, once all its bytes are in the buffer. The sequencer waits only for
+    bytes and for `orders.ready`. The last order of a packet carries its status.
 
-    An error is noted first, and takes two cycles. Then the step is executed with what is good of
-    it, and the steps after it with no data and all lengths 0. What is left of the packet is
-    dropped.
+    An error takes two cycles: one finds it, and one computes which bytes of the step are good. Then
+    the step is ordered with its good bytes, and all later steps without bytes and with lengths of
+    0. The rest of the packet is dropped.
 
     Parameters
     ----------
     plan : Plan
     has_leaves : bool
-        Whether orders write leaves. If they do not, only the last order of a packet counts, the one
-        that `ends`: after an error no more steps are executed, and elements without bytes are
-        skipped.
+        Whether orders write leaves. Without leaves, only the last order of a packet counts. So no
+        steps are executed after an error, and elements without bytes are skipped.
 
     Members
     -------
     beat : In(beat_layout(plan))
         The beat that is written to the buffer in this cycle.
     limit : In(position)
-        Bytes of the packet in front of this position are in the buffer.
+        Bytes of the packet before this position are in the buffer.
     ended : In(1)
         The packet ends at `limit`.
     following : In(beat)
-        Where the next packet starts, if `ended`.
+        First beat of the next packet, if `ended`.
     next : Out(1)
-        The packet is done.
+        The packet's last order is taken; go to the next packet.
     trailing : Out(2)
-        Bytes after the message, if the packet is done and its status is `OK`.
+        Bytes of the packet after the message, if `next` and the status is `OK`.
     at : Out(beat)
-        Beats in front of this one are not needed by the sequencer.
+        The sequencer needs no beat before this one.
     orders : Out(stream.Signature(order_layout(plan)))
         `valid` does not depend on `ready`; the payload is stable only with `valid`.
     """
@@ -89,8 +87,8 @@ class Sequencer(wiring.Component):
 class _Circuit(Progress):
     """The sequencer's logic, built by one method for each part of it.
 
-    Decisions that come late in a cycle are few: whether a length is skipped, whether all bytes are
-    present, and whether a NUL is missing. All else that a decision selects from is ready before.
+    Few decisions come late in a cycle: whether the body of a length is skipped, whether all bytes
+    are present, and whether a NUL is missing. What they select from is ready early.
     """
 
     def __init__(self, sequencer: Sequencer):
@@ -106,7 +104,7 @@ class _Circuit(Progress):
     # The step.
 
     def _decide(self) -> None:
-        """Decide whether all bytes are present, and which way the step is left."""
+        """Decide whether all bytes are present, and what follows the step."""
         m, c, state, flow = self.m, self.c, self.state, self.flow
         is_begin = state.run_begin | state.loop_begin
         ring = self.ring
@@ -117,16 +115,16 @@ class _Circuit(Progress):
             self.left.eq(c.limit + ~self.last),
             c.trailing.eq(self.left),
             self.present.eq(~self.left[-1]),
-            self.leaves.eq(state.plain | (state.words & flow.words.last)),
+            self.exits_always.eq(state.plain | (state.words & flow.words.last)),
             self.done.eq(
-                self.leaves
+                self.exits_always
                 | (is_begin & self.bad)
                 | self.length.run_skips
                 | self.length.loop_skips
             ),
-            # Where a length ends the packet, the end is a step of its own: it is known too late.
-            self.ends.eq(state.end | (flow.exit_ends & self.leaves)),
-            self.closes.eq(self.ends & c.ended),
+            # Whether a length of 0 ends the message is known late; then the end is its own step.
+            self.ends_message.eq(state.end | (flow.exit_ends & self.exits_always)),
+            self.ends_packet.eq(self.ends_message & c.ended),
             self.map_at.eq(self.last + state.back.as_signed()),
             self.items_at.eq(Mux(state.rest, self.first, word_before)),
         ]
@@ -134,16 +132,16 @@ class _Circuit(Progress):
     def _order(self) -> None:
         m, c, state, flow = self.m, self.c, self.state, self.flow
         order, bus, bad = c.orders.payload, self.plan.bus_bytes, self.bad
-        # After an error, steps look at nothing; before, at whether all is here and good. What is
-        # late in the cycle is kept apart, as `ready` and `closes` are early.
-        blind, sighted = self.blind, Signal(name="sighted")
-        ready, good = c.orders.ready, self.judge.good
+        # Without an error, a step is ordered if it is allowed and its bytes are good. Only `good`
+        # is late in the cycle; so each sum of products has it as its last factor.
+        drains, allowed = self.drains, Signal(name="allowed")
+        ready, good, ends = c.orders.ready, self.judge.good, self.ends_packet
         m.d.comb += [
-            blind.eq(bad & ~self.noted & (~state.end | c.ended)),
-            sighted.eq(~bad & (~self.ends | c.ended) & ~self._too_early()),
-            c.orders.valid.eq(blind | (sighted & good)),
-            self.issue.eq((blind & ready) | (sighted & ready & good)),
-            c.next.eq((blind & ready & self.closes) | (sighted & ready & self.closes & good)),
+            drains.eq(bad & ~self.new_error & (~state.end | c.ended)),
+            allowed.eq(~bad & (~self.ends_message | c.ended) & ~self._too_early()),
+            c.orders.valid.eq(drains | (allowed & good)),
+            self.issue.eq((drains & ready) | (allowed & ready & good)),
+            c.next.eq((drains & ready & ends) | (allowed & ready & ends & good)),
         ]
         wanted = Signal(range(bus + 1), name="items_wanted")
         fits = self.judge.items_room >= wanted
@@ -164,7 +162,7 @@ class _Circuit(Progress):
             order.counted.eq(~bad & ~self.length.zero & ~self.length.over),
             order.final.eq(Cat(level.last for level in flow.levels)),
             order.first.eq(self.ring.beat(self.first)),
-            order.ends.eq(self.closes),
+            order.ends.eq(self.ends_packet),
             order.status.eq(
                 Mux(bad, self.judge.code, Mux(self.judge.trailing, Status.TRAILING, Status.OK))
             ),
@@ -172,7 +170,7 @@ class _Circuit(Progress):
         ]
 
     def _too_early(self) -> Value:
-        """Return whether a step in front of all bytes would come before its packet."""
+        """Return whether a step before all bytes would be ordered before its packet arrives."""
         leading = takewhile(
             lambda i: not isinstance(self.plan.steps[i], RunStep) and not self.plan.steps[i].bytes,
             range(len(self.plan.steps)),
@@ -188,10 +186,10 @@ class _Circuit(Progress):
         following = Mux(self.done, flow.exit_state, flow.body_state)
         if not self.c.has_leaves:
             following = Mux(self.bad, flow.encode(None), following)
-        m.d.comb += next_state.eq(Mux(self.closes, flow.start, following))
+        m.d.comb += next_state.eq(Mux(self.ends_packet, flow.start, following))
         flow.count(
             moves=self.issue,
-            ends=self.closes,
+            ends=self.ends_packet,
             done=self.done,
             count=self.length.count,
             single=self.length.single,
@@ -200,13 +198,13 @@ class _Circuit(Progress):
         )
         with m.If(self.issue):
             m.d.sync += Value.cast(state).eq(next_state)
-            with m.If(self.closes):
+            with m.If(self.ends_packet):
                 m.d.sync += [self.bad.eq(0), self.rest.eq(0), self.has_nul.eq(0)]
             with m.Else():
                 self._begin_run()
 
     def _begin_run(self) -> None:
-        """Keep the rest of a run that begins; a rest is gone after its step."""
+        """Store the rest of a run that begins; clear it after the step that takes it."""
         m = self.m
         good = ~self.bad & ~self.length.over
         terminated = self.flow.on(
@@ -226,11 +224,11 @@ class _Circuit(Progress):
         start = Signal(ring.bits, name="next_packet")
         m.d.comb += start.eq(Cat(Const(0, ring.lane_bits), c.following))
         ways = NextPlace(m, self.flow, self.last, self.phase, self.meanings, self.length.entry)
-        # What a length decides is late. After an error, positions have no meaning.
+        # Decisions by a length are late. After an error, positions have no meaning.
         early, last = ring.position("early_last"), ring.position("next_last")
         begin = start + shift_of(plan, plan.start.step)
         m.d.comb += [
-            early.eq(Mux(self.closes, begin, Mux(self.leaves, ways.exit, ways.body))),
+            early.eq(Mux(self.ends_packet, begin, Mux(self.exits_always, ways.exit, ways.body))),
             last.eq(
                 Mux(
                     self.length.run_skips,
@@ -239,9 +237,9 @@ class _Circuit(Progress):
                 )
             ),
         ]
-        # After an error, nothing is read; the end step drops what is left of the packet.
+        # After an error, nothing is read; the end step drops the rest of the packet.
         kept = Mux(self.state.end, c.limit, self.first)
-        first = Mux(self.closes, start, Mux(self.bad, kept, self._items_start()))
+        first = Mux(self.ends_packet, start, Mux(self.bad, kept, self._items_start()))
         with m.If(self.issue | (self.bad & self.state.end)):
             m.d.sync += self.first.eq(first)
         with m.If(self.issue):
@@ -250,11 +248,11 @@ class _Circuit(Progress):
                 rest = Mux(self.state.words, self.rest, self.length.rest)
                 m.d.sync += self.nul_at.eq(self.step_end + rest)
             if isinstance(self.phase, Signal):
-                with m.If(self.closes):
+                with m.If(self.ends_packet):
                     m.d.sync += self.phase.eq(start + plan.header_bytes)
 
     def _items_start(self) -> Value:
-        """Return where items start that the step counts; else where the step ends."""
+        """Return the first item of the run that the step begins; else the end of the step."""
         start: Value = self.step_end
         aligns = {s.begin.align for s in self.plan.steps if isinstance(s.begin, BeginRun)} - {1}
         for align in sorted(aligns):

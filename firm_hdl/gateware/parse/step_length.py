@@ -18,8 +18,8 @@ __all__ = ["StepLength"]
 class StepLength:
     """The length of the step, looked up in a table. Not a component: logic of one module.
 
-    All values are combinational: of registers, and of a memory that is read at `last`. In a
-    step without a length, `over`, `run_skips` and `loop_skips` are 0, and others have no meaning.
+    All values are combinational, from registers and a memory that is read at `now.last`. In a step
+    without a length, `over`, `run_skips` and `loop_skips` are 0, and other values have no meaning.
 
     Parameters
     ----------
@@ -32,18 +32,18 @@ class StepLength:
     entry : View or None
         The fields that :class:`Meaning` names; `None` if the plan has no lengths.
     count : Value
-        The length on the wire, a cycle later. Of a `string` of CDR, it includes the NUL.
+        The length on the wire, a cycle later. It includes the NUL of a CDR `string`.
     zero, over : Value(1)
-        The length is 0; it is above the largest legal one.
+        The length is 0; the length is above the largest legal value.
     run_skips, loop_skips : Value(1)
-        The body of the run or the loop is skipped: there is none, all of it is the rest, or the
-        length is wrong.
+        The body of the run or of the loop is skipped: no element, no word before the rest, or an
+        illegal length.
     single : Value(1)
-        The body is one element, or one word in front of the rest.
+        The body is one element, or one word before the rest.
     double : Value(1)
-        If it is executed more than once, it is so twice.
+        The body is two elements, or two words before the rest; only if not `single`.
     rest : Value(range(lanes + 1))
-        Items of the rest.
+        Items in the rest.
     """
 
     def __init__(self, now: Progress, beat: data.View):
