@@ -251,7 +251,7 @@ class Flow:
     ) -> None:
         """Load the counter of words of a run that the step may begin; as `_load_levels`.
 
-        Of n items in words of w, (n - 1) // w words are taken in front of the rest.
+        Of n items in words of w, (n - 1) // w words are taken before the rest.
         """
         plan = self.plan
         groups: dict[tuple[int, int], list[Value]] = {}

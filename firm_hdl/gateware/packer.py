@@ -68,7 +68,7 @@ class _Circuit:
         self.c, self.plan = packer, packer.plan
         self.ring = ring = Ring(packer.plan)
         self.m = m = Module()
-        # Beats in front of `complete` can be sent; `first` is the next one.
+        # Beats before `complete` can be sent; `first` is the next one.
         self.complete, self.first = (
             Signal(ring.beat_bits, name=name) for name in ("complete", "first")
         )
@@ -223,7 +223,7 @@ class _Circuit:
         m.d.comb += [
             index.eq(k - lane if ring.lane_bits else 0),
             used.eq(self.writes & (index < placed.size)),
-            # Lanes in front of the first byte are of the next beat.
+            # Lanes before the first byte are of the next beat.
             slot.eq(ring.slot(placed.start) + (lane > k if k < self.plan.bus_bytes - unit else 0)),
             write.addr.eq(slot),
             write.data.eq(placed.data[8 * k : 8 * (k + unit)]),

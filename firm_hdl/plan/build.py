@@ -3,7 +3,7 @@
 The layout is flattened into segments: bytes in a row whose map is static. A segment ends where a
 length decides what follows, where a loop starts or ends, or where padding is known in the circuit
 only. Segments are cut into steps (see :mod:`firm_hdl.plan.cut`). The last word of a run is its
-rest, which the step behind the run takes together with its own bytes.
+rest, which the step after the run takes together with its own bytes.
 """
 
 from __future__ import annotations
@@ -278,7 +278,7 @@ class _Builder:
         self.levels = max(self.levels, self.depth)
         if isinstance(count, int):
             self.flush()
-            # The step behind would also be reached from the end of the loop's body.
+            # The step after would also be reached from the end of the loop's body.
             self.flush_rest()
             self.program.append(Mark(kind="enter", counter=level, count=count))
         else:
@@ -325,7 +325,7 @@ class _Builder:
     # Segments to steps.
 
     def take_align(self) -> int:
-        """Return the alignment of the step that comes; the one behind it has none."""
+        """Return the alignment of the step that comes; the one after it has none."""
         align, self.segment_align = self.segment_align, 1
         return align
 

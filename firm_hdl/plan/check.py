@@ -142,7 +142,7 @@ def _map(plan: Plan, step: MapStep) -> Iterator[str]:
     if step.rest is not None:
         yield from _run(plan, step.rest, counted=True)
         if step.bytes > plan.bus_bytes:
-            yield f"the map behind a rest has {step.bytes} bytes, more than a bus word"
+            yield f"the map after a rest has {step.bytes} bytes, more than a bus word"
     elif not step.slices:
         yield "there is nothing to do"
     if step.bytes > 2 * plan.bus_bytes:
@@ -154,7 +154,7 @@ def _map(plan: Plan, step: MapStep) -> Iterator[str]:
             yield f"two transfers of {plan.leaves[part.leaf]} are in one cycle"
     for item in step.slices[1:]:
         if isinstance(item, Part) and item.first:
-            yield f"{plan.leaves[item.leaf]} continues behind other bytes"
+            yield f"{plan.leaves[item.leaf]} continues after other bytes"
     lengths = [part.leaf for part in step.parts if plan.leaves[part.leaf].kind == "length"]
     done = [part.leaf for part in step.parts if part.completes and part.leaf in lengths]
     counted = [] if step.begin is None else [step.begin.length]
@@ -220,7 +220,7 @@ def _transfers(plan: Plan) -> Iterator[str]:
 
 
 def _ends(plan: Plan, leaf: int, parts: list[Part], runs: list[int]) -> Iterator[str]:
-    """Check the transfers of a leaf: parts, each of a whole transfer, behind at most one run."""
+    """Check the transfers of a leaf: parts, each of a whole transfer, after at most one run."""
     most = 2 if plan.leaves[leaf].kind == "items" and not runs else 1
     if len(parts) > most or len(runs) > 1 or not (parts or runs):
         yield f"{len(parts)} transfers and {len(runs)} runs"
@@ -364,8 +364,8 @@ def _flow(plan: Plan) -> list[str]:
 
 
 def _rests(plan: Plan) -> Iterator[str]:
-    """Check that the step behind a run takes its rest, and no other step does."""
-    # The runs that may have been left in front of each step. `None`: the start, or no run.
+    """Check that the step after a run takes its rest, and no other step does."""
+    # The runs that may have been left before each step. `None`: the start, or no run.
     left: dict[int | None, set[int | None]] = {plan.start.step: {None}}
     for step in plan.steps:
         run: int | None = None
@@ -378,7 +378,7 @@ def _rests(plan: Plan) -> Iterator[str]:
         for jump in (step.exits.default, *(jump for _, jump in step.exits.repeats)):
             left.setdefault(jump.step, set()).add(run)
     for index, step in enumerate(plan.steps):
-        # The body of a run that a step starts has only this step in front.
+        # Only the step that starts a run leads to the body of the run.
         runs = left.get(index, set())
         if step.rest is not None and step.rest not in runs:
             yield f"step {index}: {_items(plan, step.rest)} has no rest here"

@@ -32,7 +32,7 @@ class Place:
     Attributes
     ----------
     first : tuple of int
-        Lanes of the first byte behind the step before: the rest of a run, or padding, starts here.
+        Lanes of the first byte after the step before: the rest of a run, or padding, starts here.
     map : tuple of int
         Lanes of the first byte of the map or of the word of a run.
     """
@@ -120,7 +120,7 @@ def _beats(plan: Plan, step: Step) -> int:
 
 
 def first_step(plan: Plan) -> int:
-    """Return the first step with a leaf of the message; those in front of it have constants."""
+    """Return the first step with a leaf of the message; those before it have constants."""
     steps = enumerate(plan.steps)
     return next(i for i, step in steps if step.parts or isinstance(step, RunStep))
 
@@ -188,7 +188,7 @@ class _Flow:
         yield from self.after_map(step, self.advance(start, step.bytes))
 
     def repeated(self, start: int) -> int:
-        """Return the positions behind any number of words."""
+        """Return the positions after any number of words."""
         found = 0
         while start & ~found:
             found |= start

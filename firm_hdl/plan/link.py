@@ -81,7 +81,7 @@ class _Linker:
         return Jump(enter=tuple(enter), step=self.numbers.get(place))
 
     def exits_at(self, place: int) -> Exits:
-        """Return the exits of a step or run that ends in front of a place of the program."""
+        """Return the exits of a step or run that ends before a place of the program."""
         repeats: list[tuple[int, Jump]] = []
         while place < len(self.program):
             item = self.program[place]
@@ -100,7 +100,7 @@ class _Linker:
                 continue
             after = place + 1
             if item.begin is not None:
-                # The body is behind: that of a loop up to the loop's end, that of a run one step.
+                # The body is after: that of a loop up to the loop's end, that of a run one step.
                 body = self.jump_to(after)
                 item = replace(item, begin=replace(item.begin, body=body))
                 after = self.ends[after] + 1 if isinstance(item.begin, BeginLoop) else after + 1

@@ -82,9 +82,9 @@ class _Walk:
     known: dict[tuple[int, int, int, Place], frozenset[Place]] = field(default_factory=dict)
     # A dict, because it keeps the order.
     problems: dict[str, None] = field(default_factory=dict)
-    # Numbers of bytes that are skipped in front of each aligned step.
+    # Numbers of bytes that are skipped before each aligned step.
     skipped: dict[int, set[int]] = field(default_factory=dict)
-    # Steps that start a run with padding in front, at some offset.
+    # Steps that start a run with padding before it, at some offset.
     padded_runs: set[int] = field(default_factory=set)
     max_align: int = field(init=False)
 
@@ -209,7 +209,7 @@ class _Walk:
         align = self.align(leaf)
         if pad != -residue % align:
             self.report(
-                f"step {index}: {leaf} has {pad} bytes of padding in front, "
+                f"step {index}: {leaf} has {pad} bytes of padding before it, "
                 f"not {-residue % align}, at offset {residue} modulo 8"
             )
 

@@ -39,7 +39,7 @@ def outline(layout: Layout, bus_bytes: int) -> Layout:
 
 @dataclass(slots=True)
 class _Stretch:
-    """Bytes in a row: the padding in front of them, and their number."""
+    """Bytes in a row: the padding before them, and their number."""
 
     gap: Gap
     bytes: int
@@ -69,11 +69,11 @@ def _bytes(stretch: _Stretch, bus_bytes: int, numbers: Iterator[int]) -> Iterato
     """Yield a stretch as arrays of bytes.
 
     An array of many bytes is a run, which takes one step for any number of bus words, but cannot
-    share it with what is in front. So its first bytes are a value of their own.
+    share it with what comes before. So its first bytes are a value of their own.
     """
     gap, left = stretch.gap, stretch.bytes
     if gap.bytes != 0:
-        # Padding stands only in front of a value that needs the alignment.
+        # Padding stands only before a value that needs the alignment.
         number = PRIMITIVES["ros2"][f"uint{8 * gap.align}"]
         yield Scalar(path=_path(numbers), gap=gap, type=number)
         gap, left = NO_GAP, left - gap.align

@@ -140,7 +140,7 @@ class Filler:
         items = Signal(range(bus + 1), name="items_size")
         whole = Signal(range(2 * bus + 1), name="map_size")
         nul = Signal(name="nul_now")
-        # The packet has bytes in front of this step, and after it.
+        # The packet has bytes before this step, and after it.
         begun, begins = Signal(name="begun"), Signal(name="begins")
         m.d.comb += [
             items.eq(Mux(state.rest, now.flow.rest_bytes(now.rest), state.items_bytes)),

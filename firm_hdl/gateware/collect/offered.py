@@ -32,7 +32,7 @@ class OfferedLength:
     skips : Signal(1)
         The body is skipped: there is none, or all of it is the rest.
     single : Signal(1)
-        The body is one element, or one word in front of the rest.
+        The body is one element, or one word before the rest.
     rest : Signal(range(lanes + 1))
         Items of the rest.
     held : Signal(1)

@@ -27,7 +27,7 @@ def words_layout(plan: Plan) -> data.StructLayout:
         Distance from the bytes before to the map, and the mask of its alignment.
     to_end, end_mask
         Distance from the start of the map to where the next step starts, and the mask of its
-        alignment. Behind a packet, that is the next beat.
+        alignment. After a packet, that is the next beat.
     max_beats : unsigned
         The next step starts at most so many beats after the one in which this step starts.
     last : unsigned(1)

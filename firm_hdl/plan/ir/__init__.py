@@ -11,7 +11,7 @@ the plan continues at another step or ends the packet. `MapStep.begin` starts a 
 or a run of items that a length counts. Loops and runs of constant count start in the jump to them.
 
 Runs: only the last bus word of a run that a length counts may be short. It is the *rest*, which the
-step behind the run takes together with its own bytes, so that it costs no cycle of its own. The
+step after the run takes together with its own bytes, so that it costs no cycle of its own. The
 step knows the rest from the counter of the run, which is 0 if no run was started or it was empty.
 """
 

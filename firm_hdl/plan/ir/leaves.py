@@ -125,7 +125,7 @@ class Run:
         Index of the leaf.
     counted : bool
         Whether a length counts the items. Then the last word, which may be short, is the rest that
-        the step behind the run takes. Otherwise the count is constant, and all words are full.
+        the step after the run takes. Otherwise the count is constant, and all words are full.
     terminated : bool
         Whether a NUL follows on the wire, where the length counts it.
     last : bool

@@ -155,7 +155,7 @@ class RunStep:
     Attributes
     ----------
     align : int
-        As in `MapStep`, in front of the first word.
+        As in `MapStep`, before the first word.
     run : int
         Index into `Plan.runs`.
     exits : Exits
