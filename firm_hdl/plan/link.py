@@ -2,7 +2,7 @@
 
 :mod:`firm_hdl.plan.build` makes a program: steps in wire order, and marks between them where loops
 start and end, and where counters of constant counts are loaded. Marks take no cycle. So they become
-parts of the jumps from step to step.
+parts of the jumps between steps.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ class _Linker:
                 continue
             after = place + 1
             if item.begin is not None:
-                # The body is after: that of a loop up to the loop's end, that of a run one step.
+                # The body follows: of a loop, the steps up to its end; of a run, one step.
                 body = self.jump_to(after)
                 item = replace(item, begin=replace(item.begin, body=body))
                 after = self.ends[after] + 1 if isinstance(item.begin, BeginLoop) else after + 1
