@@ -210,7 +210,7 @@ def test_figures_are_of_the_wire_and_in_the_form_that_were_asked_for(here, capsy
     assert (row["wire"], row["min_bytes"]) == ("ros1", 9)
 
 
-def test_the_environment_is_searched_behind_paths(here, capsys, monkeypatch):
+def test_the_environment_is_searched_after_paths(here, capsys, monkeypatch):
     make_files(here / "ws", {"share/q/msg/Q.msg": "int8 workspace"})
     make_files(here / "dir", {"q/msg/Q.msg": "int8 path"})
     monkeypatch.setenv("AMENT_PREFIX_PATH", os.fspath(here / "ws"))

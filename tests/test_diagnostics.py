@@ -19,7 +19,7 @@ def test_caret_stands_under_the_words():
     assert str(diagnostic(text, 9, 13)) == "a.msg:2:2: error: no\n\tint9 b\n\t^^^^"
 
 
-def test_place_behind_the_last_line_has_a_caret():
+def test_place_after_the_last_line_has_a_caret():
     assert str(diagnostic("a\n", 2, 2)) == "a.msg:2:1: error: no\n\n^"
 
 

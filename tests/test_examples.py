@@ -80,7 +80,7 @@ def test_examples_run(here, capsys, name):
     assert example.main() == 0
     printed = capsys.readouterr().out
     if name == "demo":
-        # What GHDL says follows behind another empty line, where there is GHDL.
+        # What GHDL says follows after another empty line, where there is GHDL.
         table = printed.split("\n\n")[2]
         assert {" ".join(line.split()) for line in table.splitlines()} <= rows("README.md")
     if name == "bench":
@@ -132,7 +132,7 @@ def in_order(text: str) -> str:
 
 
 def written_in_order(text: str) -> str:
-    """Return lines with those in front that name folders in the order of these."""
+    """Return lines with those before them that name folders in the order of these."""
     lines = text.splitlines()
     count = next((n for n, line in enumerate(lines) if not line.startswith("wrote ")), len(lines))
     return "\n".join([*sorted(lines[:count]), *lines[count:]])

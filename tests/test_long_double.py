@@ -102,7 +102,7 @@ def test_test_systems_do_not_judge_it(run, system):
 
 
 def test_without_the_rule_a_test_system_would_fail(run, monkeypatch):
-    # Behind the rule there is another, that of layouts.
+    # After the rule there is another, that of layouts.
     monkeypatch.setattr(ts2, "refusals", lambda message: [])
     status, out, _ = run("verify", "--systems", "ts2", "--jobs", "1", "p/Wide")
     assert status == 1 and "FAIL p/msg/Wide" in out and SENTENCE in out

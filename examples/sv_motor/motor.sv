@@ -1,6 +1,6 @@
 // The speed of a motor from geometry_msgs/msg/Twist: that of the last good packet.
 //
-// The fields of a damaged packet become valid like those of a good one; fields behind the damage
+// The fields of a damaged packet become valid like those of a good one; fields after the damage
 // are 0. Only the status reports the damage. It comes once per packet, after all fields have become
 // valid. So linear.x waits for the status, both are taken together, and the speed changes only if
 // the status is OK.

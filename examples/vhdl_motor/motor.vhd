@@ -1,6 +1,6 @@
 -- The speed of a motor from geometry_msgs/msg/Twist: that of the last good packet.
 --
--- The message of a damaged packet becomes valid like that of a good one; fields behind the damage
+-- The message of a damaged packet becomes valid like that of a good one; fields after the damage
 -- are 0. Only the status reports the damage. It comes once per packet, not before the message. So
 -- the message waits for the status, both are taken together, and the speed changes only if the
 -- status is OK.

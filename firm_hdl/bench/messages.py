@@ -19,7 +19,7 @@ class Stated:
     Attributes
     ----------
     count : int
-        How many messages are measured, behind one that is not.
+        How many messages are measured, after one that is not.
     characters : (int, int)
         Fewest and most characters of a string, if its bound allows so many.
     elements : (int, int)

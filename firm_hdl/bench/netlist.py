@@ -84,10 +84,10 @@ class Names:
             return cell.partition("[")[0]
         inside = self._mapped(cell)
         outputs = list(self._connected(inside, "output"))
-        for behind in (inside, *(name for bit in outputs for name in self._sinks.get(bit, ()))):
-            if behind.startswith(PORT):
-                return behind.partition("[")[0]
-            for bit in self._connected(behind, "output"):
+        for sink in (inside, *(name for bit in outputs for name in self._sinks.get(bit, ()))):
+            if sink.startswith(PORT):
+                return sink.partition("[")[0]
+            for bit in self._connected(sink, "output"):
                 if bit in self._own:
                     return self._own[bit]
         return cell

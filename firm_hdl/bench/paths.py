@@ -30,8 +30,8 @@ class CriticalPath:
         Number of look-up tables, carry chains and the like on the way.
     points : tuple of (float, str)
         Signals on the way, and when they are reached in ns. The first and the last are the
-        registers. Behind ``&`` stand signals that enter the path there, directly or through other
-        logic, and have not before.
+        registers. Signals after ``&`` join the path there, directly or through other logic, and
+        have not joined it before.
     """
 
     ns: float
@@ -80,7 +80,7 @@ def _described(path: list[Mapping[str, Any]], names: Names) -> CriticalPath:
                 new = list(islice((each for each in joining if each not in known), MOST_NAMES))
                 known.update(new)
                 name = "& " + ", ".join(new) if new else ""
-        # The net behind a register has its name.
+        # The net that a register drives has its name.
         if name and (name not in known or segment["type"] == "setup"):
             points.append((round(now, 2), name))
             known.add(name)

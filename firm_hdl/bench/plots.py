@@ -107,7 +107,7 @@ def _bar(
     title: str,
     most: float = 0.0,
 ) -> None:
-    """Draw a bar, and its number behind it and behind `most`."""
+    """Draw a bar, and its number after it and after `most`."""
     kind = f"bar {COLOURS[result.converter.direction]}"
     figure.box(LEFT, y, scale(value) - LEFT, 12, kind, title)
     figure.text(scale(max(value, most)) + 4, y + 10, f"{value:.0f}", anchor="start")

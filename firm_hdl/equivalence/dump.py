@@ -94,7 +94,7 @@ def parse_dump(text: str) -> dict[str, Module]:
 
 
 def _blocks(lines: list[str], start: str) -> Iterator[list[str]]:
-    """Split lines in front of each that starts with `start`."""
+    """Split lines before each that starts with `start`."""
     block: list[str] = []
     for line in lines:
         if line.startswith(start) and block:
@@ -121,7 +121,7 @@ def _module(block: list[str]) -> Module:
             raise ProofError(f"{name} has a port of mode inout, which a proof does not support")
         ports[_plain(port[2])] = int(port[3] or 0) + 1
     instances = [_instance(lines) for lines in _blocks(block[place:], "instance ")]
-    # The instance that encloses all modules is printed behind the last module.
+    # The instance that encloses all modules is printed after the last module.
     instances = [i for i in instances if i.kind != "$top"]
     own = [i for i in instances if i.kind == name and i.name == name]
     others = tuple(i for i in instances if i is not own[0]) if own else tuple(instances)

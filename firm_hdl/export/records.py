@@ -34,7 +34,7 @@ class Member:
     comment : str
         The comment of the definition.
     remark : str
-        Text for a comment behind the member.
+        Text for a comment after the member.
     """
 
     name: str

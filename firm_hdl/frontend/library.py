@@ -178,7 +178,7 @@ class Library:
                 parts += [f"{item.type} {item.name} {item.default!r}" for item in message.fields]
                 parts += [f"{c.type} {c.name} {c.value!r}" for c in message.constants]
             for part in parts:
-                # The length in front keeps neighbours apart.
+                # The length at the start keeps neighbours apart.
                 data = part.encode()
                 digest.update(b"%d:" % len(data) + data)
         return digest.hexdigest()

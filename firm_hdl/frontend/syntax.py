@@ -49,7 +49,7 @@ class TypeSyntax:
     Attributes
     ----------
     package : str or None
-        The word in front of the slash.
+        The word before the slash.
     name : str
         A builtin type's name, or that of a message type.
     is_builtin : bool

@@ -1,4 +1,4 @@
-"""A counter of words or elements that tells a cycle ahead that one is left."""
+"""A counter of words or elements with a registered flag for the last one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["Counter"]
 
 @dataclass(frozen=True, slots=True)
 class _Load:
-    """A number that is loaded: when, the number, what it subtracts, and whether it is the last."""
+    """A load: the condition, the number as `value - less`, and the flags `last` and `double`."""
 
     on: Value
     value: Value | int
@@ -25,22 +25,22 @@ class _Load:
 class Counter:
     """Count words or elements down to the last one. Not a component: logic of one module.
 
-    The number itself follows a cycle later, so that nothing wide depends on a late decision.
-    Its users say when it is loaded and when it counts, and then :meth:`add_logic`.
+    `last` is updated at once, the number one cycle later, so that no wide logic depends on a late
+    signal. Call `load`, `load_by_default` and `down` as often as needed, then `add_logic` once.
 
     Parameters
     ----------
     most : int
         The largest number that is loaded.
     start : int or None
-        The number after a reset. Without one, the counter is loaded before it counts.
+        The number after a reset. If `None`, the counter has to be loaded before it counts.
 
     Attributes
     ----------
     value, less : Signal
-        `value - less` words or elements are left, of which one is subtracted if `pending`.
+        The number of words or elements left is `value - less - pending`.
     last : Signal
-        One is left.
+        One word or element is left. A register.
     """
 
     def __init__(self, most: int, name: str, start: int | None = None):
@@ -71,7 +71,8 @@ class Counter:
         Parameters
         ----------
         value, less : Value
-            With `double`, they come one cycle after `on`, `last` and `double`.
+            The number is `value - less`. If `double` is given, both are valid one cycle after `on`,
+            `last` and `double`.
         last : Value
             The number is 1, if it is not 0.
         double : Value or None
@@ -80,7 +81,7 @@ class Counter:
         self._defaults.append(_Load(on, value, less, last, double))
 
     def down(self, on: Value) -> None:
-        """Count one if `on`, unless the counter is loaded."""
+        """Count down by one if `on`, unless the counter is loaded."""
         self._downs.append(on)
 
     def add_logic(self, m: Module) -> None:
@@ -102,23 +103,23 @@ class Counter:
         self._load_value(m, loads)
 
     def _next_is_last(self, m: Module, loads: Value) -> Value:
-        """Return whether one is left when the counter has counted one."""
+        """Return whether one is left after the counter has counted down by one."""
         high = self.value[3:].any()
         two, three, four = (~high & (self.value[:3] == k) for k in (2, 3, 4))
-        known = Mux(self.pending, Mux(self.less, four, three), Mux(self.less, three, two))
-        late = [each for each in self._defaults if each.double is not None]
-        if not late:
-            return known
+        by_value = Mux(self.pending, Mux(self.less, four, three), Mux(self.less, three, two))
+        delayed = [each for each in self._defaults if each.double is not None]
+        if not delayed:
+            return by_value
         second, fresh = Signal(name=f"{self.name}_second"), Signal(name=f"{self.name}_fresh")
         m.d.sync += [
-            # The number itself comes in this cycle.
-            fresh.eq(~loads & any_of([each.on for each in late])),
-            second.eq(pick([(each.on, each.double) for each in late], 1)),
+            # If `fresh`, the value is still to be loaded, so the flag `double` decides.
+            fresh.eq(~loads & any_of([each.on for each in delayed])),
+            second.eq(pick([(each.on, each.double) for each in delayed], 1)),
         ]
-        return Mux(fresh, second, known)
+        return Mux(fresh, second, by_value)
 
     def _load_value(self, m: Module, loads: Value) -> None:
-        """Load or count the number."""
+        """Add the logic that loads or decrements the value."""
         value = self.value
         cases = list(self._loads)
         for k, each in enumerate(self._defaults):
@@ -128,8 +129,8 @@ class Counter:
                 m.d.sync += on.eq(each.on & ~loads)
             cases.append(replace(each, on=on & ~loads))
         keeps = ~any_of([each.on for each in cases])
-        now = (value - self.pending)[: len(value)]
+        counted = (value - self.pending)[: len(value)]
         m.d.sync += [
-            value.eq(pick([(keeps, now), *((c.on, c.value) for c in cases)], len(value))),
+            value.eq(pick([(keeps, counted), *((c.on, c.value) for c in cases)], len(value))),
             self.less.eq(pick([(keeps, self.less), *((c.on, c.less) for c in cases)], 1)),
         ]

@@ -35,37 +35,42 @@ def exceeds(value: Value, limit: int) -> Value:
 class Flow:
     """Step, counters and jumps of a plan. Not a component: logic of one module.
 
-    What a circuit has to know of a step is a *trait*: a field of the state, written together with
-    the step, so that it is known at the start of a cycle.
+    A *trait* is what a circuit has to know of a step: a field of the state register, written
+    together with the step. So traits are valid at the start of a cycle.
 
     Parameters
     ----------
     m : Module
-        Gets the logic.
+        Module to which the logic is added.
     plan : Plan
     limit : function
-        Gives the largest number that a length may have which begins a run or a loop.
+        Returns the largest count of a run or loop that a length begins.
     fields : mapping of str to int
-        Traits and their widths.
+        Widths of the traits in bits, by name.
     traits : function
-        Gives the traits of the step with an index; `None` is the end of the packet.
+        Returns the traits of the step with an index; `None` is the end of the packet.
     has_end : bool
         The end of the packet is a state of its own.
 
     Attributes
     ----------
     state : View
+        Register with `step` and the traits.
     step : Signal
-        One bit per step.
+        One-hot, one bit per step.
     start : int
         The state in which a packet starts, as bits.
     exits : list of (Value, int, Jump)
-        Each exit: that its step takes it if it is done, its step, and the jump. At most one of the
-        conditions is high.
+        For each exit of each step: a condition of one bit, the index of the step, and the jump. The
+        condition is high if the step, once done, takes this exit. At most one of them is high.
+    exit_ends : Value(1)
+        The exit that is taken ends the packet.
     exit_state, body_state : Value
         The state after the exit, and in the body of the run or loop that the step begins.
     words : Counter
+        Counts the words of a run.
     levels : list of Counter
+        Count the elements of loops, by level.
     """
 
     def __init__(
@@ -119,16 +124,16 @@ class Flow:
         return bits
 
     def on(self, test: Callable[[Step], bool]) -> Value:
-        """Return, as one bit, whether a test holds for the step of this cycle."""
+        """Return, as one bit, whether a test holds for the current step."""
         return any_of([self.step[i] for i, s in enumerate(self.plan.steps) if test(s)])
 
     def rest_bytes(self, rest: Value) -> Value:
-        """Return the bytes of the items of the rest that the step takes.
+        """Return the size in bytes of the rest that the step takes, without the NUL.
 
         Parameters
         ----------
         rest : Value
-            Number of these items.
+            Number of items in the rest.
         """
         units: dict[int, list[Value]] = {}
         for i, s in enumerate(self.plan.steps):
@@ -139,15 +144,15 @@ class Flow:
 
     def _exits(self) -> Iterator[tuple[Value, int, Jump]]:
         for i, s in enumerate(self.plan.steps):
-            free: Value = self.step[i]
+            no_repeat: Value = self.step[i]
             for level, jump in s.exits.repeats:
                 again = Signal(name=f"again_{i}_{level}")
-                self.m.d.comb += again.eq(free & ~self.levels[level].last)
+                self.m.d.comb += again.eq(no_repeat & ~self.levels[level].last)
                 yield again, i, jump
-                free = free & self.levels[level].last
-            leaves = Signal(name=f"leaves_{i}")
-            self.m.d.comb += leaves.eq(free)
-            yield leaves, i, s.exits.default
+                no_repeat = no_repeat & self.levels[level].last
+            default = Signal(name=f"leaves_{i}")
+            self.m.d.comb += default.eq(no_repeat)
+            yield default, i, s.exits.default
 
     def count(
         self,
@@ -160,42 +165,41 @@ class Flow:
         double: Value | None = None,
         nul: bool,
     ) -> None:
-        """Count and load the counters.
+        """Add the logic that loads and decrements the counters.
 
         Parameters
         ----------
         moves, ends, done : Value
-            The step is executed in this cycle. Then the packet ends; else the step is left through
-            an exit (`done`), or goes on in its body.
+            The step is executed in this cycle (`moves`). If `ends`, the packet ends with it.
+            Otherwise, the step is left through an exit if `done`, else into its body.
         count : Value
-            The length that the step has, as its run or loop counts it. With `double`, the one that
-            the step of the cycle before has.
+            The length of the current step. If `double` is given: of the step in the cycle before.
         single, double : Value
-            The body of the run or loop is executed once, if at all; if it is executed more than
-            once, it is so twice.
+            `single`: if the body of the run or loop is executed at all, it is executed once.
+            `double`: if it is executed more than once, it is executed twice.
         nul : bool
-            The count includes the NUL of a string.
+            Whether the count of a string includes the NUL.
         """
-        leaves, stays = Signal(name="step_leaves"), Signal(name="step_stays")
-        self.m.d.comb += [leaves.eq(moves & ~ends & done), stays.eq(moves & ~ends & ~done)]
-        self._load_constants(moves & ends, leaves, stays)
+        to_exit, to_body = Signal(name="step_leaves"), Signal(name="step_stays")
+        self.m.d.comb += [to_exit.eq(moves & ~ends & done), to_body.eq(moves & ~ends & ~done)]
+        self._load_constants(moves & ends, to_exit, to_body)
         self._load_levels(count, single, double)
         self._load_words(count, single, double, nul)
         exits = iter(self.exits)
         for step in self.plan.steps:
             for level, _ in step.exits.repeats:
-                self.levels[level].down(leaves & next(exits)[0])
+                self.levels[level].down(to_exit & next(exits)[0])
             next(exits)
-        self.words.down(stays & self.on(lambda step: isinstance(step, RunStep)))
+        self.words.down(to_body & self.on(lambda step: isinstance(step, RunStep)))
         for counter in (self.words, *self.levels):
             counter.add_logic(self.m)
 
-    def _load_constants(self, starts: Value, leaves: Value, stays: Value) -> None:
+    def _load_constants(self, starts: Value, to_exit: Value, to_body: Value) -> None:
         """Load counters where a jump enters a run or loop of a constant count."""
         jumps = [(starts, self.plan.start)]
-        jumps += [(leaves & taken, jump) for taken, _, jump in self.exits if jump.step is not None]
+        jumps += [(to_exit & taken, jump) for taken, _, jump in self.exits if jump.step is not None]
         jumps += [
-            (stays & self.step[i], step.begin.body)
+            (to_body & self.step[i], step.begin.body)
             for i, step in enumerate(self.plan.steps)
             if step.begin is not None and step.begin.body is not None
         ]
@@ -223,7 +227,7 @@ class Flow:
         return most
 
     def _counted(self, jump: Jump, counter: int | str) -> int:
-        """Return the words or elements that a jump begins to count."""
+        """Return the number of words or elements that a jump loads into a counter."""
         count = dict(jump.enter)[counter]
         if counter != RUN_COUNTER:
             return count
@@ -235,7 +239,7 @@ class Flow:
     def _load_levels(self, count: Value, single: Value, double: Value | None) -> None:
         """Load the counter of a loop that the step may begin.
 
-        It is not in use before, so that this may happen in every cycle of the step.
+        The counter is not in use before the loop, so every cycle of the step may load it.
         """
         for level, counter in enumerate(self.levels):
             chosen = [
@@ -249,9 +253,9 @@ class Flow:
     def _load_words(
         self, count: Value, single: Value, double: Value | None, nul_counts: bool
     ) -> None:
-        """Load the counter of words of a run that the step may begin; as `_load_levels`.
+        """Load the counter of words of a run that the step may begin, like `_load_levels`.
 
-        Of n items in words of w, (n - 1) // w words are taken in front of the rest.
+        Of n items in words of w, (n - 1) // w words are taken before the rest.
         """
         plan = self.plan
         groups: dict[tuple[int, int], list[Value]] = {}

@@ -61,12 +61,12 @@ def _name(node: MemberTree) -> None:
     taken: set[str] = set()
     # Names that cannot clash are assigned first, so that they stay unchanged.
     ordered = sorted(node.children.items(), key=lambda item: _may_clash(item[0]))
-    careful = any(_may_clash(name) for name in node.children)
+    with_ports = any(_may_clash(name) for name in node.children)
     for name, child in ordered:
         member = name + "_" if name in RESERVED else name
-        while not taken.isdisjoint(_ports(member, child, careful)):
+        while not taken.isdisjoint(_ports(member, child, with_ports)):
             member += "_"
-        taken.update(_ports(member, child, careful))
+        taken.update(_ports(member, child, with_ports))
         child.member = member
 
 
@@ -74,12 +74,12 @@ def _may_clash(name: str) -> bool:
     return "__" in name or name.endswith("_") or name in RESERVED
 
 
-def _ports(member: str, node: MemberTree, careful: bool) -> Iterator[str]:
-    """Yield the port names that a member occupies and that a sibling could also get."""
+def _ports(member: str, node: MemberTree, with_ports: bool) -> Iterator[str]:
+    """Yield the names that a member occupies: its own and, if `with_ports`, those of its ports."""
     yield member
-    if not careful:
+    if not with_ports:
         return
     if node.leaf is not None:
         yield from (f"{member}__{port}" for port in STREAM_PORTS)
     for child in node.children.values():
-        yield from (f"{member}__{port}" for port in _ports(child.member, child, careful))
+        yield from (f"{member}__{port}" for port in _ports(child.member, child, with_ports))

@@ -1,4 +1,4 @@
-"""Memories with one writer and asynchronous reads, which FPGAs have in their look-up tables."""
+"""Memories with one write port and asynchronous reads, which FPGAs build from look-up tables."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ __all__ = ["LutMemory"]
 
 
 class LutMemory:
-    """A memory that is read without a cycle of delay. Not a component: logic of one module.
+    """A memory with asynchronous reads. Not a component: logic of one module.
 
-    A word is read in the cycle after it is written, at the earliest. Signals of its ports have the
-    name of the memory in theirs.
+    A word can be read from the cycle after its write on. The names of the ports' signals start with
+    the name of the memory.
 
     Parameters
     ----------
@@ -21,12 +21,14 @@ class LutMemory:
     name : str
         Name of the submodule.
     shape : shape-like
+        Of one word.
     depth : int
+        Number of words.
 
     Attributes
     ----------
     write : WritePort
-        `addr`, `data` and `en`.
+        Synchronous: `addr`, `data` and `en`.
     """
 
     def __init__(self, m: Module, name: str, shape: ShapeLike, depth: int):
@@ -40,7 +42,7 @@ class LutMemory:
         )
 
     def reader(self, name: str = "read") -> ReadPort:
-        """Add a reader: `addr` and `data`."""
+        """Add an asynchronous read port: `addr` and `data`."""
         return ReadPort(
             ReadPort.Signature(addr_width=self._bits, shape=self._shape),
             memory=self._memory,

@@ -1,4 +1,4 @@
-"""The packer: words to packets of full beats."""
+"""The packer: turn words into packets of full beats."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ __all__ = ["Packer"]
 class Packer(wiring.Component):
     """Write words to a ring of beats, and send the beats that are complete.
 
-    The first cycle computes the positions of both words and rotates the words to their lanes. The
-    second one writes the words to the ring, where lanes have a memory for either word. The third
-    one sends a beat. So two words are written and one beat is sent per cycle; latency 3 cycles.
+    A pipeline of three cycles. The first one computes the positions of both words and rotates the
+    words to their lanes. The second one writes the words to the ring, which has separate memories
+    for each of the two words. The third one sends a beat. Throughput two words in and one beat out
+    per cycle; latency 3 cycles.
 
     Parameters
     ----------
@@ -54,7 +55,7 @@ class Packer(wiring.Component):
 
 @dataclass(frozen=True, slots=True)
 class _Placed:
-    """A word in its lanes: its bytes, the position of the first one, and their number."""
+    """A rotated word: all lanes, the position of the first byte, and the number of bytes."""
 
     data: Signal
     start: Value
@@ -68,7 +69,7 @@ class _Circuit:
         self.c, self.plan = packer, packer.plan
         self.ring = ring = Ring(packer.plan)
         self.m = m = Module()
-        # Beats in front of `complete` can be sent; `first` is the next one.
+        # Beats before `complete` can be sent; `first` is the next one.
         self.complete, self.first = (
             Signal(ring.beat_bits, name=name) for name in ("complete", "first")
         )
@@ -77,13 +78,13 @@ class _Circuit:
         m.d.comb += self.takes.eq(packer.words.valid & packer.words.ready)
         m.d.sync += self.writes.eq(self.takes)
         self._place()
-        self._wait()
+        self._reserve_room()
         self._send(self._beat())
 
     # First cycle.
 
     def _place(self) -> None:
-        """Compute where the words belong."""
+        """Compute the positions of the words, and rotate them."""
         m, ring, plan = self.m, self.ring, self.plan
         words, bus = self.c.words.payload, plan.bus_bytes
         self.at = ring.position("at")
@@ -101,15 +102,15 @@ class _Circuit:
         sizes = geometry(plan)
         items_at = Mux(words.lead, base, self.at)
         self.placed = {
-            "items": self._turned("items", items_at, words.items_bytes, sizes.item_lanes),
-            "map": self._turned("map", map_at, words.map_bytes, sizes.map_lanes),
+            "items": self._rotated("items", items_at, words.items_bytes, sizes.item_lanes),
+            "map": self._rotated("map", map_at, words.map_bytes, sizes.map_lanes),
         }
-        # What ends with these words.
+        # The first beat that these words do not complete; whether the packet ends.
         self.done, self.final = Signal(ring.beat_bits, name="done"), Signal(name="final")
         self.last_bytes = Signal(range(bus + 1), name="last_bytes")
         self.marked, self.waits = Signal(name="marked"), Signal(name="waits")
-        held = may_end_empty(plan)
-        sent = Mux(words.last | words.empty, self.end, self.end - 1) if held else self.end
+        holds_last = may_end_empty(plan)
+        sent = Mux(words.last | words.empty, self.end, self.end - 1) if holds_last else self.end
         done = ring.beat(sent)
         full = Cat(ring.lane(map_end), Const(0, 1)) - 1
         with m.If(self.takes):
@@ -141,7 +142,7 @@ class _Circuit:
         m.d.comb += pad.eq((phase - total) & mask)
         return Mux(last, total & ~Cat(mask, Const(0, size - len(mask))), total + pad)[:size]
 
-    def _turned(
+    def _rotated(
         self, name: str, start: Value, size: Value, lanes: tuple[int, ...]
     ) -> _Placed:
         """Rotate a word so that its first byte is in the lane of its position."""
@@ -165,8 +166,8 @@ class _Circuit:
             m.d.sync += [placed.data.eq(word), register.eq(start), placed.size.eq(size)]
         return placed
 
-    def _wait(self) -> None:
-        """Take words only if there is room for those that may come in the next cycle."""
+    def _reserve_room(self) -> None:
+        """Make `words.ready` high only if the ring has room for the largest step."""
         m, ring = self.m, self.ring
         # The last beat in which a step may start.
         bound = Signal(ring.beat_bits, name="bound", init=ring.depth - most_beats(self.plan))
@@ -184,18 +185,18 @@ class _Circuit:
     # Second cycle.
 
     def _beat(self) -> Value:
-        """Write words to the ring, and return the bytes of its first beat."""
+        """Write words to the ring, and return the bytes of the next beat to send."""
         plan = self.plan
         sizes = geometry(plan)
         units = {"items": sizes.item_unit, "map": sizes.map_unit}
-        # Without padding, a byte that is not of items is of a map, or after the packet.
+        # Without padding, a byte that is not of items is of a map, or after the packet's end.
         padded = bool(plan.header_bytes) or sizes.aligns
         words = {
             name: [self._lanes(name, k, unit, marked=padded or name == "items") for k in starts]
             for name, unit in units.items()
             for starts in [range(0, plan.bus_bytes, unit)]
         }
-        # Groups of lanes that both words have.
+        # Groups of lanes, as many as the smaller unit, with the memories of both words.
         size = min(units.values())
         found = []
         for k in range(0, plan.bus_bytes, size):
@@ -211,7 +212,7 @@ class _Circuit:
 
         Returns
         -------
-        The bytes of the first beat, and whether they are there.
+        These lanes of the next beat to send, and whether this word wrote them.
         """
         m, ring, placed = self.m, self.ring, self.placed[name]
         memory = LutMemory(m, f"{name}_{k}", 8 * unit, ring.depth)
@@ -223,7 +224,7 @@ class _Circuit:
         m.d.comb += [
             index.eq(k - lane if ring.lane_bits else 0),
             used.eq(self.writes & (index < placed.size)),
-            # Lanes in front of the first byte are of the next beat.
+            # Lanes before the first byte are of the next beat.
             slot.eq(ring.slot(placed.start) + (lane > k if k < self.plan.bus_bytes - unit else 0)),
             write.addr.eq(slot),
             write.data.eq(placed.data[8 * k : 8 * (k + unit)]),
@@ -232,16 +233,16 @@ class _Circuit:
         ]
         if not marked:
             return read.data, Const(1, 1)
-        # Which beats have these bytes from this word.
+        # By slot: whether this word wrote these lanes of the beat.
         has = Signal(ring.depth, name=f"{name}_has_{k}")
         for beat in range(ring.depth):
             with m.If(self.reads & (self.first[:-1] == beat)):
                 m.d.sync += has[beat].eq(0)
             with m.Elif(used & (slot == beat)):
                 m.d.sync += has[beat].eq(1)
-        here = Signal(name=f"{name}_here_{k}")
-        m.d.comb += here.eq((has >> self.first[:-1])[0])
-        return read.data, here
+        written = Signal(name=f"{name}_here_{k}")
+        m.d.comb += written.eq((has >> self.first[:-1])[0])
+        return read.data, written
 
     # Third cycle.
 
@@ -259,10 +260,10 @@ class _Circuit:
             read.addr.eq(self.first),
             self.reads.eq((self.complete != self.first) & (~packets.valid | packets.ready)),
         ]
-        # Which beats are the last ones of their packets.
+        # By slot: whether the beat is the last one of its packet.
         last, is_last = Signal(ring.depth, name="last"), Signal(name="is_last")
         m.d.comb += is_last.eq((last >> self.first[:-1])[0])
-        # Beats that only have constants leave with the first leaf.
+        # Beats of constants only are held until the first leaf is taken.
         with m.If(self.writes & ~self.waits):
             m.d.sync += self.complete.eq(self.done)
             with m.If(self.final):

@@ -1,4 +1,4 @@
-"""Positions of bytes in the packet buffer."""
+"""Positions of bytes in the ring, and the logic that computes with them."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ __all__ = [
 
 
 class Ring:
-    """The shape of positions: a lane of a bus word, the word's place in the ring, and a lap bit.
+    """The shape of positions: a lane of a bus word, the word's slot in the ring, and a lap bit.
 
-    A position is a number of `bits` bits, with the lane in the lowest ones. It counts bytes; so a
-    packet that is longer than the ring goes round it several times. Two positions that are less
-    than `depth` words apart are compared by the sign of their difference.
+    A position is a number of `bits` bits, with the lane in the lowest ones and the lap bit in the
+    highest one. It counts bytes and wraps around. The sign of the difference compares two positions
+    that are less than `depth` words apart.
 
     Parameters
     ----------
@@ -37,9 +37,9 @@ class Ring:
     Attributes
     ----------
     depth : int
-        Words of the ring; a power of two. More than the words that one step can touch.
+        Words of the ring; a power of two, and more than one step can touch.
     lane_bits, beat_bits, bits : int
-        Bits of the lane, of the word (the lap bit included), and of a whole position.
+        Bits of the lane, of the slot with the lap bit, and of a whole position.
     """
 
     def __init__(self, plan: Plan):
@@ -59,16 +59,16 @@ class Ring:
         return position[: self.lane_bits]
 
     def beat(self, position: Value) -> Value:
-        """Return the word with its lap bit."""
+        """Return the slot of the byte's word, with the lap bit."""
         return position[self.lane_bits :]
 
     def slot(self, position: Value) -> Value:
-        """Return the place of the word in the ring."""
+        """Return the slot of the byte's word in the ring, without the lap bit."""
         return position[self.lane_bits : self.bits - 1]
 
 
 def beat_layout(plan: Plan) -> data.StructLayout:
-    """Return a beat on its way into the packet buffer.
+    """Return the shape of a beat that is written to the packet buffer.
 
     Members
     -------
@@ -77,8 +77,9 @@ def beat_layout(plan: Plan) -> data.StructLayout:
         Valid bytes; only used if `last`.
     last : unsigned(1)
     at : beat
-        Where it is written, with the lap bit.
+        Slot in which the beat is written, with the lap bit.
     valid : unsigned(1)
+        The beat is written in this cycle.
     """
     bus = plan.bus_bytes
     return data.StructLayout(
@@ -93,7 +94,7 @@ def beat_layout(plan: Plan) -> data.StructLayout:
 
 
 def align_addend(align: int, phase: int, shift: int = 0) -> int:
-    """Return what to add so that clearing low bits rounds up; see `align_up`.
+    """Return the addend after which clearing the low bits rounds up; see `align_up`.
 
     Parameters are those of `align_up`, with a constant phase.
     """
@@ -103,18 +104,18 @@ def align_addend(align: int, phase: int, shift: int = 0) -> int:
 def align_up(
     m: Module, value: Value, distance: Value | int, align: int, phase: Value | int, shift: int = 0
 ) -> Value:
-    """Return `shift` bytes after the first aligned position from `value + distance` on.
+    """Return `value + distance`, rounded up to an aligned position, plus `shift`.
 
-    All positions are modulo the width of `value`.
+    All positions are modulo `2 ** len(value)`.
 
     Parameters
     ----------
     align : int
-        A power of two, at most 8. Positions are aligned that are a multiple of it after `phase`.
+        A power of two, at most 8. Aligned positions are `phase` plus a multiple of `align`.
     phase : Value or int
-        If it is a constant, there is one carry chain.
+        With a constant, the logic has one carry chain.
     shift : int
-        A constant, so that one addition does both.
+        Bytes to add after the rounding; a constant, so that it needs no addition of its own.
     """
     total = Signal(len(value))
     if align == 1:
@@ -139,8 +140,8 @@ def pick(cases: Iterable[tuple[Value, Value | int]], width: int) -> Value:
     Parameters
     ----------
     cases : iterable of (Value, Value or int)
-        The signal, of one bit, and the value. Values that are shorter than `width` are extended
-        with zeros; longer ones are cut.
+        The signal, of one bit, and the value. Values shorter than `width` are extended with zeros;
+        longer ones are cut.
     width : int
         Bits of the result, which is 0 if no signal is high.
     """
@@ -171,21 +172,21 @@ def any_of(values: Sequence[Value]) -> Value:
 def rotate(
     m: Module, value: Value, lane: Value, lanes: Sequence[int], name: str, *, back: bool = False
 ) -> Value:
-    """Rotate a bus word so that the byte of a lane comes first.
+    """Rotate a bus word so that the byte of a lane comes to lane 0.
 
-    With `back`, the first byte comes to the lane. There is one stage for each bit of `lane`: fewer
-    stages of wider selections need more cells, and are not faster.
+    With `back`, the byte of lane 0 comes to that lane. There is one stage for each bit of `lane`
+    that is not constant: fewer stages with wider multiplexers need more cells, and are not faster.
 
     Parameters
     ----------
     value : Value
         The bus word, 8 bits per lane.
     lane : Value
-        Its width is that of a lane's number.
+        Number of the lane; `log2(lanes of the bus word)` bits.
     lanes : sequence of int
-        The lanes that are possible; others are don't care.
+        Possible values of `lane`; others are don't care.
     name : str
-        Stages are called by it, and by the bit of `lane` that each looks at.
+        Prefix of the stages' signals; the suffix is the bit of `lane` that selects.
     """
     count = len(value) // 8
 
@@ -203,7 +204,7 @@ def rotate(
 
 
 def known_lane_bits(lanes: Sequence[int], bus_bytes: int) -> tuple[int, int]:
-    """Return the low bits that all lanes have in common: their value, and how many there are."""
+    """Return the low bits that are equal in all lanes: their value and their number."""
     common = bus_bytes
     while any(lane % common != lanes[0] % common for lane in lanes):
         common //= 2
@@ -211,7 +212,7 @@ def known_lane_bits(lanes: Sequence[int], bus_bytes: int) -> tuple[int, int]:
 
 
 def sum_of_three(a: Value, b: Value, c: Value) -> Value:
-    """Return a sum modulo the width of `a`, with one carry chain; `b` and `c` are sign-extended."""
+    """Return a sum modulo `2 ** len(a)` with one carry chain; `b` and `c` are sign-extended."""
     width = len(a)
     b, c = (Cat(x, x[-1].replicate(width))[:width] for x in (b, c))
     carry = (a & b) | (a & c) | (b & c)

@@ -140,7 +140,6 @@ class RecordReader(_Adapter):
                 parts[bits.start] = kept[first : first + bits.stop - bits.start]
         m.d.comb += [
             # One assignment, because elaborating n assignments to slices takes quadratic time.
-
             Value.cast(self.record.payload).eq(Cat(parts[bit] for bit in sorted(parts))),
             self.record.valid.eq(Cat(present).all()),
             taken.eq(self.record.valid & self.record.ready),
@@ -150,7 +149,7 @@ class RecordReader(_Adapter):
     def _collect(
         self, m: Module, count: int, leaf: stream.Interface, taken: Value
     ) -> tuple[Value, Value]:
-        """Shift transfers through registers; return these, and whether all have come."""
+        """Shift transfers through registers; return the registers, and whether all have arrived."""
         incoming = _values(leaf)
         width = len(incoming)
         index = Signal(range(count + 1))
@@ -160,7 +159,7 @@ class RecordReader(_Adapter):
             m.d.sync += index.eq(0)
         with m.Elif(leaf.valid & ~full):
             m.d.sync += index.eq(index + 1)
-        # Unused lanes of the last transfer may make this wider than a record can be.
+        # With unused lanes of the last transfer, one register could be too wide for Amaranth.
         most = MAX_CELL_BITS // width
         parts: list[Signal] = []
         while count:

@@ -86,11 +86,11 @@ class Serializer(wiring.Component):
         m.submodules.collector = collector = Collector(self.plan)
         m.submodules.packer = packer = Packer(self.plan)
         for leaf, interface in leaf_streams(self.message, self.tree).items():
-            made = getattr(collector, f"leaf_{leaf}")
+            port = getattr(collector, f"leaf_{leaf}")
             m.d.comb += [
-                Value.cast(made.payload).eq(Value.cast(interface.payload)),
-                made.valid.eq(interface.valid),
-                interface.ready.eq(made.ready),
+                Value.cast(port.payload).eq(Value.cast(interface.payload)),
+                port.valid.eq(interface.valid),
+                interface.ready.eq(port.ready),
             ]
         m.d.comb += [
             packer.words.payload.eq(collector.words.payload),

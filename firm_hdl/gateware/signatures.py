@@ -46,7 +46,7 @@ class Status(enum.Enum, shape=3):  # type: ignore[call-arg]
     OK
         No error.
     TRUNCATED
-        The packet ended before the message (deserializer).
+        The packet ended before the end of the message (deserializer).
     TRAILING
         More bytes follow the message than the wire format allows (deserializer).
     LENGTH
@@ -120,7 +120,7 @@ def leaf_shape(leaf: Leaf) -> Shape | data.StructLayout:
 class MessageSignature(wiring.Signature):
     """A message as one stream per leaf, seen from the side that sends it.
 
-    Two signatures are equal if their message, bus width and wire format are.
+    Two signatures are equal if their messages, bus widths and wire formats are equal.
 
     Parameters
     ----------

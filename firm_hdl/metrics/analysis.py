@@ -56,7 +56,7 @@ class Metrics:
         Size of the longest message; `None` if sizes are not limited.
     aligned, padded, shifting : int or None
         Number of values on the wire (lengths of sequences and strings included) that never have
-        padding in front, that have the same padding in each message, and whose padding differs.
+        padding before them, that have the same padding in each message, and whose padding differs.
     features : tuple of str
         Keys of `FEATURES` that occur in the type or in any message in it.
     definition_bytes : int
@@ -220,7 +220,7 @@ class Analyses:
         return at - start
 
     def _size(self, kind: FieldType, start: int, longest: bool) -> int | None:
-        """Return the bytes of the shortest or of the longest value, padding in front included."""
+        """Return the bytes of the shortest or of the longest value, padding before it included."""
         match kind:
             case Primitive():
                 return -start % self._align(kind.bytes) + kind.bytes

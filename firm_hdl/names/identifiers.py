@@ -31,7 +31,7 @@ def plain(name: str, initial: str) -> str:
     Parameters
     ----------
     initial : str
-        Letter to put in front if the name does not start with a letter.
+        Letter to put first if the name does not start with a letter.
     """
     text = _NOT_ALLOWED.sub("_", name).strip("_")
     return text if text[:1].isalpha() else f"{initial}{text}"

@@ -1,9 +1,9 @@
 """Build a plan from a layout and a bus width.
 
 The layout is flattened into segments: bytes in a row whose map is static. A segment ends where a
-length decides what follows, where a loop starts or ends, or where padding is known in the circuit
-only. Segments are cut into steps (see :mod:`firm_hdl.plan.cut`). The last word of a run is its
-rest, which the step behind the run takes together with its own bytes.
+length decides what follows, where a loop starts or ends, or where the padding differs from packet
+to packet. Segments are cut into steps (see :mod:`firm_hdl.plan.cut`). The last word of a run is its
+rest: the step after the run takes it together with its own bytes.
 """
 
 from __future__ import annotations
@@ -97,14 +97,14 @@ class _Count:
 
 @dataclass(slots=True)
 class _Builder:
-    """What is planned so far, and the segment that grows.
+    """The state of planning: the program so far, and the open segment.
 
     Attributes
     ----------
     layout, bus_bytes, max_message_bytes
-        As of :func:`build_plan`.
+        As for :func:`build_plan`.
     has_lengths : bool
-        Whether any length is in the message.
+        Whether the message has any length.
     leaves, runs : list
         In wire order.
     levels : int
@@ -114,7 +114,7 @@ class _Builder:
     segment : list of Slice
         Values that have not been cut into steps.
     segment_align : int
-        What the first step of the segment is aligned to, in the circuit.
+        Alignment of the segment's first step that the circuit computes; 1: no such alignment.
     rest : int or None
         The run whose rest the next step takes.
     depth : int
@@ -192,9 +192,9 @@ class _Builder:
     def limit(self, bound: int | None, item_bytes: int, end_bytes: int = 0) -> int:
         """Return the largest count that a legal message can have."""
         # An element without bytes still takes a transfer, so it counts as one byte.
-        left = self.max_message_bytes - self.layout.min_bytes - end_bytes
-        room = max(0, left // max(1, item_bytes))
-        return room if bound is None else min(bound, room)
+        available = self.max_message_bytes - self.layout.min_bytes - end_bytes
+        most = max(0, available // max(1, item_bytes))
+        return most if bound is None else min(bound, most)
 
     def lanes(self, item: Primitive) -> int:
         return max(1, self.bus_bytes // item.bytes)
@@ -229,11 +229,11 @@ class _Builder:
         full, tail = divmod(node.count, lanes)
         if node.count <= 2 * lanes:
             # One or two transfers are as static as other values, and share steps with them.
-            left = node.count
-            if left > lanes:
+            remaining = node.count
+            if remaining > lanes:
                 self.value(items, lanes * size)
-                left -= lanes
-            self.value(items, left * size, last=True)
+                remaining -= lanes
+            self.value(items, remaining * size, last=True)
             return
         self.flush()
         self.flush_rest()
@@ -278,7 +278,7 @@ class _Builder:
         self.levels = max(self.levels, self.depth)
         if isinstance(count, int):
             self.flush()
-            # The step behind would also be reached from the end of the loop's body.
+            # The body's first step is also reached from the body's end, where no such rest is left.
             self.flush_rest()
             self.program.append(Mark(kind="enter", counter=level, count=count))
         else:
@@ -295,7 +295,7 @@ class _Builder:
         self.program.append(Mark(kind="end", counter=self.depth))
 
     def join_rest(self) -> None:
-        """Let the first step of a body that ends take the rest of the body's last run."""
+        """Give the rest of a body's last run to the body's first step, or to a step of its own."""
         if self.rest is None:
             return
         place = self.body_start(self.depth)
@@ -325,7 +325,7 @@ class _Builder:
     # Segments to steps.
 
     def take_align(self) -> int:
-        """Return the alignment of the step that comes; the one behind it has none."""
+        """Return the alignment of the next step, and reset it for the steps after that."""
         align, self.segment_align = self.segment_align, 1
         return align
 
@@ -340,7 +340,7 @@ class _Builder:
         if not self.segment:
             assert begin is None
             return
-        # A remainder would cost a cycle in each turn, or in each packet of few bytes.
+        # A short last step would cost a cycle in each iteration, or in each short packet.
         may_be_wide = self.depth > 0 or not self.has_lengths
         if not self.program:
             may_be_wide |= self.layout.min_bytes <= 16 * self.bus_bytes

@@ -1,7 +1,7 @@
 """The invariants of every plan, checked without knowing how the plan was built.
 
 A plan that passes can be transcribed without further checks: each byte is mapped once, every jump
-is sound, each loop ends at the level where it starts, the rest of each run is taken.
+is sound, each loop ends at the level where it starts, and the rest of each run is taken.
 :mod:`firm_hdl.plan.offsets` checks the offsets in the packet. Problems are sentences for people; an
 empty list means a good plan.
 """
@@ -142,7 +142,7 @@ def _map(plan: Plan, step: MapStep) -> Iterator[str]:
     if step.rest is not None:
         yield from _run(plan, step.rest, counted=True)
         if step.bytes > plan.bus_bytes:
-            yield f"the map behind a rest has {step.bytes} bytes, more than a bus word"
+            yield f"the map after a rest has {step.bytes} bytes, more than a bus word"
     elif not step.slices:
         yield "there is nothing to do"
     if step.bytes > 2 * plan.bus_bytes:
@@ -154,7 +154,7 @@ def _map(plan: Plan, step: MapStep) -> Iterator[str]:
             yield f"two transfers of {plan.leaves[part.leaf]} are in one cycle"
     for item in step.slices[1:]:
         if isinstance(item, Part) and item.first:
-            yield f"{plan.leaves[item.leaf]} continues behind other bytes"
+            yield f"{plan.leaves[item.leaf]} continues after other bytes"
     lengths = [part.leaf for part in step.parts if plan.leaves[part.leaf].kind == "length"]
     done = [part.leaf for part in step.parts if part.completes and part.leaf in lengths]
     counted = [] if step.begin is None else [step.begin.length]
@@ -220,7 +220,7 @@ def _transfers(plan: Plan) -> Iterator[str]:
 
 
 def _ends(plan: Plan, leaf: int, parts: list[Part], runs: list[int]) -> Iterator[str]:
-    """Check the transfers of a leaf: parts, each of a whole transfer, behind at most one run."""
+    """Check the transfers of a leaf: parts, each of a whole transfer, after at most one run."""
     most = 2 if plan.leaves[leaf].kind == "items" and not runs else 1
     if len(parts) > most or len(runs) > 1 or not (parts or runs):
         yield f"{len(parts)} transfers and {len(runs)} runs"
@@ -241,7 +241,7 @@ def _ends(plan: Plan, leaf: int, parts: list[Part], runs: list[int]) -> Iterator
 
 
 def _joints(plan: Plan) -> Iterator[str]:
-    """Check that a transfer cut by the end of a step goes on in the next one and only there."""
+    """Check that a transfer that a step's end cuts continues in the next step and only there."""
     for index, step in enumerate(plan.steps):
         first = step.slices[0] if step.slices else None
         before = plan.steps[index - 1] if index else None
@@ -273,79 +273,79 @@ State = tuple[int, ...]
 
 @dataclass(slots=True)
 class _Walk:
-    """Follows all jumps. A state holds the first step of each open loop."""
+    """Follow all jumps. A state is the first steps of the open loops, outermost first."""
 
     plan: Plan
     states: dict[int, State] = field(default_factory=dict)
-    # For the body of a run: what loaded the counter ("constant", or the run that was started).
+    # For the body of a run: what loaded the counter, a jump ("constant") or the start of a run.
     loaded: dict[int, int | str | None] = field(default_factory=dict)
     counts: dict[tuple[int | str, int | None], int] = field(default_factory=dict)
     todo: list[int] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
 
     def jump(
-        self, jump: Jump, state: State, expected: int, who: str, run: int | None = None
+        self, jump: Jump, state: State, expected: int, where: str, run: int | None = None
     ) -> None:
         """Follow a jump from a state, and check that it leads to the expected step."""
         loaded: int | str | None = run
         for counter, count in jump.enter:
             if count < 1 or count != self.counts.setdefault((counter, jump.step), count):
-                self.problems.append(f"{who}: loads a count of {count}")
+                self.problems.append(f"{where}: loads a count of {count}")
             if counter == RUN_COUNTER:
                 if loaded is not None:
-                    self.problems.append(f"{who}: the counter of the run is loaded twice")
+                    self.problems.append(f"{where}: the counter of the run is loaded twice")
                 loaded = "constant"
             elif counter != len(state) or len(state) >= self.plan.levels:
-                self.problems.append(f"{who}: loop {counter} inside {len(state)} loops")
+                self.problems.append(f"{where}: loop {counter} inside {len(state)} loops")
             else:
                 state = (*state, expected)
         target = len(self.plan.steps) if jump.step is None else jump.step
         if target != expected:
-            self.problems.append(f"{who}: goes to step {target}, not {expected}")
+            self.problems.append(f"{where}: goes to step {target}, not {expected}")
         elif jump.step is None:
             if state or loaded is not None:
-                self.problems.append(f"{who}: ends within a loop or a run")
+                self.problems.append(f"{where}: ends within a loop or a run")
         elif target >= len(self.plan.steps):
-            self.problems.append(f"{who}: there is no step {target}")
+            self.problems.append(f"{where}: there is no step {target}")
         elif target not in self.states:
             self.states[target] = state
             self.loaded[target] = loaded
             self.todo.append(target)
         elif (state, loaded) != (self.states[target], self.loaded[target]):
-            self.problems.append(f"{who}: step {target} is also reached with other open loops")
+            self.problems.append(f"{where}: step {target} is also reached with other open loops")
 
     def step(self, index: int, spans: dict[Span, int]) -> None:
-        step, state, who = self.plan.steps[index], self.states[index], f"step {index}"
+        step, state, where = self.plan.steps[index], self.states[index], f"step {index}"
         loads: int | str | None = None
         if isinstance(step, RunStep):
             loads = step.run if self.plan.runs[step.run].counted else "constant"
         if self.loaded[index] != loads:
             problem = "the counter of the run is not loaded, or needlessly loaded"
-            self.problems.append(f"{who}: {problem}")
+            self.problems.append(f"{where}: {problem}")
         elif isinstance(step, RunStep) and loads == "constant":
             count, leaf = self.counts[RUN_COUNTER, index], _items(self.plan, step.run)
             if count % leaf.lanes:
-                self.problems.append(f"{who}: {count} items do not fill words of {leaf.lanes}")
+                self.problems.append(f"{where}: {count} items do not fill words of {leaf.lanes}")
         for part in step.parts:
             if part.last_level is not None and part.last_level != len(state) - 1:
-                self.problems.append(f"{who}: loop {part.last_level} is not the innermost")
+                self.problems.append(f"{where}: loop {part.last_level} is not the innermost")
         after = index + 1
         begin = step.begin
         if isinstance(begin, BeginLoop):
             if begin.level != len(state):
-                self.problems.append(f"{who}: loop {begin.level} inside {len(state)} loops")
-            self.jump(begin.body, (*state, after), after, f"{who}, body", None)
+                self.problems.append(f"{where}: loop {begin.level} inside {len(state)} loops")
+            self.jump(begin.body, (*state, after), after, f"{where}, body", None)
             after = spans.get((len(state), after), after) + 1
         elif begin is not None:
-            self.jump(begin.body, state, after, f"{who}, body", begin.run)
+            self.jump(begin.body, state, after, f"{where}, body", begin.run)
             after += 1
         for level, jump in step.exits.repeats:
             if level != len(state) - 1:
-                self.problems.append(f"{who}: loop {level} ends inside {len(state)} loops")
+                self.problems.append(f"{where}: loop {level} ends inside {len(state)} loops")
                 return
-            self.jump(jump, state, state[-1], f"{who}, loop {level} again")
+            self.jump(jump, state, state[-1], f"{where}, loop {level} again")
             state = state[:-1]
-        self.jump(step.exits.default, state, after, f"{who}, next")
+        self.jump(step.exits.default, state, after, f"{where}, next")
 
 
 def _flow(plan: Plan) -> list[str]:
@@ -364,8 +364,8 @@ def _flow(plan: Plan) -> list[str]:
 
 
 def _rests(plan: Plan) -> Iterator[str]:
-    """Check that the step behind a run takes its rest, and no other step does."""
-    # The runs that may have been left in front of each step. `None`: the start, or no run.
+    """Check that the step after a run takes its rest, and no other step does."""
+    # The runs whose rest may be left at each step. `None`: the start, or no run.
     left: dict[int | None, set[int | None]] = {plan.start.step: {None}}
     for step in plan.steps:
         run: int | None = None
@@ -378,7 +378,7 @@ def _rests(plan: Plan) -> Iterator[str]:
         for jump in (step.exits.default, *(jump for _, jump in step.exits.repeats)):
             left.setdefault(jump.step, set()).add(run)
     for index, step in enumerate(plan.steps):
-        # The body of a run that a step starts has only this step in front.
+        # Only the step that starts a run leads to the body of the run.
         runs = left.get(index, set())
         if step.rest is not None and step.rest not in runs:
             yield f"step {index}: {_items(plan, step.rest)} has no rest here"

@@ -14,8 +14,8 @@ def step_sizes(
 ) -> list[int]:
     """Return step sizes for a segment.
 
-    A step takes up to a bus word. The last one may take two words if it takes no rest of a run. A
-    stream has one transfer per cycle, so that a step ends between two transfers of a leaf.
+    A step takes up to a bus word. The last step may take two words if it takes no rest of a run. A
+    stream has one transfer per cycle, so a step ends between two transfers of a leaf.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ def step_sizes(
         With at least one slice; all transfers in it are whole.
     bus_bytes : int
     at_start : bool
-        Whether the segment starts a packet. There it is cut at bus words, which needs no rotator.
+        Whether the segment starts a packet. It is then cut at bus words, which needs no rotator.
     may_be_wide : bool
         Whether a last step may take two words.
     has_rest : bool
@@ -45,15 +45,17 @@ def step_sizes(
 def _pieces(segment: list[Slice]) -> list[list[Slice]]:
     """Divide a segment between transfers of the same leaf; each piece starts at 0."""
     pieces: list[list[Slice]] = []
-    before: Slice | None = None
+    previous: Slice | None = None
     start = 0
     for item in segment:
-        is_second = isinstance(before, Part) and isinstance(item, Part) and before.leaf == item.leaf
+        is_second = (
+            isinstance(previous, Part) and isinstance(item, Part) and previous.leaf == item.leaf
+        )
         if is_second or not pieces:
             pieces.append([])
             start = item.at
         pieces[-1].append(replace(item, at=item.at - start))
-        before = item
+        previous = item
     return pieces
 
 
@@ -67,8 +69,9 @@ def cut(segment: list[Slice], bus_bytes: int, last_bytes: int) -> list[int]:
     sizes: list[int] = []
     start = 0
     while total - start > last_bytes:
-        later = -(-(total - start - last_bytes) // bus_bytes) - 1
-        lowest = max(total - last_bytes - later * bus_bytes, start + 1)
+        # Steps between this one and the last one.
+        inner = -(-(total - start - last_bytes) // bus_bytes) - 1
+        lowest = max(total - last_bytes - inner * bus_bytes, start + 1)
         cuts = [at for at in range(lowest, start + bus_bytes + 1) if at in borders]
         end = cuts[-1] if cuts else start + bus_bytes
         sizes.append(end - start)

@@ -1,11 +1,11 @@
-"""In which cycle converters are done with each packet, if packets come back to back.
+"""Predict in which cycle converters finish each packet, if packets come back to back.
 
-Both converters execute a step per cycle, and the bus moves a beat per cycle. Between steps and bus
-is a ring of beats. So packets take as many cycles as they have beats or steps, whichever is more,
-as long as the ring is large enough where one of the two is faster for a while.
+Both converters execute a step per cycle, and the bus moves a beat per cycle. A ring of beats lies
+between the two. So packets take as many cycles as they have beats or steps, whichever is more,
+unless one of the two is faster for longer than the ring can buffer.
 
-``tests/gateware/test_throughput.py`` compares each packet with the circuits. Latencies are left
-out: they are constants of the circuits.
+``tests/gateware/test_throughput.py`` compares each packet with the circuits. Latencies are not
+included: they are constants of the circuits.
 """
 
 from __future__ import annotations
@@ -27,31 +27,32 @@ __all__ = [
 ]
 
 FREED_AFTER = 5
-"""Cycles from the deserializer's last step with a beat to the beat that takes its place."""
+"""Cycles from the deserializer's last step that reads a beat to the beat that reuses its slot."""
 
 REPEATED_LENGTH = 2
-"""Cycles from a length that the serializer takes to the next one of the same leaf, at least."""
+"""Least number of cycles from a length that the serializer takes to the next one of its leaf."""
 
 ROOM_AFTER = 2
-"""Cycles from the serializer's beat that leaves the ring to the step that can take its place."""
+"""Cycles from a beat that the serializer sends to the first step that can reuse its slot."""
 
 COMPLETE_AFTER = 2
-"""Cycles from the serializer's step that completes a beat to the beat that leaves the ring."""
+"""Cycles from the serializer's step that completes a beat to the cycle that sends the beat."""
 
 SETTLED_BEATS = 32
-"""After so many beats, a packet that is repeated takes as many cycles each time, on average."""
+"""Number of beats after which the average cycles of a repeated packet are constant."""
 
 
 @dataclass(frozen=True, slots=True)
 class Packet:
-    """A packet without errors, as far as its cycles depend on it.
+    """What the cycles of a packet without errors depend on.
 
     Attributes
     ----------
     plan : Plan
     visits : tuple of Visit
-        Its steps.
+        The steps of the packet, in order.
     bytes : int
+        Size of the packet.
     """
 
     plan: Plan
@@ -70,11 +71,11 @@ class Packet:
             return 1
         following = self.visits[index + 1]
         after = self.plan.steps[following.step]
-        is_some = isinstance(after, RunStep) or following.bytes > after.bytes
-        return begin.align if is_some else 1
+        has_items = isinstance(after, RunStep) or following.bytes > after.bytes
+        return begin.align if has_items else 1
 
     def next_start(self, index: int) -> int:
-        """Return where the step after another one starts, or the items that it counts."""
+        """Return the packet offset of the next step, or of the first item of a run."""
         end = self.visits[index].end
         return end + (self.plan.header_bytes - end) % self.aligned_items(index)
 
@@ -87,7 +88,7 @@ def packet_of(plan: Plan, packet: bytes) -> Packet:
 def cycles_between(packet: Packet) -> int:
     """Return the cycles from one packet to the next, if it is repeated.
 
-    These are of the converter that takes more, and the average, rounded up.
+    The result is that of the slower converter: an average over packets, rounded up.
     """
     count = ceil(SETTLED_BEATS / packet.beats)
     converters: list[Callable[[Sequence[Packet]], list[int]]]
@@ -99,22 +100,24 @@ def cycles_between(packet: Packet) -> int:
 def deserializer_cycles(packets: Sequence[Packet]) -> list[int]:
     """Return the cycle in which a deserializer executes the last step of each packet.
 
-    Cycle 0 is that of the first beat. The packet's status is valid a latency later. All that comes
-    out is taken at once.
+    Cycle 0 is that of the first beat. The packet's status is valid a latency later. Consumers take
+    all outputs at once.
     """
-    # Cycles of the beats; first beat and cycle of each step.
+    # Cycle of each beat.
     beats: list[int] = []
+    # First beat and cycle of each step.
     steps: list[tuple[int, int]] = []
     ends: list[int] = []
-    past = base = 0
+    # First beat of the packet; number of steps whose beats may be overwritten.
+    base = finished = 0
     for packet in packets:
         ring = ring_beats(packet.plan.bus_bytes)
         for first, last in _reads(packet):
             while len(beats) <= base + last:
-                # A beat takes the place of one that no step needs any more.
-                while past < len(steps) and steps[past][0] <= len(beats) - ring:
-                    past += 1
-                free = steps[past - 1][1] + FREED_AFTER if past else 0
+                # A beat reuses the slot of one that no step needs any more.
+                while finished < len(steps) and steps[finished][0] <= len(beats) - ring:
+                    finished += 1
+                free = steps[finished - 1][1] + FREED_AFTER if finished else 0
                 beats.append(max([free, *(cycle + 1 for cycle in beats[-1:])]))
             cycle = max([beats[base + last], *(cycle + 1 for _, cycle in steps[-1:])])
             steps.append((base + first, cycle))
@@ -133,10 +136,10 @@ def _reads(packet: Packet) -> list[tuple[int, int]]:
     ]
     last = packet.beats - 1
     if packet.plan.steps[visits[-1].step].begin is None:
-        # Whether bytes follow the message shows in the last beat.
+        # The last beat shows whether bytes follow the message.
         beats[-1] = (beats[-1][0], last)
     else:
-        # A length of 0 ends the packet, which is known too late: the end is a step of its own.
+        # The length is known too late for its step to end the packet: the end is another step.
         beats.append((visits[-1].end // bus, last))
     return beats
 
@@ -148,35 +151,35 @@ class _Write:
     Attributes
     ----------
     length : int or None
-        The leaf of its length.
+        Index of the leaf of the step's length.
     full : int
-        Beats that can be sent after it.
+        Number of beats that can be sent after the step.
     next : int
-        Where the next step starts; after the last step, the next packet.
-    most : int
-        Most beats from the step's own start to `next`, as the circuit estimates it.
+        Beat in which the next step starts; after the last step, the next packet.
+    max_beats : int
+        The circuit's upper bound of the beats from the start of the step to `next`.
     """
 
     length: int | None
     full: int
     next: int
-    most: int
+    max_beats: int
 
 
 def serializer_cycles(packets: Sequence[Packet]) -> list[int]:
     """Return the cycle in which a serializer could take the last leaf of each packet.
 
     Cycle 0 is that in which all leaves are offered, after a pause. The packet's last beat is valid
-    a latency later; it may have waited for other beats. All that comes out is taken at once.
+    a latency later; earlier beats may delay it. Consumers take all outputs at once.
     """
-    # Cycles in which beats leave the ring; in which the last step's leaves are taken, and in which
-    # its words are.
+    # Cycle in which each beat is sent.
     sent: list[int] = []
-    # The first packet's constants are there before its leaves.
+    # Cycles in which the collector takes the last step's leaves, and the packer its words. Steps of
+    # constants are done before the leaves of the first packet are offered.
     taken = placed = -1 - first_step(packets[0].plan) if packets else 0
     lengths: dict[int, int] = {}
-    # Of the last step.
-    start = end = most = base = 0
+    # Positions of the last step, in beats, and its `max_beats`; first beat of the packet.
+    start = end = max_beats = base = 0
     ends: list[int] = []
     for packet in packets:
         room = ring_beats(packet.plan.bus_bytes) - most_beats(packet.plan)
@@ -185,23 +188,23 @@ def serializer_cycles(packets: Sequence[Packet]) -> list[int]:
             if step.length is not None:
                 taken = max(taken, lengths.get(step.length, -1) + REPEATED_LENGTH)
                 lengths[step.length] = taken
-            now = taken + 1
-            # In the cycle after a step, only an estimate of its size is known.
-            if now == placed + 1 and now < _sent(sent, start + most - room) + ROOM_AFTER:
-                now += 1
-            if now > placed + 1:
-                now = int(max(now, _sent(sent, end - room) + ROOM_AFTER))
-            placed = now
+            cycle = taken + 1
+            # In the cycle after a step, only the upper bound of its size is known.
+            if cycle == placed + 1 and cycle < _sent(sent, start + max_beats - room) + ROOM_AFTER:
+                cycle += 1
+            if cycle > placed + 1:
+                cycle = int(max(cycle, _sent(sent, end - room) + ROOM_AFTER))
+            placed = cycle
             for _ in range(len(sent), base + step.full):
-                sent.append(max([placed + COMPLETE_AFTER, *(cycle + 1 for cycle in sent[-1:])]))
-            start, end, most = end, base + step.next, step.most
+                sent.append(max([placed + COMPLETE_AFTER, *(before + 1 for before in sent[-1:])]))
+            start, end, max_beats = end, base + step.next, step.max_beats
         ends.append(sent[-1] - COMPLETE_AFTER - 1)
         base += packet.beats
     return ends
 
 
 def _sent(sent: Sequence[int], count: int) -> float:
-    """Return the cycle in which the last one of `count` beats left the ring."""
+    """Return the cycle in which the last of the first `count` beats was sent."""
     if count <= 0:
         return -inf
     return sent[count - 1] if count <= len(sent) else inf
@@ -211,7 +214,7 @@ def _writes(packet: Packet) -> Iterator[_Write]:
     """Yield the steps of a serializer."""
     plan, bus, visits = packet.plan, packet.plan.bus_bytes, packet.visits
     count = len(visits)
-    # A last step that only takes a rest is left out where a length says that there is none.
+    # A last step that only takes a rest is skipped if a length says that there is no rest.
     if count > 1 and not visits[-1].bytes and only_ends(plan.steps[visits[-1].step]):
         count -= plan.steps[visits[-2].step].begin is not None
     for index in range(count):
@@ -229,12 +232,12 @@ def _writes(packet: Packet) -> Iterator[_Write]:
             length=None if begin is None else begin.length,
             full=full // bus,
             next=end // bus,
-            most=_most(packet, index, is_last),
+            max_beats=_max_beats(packet, index, is_last),
         )
 
 
-def _most(packet: Packet, index: int, is_last: bool) -> int:
-    """Return the circuit's estimate of a step's size, in beats."""
+def _max_beats(packet: Packet, index: int, is_last: bool) -> int:
+    """Return the circuit's upper bound of a step's size, in beats."""
     plan, bus = packet.plan, packet.plan.bus_bytes
     visit = packet.visits[index]
     step = plan.steps[visit.step]

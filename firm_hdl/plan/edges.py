@@ -1,7 +1,7 @@
 """All decisions that a plan leaves to the packet, so that tests can report which were covered.
 
 The paper that firm-hdl follows leaves open how much of a generated circuit its tests reach. A plan
-answers that: a converter's behaviour is its steps, and the packet only decides what is listed here.
+answers this question: a converter executes steps, and a packet decides only what is listed here.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Where steps may start in a bus word, and what a circuit needs for it.
+"""The lanes at which steps may start, and the sizes of a circuit that follow from them.
 
-Residues of the position are followed through the control flow of the plan until no set grows any
-more. A plan whose words all start at bus words needs no rotator at all.
+Sets of residues of the position are propagated through the control flow of the plan, up to a fixed
+point. A plan in which every word starts in lane 0 needs no rotator.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Place:
     Attributes
     ----------
     first : tuple of int
-        Lanes of the first byte behind the step before: the rest of a run, or padding, starts here.
+        Lanes of the first byte after the previous step, where a rest or padding starts.
     map : tuple of int
         Lanes of the first byte of the map or of the word of a run.
     """
@@ -52,7 +52,7 @@ class Geometry:
     item_lanes, map_lanes : tuple of int
         Lanes at which the word of items and the word of the map may start, in ascending order.
     item_unit, map_unit : int
-        Lanes of that word, and its sizes, are multiples of so many bytes; a power of two.
+        Granularity of that word in bytes, a power of two: its lanes and sizes are multiples.
     aligns : bool
         Whether the circuit computes any padding.
     """
@@ -104,7 +104,7 @@ def ring_beats(bus_bytes: int) -> int:
 
 
 def most_beats(plan: Plan) -> int:
-    """Return the largest number of beats that a step touches, the padding in it included."""
+    """Return the largest number of beats that a step touches, including its padding."""
     # An empty packet has a beat, too.
     return max(1, *(_beats(plan, step) for step in plan.steps))
 
@@ -120,13 +120,13 @@ def _beats(plan: Plan, step: Step) -> int:
 
 
 def first_step(plan: Plan) -> int:
-    """Return the first step with a leaf of the message; those in front of it have constants."""
+    """Return the index of the first step with a leaf; earlier steps have constants only."""
     steps = enumerate(plan.steps)
     return next(i for i, step in steps if step.parts or isinstance(step, RunStep))
 
 
 def only_ends(step: Step) -> bool:
-    """Tell whether a step ends the packet in any case, and takes nothing but a rest."""
+    """Tell whether a step always ends the packet, and takes nothing but a rest."""
     ends = step.exits.default.step is None and not step.exits.repeats
     return ends and step.rest is not None and not step.slices
 
@@ -168,7 +168,7 @@ class _Flow:
         return rs.advance(residues, count, self.modulus)
 
     def aligned(self, residues: int, align: int) -> int:
-        """Align positions in the packet, which count from the start of its header."""
+        """Align positions, which count from the start of the packet's header."""
         header = self.plan.header_bytes
         after_header = self.advance(residues, -header)
         return self.advance(rs.aligned(after_header, align, self.modulus), header)
@@ -188,7 +188,7 @@ class _Flow:
         yield from self.after_map(step, self.advance(start, step.bytes))
 
     def repeated(self, start: int) -> int:
-        """Return the positions behind any number of words."""
+        """Return the positions after any number of words."""
         found = 0
         while start & ~found:
             found |= start

@@ -2,7 +2,7 @@
 
 :mod:`firm_hdl.plan.build` makes a program: steps in wire order, and marks between them where loops
 start and end, and where counters of constant counts are loaded. Marks take no cycle. So they become
-parts of the jumps from step to step.
+parts of the jumps between steps.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class _Linker:
         return Jump(enter=tuple(enter), step=self.numbers.get(place))
 
     def exits_at(self, place: int) -> Exits:
-        """Return the exits of a step or run that ends in front of a place of the program."""
+        """Return the exits of a step or run that ends before a place of the program."""
         repeats: list[tuple[int, Jump]] = []
         while place < len(self.program):
             item = self.program[place]
@@ -100,7 +100,7 @@ class _Linker:
                 continue
             after = place + 1
             if item.begin is not None:
-                # The body is behind: that of a loop up to the loop's end, that of a run one step.
+                # The body follows: of a loop, the steps up to its end; of a run, one step.
                 body = self.jump_to(after)
                 item = replace(item, begin=replace(item.begin, body=body))
                 after = self.ends[after] + 1 if isinstance(item.begin, BeginLoop) else after + 1

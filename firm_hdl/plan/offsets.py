@@ -31,7 +31,7 @@ Span: TypeAlias = "tuple[int, int]"
 """Level and first step of a loop."""
 
 Place: TypeAlias = "tuple[int, int]"
-"""An offset modulo 8, and the number of padding bytes since then that no value follows yet."""
+"""An offset modulo 8, and the number of static padding bytes after it, up to the next slice."""
 
 
 def loop_spans(plan: Plan) -> dict[Span, int]:
@@ -45,7 +45,7 @@ def loop_spans(plan: Plan) -> dict[Span, int]:
 
 
 def check_offsets(plan: Plan) -> list[str]:
-    """Return the errors in alignment and padding of a plan whose control flow is sound."""
+    """Return the errors in alignment and padding of a plan with sound control flow."""
     walk = _Walk(plan)
     start: set[Place] = {(-plan.header_bytes % 8, 0)}
     end = walk.region(0, len(plan.steps) - 1, 0, start)
@@ -63,8 +63,8 @@ def check_offsets(plan: Plan) -> list[str]:
 def paddings(plan: Plan) -> dict[int, frozenset[int]]:
     """Return, for each step that is aligned, the numbers of bytes that may be skipped before it.
 
-    Unlike the layout, this respects limits: a loop that has at most one element has no padding in
-    front of a second one.
+    Unlike the layout, the result respects limits: a loop of at most one element has no padding
+    before a second element.
     """
     walk = _Walk(plan, limited=True)
     walk.region(0, len(plan.steps) - 1, 0, {(-plan.header_bytes % 8, 0)})
@@ -82,9 +82,9 @@ class _Walk:
     known: dict[tuple[int, int, int, Place], frozenset[Place]] = field(default_factory=dict)
     # A dict, because it keeps the order.
     problems: dict[str, None] = field(default_factory=dict)
-    # Numbers of bytes that are skipped in front of each aligned step.
+    # Numbers of bytes that are skipped before each aligned step.
     skipped: dict[int, set[int]] = field(default_factory=dict)
-    # Steps that start a run with padding in front, at some offset.
+    # Steps that start a run with padding before it, at some offset.
     padded_runs: set[int] = field(default_factory=set)
     max_align: int = field(init=False)
 
@@ -107,7 +107,7 @@ class _Walk:
         return min(leaf.item_bytes, self.max_align) or 1
 
     def region(self, first: int, last: int, depth: int, places: set[Place]) -> set[Place]:
-        """Run a range of steps that is inside `depth` loops."""
+        """Follow a range of steps that is inside `depth` loops; return the places after it."""
         result: set[Place] = set()
         for place in places:
             key = (first, last, depth, place)
@@ -158,7 +158,7 @@ class _Walk:
         return places
 
     def step(self, index: int, depth: int, places: set[Place]) -> tuple[set[Place], int]:
-        """Run a step and the loop or run that it starts; return the places and the step after."""
+        """Follow a step and what it starts; return the places after that, and the next step."""
         step = self.plan.steps[index]
         if step.align != 1:
             self.check_padding_used(places, f"step {index}")
@@ -209,12 +209,12 @@ class _Walk:
         align = self.align(leaf)
         if pad != -residue % align:
             self.report(
-                f"step {index}: {leaf} has {pad} bytes of padding in front, "
+                f"step {index}: {leaf} has {pad} bytes of padding before it, "
                 f"not {-residue % align}, at offset {residue} modulo 8"
             )
 
     def begin_run(self, index: int, begin: BeginRun, places: set[Place]) -> set[Place]:
-        """Run a whole run, the rest included that a later step takes."""
+        """Follow a whole run, including the rest that a later step takes."""
         leaf = self.plan.leaves[self.plan.runs[begin.run].items]
         align = self.align(leaf)
         if self.plan.steps[index + 1].align != 1:
@@ -234,7 +234,7 @@ class _Walk:
         return result
 
     def run_counts(self, begin: BeginRun) -> Sequence[int]:
-        """Return the counts of a run that is not empty, as far as they give different offsets."""
+        """Return nonzero counts of a run, enough for all offsets modulo 8 at which it can end."""
         most = self.plan.max_count(begin) if self.limited else 8
         return range(1, min(most, 8) + 1)
 

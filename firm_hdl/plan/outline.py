@@ -1,8 +1,8 @@
-"""The outline of a layout: what a parser has to know of a message whose values nobody takes.
+"""The outline of a layout: what a parser has to know of a message, without its values.
 
-Only lengths decide where a packet goes on and whether it is good. What stands between them has a
-fixed size, whatever fields it consists of. In the outline, it is an array of bytes, and a plan of
-the outline has a step or two for it instead of one per bus word. Lengths, their bounds, alignment
+Only lengths decide how a packet continues and whether it is good. The fields between two lengths
+have a fixed size. In the outline, they are an array of bytes. A plan of the outline has one or two
+steps for this array instead of one per bus word. Lengths, their bounds, alignment
 and the size of the smallest message are those of the layout, so that both plans give every packet
 the same status.
 """
@@ -39,48 +39,48 @@ def outline(layout: Layout, bus_bytes: int) -> Layout:
 
 @dataclass(slots=True)
 class _Stretch:
-    """Bytes in a row: the padding in front of them, and their number."""
+    """Bytes in a row: the padding before them, and their number."""
 
     gap: Gap
     bytes: int
 
 
 def _outline(nodes: tuple[Node, ...], bus_bytes: int, numbers: Iterator[int]) -> Iterator[Node]:
-    open_: _Stretch | None = None
+    pending: _Stretch | None = None
     for node in nodes:
         fixed = _fixed(node)
-        if fixed is not None and open_ is not None and fixed.gap.bytes is not None:
-            open_.bytes += fixed.gap.bytes + fixed.bytes
+        if fixed is not None and pending is not None and fixed.gap.bytes is not None:
+            pending.bytes += fixed.gap.bytes + fixed.bytes
             continue
-        if open_ is not None:
-            yield from _bytes(open_, bus_bytes, numbers)
-        open_ = fixed
+        if pending is not None:
+            yield from _bytes(pending, bus_bytes, numbers)
+        pending = fixed
         if isinstance(node, LoopNode) and fixed is None:
             body = tuple(_outline(node.body, bus_bytes, numbers))
-            # An element without bytes; the number of them is checked nevertheless.
+            # An element without bytes becomes a trigger: the number of elements is still checked.
             yield replace(node, body=body or (Trigger(path=_path(numbers)),))
         elif fixed is None:
             yield node
-    if open_ is not None:
-        yield from _bytes(open_, bus_bytes, numbers)
+    if pending is not None:
+        yield from _bytes(pending, bus_bytes, numbers)
 
 
 def _bytes(stretch: _Stretch, bus_bytes: int, numbers: Iterator[int]) -> Iterator[Node]:
     """Yield a stretch as arrays of bytes.
 
-    An array of many bytes is a run, which takes one step for any number of bus words, but cannot
-    share it with what is in front. So its first bytes are a value of their own.
+    An array of many bytes is a run: one step for any number of bus words, but no other bytes can be
+    in this step. So the first bytes are an array of their own, which shares a step with others.
     """
-    gap, left = stretch.gap, stretch.bytes
+    gap, remaining = stretch.gap, stretch.bytes
     if gap.bytes != 0:
-        # Padding stands only in front of a value that needs the alignment.
+        # Padding stands only before a value that needs the alignment.
         number = PRIMITIVES["ros2"][f"uint{8 * gap.align}"]
         yield Scalar(path=_path(numbers), gap=gap, type=number)
-        gap, left = NO_GAP, left - gap.align
-    if left > 4 * bus_bytes:
-        sizes = [bus_bytes, left - bus_bytes]
+        gap, remaining = NO_GAP, remaining - gap.align
+    if remaining > 4 * bus_bytes:
+        sizes = [bus_bytes, remaining - bus_bytes]
     else:
-        sizes = [min(bus_bytes, left - at) for at in range(0, left, bus_bytes)]
+        sizes = [min(bus_bytes, remaining - at) for at in range(0, remaining, bus_bytes)]
     for size in sizes:
         yield _array(size, gap, numbers)
         gap = NO_GAP
@@ -104,7 +104,7 @@ def _path(numbers: Iterator[int]) -> Path:
 
 
 def _fixed(node: Node) -> _Stretch | None:
-    """Return a node as a stretch if it has the same bytes in every packet, but for their values."""
+    """Return a node as a stretch if its size, and any padding inside, is always the same."""
     match node:
         case Scalar():
             return _Stretch(node.gap, node.type.bytes)

@@ -44,7 +44,7 @@ def constructs(plan: Plan) -> frozenset[str]:
         size = plan.leaves[run.items].item_bytes
         words = [f"run of {size} bytes", "counted" if run.counted else "constant count"]
         words += ["NUL"] if run.terminated else []
-        words += [] if run.last else ["tail behind"]
+        words += [] if run.last else ["with tail"]
         found.add(", ".join(words))
     for step in plan.steps:
         found.update(_step(plan, step))

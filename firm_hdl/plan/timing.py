@@ -1,8 +1,8 @@
 """The cycles that a converter takes for a packet, found by running its plan.
 
-Cycles are those of the converter that takes more; see :mod:`firm_hdl.plan.cycles`. The packet with
-the most cycles per byte is searched for, not proved: short strings and few elements take a step
-each, for their length, and have few bytes.
+Cycles are those of the slower converter; see :mod:`firm_hdl.plan.cycles`. The packet with the most
+cycles per byte is the result of a search, not of a proof. The search tries short strings and few
+elements: their lengths take a step each, and the packet has few bytes.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def timing(plan: Plan) -> Timing:
     is_short = shortest.bytes < 1 << 14
     if is_short and any(leaf.kind == "length" for leaf in plan.leaves):
         counts = sorted({0, 1, MAX_ELEMENTS.get(plan.levels, 2)})
-        # A run takes one cycle for each bus word, so that longer ones are not harder.
+        # A run takes one cycle for each bus word, so longer runs are not harder.
         for elements, items in product(counts, sorted({0, 1, bus // 2})):
             try:
                 cost = _cost(plan, elements, items, MAX_TRANSFERS)

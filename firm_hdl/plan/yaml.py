@@ -33,13 +33,13 @@ __all__ = ["from_yaml", "to_yaml"]
 
 LEGEND = """\
 # How to read it: a step is one cycle's work on the next bytes of the packet, in this order:
-#   rest of: s.items    the last bus word of a run, which may be short, and the NUL behind it;
+#   rest of: s.items    the last bus word of a run, which may be short, and the NUL after it;
 #                       nothing if the run is empty or was not started
-#   align: 4            padding up to a multiple of 4 bytes, counted from behind the header
+#   align: 4            padding up to a multiple of 4 bytes, counted from the end of the header
 #   4..7: stamp.sec     bytes 4 to 7 from here are this leaf (least significant byte first)
 #   at 8: x.trigger     a leaf without bytes, valid here
 #   starts              a run of items or a loop over elements: as many as the length "count" says,
-#                       at most "limit"; "align" is padding in front of the first item. "body" is
+#                       at most "limit"; "align" is padding before the first item. "body" is
 #                       the next step if the loop has elements, or the run more than one bus word.
 #   words of: s.items   a bus word of a run; repeated until only the rest is left, or, if the count
 #                       is constant, until the run is done
@@ -181,8 +181,8 @@ def _leaf(leaf: Leaf) -> str:
 
 def _run(run: Run) -> str:
     words = ["counted" if run.counted else "constant count"]
-    words += ["NUL behind"] if run.terminated else []
-    words += [] if run.last else ["tail behind"]
+    words += ["with NUL"] if run.terminated else []
+    words += [] if run.last else ["with tail"]
     return f"[{', '.join(words)}]"
 
 

@@ -43,7 +43,7 @@ KEYS = ("message", "wire", *NUMBERS, "leaves", "runs", "start", "steps")
 LEAF = re.compile(r"(?:(trigger|length)|(signed )?(\w+)(?: x (\d+))?)")
 RANGE = re.compile(r"(?:at (\d+)|(\d+)(?:\.\.(\d+))?)")
 FIXED = re.compile(r"\(((?:[0-9a-f]{2} )+)(checked|ignored)\)")
-RUN_WORDS = ("counted", "constant count", "NUL behind", "tail behind")
+RUN_WORDS = ("counted", "constant count", "with NUL", "with tail")
 PART = re.compile(
     r"([\w.]+)(?:, (\d+) items?)?(?:, bytes (\d+)(?:\.\.(\d+))? of (\d+))?"
     r"(, last)?(?:, last of loop (\d+))?"
@@ -178,8 +178,8 @@ class _Reader:
         return Run(
             items=self.index(self.indices, path, node),
             counted="counted" in words,
-            terminated="NUL behind" in words,
-            last="tail behind" not in words,
+            terminated="with NUL" in words,
+            last="with tail" not in words,
         )
 
     def index(self, table: dict[str, int], path: str, node: yaml.Node) -> int:

@@ -1,7 +1,7 @@
 """What the arguments of ``firm-hdl verify`` can say: names, and limits.
 
 Names only, so that a command which is called wrongly, or about a type that cannot be used, need not
-wait for what is behind them. Where the things themselves are, a test compares the names.
+wait for the imports of those modules. Where the things themselves are, a test compares the names.
 """
 
 from __future__ import annotations

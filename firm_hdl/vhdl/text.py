@@ -106,7 +106,7 @@ def literal(bits: str) -> str:
 def wrap(line: str) -> list[str]:
     """Break a line of code that is too long, at spaces outside of strings.
 
-    A comment at the end of such a line becomes a line of its own in front.
+    A comment at the end of such a line becomes a line of its own before it.
     """
     indent = " " * (len(line) - len(line.lstrip()))
     code, mark, comment = line.partition("  -- ")

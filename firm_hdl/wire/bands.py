@@ -128,7 +128,7 @@ class _Drawing:
         if node.item_gap.bytes is None:
             text += f", aligned to {node.item_gap.align} if there are any"
         elif node.item_gap.bytes:
-            text += f", behind {node.item_gap.bytes} bytes of padding if there are any"
+            text += f", after {node.item_gap.bytes} bytes of padding if there are any"
         self.note("data", text + (", and a NUL that length counts" if node.terminated else ""))
 
     def length(self, node: RunNode | LoopNode, name: str) -> None:

@@ -1,7 +1,7 @@
 """Layout: a message on a wire, field by field, with the statically known part of its offsets.
 
 The layout is a tree in wire order. Alignment is decided here and nowhere else: each node has a
-:class:`Gap`, the padding in front of it. The gap is a number of bytes where the abstract
+:class:`Gap`, the padding before it. The gap is a number of bytes where the abstract
 interpretation of :mod:`firm_hdl.wire.residues` finds a single one; otherwise it is the alignment
 that the circuit must reach.
 """
@@ -49,7 +49,7 @@ OCTET = PRIMITIVES["ros2"]["uint8"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gap:
-    """Padding in front of a value that starts at a multiple of `align` bytes.
+    """Padding before a value that starts at a multiple of `align` bytes.
 
     Attributes
     ----------
@@ -86,9 +86,9 @@ class RunNode:
     Attributes
     ----------
     gap : Gap or None
-        Padding in front of the length on the wire; `None` if the run has no length (fixed arrays).
+        Padding before the length on the wire; `None` if the run has no length (fixed arrays).
     item_gap : Gap
-        Padding in front of the first item. An empty run does not have it (CDR).
+        Padding before the first item. An empty run does not have it (CDR).
     count : int or None
         Number of items, if the type fixes it.
     bound : int or None

@@ -1,6 +1,6 @@
 """The ROS 1 wire format: packed, little-endian, no header, no padding.
 
-As genpy and roscpp write it: a message body without the length that TCPROS puts in front.
+As genpy and roscpp write it: a message body without the length that TCPROS puts before it.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ def noisy_beats(
         data = int.from_bytes(part + noise.randbytes(bus_bytes - len(part)), "little")
         keep = noise.getrandbits(bus_bytes)
         if last:
-            # The first zero ends it; behind that, ones are no bytes.
+            # The first zero ends it; after that, ones are no bytes.
             ones = (1 << len(part)) - 1
             keep = ones | keep & ~(2 * ones + 1)
         yield data, keep, last

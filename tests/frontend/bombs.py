@@ -88,7 +88,7 @@ def _database(folder: Path, mode: CompressionMode) -> Path:
 def _compressed_database(folder: Path, count: int) -> Path:
     path = _database(folder, CompressionMode.FILE)
     (file,) = path.glob("*.zstd")
-    # Behind its end, a database may have anything.
+    # After its end, a database may have anything.
     with file.open("ab") as end:
         end.write(_zeros(_zstd.open, count))
     return path

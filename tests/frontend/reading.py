@@ -34,7 +34,7 @@ def refused(line, dialect):
     with pytest.raises(DefinitionError) as error:
         parse(line, dialect)
     (diagnostic,) = error.value.diagnostics
-    # Whatever is wrong is shown where it stands, or right behind what stands there.
+    # Whatever is wrong is shown where it stands, or right after what stands there.
     assert diagnostic.span is not None
     assert 0 <= diagnostic.span.start <= diagnostic.span.end <= len(line) + 1
     return diagnostic.message

@@ -27,8 +27,8 @@ def test_comment_right_above_the_first_field_is_the_head():
     assert comments("# head\nint32 a\n") == ("head", {"a": ""})
 
 
-def test_comment_above_and_behind_are_joined():
-    assert comments("\n# above\nint32 a # behind\n") == ("", {"a": "above\nbehind"})
+def test_comment_above_and_after_are_joined():
+    assert comments("\n# above\nint32 a # after\n") == ("", {"a": "above\nafter"})
 
 
 def test_comment_survives_empty_lines():

@@ -18,7 +18,7 @@ from .workspace import make_files
 
 
 @pytest.mark.parametrize("length", ["010", "0010", "00"])
-def test_zeros_in_front_of_a_length_are_kept_as_genmsg_keeps_them(tmp_path, length):
+def test_zeros_before_a_length_are_kept_as_genmsg_keeps_them(tmp_path, length):
     text = f"uint8[{length}] a\nint8[3] b\n"
     ours = Library("noetic", [make_files(tmp_path, {"p/msg/A.msg": text})])
     if int(length) == 0:

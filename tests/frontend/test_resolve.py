@@ -216,7 +216,7 @@ def test_random_definitions_come_back_from_their_texts(tmp_path_factory, definit
     assert lib.message(message.name) == message
 
 
-def test_all_that_is_wrong_behind_a_cycle_is_told(tmp_path):
+def test_all_that_is_wrong_after_a_cycle_is_told(tmp_path):
     """Of a type that contains itself, what else its fields need is looked at, too."""
     with pytest.raises(DefinitionError) as caught:
         load(tmp_path, "T a\nNope b\nU c\nint8 d\nT e\n", U="Never x\n")

@@ -93,7 +93,7 @@ def test_numbers(dialect):
 
 
 @pytest.mark.parametrize("word", "time duration".split())
-def test_words_that_go_on_behind_a_builtin_type_of_ros1(word):
+def test_words_that_go_on_after_a_builtin_type_of_ros1(word):
     for letter in "AZaz09_":
         found = member(f"{word}{letter} x", "ros1")
         assert found is not None and found.type.name == word + letter
@@ -102,7 +102,7 @@ def test_words_that_go_on_behind_a_builtin_type_of_ros1(word):
 
 
 @pytest.mark.parametrize("word", BUILTIN.split())
-def test_words_that_go_on_behind_a_builtin_type(word):
+def test_words_that_go_on_after_a_builtin_type(word):
     for letter in "AZaz09_":
         found = member(f"{word}{letter} x", "ros1")
         assert found is not None and found.type.name == word + letter

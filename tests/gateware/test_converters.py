@@ -60,7 +60,7 @@ LAST = make("ros1", {"a": "uint64", "s": "string", "b": "uint8", "t": "string"},
 NOTHING = make("ros1", {}, "Nothing")
 ENDS = {
     "the last string of a sequence": make("ros1", {"h": "uint32[4]", "a": (LAST, "[]")}),
-    "a trigger behind a string": make("ros1", {"a": "uint32", "s": "string", "e": NOTHING}),
+    "a trigger after a string": make("ros1", {"a": "uint32", "s": "string", "e": NOTHING}),
     "a string": make("ros1", {"a": "uint32", "s": "string"}),
     "a sequence of triggers": make("ros1", {"a": "uint32", "e": (NOTHING, "[]")}),
 }
@@ -70,7 +70,7 @@ ENDS = {
 @pytest.mark.parametrize("end", ENDS)
 def test_a_packet_may_end_with_a_length_or_a_step_without_bytes(end, bus_bytes):
     rx, tx = (kind(ENDS[end], bus_bytes=bus_bytes) for kind in (Deserializer, Serializer))
-    # Strings of 0 and 3 characters, behind a whole number of beats and not.
+    # Strings of 0 and 3 characters, after a whole number of beats and not.
     empty, text = bytes(8), bytes(4) + b"\3\0\0\0abc"
     if end == "the last string of a sequence":
         ends = [bytes(13) + each[4:] for each in (empty, text)]

@@ -25,7 +25,7 @@ from firm_hdl.sim.payloads import all_beats, encoder_of
 
 GAP = 24
 # Encapsulation where there is one, then fields, each padded to its own size. No value is 0: that is
-# what comes behind the end of a packet.
+# what comes after the end of a packet.
 TYPES = {
     # Fixed parts, cut between values and inside of them.
     "Bool": ("std_msgs/msg/Bool", "lyrical", "00010000 01"),
@@ -36,7 +36,7 @@ TYPES = {
     "UUID": ("unique_identifier_msgs/msg/UUID", "lyrical", "00010000" + bytes(range(1, 17)).hex()),
     "MeshTriangle": ("shape_msgs/msg/MeshTriangle", "lyrical", "00010000 010000000200000003000000"),
     "Polygon": ("geometry_msgs/Polygon", "noetic", "02000000" + "0000803f" * 6),
-    # Strings: with and without words in front of the rest, at the end and in the middle.
+    # Strings: with and without words before the rest, at the end and in the middle.
     "Header": (
         "std_msgs/msg/Header",
         "lyrical",
@@ -183,7 +183,7 @@ def test_serializer(case, bus_bytes):
                 continue
             for _ in leaves:
                 at, _ = transfers[len(waits)]
-                # A length is decoded first; and steps in front may take a while.
+                # A length is decoded first; and earlier steps may take a while.
                 waits.append(max(lengths[len(waits) % len(lengths)], done + 1 - at))
                 came.append(at + waits[-1])
             if not all(part.completes for part in step.parts):

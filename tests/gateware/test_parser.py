@@ -226,7 +226,7 @@ def test_each_error_is_late_by_a_few_cycles_and_then_forgotten(text, status, bus
     seen = run(parser, packets, stalls={"packets": GAP})
     assert [each.name for each in seen.statuses] == [status, "OK", status, status, "OK"]
     late = seen.late(packets, bus_bytes)
-    # The first one of each has nothing in front of it.
+    # The first one of each has nothing before it.
     assert LATENCY <= late[0] <= LATENCY + ERROR
     assert late[0] == late[2] == late[3]
     assert late[1] == late[4] == LATENCY + (bus_bytes == 64)
@@ -288,7 +288,7 @@ def test_a_status_that_is_not_taken_holds_the_end_of_the_next_packet_but_one():
     parser = Parser(load_message(HEADER), bus_bytes=1)
     waits = 5 * len(good)
     seen = run(parser, packets, stalls={"status": Stalls.bits("0" * waits + "1" * 1000)})
-    # Beats behind the third packet fill the buffer.
+    # Beats after the third packet fill the buffer.
     here = 3 * len(good)
     assert seen.beats[:here] == list(range(here))
     assert here < sum(beat < waits for beat in seen.beats) < here + 20

@@ -175,7 +175,7 @@ def test_paths_are_those_of_the_interface_page(name, distro, bus_bytes):
     assert paths(tx) == allowed(tx)
 
 
-def test_a_trigger_behind_all_bytes_has_no_other_paths():
+def test_a_trigger_after_all_bytes_has_no_other_paths():
     message = make("ros1", {"x": "uint8", "e": (make("ros1", {}, "E"), "[2]")})
     tx = Serializer(message, bus_bytes=2)
     assert paths(Deserializer(message, bus_bytes=2)) == {}

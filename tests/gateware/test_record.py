@@ -226,7 +226,7 @@ MANY = make("ros1", {"a": "uint8[5]", "z": "uint8"})
 
 
 def run_with_reset(dut, before, after):
-    """Run testbenches in front of and behind a reset of one cycle."""
+    """Run testbenches before and after a reset of one cycle."""
     top = Module()
     top.domains.sync = domain = ClockDomain("sync")
     top.submodules.dut = dut

@@ -36,7 +36,7 @@ class Bench:
     """A converter in a clock domain with a reset, driven in each cycle by a function."""
 
     def __init__(self, converter, good):
-        # What comes behind the reset.
+        # What comes after the reset.
         self.good = good
         top = Module()
         top.domains.sync = self.domain = ClockDomain("sync")

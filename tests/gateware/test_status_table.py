@@ -110,7 +110,7 @@ READ = [
     (HEAD + A + S + T + "030000", "TRUNCATED", TO_T),
 ]
 
-# A string at the end of the message meets what stands behind it.
+# A string at the end of the message meets what stands after it.
 LAST = make("ros2", {"t": "string<=2"})
 READ_LAST = [
     (HEAD + "02000000 6300", "OK", {"t": "c"}),
@@ -158,7 +158,7 @@ READ_PLAIN = [
 
 
 def check_reading(message, table, bus_bytes, **options):
-    """Send each packet of a table, and a good one behind each, as fast and as slow as can be."""
+    """Send each packet of a table, and a good one after each, as fast and as slow as can be."""
     good = table[0]
     rows = [row for each in table for row in (each, good)]
     rx = Deserializer(message, bus_bytes=bus_bytes, **options)
@@ -212,7 +212,7 @@ def test_items_that_are_not_whole_are_zero_whatever_is_in_their_lanes(bus_bytes,
         status = "OK" if size == len(whole) else "TRUNCATED"
         table.append((whole[:size].hex(), status, value))
     if dialect == "ros2":
-        # Behind an error, they are zero though they are whole.
+        # After an error, they are zero though they are whole.
         nothing = {"x": False, "a": [0] * 4, "b": [False] * 3}
         table.append((WRONG + text.removeprefix(HEAD), "ENCAPSULATION", nothing))
     check_reading(make(dialect, ARRAYS), table, bus_bytes)

@@ -30,7 +30,7 @@ BOTH = sum(LATENCY_CYCLES.values())
 DISTROS = ("noetic", "foxy", "humble", "iron", "jazzy", "kilted", "lyrical")
 
 
-# Both converters, one behind the other.
+# Both converters, connected in series.
 
 
 def run(message, packets, **options):

@@ -245,7 +245,7 @@ def test_the_whole_corpus_has_figures(corpus):
         ("None n\nNone m\nint16 x\n", (4, 4), (3, 0, 0)),
         ("None[3] n\nint32 x\n", (8, 8), (1, 1, 0)),
         ("None[4] n\nint32 x\n", (8, 8), (2, 0, 0)),
-        # Behind any number of bytes, the padding differs.
+        # After any number of bytes, the padding differs.
         ("None[<=2] n\nint16 x\n", (6, 8), (2, 0, 1)),
         ("Two n\nint16 x\n", (8, 8), (2, 2, 0)),
         ("int8 a\nTwo[2] n\nint64 x\n", (24, 24), (4, 1, 0)),

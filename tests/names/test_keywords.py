@@ -13,7 +13,7 @@ from firm_hdl.names.keywords import KEYWORDS, VERILOG, VHDL
 
 # Of VHDL-2019, and of PSL, that GHDL 2.0 does not keep.
 TAKEN = {"private", "view", "vpkg", "assume_guarantee", "fairness", "strong"}
-# Pygments knows them in front of a name only.
+# Pygments knows them before a name only.
 IN_CONTEXT = {"class", "extends"}
 
 

@@ -25,7 +25,7 @@ class Reference:
         In wire order.
     status : str
     gaps : list of (path, bytes)
-        The padding in front of each primitive, or of each first item.
+        The padding before each primitive, or of each first item.
     """
 
     def __init__(self, plan: Plan, message: Message, packet: bytes):

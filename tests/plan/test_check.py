@@ -55,7 +55,7 @@ PLANS = [
 
 @pytest.mark.parametrize("bus_bytes", BUS_BYTES)
 @pytest.mark.parametrize("middle", ["uint8", "uint16", "uint32", "uint8[9]"])
-def test_plans_with_fields_in_front_of_a_run_are_sound(middle, bus_bytes):
+def test_plans_with_fields_before_a_run_are_sound(middle, bus_bytes):
     """The fields take several steps, of which the last one starts the run."""
     layout = lay_out(make("ros2", {"a": "uint8", "b": "float64", "c": middle, "s": "string"}))
     assert check(build_plan(layout, bus_bytes=bus_bytes), layout) == []
@@ -151,7 +151,7 @@ def test_a_missing_alignment_is_named(plan):
     index, _ = find(plan, "b")
     assert plan.steps[index].align == 8
     first, *_ = check(with_step(plan, index, align=1))
-    assert first.startswith(f"step {index}: b has 0 bytes of padding in front, not ")
+    assert first.startswith(f"step {index}: b has 0 bytes of padding before it, not ")
 
 
 def test_the_wrong_alignment_is_named(plan):
@@ -161,10 +161,10 @@ def test_the_wrong_alignment_is_named(plan):
 
 
 def test_the_wrong_alignment_of_items_is_named_where_they_are():
-    behind_a_string = build_plan(lay_out(make("ros2", {"s": "string", "q": "uint64[]"})))
-    index, begin = begun(behind_a_string, "q.length")
+    after_a_string = build_plan(lay_out(make("ros2", {"s": "string", "q": "uint64[]"})))
+    index, begin = begun(after_a_string, "q.length")
     assert begin.align == 8
-    first, *_ = check(with_step(behind_a_string, index, begin=replace(begin, align=4)))
+    first, *_ = check(with_step(after_a_string, index, begin=replace(begin, align=4)))
     assert first == f"step {index}: q.items is aligned to 4, not 8"
 
 
@@ -176,7 +176,7 @@ def test_a_needless_alignment_is_named(plan):
     assert check(with_step(plan, index, align=4)) == [f"step {index}: is aligned already"]
 
 
-def test_padding_in_front_of_nothing_is_named():
+def test_padding_before_nothing_is_named():
     plan = build_plan(lay_out(make("ros2", {"a": "uint8"})))
     step = plan.steps[0]
     slices = (*step.slices, Pad(at=5, bytes=1))
@@ -191,14 +191,14 @@ def test_a_map_that_is_too_large_for_a_cycle_is_named():
     assert check(narrow) == ["step 0: the map has 32 bytes, more than two bus words"]
 
 
-def test_a_map_of_two_words_behind_a_rest_is_named():
+def test_a_map_of_two_words_after_a_rest_is_named():
     fields = {"s": "string", "x": "uint64", "y": "uint64"}
     plan = build_plan(lay_out(make("ros1", fields)), bus_bytes=8)
     *others, first, second = plan.steps
     assert (first.rest, first.bytes, second.bytes) == (0, 8, 8)
     slices = (*first.slices, *(replace(item, at=item.at + 8) for item in second.slices))
     both = replace(first, slices=slices, bytes=16, exits=second.exits)
-    said = f"step {len(others)}: the map behind a rest has 16 bytes, more than a bus word"
+    said = f"step {len(others)}: the map after a rest has 16 bytes, more than a bus word"
     assert check(replace(plan, steps=(*others, both))) == [said]
 
 
@@ -209,7 +209,7 @@ def test_the_rest_of_a_loop_has_room_wherever_it_ends(head, text, bus_bytes):
     """The first step of the body takes the rest of the body's last run, or none does so."""
     inner = make("ros2", {"head": head, "text": text}, "I")
     outer = make("ros2", {"inner": (inner, "[]"), "pair": (inner, "[2]")}, "O")
-    message = make("ros2", {"before": "string", "pair": (outer, "[3]"), "behind": (outer, "[]")})
+    message = make("ros2", {"before": "string", "pair": (outer, "[3]"), "after": (outer, "[]")})
     for wire in ("ros1", "cdr"):
         layout = lay_out(message, wire)
         assert check(build_plan(layout, bus_bytes=bus_bytes), layout) == []

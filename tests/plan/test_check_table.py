@@ -45,9 +45,9 @@ PLANS = {
     "pair": plan_of({"a": "uint32", "t": "uint32[3]"}),
     # A run whose rest nothing follows.
     "text": plan_of({"s": "string"}),
-    # A run in front of a loop that ends in a run.
+    # A run before a loop that ends in a run.
     "texts": plan_of({"s": "string", "ts": (make("ros1", {"t": "string"}, "T"), "[2]")}),
-    # Padding of items only, in front of the first one.
+    # Padding of items only, before the first one.
     "gap": plan_of({"a": "uint8[]", "d": "float64[]"}, 8, "ros2"),
 }
 
@@ -152,7 +152,7 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     (
         "side",
         {"steps.0.slices.1.first": 1, "steps.0.slices.1.bytes": 7, "steps.0.bytes": 8},
-        ["step 0: b continues behind other bytes"],
+        ["step 0: b continues after other bytes"],
     ),
     (
         "trigger",
@@ -162,7 +162,7 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     (
         "rich",
         {"steps.2.slices.0": Pad(at=0, bytes=9), "steps.2.bytes": 9},
-        ["step 2: the map behind a rest has 9 bytes, more than a bus word"],
+        ["step 2: the map after a rest has 9 bytes, more than a bus word"],
     ),
     (
         "trigger",
@@ -416,10 +416,10 @@ def test_fault_is_said_in_so_many_words(which, changes, said):
 
 def without(plan: Plan, index: int) -> Plan:
     """Return a plan without a step: jumps to it go where it goes."""
-    behind = plan.steps[index].exits.default
+    after = plan.steps[index].exits.default
 
     def jump(old: Jump) -> Jump:
-        new = behind if old.step == index else old
+        new = after if old.step == index else old
         return new if new.step is None or new.step < index else replace(new, step=new.step - 1)
 
     def step(old: Step) -> Step:
@@ -450,7 +450,7 @@ def test_the_rests_of_two_runs_must_not_meet():
 def missing(step, leaf, offsets):
     """What is said of a leaf without its padding, at each offset."""
     return {
-        f"step {step}: {leaf} has {got} bytes of padding in front, not {need}, at offset {offset} "
+        f"step {step}: {leaf} has {got} bytes of padding before it, not {need}, at offset {offset} "
         "modulo 8"
         for offset, got, need in offsets
     }
@@ -510,7 +510,7 @@ OFFSETS: list[tuple[str, dict[str, Any], set[str]]] = [
         {"steps.2.begin.align": 4},
         {"step 2: d.items is aligned to 4, not 8", "step 2: d.items is aligned already"},
     ),
-    # An item of 2 bytes behind 3 bytes, in each round of a loop.
+    # An item of 2 bytes after 3 bytes, in each round of a loop.
     (
         "rich",
         {"steps.9.align": 1},

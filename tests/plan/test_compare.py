@@ -42,7 +42,7 @@ def test_a_limit_is_one_change_with_its_place():
     ]
 
 
-def test_a_step_in_front_renumbers_nothing():
+def test_a_step_at_the_start_renumbers_nothing():
     old, new = plan("geometry_msgs/msg/Point"), plan("geometry_msgs/msg/Quaternion")
     assert differences(old, new) == [
         "message: geometry_msgs/msg/Point -> geometry_msgs/msg/Quaternion",

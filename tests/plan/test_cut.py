@@ -41,7 +41,7 @@ def segment(*values):
 
 
 @pytest.mark.parametrize(
-    ("values", "start", "narrow_start", "wide", "narrow", "behind_a_rest"),
+    ("values", "start", "narrow_start", "wide", "narrow", "after_a_rest"),
     [
         # The start, cut at bus words, with a last step of two words or one; the same elsewhere; and
         # with the rest of a run in the first step.
@@ -59,7 +59,7 @@ def segment(*values):
         ([(4, -1), (2, -1), (4, -2), (2, -2)], *([[4, 6, 2], [4, 2, 4, 2]] * 2), [4, 6, 2]),
     ],
 )
-def test_sizes_of_steps(values, start, narrow_start, wide, narrow, behind_a_rest):
+def test_sizes_of_steps(values, start, narrow_start, wide, narrow, after_a_rest):
     slices = segment(*values)
     for sizes, at_start, may_be_wide, has_rest in (
         (start, True, True, False),
@@ -67,7 +67,7 @@ def test_sizes_of_steps(values, start, narrow_start, wide, narrow, behind_a_rest
         (wide, False, True, False),
         (narrow, False, False, False),
         (narrow, False, False, True),
-        (behind_a_rest, False, True, True),
+        (after_a_rest, False, True, True),
     ):
         options = {"at_start": at_start, "may_be_wide": may_be_wide, "has_rest": has_rest}
         assert step_sizes(slices, 4, **options) == sizes, options

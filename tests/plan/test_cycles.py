@@ -65,7 +65,7 @@ def test_the_same_length_again_costs_the_serializer_a_cycle():
     packet = made({"t": (TEXT, "[]")}, texts(b"", b"", b"", b""))
     assert len(packet.visits) == 6
     assert deserializer_cycles([packet]) == [5]
-    # The number of texts, then a text in two cycles; the step behind them is left out.
+    # The number of texts, then a text in two cycles; the step after them is left out.
     assert serializer_cycles([packet]) == [1 + 1 + 2 * 3]
 
 

@@ -70,7 +70,7 @@ def test_the_first_step_of_a_loop_has_a_rest_from_the_second_turn_on():
 
 
 def test_paddings_are_those_that_can_be():
-    # Behind a string anything goes; behind the length of `points`, which is aligned to 4, it does
+    # After a string anything goes; after the length of `points`, which is aligned to 4, it does
     # not.
     poses = plan("geometry_msgs/msg/PoseArray")
     found = edges(poses)
@@ -125,7 +125,7 @@ def test_a_run_that_is_always_empty_has_no_rest(bound, rest):
 
 @pytest.mark.parametrize(("bound", "ways"), [("<=1", {0}), ("<=2", {0, 3}), ("", {0, 3})])
 def test_paddings_count_on_bounds(tmp_path, bound, ways):
-    # Three bytes of padding stand in front of the second element alone.
+    # Three bytes of padding stand before the second element alone.
     folder = tmp_path / "demo" / "msg"
     folder.mkdir(parents=True)
     (folder / "Outer.msg").write_text(f"Inner[{bound}] inner\n")

@@ -25,11 +25,11 @@ def needs(fields, wire, bus_bytes):
         ({"a": "uint64"}, "ros1", 8, (0,), (0,)),
         ({"a": "uint32", "b": "uint64", "c": "uint32"}, "ros1", 8, (0,), (0,)),
         ({"a": "uint8[3]", "b": "uint32"}, "ros1", 4, (0,), (0,)),
-        # Items start behind a length of four bytes, which CDR has behind a header of four.
+        # Items start after a length of four bytes, which CDR has after a header of four.
         ({"s": "string"}, "ros1", 4, (0,), (0,)),
         ({"s": "string"}, "ros1", 8, (4,), (0,)),
         ({"s": "string"}, "cdr", 8, (0,), (0,)),
-        # Items behind four bytes of padding, which an empty sequence does not have.
+        # Items after four bytes of padding, which an empty sequence does not have.
         ({"a": "uint64[]"}, "cdr", 8, (0, 4), (0,)),
         # Anything may follow text; what follows items is where items end.
         ({"s": "string", "n": "uint8"}, "ros1", 8, (4,), ANY),
@@ -66,7 +66,7 @@ def test_lanes_that_are_only_written_together(fields, wire, bus_bytes, items, ma
     assert (found.item_unit, found.map_unit) == (items, maps)
 
 
-def test_places_of_a_rest_and_of_the_map_behind_it():
+def test_places_of_a_rest_and_of_the_map_after_it():
     found = needs({"s": "string", "n": "uint32"}, "cdr", 8)
     # Header and length; words of text; the rest of text from a bus word on, padding and `n`.
     assert found.places == (Place((0,), (0,)), Place((0,), (0,)), Place((0,), (0, 4)))
@@ -74,10 +74,10 @@ def test_places_of_a_rest_and_of_the_map_behind_it():
 
 def test_places_in_a_loop_are_those_of_all_turns():
     found = needs({"t": (TEXT, "[]")}, "ros1", 8)
-    # The length; `x`, behind text from the second turn on; words of text; the rest of the last one.
+    # The length; `x`, after text from the second turn on; words of text; the rest of the last one.
     start, turn, words, end = found.places
     assert start == Place((0,), (0,))
-    # Behind the length, or from where words of text start.
+    # After the length, or from where words of text start.
     assert turn == Place(ANY, ANY)
     assert (words, end) == (Place(ANY, ANY), Place(ANY, ANY))
 
@@ -88,7 +88,7 @@ def test_padding_that_is_computed():
     assert needs({"a": "uint64[]"}, "cdr", 4).aligns
 
 
-def test_an_empty_run_ends_in_front_of_the_padding_of_items():
-    # `b` stands behind the length at once, or behind items.
+def test_an_empty_run_ends_before_the_padding_of_items():
+    # `b` stands after the length at once, or after items.
     found = needs({"a": "uint64[]", "b": "uint8"}, "cdr", 8)
     assert found.places[-1] == Place((0, 4), (0, 4))

@@ -1,7 +1,7 @@
 """What a plan's text says beside each step: its place in all packets, and the loops around it.
 
 An engineer who looks for a byte of a capture in the plan goes by these. Places are worked out by
-hand: header, fields at multiples of their sizes, the words of an array behind the fields in front.
+hand: header, fields at multiples of their sizes, the words of an array after the earlier fields.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ TWICE, POINTS = "in loop 0 (2 times)", "in loop 0 (p.length)"
             8,
             ["packet bytes 0..23", "packet bytes 24..25"],
         ),
-        # One of which the first item stands behind padding.
+        # One of which the first item stands after padding.
         (
             "ros2",
             {"a": "uint8", "b": "float64[3]", "c": "uint8"},
@@ -45,12 +45,12 @@ TWICE, POINTS = "in loop 0 (2 times)", "in loop 0 (p.length)"
         ),
         # A single byte is called so.
         ("ros1", {"a": "uint8", "c": "uint8[2]"}, 1, ["packet bytes 0..1", "packet byte 2"]),
-        # Nothing behind a text or a loop has one place.
+        # Nothing after a text or a loop has one place.
         ("ros2", {"s": "string", "b": "uint8[21]"}, 8, ["packet bytes 0..7", "", "", "", ""]),
         ("ros2", {"q": (PAIR, "[2]"), "b": "uint8"}, 8, ["packet bytes 0..3", TWICE, ""]),
         # Items wider than the bus are a loop, which nothing in the packet counts.
         ("ros1", {"b": "float32[3]", "c": "uint8"}, 2, ["in loop 0 (3 times)", ""]),
-        # Loops are found behind steps that start something else.
+        # Loops are found after steps that start something else.
         (
             "ros2",
             {"n": "string", "q": (PAIR, "[2]"), "p": (POINT, "[]")},

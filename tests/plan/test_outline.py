@@ -88,7 +88,7 @@ def test_an_array_of_messages_is_bytes_if_its_padding_is_fixed():
     layout = lay_out(message, "ros1")
     assert [type(node) for node in outline(layout, 8).nodes] == [RunNode, RunNode]
     assert sum(node.count for node in outline(layout, 8).nodes) == 1 + 1000 * 5 + 1
-    # 3 bytes of padding in front of the first, and 3 between two of them.
+    # 3 bytes of padding before the first, and 3 between two of them.
     layout = lay_out(message, "cdr")
     assert sum(node.count for node in outline(layout, 8).nodes) == 1 + 1000 * 8 + 1
     _, short = plans_of(message, "cdr", 8)

@@ -1,7 +1,7 @@
 """Facts about the wire formats that trip implementations, byte by byte, at every bus width.
 
 The hexadecimal of CDR is what ROS 2's own type support writes or follows from OMG DDS-XTypes 1.3,
-clause 7.4; spaces stand between fields, `|` in front of padding. Fast CDR 1.0.26, 2.2.5 and 2.3.3
+clause 7.4; spaces stand between fields, `|` before padding. Fast CDR 1.0.26, 2.2.5 and 2.3.3
 (humble, jazzy, kilted) write all of `FACTS` so: ``tests/verify/references/test_fast_cdr.py``.
 """
 
@@ -79,7 +79,7 @@ FACTS = {
         {"p": 1, "es": [{}, {}], "one": {}, "z": 5},
         "00010000 01|000000 02000000 00 00 00|00 05000000",
     ),
-    "alignment counts from behind the header": (
+    "alignment counts from the end of the header": (
         ROS2,
         {"a": "uint8", "b": "int64", "c": "uint16", "f": "float32"},
         {"a": 1, "b": -2, "c": 3, "f": 1.0},

@@ -31,8 +31,8 @@ leaves:
   points.item.name.items: uint8 x 8
   grid.items: float32 x 2
 runs:
-  points.item.name.items: [counted, NUL behind]
-  grid.items: [constant count, tail behind]
+  points.item.name.items: [counted, with NUL]
+  grid.items: [constant count, with tail]
 start: step 0
 steps:
   step 0:  # packet bytes 0..11
@@ -182,11 +182,11 @@ MISTAKES = [
      "Line 35: next has no 'loops'"),
     ("grid.items, 1 item, last", "grid.items, 1 item, bytes 0..2 of 4, last",
      "Line 47: the bytes of 'grid.items' are not as many as those of the slice"),
-    ("[counted, NUL behind]", "[counted, NUL there]",
+    ("[counted, with NUL]", "[counted, NUL there]",
      "Line 16: run 'points.item.name.items' has no 'NUL there'"),
-    ("[counted, NUL behind]", "[NUL behind]",
+    ("[counted, with NUL]", "[with NUL]",
      "Line 16: run 'points.item.name.items' must have one of 'counted' and 'constant count'"),
-    ("[counted, NUL behind]", "[counted, constant count]",
+    ("[counted, with NUL]", "[counted, constant count]",
      "Line 16: run 'points.item.name.items' must have one of 'counted' and 'constant count'"),
     ("wire: cdr", "wire: [cdr", "Line 3: not YAML: "),
     ("wire: cdr", "wire: \0cdr", "not YAML: "),

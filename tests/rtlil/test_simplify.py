@@ -212,7 +212,7 @@ def test_what_decides_nothing_is_gone() -> None:
     assert body_of(other, choice) == (other, choice)
 
 
-def test_an_empty_arm_in_front_of_one_that_matches_the_same_stays() -> None:
+def test_an_empty_arm_before_one_that_matches_the_same_stays() -> None:
     default = Assign(target=(Y,), value=(Slice("t", 0, 2), Slice("s", 0, 2)))
     other = Assign(target=(Y,), value=(Bits("1010"),))
     wild = Switch(

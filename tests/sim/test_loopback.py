@@ -335,7 +335,7 @@ def test_one_transfer_too_many_is_left_over():
     assert encode(IMAGE, [transfers]).not_taken == {last: 1}
 
 
-def test_gates_stay_open_behind_what_is_offered():
+def test_gates_stay_open_after_what_is_offered():
     # What the serializer sees are streams, too: valid does not fall before the transfer.
     rx, tx = Deserializer(IMAGE), Serializer(IMAGE)
     ports = leaf_streams(tx.message, tx.tree).values()

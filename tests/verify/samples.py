@@ -14,9 +14,9 @@ SAMPLE: list[Sample] = [
     ("lyrical", "rcl_interfaces/msg/ParameterValue", 8),
     # Two levels of loops; on a narrow bus every value is in several steps.
     ("lyrical", "diagnostic_msgs/msg/DiagnosticArray", 4),
-    # Runs of a constant length in a loop, and the bytes behind a run in its own step.
+    # Runs of a constant length in a loop, and the bytes after a run in its own step.
     ("lyrical", "shape_msgs/msg/Mesh", 8),
-    # An array whose first items are in the step of what stands in front of it.
+    # An array whose first items are in the step of what comes before it.
     ("lyrical", "service_msgs/msg/ServiceEventInfo", 16),
     # An array of floats at the very start, on a bus that is wider than the message.
     ("noetic", "shape_msgs/Plane", 64),
@@ -26,7 +26,7 @@ SAMPLE: list[Sample] = [
     ("lyrical", "rcl_interfaces/msg/ParameterType", 8),
     # No bytes at all: a packet that is empty, and a leaf that only triggers.
     ("noetic", "bond/Constants", 8),
-    # That leaf behind others.
+    # That leaf after others.
     ("noetic", "nav_msgs/GetMapActionGoal", 8),
     # No alignment: strings in loops start in any lane.
     ("noetic", "sensor_msgs/JointState", 8),
@@ -34,7 +34,7 @@ SAMPLE: list[Sample] = [
     ("noetic", "std_msgs/Header", 1),
 ]
 
-# What no small type of a distribution has: three levels of loops, one run straight behind another,
+# What no small type of a distribution has: three levels of loops, one run straight after another,
 # a bounded sequence of messages, bounds of all kinds, a service.
 OWN = {
     "msg/Deep.msg": "Middle[] items\nuint8 end\n",

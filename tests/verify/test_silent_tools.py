@@ -31,7 +31,7 @@ ANY = pytest.mark.parametrize("status", SILENT)
 
 @pytest.fixture
 def fake(tmp_path, monkeypatch):
-    """Put programs on the PATH, in front of the real ones; return the path of the last."""
+    """Put programs on the PATH, before the real ones; return the path of the last."""
     folder = tmp_path / "bin"
     folder.mkdir()
     monkeypatch.setenv("PATH", f"{folder}{os.pathsep}{os.environ['PATH']}")

@@ -135,7 +135,7 @@ def misplan(monkeypatch):
     ("system", "breaks", "said"),
     [
         ("ts1", misread, "oracle refuses: I do not like it"),
-        ("ts2", misplan, "bytes of padding in front"),
+        ("ts2", misplan, "bytes of padding before it"),
     ],
 )
 def test_what_is_wrong_fails_in_the_record_and_on_the_page(
@@ -223,7 +223,7 @@ def test_other_definitions_are_another_run(tmp_path, capsys, system, changed):
 
 
 def run_until_killed(command, calls):
-    """Run the command, and end this process right behind so many calls of `add`."""
+    """Run the command, and end this process right after so many calls of `add`."""
     add, left = ResultsWriter.add, iter(range(calls))
 
     def counted(writer, *records):

@@ -28,7 +28,7 @@ def test_a_design_reads_as_if_written_by_hand(name: str) -> None:
 
 
 @pytest.mark.parametrize("count", [8, 9])
-def test_eight_names_of_values_fit_behind_a_port_and_nine_do_not(count: int) -> None:
+def test_eight_names_of_values_fit_after_a_port_and_nine_do_not(count: int) -> None:
     kind = enum.Enum("Kind", {f"A{n}": n for n in range(count)})
     m, i, o = Module(), Signal(kind, name="i"), Signal(signed(4), name="o")
     m.d.comb += o.eq(i)

@@ -203,8 +203,8 @@ def test_a_clear_beside_an_asynchronous_reset_is_one_more_condition() -> None:
 
     ports = {"ck": In(1), "rst": In(1), "clear": In(1), "a": In(4), "q": Out(4, init=3)}
     (lines,) = processes(written(fill, **ports))
-    behind = lines[lines.index("elsif rising_edge(ck) then") :]
-    assert behind[1:5] == [
+    after = lines[lines.index("elsif rising_edge(ck) then") :]
+    assert after[1:5] == [
         "q_q <= unsigned(a);",
         "if clear = '1' then",
         'q_q <= "0011";',

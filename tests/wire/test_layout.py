@@ -75,7 +75,7 @@ def test_a_gap_is_static_just_when_types_decide_it(fields, path, gap):
 
 
 @pytest.mark.parametrize(("count", "gap"), [(1, 0), (2, 4), (3, 0), (4, 4), (1000001, 0)])
-def test_a_gap_behind_a_constant_loop_knows_its_count(count, gap):
+def test_a_gap_after_a_constant_loop_knows_its_count(count, gap):
     element = make("ros2", {"x": "uint32"}, "E")
     layout = lay_out(make("ros2", {"h": "uint32", "a": (element, f"[{count}]"), "z": "uint64"}))
     assert gaps_of(layout)[("z",)].bytes == gap

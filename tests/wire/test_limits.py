@@ -158,7 +158,7 @@ def test_the_limit_of_a_length_is_what_the_documentation_says():
     plan = build_plan(lay_out(load_message("sensor_msgs/msg/PointCloud2")))
     limits = {str(plan.leaves[leaf]): begin.limit for leaf, begin in plan.counted.items()}
     limit = limits["fields.length"]
-    # 4 bytes of encapsulation, 24 up to the fields, 16 each with padding, and 17 behind them.
+    # 4 bytes of encapsulation, 24 up to the fields, 16 each with padding, and 17 after them.
     fits = (plan.max_message_bytes - 4 - 24 - 17) // 16
     assert fits < limit
     text = (Path(firm_hdl.__file__).parent.parent / "docs" / "interface.md").read_text()

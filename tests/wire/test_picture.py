@@ -168,7 +168,7 @@ def test_offsets_count_from_the_start_of_the_packet(tmp_path):
     # The heads of the columns; the header; and then 9 rows of 8 bytes, of which six are left out.
     assert rows == [*(f"+{lane}" for lane in range(8)), "0", "4", "68", "76"]
     assert "... 7 rows" in texts
-    # What is behind a part of any size counts anew.
+    # What is after a part of any size counts anew.
     message = library(tmp_path, {"p/U": "string s\nuint64[2] a"}).message("p/U")
     texts = texts_of(to_svg(lay_out(message, "ros1"), "p/U"))
     rows = [text for text in texts if re.fullmatch(r"\+?\d+", text)]

@@ -103,7 +103,7 @@ def _alternatives(text: str, starts: list[int], end: int, name: str) -> Iterator
     if len(starts) < 2:
         return
     for index, start in enumerate(starts):
-        if index + 1 < len(starts):  # With the sign behind it.
+        if index + 1 < len(starts):  # With the sign after it.
             yield Change(start, starts[index + 1], "", "drop alternative", name)
         else:
             yield Change(start - 1, end, "", "drop alternative", name)

@@ -156,7 +156,7 @@ def moved(masks: Mapping[str, int], before: str, after: str) -> dict[str, int]:
     """Return lines of a text where they are in another one.
 
     Who ran one of the lines that others have replaced runs all of those; who ran a line runs what
-    was put behind it.
+    was put after it.
     """
     matcher = difflib.SequenceMatcher(None, before.splitlines(), after.splitlines(), autojunk=False)
     steps = matcher.get_opcodes()

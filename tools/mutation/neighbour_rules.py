@@ -117,8 +117,8 @@ def default_used(source: Source, index: Index) -> Iterator[Change]:
 def _without(source: Source, node: ast.Call, argument: ast.AST) -> Iterator[Change]:
     start, end = source.span(argument)
     rest = source.text[end : source.span(node)[1]]
-    behind = len(rest) - len(rest.lstrip(", \n"))
-    yield source.change("default used", (start, end + behind), "")
+    after = len(rest) - len(rest.lstrip(", \n"))
+    yield source.change("default used", (start, end + after), "")
 
 
 def _class(source: Source, node: ast.AST) -> str | None:

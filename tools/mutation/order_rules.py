@@ -1,6 +1,6 @@
 """Faults of priority: what comes first of two branches, and of two assignments to one thing.
 
-Amaranth's `m.If` and `m.Elif` stand one behind the other, and the last assignment to a signal
+Amaranth's `m.If` and `m.Elif` stand in a row, and the last assignment to a signal
 counts; both are as easy to turn around as what Python itself has.
 """
 
@@ -54,7 +54,7 @@ def overridden_assignment(source: Source, _: Index) -> Iterator[Change]:
             targets = assigned(first, deep=False)
             for last in block[at + 1 :]:
                 if targets and targets & assigned(last, deep=True):
-                    yield _behind(source, first, last)
+                    yield _after(source, first, last)
                     break
 
 
@@ -147,7 +147,7 @@ def _swap(source: Source, one: tuple[int, int], two: tuple[int, int]) -> Change:
     return source.change("swapped branches", (one[0], two[1]), new)
 
 
-def _behind(source: Source, first: ast.stmt, last: ast.stmt) -> Change:
+def _after(source: Source, first: ast.stmt, last: ast.stmt) -> Change:
     start, first_end = source.span(first)
     end = source.span(last)[1]
     text = source.text[start:first_end]

@@ -110,7 +110,7 @@ def read(path: Path) -> dict[str, Record]:
 
 
 def append(path: Path, record: Record) -> None:
-    """Add a record to a file, behind what an interrupted run has left there."""
+    """Add a record to a file, after what an interrupted run has left there."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("a+b") as file:
         if file.tell():

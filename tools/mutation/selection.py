@@ -133,8 +133,8 @@ def _span(node: ast.AST) -> tuple[int, int, int]:
         return first, last, last
     start = inner[0].pattern if isinstance(inner[0], ast.match_case) else inner[0]
     decorators = getattr(start, "decorator_list", [])
-    behind = min([start.lineno, *(each.lineno for each in decorators)])
-    return first, max(first, behind - 1), last
+    after = min([start.lineno, *(each.lineno for each in decorators)])
+    return first, max(first, after - 1), last
 
 
 def _bodies(path: Path) -> set[int]:

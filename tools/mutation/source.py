@@ -102,7 +102,7 @@ class Source:
         return Change(start=start, end=end, new=new, rule=rule, scope=scope)
 
     def _scope_at(self, place: int) -> str:
-        """Return the scope of the innermost statement that a place is in, or right behind."""
+        """Return the scope of the innermost statement that a place is in, or right after."""
         scope = ""
         for start, end, name in self._statements:
             if start <= place <= end:

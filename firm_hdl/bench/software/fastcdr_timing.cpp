@@ -1,6 +1,6 @@
 // Times Fast CDR with one message type, which message.h has: a generated file.
 //
-// Usage: fastcdr_timing PACKETS RUNS SECONDS. PACKETS is a file with packets, each behind its length
+// Usage: fastcdr_timing PACKETS RUNS SECONDS. PACKETS is a file with packets, each after its length
 // in 4 bytes, little-endian. Prints the version of Fast CDR, that of the compiler, and the processor
 // time of one message in ns, read and written: the fastest of so many runs, each of so many seconds
 // or more. If a packet is not what is written of it, it prints both, and ends with status 1.

@@ -58,7 +58,7 @@ def _constant(each: Declaration, _width: int) -> str:
             value = f"{each.bits}'{letter}h{each.digits};{remark if each.remark else ''}"
             return f"  localparam logic{sign} [{each.bits - 1}:0] {each.name} = {value}\n"
         case "real":
-            # Python's form has digits behind the point or an exponent, which SystemVerilog needs.
+            # Python's form has digits after the point or an exponent, which SystemVerilog needs.
             return f"  localparam real {each.name} = {each.value!r};{remark}\n"
     return f"  localparam {each.name} =\n    {_string(each.value)};\n"
 

@@ -84,7 +84,7 @@ def _bus(bus_bytes: int) -> Iterator[str]:
 
 def _items(primitive: str, lanes: int) -> Iterator[str]:
     kind = f"{primitive}_items_stream"
-    first = "the first item at index 0; zeros behind the last item"
+    first = "the first item at index 0; zeros after the last item"
     yield from struct(
         f"{kind}_t",
         [

@@ -73,5 +73,5 @@ def _joined(parts: str, default: str) -> str | None:
             pieces.append(f"{len(bits)}'{bits}")
         pieces.append(value)
         at = high + 1
-    # What is behind the last part is no part.
+    # What is after the last part is no part.
     return f"{{ {' '.join(reversed(pieces[:-1]))} }}"

@@ -43,7 +43,7 @@ def _items(primitive: str, lanes: int) -> Iterator[str]:
     zeros = "(others => '0')" if primitive == "bool" else "(others => (others => '0'))"
     yield (
         f"\n  type {primitive}_items_stream_t is record\n"
-        f"    data  : {primitive}_items_t(0 to {lanes - 1});  -- zeros behind the last item\n"
+        f"    data  : {primitive}_items_t(0 to {lanes - 1});  -- zeros after the last item\n"
         "    last  : std_logic;  -- last transfer of the array or sequence\n"
         "    valid : std_logic;\n"
         "  end record;\n"

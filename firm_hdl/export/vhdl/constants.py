@@ -59,7 +59,7 @@ def _string(data: bytes) -> str:
             parts.append(f"character'val({piece[0]})")
         else:
             parts.append('"' + piece.decode("ascii").replace('"', '""') + '"')
-    # A single character is no string, so an empty string is put in front.
+    # A single character is no string, so an empty string comes first.
     if not parts or (len(parts) == 1 and parts[0].startswith("character")):
         parts.insert(0, '""')
     return " &\n    ".join(parts)

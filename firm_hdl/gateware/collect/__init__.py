@@ -1,4 +1,4 @@
-"""The collector: leaves of a message to the words that its packet consists of."""
+"""The collector: turn the leaves of a message into the words of its packet."""
 
 from firm_hdl.gateware.collect.collector import Collector
 from firm_hdl.gateware.collect.words import words_layout

@@ -1,4 +1,4 @@
-"""The collector: leaves of a message to words, as the plan says."""
+"""The collector: turn the leaves of a message into words, step by step of the plan."""
 
 from __future__ import annotations
 
@@ -18,12 +18,13 @@ from firm_hdl.plan.geometry import only_ends
 
 __all__ = ["Collector"]
 
+
 class Collector(wiring.Component):
     """Take the leaves of each step of a plan, and put them into two words.
 
     Leaves are taken in wire order, each as soon as it is offered. A length is decoded in the cycle
     before it is taken, so it is taken one cycle after it is offered at the earliest. Latency 1
-    cycle from the last leaf of a step to its words.
+    cycle from the last leaf of a step to the step's words. Throughput one step per cycle.
 
     Parameters
     ----------
@@ -34,7 +35,9 @@ class Collector(wiring.Component):
     leaf_0, leaf_1, ... : In(stream.Signature(leaf_shape(leaf)))
         `ready` depends on the `valid` of this leaf and of earlier ones of the same step.
     words : Out(stream.Signature(words_layout(plan)))
+        One transfer per step.
     status : Out(StatusSignature)
+        One transfer per packet; `OK`, `LENGTH` or `ITEMS`.
     """
 
     def __init__(self, plan: Plan):
@@ -62,10 +65,11 @@ class _Reader:
     Attributes
     ----------
     leaf : int
-    last : Value
-        What `items.last` has to be.
+        Index of the leaf.
+    last : Value(1)
+        The value that `items.last` must have.
     optional : bool
-        It is the rest of a run, of which there may be none.
+        The transfer is the rest of a run, which may be empty.
     """
 
     leaf: int
@@ -83,7 +87,7 @@ class _Circuit(Progress):
         self._decide()
         self._serve()
         Filler(self, collector.words)
-        self._proceed()
+        self._advance()
 
     # The step.
 
@@ -91,13 +95,13 @@ class _Circuit(Progress):
         m, flow, state, plan = self.m, self.flow, self.state, self.plan
         is_begin = state.run_begin | state.loop_begin
         skips = self.of_length(lambda length: length.skips)
-        # A last step that only takes a rest is left out where there is none.
+        # A last step that only takes a rest is skipped if there is no rest.
         rests = {i for i, step in enumerate(plan.steps) if only_ends(step)}
         to_rest = any_of([taken for taken, _, jump in flow.exits if jump.step in rests])
-        nothing = is_begin & self.zero & ~state.terminated & to_rest
+        no_rest = is_begin & self.zero & ~state.terminated & to_rest
         m.d.comb += [
             self.done.eq(state.plain | (is_begin & skips) | (state.words & flow.words.last)),
-            self.ends.eq(self.done & (flow.exit_ends | nothing)),
+            self.ends.eq(self.done & (flow.exit_ends | no_rest)),
         ]
 
     def _readers(self, step: Step) -> list[_Reader]:
@@ -122,10 +126,10 @@ class _Circuit(Progress):
         """Take the leaves of a step in wire order, each as soon as it is offered.
 
         A producer may offer a leaf only after an earlier one was taken. So a step must not wait
-        until all its leaves are offered; it remembers which are taken.
+        until all its leaves are offered. `served` records which of them were taken.
         """
         m, c = self.m, self.c
-        goes: list[list[Value]] = [[] for _ in self.served]
+        transfers: list[list[Value]] = [[] for _ in self.served]
         ready: dict[int, list[Value]] = {}
         missing: list[Value] = []
         wrong: list[Value] = []
@@ -147,15 +151,15 @@ class _Circuit(Progress):
                     go.eq(left & valid & self.free & ~any_of(earlier)),
                 ]
                 earlier.append(lacks)
-                goes[slot].append(go)
-                if reader.leaf in self.lengths and self._waits(step):
+                transfers[slot].append(go)
+                if reader.leaf in self.lengths and self._may_wait_for_status(step):
                     taken = go | (self.step[index] & self.served[slot])
                     held[reader.leaf].append(taken & ~self.complete)
                 ready.setdefault(reader.leaf, []).append(go)
                 if self.plan.leaves[reader.leaf].kind == "items":
                     wrong.append(go & (port.payload.last != reader.last))
             missing += earlier
-            # A transfer that goes on in the next step is taken there.
+            # A transfer that continues in the next step is taken in that step.
             for part in step.parts:
                 if not part.completes:
                     missing.append(self.step[index] & ~self.streams[part.leaf].valid)
@@ -168,12 +172,12 @@ class _Circuit(Progress):
             self.free.eq(~c.words.valid | c.words.ready),
             self.complete.eq(self.free & ~any_of(missing) & (~self.ends | status_free)),
         ]
-        for flag, cases in zip(self.served, goes, strict=True):
+        for flag, cases in zip(self.served, transfers, strict=True):
             m.d.sync += flag.eq((flag | any_of(cases)) & ~self.complete)
         self._judge(any_of(wrong))
 
-    def _waits(self, step: Step) -> bool:
-        """Tell whether a step may have taken its length, and wait for the status of a packet."""
+    def _may_wait_for_status(self, step: Step) -> bool:
+        """Tell whether a step may take its length, and then wait until `status` is free."""
         jumps = [step.exits.default, *(jump for _, jump in step.exits.repeats)]
         return step.begin is not None and any(
             jump.step is None or only_ends(self.plan.steps[jump.step]) for jump in jumps
@@ -183,9 +187,9 @@ class _Circuit(Progress):
         """Keep the packet's first error, and report it with the last step."""
         m, c = self.m, self.c
         error, found = Signal(Status, name="error"), Signal(Status, name="found")
-        took = any_of([self.streams[leaf].ready for leaf in self.lengths])
-        over = took & self.of_length(lambda length: length.over)
-        # In a step, items come before the length.
+        is_taken = any_of([self.streams[leaf].ready for leaf in self.lengths])
+        over = is_taken & self.of_length(lambda length: length.over)
+        # Items of a step come before its length in wire order, so their error counts.
         m.d.comb += found.eq(error)
         with m.If((error == Status.OK) & wrong_items):
             m.d.comb += found.eq(Status.ITEMS)
@@ -205,7 +209,7 @@ class _Circuit(Progress):
 
     # The next step.
 
-    def _proceed(self) -> None:
+    def _advance(self) -> None:
         m, flow, state = self.m, self.flow, self.state
         next_rest = self.of_length(lambda length: length.rest, len(self.rest), BeginRun)
         single = self.of_length(lambda length: length.single)
@@ -231,11 +235,10 @@ class _Circuit(Progress):
                     m.d.sync += [self.rest.eq(0), self.has_nul.eq(0)]
 
     def _count(self) -> Value:
-        """Return the length of the step, as the leaf has it."""
+        """Return the payload of the step's length, 32 bits; 0 if the step has no length."""
         cases = [
             (self.step[i], self.streams[step.begin.length].payload)
             for i, step in enumerate(self.plan.steps)
             if step.begin is not None
         ]
         return pick(cases, COUNT_BITS)
-

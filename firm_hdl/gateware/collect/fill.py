@@ -23,11 +23,12 @@ class _Byte:
     Attributes
     ----------
     leaf : int or None
-        The leaf whose transfer it is of; `None` for a constant.
+        Index of the leaf that the byte belongs to; `None` for a constant.
     at : int
-        Its number in the transfer, or the value of the constant.
+        Number of the byte in the transfer, or the value of the constant.
     slot : int
-        The number of the transfer in the step; -1 if the step does not take one with this byte.
+        Number of the byte's transfer in the step; -1 for a constant, or if a later step takes the
+        transfer.
     """
 
     leaf: int | None
@@ -38,26 +39,27 @@ class _Byte:
 class Filler:
     """Fill the words of each step. Not a component: logic of one module.
 
-    It writes `words` in every cycle in which `now.free`, and `words.valid` with `now.complete`.
+    `words.payload` is written in every cycle in which `progress.free` is high. `words.valid`
+    becomes high one cycle after `progress.complete`.
 
     Parameters
     ----------
-    now : Progress
+    progress : Progress
     words : stream.Interface
         See :func:`words_layout`.
     """
 
-    def __init__(self, now: Progress, words: stream.Interface):
-        self.m, self.now, self.words = now.m, now, words
-        self.plan, self.step = now.plan, now.step
-        self._gather()
-        self._measure()
+    def __init__(self, progress: Progress, words: stream.Interface):
+        self.m, self.progress, self.words = progress.m, progress, words
+        self.plan, self.step = progress.plan, progress.step
+        self._write_bytes()
+        self._compute_sizes()
 
     # Bytes.
 
-    def _gather(self) -> None:
-        """Select the bytes of the words by the step, until their leaf is taken."""
-        m, now = self.m, self.now
+    def _write_bytes(self) -> None:
+        """Write the bytes that the step selects to the words, until their leaf is taken."""
+        m, progress = self.m, self.progress
         lanes: dict[str, list[dict[int, _Byte]]] = {}
         for index, step in enumerate(self.plan.steps):
             for name, lane, byte in self._bytes(step):
@@ -69,16 +71,16 @@ class Filler:
                 register = Signal(8 * len(stretch), name=f"{name}_{lane}", reset_less=True)
                 taken = [
                     any_of([self.step[i] for i, byte in cases.items() if byte.slot == slot]) & flag
-                    for slot, flag in enumerate(now.served)
+                    for slot, flag in enumerate(progress.served)
                     if any(byte.slot == slot for byte in cases.values())
                 ]
-                with m.If(now.free & ~any_of(taken)):
+                with m.If(progress.free & ~any_of(taken)):
                     m.d.sync += register.eq(self._selected(stretch))
                 bits = getattr(self.words.payload, name)[8 * lane :]
                 m.d.comb += bits[: len(register)].eq(register)
 
     def _selected(self, stretch: list[dict[int, _Byte]]) -> Value:
-        """Select a stretch by the step; don't care where the step has no such bytes."""
+        """Return the bytes of a stretch that the step selects; don't care if there are none."""
         size = len(stretch)
         groups: dict[tuple[int, int], tuple[Value, list[Value]]] = {}
         for index, byte in stretch[0].items():
@@ -104,8 +106,8 @@ class Filler:
             if isinstance(item, Fixed):
                 found = [_Byte(None, value, -1) for value in item.data]
             elif isinstance(item, Part):
-                where = slot if item.completes else -1
-                found = [_Byte(item.leaf, item.first + k, where) for k in range(item.bytes)]
+                number = slot if item.completes else -1
+                found = [_Byte(item.leaf, item.first + k, number) for k in range(item.bytes)]
                 slot += item.completes
             for k, byte in enumerate(found, item.at):
                 name = "items" if step.bytes > bus > k else "map"
@@ -122,7 +124,7 @@ class Filler:
 
     def _wire_bits(self, leaf: int) -> Value:
         """Return the bits of a leaf's transfer on the wire."""
-        plan, payload = self.plan, self.now.streams[leaf].payload
+        plan, payload = self.plan, self.progress.streams[leaf].payload
         match plan.leaves[leaf].kind:
             case "items":
                 return Cat(_item_bits(item) for item in payload.data)
@@ -133,35 +135,35 @@ class Filler:
 
     # Sizes.
 
-    def _measure(self) -> None:
-        """Compute the sizes of the words, and their distances."""
-        m, now, state, bus = self.m, self.now, self.now.state, self.plan.bus_bytes
+    def _compute_sizes(self) -> None:
+        """Compute the sizes of the words, and the distances between their positions."""
+        m, progress, state, bus = self.m, self.progress, self.progress.state, self.plan.bus_bytes
         words, ring = self.words.payload, Ring(self.plan)
         items = Signal(range(bus + 1), name="items_size")
-        whole = Signal(range(2 * bus + 1), name="map_size")
+        map_size = Signal(range(2 * bus + 1), name="map_size")
         nul = Signal(name="nul_now")
-        # The packet has bytes in front of this step, and after it.
+        # Whether the packet has a byte before this step, and whether it has one after the step.
         begun, begins = Signal(name="begun"), Signal(name="begins")
         m.d.comb += [
-            items.eq(Mux(state.rest, now.flow.rest_bytes(now.rest), state.items_bytes)),
-            whole.eq(state.map_bytes + Mux(state.lead, bus, 0)),
-            nul.eq(now.has_nul & state.rest),
+            items.eq(Mux(state.rest, progress.flow.rest_bytes(progress.rest), state.items_bytes)),
+            map_size.eq(state.map_bytes + Mux(state.lead, bus, 0)),
+            nul.eq(progress.has_nul & state.rest),
             begins.eq(begun | items.any() | nul | state.map_bytes.any()),
         ]
-        with m.If(now.complete):
-            m.d.sync += begun.eq(begins & ~now.ends)
+        with m.If(progress.complete):
+            m.d.sync += begun.eq(begins & ~progress.ends)
         addend, mask = self._items_align()
         to_end = Signal.like(words.to_end, name="to_end")
         end_mask = Signal(max(3, ring.lane_bits), name="end_mask")
         to_map = Signal.like(words.to_map, name="to_map")
         m.d.comb += to_map.eq(Mux(state.lead, 0, items) + nul + state.map_addend)
-        with m.If(now.ends):
-            m.d.comb += [to_end.eq(Mux(begins, whole + (bus - 1), bus)), end_mask.eq(bus - 1)]
+        with m.If(progress.ends):
+            m.d.comb += [to_end.eq(Mux(begins, map_size + (bus - 1), bus)), end_mask.eq(bus - 1)]
         with m.Else():
-            m.d.comb += [to_end.eq(whole + addend), end_mask.eq(mask)]
-        with m.If(now.free):
+            m.d.comb += [to_end.eq(map_size + addend), end_mask.eq(mask)]
+        with m.If(progress.free):
             m.d.sync += [
-                self.words.valid.eq(now.complete),
+                self.words.valid.eq(progress.complete),
                 words.items_bytes.eq(items),
                 words.map_bytes.eq(state.map_bytes),
                 words.lead.eq(state.lead),
@@ -170,15 +172,15 @@ class Filler:
                 words.map_mask.eq(state.mask),
                 words.to_end.eq(to_end),
                 words.end_mask.eq(end_mask),
-                words.last.eq(now.ends),
+                words.last.eq(progress.ends),
                 words.empty.eq(~begins),
                 words.waits.eq(any_of([self.step[i] for i in range(first_step(self.plan))])),
             ]
 
     def _items_align(self) -> tuple[Value, Value]:
-        """Return what aligns the items that the step counts: an addend, and the mask.
+        """Return the addend and the mask that align the first item of the run that the step begins.
 
-        An empty run has no padding.
+        Both are 3 bits, and 0 for an empty run, which has no padding.
         """
         plan = self.plan
         cases: list[tuple[Value, int, int]] = []
@@ -186,7 +188,7 @@ class Filler:
             if isinstance(step.begin, BeginRun) and step.begin.align > 1:
                 align = step.begin.align
                 addend = align_addend(align, plan.header_bytes) if plan.bus_bytes >= 8 else 0
-                not_empty = self.step[index] & ~self.now.lengths[step.begin.length].zero
+                not_empty = self.step[index] & ~self.progress.lengths[step.begin.length].zero
                 cases.append((not_empty, addend, align - 1))
         return (
             pick([(not_empty, addend) for not_empty, addend, _ in cases], 3),
@@ -195,7 +197,7 @@ class Filler:
 
 
 def _stretches(word: list[dict[int, _Byte]]) -> Iterator[tuple[int, list[dict[int, _Byte]]]]:
-    """Divide a word into lanes in a row that are selected alike; yield the first lane and them."""
+    """Divide a word into stretches of lanes with common selects; yield first lane and stretch."""
     first = 0
     for lane in range(1, len(word) + 1):
         if lane < len(word) and _follows(word[lane - 1], word[lane]):
@@ -206,7 +208,7 @@ def _stretches(word: list[dict[int, _Byte]]) -> Iterator[tuple[int, list[dict[in
 
 
 def _follows(before: dict[int, _Byte], after: dict[int, _Byte]) -> bool:
-    """Tell whether two lanes have bytes in a row of the same leaves, in the same steps."""
+    """Tell whether two lanes have consecutive bytes of the same leaves in the same steps."""
     return before.keys() == after.keys() and all(
         after[index] == replace(byte, at=byte.at + 1)
         if byte.leaf is not None
@@ -216,6 +218,6 @@ def _follows(before: dict[int, _Byte], after: dict[int, _Byte]) -> bool:
 
 
 def _item_bits(item: Value) -> Value:
-    """Return an item's bits on the wire; a bool takes a whole byte."""
+    """Return the bits of an item on the wire; a bool is extended to a byte."""
     value = Value.cast(item)
     return Cat(value, Const(0, -len(value) % 8))

@@ -1,4 +1,4 @@
-"""Lengths that producers offer, decoded ahead."""
+"""Lengths that producers offer, decoded one cycle before they are taken."""
 
 from __future__ import annotations
 
@@ -12,32 +12,33 @@ __all__ = ["OfferedLength"]
 
 
 class OfferedLength:
-    """A length that is offered, decoded in registers. Not a component: logic of one module.
+    """Registers with the decoded length that a leaf offers. Not a component: logic of one module.
 
     Parameters
     ----------
     leaf : int
-        The leaf of the length.
+        Index of the leaf of the length.
     port : stream.Interface
-        Its stream.
+        Stream of the leaf.
     taken : Value(1)
-        It is taken in this cycle.
+        The length transfers in this cycle.
 
     Attributes
     ----------
     known : Signal(1)
-        The fields are those of the length that is offered now: one cycle after it is offered.
+        The fields belong to the length that is offered now. High from one cycle after the offer
+        until the transfer.
     zero, over : Signal(1)
-        It is 0; it is above the largest legal one.
+        The length is 0, or above its limit.
     skips : Signal(1)
-        The body is skipped: there is none, or all of it is the rest.
+        The body is skipped: the length is 0, or all items are in the rest.
     single : Signal(1)
-        The body is one element, or one word in front of the rest.
+        If the body is executed at all, it is executed once: one element, or one word.
     rest : Signal(range(lanes + 1))
-        Items of the rest.
+        Number of items in the rest; always 0 for a loop.
     held : Signal(1)
-        To be driven: the fields stay in the next cycle, because the step of a length that was taken
-        is not left yet.
+        Input: the fields keep their values, because the length was taken, but its step is not
+        complete.
     """
 
     def __init__(self, m: Module, plan: Plan, leaf: int, port: stream.Interface, taken: Value):

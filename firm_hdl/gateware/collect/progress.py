@@ -1,4 +1,4 @@
-"""Where the collector is: its registers, and its decisions in this cycle."""
+"""The state of the collector: its registers, and its decisions in the current cycle."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from firm_hdl.plan import BeginLoop, BeginRun, Plan, RunStep
 __all__ = ["COUNT_BITS", "Progress"]
 
 COUNT_BITS = 32
-"""A length over its limit is counted, too."""
+"""Width of lengths. Counters have this width, because the items of any length are taken."""
 
 
 class Progress:
-    """Where the collector is in the message and in the plan. Not a component: signals.
+    """The place of the collector in the message and in the plan. Not a component: signals.
 
     Attributes
     ----------
@@ -30,23 +30,26 @@ class Progress:
     lengths : dict of int to OfferedLength
         By leaf.
     flow : Flow
-        Has the step and the counters; `state` and `step` are its own.
+        Step and counters.
+    state : View
+    step : Signal
+        Those of `flow`.
     rest : Signal(range(lanes + 1))
-        Items of the rest of a run that the step takes.
+        Number of items in the rest of the last run, until a step takes them. A register.
     has_nul : Signal(1)
-        A NUL follows these items.
+        A NUL follows these items. A register.
     zero : Value(1)
-        The step's length is 0. Combinational, as all that follow.
+        The step's length is 0. This and the following ones are combinational.
     done : Signal(1)
-        The step is left through one of its exits, and not into the body that it begins.
+        The step, when complete, is left through an exit and not into a body.
     ends : Signal(1)
         The message ends with this step.
     free : Signal(1)
-        The words can be written.
+        The words may be written: `words` is not valid, or transfers.
     complete : Signal(1)
-        They are written for the last time, and the step is left.
+        The step is complete: its words are valid in the next cycle, and the next step follows.
     served : list of Signal(1)
-        The transfer with this number in its step has been taken. Registers.
+        By number of a transfer in its step: it was taken in an earlier cycle. Registers.
     """
 
     def __init__(self, m: Module, plan: Plan, streams: Sequence[stream.Interface]):
@@ -105,7 +108,7 @@ class Progress:
     def of_length(
         self, field: Callable[[OfferedLength], Value], width: int = 1, kind: type = object
     ) -> Value:
-        """Select a field of the step's length; 0 if the step has none of the kind."""
+        """Return a field of the step's length; 0 if the step begins nothing of the kind."""
         begins = ((i, step.begin) for i, step in enumerate(self.plan.steps))
         cases = [
             (self.step[i], field(self.lengths[begin.length]))

@@ -11,33 +11,35 @@ __all__ = ["words_layout"]
 
 
 def words_layout(plan: Plan) -> data.StructLayout:
-    """Return the payload of the stream of words, which come in wire order.
+    """Return the payload of the stream of words: the bytes of one step, in wire order.
 
-    A position is rounded up by adding a distance and clearing low bits; so that one addition is
-    enough, a distance includes what rounding up needs.
+    To round a position up, the packer adds a distance and clears low bits. Each distance includes
+    the addend of the rounding, so one addition is enough.
 
     Members
     -------
     items, map : unsigned(8 * bus_bytes)
-        The word of items, and that of the map. If `lead`, both are of the map, in this order.
+        The word of items, and that of the map. If `lead`, `items` is the first word of the map.
     items_bytes, map_bytes : range(bus_bytes + 1)
-        Bytes of these words.
+        Number of bytes in these words, from lane 0 on.
     lead : unsigned(1)
-    to_map, map_mask
-        Distance from the bytes before to the map, and the mask of its alignment.
-    to_end, end_mask
-        Distance from the start of the map to where the next step starts, and the mask of its
-        alignment. Behind a packet, that is the next beat.
+        The map has two words.
+    to_map : range(bus_bytes + 9); map_mask : unsigned(3)
+        Distance in bytes from the start of this step to the map, and the low bits that the map's
+        alignment clears.
+    to_end : range(3 * bus_bytes + 9); end_mask : unsigned(max(3, lane_bits))
+        Distance in bytes from the start of the map to the start of the next step, and the low bits
+        that its alignment clears. After the last step, the next packet starts with the next beat.
     max_beats : unsigned
-        The next step starts at most so many beats after the one in which this step starts.
+        Upper bound of the beats from the start of this step to the start of the next one.
     last : unsigned(1)
         The packet ends with this step.
     empty : unsigned(1)
-        The packet has no byte so far.
+        The packet has no byte up to the end of this step.
     waits : unsigned(1)
-        No leaf of the message was taken so far: the packet does not begin with this step.
+        No leaf was taken so far, only constants: no beat of the packet may be sent yet.
     error : unsigned(1)
-        The packet is marked with an error. Only looked at when `last` is set.
+        The packet is marked with an error. Only used if `last`.
     """
     ring, bus = Ring(plan), plan.bus_bytes
     return data.StructLayout(

@@ -1,9 +1,9 @@
 """A plan run in plain Python: the golden model of the gateware.
 
 Both directions follow the plan's steps (slices, starts, runs, exits, dynamic alignment) and never
-read the layout, so a wrong plan gives wrong results here. Results are exact to the primitive and do
-not depend on the bus width: a packet's first error is the first one in wire order, in whatever
-cycle the hardware finds it (docs/interface.md, "Status").
+read the layout, so a wrong plan gives wrong results. Results are exact to the primitive and do not
+depend on the bus width: a packet's first error is the first one in wire order, whichever cycle the
+hardware finds it in (docs/interface.md, "Status").
 """
 
 from firm_hdl.plan.interpret.decode import Decoded, DecodeStatus, Transfer, decode

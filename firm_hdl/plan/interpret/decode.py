@@ -71,7 +71,7 @@ class Decoded:
 def decode(plan: Plan, packet: bytes) -> Decoded:
     """Decode a packet as the deserializer of a plan does."""
     reader = _Reader(plan=plan, packet=bytes(packet))
-    reader.go()
+    reader.run()
     if reader.status == "OK" and len(packet) - reader.position > plan.max_trailing_bytes:
         reader.status = "TRAILING"
     return Decoded(
@@ -88,7 +88,7 @@ class _Reader(Machine):
     position: int = 0
     status: DecodeStatus = "OK"
     transfers: list[Transfer] = field(default_factory=list)
-    # The bytes read so far of the current transfer.
+    # Bytes of the current transfer that earlier parts had.
     partial: bytes = b""
 
     @property
@@ -134,7 +134,7 @@ class _Reader(Machine):
         self.transfers.append(Transfer(part.leaf, payload))
 
     def count(self, begin: Begin, wire: int) -> int:
-        """Return the payload of a length, and keep the length on the wire."""
+        """Return the payload of a length, and store the length as it is on the wire."""
         length = wire - 1 if self.plan.has_nul(begin) and wire else wire
         if length > begin.limit:
             # A length is read whole or is 0, so no error came before.

@@ -49,7 +49,7 @@ def encode(
     """
     iterators = {leaf: iter(given) for leaf, given in streams.items()}
     writer = _Writer(plan=plan, streams=iterators, bare_strings=bare_strings)
-    writer.go()
+    writer.run()
     return bytes(writer.packet), writer.status
 
 

@@ -34,9 +34,9 @@ class Visit(NamedTuple):
     ----------
     step : int
     bytes : int
-        Bytes that the step takes, computed padding left out.
+        Bytes that the step takes, without computed padding.
     end : int
-        Bytes of the packet up to here.
+        Bytes of the packet up to the end of the step.
     """
 
     step: int
@@ -71,7 +71,7 @@ class Machine(ABC):
     length: int = 0
     visits: list[Visit] = field(default_factory=list)
     edges: set[Edge] = field(default_factory=set)
-    # The loop or run of each length. A length's first bytes may come some steps before its start.
+    # The loop or run of each length. The length's first bytes may be in steps before the start.
     begins: dict[int, Begin] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -102,7 +102,7 @@ class Machine(ABC):
     def terminator(self) -> None:
         """Read or write a string's NUL."""
 
-    def go(self) -> None:
+    def run(self) -> None:
         """Run the plan from start to end."""
         index = self.enter(self.plan.start)
         while index is not None:
@@ -113,7 +113,7 @@ class Machine(ABC):
         return jump.step
 
     def step(self, index: int) -> int | None:
-        """Run one step, all repetitions of a run's body included, and return the next one."""
+        """Run one step, including all repetitions of a run's body, and return the next step."""
         step = self.plan.steps[index]
         start = self.offset
         padding = 0
@@ -121,7 +121,7 @@ class Machine(ABC):
             left = self.counters.get(RUN_COUNTER, 0)
             self.edges.add(Edge(index, "rest" if left else "no rest"))
             if left:
-                self.items_of(step.rest, left)
+                self.transfer_items(step.rest, left)
         if step.align != 1:
             padding = self.align(step.align)
             self.edges.add(Edge(index, f"padding {padding}"))
@@ -174,18 +174,18 @@ class Machine(ABC):
         return begin.body if count > self.plan.word(begin.run) else None
 
     def words(self, index: int, run: int) -> None:
-        """Process the full words of a run, one per cycle; the rest of a counted run is left."""
+        """Process the full words of a run, one per cycle, except the rest of a counted run."""
         lanes = self.plan.leaves[self.plan.runs[run].items].lanes
-        keep = self.plan.word(run) if self.plan.runs[run].counted else 0
+        rest = self.plan.word(run) if self.plan.runs[run].counted else 0
         while True:
             start = self.offset
-            self.items_of(run, lanes)
+            self.transfer_items(run, lanes)
             self.visits.append(Visit(index, self.offset - start, self.offset))
-            if self.counters[RUN_COUNTER] <= keep:
+            if self.counters[RUN_COUNTER] <= rest:
                 return
             self.edges.add(Edge(index, "again"))
 
-    def items_of(self, index: int, count: int) -> None:
+    def transfer_items(self, index: int, count: int) -> None:
         """Process one transfer of a run, with the NUL if the run ends with it."""
         run = self.plan.runs[index]
         left = self.counters[RUN_COUNTER] - count

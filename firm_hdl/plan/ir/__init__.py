@@ -10,9 +10,9 @@ from the innermost outwards, and the first loop that has elements left is repeat
 the plan continues at another step or ends the packet. `MapStep.begin` starts a loop over elements
 or a run of items that a length counts. Loops and runs of constant count start in the jump to them.
 
-Runs: only the last bus word of a run that a length counts may be short. It is the *rest*, which the
-step behind the run takes together with its own bytes, so that it costs no cycle of its own. The
-step knows the rest from the counter of the run, which is 0 if no run was started or it was empty.
+Runs: only the last bus word of a run that a length counts may be short. This word is the *rest*.
+The step after the run takes the rest together with its own bytes, so that the rest costs no cycle.
+The counter of the run has the size of the rest: 0 if no run was started, or the run was empty.
 """
 
 from firm_hdl.plan.ir.leaves import Fixed, Leaf, LeafKind, Pad, Part, Run, Slice

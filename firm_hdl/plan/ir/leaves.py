@@ -75,7 +75,7 @@ class Fixed:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
-    """Bytes of one transfer of a leaf; the transfer is done with its last byte.
+    """Bytes of one transfer of a leaf; the transfer is complete with its last byte.
 
     Attributes
     ----------
@@ -94,8 +94,8 @@ class Part:
     last_level : int or None
         For items: the loop counter that is 1 if this transfer is the last one.
 
-    An array of constant count has one or two transfers in parts, of which the last one has `last`;
-    or a run of full words and then a part with the tail, if there is one.
+    An array of one or two transfers consists of parts, the last of which has `last`. A longer array
+    is a run of full words; a part with the tail follows, if the items do not fill all words.
     """
 
     at: int
@@ -125,9 +125,9 @@ class Run:
         Index of the leaf.
     counted : bool
         Whether a length counts the items. Then the last word, which may be short, is the rest that
-        the step behind the run takes. Otherwise the count is constant, and all words are full.
+        the step after the run takes. Otherwise the count is constant, and all words are full.
     terminated : bool
-        Whether a NUL follows on the wire, where the length counts it.
+        Whether a NUL follows the items on the wire. The length on the wire counts the NUL, too.
     last : bool
         Whether the last transfer of the run is the last one of its leaf. False if a part with the
         tail of a fixed array follows.

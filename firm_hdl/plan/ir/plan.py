@@ -70,13 +70,13 @@ class Plan:
         return not isinstance(begin, BeginLoop) and self.runs[begin.run].terminated
 
     def max_count(self, begin: Begin) -> int:
-        """Give the largest legal count on the wire, a NUL included."""
+        """Return the largest legal count on the wire, a NUL included."""
         return begin.limit + self.has_nul(begin)
 
     def word(self, run: int) -> int:
-        """Give the largest count that is one word of a run, its NUL included."""
+        """Return the largest count that fits in one word of a run, its NUL included."""
         return self.leaves[self.runs[run].items].lanes + self.runs[run].terminated
 
     def item_bytes(self, run: int) -> int:
-        """Give the bytes of one item of a run."""
+        """Return the bytes of one item of a run."""
         return self.leaves[self.runs[run].items].item_bytes

@@ -95,8 +95,8 @@ class BeginRun:
         The first item starts at a multiple of this many bytes, counted from the end of the
         encapsulation header. An empty run has no padding.
     body : Jump
-        Taken if the run has more than one word. A deserializer takes it only if `limit` is more
-        than a word; a serializer writes any length.
+        Taken if the run has more than one word. If `limit` is at most a word, only a serializer
+        takes it, because it writes lengths over the limit, too.
     """
 
     length: int
@@ -117,11 +117,11 @@ class MapStep:
     Attributes
     ----------
     rest : int or None
-        Run whose rest the step takes first: at most one bus word of items, and the NUL. There is
-        none if the step was reached without starting the run.
+        Run whose rest the step takes first: at most one bus word of items, and the NUL. If the
+        step was reached without starting the run, there is no rest.
     align : int
         The map starts at a multiple of this many bytes, counted from the end of the encapsulation
-        header. Padding up to there is skipped. 1 where padding is statically known.
+        header. Padding before the map is skipped. 1 if this padding is statically known.
     bytes : int
         Bytes of the static map.
     slices : tuple of Slice
@@ -155,7 +155,7 @@ class RunStep:
     Attributes
     ----------
     align : int
-        As in `MapStep`, in front of the first word.
+        As in `MapStep`, before the first word.
     run : int
         Index into `Plan.runs`.
     exits : Exits

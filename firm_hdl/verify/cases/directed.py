@@ -92,7 +92,7 @@ def bare_packets(plan: Plan, cases: Iterable[Case]) -> list[tuple[Case, bytes]]:
 
 def _bare_edges(plan: Plan) -> frozenset[Edge]:
     """Return the decisions that only the length 0 of a CDR string takes: not even a NUL is left."""
-    # Steps that a packet also reaches without a string in front have no rest anyway.
+    # Steps that a packet also reaches without an earlier string have no rest anyway.
     others = {plan.start.step}
     for step in plan.steps:
         if isinstance(step.begin, BeginLoop):

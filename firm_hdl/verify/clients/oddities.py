@@ -50,7 +50,7 @@ ODDITIES: dict[str, str] = {
     "dirty-padding": "cdr",  # Padding is not zero.
     **dict.fromkeys(("pad-1", "pad-2", "pad-3"), "cdr"),  # So many zero bytes follow.
     # It need not take these.
-    "no-nul": "cdr",  # A string has no NUL behind it.
+    "no-nul": "cdr",  # A string has no NUL after it.
     "nul-inside": "ros1 cdr",  # A string has a NUL among its characters.
     "not-utf8": "ros1 cdr",  # A string is not UTF-8.
     "bool-2": "ros1 cdr",  # A bool is 2.

@@ -10,7 +10,7 @@
 //
 // Types are lines, one for each message, each after those that it needs; the last one is asked for.
 // A line has a word for each field: a letter, `m` and the number of the message's line, or one of
-// these behind `a` and its count and `:` (array), or `s` and its bound and `:` (sequence; 0: none).
+// these after `a` and its count and `:` (array), or `s` and its bound and `:` (sequence; 0: none).
 // Packed values are those of values.py.
 //
 // Which call of Fast CDR a field needs is rosidl_typesupport_fastrtps_cpp's rule: a whole vector or

@@ -88,7 +88,7 @@ class Objects:
 
 
 def _attribute(message: Any, field: str) -> str:
-    """Return what genpy calls a field: names that Python does not take have a `_` behind."""
+    """Return what genpy calls a field: names that Python does not take get a trailing `_`."""
     return field if field in message.__slots__ else field + "_"
 
 

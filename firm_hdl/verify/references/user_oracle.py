@@ -121,7 +121,7 @@ def oracle_name(message: Message) -> str:
     if message.name in _BUILTIN:
         return _BUILTIN[message.name]
     head, _, base = message.name.rpartition("/")
-    # rosbags' own rule: whatever is not in `msg` or `action` gets a `msg` in front of its name.
+    # rosbags' own rule: whatever is not in `msg` or `action` gets a `msg` before its name.
     return message.name if head.endswith(("/msg", "/action")) else f"{head}/msg/{base}"
 
 

@@ -25,7 +25,7 @@ class Icarus:
     Parameters
     ----------
     standard : str
-        The language that the Verilog is read as: what comes behind ``-g``. 2012 is SystemVerilog,
+        The language that the Verilog is read as: what comes after ``-g``. 2012 is SystemVerilog,
         and what cocotb takes.
 
     Raises

@@ -28,7 +28,7 @@ class Traffic:
     packets, packet_errors, statuses, sent_statuses
         As in :class:`firm_hdl.sim.record.RunResult`; statuses as bits.
     transfers : dict of int to list of str
-        Bits that each leaf of the deserializer transferred, with ``last`` in front of the items.
+        Bits that each leaf of the deserializer transferred, with ``last`` before the items.
     """
 
     name: str

@@ -24,7 +24,7 @@ def modules_of(trace: Trace) -> list[str]:
 def write_inputs(trace: Trace, tops: Sequence[Top], folder: Path) -> list[str]:
     """Write the Verilog and the rows of inputs; return the names of the files of Verilog.
 
-    A row has the number of its changes in front, as the formats of Verilog know no end of a line.
+    A row has the number of its changes first, as the formats of Verilog know no end of a line.
     """
     files = []
     for module, top in zip(modules_of(trace), tops, strict=True):

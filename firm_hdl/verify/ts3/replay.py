@@ -296,7 +296,7 @@ def _difference(packet: bytes, answer: bytes, header_bytes: int) -> str:
     if packet[:header_bytes] != answer[:header_bytes]:
         found.append("option bits")
     if len(packet) > len(answer):
-        found.append("bytes behind the message")
+        found.append("bytes after the message")
     body, other = packet[header_bytes : len(answer)], answer[header_bytes:]
     if body != other:
         found.append("padding that is not zero, or a bool that is neither 0 nor 1")

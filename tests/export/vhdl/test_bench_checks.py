@@ -134,13 +134,13 @@ WHOLE = beat(b"abcd", last=0)
         # Lanes.
         (
             [beat(b"abc", last=0), beat(b"de")],
-            "FAIL packet 0: tkeep is 0111 with tlast 0, behind 0",
+            "FAIL packet 0: tkeep is 0111 with tlast 0, after 0",
         ),
         ([WHOLE, beat(b"", keep="0000", last=0), beat(b"e")], "FAIL packet 0: tkeep is 0000 with"),
-        ([WHOLE, beat(b"ee", keep="0010")], "FAIL packet 0: tkeep is 0010 with tlast 1, behind 4"),
-        ([WHOLE, beat(b"e", keep="1001")], "FAIL packet 0: tkeep is 1001 with tlast 1, behind 4"),
-        ([WHOLE, beat(b"e", keep="000X")], "FAIL packet 0: tkeep is 000X with tlast 1, behind 4"),
-        ([WHOLE, beat(b"e", last=0)], "FAIL packet 0: tkeep is 0001 with tlast 0, behind 4"),
+        ([WHOLE, beat(b"ee", keep="0010")], "FAIL packet 0: tkeep is 0010 with tlast 1, after 4"),
+        ([WHOLE, beat(b"e", keep="1001")], "FAIL packet 0: tkeep is 1001 with tlast 1, after 4"),
+        ([WHOLE, beat(b"e", keep="000X")], "FAIL packet 0: tkeep is 000X with tlast 1, after 4"),
+        ([WHOLE, beat(b"e", last=0)], "FAIL packet 0: tkeep is 0001 with tlast 0, after 4"),
         # Marks.
         ([WHOLE, beat(b"e", user=1)], "FAIL packet 0 is marked by tuser"),
         ([WHOLE.removesuffix("0") + "1", beat(b"e")], "FAIL packet 0: tuser is 1 with tlast 0"),
@@ -156,7 +156,7 @@ def test_sink(ghdl, parts, beats, said):
 
 def test_sink_wants_the_last_beat_of_a_full_packet_to_be_its_end(ghdl, parts):
     found = play(ghdl, parts, [WHOLE, beat(b"", keep="0000")], [b"abcd"])
-    assert "FAIL packet 0: tkeep is 0000 with tlast 1, behind 4 bytes" in found
+    assert "FAIL packet 0: tkeep is 0000 with tlast 1, after 4 bytes" in found
     assert play(ghdl, parts, [beat(b"", keep="0000")], [b""]) == ""
 
 

@@ -230,7 +230,7 @@ begin
   rdy.angular <= (others => '1');
 
   process
-    -- 1.0 and five zeros, behind the encapsulation header.
+    -- 1.0 and five zeros, after the encapsulation header.
     type words_t is array (natural range <>) of std_logic_vector(63 downto 0);
     constant WORDS : words_t(0 to 6) := (
       x"00000000_00000100", x"00000000_3ff00000", others => (others => '0'));

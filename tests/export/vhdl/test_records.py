@@ -139,7 +139,7 @@ def test_package_reads_like_the_definition(tmp_path):
     text = vhdl.files["array_msgs_arrays_ros1_8_pkg.vhd"]
     start = text.index("  type arrays_value_t is record\n")
     record = text[start : text.index("  end record;\n", start)]
-    # What a long line has behind it stands above it.
+    # What a long line has after it stands above it.
     record = re.sub(r"\n    (--.*)\n(.*)", r"\n\2 \1", record.replace("work.array_msgs_", ""))
     assert [" ".join(line.split()) for line in record.splitlines()[1:]] == [
         "range_field : std_logic; -- range: bool",
@@ -238,7 +238,7 @@ begin
   fifo <= to_slv(msg);
 
   process
-    -- 1.0 in linear.x, 2.0 in angular.z, behind the encapsulation header.
+    -- 1.0 in linear.x, 2.0 in angular.z, after the encapsulation header.
     type words_t is array (natural range <>) of std_logic_vector(63 downto 0);
     constant WORDS : words_t(0 to 6) := (
       x"00000000_00000100", x"00000000_3ff00000", x"00000000_00000000", x"00000000_00000000",

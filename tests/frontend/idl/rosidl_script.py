@@ -29,7 +29,7 @@ def type_text(kind):
 
 
 def annotation(member, name):
-    """Give what stands behind ``value=``."""
+    """Give what stands after ``value=``."""
     values = member.get_annotation_values(name)
     return values[0].get("value") if values and isinstance(values[0], dict) else None
 

@@ -258,7 +258,7 @@ def test_any_difference_between_two_typedefs_of_a_name_is_another_meaning(one, o
     assert wrong.message == "typedef 'V' is already declared as another type"
 
 
-def test_a_scope_in_front_of_a_typedef_has_to_be_its_own():
+def test_a_scope_before_a_typedef_has_to_be_its_own():
     text = """module a { typedef long V[2]; };
       module p { module msg { struct T { a::V x; }; }; };"""
     assert sizes_of(text) == {"T.x": 2}
@@ -348,7 +348,7 @@ def test_comments_are_those_in_the_language_of_comments():
     assert (b.comment, b.unit, c.unit) == ("", None, "s")
 
 
-def test_a_default_of_one_name_is_not_that_of_an_array_behind_it():
+def test_a_default_of_one_name_is_not_that_of_an_array_after_it():
     text = (
         'module p { struct T { @default(value="(1, 2)") long a[2]; @default(value=3) long b; }; };'
     )

@@ -74,7 +74,7 @@ def test_every_definition_has_its_place_and_its_parts():
     assert isinstance(minus, Unary) and words(minus) == "-2"
 
 
-def test_what_the_end_lacks_is_missed_right_behind_the_text():
+def test_what_the_end_lacks_is_missed_right_after_the_text():
     text = "module m {"
     found = parse_file(Source(name="test.idl", text=text + "\n"))
     assert isinstance(found, Diagnostic) and found.span is not None

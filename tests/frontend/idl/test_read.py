@@ -317,7 +317,7 @@ def test_members_are_in_the_order_of_the_text():
     assert [isinstance(m, ConstantSyntax) for m in members] == [True, False, True]
 
 
-def test_a_long_default_in_front_of_many_names_takes_no_time():
+def test_a_long_default_before_many_names_takes_no_time():
     items, names = ",".join("1" * 5000), ",".join(f"a{i}" for i in range(2500))
     text = f'module p {{ struct T {{ @default(value="({items})") sequence<long> {names}; }}; }};'
     with calls_at_most(2_000_000):
@@ -325,7 +325,7 @@ def test_a_long_default_in_front_of_many_names_takes_no_time():
         assert wrong == [] and len(messages["T"].members) == 2500
 
 
-def test_long_types_in_front_of_many_names_take_no_time():
+def test_long_types_before_many_names_take_no_time():
     chain = "+".join("1" * 5000)
     text = f"module p {{ struct T {{ sequence<long, {chain}> {','.join('a' * 5000)}; }}; }};"
     with calls_at_most(7_000_000):

@@ -89,7 +89,7 @@ def test_names():
         assert named(word) == legal, word
 
 
-def test_words_that_go_on_behind_a_builtin_type_are_names():
+def test_words_that_go_on_after_a_builtin_type_are_names():
     sized = [f"{u}int{bits}" for u in ("", "u") for bits in (8, 16, 32, 64)]
     for word in ("float", "char", "wchar", "boolean", "octet", *sized, "string", "wstring"):
         (member,) = (

@@ -130,7 +130,7 @@ def test_each_field_matters(field):
 
 
 @pytest.mark.parametrize(("bus_bytes", "count"), [(1, 4), (2, 2), (4, 1), (8, 1), (16, 1)])
-def test_constants_in_front_of_the_message_wait(bus_bytes, count):
+def test_constants_before_the_message_wait(bus_bytes, count):
     plan = build_plan(lay_out(MESSAGES["array"]), bus_bytes=bus_bytes)
     words = words_of(plan, random_packets(plan, 1))
     assert [word["waits"] for word in words[: count + 1]] == [1] * count + [0]

@@ -31,7 +31,7 @@ class Reference:
     start : int
         The first beat of the packet that is read.
     freed : int
-        Beats in front of this one are not needed.
+        Beats before this one are not needed.
     """
 
     def __init__(self, bus_bytes):
@@ -89,7 +89,7 @@ def compare(dut, seed, tamper=None):
                 number = len(reference.beats)
                 ctx.set(dut.packets.payload, packet_beat(number, *offered, bus))
             ctx.set(dut.packets.valid, offered is not None)
-            # The packet may be left; what is in front of the reader may be freed later.
+            # The packet may be left; what is before the reader may be freed later.
             leave = ended and rng.random() < 0.5
             ctx.set(dut.next, leave)
             here = limit // bus

@@ -35,7 +35,7 @@ def expected(plan, meaning, length, key, phase):
     key : int
         Position of the length's last byte.
     phase : int
-        Position behind the header, modulo 8.
+        Position after the header, modulo 8.
     """
     over = length > meaning.max_count
     if meaning.run is None:
@@ -72,10 +72,10 @@ def places(plan, meaning, length, key, phase):
 
     ring = Ring(plan)
     start = aligned(key + 1, meaning.run.align) if length else key + 1
-    behind = start + length * plan.item_bytes(meaning.run.run)
+    after = start + length * plan.item_bytes(meaning.run.run)
     return {
         meaning.last(jump): (
-            aligned(behind, plan.steps[jump.step].align) + shift_of(plan, jump.step)
+            aligned(after, plan.steps[jump.step].align) + shift_of(plan, jump.step)
         )
         % (1 << ring.bits)
         for jump in meaning.jumps

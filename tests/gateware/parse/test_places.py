@@ -27,7 +27,7 @@ from tests.strategies import make
 TEXT = make("ros2", {"s": "string", "d": "float64"}, "Text")
 OLD = make("ros1", {"s": "string", "d": "float64"}, "Old")
 MESSAGES = {
-    # Every alignment, in front of maps and of items; a loop; a constant count; a last rest.
+    # Every alignment, before maps and of items; a loop; a constant count; a last rest.
     "cdr": make("ros2", {"a": "uint8", "s": "string", "d": "float64[]", "t": (TEXT, "[]")}),
     "ros1": make("ros1", {"a": "uint8", "s": "string", "d": "float64[]", "t": (OLD, "[]")}),
     "array": make("ros2", {"a": "uint8[40]", "s": "uint16[]", "x": "float64"}),
@@ -73,7 +73,7 @@ def expected(plan, packets):
 
     for data in packets:
         packet = packet_of(plan, data)
-        behind = 0
+        after = 0
         for index, visit in enumerate(packet.visits):
             step = plan.steps[visit.step]
             start = visit.end - (bus if isinstance(step, RunStep) else step.bytes)
@@ -92,14 +92,14 @@ def expected(plan, packets):
                 size -= bool(size) and plan.runs[step.rest].terminated
                 order["items"] = int(size > 0)
                 if size:
-                    order |= {"items_at": place(behind), "items_bytes": size, "last": 1}
+                    order |= {"items_at": place(after), "items_bytes": size, "last": 1}
             is_last = index == len(packet.visits) - 1 and step.begin is None
             order["ends"] = int(is_last)
             if is_last:
                 order["status"] = Status.OK.value
             orders.append(order)
             if index < len(packet.visits) - 1:
-                behind = packet.next_start(index)
+                after = packet.next_start(index)
         if step.begin is not None:
             orders.append({"blank": 1, "ends": 1, "status": Status.OK.value})
         base += packet.beats * bus

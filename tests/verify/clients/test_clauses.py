@@ -289,7 +289,7 @@ def test_an_odd_packet_is_odd_at_its_first_place_and_nowhere_else(make_message, 
     assert packet == bytes.fromhex(ODD[name]), packet.hex()
 
 
-def test_alignment_counts_from_behind_the_header(make_message):
+def test_alignment_counts_from_the_end_of_the_header(make_message):
     message = make_message("uint8 a\nuint64 b\nuint8 c\nuint16 d")
     value = {"a": 1, "b": 2, "c": 3, "d": 4}
     want = "00010000 01 00000000000000 0200000000000000 03 00 0400"

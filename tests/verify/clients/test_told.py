@@ -72,7 +72,7 @@ def test_five_kinds_for_each_library_are_told_in_full():
     assert lines[-2:] == named("A", "kind11")
 
 
-def test_who_could_not_be_asked_is_told_behind_the_differences():
+def test_who_could_not_be_asked_is_told_after_the_differences():
     failed = trial("A", obstacle=Failed(("it crashed", "and more")))
     silent = trial("B", obstacle=NotJudged("nobody"))
     assert told(failed, silent, trial("C", "encode")) == [

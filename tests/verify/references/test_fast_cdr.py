@@ -98,7 +98,7 @@ def test_a_unit_of_wide_text_that_is_too_large(library_here, release):
     codec = library_here(release).open(message, "cdr")
     packet = data("00010000 01000000 61000100")
     if release == "fastcdr":
-        # It goes through a wchar_t of 32 bits, and is cut to 16 behind it.
+        # It goes through a wchar_t of 32 bits, and is cut to 16 after it.
         assert codec.decode(packet) == {"w": [0x61]}
         return
     with pytest.raises(Refusal, match="more than 16 bits"):

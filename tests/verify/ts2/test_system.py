@@ -41,7 +41,7 @@ def test_a_plan_that_breaks_an_invariant_is_found(monkeypatch):
 
     monkeypatch.setattr(ts2, "plan_of", misaligned)
     (problem, *_) = checked("sensor_msgs/msg/JointState").verdict.failures
-    assert "bytes of padding in front" in problem
+    assert "bytes of padding before it" in problem
 
 
 def test_a_printed_form_that_loses_something_is_found(monkeypatch):

@@ -143,8 +143,8 @@ def test_what_rosbags_cannot_read_is_judged_by_what_it_can(monkeypatch, tmp_path
     ("packet", "kind"),
     [
         (TEXT[:3] + b"\2" + TEXT[4:], "with option bits"),
-        (TEXT + b"xyz", "with bytes behind the message"),
-        (TEXT[:2] + b"\0\3" + TEXT[4:] + b"\0\0\0", "with option bits, bytes behind the message"),
+        (TEXT + b"xyz", "with bytes after the message"),
+        (TEXT[:2] + b"\0\3" + TEXT[4:] + b"\0\0\0", "with option bits, bytes after the message"),
         (b"\0\0\0\0\0\0\0\4abc\0", "in big-endian CDR, which get the status ENCAPSULATION"),
         (b"\0\3" + TEXT[2:], "in a parameter list, which get the status ENCAPSULATION"),
         (b"\1\1" + TEXT[2:], "in the representation 0101, which get the status ENCAPSULATION"),
@@ -165,7 +165,7 @@ def test_padding_and_bools_may_be_anything(tmp_path):
     packet = next(each for each in robot("mcap")[::-1] if each[1] == "my_msgs/msg/Wheels")[3]
     assert packet[-1] == 0
     bools = packet[:-1] + b"\7"
-    # In front of the first speed, behind the 7 bytes of "wheels\0".
+    # Before the first speed, after the 7 bytes of "wheels\0".
     at = packet.index(b"wheels\0") + 7
     padding = packet[:at] + b"\7" + packet[at + 1 :]
     bag = strings(tmp_path, packet, bools, padding, name="my_msgs/msg/Wheels")

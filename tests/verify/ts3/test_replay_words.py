@@ -31,11 +31,11 @@ PACKET = b"\0\1\0\0\1\0\0\0"
     [
         (PACKET, ""),
         (b"\0\1\0\3\1\0\0\0", "with option bits"),
-        (PACKET + b"\0", "with bytes behind the message"),
+        (PACKET + b"\0", "with bytes after the message"),
         (b"\0\1\0\0\1\0\0\2", "with padding that is not zero, or a bool that is neither 0 nor 1"),
         (
             b"\0\1\0\3\1\0\0\2\0",
-            "with option bits, bytes behind the message, padding that is not zero, or a bool that "
+            "with option bits, bytes after the message, padding that is not zero, or a bool that "
             "is neither 0 nor 1",
         ),
         # Padding at the end that is not there.

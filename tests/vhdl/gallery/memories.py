@@ -164,7 +164,7 @@ begin
   port_data <= unsigned(o);
 """
 )
-def a_memory_behind_an_empty_one() -> Made:
+def a_memory_after_an_empty_one() -> Made:
     """One without words is not there, and the next one is."""
     m, (o,) = Module(), signals("o", 4)
     m.submodules.none = Memory(shape=4, depth=0, init=[])

@@ -182,7 +182,7 @@ _GLUED = (
 
 @RULES.text("idl-words", "rosidl_parser takes words that run together.", is_mistake=True)
 def _words_apart(case: DefinitionCase) -> str:
-    """Write a blank behind a type that a name, or a part of its own name, follows at once."""
+    """Write a blank after a type that a name, or a part of its own name, follows at once."""
     return in_code(case.text, _GLUED, lambda m: f"{m[1] or m[3] or ''}{m[2] or m[4]} ")
 
 
@@ -226,7 +226,7 @@ def _without_unsupported(case: DefinitionCase) -> str:
 
 @RULES.spoils(
     "idl-lists-of-lists",
-    "Lists of lists by typedefs are refused; rosidl_parser takes some, and nothing behind it.",
+    "Lists of lists by typedefs are refused; rosidl_parser takes some, and nothing after it.",
 )
 def _has_lists_of_lists(case: DefinitionCase) -> bool:
     """Whether a list of a type that is a list itself, by a typedef, is declared."""

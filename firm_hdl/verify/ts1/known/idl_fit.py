@@ -238,7 +238,7 @@ def _is_default(
     "Generators fail at a list that is written (1); rosidl_adapter writes (1, ).",
 )
 def _lists_of_one(case: DefinitionCase) -> str:
-    """Write a comma behind the only element of a list, as rosidl_adapter does."""
+    """Write a comma after the only element of a list, as rosidl_adapter does."""
     changes = [
         (each.start, each.end, f'@default(value="({match[1]},)")')
         for _, defaults in _members(case)

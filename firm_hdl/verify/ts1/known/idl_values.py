@@ -188,7 +188,7 @@ RULES.add(
 
 @RULES.text("idl-long-names", "rosidl_parser reads 'long longitude' as a long long called itude.")
 def _long_names(case: DefinitionCase) -> str:
-    """Call a long int32, where the name behind it begins like the second word of a type."""
+    """Call a long int32, where the name after it begins like the second word of a type."""
     code = blanked(case.text)
     pattern = r"\b(unsigned\s+)?long(?=\s+(?:long|double)\w+\s*[;,\[])"
     changes = [

@@ -65,7 +65,7 @@ def _ascii_lines(case: DefinitionCase) -> str:
     def line(text: str) -> str:
         is_text = text.partition("#")[0].split(maxsplit=1)[:1] in (["string"], ["wstring"])
         code, sign, rest = text.partition("=" if is_text else "#")
-        # A line of text has a comment only behind its value, which is not looked at.
+        # A line of text has a comment only after its value, which is not looked at.
         return f"{_ascii(code)}{sign}{rest}" if sign or not is_text else text
 
     return each_line(case.text, line)

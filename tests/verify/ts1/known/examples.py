@@ -86,7 +86,7 @@ def _comment(read):
 
 @dataclass(frozen=True, kw_only=True)
 class Example:
-    """A definition ``p/A`` with a known difference, and a field behind it that has none.
+    """A definition ``p/A`` with a known difference, and a field after it that has none.
 
     Attributes
     ----------

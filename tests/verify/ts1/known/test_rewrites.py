@@ -9,7 +9,7 @@ import pytest
 
 from tests.verify.ts1.known.rewriting import numbered, private, rewritten
 
-# Each with a line behind it that is to change as well, or a line that is not.
+# Each with a line after it that is to change as well, or a line that is not.
 MSG = [
     # key, dialect, before, after
     ("rosbags-crlf", "ros2", "int8 a\r\nint8 b\rint8 c\n\r\n", "int8 a\nint8 b\nint8 c\n\n"),

@@ -25,7 +25,7 @@ FILES = {
     "p/msg/Odd.idl": "module other { module idl { struct Odd { long x; p::msg::I i; }; }; };",
     "q/msg/B.msg": "float32 x 1.5\n",
 }
-# What rosidl_generator_type_description 4.6.6 and 4.9.5 say, behind ``RIHS01_``.
+# What rosidl_generator_type_description 4.6.6 and 4.9.5 say, after ``RIHS01_``.
 HASHES = {
     "p/msg/A": "d76639cf2c33b33aedddcba570b4246bd66ad63a43d44bc11349274dfad02cdb",
     "p/msg/Empty": "bab64e8def664f6934378948fdbc689bb938b4c8bffd316c1dfff75c4f742d73",

@@ -21,7 +21,7 @@ package firm_hdl_bus_8_sv_pkg;
   localparam packet_beat_t PACKET_BEAT_IDLE = '0;
 
   typedef struct packed {
-    bool_data_t [7:0] data;  // the first item at index 0; zeros behind the last item
+    bool_data_t [7:0] data;  // the first item at index 0; zeros after the last item
     logic             last;  // last transfer of the array or sequence
     logic             valid;
   } bool_items_stream_t;
@@ -29,7 +29,7 @@ package firm_hdl_bus_8_sv_pkg;
   localparam bool_items_stream_t BOOL_ITEMS_STREAM_IDLE = '0;
 
   typedef struct packed {
-    float32_data_t [1:0] data;  // the first item at index 0; zeros behind the last item
+    float32_data_t [1:0] data;  // the first item at index 0; zeros after the last item
     logic                last;  // last transfer of the array or sequence
     logic                valid;
   } float32_items_stream_t;
@@ -37,7 +37,7 @@ package firm_hdl_bus_8_sv_pkg;
   localparam float32_items_stream_t FLOAT32_ITEMS_STREAM_IDLE = '0;
 
   typedef struct packed {
-    float64_data_t [0:0] data;  // the first item at index 0; zeros behind the last item
+    float64_data_t [0:0] data;  // the first item at index 0; zeros after the last item
     logic                last;  // last transfer of the array or sequence
     logic                valid;
   } float64_items_stream_t;
@@ -45,7 +45,7 @@ package firm_hdl_bus_8_sv_pkg;
   localparam float64_items_stream_t FLOAT64_ITEMS_STREAM_IDLE = '0;
 
   typedef struct packed {
-    int8_data_t [7:0] data;  // the first item at index 0; zeros behind the last item
+    int8_data_t [7:0] data;  // the first item at index 0; zeros after the last item
     logic             last;  // last transfer of the array or sequence
     logic             valid;
   } int8_items_stream_t;
@@ -53,7 +53,7 @@ package firm_hdl_bus_8_sv_pkg;
   localparam int8_items_stream_t INT8_ITEMS_STREAM_IDLE = '0;
 
   typedef struct packed {
-    uint8_data_t [7:0] data;  // the first item at index 0; zeros behind the last item
+    uint8_data_t [7:0] data;  // the first item at index 0; zeros after the last item
     logic              last;  // last transfer of the array or sequence
     logic              valid;
   } uint8_items_stream_t;
@@ -61,7 +61,7 @@ package firm_hdl_bus_8_sv_pkg;
   localparam uint8_items_stream_t UINT8_ITEMS_STREAM_IDLE = '0;
 
   typedef struct packed {
-    int16_data_t [3:0] data;  // the first item at index 0; zeros behind the last item
+    int16_data_t [3:0] data;  // the first item at index 0; zeros after the last item
     logic              last;  // last transfer of the array or sequence
     logic              valid;
   } int16_items_stream_t;
@@ -69,7 +69,7 @@ package firm_hdl_bus_8_sv_pkg;
   localparam int16_items_stream_t INT16_ITEMS_STREAM_IDLE = '0;
 
   typedef struct packed {
-    uint16_data_t [3:0] data;  // the first item at index 0; zeros behind the last item
+    uint16_data_t [3:0] data;  // the first item at index 0; zeros after the last item
     logic               last;  // last transfer of the array or sequence
     logic               valid;
   } uint16_items_stream_t;
@@ -77,7 +77,7 @@ package firm_hdl_bus_8_sv_pkg;
   localparam uint16_items_stream_t UINT16_ITEMS_STREAM_IDLE = '0;
 
   typedef struct packed {
-    int32_data_t [1:0] data;  // the first item at index 0; zeros behind the last item
+    int32_data_t [1:0] data;  // the first item at index 0; zeros after the last item
     logic              last;  // last transfer of the array or sequence
     logic              valid;
   } int32_items_stream_t;
@@ -85,7 +85,7 @@ package firm_hdl_bus_8_sv_pkg;
   localparam int32_items_stream_t INT32_ITEMS_STREAM_IDLE = '0;
 
   typedef struct packed {
-    uint32_data_t [1:0] data;  // the first item at index 0; zeros behind the last item
+    uint32_data_t [1:0] data;  // the first item at index 0; zeros after the last item
     logic               last;  // last transfer of the array or sequence
     logic               valid;
   } uint32_items_stream_t;
@@ -93,7 +93,7 @@ package firm_hdl_bus_8_sv_pkg;
   localparam uint32_items_stream_t UINT32_ITEMS_STREAM_IDLE = '0;
 
   typedef struct packed {
-    int64_data_t [0:0] data;  // the first item at index 0; zeros behind the last item
+    int64_data_t [0:0] data;  // the first item at index 0; zeros after the last item
     logic              last;  // last transfer of the array or sequence
     logic              valid;
   } int64_items_stream_t;
@@ -101,7 +101,7 @@ package firm_hdl_bus_8_sv_pkg;
   localparam int64_items_stream_t INT64_ITEMS_STREAM_IDLE = '0;
 
   typedef struct packed {
-    uint64_data_t [0:0] data;  // the first item at index 0; zeros behind the last item
+    uint64_data_t [0:0] data;  // the first item at index 0; zeros after the last item
     logic               last;  // last transfer of the array or sequence
     logic               valid;
   } uint64_items_stream_t;

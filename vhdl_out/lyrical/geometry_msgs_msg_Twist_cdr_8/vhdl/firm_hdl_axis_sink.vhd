@@ -51,7 +51,7 @@ begin
         assert tkeep(lane) = '1' or (tkeep(lane) = '0' and tlast = '1' and
             (place = 0 or lane > 0) and (lane = bus_bytes - 1 or tkeep(lane + 1) = '0'))
           report "FAIL packet " & integer'image(number) & ": tkeep is " & to_string(tkeep) &
-            " with tlast " & to_string(tlast) & ", behind " & integer'image(place) & " bytes"
+            " with tlast " & to_string(tlast) & ", after " & integer'image(place) & " bytes"
           severity failure;
       end loop;
       assert (tlast = '0' and tuser = '0') or tlast = '1'

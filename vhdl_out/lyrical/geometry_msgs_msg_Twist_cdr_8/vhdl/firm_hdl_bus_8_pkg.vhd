@@ -9,7 +9,7 @@ use work.firm_hdl_types_pkg.all;
 package firm_hdl_bus_8_pkg is
 
   type bool_items_stream_t is record
-    data  : bool_items_t(0 to 7);  -- zeros behind the last item
+    data  : bool_items_t(0 to 7);  -- zeros after the last item
     last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
@@ -18,7 +18,7 @@ package firm_hdl_bus_8_pkg is
     data => (others => '0'), last => '0', valid => '0');
 
   type float32_items_stream_t is record
-    data  : float32_items_t(0 to 1);  -- zeros behind the last item
+    data  : float32_items_t(0 to 1);  -- zeros after the last item
     last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
@@ -27,7 +27,7 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type float64_items_stream_t is record
-    data  : float64_items_t(0 to 0);  -- zeros behind the last item
+    data  : float64_items_t(0 to 0);  -- zeros after the last item
     last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
@@ -36,7 +36,7 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type int8_items_stream_t is record
-    data  : int8_items_t(0 to 7);  -- zeros behind the last item
+    data  : int8_items_t(0 to 7);  -- zeros after the last item
     last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
@@ -45,7 +45,7 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type uint8_items_stream_t is record
-    data  : uint8_items_t(0 to 7);  -- zeros behind the last item
+    data  : uint8_items_t(0 to 7);  -- zeros after the last item
     last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
@@ -54,7 +54,7 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type int16_items_stream_t is record
-    data  : int16_items_t(0 to 3);  -- zeros behind the last item
+    data  : int16_items_t(0 to 3);  -- zeros after the last item
     last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
@@ -63,7 +63,7 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type uint16_items_stream_t is record
-    data  : uint16_items_t(0 to 3);  -- zeros behind the last item
+    data  : uint16_items_t(0 to 3);  -- zeros after the last item
     last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
@@ -72,7 +72,7 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type int32_items_stream_t is record
-    data  : int32_items_t(0 to 1);  -- zeros behind the last item
+    data  : int32_items_t(0 to 1);  -- zeros after the last item
     last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
@@ -81,7 +81,7 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type uint32_items_stream_t is record
-    data  : uint32_items_t(0 to 1);  -- zeros behind the last item
+    data  : uint32_items_t(0 to 1);  -- zeros after the last item
     last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
@@ -90,7 +90,7 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type int64_items_stream_t is record
-    data  : int64_items_t(0 to 0);  -- zeros behind the last item
+    data  : int64_items_t(0 to 0);  -- zeros after the last item
     last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;
@@ -99,7 +99,7 @@ package firm_hdl_bus_8_pkg is
     data => (others => (others => '0')), last => '0', valid => '0');
 
   type uint64_items_stream_t is record
-    data  : uint64_items_t(0 to 0);  -- zeros behind the last item
+    data  : uint64_items_t(0 to 0);  -- zeros after the last item
     last  : std_logic;  -- last transfer of the array or sequence
     valid : std_logic;
   end record;

@@ -13,7 +13,7 @@ package firm_hdl_pkg is
   -- A bit as 0 or 1.
   function to_integer(value : std_ulogic) return natural;
 
-  -- Two's complement: copies of the most significant bit in front.
+  -- Two's complement: extended with copies of the most significant bit.
   function sign_extend(value : unsigned; n : positive) return unsigned;
 
   -- n copies of a bit.
