@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Module, Value
+from amaranth.hdl import Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -29,12 +29,12 @@ class Deserializer(wiring.Component):
     """Turn packets into messages.
 
     Every leaf has one register. A packet advances one step of the plan per cycle, while its bytes
-    are present and the registers of the step's leaves are free or being read. Leaves become valid
+    have arrived and the registers of the step's leaves are free or being read. Leaves become valid
     in wire order, `LATENCY_CYCLES["deserializer"]` cycles after the last beat of their step. All
     outputs are registers. One clock domain, `sync`; its reset discards all packets and messages
     inside.
 
-    Each packet ends in one transfer on `status`. After the first error in a packet, remaining
+    Each packet ends in one transfer on `status`. After the first error in a packet, the remaining
     scalars and lengths transfer as 0, the current sequence is completed with zeros, and the rest of
     the packet is dropped. The next packet is decoded normally.
 
@@ -89,7 +89,7 @@ class Deserializer(wiring.Component):
         m.submodules.buffer = buffer = Buffer(plan)
         m.submodules.sequencer = sequencer = Sequencer(plan)
         m.submodules.queue = queue = OrderQueue(plan)
-        m.submodules.mover = mover = Mover(plan)
+        m.submodules.mover = mover = Mover(plan, leaf_streams(self.message, self.tree))
         orders = queue.o
         m.d.comb += [
             buffer.packets.payload.eq(self.packets.payload),
@@ -113,11 +113,4 @@ class Deserializer(wiring.Component):
             self.status.valid.eq(mover.status.valid),
             mover.status.ready.eq(self.status.ready),
         ]
-        for leaf, interface in leaf_streams(self.message, self.tree).items():
-            made = getattr(mover, f"leaf_{leaf}")
-            m.d.comb += [
-                Value.cast(interface.payload).eq(Value.cast(made.payload)),
-                interface.valid.eq(made.valid),
-                made.ready.eq(interface.ready),
-            ]
         return m

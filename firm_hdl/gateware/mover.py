@@ -1,8 +1,8 @@
-"""The mover: bytes from the packet buffer to the leaves, as the sequencer orders."""
+"""The mover: bytes from the packet buffer to the leaves, by the orders of the sequencer."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
@@ -22,34 +22,32 @@ __all__ = ["Mover"]
 class Mover(wiring.Component):
     """Read two words of the packet buffer per order, and write leaves from their lanes.
 
-    One cycle reads the words and rotates them to lane 0, the next one writes the leaves. So a leaf
-    is valid 2 cycles after its order. Leaves of a step become valid in wire order, each as soon as
-    its register is free. A leaf whose register is full delays only what follows it.
+    One cycle reads the words and rotates their first bytes to lane 0; the next cycle writes the
+    leaves. So a leaf is valid 2 cycles after its order. Leaves of a step become valid in wire
+    order, each as soon as its register is free. A leaf whose register is full delays only later
+    leaves.
 
     Parameters
     ----------
     plan : Plan
+    leaves : mapping of int to stream.Interface
+        By leaf: streams of `leaf_shape(leaf)`, which the mover drives. Members of its own would
+        only copy those of the converter.
 
     Members
     -------
     beat : In(beat_layout(plan))
         The beat that is written to the packet buffer in this cycle.
     orders : In(stream.Signature(order_layout(plan)))
-    leaf_0, leaf_1, ... : Out(stream.Signature(leaf_shape(leaf)))
     status : Out(StatusSignature)
     """
 
-    def __init__(self, plan: Plan):
-        self.plan = plan
-        leaves = {
-            f"leaf_{k}": Out(stream.Signature(leaf_shape(leaf)))
-            for k, leaf in enumerate(plan.leaves)
-        }
+    def __init__(self, plan: Plan, leaves: Mapping[int, stream.Interface]):
+        self.plan, self.leaves = plan, leaves
         super().__init__(
             {
                 "beat": In(beat_layout(plan)),
                 "orders": In(stream.Signature(order_layout(plan))),
-                **leaves,
                 "status": Out(StatusSignature),
             }
         )
@@ -71,9 +69,9 @@ class _Writer:
     part : Part or None
         Its bytes in the map of the step; `None` for a word or the rest of a run.
     active : Signal
-        The order is of this step, and has this transfer.
+        The current order is of this step, and the transfer is not written yet.
     blocked : Signal
-        The transfer is not written yet, and its register is not free.
+        The transfer is active, and its register is not free.
     go : Signal
         The transfer is written in this cycle.
     """
@@ -97,8 +95,8 @@ class _Circuit:
         self.order = mover.orders.payload
         self.take = Signal(name="take")
         m.d.comb += mover.orders.ready.eq(self.take)
-        self.streams = [getattr(mover, f"leaf_{k}") for k in range(len(plan.leaves))]
-        # No reset: where an error writes 0, the reset of the flip-flop does it.
+        self.streams = [mover.leaves[k] for k in range(len(plan.leaves))]
+        # No reset value: so the flip-flops' synchronous reset is free to write the 0 of an error.
         self.payloads = [
             Signal(leaf_shape(leaf), name=f"payload_{k}", reset_less=True)
             for k, leaf in enumerate(plan.leaves)
@@ -108,7 +106,7 @@ class _Circuit:
         for port in (*self.streams, mover.status):
             with m.If(port.ready):
                 m.d.sync += port.valid.eq(0)
-        # Words, and which of their bytes have their values: "items" and "map".
+        # The words "items" and "map", and one bit for each good byte of them.
         self.word: dict[str, Signal] = {}
         self.have: dict[str, Signal] = {}
         self._read()
@@ -123,7 +121,7 @@ class _Circuit:
                 self._write(writer)
 
     def _kept(self, name: str) -> Signal:
-        """Return a field of the order, while the order is executed."""
+        """Return a register with a field of the order that is executed."""
         kept = Signal.like(getattr(self.order, name), name=f"{name}_now")
         with self.m.If(self.take):
             self.m.d.sync += kept.eq(getattr(self.order, name))
@@ -171,7 +169,7 @@ class _Circuit:
             ]
             for name, (at, starts) in ports.items():
                 read = memory.reader(name)
-                # Lanes in front of the first byte are of the next beat.
+                # Lanes before the first byte's are read from the next beat.
                 address: Value = at[ring.lane_bits :]
                 if any(start > k for start in starts):
                     address = Mux(ring.lane(at) > k, following[name], address)
@@ -202,12 +200,13 @@ class _Circuit:
     def _serve(self) -> None:
         """Write the transfers of a step in wire order, each as soon as its register is free.
 
-        A consumer may take a leaf only after an earlier one, or only after one of the next message.
+        A consumer may take a leaf only after an earlier leaf, or after a leaf of the next message.
         So a step must not wait until all its leaves are free; it remembers which are written.
 
-        Most leaves cannot transfer twice in a row, and their registers are free when it matters, if
-        the consumer always takes at once. Whether they are not is registered, and costs a cycle
-        more. Only leaves that may transfer in every cycle look at `ready` directly.
+        Most leaves cannot transfer in two cycles in a row. If their consumers are always ready,
+        their registers are free whenever a step needs them. That one of them is not is registered
+        (`slow`), and costs a cycle. Only leaves that may transfer in every cycle look at `ready`
+        combinationally.
         """
         m, c, order = self.m, self.c, self.order
         repeated, status_repeats = _repeated(self.plan)
@@ -267,14 +266,14 @@ class _Circuit:
     # Values.
 
     def _byte(self, step: Step, at: int) -> tuple[Value, Value]:
-        """Return a byte of a step's map, and whether it has its value."""
+        """Return a byte of a step's map, and whether the byte is good."""
         bus = self.plan.bus_bytes
         name = "items" if step.bytes > bus > at else "map"
         at %= bus
         return self.word[name][8 * at : 8 * at + 8], self.have[name][at]
 
     def _carry(self) -> None:
-        """Keep the bytes of transfers that go on in the next step."""
+        """Store the bytes of a transfer that continues in the next step."""
         m, plan = self.m, self.plan
         most = max((part.first for step in plan.steps for part in step.parts), default=0)
         self.carried = Signal(8 * most, name="carried", reset_less=True)
@@ -290,7 +289,7 @@ class _Circuit:
             size = plan.leaves[part.leaf].item_bytes
             for k in range(part.bytes):
                 value, _ = self._byte(step, part.at + k)
-                # An item that ends here is judged here: items in front of an error keep theirs.
+                # An item that ends in this step is zeroed here: items before an error keep theirs.
                 end = (part.first + k) // size * size + size
                 if end <= part.first + part.bytes:
                     _, good = self._byte(step, part.at + end - part.first - 1)

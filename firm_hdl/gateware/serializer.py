@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Module, Value
+from amaranth.hdl import Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -83,15 +83,10 @@ class Serializer(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        m.submodules.collector = collector = Collector(self.plan)
+        m.submodules.collector = collector = Collector(
+            self.plan, leaf_streams(self.message, self.tree)
+        )
         m.submodules.packer = packer = Packer(self.plan)
-        for leaf, interface in leaf_streams(self.message, self.tree).items():
-            port = getattr(collector, f"leaf_{leaf}")
-            m.d.comb += [
-                Value.cast(port.payload).eq(Value.cast(interface.payload)),
-                port.valid.eq(interface.valid),
-                interface.ready.eq(port.ready),
-            ]
         m.d.comb += [
             packer.words.payload.eq(collector.words.payload),
             packer.words.valid.eq(collector.words.valid),

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from amaranth.hdl import Const, Module, Mux, Signal, Value
 from amaranth.lib import stream, wiring
-from amaranth.lib.wiring import In, Out
+from amaranth.lib.wiring import Out
 
 from firm_hdl.gateware.collect.fill import Filler
 from firm_hdl.gateware.collect.progress import COUNT_BITS, Progress
 from firm_hdl.gateware.collect.words import words_layout
 from firm_hdl.gateware.positions import any_of, pick
-from firm_hdl.gateware.signatures import Status, StatusSignature, leaf_shape
+from firm_hdl.gateware.signatures import Status, StatusSignature
 from firm_hdl.plan import BeginRun, Plan, RunStep, Step
 from firm_hdl.plan.geometry import only_ends
 
@@ -29,29 +30,22 @@ class Collector(wiring.Component):
     Parameters
     ----------
     plan : Plan
+    leaves : mapping of int to stream.Interface
+        By leaf: streams of `leaf_shape(leaf)`, which the collector takes. `ready` depends
+        combinationally on the `valid` of this leaf and of earlier leaves of the same step.
 
     Members
     -------
-    leaf_0, leaf_1, ... : In(stream.Signature(leaf_shape(leaf)))
-        `ready` depends on the `valid` of this leaf and of earlier ones of the same step.
     words : Out(stream.Signature(words_layout(plan)))
         One transfer per step.
     status : Out(StatusSignature)
         One transfer per packet; `OK`, `LENGTH` or `ITEMS`.
     """
 
-    def __init__(self, plan: Plan):
-        self.plan = plan
-        leaves = {
-            f"leaf_{k}": In(stream.Signature(leaf_shape(leaf)))
-            for k, leaf in enumerate(plan.leaves)
-        }
+    def __init__(self, plan: Plan, leaves: Mapping[int, stream.Interface]):
+        self.plan, self.leaves = plan, leaves
         super().__init__(
-            {
-                **leaves,
-                "words": Out(stream.Signature(words_layout(plan))),
-                "status": Out(StatusSignature),
-            }
+            {"words": Out(stream.Signature(words_layout(plan))), "status": Out(StatusSignature)}
         )
 
     def elaborate(self, platform: object) -> Module:
@@ -81,7 +75,7 @@ class _Circuit(Progress):
     """The collector's logic, built by one method for each part of it."""
 
     def __init__(self, collector: Collector):
-        streams = [getattr(collector, f"leaf_{k}") for k in range(len(collector.plan.leaves))]
+        streams = [collector.leaves[k] for k in range(len(collector.plan.leaves))]
         super().__init__(Module(), collector.plan, streams)
         self.c = collector
         self._decide()

@@ -7,9 +7,11 @@ import random
 
 import pytest
 from amaranth.hdl import Value
+from amaranth.lib import stream
 from amaranth.sim import Simulator
 
 from firm_hdl.gateware.collect.collector import Collector
+from firm_hdl.gateware.signatures import leaf_shape
 from firm_hdl.plan import build_plan, decode
 from firm_hdl.sim.payloads import encoder_of
 from firm_hdl.wire import lay_out
@@ -36,7 +38,8 @@ FIELDS = (
 
 def words_of(plan, packets):
     """Run a collector; return its words."""
-    dut, rng = Collector(plan), random.Random(2)
+    streams = {k: stream.Signature(leaf_shape(leaf)).create() for k, leaf in enumerate(plan.leaves)}
+    dut, rng = Collector(plan, streams), random.Random(2)
     offered = {leaf: [] for leaf in range(len(plan.leaves))}
     for packet in packets:
         for leaf, payload in decode(plan, packet).transfers:
@@ -44,18 +47,17 @@ def words_of(plan, packets):
     words = []
 
     async def testbench(ctx):
-        ports = {leaf: getattr(dut, f"leaf_{leaf}") for leaf in offered}
         ctx.set(dut.status.ready, 1)
         idle = 0
         while any(offered.values()) or idle < 20:
             for leaf, payloads in offered.items():
                 if payloads:
-                    ctx.set(Value.cast(ports[leaf].payload), payloads[0])
-                ctx.set(ports[leaf].valid, bool(payloads))
+                    ctx.set(Value.cast(streams[leaf].payload), payloads[0])
+                ctx.set(streams[leaf].valid, bool(payloads))
             ready = rng.random() < 0.8
             ctx.set(dut.words.ready, ready)
             for leaf, payloads in offered.items():
-                if payloads and ctx.get(ports[leaf].ready):
+                if payloads and ctx.get(streams[leaf].ready):
                     payloads.pop(0)
             idle += 1
             if ready and ctx.get(dut.words.valid):

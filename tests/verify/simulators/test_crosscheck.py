@@ -143,7 +143,7 @@ def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
         ),
         (
             "_deserializer_flat_core_mover.vhd",
-            r"(leaf_0_payload_q +: .*):= \(others => '0'\)",
+            r"(message_stamp_sec_payload_q +: .*):= \(others => '0'\)",
             r"\1:= (0 => '1', others => '0')",
             "hardware, cycle 0: stamp_sec_data of the deserializer is 0x1 instead of 0x0",
         ),

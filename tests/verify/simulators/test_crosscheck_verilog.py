@@ -206,7 +206,7 @@ def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
     monkeypatch.setattr(verilog, "to_verilog", changed)
 
 
-INITIAL = r"(?<=reg \[31:0\] leaf_0__payload) = 32'd0"
+INITIAL = r"(?<=reg \[31:0\] message__stamp__sec__payload) = 32'd0"
 STATUS = r"(?<=assign m_axis_status_tdata = )\{.*\}"
 
 CHANGES = {
@@ -243,7 +243,7 @@ CHANGES = {
     # An output that means nothing while nothing is offered.
     "payload": (
         "_deserializer",
-        r"(?<=reg \[64:0\] leaf_3__payload = 65'h)0+",
+        r"(?<=reg \[64:0\] message__frame_id__items__payload = 65'h)0+",
         "0ffffffffffffffff",
         "cycle 0: frame_id_items_data of the deserializer is 0xffffffffffffffff instead of 0x0",
     ),

@@ -190,23 +190,23 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog(aresetn, s_axis_tdata,
   assign m_axis_status_tdata = { 5'h00, status__payload };
   \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core  core (
     .aclk(aclk),
-    .leaf_0__ready(linear_x_ready),
-    .leaf_1__ready(linear_y_ready),
-    .leaf_2__ready(linear_z_ready),
-    .leaf_3__ready(angular_x_ready),
-    .leaf_4__ready(angular_y_ready),
-    .leaf_5__ready(angular_z_ready),
     .message__angular__x__payload(angular_x_data),
+    .message__angular__x__ready(angular_x_ready),
     .message__angular__x__valid(angular_x_valid),
     .message__angular__y__payload(angular_y_data),
+    .message__angular__y__ready(angular_y_ready),
     .message__angular__y__valid(angular_y_valid),
     .message__angular__z__payload(angular_z_data),
+    .message__angular__z__ready(angular_z_ready),
     .message__angular__z__valid(angular_z_valid),
     .message__linear__x__payload(linear_x_data),
+    .message__linear__x__ready(linear_x_ready),
     .message__linear__x__valid(linear_x_valid),
     .message__linear__y__payload(linear_y_data),
+    .message__linear__y__ready(linear_y_ready),
     .message__linear__y__valid(linear_y_valid),
     .message__linear__z__payload(linear_z_data),
+    .message__linear__z__ready(linear_z_ready),
     .message__linear__z__valid(linear_z_valid),
     .packets__payload(packets__payload),
     .packets__ready(s_axis_tready),
@@ -251,7 +251,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog(aresetn, s_axis_tdata,
   assign packets__valid = s_axis_tvalid;
 endmodule
 
-module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid, leaf_0__ready, leaf_1__ready, leaf_2__ready, leaf_3__ready, leaf_4__ready, leaf_5__ready, status__ready, rst, packets__payload, packets__ready, message__linear__x__valid, message__linear__y__valid, message__linear__z__valid, message__angular__x__valid, message__angular__y__valid, message__angular__z__valid, status__valid, status__payload, message__linear__x__payload, message__linear__y__payload
+module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid, message__linear__x__ready, message__linear__y__ready, message__linear__z__ready, message__angular__x__ready, message__angular__y__ready, message__angular__z__ready, status__ready, rst, packets__payload, packets__ready, message__linear__x__valid, message__linear__y__valid, message__linear__z__valid, message__angular__x__valid, message__angular__y__valid, message__angular__z__valid, status__valid, status__payload, message__linear__x__payload, message__linear__y__payload
 , message__linear__z__payload, message__angular__x__payload, message__angular__y__payload, message__angular__z__payload, aclk);
   input aclk;
   wire aclk;
@@ -307,59 +307,41 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   wire [2:0] \i__payload.step ;
   wire i__ready;
   wire i__valid;
-  wire [63:0] leaf_0__payload;
-  input leaf_0__ready;
-  wire leaf_0__ready;
-  wire leaf_0__valid;
-  wire [63:0] leaf_1__payload;
-  input leaf_1__ready;
-  wire leaf_1__ready;
-  wire leaf_1__valid;
-  wire [63:0] leaf_2__payload;
-  input leaf_2__ready;
-  wire leaf_2__ready;
-  wire leaf_2__valid;
-  wire [63:0] leaf_3__payload;
-  input leaf_3__ready;
-  wire leaf_3__ready;
-  wire leaf_3__valid;
-  wire [63:0] leaf_4__payload;
-  input leaf_4__ready;
-  wire leaf_4__ready;
-  wire leaf_4__valid;
-  wire [63:0] leaf_5__payload;
-  input leaf_5__ready;
-  wire leaf_5__ready;
-  wire leaf_5__valid;
   wire [6:0] limit;
   wire [6:0] \limit$9 ;
   output [63:0] message__angular__x__payload;
   wire [63:0] message__angular__x__payload;
+  input message__angular__x__ready;
   wire message__angular__x__ready;
   output message__angular__x__valid;
   wire message__angular__x__valid;
   output [63:0] message__angular__y__payload;
   wire [63:0] message__angular__y__payload;
+  input message__angular__y__ready;
   wire message__angular__y__ready;
   output message__angular__y__valid;
   wire message__angular__y__valid;
   output [63:0] message__angular__z__payload;
   wire [63:0] message__angular__z__payload;
+  input message__angular__z__ready;
   wire message__angular__z__ready;
   output message__angular__z__valid;
   wire message__angular__z__valid;
   output [63:0] message__linear__x__payload;
   wire [63:0] message__linear__x__payload;
+  input message__linear__x__ready;
   wire message__linear__x__ready;
   output message__linear__x__valid;
   wire message__linear__x__valid;
   output [63:0] message__linear__y__payload;
   wire [63:0] message__linear__y__payload;
+  input message__linear__y__ready;
   wire message__linear__y__ready;
   output message__linear__y__valid;
   wire message__linear__y__valid;
   output [63:0] message__linear__z__payload;
   wire [63:0] message__linear__z__payload;
+  input message__linear__z__ready;
   wire message__linear__z__ready;
   output message__linear__z__valid;
   wire message__linear__z__valid;
@@ -517,24 +499,24 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover  mover (
     .aclk(aclk),
     .beat(beat),
-    .leaf_0__payload(message__linear__x__payload),
-    .leaf_0__ready(leaf_0__ready),
-    .leaf_0__valid(message__linear__x__valid),
-    .leaf_1__payload(message__linear__y__payload),
-    .leaf_1__ready(leaf_1__ready),
-    .leaf_1__valid(message__linear__y__valid),
-    .leaf_2__payload(message__linear__z__payload),
-    .leaf_2__ready(leaf_2__ready),
-    .leaf_2__valid(message__linear__z__valid),
-    .leaf_3__payload(message__angular__x__payload),
-    .leaf_3__ready(leaf_3__ready),
-    .leaf_3__valid(message__angular__x__valid),
-    .leaf_4__payload(message__angular__y__payload),
-    .leaf_4__ready(leaf_4__ready),
-    .leaf_4__valid(message__angular__y__valid),
-    .leaf_5__payload(message__angular__z__payload),
-    .leaf_5__ready(leaf_5__ready),
-    .leaf_5__valid(message__angular__z__valid),
+    .message__angular__x__payload(message__angular__x__payload),
+    .message__angular__x__ready(message__angular__x__ready),
+    .message__angular__x__valid(message__angular__x__valid),
+    .message__angular__y__payload(message__angular__y__payload),
+    .message__angular__y__ready(message__angular__y__ready),
+    .message__angular__y__valid(message__angular__y__valid),
+    .message__angular__z__payload(message__angular__z__payload),
+    .message__angular__z__ready(message__angular__z__ready),
+    .message__angular__z__valid(message__angular__z__valid),
+    .message__linear__x__payload(message__linear__x__payload),
+    .message__linear__x__ready(message__linear__x__ready),
+    .message__linear__x__valid(message__linear__x__valid),
+    .message__linear__y__payload(message__linear__y__payload),
+    .message__linear__y__ready(message__linear__y__ready),
+    .message__linear__y__valid(message__linear__y__valid),
+    .message__linear__z__payload(message__linear__z__payload),
+    .message__linear__z__ready(message__linear__z__ready),
+    .message__linear__z__valid(message__linear__z__valid),
     .orders__payload(\orders__payload$22 ),
     .orders__ready(o__ready),
     .orders__valid(\orders__valid$24 ),
@@ -665,24 +647,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   assign \packets__payload.data[1]  = packets__payload[15:8];
   assign \packets__payload.data[0]  = packets__payload[7:0];
   assign \packets__payload.data  = packets__payload[63:0];
-  assign message__angular__z__ready = leaf_5__ready;
-  assign leaf_5__valid = message__angular__z__valid;
-  assign leaf_5__payload = message__angular__z__payload;
-  assign message__angular__y__ready = leaf_4__ready;
-  assign leaf_4__valid = message__angular__y__valid;
-  assign leaf_4__payload = message__angular__y__payload;
-  assign message__angular__x__ready = leaf_3__ready;
-  assign leaf_3__valid = message__angular__x__valid;
-  assign leaf_3__payload = message__angular__x__payload;
-  assign message__linear__z__ready = leaf_2__ready;
-  assign leaf_2__valid = message__linear__z__valid;
-  assign leaf_2__payload = message__linear__z__payload;
-  assign message__linear__y__ready = leaf_1__ready;
-  assign leaf_1__valid = message__linear__y__valid;
-  assign leaf_1__payload = message__linear__y__payload;
-  assign message__linear__x__ready = leaf_0__ready;
-  assign leaf_0__valid = message__linear__x__valid;
-  assign leaf_0__payload = message__linear__x__payload;
   assign \status__ready$38  = status__ready;
   assign \status__valid$36  = status__valid;
   assign \status__payload$34  = status__payload;
@@ -976,8 +940,8 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.buffer (packets_
   assign room = packets__ready;
 endmodule
 
-module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (leaf_0__ready, leaf_1__ready, leaf_2__ready, leaf_3__ready, leaf_4__ready, leaf_5__ready, status__ready, rst, orders__ready, beat, orders__valid, orders__payload, leaf_0__valid, leaf_1__valid, leaf_2__valid, leaf_3__valid, leaf_4__valid, leaf_5__valid, status__valid, status__payload, leaf_0__payload
-, leaf_1__payload, leaf_2__payload, leaf_3__payload, leaf_4__payload, leaf_5__payload, aclk);
+module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (message__linear__x__ready, message__linear__y__ready, message__linear__z__ready, message__angular__x__ready, message__angular__y__ready, message__angular__z__ready, status__ready, rst, orders__ready, beat, orders__valid, orders__payload, message__linear__x__valid, message__linear__y__valid, message__linear__z__valid, message__angular__x__valid, message__angular__y__valid, message__angular__z__valid, status__valid, status__payload, message__linear__x__payload
+, message__linear__y__payload, message__linear__z__payload, message__angular__x__payload, message__angular__y__payload, message__angular__z__payload, aclk);
   wire \$1 ;
   wire \$10 ;
   wire \$100 ;
@@ -1323,44 +1287,44 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (leaf_0__r
   wire [2:0] lane_7__write__addr;
   wire [7:0] lane_7__write__data;
   wire lane_7__write__en;
-  output [63:0] leaf_0__payload;
-  reg [63:0] leaf_0__payload = 64'h0000000000000000;
-  input leaf_0__ready;
-  wire leaf_0__ready;
-  output leaf_0__valid;
-  reg leaf_0__valid = 1'h0;
-  output [63:0] leaf_1__payload;
-  reg [63:0] leaf_1__payload = 64'h0000000000000000;
-  input leaf_1__ready;
-  wire leaf_1__ready;
-  output leaf_1__valid;
-  reg leaf_1__valid = 1'h0;
-  output [63:0] leaf_2__payload;
-  reg [63:0] leaf_2__payload = 64'h0000000000000000;
-  input leaf_2__ready;
-  wire leaf_2__ready;
-  output leaf_2__valid;
-  reg leaf_2__valid = 1'h0;
-  output [63:0] leaf_3__payload;
-  reg [63:0] leaf_3__payload = 64'h0000000000000000;
-  input leaf_3__ready;
-  wire leaf_3__ready;
-  output leaf_3__valid;
-  reg leaf_3__valid = 1'h0;
-  output [63:0] leaf_4__payload;
-  reg [63:0] leaf_4__payload = 64'h0000000000000000;
-  input leaf_4__ready;
-  wire leaf_4__ready;
-  output leaf_4__valid;
-  reg leaf_4__valid = 1'h0;
-  output [63:0] leaf_5__payload;
-  reg [63:0] leaf_5__payload = 64'h0000000000000000;
-  input leaf_5__ready;
-  wire leaf_5__ready;
-  output leaf_5__valid;
-  reg leaf_5__valid = 1'h0;
   reg [7:0] map_have = 8'h00;
   reg [63:0] map_word = 64'h0000000000000000;
+  output [63:0] message__angular__x__payload;
+  reg [63:0] message__angular__x__payload = 64'h0000000000000000;
+  input message__angular__x__ready;
+  wire message__angular__x__ready;
+  output message__angular__x__valid;
+  reg message__angular__x__valid = 1'h0;
+  output [63:0] message__angular__y__payload;
+  reg [63:0] message__angular__y__payload = 64'h0000000000000000;
+  input message__angular__y__ready;
+  wire message__angular__y__ready;
+  output message__angular__y__valid;
+  reg message__angular__y__valid = 1'h0;
+  output [63:0] message__angular__z__payload;
+  reg [63:0] message__angular__z__payload = 64'h0000000000000000;
+  input message__angular__z__ready;
+  wire message__angular__z__ready;
+  output message__angular__z__valid;
+  reg message__angular__z__valid = 1'h0;
+  output [63:0] message__linear__x__payload;
+  reg [63:0] message__linear__x__payload = 64'h0000000000000000;
+  input message__linear__x__ready;
+  wire message__linear__x__ready;
+  output message__linear__x__valid;
+  reg message__linear__x__valid = 1'h0;
+  output [63:0] message__linear__y__payload;
+  reg [63:0] message__linear__y__payload = 64'h0000000000000000;
+  input message__linear__y__ready;
+  wire message__linear__y__ready;
+  output message__linear__y__valid;
+  reg message__linear__y__valid = 1'h0;
+  output [63:0] message__linear__z__payload;
+  reg [63:0] message__linear__z__payload = 64'h0000000000000000;
+  input message__linear__z__ready;
+  wire message__linear__z__ready;
+  output message__linear__z__valid;
+  reg message__linear__z__valid = 1'h0;
   input [41:0] orders__payload;
   wire [41:0] orders__payload;
   wire \orders__payload.blank ;
@@ -1570,24 +1534,24 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (leaf_0__r
   assign lane_7__items__data = lane_7[orders__payload[9:7]];
   assign \$1  = ~ blocked_0;
   assign go_0 = active_0 & \$1 ;
-  assign blocked_0 = active_0 & leaf_0__valid;
+  assign blocked_0 = active_0 & message__linear__x__valid;
   assign \$4  = ~ blocked_1;
   assign go_1 = active_1 & \$4 ;
-  assign blocked_1 = active_1 & leaf_1__valid;
+  assign blocked_1 = active_1 & message__linear__y__valid;
   assign \$7  = ~ blocked_2;
   assign go_2 = active_2 & \$7 ;
-  assign blocked_2 = active_2 & leaf_2__valid;
+  assign blocked_2 = active_2 & message__linear__z__valid;
   assign \$10  = ~ blocked_3;
   assign go_3 = active_3 & \$10 ;
-  assign blocked_3 = active_3 & leaf_3__valid;
+  assign blocked_3 = active_3 & message__angular__x__valid;
   assign \$13  = ~ blocked_4;
   assign go_4 = active_4 & \$13 ;
-  assign blocked_4 = active_4 & leaf_4__valid;
+  assign blocked_4 = active_4 & message__angular__y__valid;
   assign \$16  = ~ blocked_5;
   assign \$17  = active_5 & \$16 ;
   assign \$19  = ~ blocked_4;
   assign go_5 = \$17  & \$19 ;
-  assign blocked_5 = active_5 & leaf_5__valid;
+  assign blocked_5 = active_5 & message__angular__z__valid;
   assign orders__ready = ~ slow;
   assign \$22  = orders__payload[25:22] > 1'h0;
   assign \$23  = orders__payload[25:22] > 1'h1;
@@ -1651,60 +1615,60 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (leaf_0__r
   assign \$81  = orders__valid & \$80 ;
   assign \$82  = orders__payload[2:0] == 1'h1;
   assign \$83  = \$81  & \$82 ;
-  assign \$84  = \$83  & leaf_0__valid;
-  assign \$85  = ~ leaf_0__ready;
+  assign \$84  = \$83  & message__linear__x__valid;
+  assign \$85  = ~ message__linear__x__ready;
   assign \$86  = \$84  & \$85 ;
   assign \$87  = ~ orders__payload[3];
   assign \$88  = orders__valid & \$87 ;
   assign \$89  = orders__payload[2:0] == 2'h2;
   assign \$90  = \$88  & \$89 ;
-  assign \$91  = \$90  & leaf_1__valid;
-  assign \$92  = ~ leaf_1__ready;
+  assign \$91  = \$90  & message__linear__y__valid;
+  assign \$92  = ~ message__linear__y__ready;
   assign \$93  = \$91  & \$92 ;
   assign \$94  = ~ orders__payload[3];
   assign \$95  = orders__valid & \$94 ;
   assign \$96  = orders__payload[2:0] == 2'h3;
   assign \$97  = \$95  & \$96 ;
-  assign \$98  = \$97  & leaf_2__valid;
-  assign \$99  = ~ leaf_2__ready;
+  assign \$98  = \$97  & message__linear__z__valid;
+  assign \$99  = ~ message__linear__z__ready;
   assign \$100  = \$98  & \$99 ;
   assign \$101  = ~ orders__payload[3];
   assign \$102  = orders__valid & \$101 ;
   assign \$103  = orders__payload[2:0] == 3'h4;
   assign \$104  = \$102  & \$103 ;
-  assign \$105  = \$104  & leaf_3__valid;
-  assign \$106  = ~ leaf_3__ready;
+  assign \$105  = \$104  & message__angular__x__valid;
+  assign \$106  = ~ message__angular__x__ready;
   assign \$107  = \$105  & \$106 ;
   assign \$108  = ~ orders__payload[3];
   assign \$109  = orders__valid & \$108 ;
   assign \$110  = orders__payload[2:0] == 3'h5;
   assign \$111  = \$109  & \$110 ;
-  assign \$112  = \$111  & leaf_4__valid;
-  assign \$113  = ~ leaf_4__ready;
+  assign \$112  = \$111  & message__angular__y__valid;
+  assign \$113  = ~ message__angular__y__ready;
   assign \$114  = \$112  & \$113 ;
   assign \$115  = ~ orders__payload[3];
   assign \$116  = orders__valid & \$115 ;
   assign \$117  = orders__payload[2:0] == 3'h5;
   assign \$118  = \$116  & \$117 ;
-  assign \$119  = \$118  & leaf_5__valid;
-  assign \$120  = ~ leaf_5__ready;
+  assign \$119  = \$118  & message__angular__z__valid;
+  assign \$120  = ~ message__angular__z__ready;
   assign \$121  = \$119  & \$120 ;
   assign \$122  = orders__valid & orders__payload[38];
   assign \$123  = ~ status__ready;
   assign \$124  = status__valid & \$123 ;
   assign \$125  = \$122  & \$124 ;
   assign \$126  = | { \$125 , \$121 , \$114 , \$107 , \$100 , \$93 , \$86  };
-  assign \$127  = ~ leaf_0__ready;
+  assign \$127  = ~ message__linear__x__ready;
   assign \$128  = blocked_0 & \$127 ;
-  assign \$129  = ~ leaf_1__ready;
+  assign \$129  = ~ message__linear__y__ready;
   assign \$130  = blocked_1 & \$129 ;
-  assign \$131  = ~ leaf_2__ready;
+  assign \$131  = ~ message__linear__z__ready;
   assign \$132  = blocked_2 & \$131 ;
-  assign \$133  = ~ leaf_3__ready;
+  assign \$133  = ~ message__angular__x__ready;
   assign \$134  = blocked_3 & \$133 ;
-  assign \$135  = ~ leaf_4__ready;
+  assign \$135  = ~ message__angular__y__ready;
   assign \$136  = blocked_4 & \$135 ;
-  assign \$137  = ~ leaf_5__ready;
+  assign \$137  = ~ message__angular__z__ready;
   assign \$138  = blocked_5 & \$137 ;
   assign \$139  = ~ status__ready;
   assign \$140  = status__valid & \$139 ;
@@ -1753,17 +1717,17 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (leaf_0__r
   assign \$183  = orders__ready & cut_4;
   assign \$184  = orders__ready & cut_4;
   always @(posedge aclk)
-    leaf_0__valid <= \$185 ;
+    message__linear__x__valid <= \$185 ;
   always @(posedge aclk)
-    leaf_1__valid <= \$186 ;
+    message__linear__y__valid <= \$186 ;
   always @(posedge aclk)
-    leaf_2__valid <= \$187 ;
+    message__linear__z__valid <= \$187 ;
   always @(posedge aclk)
-    leaf_3__valid <= \$188 ;
+    message__angular__x__valid <= \$188 ;
   always @(posedge aclk)
-    leaf_4__valid <= \$189 ;
+    message__angular__y__valid <= \$189 ;
   always @(posedge aclk)
-    leaf_5__valid <= \$190 ;
+    message__angular__z__valid <= \$190 ;
   always @(posedge aclk)
     status__valid <= \$191 ;
   always @(posedge aclk)
@@ -1807,17 +1771,17 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (leaf_0__r
   always @(posedge aclk)
     cut_4 <= \$214 ;
   always @(posedge aclk)
-    leaf_0__payload <= \$215 ;
+    message__linear__x__payload <= \$215 ;
   always @(posedge aclk)
-    leaf_1__payload <= \$216 ;
+    message__linear__y__payload <= \$216 ;
   always @(posedge aclk)
-    leaf_2__payload <= \$217 ;
+    message__linear__z__payload <= \$217 ;
   always @(posedge aclk)
-    leaf_3__payload <= \$218 ;
+    message__angular__x__payload <= \$218 ;
   always @(posedge aclk)
-    leaf_4__payload <= \$219 ;
+    message__angular__y__payload <= \$219 ;
   always @(posedge aclk)
-    leaf_5__payload <= \$220 ;
+    message__angular__z__payload <= \$220 ;
   assign choice_101_Y  = slow ? status_now : orders__payload[41:39];
   assign \$206  = rst ? 3'h0 : choice_101_Y ;
   assign \$205  = rst ? 1'h0 : \$143 ;
@@ -1833,41 +1797,41 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (leaf_0__r
   assign \$193  = slow ? items_have : { \$29 , \$28 , \$27 , \$26 , \$25 , \$24 , \$23 , \$22  };
   assign \$192  = slow ? items_word : { lane_7__items__data, lane_6__items__data, lane_5__items__data, lane_4__items__data, lane_3__items__data, lane_2__items__data, lane_1__items__data, lane_0__items__data };
   assign choice_139_Y  = status__ready ? 1'h0 : status__valid;
-  assign \$218  = go_3 ? choice_12_Y  : leaf_3__payload;
+  assign \$218  = go_3 ? choice_12_Y  : message__angular__x__payload;
   assign choice_141_Y  = ends_now ? 1'h1 : choice_139_Y ;
   assign choice_143_Y  = slow ? choice_139_Y  : choice_141_Y ;
   assign \$191  = rst ? 1'h0 : choice_143_Y ;
-  assign choice_147_Y  = leaf_5__ready ? 1'h0 : leaf_5__valid;
+  assign choice_147_Y  = message__angular__z__ready ? 1'h0 : message__angular__z__valid;
   assign choice_149_Y  = go_5 ? 1'h1 : choice_147_Y ;
   assign \$190  = rst ? 1'h0 : choice_149_Y ;
-  assign choice_153_Y  = leaf_4__ready ? 1'h0 : leaf_4__valid;
+  assign choice_153_Y  = message__angular__y__ready ? 1'h0 : message__angular__y__valid;
   assign choice_155_Y  = go_4 ? 1'h1 : choice_153_Y ;
   assign \$189  = rst ? 1'h0 : choice_155_Y ;
-  assign choice_159_Y  = leaf_3__ready ? 1'h0 : leaf_3__valid;
+  assign choice_159_Y  = message__angular__x__ready ? 1'h0 : message__angular__x__valid;
   assign choice_161_Y  = go_3 ? 1'h1 : choice_159_Y ;
   assign \$188  = rst ? 1'h0 : choice_161_Y ;
-  assign choice_165_Y  = leaf_2__ready ? 1'h0 : leaf_2__valid;
+  assign choice_165_Y  = message__linear__z__ready ? 1'h0 : message__linear__z__valid;
   assign choice_167_Y  = go_2 ? 1'h1 : choice_165_Y ;
   assign \$187  = rst ? 1'h0 : choice_167_Y ;
   assign choice_17_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
-  assign choice_171_Y  = leaf_1__ready ? 1'h0 : leaf_1__valid;
+  assign choice_171_Y  = message__linear__y__ready ? 1'h0 : message__linear__y__valid;
   assign choice_173_Y  = go_1 ? 1'h1 : choice_171_Y ;
   assign \$186  = rst ? 1'h0 : choice_173_Y ;
-  assign choice_177_Y  = leaf_0__ready ? 1'h0 : leaf_0__valid;
+  assign choice_177_Y  = message__linear__x__ready ? 1'h0 : message__linear__x__valid;
   assign choice_179_Y  = go_0 ? 1'h1 : choice_177_Y ;
   assign \$185  = rst ? 1'h0 : choice_179_Y ;
-  assign \$217  = go_2 ? choice_17_Y  : leaf_2__payload;
+  assign \$217  = go_2 ? choice_17_Y  : message__linear__z__payload;
   assign choice_2_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], items_word[63:32] } : 64'h0000000000000000;
   assign choice_22_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
-  assign \$216  = go_1 ? choice_22_Y  : leaf_1__payload;
+  assign \$216  = go_1 ? choice_22_Y  : message__linear__y__payload;
   assign choice_27_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
-  assign \$215  = go_0 ? choice_27_Y  : leaf_0__payload;
+  assign \$215  = go_0 ? choice_27_Y  : message__linear__x__payload;
   assign choice_31_Y  = slow ? cut_4 : \$180 ;
   assign \$214  = rst ? 1'h0 : choice_31_Y ;
   assign choice_35_Y  = slow ? cut_3 : \$172 ;
   assign \$213  = rst ? 1'h0 : choice_35_Y ;
   assign choice_39_Y  = slow ? cut_2 : \$164 ;
-  assign \$220  = go_5 ? choice_2_Y  : leaf_5__payload;
+  assign \$220  = go_5 ? choice_2_Y  : message__angular__z__payload;
   assign \$212  = rst ? 1'h0 : choice_39_Y ;
   assign choice_43_Y  = slow ? cut_1 : \$156 ;
   assign \$211  = rst ? 1'h0 : choice_43_Y ;
@@ -1894,7 +1858,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (leaf_0__r
   assign \$210 [7:0] = \$181  ? map_word[39:32] : choice_83_Y ;
   assign choice_87_Y  = slow ? cut_0 : \$148 ;
   assign \$209  = rst ? 1'h0 : choice_87_Y ;
-  assign \$219  = go_4 ? choice_7_Y  : leaf_4__payload;
+  assign \$219  = go_4 ? choice_7_Y  : message__angular__y__payload;
   assign choice_91_Y  = ends_now ? status_now : status__payload;
   assign choice_93_Y  = slow ? status__payload : choice_91_Y ;
   assign \$208  = rst ? 3'h0 : choice_93_Y ;
@@ -1960,12 +1924,12 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (leaf_0__r
   assign lane_0__write__en = beat[73];
   assign lane_0__write__data = beat[7:0];
   assign lane_0__write__addr = beat[71:69];
-  assign payload_5 = leaf_5__payload;
-  assign payload_4 = leaf_4__payload;
-  assign payload_3 = leaf_3__payload;
-  assign payload_2 = leaf_2__payload;
-  assign payload_1 = leaf_1__payload;
-  assign payload_0 = leaf_0__payload;
+  assign payload_5 = message__angular__z__payload;
+  assign payload_4 = message__angular__y__payload;
+  assign payload_3 = message__angular__x__payload;
+  assign payload_2 = message__linear__z__payload;
+  assign payload_1 = message__linear__y__payload;
+  assign payload_0 = message__linear__x__payload;
   assign take = orders__ready;
 endmodule
 
@@ -2320,6 +2284,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   wire choice_267_Y ;
   input aclk;
   wire aclk;
+  wire allowed;
   wire [3:0] at;
   reg bad = 1'h0;
   input [73:0] beat;
@@ -2335,7 +2300,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   wire [63:0] \beat.data ;
   wire \beat.last ;
   wire \beat.valid ;
-  wire blind;
   wire [5:0] body_amount;
   (* unused_bits = "0 1 2 3 4 5 6" *)
   wire [6:0] body_low;
@@ -2343,7 +2307,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   wire [2:0] body_mask;
   wire body_rest;
   wire [6:0] body_sum;
-  wire closes;
   (* enum_base_type = "Status" *)
   (* enum_value_000 = "OK" *)
   (* enum_value_001 = "TRUNCATED" *)
@@ -2355,16 +2318,19 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   reg [2:0] code = 3'h0;
   wire cut;
   wire done;
+  wire drains;
   wire [6:0] early_last;
   input ended;
   wire ended;
-  wire ends;
+  wire ends_message;
+  wire ends_packet;
   wire [5:0] exit_amount;
   (* unused_bits = "0 1 2 3 4 5 6" *)
   wire [6:0] exit_low;
   wire [2:0] exit_mask;
   wire exit_rest;
   wire [6:0] exit_sum;
+  wire exits_always;
   reg [6:0] first = 7'h00;
   input [3:0] following;
   wire [3:0] following;
@@ -2378,7 +2344,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   reg [3:0] items_room = 4'h0;
   wire [3:0] items_wanted;
   reg [6:0] last = 7'h07;
-  wire leaves;
   wire leaves_0;
   wire leaves_1;
   wire leaves_2;
@@ -2394,6 +2359,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   reg [3:0] map_room = 4'h0;
   wire mismatch;
   wire \mismatch$34 ;
+  reg new_error = 1'h0;
   wire [6:0] next_last;
   (* unused_bits = "0 1 2 3 4 5 6" *)
   wire [6:0] next_packet;
@@ -2401,7 +2367,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   wire next_sig;
   wire [33:0] next_state;
   wire nonzero;
-  reg noted = 1'h0;
   wire [6:0] nul_at;
   wire [6:0] \nul_at$26 ;
   output [41:0] orders__payload;
@@ -2437,7 +2402,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   reg rest = 1'h0;
   input rst;
   wire rst;
-  wire sighted;
   reg [33:0] state = 34'h200840c81;
   wire [4:0] \state.back ;
   wire \state.counted ;
@@ -2469,13 +2433,13 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign { \$3 [7], left } = limit + \$2 ;
   assign present = ~ left[6];
   assign \$4  = state[14] & words_last;
-  assign leaves = state[18] | \$4 ;
+  assign exits_always = state[18] | \$4 ;
   assign \$5  = state[12] | state[13];
   assign \$6  = \$5  & bad;
-  assign done = leaves | \$6 ;
-  assign \$10  = state[5] & leaves;
-  assign ends = state[19] | \$10 ;
-  assign closes = ends & ended;
+  assign done = exits_always | \$6 ;
+  assign \$10  = state[5] & exits_always;
+  assign ends_message = state[19] | \$10 ;
+  assign ends_packet = ends_message & ended;
   assign { \$11 [8:7], map_at } = $signed({ 1'h0, last }) + $signed(state[11:7]);
   assign \$12  = map_at[6:3] - state[17];
   assign { \$13 [7], items_at } = state[16] ? { 1'h0, first } : { \$12 , map_at[2:0] };
@@ -2508,25 +2472,25 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \$86  = \$70  & { \$79 [5], \$78  };
   assign \$87  = \$69  | \$86 ;
   assign { \$88 [7], map_left } = \$50  + { \$87 [5:0], 1'h0 };
-  assign \$89  = ~ noted;
+  assign \$89  = ~ new_error;
   assign \$90  = bad & \$89 ;
   assign \$91  = ~ state[19];
   assign \$92  = \$91  | ended;
-  assign blind = \$90  & \$92 ;
+  assign drains = \$90  & \$92 ;
   assign \$93  = ~ bad;
-  assign \$94  = ~ ends;
+  assign \$94  = ~ ends_message;
   assign \$95  = \$94  | ended;
-  assign sighted = \$93  & \$95 ;
-  assign \$103  = sighted & good;
-  assign orders__valid = blind | \$103 ;
-  assign \$104  = blind & orders__ready;
-  assign \$105  = sighted & orders__ready;
+  assign allowed = \$93  & \$95 ;
+  assign \$103  = allowed & good;
+  assign orders__valid = drains | \$103 ;
+  assign \$104  = drains & orders__ready;
+  assign \$105  = allowed & orders__ready;
   assign \$106  = \$105  & good;
   assign issue = \$104  | \$106 ;
-  assign \$107  = blind & orders__ready;
-  assign \$108  = \$107  & closes;
-  assign \$109  = sighted & orders__ready;
-  assign \$110  = \$109  & closes;
+  assign \$107  = drains & orders__ready;
+  assign \$108  = \$107  & ends_packet;
+  assign \$109  = allowed & orders__ready;
+  assign \$110  = \$109  & ends_packet;
   assign \$111  = \$110  & good;
   assign next_sig = \$108  | \$111 ;
   assign items_wanted = state[16] ? 4'h0 : 4'h8;
@@ -2555,7 +2519,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \$149  = | state[3:0];
   assign \$150  = | state[4:0];
   assign \$151  = done ? { \$150 , 9'h000, \$149 , state[3], 2'h0, state[5], \$146 , state[4], 5'h00, \$144 , \$143 , state[4], 1'h0, \$141 , state[5:0], 1'h0 } : 34'h000000000;
-  assign next_state = closes ? 34'h200840c81 : \$151 ;
+  assign next_state = ends_packet ? 34'h200840c81 : \$151 ;
   assign exit_amount = state[32] ? 6'h00 : state[25:20];
   assign { \$161 [7], exit_sum } = last + exit_amount;
   assign { \$164 [7], body_sum } = last + 6'h00;
@@ -2563,22 +2527,22 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \$168  = ~ { 4'h0, state[28:26] };
   assign \$169  = exit_sum & \$168 ;
   assign \$170  = \$169  | { 4'h0, state[31:29] };
-  assign \$174  = leaves ? \$170  : body_sum;
-  assign { \$175 [7], next_last } = closes ? \$167  : { 1'h0, \$174  };
+  assign \$174  = exits_always ? \$170  : body_sum;
+  assign { \$175 [7], next_last } = ends_packet ? \$167  : { 1'h0, \$174  };
   assign \$187  = mismatch | cut;
   assign \$188  = ~ ended;
-  assign \$189  = ends & \$188 ;
+  assign \$189  = ends_message & \$188 ;
   assign \$190  = \$189  & \trailing$31 ;
   assign \$191  = \$187  | \$190 ;
   assign \$200  = mismatch | cut;
   assign \$201  = ~ ended;
-  assign \$202  = ends & \$201 ;
+  assign \$202  = ends_message & \$201 ;
   assign \$203  = \$202  & \trailing$31 ;
   assign \$204  = \$200  | \$203 ;
-  assign \$210  = ends ? 3'h2 : 3'h3;
+  assign \$210  = ends_message ? 3'h2 : 3'h3;
   assign \$211  = cut ? 3'h1 : \$210 ;
   assign \$213  = mismatch ? 3'h4 : \$211 ;
-  assign \$214  = blind & orders__ready;
+  assign \$214  = drains & orders__ready;
   assign \$215  = code == 1'h1;
   assign \$216  = & map_left[6:3];
   assign \$217  = \$216  ? map_left[2:0] : 3'h0;
@@ -2610,11 +2574,11 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \$280  = issue | \$279 ;
   assign \$281  = state[19] ? limit : first;
   assign \$282  = bad ? \$281  : step_end;
-  assign \$283  = closes ? { following, 3'h0 } : \$282 ;
+  assign \$283  = ends_packet ? { following, 3'h0 } : \$282 ;
   always @(posedge aclk)
     bad <= \$284 ;
   always @(posedge aclk)
-    noted <= \$285 ;
+    new_error <= \$285 ;
   always @(posedge aclk)
     code <= \$286 ;
   always @(posedge aclk)
@@ -2637,30 +2601,30 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \$294  = rst ? 7'h00 : choice_203_Y ;
   assign choice_218_Y  = state[16] ? 1'h0 : rest;
   assign choice_220_Y  = state[12] ? 1'h0 : choice_218_Y ;
-  assign choice_223_Y  = closes ? (* full_case = 32'd1 *) 1'h0 : choice_220_Y ;
+  assign choice_223_Y  = ends_packet ? (* full_case = 32'd1 *) 1'h0 : choice_220_Y ;
   assign choice_225_Y  = issue ? choice_223_Y  : rest;
   assign \$292  = rst ? 1'h0 : choice_225_Y ;
   assign choice_229_Y  = issue ? next_state : state;
   assign \$291  = rst ? 34'h200840c81 : choice_229_Y ;
   assign \$289  = rst ? 1'h1 : words_last;
   assign choice_237_Y  = \$214  ? 4'h0 : map_room;
-  assign choice_239_Y  = noted ? \$241  : choice_237_Y ;
+  assign choice_239_Y  = new_error ? \$241  : choice_237_Y ;
   assign choice_241_Y  = bad ? choice_239_Y  : map_room;
   assign \$288  = rst ? 4'h0 : choice_241_Y ;
   assign choice_245_Y  = \$214  ? 4'h0 : items_room;
-  assign choice_247_Y  = noted ? \$234  : choice_245_Y ;
+  assign choice_247_Y  = new_error ? \$234  : choice_245_Y ;
   assign choice_249_Y  = bad ? choice_247_Y  : items_room;
   assign \$287  = rst ? 4'h0 : choice_249_Y ;
   assign choice_253_Y  = bad ? code : \$213 ;
   assign \$286  = rst ? 3'h0 : choice_253_Y ;
-  assign choice_257_Y  = bad ? noted : \$204 ;
+  assign choice_257_Y  = bad ? new_error : \$204 ;
   assign choice_259_Y  = bad ? 1'h0 : choice_257_Y ;
   assign \$285  = rst ? 1'h0 : choice_259_Y ;
   assign choice_263_Y  = bad ? bad : \$191 ;
-  assign choice_265_Y  = closes ? 1'h0 : choice_263_Y ;
+  assign choice_265_Y  = ends_packet ? 1'h0 : choice_263_Y ;
   assign choice_267_Y  = issue ? choice_265_Y  : choice_263_Y ;
   assign \$284  = rst ? 1'h0 : choice_267_Y ;
-  assign orders__payload = { \$134 , closes, first[6:3], 1'h0, \$128 , \$127 , \$124 , \$121 , \$120 , \$116 [2:0], \$115 [2:0], map_at[5:0], items_at[5:0], state[19], \$114 , \$113 , \$112  };
+  assign orders__payload = { \$134 , ends_packet, first[6:3], 1'h0, \$128 , \$127 , \$124 , \$121 , \$120 , \$116 [2:0], \$115 [2:0], map_at[5:0], items_at[5:0], state[19], \$114 , \$113 , \$112  };
   assign next_packet = { following, 3'h0 };
   assign exit_low = { 4'h0, state[31:29] };
   assign body_mask = 3'h0;

@@ -129,24 +129,24 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog(aresetn, m_axis_tready, 
   assign m_axis_status_tdata = { 5'h00, status__payload };
   \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core  core (
     .aclk(aclk),
-    .leaf_0__payload(linear_x_data),
-    .leaf_0__valid(linear_x_valid),
-    .leaf_1__payload(linear_y_data),
-    .leaf_1__valid(linear_y_valid),
-    .leaf_2__payload(linear_z_data),
-    .leaf_2__valid(linear_z_valid),
-    .leaf_3__payload(angular_x_data),
-    .leaf_3__valid(angular_x_valid),
-    .leaf_4__payload(angular_y_data),
-    .leaf_4__valid(angular_y_valid),
-    .leaf_5__payload(angular_z_data),
-    .leaf_5__valid(angular_z_valid),
+    .message__angular__x__payload(angular_x_data),
     .message__angular__x__ready(angular_x_ready),
+    .message__angular__x__valid(angular_x_valid),
+    .message__angular__y__payload(angular_y_data),
     .message__angular__y__ready(angular_y_ready),
+    .message__angular__y__valid(angular_y_valid),
+    .message__angular__z__payload(angular_z_data),
     .message__angular__z__ready(angular_z_ready),
+    .message__angular__z__valid(angular_z_valid),
+    .message__linear__x__payload(linear_x_data),
     .message__linear__x__ready(linear_x_ready),
+    .message__linear__x__valid(linear_x_valid),
+    .message__linear__y__payload(linear_y_data),
     .message__linear__y__ready(linear_y_ready),
+    .message__linear__y__valid(linear_y_valid),
+    .message__linear__z__payload(linear_z_data),
     .message__linear__z__ready(linear_z_ready),
+    .message__linear__z__valid(linear_z_valid),
     .packet_error(m_axis_tuser),
     .packets__payload(packets__payload),
     .packets__ready(m_axis_tready),
@@ -194,81 +194,63 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog(aresetn, m_axis_tready, 
   assign packet_error = m_axis_tuser;
 endmodule
 
-module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core (packets__ready, leaf_0__payload, leaf_0__valid, leaf_1__payload, leaf_1__valid, leaf_2__payload, leaf_2__valid, leaf_3__payload, leaf_3__valid, leaf_4__payload, leaf_4__valid, leaf_5__payload, leaf_5__valid, status__ready, rst, message__linear__x__ready, message__linear__y__ready, message__linear__z__ready, message__angular__x__ready, message__angular__y__ready, message__angular__z__ready
+module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core (packets__ready, message__linear__x__payload, message__linear__x__valid, message__linear__y__payload, message__linear__y__valid, message__linear__z__payload, message__linear__z__valid, message__angular__x__payload, message__angular__x__valid, message__angular__y__payload, message__angular__y__valid, message__angular__z__payload, message__angular__z__valid, status__ready, rst, message__linear__x__ready, message__linear__y__ready, message__linear__z__ready, message__angular__x__ready, message__angular__y__ready, message__angular__z__ready
 , status__valid, status__payload, packets__valid, packets__payload, packet_error, aclk);
   input aclk;
   wire aclk;
   wire error;
-  input [63:0] leaf_0__payload;
-  wire [63:0] leaf_0__payload;
-  wire leaf_0__ready;
-  input leaf_0__valid;
-  wire leaf_0__valid;
-  input [63:0] leaf_1__payload;
-  wire [63:0] leaf_1__payload;
-  wire leaf_1__ready;
-  input leaf_1__valid;
-  wire leaf_1__valid;
-  input [63:0] leaf_2__payload;
-  wire [63:0] leaf_2__payload;
-  wire leaf_2__ready;
-  input leaf_2__valid;
-  wire leaf_2__valid;
-  input [63:0] leaf_3__payload;
-  wire [63:0] leaf_3__payload;
-  wire leaf_3__ready;
-  input leaf_3__valid;
-  wire leaf_3__valid;
-  input [63:0] leaf_4__payload;
-  wire [63:0] leaf_4__payload;
-  wire leaf_4__ready;
-  input leaf_4__valid;
-  wire leaf_4__valid;
-  input [63:0] leaf_5__payload;
-  wire [63:0] leaf_5__payload;
-  wire leaf_5__ready;
-  input leaf_5__valid;
-  wire leaf_5__valid;
+  input [63:0] message__angular__x__payload;
   wire [63:0] message__angular__x__payload;
   output message__angular__x__ready;
   wire message__angular__x__ready;
+  input message__angular__x__valid;
   wire message__angular__x__valid;
+  input [63:0] message__angular__y__payload;
   wire [63:0] message__angular__y__payload;
   output message__angular__y__ready;
   wire message__angular__y__ready;
+  input message__angular__y__valid;
   wire message__angular__y__valid;
+  input [63:0] message__angular__z__payload;
   wire [63:0] message__angular__z__payload;
   output message__angular__z__ready;
   wire message__angular__z__ready;
+  input message__angular__z__valid;
   wire message__angular__z__valid;
+  input [63:0] message__linear__x__payload;
   wire [63:0] message__linear__x__payload;
   output message__linear__x__ready;
   wire message__linear__x__ready;
+  input message__linear__x__valid;
   wire message__linear__x__valid;
+  input [63:0] message__linear__y__payload;
   wire [63:0] message__linear__y__payload;
   output message__linear__y__ready;
   wire message__linear__y__ready;
+  input message__linear__y__valid;
   wire message__linear__y__valid;
+  input [63:0] message__linear__z__payload;
   wire [63:0] message__linear__z__payload;
   output message__linear__z__ready;
   wire message__linear__z__ready;
+  input message__linear__z__valid;
   wire message__linear__z__valid;
   output packet_error;
   wire packet_error;
   output [68:0] packets__payload;
   wire [68:0] packets__payload;
-  wire [68:0] \packets__payload$43 ;
-  wire [3:0] \packets__payload$43.count ;
-  wire [63:0] \packets__payload$43.data ;
-  wire [7:0] \packets__payload$43.data[0] ;
-  wire [7:0] \packets__payload$43.data[1] ;
-  wire [7:0] \packets__payload$43.data[2] ;
-  wire [7:0] \packets__payload$43.data[3] ;
-  wire [7:0] \packets__payload$43.data[4] ;
-  wire [7:0] \packets__payload$43.data[5] ;
-  wire [7:0] \packets__payload$43.data[6] ;
-  wire [7:0] \packets__payload$43.data[7] ;
-  wire \packets__payload$43.last ;
+  wire [68:0] \packets__payload$7 ;
+  wire [3:0] \packets__payload$7.count ;
+  wire [63:0] \packets__payload$7.data ;
+  wire [7:0] \packets__payload$7.data[0] ;
+  wire [7:0] \packets__payload$7.data[1] ;
+  wire [7:0] \packets__payload$7.data[2] ;
+  wire [7:0] \packets__payload$7.data[3] ;
+  wire [7:0] \packets__payload$7.data[4] ;
+  wire [7:0] \packets__payload$7.data[5] ;
+  wire [7:0] \packets__payload$7.data[6] ;
+  wire [7:0] \packets__payload$7.data[7] ;
+  wire \packets__payload$7.last ;
   wire [3:0] \packets__payload.count ;
   wire [63:0] \packets__payload.data ;
   wire [7:0] \packets__payload.data[0] ;
@@ -282,10 +264,10 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core (packets__ready, l
   wire \packets__payload.last ;
   input packets__ready;
   wire packets__ready;
-  wire \packets__ready$47 ;
+  wire \packets__ready$11 ;
   output packets__valid;
   wire packets__valid;
-  wire \packets__valid$45 ;
+  wire \packets__valid$9 ;
   input rst;
   wire rst;
   (* enum_base_type = "Status" *)
@@ -306,31 +288,31 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core (packets__ready, l
   (* enum_value_100 = "ENCAPSULATION" *)
   (* enum_value_101 = "STRING" *)
   (* enum_value_110 = "ITEMS" *)
-  wire [2:0] \status__payload$51 ;
+  wire [2:0] \status__payload$15 ;
   input status__ready;
   wire status__ready;
-  wire \status__ready$55 ;
+  wire \status__ready$19 ;
   output status__valid;
   wire status__valid;
-  wire \status__valid$53 ;
+  wire \status__valid$17 ;
   (* unused_bits = "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63 64 65 66 67 68 69 70 71 72 73 74 75 76 77 78 79 80 81 82 83 84 85 86 87 88 89 90 91 92 93 94 95 96 97 98 99 100 101 102 103 104 105 106 107 108 109 110 111 112 113 114 115 116 117 118 119 120 121 122 123 124 125 126 127 128 129 130 131 132 133 134 135 136 137 138 139 140 141 142 143 144 145 146 147 148 149 150 151 152 153 154 155 156 157 158 159 160" *)
   wire [160:0] words__payload;
   (* unused_bits = "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63 64 65 66 67 68 69 70 71 72 73 74 75 76 77 78 79 80 81 82 83 84 85 86 87 88 89 90 91 92 93 94 95 96 97 98 99 100 101 102 103 104 105 106 107 108 109 110 111 112 113 114 115 116 117 118 119 120 121 122 123 124 125 126 127 128 129 130 131 132 133 134 135 136 137 138 139 140 141 142 143 144 145 146 147 148 149 150 151 152 153 154 155 156 157 158 159 160" *)
-  wire [160:0] \words__payload$37 ;
-  wire \words__payload$37.empty ;
-  wire [2:0] \words__payload$37.end_mask ;
-  wire \words__payload$37.error ;
-  wire [63:0] \words__payload$37.items ;
-  wire [3:0] \words__payload$37.items_bytes ;
-  wire \words__payload$37.last ;
-  wire \words__payload$37.lead ;
-  wire [63:0] \words__payload$37.map ;
-  wire [3:0] \words__payload$37.map_bytes ;
-  wire [2:0] \words__payload$37.map_mask ;
-  wire [2:0] \words__payload$37.max_beats ;
-  wire [5:0] \words__payload$37.to_end ;
-  wire [4:0] \words__payload$37.to_map ;
-  wire \words__payload$37.waits ;
+  wire [160:0] \words__payload$1 ;
+  wire \words__payload$1.empty ;
+  wire [2:0] \words__payload$1.end_mask ;
+  wire \words__payload$1.error ;
+  wire [63:0] \words__payload$1.items ;
+  wire [3:0] \words__payload$1.items_bytes ;
+  wire \words__payload$1.last ;
+  wire \words__payload$1.lead ;
+  wire [63:0] \words__payload$1.map ;
+  wire [3:0] \words__payload$1.map_bytes ;
+  wire [2:0] \words__payload$1.map_mask ;
+  wire [2:0] \words__payload$1.max_beats ;
+  wire [5:0] \words__payload$1.to_end ;
+  wire [4:0] \words__payload$1.to_map ;
+  wire \words__payload$1.waits ;
   wire \words__payload.empty ;
   wire [2:0] \words__payload.end_mask ;
   wire \words__payload.error ;
@@ -346,37 +328,37 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core (packets__ready, l
   wire [4:0] \words__payload.to_map ;
   wire \words__payload.waits ;
   wire words__ready;
-  wire \words__ready$41 ;
+  wire \words__ready$5 ;
   wire words__valid;
-  wire \words__valid$39 ;
-  assign words__payload = { \words__payload$37.error , \words__payload$37.waits , \words__payload$37.empty , \words__payload$37.last , \words__payload$37.max_beats , \words__payload$37.end_mask , \words__payload$37.to_end , \words__payload$37.map_mask , \words__payload$37.to_map , \words__payload$37.lead , \words__payload$37.map_bytes , \words__payload$37.items_bytes , \words__payload$37.map , \words__payload$37.items  };
-  assign \words__payload$37  = { \words__payload$37.error , \words__payload$37.waits , \words__payload$37.empty , \words__payload$37.last , \words__payload$37.max_beats , \words__payload$37.end_mask , \words__payload$37.to_end , \words__payload$37.map_mask , \words__payload$37.to_map , \words__payload$37.lead , \words__payload$37.map_bytes , \words__payload$37.items_bytes , \words__payload$37.map , \words__payload$37.items  };
+  wire \words__valid$3 ;
+  assign words__payload = { \words__payload$1.error , \words__payload$1.waits , \words__payload$1.empty , \words__payload$1.last , \words__payload$1.max_beats , \words__payload$1.end_mask , \words__payload$1.to_end , \words__payload$1.map_mask , \words__payload$1.to_map , \words__payload$1.lead , \words__payload$1.map_bytes , \words__payload$1.items_bytes , \words__payload$1.map , \words__payload$1.items  };
+  assign \words__payload$1  = { \words__payload$1.error , \words__payload$1.waits , \words__payload$1.empty , \words__payload$1.last , \words__payload$1.max_beats , \words__payload$1.end_mask , \words__payload$1.to_end , \words__payload$1.map_mask , \words__payload$1.to_map , \words__payload$1.lead , \words__payload$1.map_bytes , \words__payload$1.items_bytes , \words__payload$1.map , \words__payload$1.items  };
   \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector  collector (
     .aclk(aclk),
-    .leaf_0__payload(leaf_0__payload),
-    .leaf_0__ready(message__linear__x__ready),
-    .leaf_0__valid(leaf_0__valid),
-    .leaf_1__payload(leaf_1__payload),
-    .leaf_1__ready(message__linear__y__ready),
-    .leaf_1__valid(leaf_1__valid),
-    .leaf_2__payload(leaf_2__payload),
-    .leaf_2__ready(message__linear__z__ready),
-    .leaf_2__valid(leaf_2__valid),
-    .leaf_3__payload(leaf_3__payload),
-    .leaf_3__ready(message__angular__x__ready),
-    .leaf_3__valid(leaf_3__valid),
-    .leaf_4__payload(leaf_4__payload),
-    .leaf_4__ready(message__angular__y__ready),
-    .leaf_4__valid(leaf_4__valid),
-    .leaf_5__payload(leaf_5__payload),
-    .leaf_5__ready(message__angular__z__ready),
-    .leaf_5__valid(leaf_5__valid),
+    .message__angular__x__payload(message__angular__x__payload),
+    .message__angular__x__ready(message__angular__x__ready),
+    .message__angular__x__valid(message__angular__x__valid),
+    .message__angular__y__payload(message__angular__y__payload),
+    .message__angular__y__ready(message__angular__y__ready),
+    .message__angular__y__valid(message__angular__y__valid),
+    .message__angular__z__payload(message__angular__z__payload),
+    .message__angular__z__ready(message__angular__z__ready),
+    .message__angular__z__valid(message__angular__z__valid),
+    .message__linear__x__payload(message__linear__x__payload),
+    .message__linear__x__ready(message__linear__x__ready),
+    .message__linear__x__valid(message__linear__x__valid),
+    .message__linear__y__payload(message__linear__y__payload),
+    .message__linear__y__ready(message__linear__y__ready),
+    .message__linear__y__valid(message__linear__y__valid),
+    .message__linear__z__payload(message__linear__z__payload),
+    .message__linear__z__ready(message__linear__z__ready),
+    .message__linear__z__valid(message__linear__z__valid),
     .rst(rst),
     .status__payload(status__payload),
     .status__ready(status__ready),
     .status__valid(status__valid),
-    .words__payload_0({ \words__payload$37.map , \words__payload$37.items  }),
-    .words__payload_128({ \words__payload$37.error , \words__payload$37.waits , \words__payload$37.empty , \words__payload$37.last , \words__payload$37.max_beats , \words__payload$37.end_mask , \words__payload$37.to_end , \words__payload$37.map_mask , \words__payload$37.to_map , \words__payload$37.lead , \words__payload$37.map_bytes , \words__payload$37.items_bytes  }),
+    .words__payload_0({ \words__payload$1.map , \words__payload$1.items  }),
+    .words__payload_128({ \words__payload$1.error , \words__payload$1.waits , \words__payload$1.empty , \words__payload$1.last , \words__payload$1.max_beats , \words__payload$1.end_mask , \words__payload$1.to_end , \words__payload$1.map_mask , \words__payload$1.to_map , \words__payload$1.lead , \words__payload$1.map_bytes , \words__payload$1.items_bytes  }),
     .words__ready(words__ready),
     .words__valid(words__valid)
   );
@@ -387,20 +369,20 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core (packets__ready, l
     .packets__ready(packets__ready),
     .packets__valid(packets__valid),
     .rst(rst),
-    .words__payload_0({ \words__payload$37.map , \words__payload$37.items  }),
-    .words__payload_128({ \words__payload$37.error , \words__payload$37.waits , \words__payload$37.empty , \words__payload$37.last , \words__payload$37.max_beats , \words__payload$37.end_mask , \words__payload$37.to_end , \words__payload$37.map_mask , \words__payload$37.to_map , \words__payload$37.lead , \words__payload$37.map_bytes , \words__payload$37.items_bytes  }),
+    .words__payload_0({ \words__payload$1.map , \words__payload$1.items  }),
+    .words__payload_128({ \words__payload$1.error , \words__payload$1.waits , \words__payload$1.empty , \words__payload$1.last , \words__payload$1.max_beats , \words__payload$1.end_mask , \words__payload$1.to_end , \words__payload$1.map_mask , \words__payload$1.to_map , \words__payload$1.lead , \words__payload$1.map_bytes , \words__payload$1.items_bytes  }),
     .words__ready(words__ready),
     .words__valid(words__valid)
   );
-  assign \packets__payload$43.data[7]  = packets__payload[63:56];
-  assign \packets__payload$43.data[6]  = packets__payload[55:48];
-  assign \packets__payload$43.data[5]  = packets__payload[47:40];
-  assign \packets__payload$43.data[4]  = packets__payload[39:32];
-  assign \packets__payload$43.data[3]  = packets__payload[31:24];
-  assign \packets__payload$43.data[2]  = packets__payload[23:16];
-  assign \packets__payload$43.data[1]  = packets__payload[15:8];
-  assign \packets__payload$43.data[0]  = packets__payload[7:0];
-  assign \packets__payload$43.data  = packets__payload[63:0];
+  assign \packets__payload$7.data[7]  = packets__payload[63:56];
+  assign \packets__payload$7.data[6]  = packets__payload[55:48];
+  assign \packets__payload$7.data[5]  = packets__payload[47:40];
+  assign \packets__payload$7.data[4]  = packets__payload[39:32];
+  assign \packets__payload$7.data[3]  = packets__payload[31:24];
+  assign \packets__payload$7.data[2]  = packets__payload[23:16];
+  assign \packets__payload$7.data[1]  = packets__payload[15:8];
+  assign \packets__payload$7.data[0]  = packets__payload[7:0];
+  assign \packets__payload$7.data  = packets__payload[63:0];
   assign \packets__payload.last  = packets__payload[68];
   assign \packets__payload.count  = packets__payload[67:64];
   assign \packets__payload.data[7]  = packets__payload[63:56];
@@ -412,52 +394,34 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core (packets__ready, l
   assign \packets__payload.data[1]  = packets__payload[15:8];
   assign \packets__payload.data[0]  = packets__payload[7:0];
   assign \packets__payload.data  = packets__payload[63:0];
-  assign \words__payload.error  = \words__payload$37.error ;
-  assign \words__payload.waits  = \words__payload$37.waits ;
-  assign \words__payload.empty  = \words__payload$37.empty ;
-  assign \words__payload.last  = \words__payload$37.last ;
-  assign \words__payload.max_beats  = \words__payload$37.max_beats ;
-  assign \words__payload.end_mask  = \words__payload$37.end_mask ;
-  assign \words__payload.to_end  = \words__payload$37.to_end ;
-  assign \words__payload.map_mask  = \words__payload$37.map_mask ;
-  assign \words__payload.to_map  = \words__payload$37.to_map ;
-  assign \words__payload.lead  = \words__payload$37.lead ;
-  assign \words__payload.map_bytes  = \words__payload$37.map_bytes ;
-  assign \words__payload.items_bytes  = \words__payload$37.items_bytes ;
-  assign \words__payload.map  = \words__payload$37.map ;
-  assign \words__payload.items  = \words__payload$37.items ;
-  assign \packets__payload$43.count  = packets__payload[67:64];
-  assign \packets__payload$43.last  = packets__payload[68];
-  assign \status__ready$55  = status__ready;
-  assign \status__valid$53  = status__valid;
-  assign \status__payload$51  = status__payload;
+  assign \words__payload.error  = \words__payload$1.error ;
+  assign \words__payload.waits  = \words__payload$1.waits ;
+  assign \words__payload.empty  = \words__payload$1.empty ;
+  assign \words__payload.last  = \words__payload$1.last ;
+  assign \words__payload.max_beats  = \words__payload$1.max_beats ;
+  assign \words__payload.end_mask  = \words__payload$1.end_mask ;
+  assign \words__payload.to_end  = \words__payload$1.to_end ;
+  assign \words__payload.map_mask  = \words__payload$1.map_mask ;
+  assign \words__payload.to_map  = \words__payload$1.to_map ;
+  assign \words__payload.lead  = \words__payload$1.lead ;
+  assign \words__payload.map_bytes  = \words__payload$1.map_bytes ;
+  assign \words__payload.items_bytes  = \words__payload$1.items_bytes ;
+  assign \words__payload.map  = \words__payload$1.map ;
+  assign \words__payload.items  = \words__payload$1.items ;
+  assign \packets__payload$7.count  = packets__payload[67:64];
+  assign \packets__payload$7.last  = packets__payload[68];
+  assign \status__ready$19  = status__ready;
+  assign \status__valid$17  = status__valid;
+  assign \status__payload$15  = status__payload;
   assign error = packet_error;
-  assign \packets__ready$47  = packets__ready;
-  assign \packets__valid$45  = packets__valid;
-  assign \packets__payload$43  = packets__payload;
-  assign \words__ready$41  = words__ready;
-  assign \words__valid$39  = words__valid;
-  assign leaf_5__ready = message__angular__z__ready;
-  assign message__angular__z__valid = leaf_5__valid;
-  assign message__angular__z__payload = leaf_5__payload;
-  assign leaf_4__ready = message__angular__y__ready;
-  assign message__angular__y__valid = leaf_4__valid;
-  assign message__angular__y__payload = leaf_4__payload;
-  assign leaf_3__ready = message__angular__x__ready;
-  assign message__angular__x__valid = leaf_3__valid;
-  assign message__angular__x__payload = leaf_3__payload;
-  assign leaf_2__ready = message__linear__z__ready;
-  assign message__linear__z__valid = leaf_2__valid;
-  assign message__linear__z__payload = leaf_2__payload;
-  assign leaf_1__ready = message__linear__y__ready;
-  assign message__linear__y__valid = leaf_1__valid;
-  assign message__linear__y__payload = leaf_1__payload;
-  assign leaf_0__ready = message__linear__x__ready;
-  assign message__linear__x__valid = leaf_0__valid;
-  assign message__linear__x__payload = leaf_0__payload;
+  assign \packets__ready$11  = packets__ready;
+  assign \packets__valid$9  = packets__valid;
+  assign \packets__payload$7  = packets__payload;
+  assign \words__ready$5  = words__ready;
+  assign \words__valid$3  = words__valid;
 endmodule
 
-module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector (leaf_0__payload, leaf_0__valid, leaf_1__payload, leaf_1__valid, leaf_2__payload, leaf_2__valid, leaf_3__payload, leaf_3__valid, leaf_4__payload, leaf_4__valid, leaf_5__payload, leaf_5__valid, status__ready, rst, leaf_0__ready, leaf_1__ready, leaf_2__ready, leaf_3__ready, leaf_4__ready, leaf_5__ready, words__payload_0
+module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector (message__linear__x__payload, message__linear__x__valid, message__linear__y__payload, message__linear__y__valid, message__linear__z__payload, message__linear__z__valid, message__angular__x__payload, message__angular__x__valid, message__angular__y__payload, message__angular__y__valid, message__angular__z__payload, message__angular__z__valid, status__ready, rst, message__linear__x__ready, message__linear__y__ready, message__linear__z__ready, message__angular__x__ready, message__angular__y__ready, message__angular__z__ready, words__payload_0
 , words__payload_128, status__valid, status__payload, words__valid, words__ready, aclk);
   wire \$100 ;
   wire \$101 ;
@@ -576,29 +540,29 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector (leaf_0_
   wire \$97 ;
   wire \$98 ;
   wire \$99 ;
-  wire choice_371_Y ;
-  wire choice_373_Y ;
-  wire choice_376_Y ;
-  wire choice_378_Y ;
-  wire [26:0] choice_393_Y ;
-  wire choice_401_Y ;
-  wire choice_405_Y ;
-  wire [2:0] choice_417_Y ;
-  wire choice_421_Y ;
-  wire choice_423_Y ;
-  wire [2:0] choice_427_Y ;
-  wire choice_441_Y ;
-  wire choice_445_Y ;
-  wire [2:0] choice_449_Y ;
-  wire [2:0] choice_453_Y ;
-  wire [4:0] choice_457_Y ;
-  wire [2:0] choice_461_Y ;
-  wire [5:0] choice_465_Y ;
-  wire choice_469_Y ;
-  wire [3:0] choice_473_Y ;
-  wire [3:0] choice_477_Y ;
-  wire choice_481_Y ;
-  wire choice_485_Y ;
+  wire choice_233_Y ;
+  wire choice_235_Y ;
+  wire choice_238_Y ;
+  wire choice_240_Y ;
+  wire [26:0] choice_255_Y ;
+  wire choice_263_Y ;
+  wire choice_267_Y ;
+  wire [2:0] choice_279_Y ;
+  wire choice_283_Y ;
+  wire choice_285_Y ;
+  wire [2:0] choice_289_Y ;
+  wire choice_303_Y ;
+  wire choice_307_Y ;
+  wire [2:0] choice_311_Y ;
+  wire [2:0] choice_315_Y ;
+  wire [4:0] choice_319_Y ;
+  wire [2:0] choice_323_Y ;
+  wire [5:0] choice_327_Y ;
+  wire choice_331_Y ;
+  wire [3:0] choice_335_Y ;
+  wire [3:0] choice_339_Y ;
+  wire choice_343_Y ;
+  wire choice_347_Y ;
   input aclk;
   wire aclk;
   wire begins;
@@ -642,42 +606,6 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector (leaf_0_
   wire lacks_4_0;
   wire lacks_5_0;
   wire lacks_5_1;
-  input [63:0] leaf_0__payload;
-  wire [63:0] leaf_0__payload;
-  output leaf_0__ready;
-  wire leaf_0__ready;
-  input leaf_0__valid;
-  wire leaf_0__valid;
-  input [63:0] leaf_1__payload;
-  wire [63:0] leaf_1__payload;
-  output leaf_1__ready;
-  wire leaf_1__ready;
-  input leaf_1__valid;
-  wire leaf_1__valid;
-  input [63:0] leaf_2__payload;
-  wire [63:0] leaf_2__payload;
-  output leaf_2__ready;
-  wire leaf_2__ready;
-  input leaf_2__valid;
-  wire leaf_2__valid;
-  input [63:0] leaf_3__payload;
-  wire [63:0] leaf_3__payload;
-  output leaf_3__ready;
-  wire leaf_3__ready;
-  input leaf_3__valid;
-  wire leaf_3__valid;
-  input [63:0] leaf_4__payload;
-  wire [63:0] leaf_4__payload;
-  output leaf_4__ready;
-  wire leaf_4__ready;
-  input leaf_4__valid;
-  wire leaf_4__valid;
-  input [63:0] leaf_5__payload;
-  wire [63:0] leaf_5__payload;
-  output leaf_5__ready;
-  wire leaf_5__ready;
-  input leaf_5__valid;
-  wire leaf_5__valid;
   wire leaves_0;
   wire leaves_1;
   wire leaves_2;
@@ -693,6 +621,42 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector (leaf_0_
   reg [31:0] map_0 = 32'd0;
   reg [31:0] map_4 = 32'd0;
   wire [4:0] map_size;
+  input [63:0] message__angular__x__payload;
+  wire [63:0] message__angular__x__payload;
+  output message__angular__x__ready;
+  wire message__angular__x__ready;
+  input message__angular__x__valid;
+  wire message__angular__x__valid;
+  input [63:0] message__angular__y__payload;
+  wire [63:0] message__angular__y__payload;
+  output message__angular__y__ready;
+  wire message__angular__y__ready;
+  input message__angular__y__valid;
+  wire message__angular__y__valid;
+  input [63:0] message__angular__z__payload;
+  wire [63:0] message__angular__z__payload;
+  output message__angular__z__ready;
+  wire message__angular__z__ready;
+  input message__angular__z__valid;
+  wire message__angular__z__valid;
+  input [63:0] message__linear__x__payload;
+  wire [63:0] message__linear__x__payload;
+  output message__linear__x__ready;
+  wire message__linear__x__ready;
+  input message__linear__x__valid;
+  wire message__linear__x__valid;
+  input [63:0] message__linear__y__payload;
+  wire [63:0] message__linear__y__payload;
+  output message__linear__y__ready;
+  wire message__linear__y__ready;
+  input message__linear__y__valid;
+  wire message__linear__y__valid;
+  input [63:0] message__linear__z__payload;
+  wire [63:0] message__linear__z__payload;
+  output message__linear__z__ready;
+  wire message__linear__z__ready;
+  input message__linear__z__valid;
+  wire message__linear__z__valid;
   wire nul_now;
   input rst;
   wire rst;
@@ -760,53 +724,53 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector (leaf_0_
   assign ends = done & state[5];
   assign \$13  = ~ served_0;
   assign left_1_0 = state[1] & \$13 ;
-  assign \$14  = ~ leaf_0__valid;
+  assign \$14  = ~ message__linear__x__valid;
   assign lacks_1_0 = left_1_0 & \$14 ;
-  assign \$15  = left_1_0 & leaf_0__valid;
+  assign \$15  = left_1_0 & message__linear__x__valid;
   assign go_1_0 = \$15  & free;
   assign \$19  = ~ served_0;
   assign left_2_0 = state[2] & \$19 ;
-  assign \$20  = ~ leaf_1__valid;
+  assign \$20  = ~ message__linear__y__valid;
   assign lacks_2_0 = left_2_0 & \$20 ;
-  assign \$21  = left_2_0 & leaf_1__valid;
+  assign \$21  = left_2_0 & message__linear__y__valid;
   assign go_2_0 = \$21  & free;
   assign \$25  = ~ served_0;
   assign left_3_0 = state[3] & \$25 ;
-  assign \$26  = ~ leaf_2__valid;
+  assign \$26  = ~ message__linear__z__valid;
   assign lacks_3_0 = left_3_0 & \$26 ;
-  assign \$27  = left_3_0 & leaf_2__valid;
+  assign \$27  = left_3_0 & message__linear__z__valid;
   assign go_3_0 = \$27  & free;
   assign \$31  = ~ served_0;
   assign left_4_0 = state[4] & \$31 ;
-  assign \$32  = ~ leaf_3__valid;
+  assign \$32  = ~ message__angular__x__valid;
   assign lacks_4_0 = left_4_0 & \$32 ;
-  assign \$33  = left_4_0 & leaf_3__valid;
+  assign \$33  = left_4_0 & message__angular__x__valid;
   assign go_4_0 = \$33  & free;
   assign \$37  = ~ served_0;
   assign left_5_0 = state[5] & \$37 ;
-  assign \$38  = ~ leaf_4__valid;
+  assign \$38  = ~ message__angular__y__valid;
   assign lacks_5_0 = left_5_0 & \$38 ;
-  assign \$39  = left_5_0 & leaf_4__valid;
+  assign \$39  = left_5_0 & message__angular__y__valid;
   assign go_5_0 = \$39  & free;
   assign \$43  = ~ served_1;
   assign left_5_1 = state[5] & \$43 ;
-  assign \$44  = ~ leaf_5__valid;
+  assign \$44  = ~ message__angular__z__valid;
   assign lacks_5_1 = left_5_1 & \$44 ;
-  assign \$45  = left_5_1 & leaf_5__valid;
+  assign \$45  = left_5_1 & message__angular__z__valid;
   assign \$46  = \$45  & free;
   assign \$48  = ~ lacks_5_0;
   assign go_5_1 = \$46  & \$48 ;
   assign \$49  = ~ words__valid;
   assign free = \$49  | words__ready;
-  assign \$50  = ~ leaf_0__valid;
+  assign \$50  = ~ message__linear__x__valid;
   assign \$51  = state[0] & \$50 ;
-  assign \$52  = ~ leaf_1__valid;
+  assign \$52  = ~ message__linear__y__valid;
   assign \$53  = state[1] & \$52 ;
-  assign \$54  = ~ leaf_2__valid;
+  assign \$54  = ~ message__linear__z__valid;
   assign \$55  = state[2] & \$54 ;
-  assign \$56  = ~ leaf_3__valid;
+  assign \$56  = ~ message__angular__x__valid;
   assign \$57  = state[3] & \$56 ;
-  assign \$58  = ~ leaf_4__valid;
+  assign \$58  = ~ message__angular__y__valid;
   assign \$59  = state[4] & \$58 ;
   assign \$60  = | { lacks_5_1, lacks_5_0, \$59 , lacks_4_0, \$57 , lacks_3_0, \$55 , lacks_2_0, \$53 , lacks_1_0, \$51  };
   assign \$61  = ~ \$60 ;
@@ -847,24 +811,24 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector (leaf_0_
   assign \$106  = ~ \$105 ;
   assign \$107  = free & \$106 ;
   assign \$109  = state[0] ? 32'd256 : 32'd0;
-  assign \$111  = state[1] ? leaf_0__payload[63:32] : 32'd0;
+  assign \$111  = state[1] ? message__linear__x__payload[63:32] : 32'd0;
   assign \$112  = \$109  | \$111 ;
-  assign \$114  = state[2] ? leaf_1__payload[63:32] : 32'd0;
-  assign \$116  = state[3] ? leaf_2__payload[63:32] : 32'd0;
+  assign \$114  = state[2] ? message__linear__y__payload[63:32] : 32'd0;
+  assign \$116  = state[3] ? message__linear__z__payload[63:32] : 32'd0;
   assign \$117  = \$114  | \$116 ;
   assign \$118  = \$112  | \$117 ;
-  assign \$120  = state[4] ? leaf_3__payload[63:32] : 32'd0;
-  assign \$122  = state[5] ? leaf_5__payload[63:32] : 32'd0;
+  assign \$120  = state[4] ? message__angular__x__payload[63:32] : 32'd0;
+  assign \$122  = state[5] ? message__angular__z__payload[63:32] : 32'd0;
   assign \$123  = \$120  | \$122 ;
   assign \$124  = \$118  | \$123 ;
-  assign \$128  = state[0] ? leaf_0__payload[31:0] : 32'd0;
-  assign \$130  = state[1] ? leaf_1__payload[31:0] : 32'd0;
+  assign \$128  = state[0] ? message__linear__x__payload[31:0] : 32'd0;
+  assign \$130  = state[1] ? message__linear__y__payload[31:0] : 32'd0;
   assign \$131  = \$128  | \$130 ;
-  assign \$133  = state[2] ? leaf_2__payload[31:0] : 32'd0;
-  assign \$135  = state[3] ? leaf_3__payload[31:0] : 32'd0;
+  assign \$133  = state[2] ? message__linear__z__payload[31:0] : 32'd0;
+  assign \$135  = state[3] ? message__angular__x__payload[31:0] : 32'd0;
   assign \$136  = \$133  | \$135 ;
   assign \$137  = \$131  | \$136 ;
-  assign \$139  = state[4] ? leaf_4__payload[31:0] : 32'd0;
+  assign \$139  = state[4] ? message__angular__y__payload[31:0] : 32'd0;
   assign \$140  = \$137  | \$139 ;
   assign \$142  = state[5] & served_0;
   assign \$144  = ~ \$142 ;
@@ -911,57 +875,57 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector (leaf_0_
     state <= \$212 ;
   always @(posedge aclk)
     has_nul <= \$214 ;
-  assign choice_371_Y  = state[24] ? 1'h0 : has_nul;
-  assign choice_373_Y  = state[20] ? state[25] : choice_371_Y ;
-  assign choice_376_Y  = ends ? (* full_case = 32'd1 *) 1'h0 : choice_373_Y ;
-  assign choice_378_Y  = complete ? choice_376_Y  : has_nul;
-  assign \$214  = rst ? 1'h0 : choice_378_Y ;
-  assign choice_393_Y  = complete ? \$195  : state;
-  assign \$212  = rst ? 27'h0800201 : choice_393_Y ;
+  assign choice_233_Y  = state[24] ? 1'h0 : has_nul;
+  assign choice_235_Y  = state[20] ? state[25] : choice_233_Y ;
+  assign choice_238_Y  = ends ? (* full_case = 32'd1 *) 1'h0 : choice_235_Y ;
+  assign choice_240_Y  = complete ? choice_238_Y  : has_nul;
+  assign \$214  = rst ? 1'h0 : choice_240_Y ;
+  assign choice_255_Y  = complete ? \$195  : state;
+  assign \$212  = rst ? 27'h0800201 : choice_255_Y ;
   assign \$210  = rst ? 1'h1 : words_last;
-  assign choice_401_Y  = free ? complete : words__valid;
-  assign \$209  = rst ? 1'h0 : choice_401_Y ;
-  assign choice_405_Y  = complete ? \$152  : begun;
-  assign \$208  = rst ? 1'h0 : choice_405_Y ;
-  assign \$207  = \$150  ? leaf_5__payload[31:0] : items_4;
-  assign \$206  = \$145  ? leaf_4__payload[63:32] : items_0;
+  assign choice_263_Y  = free ? complete : words__valid;
+  assign \$209  = rst ? 1'h0 : choice_263_Y ;
+  assign choice_267_Y  = complete ? \$152  : begun;
+  assign \$208  = rst ? 1'h0 : choice_267_Y ;
+  assign \$207  = \$150  ? message__angular__z__payload[31:0] : items_4;
+  assign \$206  = \$145  ? message__angular__y__payload[63:32] : items_0;
   assign \$205  = free ? \$140  : map_4;
   assign \$204  = \$107  ? \$124  : map_0;
-  assign choice_417_Y  = \$99  ? error : status__payload;
-  assign \$203  = rst ? 3'h0 : choice_417_Y ;
-  assign choice_421_Y  = status__ready ? 1'h0 : status__valid;
-  assign choice_423_Y  = \$99  ? 1'h1 : choice_421_Y ;
-  assign \$202  = rst ? 1'h0 : choice_423_Y ;
-  assign choice_427_Y  = \$99  ? 3'h0 : error;
-  assign \$201  = rst ? 3'h0 : choice_427_Y ;
+  assign choice_279_Y  = \$99  ? error : status__payload;
+  assign \$203  = rst ? 3'h0 : choice_279_Y ;
+  assign choice_283_Y  = status__ready ? 1'h0 : status__valid;
+  assign choice_285_Y  = \$99  ? 1'h1 : choice_283_Y ;
+  assign \$202  = rst ? 1'h0 : choice_285_Y ;
+  assign choice_289_Y  = \$99  ? 3'h0 : error;
+  assign \$201  = rst ? 3'h0 : choice_289_Y ;
   assign \$200  = rst ? 1'h0 : \$98 ;
   assign \$199  = rst ? 1'h0 : \$94 ;
   assign end_mask = ends ? (* full_case = 32'd1 *) 3'h7 : 3'h0;
   assign to_end = ends ? (* full_case = 32'd1 *) \$81  : \$82 ;
-  assign choice_441_Y  = free ? \$100  : words__payload_128[32];
-  assign \$197 [32] = rst ? 1'h0 : choice_441_Y ;
-  assign choice_445_Y  = free ? ends : words__payload_128[29];
-  assign \$197 [29] = rst ? 1'h0 : choice_445_Y ;
-  assign choice_449_Y  = free ? \$154 [5:3] : words__payload_128[28:26];
-  assign \$197 [28:26] = rst ? 3'h0 : choice_449_Y ;
-  assign choice_453_Y  = free ? state[16:14] : words__payload_128[16:14];
-  assign \$197 [16:14] = rst ? 3'h0 : choice_453_Y ;
-  assign choice_457_Y  = free ? to_map : words__payload_128[13:9];
-  assign \$197 [13:9] = rst ? 5'h00 : choice_457_Y ;
-  assign choice_461_Y  = free ? end_mask : words__payload_128[25:23];
-  assign \$197 [25:23] = rst ? 3'h0 : choice_461_Y ;
-  assign choice_465_Y  = free ? to_end : words__payload_128[22:17];
-  assign \$197 [22:17] = rst ? 6'h00 : choice_465_Y ;
-  assign choice_469_Y  = free ? state[26] : words__payload_128[8];
-  assign \$197 [8] = rst ? 1'h0 : choice_469_Y ;
-  assign choice_473_Y  = free ? state[9:6] : words__payload_128[7:4];
-  assign \$197 [7:4] = rst ? 4'h0 : choice_473_Y ;
-  assign choice_477_Y  = free ? items_size : words__payload_128[3:0];
-  assign \$197 [3:0] = rst ? 4'h0 : choice_477_Y ;
-  assign choice_481_Y  = free ? \$156  : words__payload_128[30];
-  assign \$197 [30] = rst ? 1'h0 : choice_481_Y ;
-  assign choice_485_Y  = free ? 1'h0 : words__payload_128[31];
-  assign \$197 [31] = rst ? 1'h0 : choice_485_Y ;
+  assign choice_303_Y  = free ? \$100  : words__payload_128[32];
+  assign \$197 [32] = rst ? 1'h0 : choice_303_Y ;
+  assign choice_307_Y  = free ? ends : words__payload_128[29];
+  assign \$197 [29] = rst ? 1'h0 : choice_307_Y ;
+  assign choice_311_Y  = free ? \$154 [5:3] : words__payload_128[28:26];
+  assign \$197 [28:26] = rst ? 3'h0 : choice_311_Y ;
+  assign choice_315_Y  = free ? state[16:14] : words__payload_128[16:14];
+  assign \$197 [16:14] = rst ? 3'h0 : choice_315_Y ;
+  assign choice_319_Y  = free ? to_map : words__payload_128[13:9];
+  assign \$197 [13:9] = rst ? 5'h00 : choice_319_Y ;
+  assign choice_323_Y  = free ? end_mask : words__payload_128[25:23];
+  assign \$197 [25:23] = rst ? 3'h0 : choice_323_Y ;
+  assign choice_327_Y  = free ? to_end : words__payload_128[22:17];
+  assign \$197 [22:17] = rst ? 6'h00 : choice_327_Y ;
+  assign choice_331_Y  = free ? state[26] : words__payload_128[8];
+  assign \$197 [8] = rst ? 1'h0 : choice_331_Y ;
+  assign choice_335_Y  = free ? state[9:6] : words__payload_128[7:4];
+  assign \$197 [7:4] = rst ? 4'h0 : choice_335_Y ;
+  assign choice_339_Y  = free ? items_size : words__payload_128[3:0];
+  assign \$197 [3:0] = rst ? 4'h0 : choice_339_Y ;
+  assign choice_343_Y  = free ? \$156  : words__payload_128[30];
+  assign \$197 [30] = rst ? 1'h0 : choice_343_Y ;
+  assign choice_347_Y  = free ? 1'h0 : words__payload_128[31];
+  assign \$197 [31] = rst ? 1'h0 : choice_347_Y ;
   assign words__payload = { words__payload_128, map_4, map_0, items_4, items_0 };
   assign \words__payload.error  = words__payload_128[32];
   assign \words__payload.waits  = words__payload_128[31];
@@ -989,12 +953,12 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.collector (leaf_0_
   assign \state.mask  = state[16:14];
   assign \state.items_bytes  = state[13:10];
   assign words__payload_0 = { map_4, map_0, items_4, items_0 };
-  assign leaf_5__ready = go_5_1;
-  assign leaf_4__ready = go_5_0;
-  assign leaf_3__ready = go_4_0;
-  assign leaf_2__ready = go_3_0;
-  assign leaf_1__ready = go_2_0;
-  assign leaf_0__ready = go_1_0;
+  assign message__angular__z__ready = go_5_1;
+  assign message__angular__y__ready = go_5_0;
+  assign message__angular__x__ready = go_4_0;
+  assign message__linear__z__ready = go_3_0;
+  assign message__linear__y__ready = go_2_0;
+  assign message__linear__x__ready = go_1_0;
   assign \state.map_bytes  = state[9:6];
   assign \state.step  = state[5:0];
   assign words_keeps = 1'h1;
@@ -1013,94 +977,18 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   (* unused_bits = "7" *)
   wire [7:0] \$1 ;
   wire [2:0] \$10 ;
-  wire \$100 ;
-  wire \$101 ;
-  wire \$102 ;
-  wire \$103 ;
-  wire \$104 ;
-  wire \$105 ;
-  wire \$106 ;
-  wire \$107 ;
-  wire \$108 ;
-  wire \$109 ;
   wire [2:0] \$11 ;
-  wire \$110 ;
-  wire \$111 ;
-  wire \$112 ;
-  wire \$113 ;
-  wire \$114 ;
-  wire \$115 ;
-  wire \$116 ;
-  wire \$117 ;
-  wire \$118 ;
-  wire \$119 ;
   (* unused_bits = "7 8 9" *)
   wire [9:0] \$12 ;
-  wire \$120 ;
-  wire \$121 ;
-  wire \$122 ;
-  wire \$123 ;
-  wire \$124 ;
-  wire \$125 ;
-  wire \$126 ;
-  wire \$127 ;
-  wire \$128 ;
-  wire \$129 ;
   (* unused_bits = "4" *)
   wire [4:0] \$13 ;
-  wire \$130 ;
-  wire \$131 ;
-  wire \$132 ;
-  wire \$133 ;
-  wire \$134 ;
-  wire \$135 ;
-  wire \$136 ;
-  wire \$137 ;
-  wire \$138 ;
-  wire \$139 ;
   (* unused_bits = "3 4 5 6 7" *)
   wire [7:0] \$14 ;
-  (* unused_bits = "3 4" *)
-  wire [4:0] \$140 ;
-  (* unused_bits = "4" *)
-  wire [4:0] \$141 ;
-  wire [31:0] \$142 ;
-  wire [31:0] \$143 ;
-  wire [31:0] \$144 ;
-  wire [31:0] \$145 ;
-  wire [31:0] \$146 ;
-  wire [31:0] \$147 ;
-  wire [3:0] \$148 ;
-  wire \$149 ;
   wire [2:0] \$15 ;
-  wire \$150 ;
-  wire [63:0] \$151 ;
-  wire [6:0] \$152 ;
-  wire [3:0] \$153 ;
-  wire [63:0] \$154 ;
-  wire [6:0] \$155 ;
-  wire [3:0] \$156 ;
-  wire [6:0] \$157 ;
-  wire [3:0] \$158 ;
-  wire \$159 ;
   (* unused_bits = "4" *)
   wire [4:0] \$16 ;
-  wire \$160 ;
-  wire \$161 ;
-  wire [3:0] \$162 ;
-  wire \$163 ;
-  wire [3:0] \$164 ;
-  wire [7:0] \$165 ;
-  wire [7:0] \$166 ;
-  wire [7:0] \$167 ;
-  wire [3:0] \$168 ;
-  wire [7:0] \$169 ;
   (* unused_bits = "0 1 2 4" *)
   wire [4:0] \$17 ;
-  wire \$170 ;
-  wire [3:0] \$171 ;
-  wire [68:0] \$172 ;
-  wire \$173 ;
   wire \$19 ;
   (* unused_bits = "7" *)
   wire [7:0] \$2 ;
@@ -1135,68 +1023,60 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   wire \$40 ;
   (* unused_bits = "4" *)
   wire [4:0] \$41 ;
-  wire \$42 ;
-  wire \$43 ;
-  wire \$44 ;
-  wire \$45 ;
-  wire \$46 ;
-  wire \$47 ;
-  wire \$48 ;
-  wire \$49 ;
-  wire \$50 ;
-  wire \$51 ;
-  wire \$52 ;
-  wire \$53 ;
+  wire [7:0] \$42 ;
+  wire [7:0] \$43 ;
+  wire [7:0] \$44 ;
+  wire [7:0] \$45 ;
+  wire [7:0] \$46 ;
+  wire [7:0] \$47 ;
+  wire [7:0] \$48 ;
+  wire [7:0] \$49 ;
+  wire [7:0] \$50 ;
+  wire [7:0] \$51 ;
+  wire [7:0] \$52 ;
+  wire [7:0] \$53 ;
   wire \$54 ;
   wire \$55 ;
-  wire \$56 ;
-  wire \$57 ;
-  wire \$58 ;
-  wire \$59 ;
-  wire \$60 ;
-  wire \$61 ;
-  wire \$62 ;
-  wire \$63 ;
-  wire \$64 ;
+  (* unused_bits = "3 4" *)
+  wire [4:0] \$56 ;
+  (* unused_bits = "4" *)
+  wire [4:0] \$57 ;
+  wire [31:0] \$58 ;
+  wire [31:0] \$59 ;
+  wire [31:0] \$60 ;
+  wire [31:0] \$61 ;
+  wire [31:0] \$62 ;
+  wire [31:0] \$63 ;
+  wire [3:0] \$64 ;
   wire \$65 ;
   wire \$66 ;
-  wire \$67 ;
-  wire \$68 ;
-  wire \$69 ;
+  wire [63:0] \$67 ;
+  wire [6:0] \$68 ;
+  wire [3:0] \$69 ;
   (* unused_bits = "7 8 9" *)
   wire [9:0] \$7 ;
-  wire \$70 ;
-  wire \$71 ;
-  wire \$72 ;
-  wire \$73 ;
-  wire \$74 ;
+  wire [63:0] \$70 ;
+  wire [6:0] \$71 ;
+  wire [3:0] \$72 ;
+  wire [6:0] \$73 ;
+  wire [3:0] \$74 ;
   wire \$75 ;
   wire \$76 ;
   wire \$77 ;
-  wire \$78 ;
+  wire [3:0] \$78 ;
   wire \$79 ;
   wire [9:0] \$8 ;
-  wire \$80 ;
-  wire \$81 ;
-  wire \$82 ;
-  wire \$83 ;
-  wire \$84 ;
-  wire \$85 ;
+  wire [3:0] \$80 ;
+  wire [7:0] \$81 ;
+  wire [7:0] \$82 ;
+  wire [7:0] \$83 ;
+  wire [3:0] \$84 ;
+  wire [7:0] \$85 ;
   wire \$86 ;
-  wire \$87 ;
-  wire \$88 ;
+  wire [3:0] \$87 ;
+  wire [68:0] \$88 ;
   wire \$89 ;
   wire [9:0] \$9 ;
-  wire \$90 ;
-  wire \$91 ;
-  wire \$92 ;
-  wire \$93 ;
-  wire \$94 ;
-  wire \$95 ;
-  wire \$96 ;
-  wire \$97 ;
-  wire \$98 ;
-  wire \$99 ;
   wire choice_101_Y ;
   wire choice_102_CMP ;
   wire choice_103_Y ;
@@ -1224,75 +1104,27 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   wire choice_166_CMP ;
   wire choice_167_Y ;
   wire [3:0] choice_171_Y ;
-  wire choice_175_Y ;
-  wire choice_177_Y ;
-  wire choice_181_Y ;
-  wire choice_183_Y ;
-  wire choice_187_Y ;
-  wire choice_189_Y ;
-  wire choice_193_Y ;
+  wire [3:0] choice_181_Y ;
+  wire [3:0] choice_187_Y ;
+  wire choice_191_Y ;
   wire choice_195_Y ;
   wire choice_199_Y ;
   wire choice_19_Y ;
-  wire choice_201_Y ;
-  wire choice_205_Y ;
-  wire choice_207_Y ;
+  wire [3:0] choice_203_Y ;
+  wire [6:0] choice_207_Y ;
   wire choice_20_CMP ;
-  wire choice_211_Y ;
-  wire choice_213_Y ;
-  wire choice_217_Y ;
-  wire choice_219_Y ;
+  wire [3:0] choice_211_Y ;
+  wire [6:0] choice_215_Y ;
   wire choice_21_Y ;
-  wire choice_223_Y ;
-  wire choice_225_Y ;
-  wire choice_229_Y ;
-  wire choice_231_Y ;
-  wire choice_235_Y ;
-  wire choice_237_Y ;
+  wire [3:0] choice_221_Y ;
+  wire [6:0] choice_225_Y ;
   wire choice_23_Y ;
-  wire choice_241_Y ;
-  wire choice_243_Y ;
-  wire choice_247_Y ;
-  wire choice_249_Y ;
-  wire choice_253_Y ;
-  wire choice_255_Y ;
-  wire choice_259_Y ;
   wire choice_25_Y ;
-  wire choice_261_Y ;
-  wire choice_265_Y ;
-  wire choice_267_Y ;
   wire choice_26_CMP ;
-  wire choice_271_Y ;
-  wire choice_273_Y ;
-  wire choice_277_Y ;
-  wire choice_279_Y ;
   wire choice_27_Y ;
-  wire choice_283_Y ;
-  wire choice_285_Y ;
-  wire choice_289_Y ;
-  wire choice_291_Y ;
-  wire choice_295_Y ;
-  wire choice_297_Y ;
-  wire choice_301_Y ;
-  wire choice_303_Y ;
-  wire choice_307_Y ;
-  wire choice_309_Y ;
-  wire choice_313_Y ;
-  wire choice_315_Y ;
-  wire [3:0] choice_319_Y ;
-  wire [3:0] choice_325_Y ;
-  wire choice_329_Y ;
-  wire choice_333_Y ;
-  wire choice_337_Y ;
   wire choice_33_Y ;
-  wire [3:0] choice_341_Y ;
-  wire [6:0] choice_345_Y ;
-  wire [3:0] choice_349_Y ;
   wire choice_34_CMP ;
-  wire [6:0] choice_353_Y ;
-  wire [3:0] choice_359_Y ;
   wire choice_35_Y ;
-  wire [6:0] choice_363_Y ;
   wire choice_37_Y ;
   wire choice_41_Y ;
   wire choice_42_CMP ;
@@ -1412,6 +1244,7 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   wire [7:0] \payload.data[6] ;
   wire [7:0] \payload.data[7] ;
   wire \payload.last ;
+  wire [7:0] read_slot;
   wire reads;
   wire ready;
   (* unused_bits = "0 1 2" *)
@@ -1420,7 +1253,7 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   wire rst;
   wire takes;
   wire [6:0] total;
-  wire [6:0] \total$6 ;
+  wire [6:0] \total$9 ;
   reg waits = 1'h0;
   (* unused_bits = "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63 64 65 66 67 68 69 70 71 72 73 74 75 76 77 78 79 80 81 82 83 84 85 86 87 88 89 90 91 92 93 94 95 96 97 98 99 100 101 102 103 104 105 106 107 108 109 110 111 112 113 114 115 116 117 118 119 120 121 122 123 124 125 126 127 128 129 130 131 132 133 134 135 136 137 138 139 140 141 142 143 144 145 146 147 148 149 150 151 152 153 154 155 156 157 158 159 160" *)
   wire [160:0] words__payload;
@@ -1511,14 +1344,7 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
       map_4[map_4__write__addr] <= map_placed[63:32];
   end
   assign map_4__read__data = map_4[first[2:0]];
-  assign takes = words__valid & words__ready;
-  assign { \$1 [7], total } = at + words__payload_128[13:9];
-  assign { \$2 [7], \total$6  } = base + words__payload_128[22:17];
-  assign \$3  = ~ { 7'h00, words__payload_128[16:14] };
-  assign \$4  = { 3'h0, total } & \$3 ;
-  assign { \$7 [9:7], base } = \$4  | { 7'h00, words__payload_128[16], 2'h0 };
-  assign \$8  = ~ { 7'h00, words__payload_128[25:23] };
-  assign \$9  = { 3'h0, \total$6  } & \$8 ;
+  assign \$9  = { 3'h0, \total$9  } & \$8 ;
   assign \$10  = words__payload_128[29] ? 3'h0 : 3'h4;
   assign \$11  = words__payload_128[25:23] & \$10 ;
   assign { \$12 [9:7], end_sig } = \$9  | { 7'h00, \$11  };
@@ -1552,335 +1378,190 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   assign \$39  = words__payload_128[30] ? 4'h0 : \$38 ;
   assign \$40  = ~ room[3];
   assign \$41  = bound + 1'h1;
-  assign \$42  = ! first[2:0];
-  assign \$43  = reads & \$42 ;
-  assign \$44  = ! items_0__write__addr;
-  assign \$45  = items_used_0 & \$44 ;
-  assign \$46  = first[2:0] == 1'h1;
-  assign \$47  = reads & \$46 ;
-  assign \$48  = items_0__write__addr == 1'h1;
-  assign \$49  = items_used_0 & \$48 ;
-  assign \$50  = first[2:0] == 2'h2;
-  assign \$51  = reads & \$50 ;
-  assign \$52  = items_0__write__addr == 2'h2;
-  assign \$53  = items_used_0 & \$52 ;
-  assign \$54  = first[2:0] == 2'h3;
-  assign \$55  = reads & \$54 ;
-  assign \$56  = items_0__write__addr == 2'h3;
-  assign \$57  = items_used_0 & \$56 ;
-  assign \$58  = first[2:0] == 3'h4;
-  assign \$59  = reads & \$58 ;
-  assign \$60  = items_0__write__addr == 3'h4;
-  assign \$61  = items_used_0 & \$60 ;
-  assign \$62  = first[2:0] == 3'h5;
-  assign \$63  = reads & \$62 ;
-  assign \$64  = items_0__write__addr == 3'h5;
-  assign \$65  = items_used_0 & \$64 ;
-  assign \$66  = first[2:0] == 3'h6;
-  assign \$67  = reads & \$66 ;
-  assign \$68  = items_0__write__addr == 3'h6;
-  assign \$69  = items_used_0 & \$68 ;
-  assign \$70  = first[2:0] == 3'h7;
-  assign \$71  = reads & \$70 ;
-  assign \$72  = items_0__write__addr == 3'h7;
-  assign \$73  = items_used_0 & \$72 ;
-  assign \$74  = ! first[2:0];
-  assign \$75  = reads & \$74 ;
-  assign \$76  = ! map_0__write__addr;
-  assign \$77  = map_used_0 & \$76 ;
-  assign \$78  = first[2:0] == 1'h1;
-  assign \$79  = reads & \$78 ;
-  assign \$80  = map_0__write__addr == 1'h1;
-  assign \$81  = map_used_0 & \$80 ;
-  assign \$82  = first[2:0] == 2'h2;
-  assign \$83  = reads & \$82 ;
-  assign \$84  = map_0__write__addr == 2'h2;
-  assign \$85  = map_used_0 & \$84 ;
-  assign \$86  = first[2:0] == 2'h3;
-  assign \$87  = reads & \$86 ;
-  assign \$88  = map_0__write__addr == 2'h3;
-  assign \$89  = map_used_0 & \$88 ;
-  assign \$90  = first[2:0] == 3'h4;
-  assign \$91  = reads & \$90 ;
-  assign \$92  = map_0__write__addr == 3'h4;
-  assign \$93  = map_used_0 & \$92 ;
-  assign \$94  = first[2:0] == 3'h5;
-  assign \$95  = reads & \$94 ;
-  assign \$96  = map_0__write__addr == 3'h5;
-  assign \$97  = map_used_0 & \$96 ;
-  assign \$98  = first[2:0] == 3'h6;
-  assign \$99  = reads & \$98 ;
-  assign \$100  = map_0__write__addr == 3'h6;
-  assign \$101  = map_used_0 & \$100 ;
-  assign \$102  = first[2:0] == 3'h7;
-  assign \$103  = reads & \$102 ;
-  assign \$104  = map_0__write__addr == 3'h7;
-  assign \$105  = map_used_0 & \$104 ;
-  assign \$106  = ! first[2:0];
-  assign \$107  = reads & \$106 ;
-  assign \$108  = ! map_4__write__addr;
-  assign \$109  = map_used_4 & \$108 ;
-  assign \$110  = first[2:0] == 1'h1;
-  assign \$111  = reads & \$110 ;
-  assign \$112  = map_4__write__addr == 1'h1;
-  assign \$113  = map_used_4 & \$112 ;
-  assign \$114  = first[2:0] == 2'h2;
-  assign \$115  = reads & \$114 ;
-  assign \$116  = map_4__write__addr == 2'h2;
-  assign \$117  = map_used_4 & \$116 ;
-  assign \$118  = first[2:0] == 2'h3;
-  assign \$119  = reads & \$118 ;
-  assign \$120  = map_4__write__addr == 2'h3;
-  assign \$121  = map_used_4 & \$120 ;
-  assign \$122  = first[2:0] == 3'h4;
-  assign \$123  = reads & \$122 ;
-  assign \$124  = map_4__write__addr == 3'h4;
-  assign \$125  = map_used_4 & \$124 ;
-  assign \$126  = first[2:0] == 3'h5;
-  assign \$127  = reads & \$126 ;
-  assign \$128  = map_4__write__addr == 3'h5;
-  assign \$129  = map_used_4 & \$128 ;
-  assign \$130  = first[2:0] == 3'h6;
-  assign \$131  = reads & \$130 ;
-  assign \$132  = map_4__write__addr == 3'h6;
-  assign \$133  = map_used_4 & \$132 ;
-  assign \$134  = first[2:0] == 3'h7;
-  assign \$135  = reads & \$134 ;
-  assign \$136  = map_4__write__addr == 3'h7;
-  assign \$137  = map_used_4 & \$136 ;
-  assign \$138  = ~ waits;
-  assign \$139  = writes & \$138 ;
-  assign \$140  = done - 1'h1;
-  assign \$141  = first + 1'h1;
-  assign \$142  = items_here_0 ? items_0__read__data[31:0] : 32'd0;
-  assign \$143  = map_here_0 ? map_0__read__data : 32'd0;
-  assign \$144  = \$142  | \$143 ;
-  assign \$145  = items_here_0 ? items_0__read__data[63:32] : 32'd0;
-  assign \$146  = map_here_4 ? map_4__read__data : 32'd0;
-  assign \$147  = \$145  | \$146 ;
-  assign \$148  = is_last ? ends__read__data[3:0] : 4'h8;
-  assign \$149  = is_last & ends__read__data[4];
+  assign \$42  = items_used_0 << items_0__write__addr;
+  assign \$43  = items_has_0 | \$42 ;
+  assign \$44  = ~ read_slot;
+  assign \$45  = \$43  & \$44 ;
+  assign \$46  = map_used_0 << map_0__write__addr;
+  assign \$47  = map_has_0 | \$46 ;
+  assign \$48  = ~ read_slot;
+  assign \$49  = \$47  & \$48 ;
+  assign \$50  = map_used_4 << map_4__write__addr;
+  assign \$51  = map_has_4 | \$50 ;
+  assign \$52  = ~ read_slot;
+  assign \$53  = \$51  & \$52 ;
+  assign \$54  = ~ waits;
+  assign \$55  = writes & \$54 ;
+  assign \$56  = done - 1'h1;
+  assign \$57  = first + 1'h1;
+  assign \$58  = items_here_0 ? items_0__read__data[31:0] : 32'd0;
+  assign \$59  = map_here_0 ? map_0__read__data : 32'd0;
+  assign \$60  = \$58  | \$59 ;
+  assign \$61  = items_here_0 ? items_0__read__data[63:32] : 32'd0;
+  assign \$62  = map_here_4 ? map_4__read__data : 32'd0;
+  assign \$63  = \$61  | \$62 ;
+  assign \$64  = is_last ? ends__read__data[3:0] : 4'h8;
+  assign \$65  = is_last & ends__read__data[4];
   always @(posedge aclk)
-    writes <= \$150 ;
+    writes <= \$66 ;
   always @(posedge aclk)
-    items_0__write__data <= \$151 ;
+    items_0__write__data <= \$67 ;
   always @(posedge aclk)
-    items_start <= \$152 ;
+    items_start <= \$68 ;
   always @(posedge aclk)
-    items_size <= \$153 ;
+    items_size <= \$69 ;
   always @(posedge aclk)
-    map_placed <= \$154 ;
+    map_placed <= \$70 ;
   always @(posedge aclk)
-    map_start <= \$155 ;
+    map_start <= \$71 ;
   always @(posedge aclk)
-    map_size <= \$156 ;
+    map_size <= \$72 ;
   always @(posedge aclk)
-    at <= \$157 ;
+    at <= \$73 ;
   always @(posedge aclk)
-    done <= \$158 ;
+    done <= \$74 ;
   always @(posedge aclk)
-    final_sig <= \$159 ;
+    final_sig <= \$75 ;
   always @(posedge aclk)
-    marked <= \$160 ;
+    marked <= \$76 ;
   always @(posedge aclk)
-    waits <= \$161 ;
+    waits <= \$77 ;
   always @(posedge aclk)
-    last_bytes <= \$162 ;
+    last_bytes <= \$78 ;
   always @(posedge aclk)
-    words__ready <= \$163 ;
+    words__ready <= \$79 ;
   always @(posedge aclk)
-    bound <= \$164 ;
+    bound <= \$80 ;
   always @(posedge aclk)
-    items_has_0 <= \$165 ;
+    items_has_0 <= \$81 ;
   always @(posedge aclk)
-    map_has_0 <= \$166 ;
+    map_has_0 <= \$82 ;
   always @(posedge aclk)
-    map_has_4 <= \$167 ;
+    map_has_4 <= \$83 ;
   always @(posedge aclk)
-    complete <= \$168 ;
+    complete <= \$84 ;
   always @(posedge aclk)
-    last <= \$169 ;
+    last <= \$85 ;
   always @(posedge aclk)
-    packets__valid <= \$170 ;
+    packets__valid <= \$86 ;
   always @(posedge aclk)
-    first <= \$171 ;
+    first <= \$87 ;
   always @(posedge aclk)
-    packets__payload <= \$172 ;
+    packets__payload <= \$88 ;
   always @(posedge aclk)
-    error <= \$173 ;
-  assign \$173  = reads ? \$149  : error;
+    error <= \$89 ;
+  assign takes = words__valid & words__ready;
+  assign read_slot = reads << first[2:0];
+  assign { \$1 [7], total } = at + words__payload_128[13:9];
+  assign { \$2 [7], \total$9  } = base + words__payload_128[22:17];
+  assign \$3  = ~ { 7'h00, words__payload_128[16:14] };
+  assign \$4  = { 3'h0, total } & \$3 ;
+  assign { \$7 [9:7], base } = \$4  | { 7'h00, words__payload_128[16], 2'h0 };
+  assign \$8  = ~ { 7'h00, words__payload_128[25:23] };
+  assign \$89  = reads ? \$65  : error;
   assign choice_101_Y  = choice_102_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_94_Y ;
   assign choice_102_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h2;
   assign choice_103_Y  = reads ? choice_101_Y  : choice_94_Y ;
-  assign \$169 [2] = rst ? 1'h0 : choice_103_Y ;
-  assign \$171  = rst ? 4'h0 : choice_9_Y ;
+  assign \$85 [2] = rst ? 1'h0 : choice_103_Y ;
+  assign \$87  = rst ? 4'h0 : choice_9_Y ;
   assign choice_113_Y  = choice_114_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[1];
-  assign choice_114_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h1;
+  assign choice_114_CMP  = \$56 [2:0] == (* full_case = 32'd1 *) 3'h1;
   assign choice_115_Y  = final_sig ? choice_113_Y  : last[1];
-  assign choice_117_Y  = \$139  ? choice_115_Y  : last[1];
+  assign choice_117_Y  = \$55  ? choice_115_Y  : last[1];
   assign choice_125_Y  = choice_126_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_117_Y ;
   assign choice_126_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h1;
   assign choice_127_Y  = reads ? choice_125_Y  : choice_117_Y ;
-  assign \$169 [1] = rst ? 1'h0 : choice_127_Y ;
+  assign \$85 [1] = rst ? 1'h0 : choice_127_Y ;
   assign choice_13_Y  = packets__ready ? 1'h0 : packets__valid;
   assign choice_138_Y  = choice_139_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[0];
-  assign choice_139_CMP  = ! (* full_case = 32'd1 *) \$140 [2:0];
+  assign choice_139_CMP  = ! (* full_case = 32'd1 *) \$56 [2:0];
   assign choice_140_Y  = final_sig ? choice_138_Y  : last[0];
-  assign choice_142_Y  = \$139  ? choice_140_Y  : last[0];
+  assign choice_142_Y  = \$55  ? choice_140_Y  : last[0];
   assign choice_15_Y  = reads ? 1'h1 : choice_13_Y ;
   assign choice_151_Y  = choice_152_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_142_Y ;
   assign choice_152_CMP  = ! (* full_case = 32'd1 *) first[2:0];
   assign choice_153_Y  = reads ? choice_151_Y  : choice_142_Y ;
-  assign \$169 [0] = rst ? 1'h0 : choice_153_Y ;
+  assign \$85 [0] = rst ? 1'h0 : choice_153_Y ;
   assign choice_158_Y  = choice_159_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[6];
-  assign choice_159_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h6;
+  assign choice_159_CMP  = \$56 [2:0] == (* full_case = 32'd1 *) 3'h6;
   assign choice_160_Y  = final_sig ? choice_158_Y  : last[6];
-  assign choice_162_Y  = \$139  ? choice_160_Y  : last[6];
+  assign choice_162_Y  = \$55  ? choice_160_Y  : last[6];
   assign choice_165_Y  = choice_166_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_162_Y ;
   assign choice_166_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h6;
   assign choice_167_Y  = reads ? choice_165_Y  : choice_162_Y ;
-  assign \$169 [6] = rst ? 1'h0 : choice_167_Y ;
-  assign \$170  = rst ? 1'h0 : choice_15_Y ;
-  assign choice_171_Y  = \$139  ? done : complete;
-  assign \$168  = rst ? 4'h0 : choice_171_Y ;
-  assign choice_175_Y  = \$137  ? 1'h1 : map_has_4[7];
-  assign choice_177_Y  = \$135  ? 1'h0 : choice_175_Y ;
-  assign \$167 [7] = rst ? 1'h0 : choice_177_Y ;
-  assign choice_181_Y  = \$129  ? 1'h1 : map_has_4[5];
-  assign choice_183_Y  = \$127  ? 1'h0 : choice_181_Y ;
-  assign \$167 [5] = rst ? 1'h0 : choice_183_Y ;
-  assign choice_187_Y  = \$125  ? 1'h1 : map_has_4[4];
-  assign choice_189_Y  = \$123  ? 1'h0 : choice_187_Y ;
+  assign \$85 [6] = rst ? 1'h0 : choice_167_Y ;
+  assign \$86  = rst ? 1'h0 : choice_15_Y ;
+  assign choice_171_Y  = \$55  ? done : complete;
+  assign \$84  = rst ? 4'h0 : choice_171_Y ;
+  assign \$83  = rst ? 8'h00 : \$53 ;
+  assign \$82  = rst ? 8'h00 : \$49 ;
+  assign \$81  = rst ? 8'h00 : \$45 ;
+  assign choice_181_Y  = reads ? \$41 [3:0] : bound;
+  assign \$80  = rst ? 4'h5 : choice_181_Y ;
+  assign \$79  = rst ? 1'h1 : \$40 ;
+  assign choice_187_Y  = takes ? \$39  : last_bytes;
+  assign \$78  = rst ? 4'h0 : choice_187_Y ;
   assign choice_19_Y  = choice_20_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[7];
-  assign \$167 [4] = rst ? 1'h0 : choice_189_Y ;
-  assign choice_193_Y  = \$121  ? 1'h1 : map_has_4[3];
-  assign choice_195_Y  = \$119  ? 1'h0 : choice_193_Y ;
-  assign \$167 [3] = rst ? 1'h0 : choice_195_Y ;
-  assign choice_199_Y  = \$117  ? 1'h1 : map_has_4[2];
-  assign choice_201_Y  = \$115  ? 1'h0 : choice_199_Y ;
-  assign \$167 [2] = rst ? 1'h0 : choice_201_Y ;
-  assign choice_205_Y  = \$113  ? 1'h1 : map_has_4[1];
-  assign choice_207_Y  = \$111  ? 1'h0 : choice_205_Y ;
-  assign \$167 [1] = rst ? 1'h0 : choice_207_Y ;
-  assign choice_20_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h7;
+  assign choice_191_Y  = takes ? words__payload_128[31] : waits;
+  assign \$77  = rst ? 1'h0 : choice_191_Y ;
+  assign choice_195_Y  = takes ? words__payload_128[32] : marked;
+  assign \$76  = rst ? 1'h0 : choice_195_Y ;
+  assign choice_199_Y  = takes ? words__payload_128[29] : final_sig;
+  assign \$75  = rst ? 1'h0 : choice_199_Y ;
+  assign choice_203_Y  = takes ? end_sig[6:3] : done;
+  assign \$74  = rst ? 4'h0 : choice_203_Y ;
+  assign choice_207_Y  = takes ? end_sig : at;
+  assign \$73  = rst ? 7'h00 : choice_207_Y ;
+  assign choice_20_CMP  = \$56 [2:0] == (* full_case = 32'd1 *) 3'h7;
   assign choice_21_Y  = final_sig ? choice_19_Y  : last[7];
-  assign choice_211_Y  = \$109  ? 1'h1 : map_has_4[0];
-  assign choice_213_Y  = \$107  ? 1'h0 : choice_211_Y ;
-  assign \$167 [0] = rst ? 1'h0 : choice_213_Y ;
-  assign choice_217_Y  = \$133  ? 1'h1 : map_has_4[6];
-  assign choice_219_Y  = \$131  ? 1'h0 : choice_217_Y ;
-  assign \$167 [6] = rst ? 1'h0 : choice_219_Y ;
-  assign choice_223_Y  = \$105  ? 1'h1 : map_has_0[7];
-  assign choice_225_Y  = \$103  ? 1'h0 : choice_223_Y ;
-  assign \$166 [7] = rst ? 1'h0 : choice_225_Y ;
-  assign choice_229_Y  = \$97  ? 1'h1 : map_has_0[5];
-  assign choice_23_Y  = \$139  ? choice_21_Y  : last[7];
-  assign choice_231_Y  = \$95  ? 1'h0 : choice_229_Y ;
-  assign \$166 [5] = rst ? 1'h0 : choice_231_Y ;
-  assign choice_235_Y  = \$93  ? 1'h1 : map_has_0[4];
-  assign choice_237_Y  = \$91  ? 1'h0 : choice_235_Y ;
-  assign \$166 [4] = rst ? 1'h0 : choice_237_Y ;
-  assign choice_241_Y  = \$89  ? 1'h1 : map_has_0[3];
-  assign choice_243_Y  = \$87  ? 1'h0 : choice_241_Y ;
-  assign \$166 [3] = rst ? 1'h0 : choice_243_Y ;
-  assign choice_247_Y  = \$85  ? 1'h1 : map_has_0[2];
-  assign choice_249_Y  = \$83  ? 1'h0 : choice_247_Y ;
+  assign choice_211_Y  = takes ? words__payload_128[7:4] : map_size;
+  assign \$72  = rst ? 4'h0 : choice_211_Y ;
+  assign choice_215_Y  = takes ? { \$13 [3:0], base[2:0] } : map_start;
+  assign \$71  = rst ? 7'h00 : choice_215_Y ;
+  assign \$70  = takes ? words__payload_0[127:64] : map_placed;
+  assign choice_221_Y  = takes ? words__payload_128[3:0] : items_size;
+  assign \$69  = rst ? 4'h0 : choice_221_Y ;
+  assign choice_225_Y  = takes ? \$36  : items_start;
+  assign \$68  = rst ? 7'h00 : choice_225_Y ;
+  assign \$67  = takes ? words__payload_0[63:0] : items_0__write__data;
+  assign choice_23_Y  = \$55  ? choice_21_Y  : last[7];
+  assign \$66  = rst ? 1'h0 : takes;
   assign choice_25_Y  = choice_26_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_23_Y ;
-  assign \$166 [2] = rst ? 1'h0 : choice_249_Y ;
-  assign choice_253_Y  = \$81  ? 1'h1 : map_has_0[1];
-  assign choice_255_Y  = \$79  ? 1'h0 : choice_253_Y ;
-  assign \$166 [1] = rst ? 1'h0 : choice_255_Y ;
-  assign choice_259_Y  = \$77  ? 1'h1 : map_has_0[0];
-  assign choice_261_Y  = \$75  ? 1'h0 : choice_259_Y ;
-  assign \$166 [0] = rst ? 1'h0 : choice_261_Y ;
-  assign choice_265_Y  = \$101  ? 1'h1 : map_has_0[6];
-  assign choice_267_Y  = \$99  ? 1'h0 : choice_265_Y ;
-  assign \$166 [6] = rst ? 1'h0 : choice_267_Y ;
   assign choice_26_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h7;
   assign choice_27_Y  = reads ? choice_25_Y  : choice_23_Y ;
-  assign choice_271_Y  = \$73  ? 1'h1 : items_has_0[7];
-  assign choice_273_Y  = \$71  ? 1'h0 : choice_271_Y ;
-  assign \$165 [7] = rst ? 1'h0 : choice_273_Y ;
-  assign choice_277_Y  = \$65  ? 1'h1 : items_has_0[5];
-  assign choice_279_Y  = \$63  ? 1'h0 : choice_277_Y ;
-  assign \$165 [5] = rst ? 1'h0 : choice_279_Y ;
-  assign choice_283_Y  = \$61  ? 1'h1 : items_has_0[4];
-  assign choice_285_Y  = \$59  ? 1'h0 : choice_283_Y ;
-  assign \$165 [4] = rst ? 1'h0 : choice_285_Y ;
-  assign choice_289_Y  = \$57  ? 1'h1 : items_has_0[3];
-  assign \$169 [7] = rst ? 1'h0 : choice_27_Y ;
-  assign choice_291_Y  = \$55  ? 1'h0 : choice_289_Y ;
-  assign \$165 [3] = rst ? 1'h0 : choice_291_Y ;
-  assign choice_295_Y  = \$53  ? 1'h1 : items_has_0[2];
-  assign choice_297_Y  = \$51  ? 1'h0 : choice_295_Y ;
-  assign \$165 [2] = rst ? 1'h0 : choice_297_Y ;
-  assign \$172 [68] = reads ? is_last : packets__payload[68];
-  assign choice_301_Y  = \$49  ? 1'h1 : items_has_0[1];
-  assign choice_303_Y  = \$47  ? 1'h0 : choice_301_Y ;
-  assign \$165 [1] = rst ? 1'h0 : choice_303_Y ;
-  assign choice_307_Y  = \$45  ? 1'h1 : items_has_0[0];
-  assign choice_309_Y  = \$43  ? 1'h0 : choice_307_Y ;
-  assign \$165 [0] = rst ? 1'h0 : choice_309_Y ;
-  assign choice_313_Y  = \$69  ? 1'h1 : items_has_0[6];
-  assign choice_315_Y  = \$67  ? 1'h0 : choice_313_Y ;
-  assign \$165 [6] = rst ? 1'h0 : choice_315_Y ;
-  assign choice_319_Y  = reads ? \$41 [3:0] : bound;
-  assign \$164  = rst ? 4'h5 : choice_319_Y ;
-  assign \$163  = rst ? 1'h1 : \$40 ;
-  assign choice_325_Y  = takes ? \$39  : last_bytes;
-  assign \$162  = rst ? 4'h0 : choice_325_Y ;
-  assign choice_329_Y  = takes ? words__payload_128[31] : waits;
+  assign \$85 [7] = rst ? 1'h0 : choice_27_Y ;
+  assign \$88 [68] = reads ? is_last : packets__payload[68];
   assign choice_33_Y  = choice_34_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[5];
-  assign \$161  = rst ? 1'h0 : choice_329_Y ;
-  assign choice_333_Y  = takes ? words__payload_128[32] : marked;
-  assign \$160  = rst ? 1'h0 : choice_333_Y ;
-  assign choice_337_Y  = takes ? words__payload_128[29] : final_sig;
-  assign \$159  = rst ? 1'h0 : choice_337_Y ;
-  assign choice_341_Y  = takes ? end_sig[6:3] : done;
-  assign \$158  = rst ? 4'h0 : choice_341_Y ;
-  assign choice_345_Y  = takes ? end_sig : at;
-  assign \$157  = rst ? 7'h00 : choice_345_Y ;
-  assign choice_349_Y  = takes ? words__payload_128[7:4] : map_size;
-  assign choice_34_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h5;
+  assign choice_34_CMP  = \$56 [2:0] == (* full_case = 32'd1 *) 3'h5;
   assign choice_35_Y  = final_sig ? choice_33_Y  : last[5];
-  assign \$156  = rst ? 4'h0 : choice_349_Y ;
-  assign choice_353_Y  = takes ? { \$13 [3:0], base[2:0] } : map_start;
-  assign \$155  = rst ? 7'h00 : choice_353_Y ;
-  assign \$154  = takes ? words__payload_0[127:64] : map_placed;
-  assign choice_359_Y  = takes ? words__payload_128[3:0] : items_size;
-  assign \$153  = rst ? 4'h0 : choice_359_Y ;
-  assign choice_363_Y  = takes ? \$36  : items_start;
-  assign \$152  = rst ? 7'h00 : choice_363_Y ;
-  assign \$151  = takes ? words__payload_0[63:0] : items_0__write__data;
-  assign \$150  = rst ? 1'h0 : takes;
-  assign choice_37_Y  = \$139  ? choice_35_Y  : last[5];
+  assign choice_37_Y  = \$55  ? choice_35_Y  : last[5];
   assign choice_41_Y  = choice_42_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_37_Y ;
   assign choice_42_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h5;
   assign choice_43_Y  = reads ? choice_41_Y  : choice_37_Y ;
-  assign \$169 [5] = rst ? 1'h0 : choice_43_Y ;
-  assign \$172 [67:64] = reads ? \$148  : packets__payload[67:64];
+  assign \$85 [5] = rst ? 1'h0 : choice_43_Y ;
+  assign \$88 [67:64] = reads ? \$64  : packets__payload[67:64];
   assign choice_50_Y  = choice_51_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[4];
-  assign choice_51_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h4;
+  assign choice_51_CMP  = \$56 [2:0] == (* full_case = 32'd1 *) 3'h4;
   assign choice_52_Y  = final_sig ? choice_50_Y  : last[4];
-  assign choice_54_Y  = \$139  ? choice_52_Y  : last[4];
+  assign choice_54_Y  = \$55  ? choice_52_Y  : last[4];
   assign choice_59_Y  = choice_60_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_54_Y ;
   assign choice_60_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h4;
   assign choice_61_Y  = reads ? choice_59_Y  : choice_54_Y ;
-  assign \$169 [4] = rst ? 1'h0 : choice_61_Y ;
+  assign \$85 [4] = rst ? 1'h0 : choice_61_Y ;
   assign choice_69_Y  = choice_70_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[3];
-  assign \$172 [63:0] = reads ? { \$147 , \$144  } : packets__payload[63:0];
-  assign choice_70_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h3;
+  assign \$88 [63:0] = reads ? { \$63 , \$60  } : packets__payload[63:0];
+  assign choice_70_CMP  = \$56 [2:0] == (* full_case = 32'd1 *) 3'h3;
   assign choice_71_Y  = final_sig ? choice_69_Y  : last[3];
-  assign choice_73_Y  = \$139  ? choice_71_Y  : last[3];
+  assign choice_73_Y  = \$55  ? choice_71_Y  : last[3];
   assign choice_79_Y  = choice_80_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_73_Y ;
   assign choice_80_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h3;
   assign choice_81_Y  = reads ? choice_79_Y  : choice_73_Y ;
-  assign \$169 [3] = rst ? 1'h0 : choice_81_Y ;
-  assign choice_9_Y  = reads ? \$141 [3:0] : first;
+  assign \$85 [3] = rst ? 1'h0 : choice_81_Y ;
+  assign choice_9_Y  = reads ? \$57 [3:0] : first;
   assign choice_90_Y  = choice_91_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[2];
-  assign choice_91_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h2;
+  assign choice_91_CMP  = \$56 [2:0] == (* full_case = 32'd1 *) 3'h2;
   assign choice_92_Y  = final_sig ? choice_90_Y  : last[2];
-  assign choice_94_Y  = \$139  ? choice_92_Y  : last[2];
+  assign choice_94_Y  = \$55  ? choice_92_Y  : last[2];
   assign ends__write__data = { marked, last_bytes };
   assign words__payload = { words__payload_128, words__payload_0 };
   assign map_at = { \$13 [3:0], base[2:0] };
@@ -1937,7 +1618,7 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   assign \$14 [6:0] = map_end;
   assign \$12 [6:0] = end_sig;
   assign \$7 [6:0] = base;
-  assign \$2 [6:0] = \total$6 ;
+  assign \$2 [6:0] = \total$9 ;
   assign \$1 [6:0] = total;
   assign error_now = error;
   assign payload = packets__payload;

@@ -14,78 +14,78 @@ use work.firm_hdl_pkg.all;
 
 entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover is
   port (
-    rst            : in  std_logic;
-    aclk           : in  std_logic;
-    leaf_0_ready   : in  std_logic;
-    leaf_1_ready   : in  std_logic;
-    leaf_2_ready   : in  std_logic;
-    leaf_3_ready   : in  std_logic;
-    leaf_4_ready   : in  std_logic;
-    leaf_5_ready   : in  std_logic;
-    status_ready   : in  std_logic;
-    orders_ready   : out std_logic;
-    beat           : in  unsigned(73 downto 0);
-    orders_valid   : in  std_logic;
-    orders_payload : in  unsigned(41 downto 0);
-    leaf_0_valid   : out std_logic;
-    leaf_1_valid   : out std_logic;
-    leaf_2_valid   : out std_logic;
-    leaf_3_valid   : out std_logic;
-    leaf_4_valid   : out std_logic;
-    leaf_5_valid   : out std_logic;
-    status_valid   : out std_logic;
+    rst                       : in  std_logic;
+    aclk                      : in  std_logic;
+    message_linear_x_ready    : in  std_logic;
+    message_linear_y_ready    : in  std_logic;
+    message_linear_z_ready    : in  std_logic;
+    message_angular_x_ready   : in  std_logic;
+    message_angular_y_ready   : in  std_logic;
+    message_angular_z_ready   : in  std_logic;
+    status_ready              : in  std_logic;
+    orders_ready              : out std_logic;
+    beat                      : in  unsigned(73 downto 0);
+    orders_valid              : in  std_logic;
+    orders_payload            : in  unsigned(41 downto 0);
+    message_linear_x_valid    : out std_logic;
+    message_linear_y_valid    : out std_logic;
+    message_linear_z_valid    : out std_logic;
+    message_angular_x_valid   : out std_logic;
+    message_angular_y_valid   : out std_logic;
+    message_angular_z_valid   : out std_logic;
+    status_valid              : out std_logic;
     -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-    status_payload : out unsigned(2 downto 0);
-    leaf_0_payload : out unsigned(63 downto 0);
-    leaf_1_payload : out unsigned(63 downto 0);
-    leaf_2_payload : out unsigned(63 downto 0);
-    leaf_3_payload : out unsigned(63 downto 0);
-    leaf_4_payload : out unsigned(63 downto 0);
-    leaf_5_payload : out unsigned(63 downto 0)
+    status_payload            : out unsigned(2 downto 0);
+    message_linear_x_payload  : out unsigned(63 downto 0);
+    message_linear_y_payload  : out unsigned(63 downto 0);
+    message_linear_z_payload  : out unsigned(63 downto 0);
+    message_angular_x_payload : out unsigned(63 downto 0);
+    message_angular_y_payload : out unsigned(63 downto 0);
+    message_angular_z_payload : out unsigned(63 downto 0)
   );
 end entity;
 
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover is
 
   -- Registers.
-  signal leaf_0_valid_q   : std_logic := '0';
-  signal leaf_1_valid_q   : std_logic := '0';
-  signal leaf_2_valid_q   : std_logic := '0';
-  signal leaf_3_valid_q   : std_logic := '0';
-  signal leaf_4_valid_q   : std_logic := '0';
-  signal leaf_5_valid_q   : std_logic := '0';
-  signal status_valid_q   : std_logic := '0';
+  signal message_linear_x_valid_q    : std_logic := '0';
+  signal message_linear_y_valid_q    : std_logic := '0';
+  signal message_linear_z_valid_q    : std_logic := '0';
+  signal message_angular_x_valid_q   : std_logic := '0';
+  signal message_angular_y_valid_q   : std_logic := '0';
+  signal message_angular_z_valid_q   : std_logic := '0';
+  signal status_valid_q              : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal status_payload_q : unsigned(2 downto 0) := (others => '0');
-  signal leaf_0_payload_q : unsigned(63 downto 0) := (others => '0');
-  signal leaf_1_payload_q : unsigned(63 downto 0) := (others => '0');
-  signal leaf_2_payload_q : unsigned(63 downto 0) := (others => '0');
-  signal leaf_3_payload_q : unsigned(63 downto 0) := (others => '0');
-  signal leaf_4_payload_q : unsigned(63 downto 0) := (others => '0');
-  signal leaf_5_payload_q : unsigned(63 downto 0) := (others => '0');
-  signal items_word       : unsigned(63 downto 0) := (others => '0');
-  signal items_have       : unsigned(7 downto 0) := (others => '0');
-  signal map_word         : unsigned(63 downto 0) := (others => '0');
-  signal map_have         : unsigned(7 downto 0) := (others => '0');
-  signal counted_now      : std_logic := '0';
-  signal last_now         : std_logic := '0';
-  signal final_now        : std_logic := '0';
-  signal active_0         : std_logic := '0';
-  signal active_1         : std_logic := '0';
-  signal active_2         : std_logic := '0';
-  signal active_3         : std_logic := '0';
-  signal active_4         : std_logic := '0';
-  signal active_5         : std_logic := '0';
-  signal slow             : std_logic := '0';
+  signal status_payload_q            : unsigned(2 downto 0) := (others => '0');
+  signal message_linear_x_payload_q  : unsigned(63 downto 0) := (others => '0');
+  signal message_linear_y_payload_q  : unsigned(63 downto 0) := (others => '0');
+  signal message_linear_z_payload_q  : unsigned(63 downto 0) := (others => '0');
+  signal message_angular_x_payload_q : unsigned(63 downto 0) := (others => '0');
+  signal message_angular_y_payload_q : unsigned(63 downto 0) := (others => '0');
+  signal message_angular_z_payload_q : unsigned(63 downto 0) := (others => '0');
+  signal items_word                  : unsigned(63 downto 0) := (others => '0');
+  signal items_have                  : unsigned(7 downto 0) := (others => '0');
+  signal map_word                    : unsigned(63 downto 0) := (others => '0');
+  signal map_have                    : unsigned(7 downto 0) := (others => '0');
+  signal counted_now                 : std_logic := '0';
+  signal last_now                    : std_logic := '0';
+  signal final_now                   : std_logic := '0';
+  signal active_0                    : std_logic := '0';
+  signal active_1                    : std_logic := '0';
+  signal active_2                    : std_logic := '0';
+  signal active_3                    : std_logic := '0';
+  signal active_4                    : std_logic := '0';
+  signal active_5                    : std_logic := '0';
+  signal slow                        : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal status_now       : unsigned(2 downto 0) := (others => '0');
-  signal ends_now         : std_logic := '0';
-  signal cut_0            : std_logic := '0';
-  signal carried          : unsigned(31 downto 0) := (others => '0');
-  signal cut_1            : std_logic := '0';
-  signal cut_2            : std_logic := '0';
-  signal cut_3            : std_logic := '0';
-  signal cut_4            : std_logic := '0';
+  signal status_now                  : unsigned(2 downto 0) := (others => '0');
+  signal ends_now                    : std_logic := '0';
+  signal cut_0                       : std_logic := '0';
+  signal carried                     : unsigned(31 downto 0) := (others => '0');
+  signal cut_1                       : std_logic := '0';
+  signal cut_2                       : std_logic := '0';
+  signal cut_3                       : std_logic := '0';
+  signal cut_4                       : std_logic := '0';
 
   -- Combinational signals.
   signal go_0              : std_logic;
@@ -200,17 +200,17 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
 begin
 
   go_0 <= active_0 and not blocked_0;
-  blocked_0 <= active_0 and leaf_0_valid_q;
+  blocked_0 <= active_0 and message_linear_x_valid_q;
   go_1 <= active_1 and not blocked_1;
-  blocked_1 <= active_1 and leaf_1_valid_q;
+  blocked_1 <= active_1 and message_linear_y_valid_q;
   go_2 <= active_2 and not blocked_2;
-  blocked_2 <= active_2 and leaf_2_valid_q;
+  blocked_2 <= active_2 and message_linear_z_valid_q;
   go_3 <= active_3 and not blocked_3;
-  blocked_3 <= active_3 and leaf_3_valid_q;
+  blocked_3 <= active_3 and message_angular_x_valid_q;
   go_4 <= active_4 and not blocked_4;
-  blocked_4 <= active_4 and leaf_4_valid_q;
+  blocked_4 <= active_4 and message_angular_y_valid_q;
   go_5 <= active_5 and not blocked_5 and not blocked_4;
-  blocked_5 <= active_5 and leaf_5_valid_q;
+  blocked_5 <= active_5 and message_angular_z_valid_q;
   orders_ready <= not slow;
   mux_44 <= orders_valid and not orders_payload(3) and
       to_std_logic(orders_payload(2 downto 0) = 1) when orders_ready = '1' else active_0 and
@@ -232,19 +232,22 @@ begin
       not go_5;
   or_126 <= or unsigned'((orders_valid and orders_payload(38) and status_valid_q and
       not status_ready) & (orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 5) and leaf_5_valid_q and not leaf_5_ready) &
-      (orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 5) and
-      leaf_4_valid_q and not leaf_4_ready) & (orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 4) and leaf_3_valid_q and not leaf_3_ready) &
-      (orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 3) and
-      leaf_2_valid_q and not leaf_2_ready) & (orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 2) and leaf_1_valid_q and not leaf_1_ready) &
-      (orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 1) and
-      leaf_0_valid_q and not leaf_0_ready));
+      to_std_logic(orders_payload(2 downto 0) = 5) and message_angular_z_valid_q and
+      not message_angular_z_ready) & (orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 5) and message_angular_y_valid_q and
+      not message_angular_y_ready) & (orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 4) and message_angular_x_valid_q and
+      not message_angular_x_ready) & (orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 3) and message_linear_z_valid_q and
+      not message_linear_z_ready) & (orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 2) and message_linear_y_valid_q and
+      not message_linear_y_ready) & (orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 1) and message_linear_x_valid_q and
+      not message_linear_x_ready));
   or_142 <= or unsigned'((ends_now and status_valid_q and not status_ready) & (blocked_5 and
-      not leaf_5_ready) & (blocked_4 and not leaf_4_ready) & (blocked_3 and not leaf_3_ready) &
-      (blocked_2 and not leaf_2_ready) & (blocked_1 and not leaf_1_ready) & (blocked_0 and
-      not leaf_0_ready));
+      not message_angular_z_ready) & (blocked_4 and not message_angular_y_ready) & (blocked_3 and
+      not message_angular_x_ready) & (blocked_2 and not message_linear_z_ready) & (blocked_1 and
+      not message_linear_y_ready) & (blocked_0 and not message_linear_x_ready));
 
   process (aclk)
   begin
@@ -354,12 +357,12 @@ begin
   begin
     if rising_edge(aclk) then
       if rst = '1' then
-        leaf_0_valid_q <= '0';
-        leaf_1_valid_q <= '0';
-        leaf_2_valid_q <= '0';
-        leaf_3_valid_q <= '0';
-        leaf_4_valid_q <= '0';
-        leaf_5_valid_q <= '0';
+        message_linear_x_valid_q <= '0';
+        message_linear_y_valid_q <= '0';
+        message_linear_z_valid_q <= '0';
+        message_angular_x_valid_q <= '0';
+        message_angular_y_valid_q <= '0';
+        message_angular_z_valid_q <= '0';
         status_valid_q <= '0';
         counted_now <= '0';
         last_now <= '0';
@@ -380,41 +383,41 @@ begin
         cut_3 <= '0';
         cut_4 <= '0';
       else
-        if leaf_0_ready = '1' then
-          leaf_0_valid_q <= '0';
+        if message_linear_x_ready = '1' then
+          message_linear_x_valid_q <= '0';
         end if;
         if go_0 = '1' then
-          leaf_0_valid_q <= '1';
+          message_linear_x_valid_q <= '1';
         end if;
-        if leaf_1_ready = '1' then
-          leaf_1_valid_q <= '0';
+        if message_linear_y_ready = '1' then
+          message_linear_y_valid_q <= '0';
         end if;
         if go_1 = '1' then
-          leaf_1_valid_q <= '1';
+          message_linear_y_valid_q <= '1';
         end if;
-        if leaf_2_ready = '1' then
-          leaf_2_valid_q <= '0';
+        if message_linear_z_ready = '1' then
+          message_linear_z_valid_q <= '0';
         end if;
         if go_2 = '1' then
-          leaf_2_valid_q <= '1';
+          message_linear_z_valid_q <= '1';
         end if;
-        if leaf_3_ready = '1' then
-          leaf_3_valid_q <= '0';
+        if message_angular_x_ready = '1' then
+          message_angular_x_valid_q <= '0';
         end if;
         if go_3 = '1' then
-          leaf_3_valid_q <= '1';
+          message_angular_x_valid_q <= '1';
         end if;
-        if leaf_4_ready = '1' then
-          leaf_4_valid_q <= '0';
+        if message_angular_y_ready = '1' then
+          message_angular_y_valid_q <= '0';
         end if;
         if go_4 = '1' then
-          leaf_4_valid_q <= '1';
+          message_angular_y_valid_q <= '1';
         end if;
-        if leaf_5_ready = '1' then
-          leaf_5_valid_q <= '0';
+        if message_angular_z_ready = '1' then
+          message_angular_z_valid_q <= '0';
         end if;
         if go_5 = '1' then
-          leaf_5_valid_q <= '1';
+          message_angular_z_valid_q <= '1';
         end if;
         if status_ready = '1' then
           status_valid_q <= '0';
@@ -543,71 +546,71 @@ begin
       end if;
       if go_0 = '1' then
         if map_have(3) = '1' then
-          leaf_0_payload_q <= map_word(31 downto 0) & carried;
+          message_linear_x_payload_q <= map_word(31 downto 0) & carried;
         else
-          leaf_0_payload_q <= (others => '0');
+          message_linear_x_payload_q <= (others => '0');
         end if;
       end if;
       if go_1 = '1' then
         if map_have(3) = '1' then
-          leaf_1_payload_q <= map_word(31 downto 0) & carried;
+          message_linear_y_payload_q <= map_word(31 downto 0) & carried;
         else
-          leaf_1_payload_q <= (others => '0');
+          message_linear_y_payload_q <= (others => '0');
         end if;
       end if;
       if go_2 = '1' then
         if map_have(3) = '1' then
-          leaf_2_payload_q <= map_word(31 downto 0) & carried;
+          message_linear_z_payload_q <= map_word(31 downto 0) & carried;
         else
-          leaf_2_payload_q <= (others => '0');
+          message_linear_z_payload_q <= (others => '0');
         end if;
       end if;
       if go_3 = '1' then
         if map_have(3) = '1' then
-          leaf_3_payload_q <= map_word(31 downto 0) & carried;
+          message_angular_x_payload_q <= map_word(31 downto 0) & carried;
         else
-          leaf_3_payload_q <= (others => '0');
+          message_angular_x_payload_q <= (others => '0');
         end if;
       end if;
       if go_4 = '1' then
         if items_have(3) = '1' then
-          leaf_4_payload_q <= items_word(31 downto 0) & carried;
+          message_angular_y_payload_q <= items_word(31 downto 0) & carried;
         else
-          leaf_4_payload_q <= (others => '0');
+          message_angular_y_payload_q <= (others => '0');
         end if;
       end if;
       if go_5 = '1' then
         if map_have(3) = '1' then
-          leaf_5_payload_q <= map_word(31 downto 0) & items_word(63 downto 32);
+          message_angular_z_payload_q <= map_word(31 downto 0) & items_word(63 downto 32);
         else
-          leaf_5_payload_q <= (others => '0');
+          message_angular_z_payload_q <= (others => '0');
         end if;
       end if;
     end if;
   end process;
 
-  leaf_0_valid <= leaf_0_valid_q;
-  leaf_1_valid <= leaf_1_valid_q;
-  leaf_2_valid <= leaf_2_valid_q;
-  leaf_3_valid <= leaf_3_valid_q;
-  leaf_4_valid <= leaf_4_valid_q;
-  leaf_5_valid <= leaf_5_valid_q;
+  message_linear_x_valid <= message_linear_x_valid_q;
+  message_linear_y_valid <= message_linear_y_valid_q;
+  message_linear_z_valid <= message_linear_z_valid_q;
+  message_angular_x_valid <= message_angular_x_valid_q;
+  message_angular_y_valid <= message_angular_y_valid_q;
+  message_angular_z_valid <= message_angular_z_valid_q;
   status_valid <= status_valid_q;
   status_payload <= status_payload_q;
-  leaf_0_payload <= leaf_0_payload_q;
-  leaf_1_payload <= leaf_1_payload_q;
-  leaf_2_payload <= leaf_2_payload_q;
-  leaf_3_payload <= leaf_3_payload_q;
-  leaf_4_payload <= leaf_4_payload_q;
-  leaf_5_payload <= leaf_5_payload_q;
+  message_linear_x_payload <= message_linear_x_payload_q;
+  message_linear_y_payload <= message_linear_y_payload_q;
+  message_linear_z_payload <= message_linear_z_payload_q;
+  message_angular_x_payload <= message_angular_x_payload_q;
+  message_angular_y_payload <= message_angular_y_payload_q;
+  message_angular_z_payload <= message_angular_z_payload_q;
 
   take <= orders_ready;
-  payload_0 <= leaf_0_payload_q;
-  payload_1 <= leaf_1_payload_q;
-  payload_2 <= leaf_2_payload_q;
-  payload_3 <= leaf_3_payload_q;
-  payload_4 <= leaf_4_payload_q;
-  payload_5 <= leaf_5_payload_q;
+  payload_0 <= message_linear_x_payload_q;
+  payload_1 <= message_linear_y_payload_q;
+  payload_2 <= message_linear_z_payload_q;
+  payload_3 <= message_angular_x_payload_q;
+  payload_4 <= message_angular_y_payload_q;
+  payload_5 <= message_angular_z_payload_q;
   lane_0_write_addr <= beat(71 downto 69);
   lane_0_write_data <= beat(7 downto 0);
   lane_0_write_en <= beat(73);

@@ -31,7 +31,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
 
   -- Registers.
   signal bad        : std_logic := '0';
-  signal noted      : std_logic := '0';
+  signal new_error  : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal code       : unsigned(2 downto 0) := (others => '0');
   signal items_room : unsigned(3 downto 0) := (others => '0');
@@ -49,10 +49,10 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal step_end      : unsigned(6 downto 0);
   signal left          : unsigned(6 downto 0);
   signal present       : std_logic;
-  signal leaves        : std_logic;
+  signal exits_always  : std_logic;
   signal done          : std_logic;
-  signal ends          : std_logic;
-  signal closes        : std_logic;
+  signal ends_message  : std_logic;
+  signal ends_packet   : std_logic;
   signal map_at        : unsigned(6 downto 0);
   signal items_at      : unsigned(6 downto 0);
   signal trailing_31   : std_logic;
@@ -64,8 +64,8 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal sub_43        : unsigned(5 downto 0);
   signal or_87         : unsigned(5 downto 0);
   signal map_left      : unsigned(6 downto 0);
-  signal blind         : std_logic;
-  signal sighted       : std_logic;
+  signal drains        : std_logic;
+  signal allowed       : std_logic;
   signal issue         : std_logic;
   signal items_wanted  : unsigned(3 downto 0);
   signal mux_151       : unsigned(33 downto 0);
@@ -130,10 +130,10 @@ begin
   step_end <= last + 1;
   left <= limit_sig + not last;
   present <= not left(6);
-  leaves <= state(18) or (state(14) and words_last);
-  done <= leaves or ((state(12) or state(13)) and bad);
-  ends <= state(19) or (state(5) and leaves);
-  closes <= ends and ended;
+  exits_always <= state(18) or (state(14) and words_last);
+  done <= exits_always or ((state(12) or state(13)) and bad);
+  ends_message <= state(19) or (state(5) and exits_always);
+  ends_packet <= ends_message and ended;
   map_at <= last + sign_extend(state(11 downto 7), 7);
   items_at <= first when state(16) = '1' else (map_at(6 downto 3) - state(17)) & map_at(2 downto 0);
   trailing_31 <= present and (or left(5 downto 2));
@@ -148,26 +148,27 @@ begin
       unsigned'("000001") - sign_extend(state(11 downto 7), 6));
   map_left <= (limit_sig xor not last xor unsigned'(sub_43(5) &
       (unsigned'("000001") - sign_extend(state(11 downto 7), 6)))) + unsigned'(or_87 & '0');
-  blind <= bad and not noted and (not state(19) or ended);
-  sighted <= not bad and (not ends or ended);
-  orders_valid <= blind or (sighted and good);
-  issue <= (blind and orders_ready) or (sighted and orders_ready and good);
-  next_sig <= (blind and orders_ready and closes) or (sighted and orders_ready and closes and good);
+  drains <= bad and not new_error and (not state(19) or ended);
+  allowed <= not bad and (not ends_message or ended);
+  orders_valid <= drains or (allowed and good);
+  issue <= (drains and orders_ready) or (allowed and orders_ready and good);
+  next_sig <= (drains and orders_ready and ends_packet) or (allowed and orders_ready and
+      ends_packet and good);
   items_wanted <= (others => '0') when state(16) = '1' else "1000";
   mux_151 <= (or state(4 downto 0)) & 9x"000" & (or state(3 downto 0)) & state(3) & "00" &
       state(5) & (or state(4 downto 0)) & state(4) & "00000" & (or state(4 downto 0)) &
       (or state(4 downto 0)) & state(4) & '0' & (or state(5 downto 0)) & state(5 downto 0) &
       '0' when done = '1' else (others => '0');
-  next_state <= 34x"200840C81" when closes = '1' else mux_151;
-  step_leaves <= issue and not closes and done;
-  step_stays <= issue and not closes and not done;
+  next_state <= 34x"200840C81" when ends_packet = '1' else mux_151;
+  step_leaves <= issue and not ends_packet and done;
+  step_stays <= issue and not ends_packet and not done;
   exit_amount <= (others => '0') when state(32) = '1' else state(25 downto 20);
   exit_sum <= last + exit_amount;
   mux_174 <= (exit_sum and not resize(state(28 downto 26), 7)) or resize(state(31 downto 29),
-      7) when leaves = '1' else last;
-  early_last <= unsigned'(following & "000") + 7 when closes = '1' else mux_174;
-  mux_213 <= "100" when mismatch = '1' else mux(cut, "001", mux(ends, "010", "011"));
-  and_214 <= blind and orders_ready;
+      7) when exits_always = '1' else last;
+  early_last <= unsigned'(following & "000") + 7 when ends_packet = '1' else mux_174;
+  mux_213 <= "100" when mismatch = '1' else mux(cut, "001", mux(ends_message, "010", "011"));
+  and_214 <= drains and orders_ready;
   sub_219 <= limit_sig - first;
   mux_224 <= (others => '0') when sub_219(6) = '1' else mux(to_std_logic(limit_sig - first >= 8),
       "1000", limit_sig(3 downto 0) - first(3 downto 0));
@@ -179,15 +180,15 @@ begin
       "1000", "0000");
   mux_241 <= mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8), "1000",
       map_left(3 downto 0))) when code = 1 else mux(to_std_logic(code = 2), "1000", "0000");
-  mux_283 <= following & "000" when closes = '1' else mux(bad, mux(state(19), limit_sig, first),
-      step_end);
+  mux_283 <= following & "000" when ends_packet = '1' else mux(bad, mux(state(19), limit_sig,
+      first), step_end);
 
   p_aclk : process (aclk)
   begin
     if rising_edge(aclk) then
       if rst = '1' then
         bad <= '0';
-        noted <= '0';
+        new_error <= '0';
         code <= (others => '0');
         items_room <= (others => '0');
         map_room <= (others => '0');
@@ -200,16 +201,16 @@ begin
         last <= "0000111";
       else
         if bad = '0' then
-          bad <= mismatch or cut or (ends and not ended and trailing_31);
-          noted <= mismatch or cut or (ends and not ended and trailing_31);
+          bad <= mismatch or cut or (ends_message and not ended and trailing_31);
+          new_error <= mismatch or cut or (ends_message and not ended and trailing_31);
           code <= mux_213;
         end if;
         if issue = '1' then
-          if closes = '1' then
+          if ends_packet = '1' then
             bad <= '0';
           end if;
           state <= next_state;
-          if closes = '1' then
+          if ends_packet = '1' then
             rest <= '0';
             has_nul <= '0';
           else
@@ -221,8 +222,8 @@ begin
           last <= early_last;
         end if;
         if bad = '1' then
-          noted <= '0';
-          if noted = '1' then
+          new_error <= '0';
+          if new_error = '1' then
             items_room <= mux_234;
             map_room <= mux_241;
           elsif and_214 = '1' then
@@ -240,9 +241,9 @@ begin
   end process;
 
   header_at <= first(6 downto 3);
-  orders_payload <= mux(bad, code, mux(trailing_31, "010", "000")) & closes & first(6 downto 3) &
-      '0' & not bad & (state(16) or (words_last and not state(15))) & ((state(16) and rest) or
-      state(15)) & mux(bad, map_room, "1000") & mux(bad and
+  orders_payload <= mux(bad, code, mux(trailing_31, "010", "000")) & ends_packet &
+      first(6 downto 3) & '0' & not bad & (state(16) or (words_last and not state(15))) &
+      ((state(16) and rest) or state(15)) & mux(bad, map_room, "1000") & mux(bad and
       not to_std_logic(items_room >= items_wanted), items_room, items_wanted) &
       (map_at(5 downto 3) + 1) & (items_at(5 downto 3) + 1) & map_at(5 downto 0) &
       items_at(5 downto 0) & state(19) & (or state(5 downto 4)) & (or state(3 downto 2)) &

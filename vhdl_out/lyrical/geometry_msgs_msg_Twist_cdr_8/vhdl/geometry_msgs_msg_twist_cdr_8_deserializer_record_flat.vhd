@@ -79,7 +79,7 @@ begin
       packets_valid                 => s_axis_tvalid,
       status_ready                  => m_axis_status_tready,
       rst                           => rst,
-      leaf_0_ready                  => message_angular_x_ready,
+      message_linear_x_ready        => message_angular_x_ready,
       packets_payload(63 downto 0)  => unsigned(s_axis_tdata),
       packets_payload(67 downto 64) => packets_payload_64,
       packets_payload(68)           => s_axis_tlast,

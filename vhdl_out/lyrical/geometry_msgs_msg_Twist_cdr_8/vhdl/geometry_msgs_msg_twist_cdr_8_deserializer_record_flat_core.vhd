@@ -16,7 +16,7 @@ entity geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core is
     aclk                      : in  std_logic;
     packets_valid             : in  std_logic;
     status_ready              : in  std_logic;
-    leaf_0_ready              : in  std_logic;
+    message_linear_x_ready    : in  std_logic;
     packets_payload           : in  unsigned(68 downto 0);
     packets_ready             : out std_logic;
     message_linear_x_valid    : out std_logic;
@@ -61,28 +61,10 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core 
   signal o_payload               : unsigned(41 downto 0);
   signal o_valid                 : std_logic;
   signal orders_ready_27         : std_logic;
-  signal leaf_0_payload          : unsigned(63 downto 0);
-  signal leaf_0_valid            : std_logic;
-  signal message_linear_x_ready  : std_logic;
-  signal leaf_1_payload          : unsigned(63 downto 0);
-  signal leaf_1_valid            : std_logic;
-  signal leaf_1_ready            : std_logic;
   signal message_linear_y_ready  : std_logic;
-  signal leaf_2_payload          : unsigned(63 downto 0);
-  signal leaf_2_valid            : std_logic;
-  signal leaf_2_ready            : std_logic;
   signal message_linear_z_ready  : std_logic;
-  signal leaf_3_payload          : unsigned(63 downto 0);
-  signal leaf_3_valid            : std_logic;
-  signal leaf_3_ready            : std_logic;
   signal message_angular_x_ready : std_logic;
-  signal leaf_4_payload          : unsigned(63 downto 0);
-  signal leaf_4_valid            : std_logic;
-  signal leaf_4_ready            : std_logic;
   signal message_angular_y_ready : std_logic;
-  signal leaf_5_payload          : unsigned(63 downto 0);
-  signal leaf_5_valid            : std_logic;
-  signal leaf_5_ready            : std_logic;
   signal message_angular_z_ready : std_logic;
 begin
 
@@ -132,28 +114,28 @@ begin
 
   mover : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_mover
     port map (
-      aclk           => aclk,
-      status_ready   => status_ready,
-      rst            => rst,
-      orders_ready   => o_ready,
-      leaf_0_ready   => leaf_0_ready,
-      beat           => beat,
-      orders_valid   => orders_valid_24,
-      orders_payload => orders_payload_22,
-      leaf_0_valid   => message_linear_x_valid,
-      leaf_1_valid   => message_linear_y_valid,
-      leaf_2_valid   => message_linear_z_valid,
-      leaf_3_valid   => message_angular_x_valid,
-      leaf_4_valid   => message_angular_y_valid,
-      leaf_5_valid   => message_angular_z_valid,
-      status_valid   => status_valid,
-      status_payload => status_payload,
-      leaf_0_payload => message_linear_x_payload,
-      leaf_1_payload => message_linear_y_payload,
-      leaf_2_payload => message_linear_z_payload,
-      leaf_3_payload => message_angular_x_payload,
-      leaf_4_payload => message_angular_y_payload,
-      leaf_5_payload => message_angular_z_payload
+      aclk                      => aclk,
+      status_ready              => status_ready,
+      rst                       => rst,
+      orders_ready              => o_ready,
+      message_linear_x_ready    => message_linear_x_ready,
+      beat                      => beat,
+      orders_valid              => orders_valid_24,
+      orders_payload            => orders_payload_22,
+      message_linear_x_valid    => message_linear_x_valid,
+      message_linear_y_valid    => message_linear_y_valid,
+      message_linear_z_valid    => message_linear_z_valid,
+      message_angular_x_valid   => message_angular_x_valid,
+      message_angular_y_valid   => message_angular_y_valid,
+      message_angular_z_valid   => message_angular_z_valid,
+      status_valid              => status_valid,
+      status_payload            => status_payload,
+      message_linear_x_payload  => message_linear_x_payload,
+      message_linear_y_payload  => message_linear_y_payload,
+      message_linear_z_payload  => message_linear_z_payload,
+      message_angular_x_payload => message_angular_x_payload,
+      message_angular_y_payload => message_angular_y_payload,
+      message_angular_z_payload => message_angular_z_payload
     );
 
   orders_payload <= i_payload;
@@ -162,28 +144,10 @@ begin
   o_payload <= orders_payload_22;
   o_valid <= orders_valid_24;
   orders_ready_27 <= o_ready;
-  leaf_0_payload <= message_linear_x_payload;
-  leaf_0_valid <= message_linear_x_valid;
-  message_linear_x_ready <= leaf_0_ready;
-  leaf_1_payload <= message_linear_y_payload;
-  leaf_1_valid <= message_linear_y_valid;
-  leaf_1_ready <= leaf_0_ready;
-  message_linear_y_ready <= leaf_0_ready;
-  leaf_2_payload <= message_linear_z_payload;
-  leaf_2_valid <= message_linear_z_valid;
-  leaf_2_ready <= leaf_0_ready;
-  message_linear_z_ready <= leaf_0_ready;
-  leaf_3_payload <= message_angular_x_payload;
-  leaf_3_valid <= message_angular_x_valid;
-  leaf_3_ready <= leaf_0_ready;
-  message_angular_x_ready <= leaf_0_ready;
-  leaf_4_payload <= message_angular_y_payload;
-  leaf_4_valid <= message_angular_y_valid;
-  leaf_4_ready <= leaf_0_ready;
-  message_angular_y_ready <= leaf_0_ready;
-  leaf_5_payload <= message_angular_z_payload;
-  leaf_5_valid <= message_angular_z_valid;
-  leaf_5_ready <= leaf_0_ready;
-  message_angular_z_ready <= leaf_0_ready;
+  message_linear_y_ready <= message_linear_x_ready;
+  message_linear_z_ready <= message_linear_x_ready;
+  message_angular_x_ready <= message_linear_x_ready;
+  message_angular_y_ready <= message_linear_x_ready;
+  message_angular_z_ready <= message_linear_x_ready;
 
 end architecture;

@@ -12,34 +12,34 @@ use work.firm_hdl_pkg.all;
 
 entity geometry_msgs_msg_twist_cdr_8_serializer_flat_core is
   port (
-    rst                     : in  std_logic;
-    aclk                    : in  std_logic;
-    packets_ready           : in  std_logic;
-    leaf_0_payload          : in  unsigned(63 downto 0);
-    leaf_0_valid            : in  std_logic;
-    leaf_1_payload          : in  unsigned(63 downto 0);
-    leaf_1_valid            : in  std_logic;
-    leaf_2_payload          : in  unsigned(63 downto 0);
-    leaf_2_valid            : in  std_logic;
-    leaf_3_payload          : in  unsigned(63 downto 0);
-    leaf_3_valid            : in  std_logic;
-    leaf_4_payload          : in  unsigned(63 downto 0);
-    leaf_4_valid            : in  std_logic;
-    leaf_5_payload          : in  unsigned(63 downto 0);
-    leaf_5_valid            : in  std_logic;
-    status_ready            : in  std_logic;
-    message_linear_x_ready  : out std_logic;
-    message_linear_y_ready  : out std_logic;
-    message_linear_z_ready  : out std_logic;
-    message_angular_x_ready : out std_logic;
-    message_angular_y_ready : out std_logic;
-    message_angular_z_ready : out std_logic;
-    status_valid            : out std_logic;
+    rst                       : in  std_logic;
+    aclk                      : in  std_logic;
+    packets_ready             : in  std_logic;
+    message_linear_x_payload  : in  unsigned(63 downto 0);
+    message_linear_x_valid    : in  std_logic;
+    message_linear_y_payload  : in  unsigned(63 downto 0);
+    message_linear_y_valid    : in  std_logic;
+    message_linear_z_payload  : in  unsigned(63 downto 0);
+    message_linear_z_valid    : in  std_logic;
+    message_angular_x_payload : in  unsigned(63 downto 0);
+    message_angular_x_valid   : in  std_logic;
+    message_angular_y_payload : in  unsigned(63 downto 0);
+    message_angular_y_valid   : in  std_logic;
+    message_angular_z_payload : in  unsigned(63 downto 0);
+    message_angular_z_valid   : in  std_logic;
+    status_ready              : in  std_logic;
+    message_linear_x_ready    : out std_logic;
+    message_linear_y_ready    : out std_logic;
+    message_linear_z_ready    : out std_logic;
+    message_angular_x_ready   : out std_logic;
+    message_angular_y_ready   : out std_logic;
+    message_angular_z_ready   : out std_logic;
+    status_valid              : out std_logic;
     -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-    status_payload          : out unsigned(2 downto 0);
-    packets_valid           : out std_logic;
-    packets_payload         : out unsigned(68 downto 0);
-    packet_error            : out std_logic
+    status_payload            : out unsigned(2 downto 0);
+    packets_valid             : out std_logic;
+    packets_payload           : out unsigned(68 downto 0);
+    packet_error              : out std_logic
   );
 end entity;
 
@@ -52,58 +52,40 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core is
   signal words_ready       : std_logic;
 
   -- Signals that no logic reads, for simulation.
-  signal message_linear_x_payload  : unsigned(63 downto 0);
-  signal message_linear_x_valid    : std_logic;
-  signal leaf_0_ready              : std_logic;
-  signal message_linear_y_payload  : unsigned(63 downto 0);
-  signal message_linear_y_valid    : std_logic;
-  signal leaf_1_ready              : std_logic;
-  signal message_linear_z_payload  : unsigned(63 downto 0);
-  signal message_linear_z_valid    : std_logic;
-  signal leaf_2_ready              : std_logic;
-  signal message_angular_x_payload : unsigned(63 downto 0);
-  signal message_angular_x_valid   : std_logic;
-  signal leaf_3_ready              : std_logic;
-  signal message_angular_y_payload : unsigned(63 downto 0);
-  signal message_angular_y_valid   : std_logic;
-  signal leaf_4_ready              : std_logic;
-  signal message_angular_z_payload : unsigned(63 downto 0);
-  signal message_angular_z_valid   : std_logic;
-  signal leaf_5_ready              : std_logic;
-  signal words_payload             : unsigned(160 downto 0);
-  signal words_payload_37          : unsigned(160 downto 0);
-  signal error_sig                 : std_logic;
+  signal words_payload   : unsigned(160 downto 0);
+  signal words_payload_1 : unsigned(160 downto 0);
+  signal error_sig       : std_logic;
 begin
 
   collector : entity work.geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector
     port map (
-      aclk           => aclk,
-      leaf_0_payload => leaf_0_payload,
-      leaf_0_valid   => leaf_0_valid,
-      leaf_1_payload => leaf_1_payload,
-      leaf_1_valid   => leaf_1_valid,
-      leaf_2_payload => leaf_2_payload,
-      leaf_2_valid   => leaf_2_valid,
-      leaf_3_payload => leaf_3_payload,
-      leaf_3_valid   => leaf_3_valid,
-      leaf_4_payload => leaf_4_payload,
-      leaf_4_valid   => leaf_4_valid,
-      leaf_5_payload => leaf_5_payload,
-      leaf_5_valid   => leaf_5_valid,
-      status_ready   => status_ready,
-      rst            => rst,
-      leaf_0_ready   => message_linear_x_ready,
-      leaf_1_ready   => message_linear_y_ready,
-      leaf_2_ready   => message_linear_z_ready,
-      leaf_3_ready   => message_angular_x_ready,
-      leaf_4_ready   => message_angular_y_ready,
-      leaf_5_ready   => message_angular_z_ready,
-      port_543_0     => words_payload_0,
-      port_547_0     => words_payload_128,
-      status_valid   => status_valid,
-      status_payload => status_payload,
-      words_valid    => words_valid,
-      words_ready    => words_ready
+      aclk                      => aclk,
+      message_linear_x_payload  => message_linear_x_payload,
+      message_linear_x_valid    => message_linear_x_valid,
+      message_linear_y_payload  => message_linear_y_payload,
+      message_linear_y_valid    => message_linear_y_valid,
+      message_linear_z_payload  => message_linear_z_payload,
+      message_linear_z_valid    => message_linear_z_valid,
+      message_angular_x_payload => message_angular_x_payload,
+      message_angular_x_valid   => message_angular_x_valid,
+      message_angular_y_payload => message_angular_y_payload,
+      message_angular_y_valid   => message_angular_y_valid,
+      message_angular_z_payload => message_angular_z_payload,
+      message_angular_z_valid   => message_angular_z_valid,
+      status_ready              => status_ready,
+      rst                       => rst,
+      message_linear_x_ready    => message_linear_x_ready,
+      message_linear_y_ready    => message_linear_y_ready,
+      message_linear_z_ready    => message_linear_z_ready,
+      message_angular_x_ready   => message_angular_x_ready,
+      message_angular_y_ready   => message_angular_y_ready,
+      message_angular_z_ready   => message_angular_z_ready,
+      port_388_0                => words_payload_0,
+      port_392_0                => words_payload_128,
+      status_valid              => status_valid,
+      status_payload            => status_payload,
+      words_valid               => words_valid,
+      words_ready               => words_ready
     );
 
   packer : entity work.geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer
@@ -120,26 +102,8 @@ begin
       error_sig         => packet_error
     );
 
-  message_linear_x_payload <= leaf_0_payload;
-  message_linear_x_valid <= leaf_0_valid;
-  leaf_0_ready <= message_linear_x_ready;
-  message_linear_y_payload <= leaf_1_payload;
-  message_linear_y_valid <= leaf_1_valid;
-  leaf_1_ready <= message_linear_y_ready;
-  message_linear_z_payload <= leaf_2_payload;
-  message_linear_z_valid <= leaf_2_valid;
-  leaf_2_ready <= message_linear_z_ready;
-  message_angular_x_payload <= leaf_3_payload;
-  message_angular_x_valid <= leaf_3_valid;
-  leaf_3_ready <= message_angular_x_ready;
-  message_angular_y_payload <= leaf_4_payload;
-  message_angular_y_valid <= leaf_4_valid;
-  leaf_4_ready <= message_angular_y_ready;
-  message_angular_z_payload <= leaf_5_payload;
-  message_angular_z_valid <= leaf_5_valid;
-  leaf_5_ready <= message_angular_z_ready;
   words_payload <= words_payload_128 & words_payload_0;
-  words_payload_37 <= words_payload_128 & words_payload_0;
+  words_payload_1 <= words_payload_128 & words_payload_0;
   error_sig <= packet_error;
 
 end architecture;

@@ -14,41 +14,41 @@ use work.firm_hdl_pkg.all;
 
 entity geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_collector is
   port (
-    rst            : in  std_logic;
-    aclk           : in  std_logic;
-    status_ready   : in  std_logic;
-    leaf_0_ready   : out std_logic;
-    leaf_1_ready   : out std_logic;
-    leaf_2_ready   : out std_logic;
-    leaf_3_ready   : out std_logic;
-    leaf_4_ready   : out std_logic;
-    leaf_5_ready   : out std_logic;
-    leaf_0_valid   : in  std_logic;
-    leaf_1_valid   : in  std_logic;
-    leaf_2_valid   : in  std_logic;
-    leaf_3_valid   : in  std_logic;
-    leaf_4_valid   : in  std_logic;
-    leaf_5_valid   : in  std_logic;
-    port_635_0     : out unsigned(127 downto 0);
-    port_639_0     : out unsigned(32 downto 0);
-    status_valid   : out std_logic;
+    rst                       : in  std_logic;
+    aclk                      : in  std_logic;
+    status_ready              : in  std_logic;
+    message_linear_x_ready    : out std_logic;
+    message_linear_y_ready    : out std_logic;
+    message_linear_z_ready    : out std_logic;
+    message_angular_x_ready   : out std_logic;
+    message_angular_y_ready   : out std_logic;
+    message_angular_z_ready   : out std_logic;
+    message_linear_x_valid    : in  std_logic;
+    message_linear_y_valid    : in  std_logic;
+    message_linear_z_valid    : in  std_logic;
+    message_angular_x_valid   : in  std_logic;
+    message_angular_y_valid   : in  std_logic;
+    message_angular_z_valid   : in  std_logic;
+    port_480_0                : out unsigned(127 downto 0);
+    port_484_0                : out unsigned(32 downto 0);
+    status_valid              : out std_logic;
     -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-    status_payload : out unsigned(2 downto 0);
-    words_valid    : out std_logic;
-    words_ready    : in  std_logic;
-    leaf_0_payload : in  unsigned(63 downto 0);
-    leaf_1_payload : in  unsigned(63 downto 0);
-    leaf_2_payload : in  unsigned(63 downto 0);
-    leaf_3_payload : in  unsigned(63 downto 0);
-    leaf_4_payload : in  unsigned(63 downto 0);
-    leaf_5_payload : in  unsigned(63 downto 0)
+    status_payload            : out unsigned(2 downto 0);
+    words_valid               : out std_logic;
+    words_ready               : in  std_logic;
+    message_linear_x_payload  : in  unsigned(63 downto 0);
+    message_linear_y_payload  : in  unsigned(63 downto 0);
+    message_linear_z_payload  : in  unsigned(63 downto 0);
+    message_angular_x_payload : in  unsigned(63 downto 0);
+    message_angular_y_payload : in  unsigned(63 downto 0);
+    message_angular_z_payload : in  unsigned(63 downto 0)
   );
 end entity;
 
 architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_collector is
 
   -- Registers.
-  signal port_639_0_q     : unsigned(32 downto 0) := (others => '0');
+  signal port_484_0_q     : unsigned(32 downto 0) := (others => '0');
   signal status_valid_q   : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal status_payload_q : unsigned(2 downto 0) := (others => '0');
@@ -129,27 +129,28 @@ begin
   done <= state(23) or (state(22) and words_last);
   ends <= done and state(5);
   left_1_0 <= state(1) and not served_0;
-  lacks_1_0 <= left_1_0 and not leaf_0_valid;
-  leaf_0_ready <= left_1_0 and leaf_0_valid and free;
+  lacks_1_0 <= left_1_0 and not message_linear_x_valid;
+  message_linear_x_ready <= left_1_0 and message_linear_x_valid and free;
   left_2_0 <= state(2) and not served_0;
-  lacks_2_0 <= left_2_0 and not leaf_1_valid;
-  leaf_1_ready <= left_2_0 and leaf_1_valid and free;
+  lacks_2_0 <= left_2_0 and not message_linear_y_valid;
+  message_linear_y_ready <= left_2_0 and message_linear_y_valid and free;
   left_3_0 <= state(3) and not served_0;
-  lacks_3_0 <= left_3_0 and not leaf_2_valid;
-  leaf_2_ready <= left_3_0 and leaf_2_valid and free;
+  lacks_3_0 <= left_3_0 and not message_linear_z_valid;
+  message_linear_z_ready <= left_3_0 and message_linear_z_valid and free;
   left_4_0 <= state(4) and not served_0;
-  lacks_4_0 <= left_4_0 and not leaf_3_valid;
-  leaf_3_ready <= left_4_0 and leaf_3_valid and free;
+  lacks_4_0 <= left_4_0 and not message_angular_x_valid;
+  message_angular_x_ready <= left_4_0 and message_angular_x_valid and free;
   left_5_0 <= state(5) and not served_0;
-  lacks_5_0 <= left_5_0 and not leaf_4_valid;
-  leaf_4_ready <= left_5_0 and leaf_4_valid and free;
+  lacks_5_0 <= left_5_0 and not message_angular_y_valid;
+  message_angular_y_ready <= left_5_0 and message_angular_y_valid and free;
   left_5_1 <= state(5) and not served_1;
-  lacks_5_1 <= left_5_1 and not leaf_5_valid;
-  go_5_1 <= left_5_1 and leaf_5_valid and free and not lacks_5_0;
+  lacks_5_1 <= left_5_1 and not message_angular_z_valid;
+  go_5_1 <= left_5_1 and message_angular_z_valid and free and not lacks_5_0;
   free <= not words_valid_q or words_ready;
-  or_60 <= or unsigned'(lacks_5_1 & lacks_5_0 & (state(4) and not leaf_4_valid) & lacks_4_0 &
-      (state(3) and not leaf_3_valid) & lacks_3_0 & (state(2) and not leaf_2_valid) & lacks_2_0 &
-      (state(1) and not leaf_1_valid) & lacks_1_0 & (state(0) and not leaf_0_valid));
+  or_60 <= or unsigned'(lacks_5_1 & lacks_5_0 & (state(4) and not message_angular_y_valid) &
+      lacks_4_0 & (state(3) and not message_angular_x_valid) & lacks_3_0 & (state(2) and
+      not message_linear_z_valid) & lacks_2_0 & (state(1) and not message_linear_y_valid) &
+      lacks_1_0 & (state(0) and not message_linear_x_valid));
   complete <= free and not or_60 and (not ends or not status_valid_q or status_ready);
   items_size <= (others => '0') when state(24) = '1' else state(13 downto 10);
   map_size <= resize(state(9 downto 6), 5) + mux(state(26), "1000", "0000");
@@ -158,17 +159,19 @@ begin
   to_map <= resize(mux(state(26), "0000", items_size), 5) + nul_now + state(19 downto 17);
   step_leaves <= complete and not ends and done;
   step_stays <= complete and not ends and not done;
-  and_94 <= (served_0 or (or unsigned'(leaf_4_ready & leaf_3_ready & leaf_2_ready & leaf_1_ready &
-      leaf_0_ready))) and not complete;
+  and_94 <= (served_0 or (or unsigned'(message_angular_y_ready & message_angular_x_ready &
+      message_linear_z_ready & message_linear_y_ready & message_linear_x_ready))) and not complete;
   and_99 <= complete and ends;
-  or_118 <= mux(state(0), x"00000100", x"00000000") or mux(state(1), leaf_0_payload(63 downto 32),
-      x"00000000") or mux(state(2), leaf_1_payload(63 downto 32), x"00000000") or mux(state(3),
-      leaf_2_payload(63 downto 32), x"00000000");
-  or_124 <= or_118 or mux(state(4), leaf_3_payload(63 downto 32), x"00000000") or mux(state(5),
-      leaf_5_payload(63 downto 32), x"00000000");
-  or_137 <= mux(state(0), leaf_0_payload(31 downto 0), x"00000000") or mux(state(1),
-      leaf_1_payload(31 downto 0), x"00000000") or mux(state(2), leaf_2_payload(31 downto 0),
-      x"00000000") or mux(state(3), leaf_3_payload(31 downto 0), x"00000000");
+  or_118 <= mux(state(0), x"00000100", x"00000000") or mux(state(1),
+      message_linear_x_payload(63 downto 32), x"00000000") or mux(state(2),
+      message_linear_y_payload(63 downto 32), x"00000000") or mux(state(3),
+      message_linear_z_payload(63 downto 32), x"00000000");
+  or_124 <= or_118 or mux(state(4), message_angular_x_payload(63 downto 32), x"00000000") or
+      mux(state(5), message_angular_z_payload(63 downto 32), x"00000000");
+  or_137 <= mux(state(0), message_linear_x_payload(31 downto 0), x"00000000") or mux(state(1),
+      message_linear_y_payload(31 downto 0), x"00000000") or mux(state(2),
+      message_linear_z_payload(31 downto 0), x"00000000") or mux(state(3),
+      message_angular_x_payload(31 downto 0), x"00000000");
   add_154 <= to_map + to_end + 7;
   mux_194 <= state(4) & "00" & (or state(4 downto 0)) & 9x"000" & state(4) & "000" &
       (or state(3 downto 0)) & state(4) & "00" & state(4 downto 0) & '0' when done = '1' else
@@ -184,7 +187,7 @@ begin
   begin
     if rising_edge(aclk) then
       if rst = '1' then
-        port_639_0_q <= (others => '0');
+        port_484_0_q <= (others => '0');
         served_0 <= '0';
         served_1 <= '0';
         error_sig <= (others => '0');
@@ -199,14 +202,14 @@ begin
         has_nul <= '0';
       else
         if free = '1' then
-          port_639_0_q(32) <= to_std_logic(error_sig /= 0);
+          port_484_0_q(32) <= to_std_logic(error_sig /= 0);
           words_valid_q <= complete;
         end if;
         if free = '1' then
-          port_639_0_q(13 downto 0) <= to_map & state(26) & state(9 downto 6) & items_size;
-          port_639_0_q(28 downto 26) <= add_154(5 downto 3);
-          port_639_0_q(25 downto 14) <= end_mask & to_end & state(16 downto 14);
-          port_639_0_q(31 downto 29) <= resize(unsigned'(not begins & ends), 3);
+          port_484_0_q(13 downto 0) <= to_map & state(26) & state(9 downto 6) & items_size;
+          port_484_0_q(28 downto 26) <= add_154(5 downto 3);
+          port_484_0_q(25 downto 14) <= end_mask & to_end & state(16 downto 14);
+          port_484_0_q(31 downto 29) <= resize(unsigned'(not begins & ends), 3);
         end if;
         served_0 <= and_94;
         served_1 <= (served_1 or go_5_1) and not complete;
@@ -254,21 +257,21 @@ begin
         map_0 <= or_124;
       end if;
       if free = '1' then
-        map_4 <= or_137 or mux(state(4), leaf_4_payload(31 downto 0), x"00000000");
+        map_4 <= or_137 or mux(state(4), message_angular_y_payload(31 downto 0), x"00000000");
       end if;
       if free = '1' and (state(5) = '0' or served_0 = '0') then
-        items_0 <= leaf_4_payload(63 downto 32);
+        items_0 <= message_angular_y_payload(63 downto 32);
       end if;
       if free = '1' and (state(5) = '0' or served_1 = '0') then
-        items_4 <= leaf_5_payload(31 downto 0);
+        items_4 <= message_angular_z_payload(31 downto 0);
       end if;
     end if;
   end process;
 
-  port_635_0 <= map_4 & map_0 & items_4 & items_0;
-  leaf_5_ready <= go_5_1;
+  port_480_0 <= map_4 & map_0 & items_4 & items_0;
+  message_angular_z_ready <= go_5_1;
 
-  port_639_0 <= port_639_0_q;
+  port_484_0 <= port_484_0_q;
   status_valid <= status_valid_q;
   status_payload <= status_payload_q;
   words_valid <= words_valid_q;
@@ -279,13 +282,13 @@ begin
   leaves_3 <= state(3);
   leaves_4 <= state(4);
   leaves_5 <= state(5);
-  words_payload <= port_639_0_q & map_4 & map_0 & items_4 & items_0;
+  words_payload <= port_484_0_q & map_4 & map_0 & items_4 & items_0;
   words_loads <= '0';
-  go_1_0 <= leaf_0_ready;
-  go_2_0 <= leaf_1_ready;
-  go_3_0 <= leaf_2_ready;
-  go_4_0 <= leaf_3_ready;
-  go_5_0 <= leaf_4_ready;
+  go_1_0 <= message_linear_x_ready;
+  go_2_0 <= message_linear_y_ready;
+  go_3_0 <= message_linear_z_ready;
+  go_4_0 <= message_angular_x_ready;
+  go_5_0 <= message_angular_y_ready;
   words_down <= '0';
   words_keeps <= '1';
   found <= error_sig;
