@@ -150,7 +150,7 @@ class Flow:
                 self.m.d.comb += again.eq(no_repeat & ~self.levels[level].last)
                 yield again, i, jump
                 no_repeat = no_repeat & self.levels[level].last
-            default = Signal(name=f"leaves_{i}")
+            default = Signal(name=f"default_{i}")
             self.m.d.comb += default.eq(no_repeat)
             yield default, i, s.exits.default
 
@@ -180,7 +180,7 @@ class Flow:
         nul : bool
             Whether the count of a string includes the NUL.
         """
-        to_exit, to_body = Signal(name="step_leaves"), Signal(name="step_stays")
+        to_exit, to_body = Signal(name="step_to_exit"), Signal(name="step_to_body")
         self.m.d.comb += [to_exit.eq(moves & ~ends & done), to_body.eq(moves & ~ends & ~done)]
         self._load_constants(moves & ends, to_exit, to_body)
         self._load_levels(count, single, double)

@@ -241,7 +241,7 @@ class _Circuit:
         # Bit k: this word wrote these lanes of the beat in slot k.
         has = Signal(ring.depth, name=f"{name}_has_{k}")
         m.d.sync += has.eq((has | (used << slot)) & ~self.read_slot)
-        written = Signal(name=f"{name}_here_{k}")
+        written = Signal(name=f"{name}_written_{k}")
         m.d.comb += written.eq((has >> self.first[:-1])[0])
         return read.data, written
 

@@ -96,12 +96,12 @@ class Meaning:
 
     @property
     def single(self) -> str:
-        """The body is one element, or one word before the rest."""
+        """The body is executed at most once."""
         return f"single_{self.kind}"
 
     @property
     def double(self) -> str:
-        """The body is two elements, or two words before the rest; only if not `single`."""
+        """The body is executed twice, if not at most once (`single`)."""
         return f"double_{self.kind}"
 
     @property

@@ -39,9 +39,9 @@ class StepLength:
         The body of the run or of the loop is skipped: no element, no word before the rest, or an
         illegal length.
     single : Value(1)
-        The body is one element, or one word before the rest.
+        The body is executed at most once.
     double : Value(1)
-        The body is two elements, or two words before the rest; only if not `single`.
+        The body is executed twice, if not at most once (`single`).
     rest : Value(range(lanes + 1))
         Items in the rest.
     """

@@ -2317,6 +2317,12 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   (* enum_value_110 = "ITEMS" *)
   reg [2:0] code = 3'h0;
   wire cut;
+  wire default_0;
+  wire default_1;
+  wire default_2;
+  wire default_3;
+  wire default_4;
+  wire default_5;
   wire done;
   wire drains;
   wire [6:0] early_last;
@@ -2344,12 +2350,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   reg [3:0] items_room = 4'h0;
   wire [3:0] items_wanted;
   reg [6:0] last = 7'h07;
-  wire leaves_0;
-  wire leaves_1;
-  wire leaves_2;
-  wire leaves_3;
-  wire leaves_4;
-  wire leaves_5;
   (* unused_bits = "0 1" *)
   wire [6:0] left;
   input [6:0] limit;
@@ -2702,12 +2702,12 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign nul_at = 7'h00;
   assign \beat$24  = beat;
   assign trailing = left[1:0];
-  assign leaves_5 = state[5];
-  assign leaves_4 = state[4];
-  assign leaves_3 = state[3];
-  assign leaves_2 = state[2];
-  assign leaves_1 = state[1];
-  assign leaves_0 = state[0];
+  assign default_5 = state[5];
+  assign default_4 = state[4];
+  assign default_3 = state[3];
+  assign default_2 = state[2];
+  assign default_1 = state[1];
+  assign default_0 = state[0];
 endmodule
 
 module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer.marks (rst, mismatch, beat, header_at, aclk);

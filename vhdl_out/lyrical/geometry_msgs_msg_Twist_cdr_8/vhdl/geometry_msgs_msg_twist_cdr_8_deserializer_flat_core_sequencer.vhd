@@ -70,8 +70,8 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal items_wanted  : unsigned(3 downto 0);
   signal mux_151       : unsigned(33 downto 0);
   signal next_state    : unsigned(33 downto 0);
-  signal step_leaves   : std_logic;
-  signal step_stays    : std_logic;
+  signal step_to_exit  : std_logic;
+  signal step_to_body  : std_logic;
   signal exit_amount   : unsigned(5 downto 0);
   signal exit_sum      : unsigned(6 downto 0);
   signal mux_174       : unsigned(6 downto 0);
@@ -87,12 +87,12 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal mux_283       : unsigned(6 downto 0);
 
   -- Signals that no logic reads, for simulation.
-  signal leaves_0      : std_logic;
-  signal leaves_1      : std_logic;
-  signal leaves_2      : std_logic;
-  signal leaves_3      : std_logic;
-  signal leaves_4      : std_logic;
-  signal leaves_5      : std_logic;
+  signal default_0     : std_logic;
+  signal default_1     : std_logic;
+  signal default_2     : std_logic;
+  signal default_3     : std_logic;
+  signal default_4     : std_logic;
+  signal default_5     : std_logic;
   signal trailing      : unsigned(1 downto 0);
   signal nul_at        : unsigned(6 downto 0);
   signal nul_at_26     : unsigned(6 downto 0);
@@ -160,8 +160,8 @@ begin
       (or state(4 downto 0)) & state(4) & '0' & (or state(5 downto 0)) & state(5 downto 0) &
       '0' when done = '1' else (others => '0');
   next_state <= 34x"200840C81" when ends_packet = '1' else mux_151;
-  step_leaves <= issue and not ends_packet and done;
-  step_stays <= issue and not ends_packet and not done;
+  step_to_exit <= issue and not ends_packet and done;
+  step_to_body <= issue and not ends_packet and not done;
   exit_amount <= (others => '0') when state(32) = '1' else state(25 downto 20);
   exit_sum <= last + exit_amount;
   mux_174 <= (exit_sum and not resize(state(28 downto 26), 7)) or resize(state(31 downto 29),
@@ -249,12 +249,12 @@ begin
       items_at(5 downto 0) & state(19) & (or state(5 downto 4)) & (or state(3 downto 2)) &
       (or unsigned'(state(5) & state(3) & state(1)));
 
-  leaves_0 <= state(0);
-  leaves_1 <= state(1);
-  leaves_2 <= state(2);
-  leaves_3 <= state(3);
-  leaves_4 <= state(4);
-  leaves_5 <= state(5);
+  default_0 <= state(0);
+  default_1 <= state(1);
+  default_2 <= state(2);
+  default_3 <= state(3);
+  default_4 <= state(4);
+  default_5 <= state(5);
   trailing <= left(1 downto 0);
   nul_at <= (others => '0');
   nul_at_26 <= (others => '0');

@@ -67,11 +67,11 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_pa
   signal newest            : unsigned(3 downto 0);
   signal room              : unsigned(3 downto 0);
   signal items_used_0      : std_logic;
-  signal items_here_0      : std_logic;
+  signal items_written_0   : std_logic;
   signal map_used_0        : std_logic;
-  signal map_here_0        : std_logic;
+  signal map_written_0     : std_logic;
   signal map_used_4        : std_logic;
-  signal map_here_4        : std_logic;
+  signal map_written_4     : std_logic;
   signal ends_write_addr   : unsigned(2 downto 0);
   signal ends_write_en     : std_logic;
   signal reads             : std_logic;
@@ -136,11 +136,11 @@ begin
   newest <= at(6 downto 3) + mux(takes, words_payload_128(28 downto 26), "000");
   room <= bound - newest;
   items_used_0 <= '1' when writes = '1' and items_size > 0 else '0';
-  items_here_0 <= lsb(resize(shift_right(items_has_0, to_integer(first(2 downto 0))), 1));
+  items_written_0 <= lsb(resize(shift_right(items_has_0, to_integer(first(2 downto 0))), 1));
   map_used_0 <= '1' when writes = '1' and map_size > 0 else '0';
-  map_here_0 <= lsb(resize(shift_right(map_has_0, to_integer(first(2 downto 0))), 1));
+  map_written_0 <= lsb(resize(shift_right(map_has_0, to_integer(first(2 downto 0))), 1));
   map_used_4 <= '1' when writes = '1' and map_size > 4 else '0';
-  map_here_4 <= lsb(resize(shift_right(map_has_4, to_integer(first(2 downto 0))), 1));
+  map_written_4 <= lsb(resize(shift_right(map_has_4, to_integer(first(2 downto 0))), 1));
   ends_write_addr <= done(2 downto 0) - 1;
   ends_write_en <= writes and final_sig;
   reads <= '1' when complete /= first and (packets_valid_q = '0' or packets_ready = '1') else '0';
@@ -314,10 +314,10 @@ begin
         map_placed <= words_payload_0(127 downto 64);
       end if;
       if reads = '1' then
-        packets_payload_q(63 downto 0) <= (mux(items_here_0, items_0_read_data(63 downto 32),
-            x"00000000") or mux(map_here_4, map_4_read_data, x"00000000")) & (mux(items_here_0,
-            items_0_read_data(31 downto 0), x"00000000") or mux(map_here_0, map_0_read_data,
-            x"00000000"));
+        packets_payload_q(63 downto 0) <= (mux(items_written_0, items_0_read_data(63 downto 32),
+            x"00000000") or mux(map_written_4, map_4_read_data, x"00000000")) &
+            (mux(items_written_0, items_0_read_data(31 downto 0), x"00000000") or mux(map_written_0,
+            map_0_read_data, x"00000000"));
         packets_payload_q(68) <= is_last;
         if is_last = '1' then
           packets_payload_q(67 downto 64) <= ends_read_data(3 downto 0);
