@@ -1,9 +1,9 @@
 """Combinational logic divided by depth, so that a simulation evaluates less of it.
 
 Amaranth's simulator has one process for the combinational logic of a module. A change of any input
-runs all of it, and so does a change that it makes itself: a module with a chain of n signals is
-evaluated n times in a cycle. With one process for each depth, a change runs only what depends on
-it. Values are the same.
+runs the whole process, and so does a change of a signal that the process itself drives: a module
+with a chain of n signals is evaluated n times in a cycle. With processes for a few signals of one
+depth each, a change runs only what depends on it. Values are the same.
 """
 
 from __future__ import annotations
@@ -15,6 +15,9 @@ from amaranth.hdl._ast import Assign, SignalDict, SignalSet, Statement, Switch
 from amaranth.hdl._mem import MemoryInstance
 
 __all__ = ["divided"]
+
+# Fewer signals in a process: less is evaluated in vain, but there are more processes to generate.
+PART = 12
 
 
 def divided(design: Elaboratable) -> Fragment:
@@ -57,8 +60,8 @@ def _driving(statements: Iterable[Statement], signals: SignalSet) -> Iterator[St
 class _Levels:
     """The signals that statements drive, and how deep they are.
 
-    A depth is the number of driven signals in a row on the longest way to a signal. Of signals in a
-    loop, which a circuit has none of but among signals of one statement, any order will do.
+    A depth is the number of driven signals on the longest path to a signal. Loops exist only among
+    signals that one statement drives; their order does not matter.
     """
 
     def __init__(self, statements: Iterable[Statement]):
@@ -86,12 +89,18 @@ class _Levels:
                 self.groups[signal] = group
 
     def found(self) -> list[SignalSet]:
-        """Return the signals of each depth, in the order of depths."""
-        levels: dict[int, SignalSet] = {}
-        for signal in self.groups:
-            depth = self._depth(signal)
-            levels[depth] = levels.get(depth, SignalSet()) | SignalSet((signal,))
-        return [levels[depth] for depth in sorted(levels)]
+        """Return the signals of each depth, in the order of depths; at most PART or so together."""
+        levels: dict[int, list[SignalSet]] = {}
+        placed = SignalSet()
+        for signal, group in self.groups.items():
+            if signal in placed:
+                continue
+            placed |= group
+            parts = levels.setdefault(self._depth(signal), [SignalSet()])
+            if len(parts[-1]) >= PART:
+                parts.append(SignalSet())
+            parts[-1] |= group
+        return [part for depth in sorted(levels) for part in levels[depth]]
 
     def _depth(self, start: Signal) -> int:
         stack, entered = [start], SignalSet()
