@@ -35,8 +35,8 @@ entity geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector is
     message_angular_x_ready   : out std_logic;
     message_angular_y_ready   : out std_logic;
     message_angular_z_ready   : out std_logic;
-    port_388_0                : out unsigned(127 downto 0);
-    port_392_0                : out unsigned(32 downto 0);
+    port_543_0                : out unsigned(127 downto 0);
+    port_547_0                : out unsigned(32 downto 0);
     status_valid              : out std_logic;
     -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
     status_payload            : out unsigned(2 downto 0);
@@ -48,7 +48,7 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector is
 
   -- Registers.
-  signal port_392_0_q     : unsigned(32 downto 0) := (others => '0');
+  signal port_547_0_q     : unsigned(32 downto 0) := (others => '0');
   signal status_valid_q   : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal status_payload_q : unsigned(2 downto 0) := (others => '0');
@@ -187,7 +187,7 @@ begin
   begin
     if rising_edge(aclk) then
       if rst = '1' then
-        port_392_0_q <= (others => '0');
+        port_547_0_q <= (others => '0');
         served_0 <= '0';
         served_1 <= '0';
         error_sig <= (others => '0');
@@ -202,14 +202,14 @@ begin
         has_nul <= '0';
       else
         if free = '1' then
-          port_392_0_q(32) <= to_std_logic(error_sig /= 0);
+          port_547_0_q(32) <= to_std_logic(error_sig /= 0);
           words_valid_q <= complete;
         end if;
         if free = '1' then
-          port_392_0_q(13 downto 0) <= to_map & state(26) & state(9 downto 6) & items_size;
-          port_392_0_q(28 downto 26) <= add_154(5 downto 3);
-          port_392_0_q(25 downto 14) <= end_mask & to_end & state(16 downto 14);
-          port_392_0_q(31 downto 29) <= resize(unsigned'(not begins & ends), 3);
+          port_547_0_q(13 downto 0) <= to_map & state(26) & state(9 downto 6) & items_size;
+          port_547_0_q(28 downto 26) <= add_154(5 downto 3);
+          port_547_0_q(25 downto 14) <= end_mask & to_end & state(16 downto 14);
+          port_547_0_q(31 downto 29) <= resize(unsigned'(not begins & ends), 3);
         end if;
         served_0 <= and_94;
         served_1 <= (served_1 or go_5_1) and not complete;
@@ -268,10 +268,10 @@ begin
     end if;
   end process;
 
-  port_388_0 <= map_4 & map_0 & items_4 & items_0;
+  port_543_0 <= map_4 & map_0 & items_4 & items_0;
   message_angular_z_ready <= go_5_1;
 
-  port_392_0 <= port_392_0_q;
+  port_547_0 <= port_547_0_q;
   status_valid <= status_valid_q;
   status_payload <= status_payload_q;
   words_valid <= words_valid_q;
@@ -282,7 +282,7 @@ begin
   default_3 <= state(3);
   default_4 <= state(4);
   default_5 <= state(5);
-  words_payload <= port_392_0_q & map_4 & map_0 & items_4 & items_0;
+  words_payload <= port_547_0_q & map_4 & map_0 & items_4 & items_0;
   words_loads <= '0';
   go_1_0 <= message_linear_x_ready;
   go_2_0 <= message_linear_y_ready;

@@ -57,9 +57,8 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
 
   -- Combinational signals.
   signal takes             : std_logic;
-  signal read_slot         : unsigned(7 downto 0);
   signal total             : unsigned(6 downto 0);
-  signal total_9           : unsigned(6 downto 0);
+  signal total_6           : unsigned(6 downto 0);
   signal base              : unsigned(6 downto 0);
   signal end_sig           : unsigned(6 downto 0);
   signal add_13            : unsigned(3 downto 0);
@@ -76,8 +75,8 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
   signal ends_write_en     : std_logic;
   signal reads             : std_logic;
   signal is_last           : std_logic;
-  signal and_55            : std_logic;
-  signal sub_56            : unsigned(2 downto 0);
+  signal and_139           : std_logic;
+  signal sub_140           : unsigned(2 downto 0);
   signal items_0_read_data : unsigned(63 downto 0);
   signal map_0_read_data   : unsigned(31 downto 0);
   signal map_4_read_data   : unsigned(31 downto 0);
@@ -124,12 +123,11 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
 begin
 
   takes <= words_valid and words_ready_q;
-  read_slot <= shift_left(resize(reads, 8), to_integer(first(2 downto 0)));
   total <= at + words_payload_128(13 downto 9);
-  total_9 <= base + words_payload_128(22 downto 17);
+  total_6 <= base + words_payload_128(22 downto 17);
   base <= (total and not resize(words_payload_128(16 downto 14), 7)) or
       resize(words_payload_128(16 downto 14) and "100", 7);
-  end_sig <= (total_9 and not resize(words_payload_128(25 downto 23), 7)) or
+  end_sig <= (total_6 and not resize(words_payload_128(25 downto 23), 7)) or
       resize(words_payload_128(25 downto 23) and mux(words_payload_128(29), "000", "100"), 7);
   add_13 <= base(6 downto 3) + words_payload_128(8);
   map_end <= unsigned'(add_13 & base(2 downto 0)) + words_payload_128(7 downto 4);
@@ -145,8 +143,8 @@ begin
   ends_write_en <= writes and final_sig;
   reads <= '1' when complete /= first and (packets_valid_q = '0' or packets_ready = '1') else '0';
   is_last <= lsb(resize(shift_right(last, to_integer(first(2 downto 0))), 1));
-  and_55 <= writes and not waits;
-  sub_56 <= done(2 downto 0) - 1;
+  and_139 <= writes and not waits;
+  sub_140 <= done(2 downto 0) - 1;
 
   process (aclk)
   begin
@@ -243,16 +241,130 @@ begin
           bound <= bound + 1;
           first <= first + 1;
         end if;
-        items_has_0 <= (items_has_0 or shift_left(resize(items_used_0, 8),
-            to_integer(items_start(5 downto 3)))) and not read_slot;
-        map_has_0 <= (map_has_0 or shift_left(resize(map_used_0, 8),
-            to_integer(map_start(5 downto 3)))) and not read_slot;
-        map_has_4 <= (map_has_4 or shift_left(resize(map_used_4, 8),
-            to_integer(map_start(5 downto 3)))) and not read_slot;
-        if and_55 = '1' then
+        if reads = '1' and first(2 downto 0) = 0 then
+          items_has_0(0) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 0 then
+          items_has_0(0) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 1 then
+          items_has_0(1) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 1 then
+          items_has_0(1) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 2 then
+          items_has_0(2) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 2 then
+          items_has_0(2) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 3 then
+          items_has_0(3) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 3 then
+          items_has_0(3) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 4 then
+          items_has_0(4) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 4 then
+          items_has_0(4) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 5 then
+          items_has_0(5) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 5 then
+          items_has_0(5) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 6 then
+          items_has_0(6) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 6 then
+          items_has_0(6) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 7 then
+          items_has_0(7) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 7 then
+          items_has_0(7) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 0 then
+          map_has_0(0) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 0 then
+          map_has_0(0) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 1 then
+          map_has_0(1) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 1 then
+          map_has_0(1) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 2 then
+          map_has_0(2) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 2 then
+          map_has_0(2) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 3 then
+          map_has_0(3) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 3 then
+          map_has_0(3) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 4 then
+          map_has_0(4) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 4 then
+          map_has_0(4) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 5 then
+          map_has_0(5) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 5 then
+          map_has_0(5) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 6 then
+          map_has_0(6) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 6 then
+          map_has_0(6) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 7 then
+          map_has_0(7) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 7 then
+          map_has_0(7) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 0 then
+          map_has_4(0) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 0 then
+          map_has_4(0) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 1 then
+          map_has_4(1) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 1 then
+          map_has_4(1) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 2 then
+          map_has_4(2) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 2 then
+          map_has_4(2) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 3 then
+          map_has_4(3) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 3 then
+          map_has_4(3) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 4 then
+          map_has_4(4) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 4 then
+          map_has_4(4) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 5 then
+          map_has_4(5) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 5 then
+          map_has_4(5) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 6 then
+          map_has_4(6) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 6 then
+          map_has_4(6) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 7 then
+          map_has_4(7) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 7 then
+          map_has_4(7) <= '1';
+        end if;
+        if and_139 = '1' then
           complete <= done;
           if final_sig = '1' then
-            case sub_56 is
+            case sub_140 is
               when "000" =>
                 last(0) <= '1';
               when "001" =>
