@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 from pathlib import Path
@@ -10,6 +11,9 @@ import pytest
 
 from tests.tools import need
 from tests.vhdl.ghdl import GHDL
+
+# Circuits are hundreds of thousands of objects, of which most live as long as their test.
+gc.set_threshold(100_000, 20, 20)
 
 # The packages of the workspace that happens to be active are nobody's business here.
 for _name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
