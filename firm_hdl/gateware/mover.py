@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain, count
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import stream, wiring
@@ -15,6 +16,7 @@ from firm_hdl.gateware.positions import Ring, any_of, beat_layout, rotate
 from firm_hdl.gateware.signatures import StatusSignature, leaf_shape
 from firm_hdl.plan import Part, Plan, Run, RunStep, Step
 from firm_hdl.plan.geometry import geometry
+from firm_hdl.plan.transfers import repeated_leaves, transfers
 
 __all__ = ["Mover"]
 
@@ -115,7 +117,7 @@ class _Circuit:
         self.writers = list(self._writers())
         self._serve()
         self._carry()
-        for writer in self.writers:
+        for writer in chain.from_iterable(self.writers):
             with m.If(writer.go):
                 m.d.sync += self.streams[writer.leaf].valid.eq(1)
                 self._write(writer)
@@ -179,23 +181,28 @@ class _Circuit:
 
     # Service.
 
-    def _writers(self) -> Iterator[_Writer]:
-        plan = self.plan
-        number = 0
-        for index, step in enumerate(plan.steps):
-            for slot, (leaf, part) in enumerate(_transfers(plan, step)):
-                names = (f"{what}_{number}" for what in ("active", "blocked", "go"))
-                active, blocked, go = (Signal(name=name) for name in names)
-                yield _Writer(
-                    step=index,
-                    slot=slot,
-                    leaf=leaf,
-                    part=part,
-                    active=active,
-                    blocked=blocked,
-                    go=go,
+    def _writers(self) -> Iterator[list[_Writer]]:
+        """Yield the transfers of each step, in wire order."""
+        number = count()
+        for index, step in enumerate(self.plan.steps):
+            writers = []
+            for slot, (leaf, part) in enumerate(transfers(self.plan, step)):
+                k = next(number)
+                active, blocked, go = (
+                    Signal(name=f"{what}_{k}") for what in ("active", "blocked", "go")
                 )
-                number += 1
+                writers.append(
+                    _Writer(
+                        step=index,
+                        slot=slot,
+                        leaf=leaf,
+                        part=part,
+                        active=active,
+                        blocked=blocked,
+                        go=go,
+                    )
+                )
+            yield writers
 
     def _serve(self) -> None:
         """Write the transfers of a step in wire order, each as soon as its register is free.
@@ -208,53 +215,78 @@ class _Circuit:
         (`slow`), and costs a cycle. Only leaves that may transfer in every cycle look at `ready`
         combinationally.
         """
-        m, c, order = self.m, self.c, self.order
-        repeated, status_repeats = _repeated(self.plan)
-        slow, now, comes, waits = Signal(name="slow"), list[Value](), list[Value](), list[Value]()
+        m, c = self.m, self.c
+        repeated = repeated_leaves(self.plan)
+        # Reasons to wait: combinational ones, and those of `slow` as an order is taken and later.
+        now, first, later = list[Value](), list[Value](), list[Value]()
         wanted: dict[int, list[tuple[Value, Value]]] = {}
-        for writer in self.writers:
-            port = self.streams[writer.leaf]
-            chosen = c.orders.valid & ~order.blank & (order.step == writer.step)
-            if writer.part is None and self._run(writer).counted:
-                chosen = chosen & order.items
-            m.d.sync += writer.active.eq(Mux(self.take, chosen, writer.active & ~writer.go))
-            earlier = [
-                each.blocked
-                for each in self.writers
-                if each.step == writer.step and each.slot < writer.slot
-            ]
-            m.d.comb += writer.go.eq(writer.active & ~writer.blocked & ~any_of(earlier))
-            if writer.leaf in repeated:
-                m.d.comb += writer.blocked.eq(writer.active & port.valid & ~port.ready)
-                wanted.setdefault(writer.leaf, []).append((chosen, writer.go))
-            else:
-                m.d.comb += writer.blocked.eq(writer.active & port.valid)
-                waits.append(writer.blocked & ~port.ready)
-                comes.append(chosen & port.valid & ~port.ready)
-        for leaf, writers in wanted.items():
-            port, want = self.streams[leaf], Signal(name=f"want_{leaf}")
-            m.d.sync += want.eq(
-                Mux(
-                    self.take,
-                    any_of([chosen for chosen, _ in writers]),
-                    want & ~any_of([go for _, go in writers]),
-                )
-            )
-            now.append(want & port.valid & ~port.ready)
-        stuck, ends = c.status.valid & ~c.status.ready, c.orders.valid & order.ends
-        if status_repeats:
-            now.append(self.ends & stuck)
+        for writers in self.writers:
+            for writer in writers:
+                port = self.streams[writer.leaf]
+                chosen = self._schedule(writer, writers)
+                if writer.leaf in repeated:
+                    m.d.comb += writer.blocked.eq(writer.active & _is_full(port))
+                    wanted.setdefault(writer.leaf, []).append((chosen, writer.go))
+                else:
+                    m.d.comb += writer.blocked.eq(writer.active & port.valid)
+                    first.append(chosen & _is_full(port))
+                    later.append(writer.blocked & ~port.ready)
+        now += [
+            self._wants(leaf, cases) & _is_full(self.streams[leaf])
+            for leaf, cases in wanted.items()
+        ]
+        ends = c.orders.valid & self.order.ends
+        start = self.plan.steps[self.plan.start.step or 0]
+        if start.exits.default.step is None:
+            # A packet may end in every cycle.
+            now.append(self.ends & _is_full(c.status))
         else:
-            waits.append(self.ends & stuck)
-            comes.append(ends & stuck)
-        if comes:
-            m.d.sync += slow.eq(Mux(self.take, any_of(comes), any_of(waits)))
+            first.append(ends & _is_full(c.status))
+            later.append(self.ends & _is_full(c.status))
+        slow = Signal(name="slow")
+        if first:
+            m.d.sync += slow.eq(Mux(self.take, any_of(first), any_of(later)))
         m.d.comb += self.take.eq(~slow & ~any_of(now))
+        self._report(ends)
+
+    def _schedule(self, writer: _Writer, writers: Sequence[_Writer]) -> Value:
+        """Write a transfer after the earlier ones of its step; return if the next order has it.
+
+        Parameters
+        ----------
+        writers : sequence of _Writer
+            All of the step, in wire order.
+        """
+        m, order = self.m, self.order
+        chosen = self.c.orders.valid & ~order.blank & (order.step == writer.step)
+        if writer.part is None and self._run(writer).counted:
+            chosen = chosen & order.items
+        earlier = [each.blocked for each in writers[: writer.slot]]
+        m.d.sync += writer.active.eq(Mux(self.take, chosen, writer.active & ~writer.go))
+        m.d.comb += writer.go.eq(writer.active & ~writer.blocked & ~any_of(earlier))
+        return chosen
+
+    def _wants(self, leaf: int, cases: Sequence[tuple[Value, Value]]) -> Signal:
+        """Return a register: the order still has to write the leaf.
+
+        Parameters
+        ----------
+        cases : sequence of (Value, Value)
+            Of each writer of the leaf: the next order has the transfer; the transfer is written.
+        """
+        wants = Signal(name=f"want_{leaf}")
+        chosen, go = (any_of([case[k] for case in cases]) for k in range(2))
+        self.m.d.sync += wants.eq(Mux(self.take, chosen, wants & ~go))
+        return wants
+
+    def _report(self, ends: Value) -> None:
+        """Send the status of a packet with the last order of the packet."""
+        m, port = self.m, self.c.status
         status = self._kept("status")
         with m.If(self.take):
             m.d.sync += self.ends.eq(ends)
             with m.If(self.ends):
-                m.d.sync += [c.status.valid.eq(1), c.status.payload.eq(status)]
+                m.d.sync += [port.valid.eq(1), port.payload.eq(status)]
 
     def _run(self, writer: _Writer) -> Run:
         """Return the run of which the writer writes a word or the rest."""
@@ -358,29 +390,7 @@ class _Circuit:
             self.m.d.sync += Value.cast(target).eq(0)
 
 
-def _transfers(plan: Plan, step: Step) -> Iterator[tuple[int, Part | None]]:
-    """Yield the transfers of a step in wire order: the leaf, and its part of the map."""
-    if step.rest is not None:
-        yield plan.runs[step.rest].items, None
-    for part in step.parts:
-        if part.completes:
-            yield part.leaf, part
-    if isinstance(step, RunStep):
-        yield plan.runs[step.run].items, None
-
-
-def _repeated(plan: Plan) -> tuple[set[int], bool]:
-    """Return the leaves that may transfer in two steps in a row, and whether `status` may."""
-    leaves = [{leaf for leaf, _ in _transfers(plan, step)} for step in plan.steps]
-    start = plan.start.step or 0
-    repeated: set[int] = set()
-    for index, step in enumerate(plan.steps):
-        jumps = [step.exits.default, *(jump for _, jump in step.exits.repeats)]
-        if step.begin is not None and step.begin.body is not None:
-            jumps.append(step.begin.body)
-        following = {start if jump.step is None else jump.step for jump in jumps}
-        if isinstance(step, RunStep):
-            following.add(index)
-        for other in following:
-            repeated |= leaves[index] & leaves[other]
-    return repeated, plan.steps[start].exits.default.step is None
+def _is_full(port: stream.Interface) -> Value:
+    """Return whether the register of a stream has a transfer that is not taken in this cycle."""
+    full: Value = port.valid & ~port.ready
+    return full

@@ -233,8 +233,8 @@ class _Circuit:
         ]
         if not marked:
             return read.data, Const(1, 1)
-        # By slot: whether this word wrote these lanes of the beat. Shifts would simulate faster, but
-        # take 2 % more cells.
+        # By slot: whether this word wrote these lanes of the beat. A shift of `used` would simulate
+        # faster, but takes 2 % more cells.
         has = Signal(ring.depth, name=f"{name}_has_{k}")
         for beat in range(ring.depth):
             with m.If(self.reads & (self.first[:-1] == beat)):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import chain
 
 from amaranth.hdl import Const, Module, Mux, Signal, Value
 from amaranth.lib import stream, wiring
@@ -14,8 +15,9 @@ from firm_hdl.gateware.collect.progress import COUNT_BITS, Progress
 from firm_hdl.gateware.collect.words import words_layout
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.gateware.signatures import Status, StatusSignature
-from firm_hdl.plan import BeginRun, Plan, RunStep, Step
+from firm_hdl.plan import BeginRun, Part, Plan, RunStep, Step
 from firm_hdl.plan.geometry import only_ends
+from firm_hdl.plan.transfers import transfers
 
 __all__ = ["Collector"]
 
@@ -64,11 +66,20 @@ class _Reader:
         The value that `items.last` must have.
     optional : bool
         The transfer is the rest of a run, which may be empty.
+    left : Signal(1)
+        The step has not taken the transfer.
+    lacks : Signal(1)
+        The step has not taken the transfer, and it is not offered.
+    go : Signal(1)
+        The transfer is taken in this cycle.
     """
 
     leaf: int
     last: Value
-    optional: bool = False
+    optional: bool
+    left: Signal
+    lacks: Signal
+    go: Signal
 
 
 class _Circuit(Progress):
@@ -79,7 +90,10 @@ class _Circuit(Progress):
         super().__init__(Module(), collector.plan, streams)
         self.c = collector
         self._decide()
+        self.readers = [self._readers(*each) for each in enumerate(self.plan.steps)]
         self._serve()
+        self._hold_lengths()
+        self._judge()
         Filler(self, collector.words)
         self._advance()
 
@@ -98,23 +112,34 @@ class _Circuit(Progress):
             self.ends.eq(self.done & (flow.exit_ends | no_rest)),
         ]
 
-    def _readers(self, step: Step) -> list[_Reader]:
+    def _readers(self, index: int, step: Step) -> list[_Reader]:
         """Return the transfers of a step, in wire order."""
-        plan, flow = self.plan, self.flow
-        found = []
-        if step.rest is not None:
-            last = Const(1, 1)
-            found.append(_Reader(leaf=plan.runs[step.rest].items, last=last, optional=True))
-        for part in step.parts:
-            if part.completes:
-                level = part.last_level
-                last = Const(part.last, 1) if level is None else flow.levels[level].last
-                found.append(_Reader(leaf=part.leaf, last=last))
-        if isinstance(step, RunStep):
-            run = plan.runs[step.run]
-            last = Const(0, 1) if run.counted else flow.words.last & run.last
-            found.append(_Reader(leaf=run.items, last=last))
-        return found
+        readers = []
+        for slot, (leaf, part) in enumerate(transfers(self.plan, step)):
+            left, lacks, go = (
+                Signal(name=f"{name}_{index}_{slot}") for name in ("left", "lacks", "go")
+            )
+            readers.append(
+                _Reader(
+                    leaf=leaf,
+                    last=self._last(step, part),
+                    optional=part is None and not isinstance(step, RunStep),
+                    left=left,
+                    lacks=lacks,
+                    go=go,
+                )
+            )
+        return readers
+
+    def _last(self, step: Step, part: Part | None) -> Value:
+        """Return the value that `items.last` must have in a transfer."""
+        if part is not None:
+            level = part.last_level
+            return Const(part.last, 1) if level is None else self.flow.levels[level].last
+        if not isinstance(step, RunStep):
+            return Const(1, 1)
+        run = self.plan.runs[step.run]
+        return Const(0, 1) if run.counted else self.flow.words.last & run.last
 
     def _serve(self) -> None:
         """Take the leaves of a step in wire order, each as soon as it is offered.
@@ -123,52 +148,53 @@ class _Circuit(Progress):
         until all its leaves are offered. `served` records which of them were taken.
         """
         m, c = self.m, self.c
-        transfers: list[list[Value]] = [[] for _ in self.served]
         ready: dict[int, list[Value]] = {}
         missing: list[Value] = []
-        wrong: list[Value] = []
-        held: dict[int, list[Value]] = {leaf: [] for leaf in self.lengths}
-        for index, step in enumerate(self.plan.steps):
-            earlier: list[Value] = []
-            for slot, reader in enumerate(self._readers(step)):
-                port = self.streams[reader.leaf]
-                valid = port.valid
-                if reader.leaf in self.lengths:
-                    valid = valid & self.lengths[reader.leaf].known
-                left, lacks, go = (
-                    Signal(name=f"{name}_{index}_{slot}") for name in ("left", "lacks", "go")
-                )
-                wanted = self.rest.any() if reader.optional else Const(1, 1)
-                m.d.comb += [
-                    left.eq(self.step[index] & wanted & ~self.served[slot]),
-                    lacks.eq(left & ~valid),
-                    go.eq(left & valid & self.free & ~any_of(earlier)),
-                ]
-                earlier.append(lacks)
-                transfers[slot].append(go)
-                if reader.leaf in self.lengths and self._may_wait_for_status(step):
-                    taken = go | (self.step[index] & self.served[slot])
-                    held[reader.leaf].append(taken & ~self.complete)
-                ready.setdefault(reader.leaf, []).append(go)
-                if self.plan.leaves[reader.leaf].kind == "items":
-                    wrong.append(go & (port.payload.last != reader.last))
-            missing += earlier
+        for index, (step, readers) in enumerate(zip(self.plan.steps, self.readers, strict=True)):
+            for slot, reader in enumerate(readers):
+                self._take(index, slot)
+                ready.setdefault(reader.leaf, []).append(reader.go)
+            missing += [reader.lacks for reader in readers]
             # A transfer that continues in the next step is taken in that step.
             for part in step.parts:
                 if not part.completes:
                     missing.append(self.step[index] & ~self.streams[part.leaf].valid)
         for leaf, cases in ready.items():
             m.d.comb += self.streams[leaf].ready.eq(any_of(cases))
-        for leaf, cases in held.items():
-            m.d.comb += self.lengths[leaf].held.eq(any_of(cases))
         status_free = ~c.status.valid | c.status.ready
         m.d.comb += [
             self.free.eq(~c.words.valid | c.words.ready),
             self.complete.eq(self.free & ~any_of(missing) & (~self.ends | status_free)),
         ]
-        for flag, cases in zip(self.served, transfers, strict=True):
-            m.d.sync += flag.eq((flag | any_of(cases)) & ~self.complete)
-        self._judge(any_of(wrong))
+        for slot, flag in enumerate(self.served):
+            taken = [readers[slot].go for readers in self.readers if slot < len(readers)]
+            m.d.sync += flag.eq((flag | any_of(taken)) & ~self.complete)
+
+    def _take(self, index: int, slot: int) -> None:
+        """Take a transfer of a step when it is offered, after the earlier ones of the step."""
+        readers = self.readers[index]
+        reader = readers[slot]
+        valid = self.streams[reader.leaf].valid
+        if reader.leaf in self.lengths:
+            valid = valid & self.lengths[reader.leaf].known
+        wanted = self.rest.any() if reader.optional else Const(1, 1)
+        earlier = any_of([each.lacks for each in readers[:slot]])
+        self.m.d.comb += [
+            reader.left.eq(self.step[index] & wanted & ~self.served[slot]),
+            reader.lacks.eq(reader.left & ~valid),
+            reader.go.eq(reader.left & valid & self.free & ~earlier),
+        ]
+
+    def _hold_lengths(self) -> None:
+        """Keep a length that is taken while its step waits until `status` is free."""
+        held: dict[int, list[Value]] = {leaf: [] for leaf in self.lengths}
+        for index, (step, readers) in enumerate(zip(self.plan.steps, self.readers, strict=True)):
+            for slot, reader in enumerate(readers):
+                if reader.leaf in held and self._may_wait_for_status(step):
+                    taken = reader.go | (self.step[index] & self.served[slot])
+                    held[reader.leaf].append(taken & ~self.complete)
+        for leaf, cases in held.items():
+            self.m.d.comb += self.lengths[leaf].held.eq(any_of(cases))
 
     def _may_wait_for_status(self, step: Step) -> bool:
         """Tell whether a step may take its length, and then wait until `status` is free."""
@@ -177,9 +203,16 @@ class _Circuit(Progress):
             jump.step is None or only_ends(self.plan.steps[jump.step]) for jump in jumps
         )
 
-    def _judge(self, wrong_items: Value) -> None:
+    def _judge(self) -> None:
         """Keep the packet's first error, and report it with the last step."""
         m, c = self.m, self.c
+        wrong_items = any_of(
+            [
+                reader.go & (self.streams[reader.leaf].payload.last != reader.last)
+                for reader in chain.from_iterable(self.readers)
+                if self.plan.leaves[reader.leaf].kind == "items"
+            ]
+        )
         error, found = Signal(Status, name="error"), Signal(Status, name="found")
         is_taken = any_of([self.streams[leaf].ready for leaf in self.lengths])
         over = is_taken & self.of_length(lambda length: length.over)

@@ -11,6 +11,7 @@ from firm_hdl.gateware.collect.offered import OfferedLength
 from firm_hdl.gateware.flow import Flow
 from firm_hdl.gateware.positions import pick
 from firm_hdl.plan import BeginLoop, BeginRun, Plan, RunStep
+from firm_hdl.plan.transfers import transfers
 
 __all__ = ["COUNT_BITS", "Progress"]
 
@@ -65,12 +66,7 @@ class Progress:
         self.zero = self.of_length(lambda length: length.zero)
         self.done, self.ends = Signal(name="done"), Signal(name="ends")
         self.free, self.complete = Signal(name="free"), Signal(name="complete")
-        most = max(
-            (step.rest is not None)
-            + sum(part.completes for part in step.parts)
-            + isinstance(step, RunStep)
-            for step in plan.steps
-        )
+        most = max(len(list(transfers(plan, step))) for step in plan.steps)
         self.served = [Signal(name=f"served_{k}") for k in range(most)]
 
     def _flow(self) -> Flow:

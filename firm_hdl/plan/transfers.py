@@ -1,0 +1,42 @@
+"""The transfers of a step: which leaves it completes, and which leaves may transfer every cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from firm_hdl.plan.ir import Part, Plan, RunStep, Step
+
+__all__ = ["repeated_leaves", "transfers"]
+
+
+def transfers(plan: Plan, step: Step) -> Iterator[tuple[int, Part | None]]:
+    """Yield the transfers that a step completes, in wire order.
+
+    Yields
+    ------
+    The leaf, and the transfer's part of the map; `None` for a word or the rest of a run.
+    """
+    if step.rest is not None:
+        yield plan.runs[step.rest].items, None
+    for part in step.parts:
+        if part.completes:
+            yield part.leaf, part
+    if isinstance(step, RunStep):
+        yield plan.runs[step.run].items, None
+
+
+def repeated_leaves(plan: Plan) -> frozenset[int]:
+    """Return the leaves that may transfer in two steps in a row."""
+    leaves = [{leaf for leaf, _ in transfers(plan, step)} for step in plan.steps]
+    start = plan.start.step or 0
+    repeated: set[int] = set()
+    for index, step in enumerate(plan.steps):
+        jumps = [step.exits.default, *(jump for _, jump in step.exits.repeats)]
+        if step.begin is not None and step.begin.body is not None:
+            jumps.append(step.begin.body)
+        following = {start if jump.step is None else jump.step for jump in jumps}
+        if isinstance(step, RunStep):
+            following.add(index)
+        for other in following:
+            repeated |= leaves[index] & leaves[other]
+    return frozenset(repeated)
