@@ -39,7 +39,7 @@ class Converted:
     Attributes
     ----------
     distro, type : str
-    wire : "ros1" or "cdr"
+    wire : Wire
     bus_bytes, max_message_bytes : int
     direction : "deserializer" or "serializer"
     """

@@ -26,7 +26,7 @@ class Counter:
     """Count words or elements down to the last one. Not a component: logic of one module.
 
     `last` is updated at once, the number one cycle later, so that no wide logic depends on a late
-    signal. Call `load`, `load_by_default` and `down` as often as needed, then `add_logic` once.
+    signal. Call `load`, `preload` and `down` as often as needed, then `add_logic` once.
 
     Parameters
     ----------
@@ -38,7 +38,8 @@ class Counter:
     Attributes
     ----------
     value, less : Signal
-        The number of words or elements left is `value - less - pending`.
+        The number of words or elements left is `value - less - pending`. `pending` is the count of
+        the cycle before, if it is still to be subtracted.
     last : Signal
         One word or element is left. A register.
     """
@@ -58,7 +59,7 @@ class Counter:
         """Load a constant if `on`; at most one of the conditions of all loads is high."""
         self._loads.append(_Load(on, count, 0, int(count == 1)))
 
-    def load_by_default(
+    def preload(
         self,
         on: Value,
         value: Value,
@@ -66,7 +67,9 @@ class Counter:
         double: Value | None = None,
         less: Value | int = 0,
     ) -> None:
-        """Load a number if `on`, unless a constant is loaded; at most one condition is high.
+        """Load a number in every cycle of the step that begins the loop or run (`on`).
+
+        A constant that is loaded in the same cycle wins. At most one of the conditions is high.
 
         Parameters
         ----------
@@ -85,7 +88,7 @@ class Counter:
         self._downs.append(on)
 
     def add_logic(self, m: Module) -> None:
-        """Add the registers; after all calls of `load`, `load_by_default` and `down`."""
+        """Add the registers; after all calls of `load`, `preload` and `down`."""
         loads, down = Signal(name=f"{self.name}_loads"), Signal(name=f"{self.name}_down")
         keeps = Signal(name=f"{self.name}_keeps")
         m.d.comb += [

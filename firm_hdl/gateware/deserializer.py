@@ -107,7 +107,7 @@ class Deserializer(wiring.Component):
             mover.orders.valid.eq(orders.valid),
             orders.ready.eq(mover.orders.ready),
             mover.beat.eq(buffer.beat),
-            queue.at.eq(sequencer.at),
+            queue.oldest.eq(sequencer.oldest),
             buffer.freed.eq(queue.freed),
             self.status.payload.eq(mover.status.payload),
             self.status.valid.eq(mover.status.valid),

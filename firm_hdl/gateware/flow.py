@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 
 from amaranth.hdl import Const, Module, Signal, Value
 from amaranth.lib import data
@@ -11,7 +12,7 @@ from firm_hdl.gateware.counter import Counter
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.plan import RUN_COUNTER, BeginLoop, BeginRun, Jump, Plan, RunStep, Step
 
-__all__ = ["Flow", "exceeds"]
+__all__ = ["Exit", "Flow", "exceeds"]
 
 
 def exceeds(value: Value, limit: int) -> Value:
@@ -30,6 +31,27 @@ def exceeds(value: Value, limit: int) -> Value:
         result = bits.all() & result if is_one else bits.any() | result
         start = end
     return result
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Exit:
+    """An exit of a step.
+
+    Attributes
+    ----------
+    taken : Signal(1)
+        The step, once done, takes this exit.
+    step : int
+        Index of the step.
+    jump : Jump
+    level : int or None
+        The loop that the exit repeats; `None` for the default exit.
+    """
+
+    taken: Signal
+    step: int
+    jump: Jump
+    level: int | None
 
 
 class Flow:
@@ -60,9 +82,8 @@ class Flow:
         One-hot, one bit per step.
     start : int
         The state in which a packet starts, as bits.
-    exits : list of (Value, int, Jump)
-        For each exit of each step: a condition of one bit, the index of the step, and the jump. The
-        condition is high if the step, once done, takes this exit. At most one of them is high.
+    exits : list of Exit
+        All exits of all steps; at most one of them is taken.
     exit_ends : Value(1)
         The exit that is taken ends the packet.
     exit_state, body_state : Value
@@ -90,7 +111,10 @@ class Flow:
         self.start = self.encode(plan.start.step)
         self.state = Signal(self.layout, init=self.layout.from_bits(self.start), name="state")
         self.step = self.state.step
-        init = {counter: self._counted(plan.start, counter) for counter, _ in plan.start.enter}
+        init = {
+            counter: self._words_or_elements(plan.start, counter)
+            for counter, _ in plan.start.enter
+        }
         most = self._most(limit)
         self.words = Counter(most[RUN_COUNTER], "words", init.get(RUN_COUNTER))
         self.levels = [
@@ -100,9 +124,9 @@ class Flow:
         self.exits = list(self._exits())
         width = self.layout.size
         self.exit_state = pick(
-            [(taken, self.encode(jump.step)) for taken, _, jump in self.exits], width
+            [(each.taken, self.encode(each.jump.step)) for each in self.exits], width
         )
-        self.exit_ends = any_of([taken for taken, _, jump in self.exits if jump.step is None])
+        self.exit_ends = any_of([each.taken for each in self.exits if each.jump.step is None])
         self.body_state = pick(
             [
                 (self.step[i], self.encode(i if s.begin is None else s.begin.body.step))
@@ -142,17 +166,17 @@ class Flow:
         cases = [(any_of(on), rest << (unit.bit_length() - 1)) for unit, on in units.items()]
         return cases[0][1] if len(cases) == 1 else pick(cases, self.plan.bus_bytes.bit_length())
 
-    def _exits(self) -> Iterator[tuple[Value, int, Jump]]:
+    def _exits(self) -> Iterator[Exit]:
         for i, s in enumerate(self.plan.steps):
             no_repeat: Value = self.step[i]
             for level, jump in s.exits.repeats:
                 again = Signal(name=f"again_{i}_{level}")
                 self.m.d.comb += again.eq(no_repeat & ~self.levels[level].last)
-                yield again, i, jump
+                yield Exit(taken=again, step=i, jump=jump, level=level)
                 no_repeat = no_repeat & self.levels[level].last
             default = Signal(name=f"default_{i}")
             self.m.d.comb += default.eq(no_repeat)
-            yield default, i, s.exits.default
+            yield Exit(taken=default, step=i, jump=s.exits.default, level=None)
 
     def count(
         self,
@@ -185,11 +209,9 @@ class Flow:
         self._load_constants(moves & ends, to_exit, to_body)
         self._load_levels(count, single, double)
         self._load_words(count, single, double, nul)
-        exits = iter(self.exits)
-        for step in self.plan.steps:
-            for level, _ in step.exits.repeats:
-                self.levels[level].down(to_exit & next(exits)[0])
-            next(exits)
+        for each in self.exits:
+            if each.level is not None:
+                self.levels[each.level].down(to_exit & each.taken)
         self.words.down(to_body & self.on(lambda step: isinstance(step, RunStep)))
         for counter in (self.words, *self.levels):
             counter.add_logic(self.m)
@@ -197,16 +219,18 @@ class Flow:
     def _load_constants(self, starts: Value, to_exit: Value, to_body: Value) -> None:
         """Load counters where a jump enters a run or loop of a constant count."""
         jumps = [(starts, self.plan.start)]
-        jumps += [(to_exit & taken, jump) for taken, _, jump in self.exits if jump.step is not None]
+        jumps += [
+            (to_exit & each.taken, each.jump) for each in self.exits if each.jump.step is not None
+        ]
         jumps += [
             (to_body & self.step[i], step.begin.body)
             for i, step in enumerate(self.plan.steps)
-            if step.begin is not None and step.begin.body is not None
+            if step.begin is not None
         ]
         loads: dict[tuple[int | str, int], list[Value]] = {}
         for on, jump in jumps:
             for counter, _ in jump.enter:
-                loads.setdefault((counter, self._counted(jump, counter)), []).append(on)
+                loads.setdefault((counter, self._words_or_elements(jump, counter)), []).append(on)
         for (counter, number), on in loads.items():
             target = self.words if counter == RUN_COUNTER else self.levels[int(counter)]
             target.load(any_of(on), number)
@@ -217,7 +241,7 @@ class Flow:
         most: dict[int | str, int] = dict.fromkeys([RUN_COUNTER, *range(plan.levels)], 1)
         for jump in plan.jumps():
             for counter, _ in jump.enter:
-                most[counter] = max(most[counter], self._counted(jump, counter))
+                most[counter] = max(most[counter], self._words_or_elements(jump, counter))
         for step in plan.steps:
             if isinstance(step.begin, BeginRun):
                 lanes = plan.leaves[plan.runs[step.begin.run].items].lanes
@@ -226,7 +250,7 @@ class Flow:
                 most[step.begin.level] = max(most[step.begin.level], limit(step.begin))
         return most
 
-    def _counted(self, jump: Jump, counter: int | str) -> int:
+    def _words_or_elements(self, jump: Jump, counter: int | str) -> int:
         """Return the number of words or elements that a jump loads into a counter."""
         count = dict(jump.enter)[counter]
         if counter != RUN_COUNTER:
@@ -248,7 +272,7 @@ class Flow:
                 if isinstance(s.begin, BeginLoop) and s.begin.level == level
             ]
             if chosen:
-                counter.load_by_default(any_of(chosen), count, single, double)
+                counter.preload(any_of(chosen), count, single, double)
 
     def _load_words(
         self, count: Value, single: Value, double: Value | None, nul_counts: bool
@@ -269,4 +293,4 @@ class Flow:
         for (shift, nul), chosen in groups.items():
             less = ~exceeds(count[:shift], nul) if shift else Const(1)
             value = count - 1 if nul and not shift else count[shift:]
-            self.words.load_by_default(any_of(chosen), value, single, double, less)
+            self.words.preload(any_of(chosen), value, single, double, less)

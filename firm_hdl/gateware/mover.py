@@ -55,7 +55,7 @@ class Mover(wiring.Component):
         )
 
     def elaborate(self, platform: object) -> Module:
-        return _Circuit(self).m
+        return _MoverLogic(self).m
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,7 +87,7 @@ class _Writer:
     go: Signal
 
 
-class _Circuit:
+class _MoverLogic:
     """The mover's logic, built by one method for each part of it."""
 
     def __init__(self, mover: Mover):
@@ -110,7 +110,7 @@ class _Circuit:
                 m.d.sync += port.valid.eq(0)
         # The words "items" and "map", and one bit for each good byte of them.
         self.word: dict[str, Signal] = {}
-        self.have: dict[str, Signal] = {}
+        self.good: dict[str, Signal] = {}
         self._read()
         self.counted, self.last = self._kept("counted"), self._kept("last")
         self.final, self.ends = self._kept("final"), Signal(name="ends_now")
@@ -146,11 +146,11 @@ class _Circuit:
             lane = self.ring.lane(at)
             word = rotate(m, Cat(lanes[name]), lane, starts, f"{name}_rotated")
             self.word[name] = Signal(8 * bus, name=f"{name}_word", reset_less=True)
-            self.have[name] = Signal(bus, name=f"{name}_have", reset_less=True)
+            self.good[name] = Signal(bus, name=f"{name}_good", reset_less=True)
             with m.If(self.take):
                 m.d.sync += [
                     self.word[name].eq(word),
-                    self.have[name].eq(Cat(size > k for k in range(bus))),
+                    self.good[name].eq(Cat(size > k for k in range(bus))),
                 ]
 
     def _memories(
@@ -302,7 +302,7 @@ class _Circuit:
         bus = self.plan.bus_bytes
         name = "items" if step.bytes > bus > at else "map"
         at %= bus
-        return self.word[name][8 * at : 8 * at + 8], self.have[name][at]
+        return self.word[name][8 * at : 8 * at + 8], self.good[name][at]
 
     def _carry(self) -> None:
         """Store the bytes of a transfer that continues in the next step."""
@@ -364,7 +364,7 @@ class _Circuit:
         self.m.d.sync += payload.last.eq(self.last & run.last)
         for lane in range(leaf.lanes):
             value = self.word[name][8 * lane * size : 8 * (lane + 1) * size]
-            self._put(payload.data[lane], value, self.have[name][(lane + 1) * size - 1], leaf.type)
+            self._put(payload.data[lane], value, self.good[name][(lane + 1) * size - 1], leaf.type)
 
     def _write_items(self, writer: _Writer, part: Part) -> None:
         """Write a transfer of static size."""

@@ -50,7 +50,7 @@ class Packer(wiring.Component):
         )
 
     def elaborate(self, platform: object) -> Module:
-        return _Circuit(self).m
+        return _PackerLogic(self).m
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ class _Placed:
     size: Signal
 
 
-class _Circuit:
+class _PackerLogic:
     """The packer's logic, built by one method for each part of it."""
 
     def __init__(self, packer: Packer):
@@ -106,9 +106,12 @@ class _Circuit:
             "map": self._rotated("map", map_at, words.map_bytes, sizes.map_lanes),
         }
         # The first beat that these words do not complete; whether the packet ends.
-        self.done, self.final = Signal(ring.beat_bits, name="done"), Signal(name="final")
+        self.complete_next = Signal(ring.beat_bits, name="complete_next")
+        self.ends_packet = Signal(name="ends_packet")
         self.last_bytes = Signal(range(bus + 1), name="last_bytes")
-        self.marked, self.waits = Signal(name="marked"), Signal(name="waits")
+        self.failed, self.waits = Signal(name="failed"), Signal(name="waits")
+        # The packet may end without another byte: then a beat that is just full is held back. A
+        # step of an empty packet has no beat to hold.
         holds_last = may_end_empty(plan)
         sent = Mux(words.last | words.empty, self.end, self.end - 1) if holds_last else self.end
         done = ring.beat(sent)
@@ -116,9 +119,9 @@ class _Circuit:
         with m.If(self.takes):
             m.d.sync += [
                 self.at.eq(self.end),
-                self.done.eq(done),
-                self.final.eq(words.last),
-                self.marked.eq(words.error),
+                self.complete_next.eq(done),
+                self.ends_packet.eq(words.last),
+                self.failed.eq(words.error),
                 self.waits.eq(words.waits),
                 self.last_bytes.eq(Mux(words.empty, 0, full[: ring.lane_bits] + 1)),
             ]
@@ -131,7 +134,7 @@ class _Circuit:
     ) -> Value:
         """Return a position after a distance, with low bits cleared by a mask.
 
-        Alignment counts from `phase`; the end of a packet (`last`) from the start of the ring.
+        Alignment counts from `phase`. The end of a packet (`last`) is rounded up to a whole beat.
         """
         m, size = self.m, len(value)
         total = Signal(size)
@@ -192,7 +195,7 @@ class _Circuit:
         # Without padding, a byte that is not of items is of a map, or after the packet's end.
         padded = bool(plan.header_bytes) or sizes.aligns
         words = {
-            name: [self._lanes(name, k, unit, marked=padded or name == "items") for k in starts]
+            name: [self._lanes(name, k, unit, has_flags=padded or name == "items") for k in starts]
             for name, unit in units.items()
             for starts in [range(0, plan.bus_bytes, unit)]
         }
@@ -207,7 +210,7 @@ class _Circuit:
             found.append(Mux(a_has, a, 0) | Mux(b_has, b, 0) if padded else Mux(a_has, a, b))
         return Cat(found)
 
-    def _lanes(self, name: str, k: int, unit: int, *, marked: bool) -> tuple[Value, Value]:
+    def _lanes(self, name: str, k: int, unit: int, *, has_flags: bool) -> tuple[Value, Value]:
         """Write lanes of a word, from lane k on.
 
         Returns
@@ -231,7 +234,7 @@ class _Circuit:
             write.en.eq(used),
             read.addr.eq(self.first),
         ]
-        if not marked:
+        if not has_flags:
             return read.data, Const(1, 1)
         # By slot: whether this word wrote these lanes of the beat. A shift of `used` would simulate
         # faster, but takes 2 % more cells.
@@ -249,15 +252,15 @@ class _Circuit:
 
     def _send(self, beat: Value) -> None:
         m, ring, packets = self.m, self.ring, self.c.packets
-        slot = (self.done - 1)[: ring.beat_bits - 1]
+        slot = (self.complete_next - 1)[: ring.beat_bits - 1]
         layout = data.StructLayout({"count": range(self.plan.bus_bytes + 1), "error": 1})
         ends = LutMemory(m, "ends", layout, ring.depth)
         write, read = ends.write, ends.reader()
         m.d.comb += [
             write.addr.eq(slot),
             write.data.count.eq(self.last_bytes),
-            write.data.error.eq(self.marked),
-            write.en.eq(self.writes & self.final),
+            write.data.error.eq(self.failed),
+            write.en.eq(self.writes & self.ends_packet),
             read.addr.eq(self.first),
             self.reads.eq((self.complete != self.first) & (~packets.valid | packets.ready)),
         ]
@@ -266,8 +269,8 @@ class _Circuit:
         m.d.comb += is_last.eq((last >> self.first[:-1])[0])
         # Beats of constants only are held until the first leaf is taken.
         with m.If(self.writes & ~self.waits):
-            m.d.sync += self.complete.eq(self.done)
-            with m.If(self.final):
+            m.d.sync += self.complete.eq(self.complete_next)
+            with m.If(self.ends_packet):
                 m.d.sync += last.bit_select(slot, 1).eq(1)
         payload = Signal(packets.payload.shape(), name="payload", reset_less=True)
         error = Signal(name="error_now", reset_less=True)

@@ -113,7 +113,7 @@ class Parser(wiring.Component):
             sequencer.ended.eq(buffer.ended),
             sequencer.following.eq(buffer.following),
             buffer.next.eq(sequencer.next),
-            buffer.freed.eq(sequencer.at),
+            buffer.freed.eq(sequencer.oldest),
             sizes.beat.eq(buffer.beat),
             judged.status.eq(order.status),
             judged.trailing.eq(sequencer.trailing),

@@ -37,7 +37,7 @@ class Ring:
     Attributes
     ----------
     depth : int
-        Words of the ring; a power of two, and more than one step can touch.
+        Words of the ring: a power of two. A step touches fewer words.
     lane_bits, beat_bits, bits : int
         Bits of the lane, of the slot with the lap bit, and of a whole position.
     """

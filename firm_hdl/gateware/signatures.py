@@ -135,7 +135,7 @@ class MessageSignature(wiring.Signature):
     ----------
     message : Message
     bus_bytes : int
-    wire : "ros1" or "cdr"
+    wire : Wire
     """
 
     def __init__(self, message: Message, bus_bytes: int = 8, wire: Wire | None = None):

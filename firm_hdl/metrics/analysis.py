@@ -35,7 +35,7 @@ class Metrics:
     Attributes
     ----------
     name : str
-    wire : "ros1" or "cdr"
+    wire : Wire
     depth : int
         Levels of messages; 1 if the type has no message fields.
     types : int

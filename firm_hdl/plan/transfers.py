@@ -32,7 +32,7 @@ def repeated_leaves(plan: Plan) -> frozenset[int]:
     repeated: set[int] = set()
     for index, step in enumerate(plan.steps):
         jumps = [step.exits.default, *(jump for _, jump in step.exits.repeats)]
-        if step.begin is not None and step.begin.body is not None:
+        if step.begin is not None:
             jumps.append(step.begin.body)
         following = {start if jump.step is None else jump.step for jump in jumps}
         if isinstance(step, RunStep):

@@ -16,7 +16,7 @@ class WireRules:
 
     Attributes
     ----------
-    wire : "ros1" or "cdr"
+    wire : Wire
     encapsulation : bytes
         Representation identifier at the start of every packet; empty if the format has none. A
         packet that starts with other bytes is an error.

@@ -26,7 +26,7 @@ class _Counting(Component):
             value, double = Signal(8), self.number == 2
             m.d.sync += value.eq(self.number)
         counter.load(self.nine, 9)
-        counter.load_by_default(self.begins, value, self.number == 1, double, Const(0, 1))
+        counter.preload(self.begins, value, self.number == 1, double, Const(0, 1))
         counter.down(self.down)
         counter.add_logic(m)
         m.d.comb += self.last.eq(counter.last)

@@ -325,7 +325,7 @@ def test_no_output_depends_on_an_input_in_the_same_cycle():
     assert not has_path(parser, inputs, Cat(packets.ready, held))
     # Where there is a path, it is found.
     queue = OrderQueue(parser.plan)
-    assert has_path(queue, queue.at, queue.freed)
+    assert has_path(queue, queue.oldest, queue.freed)
 
 
 def test_the_size_of_a_packet_saturates():

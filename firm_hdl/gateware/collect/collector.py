@@ -11,7 +11,7 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import Out
 
 from firm_hdl.gateware.collect.fill import Filler
-from firm_hdl.gateware.collect.progress import COUNT_BITS, Progress
+from firm_hdl.gateware.collect.state import COUNT_BITS, CollectState
 from firm_hdl.gateware.collect.words import words_layout
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.gateware.signatures import Status, StatusSignature
@@ -51,7 +51,7 @@ class Collector(wiring.Component):
         )
 
     def elaborate(self, platform: object) -> Module:
-        return _Circuit(self).m
+        return _CollectorLogic(self).m
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,7 +82,7 @@ class _Reader:
     go: Signal
 
 
-class _Circuit(Progress):
+class _CollectorLogic(CollectState):
     """The collector's logic, built by one method for each part of it."""
 
     def __init__(self, collector: Collector):
@@ -105,7 +105,7 @@ class _Circuit(Progress):
         skips = self.of_length(lambda length: length.skips)
         # A last step that only takes a rest is skipped if there is no rest.
         rests = {i for i, step in enumerate(plan.steps) if only_ends(step)}
-        to_rest = any_of([taken for taken, _, jump in flow.exits if jump.step in rests])
+        to_rest = any_of([each.taken for each in flow.exits if each.jump.step in rests])
         no_rest = is_begin & self.zero & ~state.terminated & to_rest
         m.d.comb += [
             self.done.eq(state.plain | (is_begin & skips) | (state.words & flow.words.last)),
@@ -197,7 +197,10 @@ class _Circuit(Progress):
             self.m.d.comb += self.lengths[leaf].held.eq(any_of(cases))
 
     def _may_wait_for_status(self, step: Step) -> bool:
-        """Tell whether a step may take its length, and then wait until `status` is free."""
+        """Tell whether a step may take its length, and then wait until `status` is free.
+
+        A length is the last transfer of its step; so nothing else can delay the step after it.
+        """
         jumps = [step.exits.default, *(jump for _, jump in step.exits.repeats)]
         return step.begin is not None and any(
             jump.step is None or only_ends(self.plan.steps[jump.step]) for jump in jumps

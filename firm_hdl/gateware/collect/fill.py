@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from amaranth.hdl import Cat, Const, Mux, Signal, Value
 from amaranth.lib import stream
 
-from firm_hdl.gateware.collect.progress import Progress
+from firm_hdl.gateware.collect.state import CollectState
 from firm_hdl.gateware.positions import Ring, align_addend, any_of, pick
 from firm_hdl.plan import BeginRun, Fixed, Part, RunStep, Step
 from firm_hdl.plan.geometry import first_step
@@ -39,17 +39,17 @@ class _Byte:
 class Filler:
     """Fill the words of each step. Not a component: logic of one module.
 
-    `words.payload` is written in every cycle in which `progress.free` is high. `words.valid`
-    becomes high one cycle after `progress.complete`.
+    While `progress.free`, sizes are written in every cycle, and bytes until their leaf is taken.
+    `words.valid` becomes high one cycle after `progress.complete`. The collector writes `error`.
 
     Parameters
     ----------
-    progress : Progress
+    progress : CollectState
     words : stream.Interface
         See :func:`words_layout`.
     """
 
-    def __init__(self, progress: Progress, words: stream.Interface):
+    def __init__(self, progress: CollectState, words: stream.Interface):
         self.m, self.progress, self.words = progress.m, progress, words
         self.plan, self.step = progress.plan, progress.step
         self._write_bytes()

@@ -1,4 +1,4 @@
-"""The parts of the parser: packet buffer, decoded lengths, and the sequencer of the steps."""
+"""What a deserializer and a parser share: packet buffer, sequencer, and the queue of orders."""
 
 from firm_hdl.gateware.parse.buffer import Buffer
 from firm_hdl.gateware.parse.orders import OrderQueue, order_layout

@@ -18,7 +18,7 @@ class Buffer(wiring.Component):
     """Give each beat a position in the ring; tell how many bytes of the current packet arrived.
 
     The buffer itself stores no bytes: its readers write `beat` to memories of their own, and read
-    it from the next cycle on. The sequencer stores decoded lengths, and the mover lanes.
+    it from the next cycle on. The sequencer stores decoded lengths and marks, the mover the bytes.
 
     Latency 1 cycle from `packets` to `beat`, and 2 cycles to `limit`.
 
@@ -77,7 +77,7 @@ class Buffer(wiring.Component):
             newest.limit.eq(Mux(ends_now, end.limit, Cat(Const(0, ring.lane_bits), first_missing))),
             newest.following.eq(next_beat),
         ]
-        self._follow(m, layout, ends_now, end, newest)
+        self._queue_ends(m, layout, ends_now, end, newest)
         return m
 
     def _receive(self, m: Module) -> Signal:
@@ -107,7 +107,7 @@ class Buffer(wiring.Component):
         ]
         return at
 
-    def _follow(
+    def _queue_ends(
         self,
         m: Module,
         layout: data.StructLayout,
@@ -148,7 +148,7 @@ class Buffer(wiring.Component):
         m.d.sync += has_second.eq(
             Mux(has_second, Mux(self.next, more, 1), Mux(self.next, 0, follows))
         )
-        # An end that `second` takes in the cycle of its arrival is both pushed and popped.
+        # If `has_second`, every end is pushed. One that `second` takes at once is popped as well.
         with m.If(has_second & ends_now):
             m.d.sync += pushed.eq(pushed + 1)
         with m.If(self.next & has_second & more):

@@ -7,7 +7,7 @@ from amaranth.lib import data
 
 from firm_hdl.gateware.flow import exceeds
 from firm_hdl.gateware.parse.marks import Marks
-from firm_hdl.gateware.parse.progress import Progress
+from firm_hdl.gateware.parse.state import ParseState
 from firm_hdl.gateware.parse.step_length import StepLength
 from firm_hdl.gateware.positions import any_of, sum_of_three
 from firm_hdl.gateware.signatures import Status
@@ -18,11 +18,11 @@ __all__ = ["Judge"]
 class Judge:
     """Find the packet's first error in wire order. Not a component: logic of one module.
 
-    The judge sets `now.bad` and `now.new_error`. The sequencer clears `now.bad` after the packet.
+    The judge drives `now.bad` and `now.new_error`.
 
     Parameters
     ----------
-    now : Progress
+    now : ParseState
     length : StepLength
     beat, limit, ended
         As for :class:`Sequencer`.
@@ -44,7 +44,7 @@ class Judge:
 
     def __init__(
         self,
-        now: Progress,
+        now: ParseState,
         length: StepLength,
         beat: data.View,
         limit: Value,
@@ -71,7 +71,7 @@ class Judge:
         m.d.comb += [
             marks.beat.eq(beat),
             marks.nul_at.eq(now.nul_at),
-            marks.header_at.eq(ring.beat(now.first)),
+            marks.header_at.eq(ring.beat(now.first_at)),
             self.wrong_nul.eq(now.has_nul & now.state.rest & marks.nonzero),
             self.trailing.eq(now.present & too_many),
         ]
@@ -81,7 +81,7 @@ class Judge:
             # The checked bytes of a header are the first bytes of its step.
             begun = ring.position("header_within")
             m.d.comb += [
-                begun.eq(self.limit - now.first),
+                begun.eq(self.limit - now.first_at),
                 self.mismatch.eq(wrong_header & ~begun[-1] & begun.any()),
             ]
         m.d.comb += self.good.eq(now.present & ~self.wrong_nul & ~wrong_header)
@@ -100,17 +100,18 @@ class Judge:
         missing_nul = self.wrong_nul & (now.present | (~within[-1] & within.any()))
         overrun = now.ends_message & ~self.ended & self.trailing
         early = self.mismatch | missing_nul | cut | overrun
+        # What is left if no other error is found: trailing bytes, or a length over its limit.
         code = Mux(now.ends_message, Status.TRAILING, Status.LENGTH)
         code = Mux(cut, Status.TRUNCATED, code)
         code = Mux(missing_nul, Status.STRING, code)
         code = Mux(self.mismatch, Status.ENCAPSULATION, code)
-        with m.If(~now.bad):
+        with m.If(now.issue & now.ends_packet):
+            m.d.sync += now.bad.eq(0)
+        with m.Elif(~now.bad):
             # A length above its limit does not stop the step; the step takes the length as 0.
-            m.d.sync += [
-                now.bad.eq(early | (begins & self.length.over)),
-                now.new_error.eq(early),
-                self.code.eq(code),
-            ]
+            m.d.sync += now.bad.eq(early | (begins & self.length.over))
+        with m.If(~now.bad):
+            m.d.sync += [now.new_error.eq(early), self.code.eq(code)]
 
     def _keep_good(self, ready: Value) -> None:
         """After an error, compute how many bytes of the step's words are good."""
@@ -119,10 +120,11 @@ class Judge:
         # Bytes from the first one of the map's last word to the packet's end.
         map_left = ring.position("map_left")
         back = state.back.as_signed()
-        m.d.comb += map_left.eq(sum_of_three(self.limit, ~now.last, (1 - back)))
+        m.d.comb += map_left.eq(sum_of_three(self.limit, ~now.last_at, (1 - back)))
         map_room = self._room(map_left)
-        items_room = Mux(state.rest, self._room(self.limit - now.first), map_room)
-        # If the map has two words, the word of items is the first one.
+        items_room = Mux(state.rest, self._room(self.limit - now.first_at), map_room)
+        # If the map has two words, the word of items is the first one. A negative `map_left` is at
+        # least -bus: the packet ends within the first word.
         in_front = Mux(ring.beat(map_left).all(), ring.lane(map_left), 0)
         items_room = Mux(state.lead, Mux(map_left[-1], in_front, bus), items_room)
         is_cut, trails = self.code == Status.TRUNCATED, self.code == Status.TRAILING

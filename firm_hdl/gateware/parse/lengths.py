@@ -109,7 +109,7 @@ class Meaning:
         """Items of the rest."""
         return f"rest_{self.kind}"
 
-    def last(self, jump: Jump) -> str:
+    def next_last_at(self, jump: Jump) -> str:
         """The last byte of the step that follows if all items are in the rest."""
         assert self.run is not None and jump.step is not None
         align, shift = self.plan.steps[jump.step].align, shift_of(self.plan, jump.step)
@@ -180,7 +180,7 @@ class Lengths(wiring.Component):
             if meaning.run is not None:
                 fields[meaning.rest] = self._lanes_of(meaning).bit_length()
                 for jump in meaning.jumps:
-                    fields[meaning.last(jump)] = self.ring.bits
+                    fields[meaning.next_last_at(jump)] = self.ring.bits
         return fields
 
     def _lanes_of(self, meaning: Meaning) -> int:
@@ -203,13 +203,13 @@ class Lengths(wiring.Component):
             entry = Signal(self.layout, name=f"entry_{lane}")
             m.d.comb += length.eq(stream[8 * lane : 8 * (lane + LENGTH_BYTES)])
             self._decode(m, length, lane, entry)
-            entries.append(self._keep(m, f"entry_{lane}", Value.cast(entry), self.key))
-            counts.append(self._keep(m, f"count_{lane}", length[: self.count_bits], key))
+            entries.append(self._store(m, f"entry_{lane}", Value.cast(entry), self.key))
+            counts.append(self._store(m, f"count_{lane}", length[: self.count_bits], key))
         self._select(m, Value.cast(self.entry), self.key, entries)
         self._select(m, self.count, key, counts)
         return m
 
-    def _keep(self, m: Module, name: str, value: Value, key: Value) -> Value:
+    def _store(self, m: Module, name: str, value: Value, key: Value) -> Value:
         """Write a value with each beat; return that of the beat with `key`."""
         ring = self.ring
         memory = LutMemory(m, name, len(value), ring.depth)
@@ -284,4 +284,4 @@ class Lengths(wiring.Component):
             assert jump.step is not None
             align, shift = self.plan.steps[jump.step].align, shift_of(self.plan, jump.step)
             last = align_up(m, items_end, 0, align, phase, shift)
-            m.d.comb += entry[meaning.last(jump)].eq(last)
+            m.d.comb += entry[meaning.next_last_at(jump)].eq(last)

@@ -22,17 +22,19 @@ def order_layout(plan: Plan) -> data.StructLayout:
     blank : unsigned(1)
         The order has no step, and writes no leaf.
     items_at, map_at : position, without the lap bit
-        First byte of the word of items, and of the map.
+        First byte of the word of items, and of the map's last word. The word of items is the first
+        word of a map that has two.
     items_next, map_next : slot
         The beats after the beats of these bytes.
     items_bytes, map_bytes : range(bus_bytes + 1)
-        Good bytes of these words; values with later bytes transfer as 0.
+        Good bytes of these words; values with later bytes transfer as 0. `map_bytes` is the bus
+        width unless the packet has an error.
     items : unsigned(1)
         Items of a counted run transfer.
     last : unsigned(1)
         The transfer of items is the last one of the run.
     counted : unsigned(1)
-        The length is good; otherwise it transfers as 0.
+        The length is legal and not 0; otherwise it transfers as 0.
     final : unsigned(levels)
         Bit k: the current element of loop k is its last one.
     first : beat
@@ -72,7 +74,7 @@ class OrderQueue(wiring.Component):
     i : In(stream.Signature(order_layout(plan)))
     o : Out(stream.Signature(order_layout(plan)))
         Latency 1 cycle.
-    at : In(beat)
+    oldest : In(beat)
         The first beat that the sequencer still needs.
     freed : Out(beat)
         The first beat that any order or the sequencer still needs.
@@ -84,7 +86,7 @@ class OrderQueue(wiring.Component):
             {
                 "i": In(stream.Signature(layout)),
                 "o": Out(stream.Signature(layout)),
-                "at": In(beat),
+                "oldest": In(beat),
                 "freed": Out(beat),
             }
         )
@@ -97,7 +99,7 @@ class OrderQueue(wiring.Component):
         m.d.comb += [
             self.i.ready.eq(~has_second),
             self.freed.eq(
-                Mux(self.o.valid, self.o.payload.first, Mux(has_second, second.first, self.at))
+                Mux(self.o.valid, self.o.payload.first, Mux(has_second, second.first, self.oldest))
             ),
         ]
         # `o` waits for `ready` even if it has no order: so `ready` alone enables its registers.

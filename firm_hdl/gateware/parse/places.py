@@ -46,14 +46,14 @@ def _ways(plan: Plan, index: int) -> Iterator[tuple[str, _Way]]:
         yield name, _Way(align=align, shift=shift_of(plan, jump.step), rest=rest)
     if isinstance(step, RunStep):
         yield "body", _Way(align=1, shift=plan.bus_bytes - 1)
-    elif step.begin is not None and step.begin.body is not None:
+    elif step.begin is not None:
         body = step.begin.body.step
         assert body is not None
         align = step.begin.align if isinstance(step.begin, BeginRun) else plan.steps[body].align
         yield "body", _Way(align=align, shift=shift_of(plan, body))
 
 
-def _align_addend(plan: Plan, align: int, shift: int) -> int:
+def _distance(plan: Plan, align: int, shift: int) -> int:
     """Return the distance from one step's last byte to the next one's, before alignment.
 
     If the phase is not a constant, the distance is 1: alignment and shift are added later.
@@ -68,7 +68,8 @@ def place_traits(plan: Plan, index: int) -> dict[str, int]:
 
     Each way out of the step has an addend (`add`), the `mask` of the bits that alignment clears,
     and the value of these bits (`low`); if the phase is not a constant, `low` is a distance. `rest`
-    replaces the addend by the distance over the rest, which a register holds.
+    replaces the addend by the register `tail`, the distance over the rest. `is` tells that the step
+    has this way.
     """
     bus, traits = plan.bus_bytes, dict[str, int]()
     for name, way in _ways(plan, index):
@@ -76,7 +77,7 @@ def place_traits(plan: Plan, index: int) -> dict[str, int]:
         if bus >= 8:
             low = (plan.header_bytes + way.shift) % way.align
         traits |= {
-            f"{name}_add": _align_addend(plan, way.align, way.shift),
+            f"{name}_add": _distance(plan, way.align, way.shift),
             f"{name}_mask": way.align - 1,
             f"{name}_low": low,
             f"{name}_rest": way.rest,
@@ -103,7 +104,7 @@ class NextPlace:
     Parameters
     ----------
     flow : Flow
-    last : Signal
+    last_at : Signal
         The last byte of the step's map or word.
     phase : Value or int
         Position after the packet's encapsulation header, modulo 8.
@@ -126,13 +127,13 @@ class NextPlace:
         self,
         m: Module,
         flow: Flow,
-        last: Signal,
+        last_at: Signal,
         phase: Value | int,
         meanings: Mapping[int, Meaning],
         entry: data.View | None,
     ):
         self.m, self.flow, self.plan = m, flow, flow.plan
-        self.last, self.phase, self.meanings, self.entry = last, phase, meanings, entry
+        self.last_at, self.phase, self.meanings, self.entry = last_at, phase, meanings, entry
         self.ring = Ring(self.plan)
         self.names = [name.removesuffix("_is") for name in place_fields(self.plan) if "_is" in name]
         tail = self._tail()
@@ -175,7 +176,7 @@ class NextPlace:
         m.d.comb += [
             rest.eq(chosen("rest", 1)),
             amount.eq(Mux(rest, tail, chosen("add", len(tail)))),
-            total.eq(self.last + amount),
+            total.eq(self.last_at + amount),
             mask.eq(chosen("mask", 3)),
             low.eq(chosen("low", len(low))),
         ]
@@ -192,7 +193,7 @@ class NextPlace:
         sizes: list[tuple[Value, int]] = []
         rests: list[tuple[Value, Value]] = []
         for taken, step, _, meaning in self._rests():
-            addend = _align_addend(plan, plan.steps[step].align, shift_of(plan, step))
+            addend = _distance(plan, plan.steps[step].align, shift_of(plan, step))
             assert meaning.run is not None and self.entry is not None
             sizes.append((taken, addend + plan.runs[meaning.run.run].terminated))
             unit = plan.item_bytes(meaning.run.run)
@@ -207,7 +208,7 @@ class NextPlace:
     def _after_rest(self) -> Value:
         cases: dict[str, list[Value]] = {}
         for taken, _, jump, meaning in self._rests():
-            cases.setdefault(meaning.last(jump), []).append(taken)
+            cases.setdefault(meaning.next_last_at(jump), []).append(taken)
         if not cases:
             return Const(0, self.ring.bits)
         assert self.entry is not None
@@ -216,7 +217,7 @@ class NextPlace:
 
     def _rests(self) -> Iterator[tuple[Value, int, Jump, Meaning]]:
         """Yield the exits of steps that begin a run with a rest: taken, next step, jump, length."""
-        for taken, index, jump in self.flow.exits:
-            meaning = self.meanings.get(index)
+        for each in self.flow.exits:
+            meaning, jump = self.meanings.get(each.step), each.jump
             if meaning is not None and meaning.run is not None and jump.step is not None:
-                yield taken, jump.step, jump, meaning
+                yield each.taken, jump.step, jump, meaning

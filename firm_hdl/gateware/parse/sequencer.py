@@ -12,7 +12,7 @@ from firm_hdl.gateware.parse.judge import Judge
 from firm_hdl.gateware.parse.lengths import shift_of
 from firm_hdl.gateware.parse.orders import order_layout
 from firm_hdl.gateware.parse.places import NextPlace
-from firm_hdl.gateware.parse.progress import Progress
+from firm_hdl.gateware.parse.state import ParseState
 from firm_hdl.gateware.parse.step_length import StepLength
 from firm_hdl.gateware.positions import (
     Ring,
@@ -33,9 +33,10 @@ class Sequencer(wiring.Component):
     Each step gives one order, once all its bytes are in the buffer. The sequencer waits only for
     bytes and for `orders.ready`. The last order of a packet carries its status.
 
-    An error takes two cycles: one finds it, and one computes which bytes of the step are good. Then
-    the step is ordered with its good bytes, and all later steps without bytes and with lengths of
-    0. The rest of the packet is dropped.
+    An error in the bytes of a step takes two cycles: one finds it, and one computes which bytes are
+    good. Then the step is ordered with its good bytes. A length over its limit takes no cycle: its
+    step transfers it as 0. All later steps are ordered without bytes and with lengths of 0, and the
+    rest of the packet is dropped.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ class Sequencer(wiring.Component):
         The packet's last order is taken; go to the next packet.
     trailing : Out(2)
         Bytes of the packet after the message, if `next` and the status is `OK`.
-    at : Out(beat)
+    oldest : Out(beat)
         The sequencer needs no beat before this one.
     orders : Out(stream.Signature(order_layout(plan)))
         `valid` does not depend on `ready`; the payload is stable only with `valid`.
@@ -75,16 +76,16 @@ class Sequencer(wiring.Component):
                 "following": In(ring.beat_bits),
                 "next": Out(1),
                 "trailing": Out(2),
-                "at": Out(ring.beat_bits),
+                "oldest": Out(ring.beat_bits),
                 "orders": Out(stream.Signature(order_layout(plan))),
             }
         )
 
     def elaborate(self, platform: object) -> Module:
-        return _Circuit(self).m
+        return _SequencerLogic(self).m
 
 
-class _Circuit(Progress):
+class _SequencerLogic(ParseState):
     """The sequencer's logic, built by one method for each part of it.
 
     Few decisions come late in a cycle: whether the body of a length is skipped, whether all bytes
@@ -110,9 +111,9 @@ class _Circuit(Progress):
         ring = self.ring
         word_before = Cat(ring.lane(self.map_at), ring.beat(self.map_at) - state.lead)
         m.d.comb += [
-            self.step_end.eq(self.last + 1),
-            # limit - last - 1.
-            self.left.eq(c.limit + ~self.last),
+            self.step_end.eq(self.last_at + 1),
+            # limit - last_at - 1.
+            self.left.eq(c.limit + ~self.last_at),
             c.trailing.eq(self.left),
             self.present.eq(~self.left[-1]),
             self.exits_always.eq(state.plain | (state.words & flow.words.last)),
@@ -125,15 +126,15 @@ class _Circuit(Progress):
             # Whether a length of 0 ends the message is known late; then the end is its own step.
             self.ends_message.eq(state.end | (flow.exit_ends & self.exits_always)),
             self.ends_packet.eq(self.ends_message & c.ended),
-            self.map_at.eq(self.last + state.back.as_signed()),
-            self.items_at.eq(Mux(state.rest, self.first, word_before)),
+            self.map_at.eq(self.last_at + state.back.as_signed()),
+            self.items_at.eq(Mux(state.rest, self.first_at, word_before)),
         ]
 
     def _order(self) -> None:
         m, c, state, flow = self.m, self.c, self.state, self.flow
         order, bus, bad = c.orders.payload, self.plan.bus_bytes, self.bad
-        # Without an error, a step is ordered if it is allowed and its bytes are good. Only `good`
-        # is late in the cycle; so each sum of products has it as its last factor.
+        # Without an error, a step is ordered if it is allowed and its bytes are good. `good` is
+        # late in the cycle; so it is a factor of its own, and all else is computed before it.
         drains, allowed = self.drains, Signal(name="allowed")
         ready, good, ends = c.orders.ready, self.judge.good, self.ends_packet
         m.d.comb += [
@@ -161,16 +162,19 @@ class _Circuit(Progress):
             order.last.eq(state.rest | (flow.words.last & ~state.counted)),
             order.counted.eq(~bad & ~self.length.zero & ~self.length.over),
             order.final.eq(Cat(level.last for level in flow.levels)),
-            order.first.eq(self.ring.beat(self.first)),
+            order.first.eq(self.ring.beat(self.first_at)),
             order.ends.eq(self.ends_packet),
             order.status.eq(
                 Mux(bad, self.judge.code, Mux(self.judge.trailing, Status.TRAILING, Status.OK))
             ),
-            c.at.eq(self.ring.beat(self.first)),
+            c.oldest.eq(self.ring.beat(self.first_at)),
         ]
 
     def _too_early(self) -> Value:
-        """Return whether a step before all bytes would be ordered before its packet arrives."""
+        """Return whether the packet has not begun to arrive.
+
+        Only for the leading steps without bytes: others wait for their bytes.
+        """
         leading = takewhile(
             lambda i: not isinstance(self.plan.steps[i], RunStep) and not self.plan.steps[i].bytes,
             range(len(self.plan.steps)),
@@ -199,7 +203,7 @@ class _Circuit(Progress):
         with m.If(self.issue):
             m.d.sync += Value.cast(state).eq(next_state)
             with m.If(self.ends_packet):
-                m.d.sync += [self.bad.eq(0), self.rest.eq(0), self.has_nul.eq(0)]
+                m.d.sync += [self.rest.eq(0), self.has_nul.eq(0)]
             with m.Else():
                 self._begin_run()
 
@@ -223,8 +227,8 @@ class _Circuit(Progress):
         m, c, ring, plan = self.m, self.c, self.ring, self.plan
         start = Signal(ring.bits, name="next_packet")
         m.d.comb += start.eq(Cat(Const(0, ring.lane_bits), c.following))
-        ways = NextPlace(m, self.flow, self.last, self.phase, self.meanings, self.length.entry)
-        # Decisions by a length are late. After an error, positions have no meaning.
+        ways = NextPlace(m, self.flow, self.last_at, self.phase, self.meanings, self.length.entry)
+        # Decisions by a length are late. After an error, `last_at` has no meaning.
         early, last = ring.position("early_last"), ring.position("next_last")
         begin = start + shift_of(plan, plan.start.step)
         m.d.comb += [
@@ -237,13 +241,13 @@ class _Circuit(Progress):
                 )
             ),
         ]
-        # After an error, nothing is read; the end step drops the rest of the packet.
-        kept = Mux(self.state.end, c.limit, self.first)
+        # After an error, `first_at` only frees beats; the end step drops the rest of the packet.
+        kept = Mux(self.state.end, c.limit, self.first_at)
         first = Mux(self.ends_packet, start, Mux(self.bad, kept, self._items_start()))
         with m.If(self.issue | (self.bad & self.state.end)):
-            m.d.sync += self.first.eq(first)
+            m.d.sync += self.first_at.eq(first)
         with m.If(self.issue):
-            m.d.sync += self.last.eq(last)
+            m.d.sync += self.last_at.eq(last)
             if any(run.terminated for run in plan.runs):
                 rest = Mux(self.state.words, self.rest, self.length.rest)
                 m.d.sync += self.nul_at.eq(self.step_end + rest)

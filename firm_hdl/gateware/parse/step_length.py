@@ -8,7 +8,7 @@ from amaranth.hdl import Cat, Const, Signal, Value
 from amaranth.lib import data
 
 from firm_hdl.gateware.parse.lengths import Lengths, Meaning
-from firm_hdl.gateware.parse.progress import Progress
+from firm_hdl.gateware.parse.state import ParseState
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.plan.geometry import geometry
 
@@ -18,12 +18,12 @@ __all__ = ["StepLength"]
 class StepLength:
     """The length of the step, looked up in a table. Not a component: logic of one module.
 
-    All values are combinational, from registers and a memory that is read at `now.last`. In a step
-    without a length, `over`, `run_skips` and `loop_skips` are 0, and other values have no meaning.
+    All values are combinational, from registers and a memory that is read at `now.last_at`. In a
+    step without a length, `run_skips` and `loop_skips` are 0, and the other values have no meaning.
 
     Parameters
     ----------
-    now : Progress
+    now : ParseState
     beat : Value(beat_layout(plan))
         The beat that is written to the packet buffer in this cycle.
 
@@ -46,7 +46,7 @@ class StepLength:
         Items in the rest.
     """
 
-    def __init__(self, now: Progress, beat: data.View):
+    def __init__(self, now: ParseState, beat: data.View):
         self.now = now
         self.entry: data.View | None = None
         self.zero: Value = Const(0, 1)
@@ -75,7 +75,7 @@ class StepLength:
         m.submodules.lengths = lengths = Lengths(
             plan, geometry(plan), list(self.now.meanings.values())
         )
-        m.d.comb += [lengths.beat.eq(beat), lengths.key.eq(self.now.last)]
+        m.d.comb += [lengths.beat.eq(beat), lengths.key.eq(self.now.last_at)]
         self.count = lengths.count
         if isinstance(self.now.phase, Signal):
             # The phase of the packet that arrives.

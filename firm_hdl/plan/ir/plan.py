@@ -20,7 +20,7 @@ class Plan:
     ----------
     message : str
         Full name of the type.
-    wire : "ros1" or "cdr"
+    wire : Wire
     bus_bytes : int
         1, 2, 4, 8, 16, 32 or 64.
     max_message_bytes : int

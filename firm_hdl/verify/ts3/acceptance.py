@@ -167,7 +167,7 @@ class Acceptance:
     Parameters
     ----------
     message : Message
-    wire : "ros1" or "cdr"
+    wire : Wire
     options : Options
     result : Result
         Takes failures and figures.

@@ -74,7 +74,7 @@ def places(plan, meaning, length, key, phase):
     start = aligned(key + 1, meaning.run.align) if length else key + 1
     after = start + length * plan.item_bytes(meaning.run.run)
     return {
-        meaning.last(jump): (
+        meaning.next_last_at(jump): (
             aligned(after, plan.steps[jump.step].align) + shift_of(plan, jump.step)
         )
         % (1 << ring.bits)

@@ -35,7 +35,7 @@ def compare(rates, tamper=lambda bits: bits):
             ctx.set(dut.i.valid, offered is not None)
             ready, at = rng.random() < rates[1], rng.randrange(16)
             ctx.set(dut.o.ready, ready)
-            ctx.set(dut.at, at)
+            ctx.set(dut.oldest, at)
             assert ctx.get(dut.i.ready) or queue
             first = LAYOUT.from_bits(queue[0]).first if queue else at
             assert ctx.get(dut.freed) == first

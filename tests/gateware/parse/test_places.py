@@ -58,7 +58,7 @@ class Ordering(wiring.Component):
             sequencer.ended.eq(buffer.ended),
             sequencer.following.eq(buffer.following),
             buffer.next.eq(sequencer.next),
-            buffer.freed.eq(sequencer.at),
+            buffer.freed.eq(sequencer.oldest),
         ]
         return m
 

@@ -255,8 +255,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
 , message__linear__z__payload, message__angular__x__payload, message__angular__y__payload, message__angular__z__payload, aclk);
   input aclk;
   wire aclk;
-  wire [3:0] at;
-  wire [3:0] \at$30 ;
   wire [73:0] beat;
   wire [73:0] \beat$28 ;
   wire [3:0] \beat$28.at ;
@@ -373,6 +371,8 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   wire [2:0] \o__payload.step ;
   wire o__ready;
   wire o__valid;
+  wire [3:0] oldest;
+  wire [3:0] \oldest$30 ;
   wire [41:0] orders__payload;
   wire [41:0] \orders__payload$22 ;
   wire \orders__payload$22.blank ;
@@ -527,7 +527,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   );
   \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue  queue (
     .aclk(aclk),
-    .at(at),
     .freed(freed),
     .i__payload(i__payload),
     .i__ready(orders__ready),
@@ -535,6 +534,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
     .o__payload(\orders__payload$22 ),
     .o__ready(o__ready),
     .o__valid(\orders__valid$24 ),
+    .oldest(oldest),
     .rst(rst)
   );
   \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer  sequencer (
@@ -542,7 +542,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
     .beat(beat),
     .ended(ended),
     .following(following),
-    .header_at(at),
+    .header_at(oldest),
     .limit(limit),
     .next_sig(next_sig),
     .orders__payload(i__payload),
@@ -651,7 +651,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   assign \status__valid$36  = status__valid;
   assign \status__payload$34  = status__payload;
   assign \freed$32  = freed;
-  assign \at$30  = at;
+  assign \oldest$30  = oldest;
   assign \beat$28  = beat;
   assign \orders__ready$27  = o__ready;
   assign o__valid = \orders__valid$24 ;
@@ -715,12 +715,12 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.buffer (packets_
   wire [4:0] \$7 ;
   wire \$8 ;
   wire \$9 ;
-  wire [3:0] choice_271_Y ;
-  wire [3:0] choice_275_Y ;
-  wire [10:0] choice_281_Y ;
-  wire choice_285_Y ;
-  wire [3:0] choice_289_Y ;
-  wire [6:0] choice_293_Y ;
+  wire [3:0] choice_269_Y ;
+  wire [3:0] choice_273_Y ;
+  wire [10:0] choice_279_Y ;
+  wire choice_283_Y ;
+  wire [3:0] choice_287_Y ;
+  wire [6:0] choice_291_Y ;
   input aclk;
   wire aclk;
   reg [3:0] arrived = 4'h0;
@@ -874,19 +874,19 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.buffer (packets_
     pushed <= \$37 ;
   always @(posedge aclk)
     popped <= \$38 ;
-  assign choice_271_Y  = \$26  ? \$27 [3:0] : popped;
-  assign \$38  = rst ? 4'h0 : choice_271_Y ;
-  assign choice_275_Y  = \$23  ? \$24 [3:0] : pushed;
-  assign \$37  = rst ? 4'h0 : choice_275_Y ;
+  assign choice_269_Y  = \$26  ? \$27 [3:0] : popped;
+  assign \$38  = rst ? 4'h0 : choice_269_Y ;
+  assign choice_273_Y  = \$23  ? \$24 [3:0] : pushed;
+  assign \$37  = rst ? 4'h0 : choice_273_Y ;
   assign \$36  = rst ? 1'h0 : \$22 ;
-  assign choice_281_Y  = \$18  ? \$19  : second;
-  assign \$35  = rst ? 11'h000 : choice_281_Y ;
-  assign choice_285_Y  = \$14  ? \$16  : ended;
-  assign \$34  = rst ? 1'h0 : choice_285_Y ;
-  assign choice_289_Y  = \$14  ? \$15 [10:7] : following;
-  assign \$33  = rst ? 4'h0 : choice_289_Y ;
-  assign choice_293_Y  = \$14  ? \$15 [6:0] : limit;
-  assign \$32  = rst ? 7'h00 : choice_293_Y ;
+  assign choice_279_Y  = \$18  ? \$19  : second;
+  assign \$35  = rst ? 11'h000 : choice_279_Y ;
+  assign choice_283_Y  = \$14  ? \$16  : ended;
+  assign \$34  = rst ? 1'h0 : choice_283_Y ;
+  assign choice_287_Y  = \$14  ? \$15 [10:7] : following;
+  assign \$33  = rst ? 4'h0 : choice_287_Y ;
+  assign choice_291_Y  = \$14  ? \$15 [6:0] : limit;
+  assign \$32  = rst ? 7'h00 : choice_291_Y ;
   assign \$31  = rst ? 1'h1 : \$12 ;
   assign \$30  = rst ? 4'h0 : \$7 [3:0];
   assign \$29  = rst ? 4'h0 : \$6 [3:0];
@@ -1229,7 +1229,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (message__
   wire go_3;
   wire go_4;
   wire go_5;
-  reg [7:0] items_have = 8'h00;
+  reg [7:0] items_good = 8'h00;
   reg [63:0] items_word = 64'h0000000000000000;
   wire [2:0] lane_0__items__addr;
   wire [7:0] lane_0__items__data;
@@ -1287,7 +1287,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (message__
   wire [2:0] lane_7__write__addr;
   wire [7:0] lane_7__write__data;
   wire lane_7__write__en;
-  reg [7:0] map_have = 8'h00;
+  reg [7:0] map_good = 8'h00;
   reg [63:0] map_word = 64'h0000000000000000;
   output [63:0] message__angular__x__payload;
   reg [63:0] message__angular__x__payload = 64'h0000000000000000;
@@ -1733,11 +1733,11 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (message__
   always @(posedge aclk)
     items_word <= \$192 ;
   always @(posedge aclk)
-    items_have <= \$193 ;
+    items_good <= \$193 ;
   always @(posedge aclk)
     map_word <= \$194 ;
   always @(posedge aclk)
-    map_have <= \$195 ;
+    map_good <= \$195 ;
   always @(posedge aclk)
     active_0 <= \$199 ;
   always @(posedge aclk)
@@ -1791,10 +1791,10 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (message__
   assign \$201  = rst ? 1'h0 : \$58 ;
   assign \$200  = rst ? 1'h0 : \$51 ;
   assign \$199  = rst ? 1'h0 : \$44 ;
-  assign choice_12_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
-  assign \$195  = slow ? map_have : { \$37 , \$36 , \$35 , \$34 , \$33 , \$32 , \$31 , \$30  };
+  assign choice_12_Y  = map_good[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
+  assign \$195  = slow ? map_good : { \$37 , \$36 , \$35 , \$34 , \$33 , \$32 , \$31 , \$30  };
   assign \$194  = slow ? map_word : { lane_7__map__data, lane_6__map__data, lane_5__map__data, lane_4__map__data, lane_3__map__data, lane_2__map__data, lane_1__map__data, lane_0__map__data };
-  assign \$193  = slow ? items_have : { \$29 , \$28 , \$27 , \$26 , \$25 , \$24 , \$23 , \$22  };
+  assign \$193  = slow ? items_good : { \$29 , \$28 , \$27 , \$26 , \$25 , \$24 , \$23 , \$22  };
   assign \$192  = slow ? items_word : { lane_7__items__data, lane_6__items__data, lane_5__items__data, lane_4__items__data, lane_3__items__data, lane_2__items__data, lane_1__items__data, lane_0__items__data };
   assign choice_139_Y  = status__ready ? 1'h0 : status__valid;
   assign \$218  = go_3 ? choice_12_Y  : message__angular__x__payload;
@@ -1813,7 +1813,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (message__
   assign choice_165_Y  = message__linear__z__ready ? 1'h0 : message__linear__z__valid;
   assign choice_167_Y  = go_2 ? 1'h1 : choice_165_Y ;
   assign \$187  = rst ? 1'h0 : choice_167_Y ;
-  assign choice_17_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
+  assign choice_17_Y  = map_good[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
   assign choice_171_Y  = message__linear__y__ready ? 1'h0 : message__linear__y__valid;
   assign choice_173_Y  = go_1 ? 1'h1 : choice_171_Y ;
   assign \$186  = rst ? 1'h0 : choice_173_Y ;
@@ -1821,10 +1821,10 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (message__
   assign choice_179_Y  = go_0 ? 1'h1 : choice_177_Y ;
   assign \$185  = rst ? 1'h0 : choice_179_Y ;
   assign \$217  = go_2 ? choice_17_Y  : message__linear__z__payload;
-  assign choice_2_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], items_word[63:32] } : 64'h0000000000000000;
-  assign choice_22_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
+  assign choice_2_Y  = map_good[3] ? (* full_case = 32'd1 *) { map_word[31:0], items_word[63:32] } : 64'h0000000000000000;
+  assign choice_22_Y  = map_good[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
   assign \$216  = go_1 ? choice_22_Y  : message__linear__y__payload;
-  assign choice_27_Y  = map_have[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
+  assign choice_27_Y  = map_good[3] ? (* full_case = 32'd1 *) { map_word[31:0], carried } : 64'h0000000000000000;
   assign \$215  = go_0 ? choice_27_Y  : message__linear__x__payload;
   assign choice_31_Y  = slow ? cut_4 : \$180 ;
   assign \$214  = rst ? 1'h0 : choice_31_Y ;
@@ -1847,7 +1847,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (message__
   assign \$210 [23:16] = \$183  ? map_word[55:48] : choice_63_Y ;
   assign choice_67_Y  = \$150  ? map_word[47:40] : carried[15:8];
   assign choice_69_Y  = \$158  ? map_word[47:40] : choice_67_Y ;
-  assign choice_7_Y  = items_have[3] ? (* full_case = 32'd1 *) { items_word[31:0], carried } : 64'h0000000000000000;
+  assign choice_7_Y  = items_good[3] ? (* full_case = 32'd1 *) { items_word[31:0], carried } : 64'h0000000000000000;
   assign choice_71_Y  = \$166  ? map_word[47:40] : choice_69_Y ;
   assign choice_73_Y  = \$174  ? map_word[47:40] : choice_71_Y ;
   assign \$210 [15:8] = \$182  ? map_word[47:40] : choice_73_Y ;
@@ -1933,7 +1933,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (message__
   assign take = orders__ready;
 endmodule
 
-module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__valid, i__ready, freed, o__ready, i__payload, at, o__valid, o__payload, aclk);
+module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__valid, i__ready, freed, o__ready, i__payload, oldest, o__valid, o__payload, aclk);
   wire [3:0] \$1 ;
   wire \$2 ;
   wire [41:0] \$3 ;
@@ -1947,8 +1947,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__v
   wire choice_195_Y ;
   input aclk;
   wire aclk;
-  input [3:0] at;
-  wire [3:0] at;
   output [3:0] freed;
   wire [3:0] freed;
   reg has_second = 1'h0;
@@ -2010,6 +2008,8 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__v
   wire o__ready;
   output o__valid;
   reg o__valid = 1'h0;
+  input [3:0] oldest;
+  wire [3:0] oldest;
   input rst;
   wire rst;
   reg [41:0] second = 42'h00000000000;
@@ -2036,7 +2036,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__v
   (* enum_value_110 = "ITEMS" *)
   wire [2:0] \second.status ;
   wire [2:0] \second.step ;
-  assign \$1  = has_second ? second[37:34] : at;
+  assign \$1  = has_second ? second[37:34] : oldest;
   assign freed = o__valid ? o__payload[37:34] : \$1 ;
   assign \$2  = i__valid | has_second;
   assign \$3  = has_second ? second : i__payload;
@@ -2161,74 +2161,75 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   wire [6:0] \$174 ;
   (* unused_bits = "7" *)
   wire [7:0] \$175 ;
-  wire \$187 ;
+  wire \$180 ;
   wire \$188 ;
   wire \$189 ;
   (* unused_bits = "7" *)
   wire [7:0] \$19 ;
   wire \$190 ;
   wire \$191 ;
+  wire \$192 ;
   wire [6:0] \$2 ;
   wire \$20 ;
-  wire \$200 ;
-  wire \$201 ;
   wire \$202 ;
   wire \$203 ;
   wire \$204 ;
-  wire [2:0] \$210 ;
-  wire [2:0] \$211 ;
+  wire \$205 ;
+  wire \$206 ;
+  wire [2:0] \$212 ;
   wire [2:0] \$213 ;
-  wire \$214 ;
-  wire \$215 ;
+  wire [2:0] \$215 ;
   wire \$216 ;
-  wire [2:0] \$217 ;
-  wire [3:0] \$218 ;
-  (* unused_bits = "0 1 2 3 4 5 7" *)
-  wire [7:0] \$219 ;
+  wire \$217 ;
+  wire \$218 ;
+  wire [2:0] \$219 ;
   wire \$22 ;
+  wire [3:0] \$220 ;
+  (* unused_bits = "0 1 2 3 4 5 7" *)
+  wire [7:0] \$221 ;
   (* unused_bits = "7" *)
-  wire [7:0] \$220 ;
-  wire \$221 ;
-  (* unused_bits = "4 5 6 7" *)
   wire [7:0] \$222 ;
-  wire [3:0] \$223 ;
-  wire [3:0] \$224 ;
-  wire \$225 ;
+  wire \$223 ;
+  (* unused_bits = "4 5 6 7" *)
+  wire [7:0] \$224 ;
+  wire [3:0] \$225 ;
   wire [3:0] \$226 ;
-  wire [3:0] \$227 ;
+  wire \$227 ;
   wire [3:0] \$228 ;
   wire [3:0] \$229 ;
   wire \$23 ;
-  wire \$230 ;
-  wire \$231 ;
+  wire [3:0] \$230 ;
+  wire [3:0] \$231 ;
   wire \$232 ;
-  wire [3:0] \$233 ;
-  wire [3:0] \$234 ;
-  wire \$235 ;
-  wire \$236 ;
-  wire [3:0] \$237 ;
-  wire [3:0] \$238 ;
-  wire \$239 ;
+  wire \$233 ;
+  wire \$234 ;
+  wire [3:0] \$235 ;
+  wire [3:0] \$236 ;
+  wire \$237 ;
+  wire \$238 ;
+  wire [3:0] \$239 ;
   wire \$24 ;
   wire [3:0] \$240 ;
-  wire [3:0] \$241 ;
+  wire \$241 ;
+  wire [3:0] \$242 ;
+  wire [3:0] \$243 ;
   wire \$27 ;
-  wire \$279 ;
-  wire \$280 ;
-  wire [6:0] \$281 ;
-  wire [6:0] \$282 ;
+  wire \$281 ;
+  wire \$282 ;
   wire [6:0] \$283 ;
-  wire \$284 ;
-  wire \$285 ;
-  wire [2:0] \$286 ;
-  wire [3:0] \$287 ;
-  wire [3:0] \$288 ;
-  wire \$289 ;
+  wire [6:0] \$284 ;
+  wire [6:0] \$285 ;
+  wire \$286 ;
+  wire \$287 ;
+  wire [2:0] \$288 ;
+  wire [3:0] \$289 ;
   wire \$29 ;
-  wire [33:0] \$291 ;
-  wire \$292 ;
-  wire [6:0] \$294 ;
-  wire [6:0] \$295 ;
+  wire [3:0] \$290 ;
+  wire \$291 ;
+  wire [33:0] \$293 ;
+  wire \$294 ;
+  wire [6:0] \$296 ;
+  wire [6:0] \$297 ;
   (* unused_bits = "0 1 7" *)
   wire [7:0] \$3 ;
   wire [6:0] \$33 ;
@@ -2281,11 +2282,9 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   wire choice_259_Y ;
   wire choice_263_Y ;
   wire choice_265_Y ;
-  wire choice_267_Y ;
   input aclk;
   wire aclk;
   wire allowed;
-  wire [3:0] at;
   reg bad = 1'h0;
   input [73:0] beat;
   wire [73:0] beat;
@@ -2337,7 +2336,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   wire exit_rest;
   wire [6:0] exit_sum;
   wire exits_always;
-  reg [6:0] first = 7'h00;
+  reg [6:0] first_at = 7'h00;
   input [3:0] following;
   wire [3:0] following;
   wire good;
@@ -2349,7 +2348,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   wire [6:0] items_at;
   reg [3:0] items_room = 4'h0;
   wire [3:0] items_wanted;
-  reg [6:0] last = 7'h07;
+  reg [6:0] last_at = 7'h07;
   (* unused_bits = "0 1" *)
   wire [6:0] left;
   input [6:0] limit;
@@ -2369,6 +2368,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   wire nonzero;
   wire [6:0] nul_at;
   wire [6:0] \nul_at$26 ;
+  wire [3:0] oldest;
   output [41:0] orders__payload;
   wire [41:0] orders__payload;
   wire \orders__payload.blank ;
@@ -2428,8 +2428,8 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   reg words_last = 1'h1;
   wire words_loads;
   wire wrong_nul;
-  assign { \$1 [7], step_end } = last + 1'h1;
-  assign \$2  = ~ last;
+  assign { \$1 [7], step_end } = last_at + 1'h1;
+  assign \$2  = ~ last_at;
   assign { \$3 [7], left } = limit + \$2 ;
   assign present = ~ left[6];
   assign \$4  = state[14] & words_last;
@@ -2440,12 +2440,12 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \$10  = state[5] & exits_always;
   assign ends_message = state[19] | \$10 ;
   assign ends_packet = ends_message & ended;
-  assign { \$11 [8:7], map_at } = $signed({ 1'h0, last }) + $signed(state[11:7]);
+  assign { \$11 [8:7], map_at } = $signed({ 1'h0, last_at }) + $signed(state[11:7]);
   assign \$12  = map_at[6:3] - state[17];
-  assign { \$13 [7], items_at } = state[16] ? { 1'h0, first } : { \$12 , map_at[2:0] };
+  assign { \$13 [7], items_at } = state[16] ? { 1'h0, first_at } : { \$12 , map_at[2:0] };
   assign \$15  = | left[5:2];
   assign \trailing$31  = present & \$15 ;
-  assign { \$19 [7], header_within } = limit - first;
+  assign { \$19 [7], header_within } = limit - first_at;
   assign \$20  = state[0] & \mismatch$34 ;
   assign \$22  = ~ header_within[6];
   assign \$23  = \$20  & \$22 ;
@@ -2455,18 +2455,18 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \$29  = ~ \$27 ;
   assign good = present & \$29 ;
   assign cut = ended & left[6];
-  assign \$33  = ~ last;
+  assign \$33  = ~ last_at;
   assign \$41  = limit ^ \$33 ;
   assign \$42  = $signed(2'h1) - $signed(state[11:7]);
   assign \$43  = $signed(2'h1) - $signed(state[11:7]);
   assign \$50  = \$41  ^ { \$43 [5], \$42  };
-  assign \$51  = ~ last;
+  assign \$51  = ~ last_at;
   assign \$59  = limit & \$51 ;
   assign \$60  = $signed(2'h1) - $signed(state[11:7]);
   assign \$61  = $signed(2'h1) - $signed(state[11:7]);
   assign \$68  = limit & { \$61 [5], \$60  };
   assign \$69  = \$59  | \$68 ;
-  assign \$70  = ~ last;
+  assign \$70  = ~ last_at;
   assign \$78  = $signed(2'h1) - $signed(state[11:7]);
   assign \$79  = $signed(2'h1) - $signed(state[11:7]);
   assign \$86  = \$70  & { \$79 [5], \$78  };
@@ -2521,110 +2521,110 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \$151  = done ? { \$150 , 9'h000, \$149 , state[3], 2'h0, state[5], \$146 , state[4], 5'h00, \$144 , \$143 , state[4], 1'h0, \$141 , state[5:0], 1'h0 } : 34'h000000000;
   assign next_state = ends_packet ? 34'h200840c81 : \$151 ;
   assign exit_amount = state[32] ? 6'h00 : state[25:20];
-  assign { \$161 [7], exit_sum } = last + exit_amount;
-  assign { \$164 [7], body_sum } = last + 6'h00;
+  assign { \$161 [7], exit_sum } = last_at + exit_amount;
+  assign { \$164 [7], body_sum } = last_at + 6'h00;
   assign \$167  = { following, 3'h0 } + 3'h7;
   assign \$168  = ~ { 4'h0, state[28:26] };
   assign \$169  = exit_sum & \$168 ;
   assign \$170  = \$169  | { 4'h0, state[31:29] };
   assign \$174  = exits_always ? \$170  : body_sum;
   assign { \$175 [7], next_last } = ends_packet ? \$167  : { 1'h0, \$174  };
-  assign \$187  = mismatch | cut;
-  assign \$188  = ~ ended;
-  assign \$189  = ends_message & \$188 ;
-  assign \$190  = \$189  & \trailing$31 ;
-  assign \$191  = \$187  | \$190 ;
-  assign \$200  = mismatch | cut;
-  assign \$201  = ~ ended;
-  assign \$202  = ends_message & \$201 ;
-  assign \$203  = \$202  & \trailing$31 ;
-  assign \$204  = \$200  | \$203 ;
-  assign \$210  = ends_message ? 3'h2 : 3'h3;
-  assign \$211  = cut ? 3'h1 : \$210 ;
-  assign \$213  = mismatch ? 3'h4 : \$211 ;
-  assign \$214  = drains & orders__ready;
-  assign \$215  = code == 1'h1;
-  assign \$216  = & map_left[6:3];
-  assign \$217  = \$216  ? map_left[2:0] : 3'h0;
-  assign \$218  = map_left[6] ? { 1'h0, \$217  } : 4'h8;
-  assign \$219  = limit - first;
-  assign \$220  = limit - first;
-  assign \$221  = \$220 [6:0] >= 4'h8;
-  assign \$222  = limit - first;
-  assign \$223  = \$221  ? 4'h8 : \$222 [3:0];
-  assign \$224  = \$219 [6] ? 4'h0 : \$223 ;
-  assign \$225  = map_left >= 4'h8;
-  assign \$226  = \$225  ? 4'h8 : map_left[3:0];
-  assign \$227  = map_left[6] ? 4'h0 : \$226 ;
-  assign \$228  = state[16] ? \$224  : \$227 ;
-  assign \$229  = state[17] ? \$218  : \$228 ;
-  assign \$230  = code == 2'h2;
-  assign \$231  = code == 3'h5;
-  assign \$232  = \$230  | \$231 ;
-  assign \$233  = \$232  ? 4'h8 : 4'h0;
-  assign \$234  = \$215  ? \$229  : \$233 ;
-  assign \$235  = code == 1'h1;
-  assign \$236  = map_left >= 4'h8;
-  assign \$237  = \$236  ? 4'h8 : map_left[3:0];
-  assign \$238  = map_left[6] ? 4'h0 : \$237 ;
-  assign \$239  = code == 2'h2;
-  assign \$240  = \$239  ? 4'h8 : 4'h0;
-  assign \$241  = \$235  ? \$238  : \$240 ;
-  assign \$279  = bad & state[19];
-  assign \$280  = issue | \$279 ;
-  assign \$281  = state[19] ? limit : first;
-  assign \$282  = bad ? \$281  : step_end;
-  assign \$283  = ends_packet ? { following, 3'h0 } : \$282 ;
+  assign \$180  = issue & ends_packet;
+  assign \$188  = mismatch | cut;
+  assign \$189  = ~ ended;
+  assign \$190  = ends_message & \$189 ;
+  assign \$191  = \$190  & \trailing$31 ;
+  assign \$192  = \$188  | \$191 ;
+  assign \$202  = mismatch | cut;
+  assign \$203  = ~ ended;
+  assign \$204  = ends_message & \$203 ;
+  assign \$205  = \$204  & \trailing$31 ;
+  assign \$206  = \$202  | \$205 ;
+  assign \$212  = ends_message ? 3'h2 : 3'h3;
+  assign \$213  = cut ? 3'h1 : \$212 ;
+  assign \$215  = mismatch ? 3'h4 : \$213 ;
+  assign \$216  = drains & orders__ready;
+  assign \$217  = code == 1'h1;
+  assign \$218  = & map_left[6:3];
+  assign \$219  = \$218  ? map_left[2:0] : 3'h0;
+  assign \$220  = map_left[6] ? { 1'h0, \$219  } : 4'h8;
+  assign \$221  = limit - first_at;
+  assign \$222  = limit - first_at;
+  assign \$223  = \$222 [6:0] >= 4'h8;
+  assign \$224  = limit - first_at;
+  assign \$225  = \$223  ? 4'h8 : \$224 [3:0];
+  assign \$226  = \$221 [6] ? 4'h0 : \$225 ;
+  assign \$227  = map_left >= 4'h8;
+  assign \$228  = \$227  ? 4'h8 : map_left[3:0];
+  assign \$229  = map_left[6] ? 4'h0 : \$228 ;
+  assign \$230  = state[16] ? \$226  : \$229 ;
+  assign \$231  = state[17] ? \$220  : \$230 ;
+  assign \$232  = code == 2'h2;
+  assign \$233  = code == 3'h5;
+  assign \$234  = \$232  | \$233 ;
+  assign \$235  = \$234  ? 4'h8 : 4'h0;
+  assign \$236  = \$217  ? \$231  : \$235 ;
+  assign \$237  = code == 1'h1;
+  assign \$238  = map_left >= 4'h8;
+  assign \$239  = \$238  ? 4'h8 : map_left[3:0];
+  assign \$240  = map_left[6] ? 4'h0 : \$239 ;
+  assign \$241  = code == 2'h2;
+  assign \$242  = \$241  ? 4'h8 : 4'h0;
+  assign \$243  = \$237  ? \$240  : \$242 ;
+  assign \$281  = bad & state[19];
+  assign \$282  = issue | \$281 ;
+  assign \$283  = state[19] ? limit : first_at;
+  assign \$284  = bad ? \$283  : step_end;
+  assign \$285  = ends_packet ? { following, 3'h0 } : \$284 ;
   always @(posedge aclk)
-    bad <= \$284 ;
+    bad <= \$286 ;
   always @(posedge aclk)
-    new_error <= \$285 ;
+    new_error <= \$287 ;
   always @(posedge aclk)
-    code <= \$286 ;
+    code <= \$288 ;
   always @(posedge aclk)
-    items_room <= \$287 ;
+    items_room <= \$289 ;
   always @(posedge aclk)
-    map_room <= \$288 ;
+    map_room <= \$290 ;
   always @(posedge aclk)
-    words_last <= \$289 ;
+    words_last <= \$291 ;
   always @(posedge aclk)
-    state <= \$291 ;
+    state <= \$293 ;
   always @(posedge aclk)
-    rest <= \$292 ;
+    rest <= \$294 ;
   always @(posedge aclk)
-    first <= \$294 ;
+    first_at <= \$296 ;
   always @(posedge aclk)
-    last <= \$295 ;
-  assign choice_199_Y  = issue ? next_last : last;
-  assign \$295  = rst ? 7'h07 : choice_199_Y ;
-  assign choice_203_Y  = \$280  ? \$283  : first;
-  assign \$294  = rst ? 7'h00 : choice_203_Y ;
+    last_at <= \$297 ;
+  assign choice_199_Y  = issue ? next_last : last_at;
+  assign \$297  = rst ? 7'h07 : choice_199_Y ;
+  assign choice_203_Y  = \$282  ? \$285  : first_at;
+  assign \$296  = rst ? 7'h00 : choice_203_Y ;
   assign choice_218_Y  = state[16] ? 1'h0 : rest;
   assign choice_220_Y  = state[12] ? 1'h0 : choice_218_Y ;
   assign choice_223_Y  = ends_packet ? (* full_case = 32'd1 *) 1'h0 : choice_220_Y ;
   assign choice_225_Y  = issue ? choice_223_Y  : rest;
-  assign \$292  = rst ? 1'h0 : choice_225_Y ;
+  assign \$294  = rst ? 1'h0 : choice_225_Y ;
   assign choice_229_Y  = issue ? next_state : state;
-  assign \$291  = rst ? 34'h200840c81 : choice_229_Y ;
-  assign \$289  = rst ? 1'h1 : words_last;
-  assign choice_237_Y  = \$214  ? 4'h0 : map_room;
-  assign choice_239_Y  = new_error ? \$241  : choice_237_Y ;
+  assign \$293  = rst ? 34'h200840c81 : choice_229_Y ;
+  assign \$291  = rst ? 1'h1 : words_last;
+  assign choice_237_Y  = \$216  ? 4'h0 : map_room;
+  assign choice_239_Y  = new_error ? \$243  : choice_237_Y ;
   assign choice_241_Y  = bad ? choice_239_Y  : map_room;
-  assign \$288  = rst ? 4'h0 : choice_241_Y ;
-  assign choice_245_Y  = \$214  ? 4'h0 : items_room;
-  assign choice_247_Y  = new_error ? \$234  : choice_245_Y ;
+  assign \$290  = rst ? 4'h0 : choice_241_Y ;
+  assign choice_245_Y  = \$216  ? 4'h0 : items_room;
+  assign choice_247_Y  = new_error ? \$236  : choice_245_Y ;
   assign choice_249_Y  = bad ? choice_247_Y  : items_room;
-  assign \$287  = rst ? 4'h0 : choice_249_Y ;
-  assign choice_253_Y  = bad ? code : \$213 ;
-  assign \$286  = rst ? 3'h0 : choice_253_Y ;
-  assign choice_257_Y  = bad ? new_error : \$204 ;
+  assign \$289  = rst ? 4'h0 : choice_249_Y ;
+  assign choice_253_Y  = bad ? code : \$215 ;
+  assign \$288  = rst ? 3'h0 : choice_253_Y ;
+  assign choice_257_Y  = bad ? new_error : \$206 ;
   assign choice_259_Y  = bad ? 1'h0 : choice_257_Y ;
-  assign \$285  = rst ? 1'h0 : choice_259_Y ;
-  assign choice_263_Y  = bad ? bad : \$191 ;
-  assign choice_265_Y  = ends_packet ? 1'h0 : choice_263_Y ;
-  assign choice_267_Y  = issue ? choice_265_Y  : choice_263_Y ;
-  assign \$284  = rst ? 1'h0 : choice_267_Y ;
-  assign orders__payload = { \$134 , ends_packet, first[6:3], 1'h0, \$128 , \$127 , \$124 , \$121 , \$120 , \$116 [2:0], \$115 [2:0], map_at[5:0], items_at[5:0], state[19], \$114 , \$113 , \$112  };
+  assign \$287  = rst ? 1'h0 : choice_259_Y ;
+  assign choice_263_Y  = bad ? bad : \$192 ;
+  assign choice_265_Y  = \$180  ? 1'h0 : choice_263_Y ;
+  assign \$286  = rst ? 1'h0 : choice_265_Y ;
+  assign orders__payload = { \$134 , ends_packet, first_at[6:3], 1'h0, \$128 , \$127 , \$124 , \$121 , \$120 , \$116 [2:0], \$115 [2:0], map_at[5:0], items_at[5:0], state[19], \$114 , \$113 , \$112  };
   assign next_packet = { following, 3'h0 };
   assign exit_low = { 4'h0, state[31:29] };
   assign body_mask = 3'h0;
@@ -2632,7 +2632,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer.marks  marks (
     .aclk(aclk),
     .beat(beat),
-    .header_at(first[6:3]),
+    .header_at(first_at[6:3]),
     .mismatch(\mismatch$34 ),
     .rst(rst)
   );
@@ -2645,18 +2645,18 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \state.rest  = state[16];
   assign \state.lead  = state[17];
   assign \state.plain  = state[18];
+  assign \$175 [6:0] = next_last;
   assign \state.end  = state[19];
   assign \state.exit_add  = state[25:20];
-  assign \$175 [6:0] = next_last;
   assign \state.exit_mask  = state[28:26];
   assign \state.exit_low  = state[31:29];
   assign \state.exit_rest  = state[32];
+  assign \$164 [6:0] = body_sum;
   assign \state.exit_is  = state[33];
   assign \beat.data  = beat[63:0];
-  assign \$164 [6:0] = body_sum;
+  assign \$161 [6:0] = exit_sum;
   assign \beat.count  = beat[67:64];
   assign \beat.last  = beat[68];
-  assign \$161 [6:0] = exit_sum;
   assign \beat.at  = beat[72:69];
   assign \beat.valid  = beat[73];
   assign \beat$24.data  = beat[63:0];
@@ -2685,7 +2685,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \$11 [6:0] = map_at;
   assign \$3 [6:0] = left;
   assign \$1 [6:0] = step_end;
-  assign header_at = first[6:3];
+  assign header_at = first_at[6:3];
   assign early_last = next_last;
   assign body_amount = 6'h00;
   assign body_rest = 1'h0;
@@ -2695,7 +2695,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign words_keeps = 1'h1;
   assign words_down = 1'h0;
   assign words_loads = 1'h0;
-  assign at = first[6:3];
+  assign oldest = first_at[6:3];
   assign nonzero = 1'h0;
   assign wrong_nul = 1'h0;
   assign \nul_at$26  = 7'h00;

@@ -1286,7 +1286,7 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   wire [6:0] base;
   reg [3:0] bound = 4'h5;
   reg [3:0] complete = 4'h0;
-  reg [3:0] done = 4'h0;
+  reg [3:0] complete_next = 4'h0;
   wire [6:0] end_sig;
   wire [2:0] ends__read__addr;
   wire [4:0] ends__read__data;
@@ -1297,10 +1297,11 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   wire [3:0] \ends__write__data.count ;
   wire \ends__write__data.error ;
   wire ends__write__en;
+  reg ends_packet = 1'h0;
   output error;
   reg error = 1'h0;
   wire error_now;
-  reg final_sig = 1'h0;
+  reg failed = 1'h0;
   reg [3:0] first = 4'h0;
   wire is_last;
   wire [2:0] items_0__read__addr;
@@ -1345,7 +1346,6 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   wire map_used_4;
   wire map_written_0;
   wire map_written_4;
-  reg marked = 1'h0;
   wire [3:0] newest;
   output [68:0] packets__payload;
   reg [68:0] packets__payload = 69'h000000000000000000;
@@ -1503,8 +1503,8 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   assign map_used_4 = writes & \$28 ;
   assign { \$29 [3], map_4__write__addr } = map_start[5:3] + 1'h0;
   assign { \$30 [7:1], map_written_4 } = map_has_4 >> first[2:0];
-  assign { \$31 [4:3], ends__write__addr } = done - 1'h1;
-  assign ends__write__en = writes & final_sig;
+  assign { \$31 [4:3], ends__write__addr } = complete_next - 1'h1;
+  assign ends__write__en = writes & ends_packet;
   assign \$32  = complete != first;
   assign \$33  = ~ packets__valid;
   assign \$34  = \$33  | packets__ready;
@@ -1614,7 +1614,7 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   assign \$137  = map_used_4 & \$136 ;
   assign \$138  = ~ waits;
   assign \$139  = writes & \$138 ;
-  assign \$140  = done - 1'h1;
+  assign \$140  = complete_next - 1'h1;
   assign \$141  = first + 1'h1;
   assign \$142  = items_written_0 ? items_0__read__data[31:0] : 32'd0;
   assign \$143  = map_written_0 ? map_0__read__data : 32'd0;
@@ -1641,11 +1641,11 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   always @(posedge aclk)
     at <= \$157 ;
   always @(posedge aclk)
-    done <= \$158 ;
+    complete_next <= \$158 ;
   always @(posedge aclk)
-    final_sig <= \$159 ;
+    ends_packet <= \$159 ;
   always @(posedge aclk)
-    marked <= \$160 ;
+    failed <= \$160 ;
   always @(posedge aclk)
     waits <= \$161 ;
   always @(posedge aclk)
@@ -1680,7 +1680,7 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   assign \$171  = rst ? 4'h0 : choice_9_Y ;
   assign choice_113_Y  = choice_114_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[1];
   assign choice_114_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h1;
-  assign choice_115_Y  = final_sig ? choice_113_Y  : last[1];
+  assign choice_115_Y  = ends_packet ? choice_113_Y  : last[1];
   assign choice_117_Y  = \$139  ? choice_115_Y  : last[1];
   assign choice_125_Y  = choice_126_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_117_Y ;
   assign choice_126_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h1;
@@ -1689,7 +1689,7 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   assign choice_13_Y  = packets__ready ? 1'h0 : packets__valid;
   assign choice_138_Y  = choice_139_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[0];
   assign choice_139_CMP  = ! (* full_case = 32'd1 *) \$140 [2:0];
-  assign choice_140_Y  = final_sig ? choice_138_Y  : last[0];
+  assign choice_140_Y  = ends_packet ? choice_138_Y  : last[0];
   assign choice_142_Y  = \$139  ? choice_140_Y  : last[0];
   assign choice_15_Y  = reads ? 1'h1 : choice_13_Y ;
   assign choice_151_Y  = choice_152_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_142_Y ;
@@ -1698,14 +1698,14 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   assign \$169 [0] = rst ? 1'h0 : choice_153_Y ;
   assign choice_158_Y  = choice_159_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[6];
   assign choice_159_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h6;
-  assign choice_160_Y  = final_sig ? choice_158_Y  : last[6];
+  assign choice_160_Y  = ends_packet ? choice_158_Y  : last[6];
   assign choice_162_Y  = \$139  ? choice_160_Y  : last[6];
   assign choice_165_Y  = choice_166_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_162_Y ;
   assign choice_166_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h6;
   assign choice_167_Y  = reads ? choice_165_Y  : choice_162_Y ;
   assign \$169 [6] = rst ? 1'h0 : choice_167_Y ;
   assign \$170  = rst ? 1'h0 : choice_15_Y ;
-  assign choice_171_Y  = \$139  ? done : complete;
+  assign choice_171_Y  = \$139  ? complete_next : complete;
   assign \$168  = rst ? 4'h0 : choice_171_Y ;
   assign choice_175_Y  = \$137  ? 1'h1 : map_has_4[7];
   assign choice_177_Y  = \$135  ? 1'h0 : choice_175_Y ;
@@ -1727,7 +1727,7 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   assign choice_207_Y  = \$111  ? 1'h0 : choice_205_Y ;
   assign \$167 [1] = rst ? 1'h0 : choice_207_Y ;
   assign choice_20_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h7;
-  assign choice_21_Y  = final_sig ? choice_19_Y  : last[7];
+  assign choice_21_Y  = ends_packet ? choice_19_Y  : last[7];
   assign choice_211_Y  = \$109  ? 1'h1 : map_has_4[0];
   assign choice_213_Y  = \$107  ? 1'h0 : choice_211_Y ;
   assign \$167 [0] = rst ? 1'h0 : choice_213_Y ;
@@ -1796,17 +1796,17 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   assign choice_329_Y  = takes ? words__payload_128[31] : waits;
   assign choice_33_Y  = choice_34_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[5];
   assign \$161  = rst ? 1'h0 : choice_329_Y ;
-  assign choice_333_Y  = takes ? words__payload_128[32] : marked;
+  assign choice_333_Y  = takes ? words__payload_128[32] : failed;
   assign \$160  = rst ? 1'h0 : choice_333_Y ;
-  assign choice_337_Y  = takes ? words__payload_128[29] : final_sig;
+  assign choice_337_Y  = takes ? words__payload_128[29] : ends_packet;
   assign \$159  = rst ? 1'h0 : choice_337_Y ;
-  assign choice_341_Y  = takes ? end_sig[6:3] : done;
+  assign choice_341_Y  = takes ? end_sig[6:3] : complete_next;
   assign \$158  = rst ? 4'h0 : choice_341_Y ;
   assign choice_345_Y  = takes ? end_sig : at;
   assign \$157  = rst ? 7'h00 : choice_345_Y ;
   assign choice_349_Y  = takes ? words__payload_128[7:4] : map_size;
   assign choice_34_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h5;
-  assign choice_35_Y  = final_sig ? choice_33_Y  : last[5];
+  assign choice_35_Y  = ends_packet ? choice_33_Y  : last[5];
   assign \$156  = rst ? 4'h0 : choice_349_Y ;
   assign choice_353_Y  = takes ? { \$13 [3:0], base[2:0] } : map_start;
   assign \$155  = rst ? 7'h00 : choice_353_Y ;
@@ -1825,7 +1825,7 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   assign \$172 [67:64] = reads ? \$148  : packets__payload[67:64];
   assign choice_50_Y  = choice_51_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[4];
   assign choice_51_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h4;
-  assign choice_52_Y  = final_sig ? choice_50_Y  : last[4];
+  assign choice_52_Y  = ends_packet ? choice_50_Y  : last[4];
   assign choice_54_Y  = \$139  ? choice_52_Y  : last[4];
   assign choice_59_Y  = choice_60_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_54_Y ;
   assign choice_60_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h4;
@@ -1834,7 +1834,7 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   assign choice_69_Y  = choice_70_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[3];
   assign \$172 [63:0] = reads ? { \$147 , \$144  } : packets__payload[63:0];
   assign choice_70_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h3;
-  assign choice_71_Y  = final_sig ? choice_69_Y  : last[3];
+  assign choice_71_Y  = ends_packet ? choice_69_Y  : last[3];
   assign choice_73_Y  = \$139  ? choice_71_Y  : last[3];
   assign choice_79_Y  = choice_80_CMP  ? (* full_case = 32'd1 *) 1'h0 : choice_73_Y ;
   assign choice_80_CMP  = first[2:0] == (* full_case = 32'd1 *) 3'h3;
@@ -1843,9 +1843,9 @@ module \geometry_msgs_msg_Twist_cdr_8_serializer_verilog.core.packer (packets__r
   assign choice_9_Y  = reads ? \$141 [3:0] : first;
   assign choice_90_Y  = choice_91_CMP  ? (* full_case = 32'd1 *) 1'h1 : last[2];
   assign choice_91_CMP  = \$140 [2:0] == (* full_case = 32'd1 *) 3'h2;
-  assign choice_92_Y  = final_sig ? choice_90_Y  : last[2];
+  assign choice_92_Y  = ends_packet ? choice_90_Y  : last[2];
   assign choice_94_Y  = \$139  ? choice_92_Y  : last[2];
-  assign ends__write__data = { marked, last_bytes };
+  assign ends__write__data = { failed, last_bytes };
   assign words__payload = { words__payload_128, words__payload_0 };
   assign map_at = { \$13 [3:0], base[2:0] };
   assign \ends__read__data.error  = ends__read__data[4];

@@ -36,7 +36,7 @@ Answer: TypeAlias = "Accepted | Refused | NotJudged"
 class Oracle(ABC):
     """A reader of definitions that shares no code with ours.
 
-    To add one, write a subclass, and name it in `firm_hdl.verify.ts1.oracles`.
+    To add one, see ``docs/contributing.md``.
 
     Attributes
     ----------

@@ -64,9 +64,9 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal message_angular_y_payload_q : unsigned(63 downto 0) := (others => '0');
   signal message_angular_z_payload_q : unsigned(63 downto 0) := (others => '0');
   signal items_word                  : unsigned(63 downto 0) := (others => '0');
-  signal items_have                  : unsigned(7 downto 0) := (others => '0');
+  signal items_good                  : unsigned(7 downto 0) := (others => '0');
   signal map_word                    : unsigned(63 downto 0) := (others => '0');
-  signal map_have                    : unsigned(7 downto 0) := (others => '0');
+  signal map_good                    : unsigned(7 downto 0) := (others => '0');
   signal counted_now                 : std_logic := '0';
   signal last_now                    : std_logic := '0';
   signal final_now                   : std_logic := '0';
@@ -465,7 +465,7 @@ begin
         items_word <= lane_7_items_data & lane_6_items_data & lane_5_items_data &
             lane_4_items_data & lane_3_items_data & lane_2_items_data & lane_1_items_data &
             lane_0_items_data;
-        items_have <= to_std_logic(orders_payload(25 downto 22) > 7) &
+        items_good <= to_std_logic(orders_payload(25 downto 22) > 7) &
             to_std_logic(orders_payload(25 downto 22) > 6) &
             to_std_logic(orders_payload(25 downto 22) > 5) &
             to_std_logic(orders_payload(25 downto 22) > 4) &
@@ -475,7 +475,7 @@ begin
             to_std_logic(orders_payload(25 downto 22) > 0);
         map_word <= lane_7_map_data & lane_6_map_data & lane_5_map_data & lane_4_map_data &
             lane_3_map_data & lane_2_map_data & lane_1_map_data & lane_0_map_data;
-        map_have <= to_std_logic(orders_payload(29 downto 26) > 7) &
+        map_good <= to_std_logic(orders_payload(29 downto 26) > 7) &
             to_std_logic(orders_payload(29 downto 26) > 6) &
             to_std_logic(orders_payload(29 downto 26) > 5) &
             to_std_logic(orders_payload(29 downto 26) > 4) &
@@ -545,42 +545,42 @@ begin
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
       if go_0 = '1' then
-        if map_have(3) = '1' then
+        if map_good(3) = '1' then
           message_linear_x_payload_q <= map_word(31 downto 0) & carried;
         else
           message_linear_x_payload_q <= (others => '0');
         end if;
       end if;
       if go_1 = '1' then
-        if map_have(3) = '1' then
+        if map_good(3) = '1' then
           message_linear_y_payload_q <= map_word(31 downto 0) & carried;
         else
           message_linear_y_payload_q <= (others => '0');
         end if;
       end if;
       if go_2 = '1' then
-        if map_have(3) = '1' then
+        if map_good(3) = '1' then
           message_linear_z_payload_q <= map_word(31 downto 0) & carried;
         else
           message_linear_z_payload_q <= (others => '0');
         end if;
       end if;
       if go_3 = '1' then
-        if map_have(3) = '1' then
+        if map_good(3) = '1' then
           message_angular_x_payload_q <= map_word(31 downto 0) & carried;
         else
           message_angular_x_payload_q <= (others => '0');
         end if;
       end if;
       if go_4 = '1' then
-        if items_have(3) = '1' then
+        if items_good(3) = '1' then
           message_angular_y_payload_q <= items_word(31 downto 0) & carried;
         else
           message_angular_y_payload_q <= (others => '0');
         end if;
       end if;
       if go_5 = '1' then
-        if map_have(3) = '1' then
+        if map_good(3) = '1' then
           message_angular_z_payload_q <= map_word(31 downto 0) & items_word(63 downto 32);
         else
           message_angular_z_payload_q <= (others => '0');

@@ -41,8 +41,8 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal state      : unsigned(33 downto 0) := 34x"200840C81";
   signal rest       : std_logic := '0';
   signal has_nul    : std_logic := '0';
-  signal first      : unsigned(6 downto 0) := (others => '0');
-  signal last       : unsigned(6 downto 0) := "0000111";
+  signal first_at   : unsigned(6 downto 0) := (others => '0');
+  signal last_at    : unsigned(6 downto 0) := "0000111";
 
   -- Combinational signals.
   signal mismatch_34   : std_logic;
@@ -76,15 +76,15 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal exit_sum      : unsigned(6 downto 0);
   signal mux_174       : unsigned(6 downto 0);
   signal early_last    : unsigned(6 downto 0);
-  signal mux_213       : unsigned(2 downto 0);
-  signal and_214       : std_logic;
-  signal sub_219       : unsigned(6 downto 0);
-  signal mux_224       : unsigned(3 downto 0);
-  signal mux_228       : unsigned(3 downto 0);
-  signal mux_229       : unsigned(3 downto 0);
-  signal mux_234       : unsigned(3 downto 0);
-  signal mux_241       : unsigned(3 downto 0);
-  signal mux_283       : unsigned(6 downto 0);
+  signal mux_215       : unsigned(2 downto 0);
+  signal and_216       : std_logic;
+  signal sub_221       : unsigned(6 downto 0);
+  signal mux_226       : unsigned(3 downto 0);
+  signal mux_230       : unsigned(3 downto 0);
+  signal mux_231       : unsigned(3 downto 0);
+  signal mux_236       : unsigned(3 downto 0);
+  signal mux_243       : unsigned(3 downto 0);
+  signal mux_285       : unsigned(6 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal default_0     : std_logic;
@@ -98,7 +98,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal nul_at_26     : unsigned(6 downto 0);
   signal nonzero       : std_logic;
   signal nul_within    : unsigned(6 downto 0);
-  signal at            : unsigned(3 downto 0);
+  signal oldest        : unsigned(3 downto 0);
   signal words_loads   : std_logic;
   signal next_packet   : unsigned(6 downto 0);
   signal tail          : unsigned(5 downto 0);
@@ -124,29 +124,30 @@ begin
       rst       => rst,
       mismatch  => mismatch_34,
       beat      => beat,
-      header_at => first(6 downto 3)
+      header_at => first_at(6 downto 3)
     );
 
-  step_end <= last + 1;
-  left <= limit_sig + not last;
+  step_end <= last_at + 1;
+  left <= limit_sig + not last_at;
   present <= not left(6);
   exits_always <= state(18) or (state(14) and words_last);
   done <= exits_always or ((state(12) or state(13)) and bad);
   ends_message <= state(19) or (state(5) and exits_always);
   ends_packet <= ends_message and ended;
-  map_at <= last + sign_extend(state(11 downto 7), 7);
-  items_at <= first when state(16) = '1' else (map_at(6 downto 3) - state(17)) & map_at(2 downto 0);
+  map_at <= last_at + sign_extend(state(11 downto 7), 7);
+  items_at <= first_at when state(16) = '1' else (map_at(6 downto 3) - state(17)) &
+      map_at(2 downto 0);
   trailing_31 <= present and (or left(5 downto 2));
-  header_within <= limit_sig - first;
+  header_within <= limit_sig - first_at;
   mismatch <= state(0) and mismatch_34 and not header_within(6) and (or header_within);
   good <= present and not (state(0) and mismatch_34);
   cut <= ended and not present;
   begins <= issue and (state(12) or state(13));
   sub_43 <= unsigned'("000001") - sign_extend(state(11 downto 7), 6);
-  or_87 <= (limit_sig(5 downto 0) and not last(5 downto 0)) or (limit_sig(5 downto 0) and
-      unsigned'("000001") - sign_extend(state(11 downto 7), 6)) or (not last(5 downto 0) and
+  or_87 <= (limit_sig(5 downto 0) and not last_at(5 downto 0)) or (limit_sig(5 downto 0) and
+      unsigned'("000001") - sign_extend(state(11 downto 7), 6)) or (not last_at(5 downto 0) and
       unsigned'("000001") - sign_extend(state(11 downto 7), 6));
-  map_left <= (limit_sig xor not last xor unsigned'(sub_43(5) &
+  map_left <= (limit_sig xor not last_at xor unsigned'(sub_43(5) &
       (unsigned'("000001") - sign_extend(state(11 downto 7), 6)))) + unsigned'(or_87 & '0');
   drains <= bad and not new_error and (not state(19) or ended);
   allowed <= not bad and (not ends_message or ended);
@@ -163,25 +164,25 @@ begin
   step_to_exit <= issue and not ends_packet and done;
   step_to_body <= issue and not ends_packet and not done;
   exit_amount <= (others => '0') when state(32) = '1' else state(25 downto 20);
-  exit_sum <= last + exit_amount;
+  exit_sum <= last_at + exit_amount;
   mux_174 <= (exit_sum and not resize(state(28 downto 26), 7)) or resize(state(31 downto 29),
-      7) when exits_always = '1' else last;
+      7) when exits_always = '1' else last_at;
   early_last <= unsigned'(following & "000") + 7 when ends_packet = '1' else mux_174;
-  mux_213 <= "100" when mismatch = '1' else mux(cut, "001", mux(ends_message, "010", "011"));
-  and_214 <= drains and orders_ready;
-  sub_219 <= limit_sig - first;
-  mux_224 <= (others => '0') when sub_219(6) = '1' else mux(to_std_logic(limit_sig - first >= 8),
-      "1000", limit_sig(3 downto 0) - first(3 downto 0));
-  mux_228 <= mux_224 when state(16) = '1' else mux(map_left(6), "0000",
+  mux_215 <= "100" when mismatch = '1' else mux(cut, "001", mux(ends_message, "010", "011"));
+  and_216 <= drains and orders_ready;
+  sub_221 <= limit_sig - first_at;
+  mux_226 <= (others => '0') when sub_221(6) = '1' else mux(to_std_logic(limit_sig - first_at >= 8),
+      "1000", limit_sig(3 downto 0) - first_at(3 downto 0));
+  mux_230 <= mux_226 when state(16) = '1' else mux(map_left(6), "0000",
       mux(to_std_logic(map_left >= 8), "1000", map_left(3 downto 0)));
-  mux_229 <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0), "000"), 4),
-      "1000") when state(17) = '1' else mux_228;
-  mux_234 <= mux_229 when code = 1 else mux(to_std_logic(code = 2) or to_std_logic(code = 5),
+  mux_231 <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0), "000"), 4),
+      "1000") when state(17) = '1' else mux_230;
+  mux_236 <= mux_231 when code = 1 else mux(to_std_logic(code = 2) or to_std_logic(code = 5),
       "1000", "0000");
-  mux_241 <= mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8), "1000",
+  mux_243 <= mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8), "1000",
       map_left(3 downto 0))) when code = 1 else mux(to_std_logic(code = 2), "1000", "0000");
-  mux_283 <= following & "000" when ends_packet = '1' else mux(bad, mux(state(19), limit_sig,
-      first), step_end);
+  mux_285 <= following & "000" when ends_packet = '1' else mux(bad, mux(state(19), limit_sig,
+      first_at), step_end);
 
   p_aclk : process (aclk)
   begin
@@ -197,18 +198,31 @@ begin
         state <= 34x"200840C81";
         rest <= '0';
         has_nul <= '0';
-        first <= (others => '0');
-        last <= "0000111";
+        first_at <= (others => '0');
+        last_at <= "0000111";
       else
-        if bad = '0' then
+        if issue = '1' and ends_packet = '1' then
+          bad <= '0';
+        elsif bad = '0' then
           bad <= mismatch or cut or (ends_message and not ended and trailing_31);
-          new_error <= mismatch or cut or (ends_message and not ended and trailing_31);
-          code <= mux_213;
         end if;
-        if issue = '1' then
-          if ends_packet = '1' then
-            bad <= '0';
+        if bad = '0' then
+          new_error <= mismatch or cut or (ends_message and not ended and trailing_31);
+          code <= mux_215;
+        end if;
+        if bad = '1' then
+          new_error <= '0';
+          if new_error = '1' then
+            items_room <= mux_236;
+            map_room <= mux_243;
+          elsif and_216 = '1' then
+            items_room <= (others => '0');
+            map_room <= (others => '0');
           end if;
+        end if;
+        words_last <= words_last;
+        words_less <= words_less;
+        if issue = '1' then
           state <= next_state;
           if ends_packet = '1' then
             rest <= '0';
@@ -219,30 +233,18 @@ begin
               has_nul <= '0';
             end if;
           end if;
-          last <= early_last;
+          last_at <= early_last;
         end if;
-        if bad = '1' then
-          new_error <= '0';
-          if new_error = '1' then
-            items_room <= mux_234;
-            map_room <= mux_241;
-          elsif and_214 = '1' then
-            items_room <= (others => '0');
-            map_room <= (others => '0');
-          end if;
-        end if;
-        words_last <= words_last;
-        words_less <= words_less;
         if issue = '1' or (bad = '1' and state(19) = '1') then
-          first <= mux_283;
+          first_at <= mux_285;
         end if;
       end if;
     end if;
   end process;
 
-  header_at <= first(6 downto 3);
+  header_at <= first_at(6 downto 3);
   orders_payload <= mux(bad, code, mux(trailing_31, "010", "000")) & ends_packet &
-      first(6 downto 3) & '0' & not bad & (state(16) or (words_last and not state(15))) &
+      first_at(6 downto 3) & '0' & not bad & (state(16) or (words_last and not state(15))) &
       ((state(16) and rest) or state(15)) & mux(bad, map_room, "1000") & mux(bad and
       not to_std_logic(items_room >= items_wanted), items_room, items_wanted) &
       (map_at(5 downto 3) + 1) & (items_at(5 downto 3) + 1) & map_at(5 downto 0) &
@@ -260,12 +262,12 @@ begin
   nul_at_26 <= (others => '0');
   nonzero <= '0';
   nul_within <= limit_sig;
-  at <= first(6 downto 3);
+  oldest <= first_at(6 downto 3);
   words_loads <= '0';
   next_packet <= following & "000";
   tail <= (others => '0');
   exit_low <= resize(state(31 downto 29), 7);
-  body_sum <= last;
+  body_sum <= last_at;
   body_mask <= (others => '0');
   body_low <= (others => '0');
   wrong_nul <= '0';

@@ -47,7 +47,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core 
   signal i_valid           : std_logic;
   signal next_sig          : std_logic;
   signal i_payload         : unsigned(41 downto 0);
-  signal at                : unsigned(3 downto 0);
+  signal oldest            : unsigned(3 downto 0);
   signal orders_ready      : std_logic;
   signal freed             : unsigned(3 downto 0);
   signal orders_valid_24   : std_logic;
@@ -95,7 +95,7 @@ begin
       following      => following,
       ended          => ended,
       orders_payload => i_payload,
-      header_at      => at
+      header_at      => oldest
     );
 
   queue : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_queue
@@ -107,7 +107,7 @@ begin
       freed     => freed,
       o_ready   => o_ready,
       i_payload => i_payload,
-      at        => at,
+      oldest    => oldest,
       o_valid   => orders_valid_24,
       o_payload => orders_payload_22
     );

@@ -21,7 +21,7 @@ entity geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_queue is
     freed     : out unsigned(3 downto 0);
     o_ready   : in  std_logic;
     i_payload : in  unsigned(41 downto 0);
-    at        : in  unsigned(3 downto 0);
+    oldest    : in  unsigned(3 downto 0);
     o_valid   : out std_logic;
     o_payload : out unsigned(41 downto 0)
   );
@@ -38,7 +38,7 @@ begin
 
   i_ready <= not has_second;
   freed <= o_payload_q(37 downto 34) when o_valid_q = '1' else mux(has_second, second(37 downto 34),
-      at);
+      oldest);
 
   p_aclk : process (aclk)
   begin

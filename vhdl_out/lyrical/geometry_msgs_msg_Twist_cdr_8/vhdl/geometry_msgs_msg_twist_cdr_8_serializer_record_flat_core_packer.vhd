@@ -42,9 +42,9 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_pa
   signal map_start          : unsigned(6 downto 0) := (others => '0');
   signal map_size           : unsigned(3 downto 0) := (others => '0');
   signal at                 : unsigned(6 downto 0) := (others => '0');
-  signal done               : unsigned(3 downto 0) := (others => '0');
-  signal final_sig          : std_logic := '0';
-  signal marked             : std_logic := '0';
+  signal complete_next      : unsigned(3 downto 0) := (others => '0');
+  signal ends_packet        : std_logic := '0';
+  signal failed             : std_logic := '0';
   signal waits              : std_logic := '0';
   signal last_bytes         : unsigned(3 downto 0) := (others => '0');
   signal bound              : unsigned(3 downto 0) := "0101";
@@ -139,12 +139,12 @@ begin
   map_written_0 <= lsb(resize(shift_right(map_has_0, to_integer(first(2 downto 0))), 1));
   map_used_4 <= '1' when writes = '1' and map_size > 4 else '0';
   map_written_4 <= lsb(resize(shift_right(map_has_4, to_integer(first(2 downto 0))), 1));
-  ends_write_addr <= done(2 downto 0) - 1;
-  ends_write_en <= writes and final_sig;
+  ends_write_addr <= complete_next(2 downto 0) - 1;
+  ends_write_en <= writes and ends_packet;
   reads <= '1' when complete /= first and (packets_valid_q = '0' or packets_ready = '1') else '0';
   is_last <= lsb(resize(shift_right(last, to_integer(first(2 downto 0))), 1));
   and_139 <= writes and not waits;
-  sub_140 <= done(2 downto 0) - 1;
+  sub_140 <= complete_next(2 downto 0) - 1;
 
   process (aclk)
   begin
@@ -183,7 +183,7 @@ begin
   begin
     if rising_edge(aclk) then
       if ends_write_en = '1' then
-        ends(to_integer(ends_write_addr)) <= marked & last_bytes;
+        ends(to_integer(ends_write_addr)) <= failed & last_bytes;
       end if;
     end if;
   end process;
@@ -200,9 +200,9 @@ begin
         map_start <= (others => '0');
         map_size <= (others => '0');
         at <= (others => '0');
-        done <= (others => '0');
-        final_sig <= '0';
-        marked <= '0';
+        complete_next <= (others => '0');
+        ends_packet <= '0';
+        failed <= '0';
         waits <= '0';
         last_bytes <= (others => '0');
         words_ready_q <= '1';
@@ -226,9 +226,9 @@ begin
           map_start <= add_13 & base(2 downto 0);
           map_size <= words_payload_128(7 downto 4);
           at <= end_sig;
-          done <= end_sig(6 downto 3);
-          final_sig <= words_payload_128(29);
-          marked <= words_payload_128(32);
+          complete_next <= end_sig(6 downto 3);
+          ends_packet <= words_payload_128(29);
+          failed <= words_payload_128(32);
           waits <= words_payload_128(31);
           if words_payload_128(30) = '1' then
             last_bytes <= (others => '0');
@@ -362,8 +362,8 @@ begin
           map_has_4(7) <= '1';
         end if;
         if and_139 = '1' then
-          complete <= done;
-          if final_sig = '1' then
+          complete <= complete_next;
+          if ends_packet = '1' then
             case sub_140 is
               when "000" =>
                 last(0) <= '1';
@@ -470,6 +470,6 @@ begin
   ends_read_addr <= first(2 downto 0);
   payload <= packets_payload_q;
   error_now <= error_sig_q;
-  ends_write_data <= marked & last_bytes;
+  ends_write_data <= failed & last_bytes;
 
 end architecture;

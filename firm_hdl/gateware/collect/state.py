@@ -13,13 +13,13 @@ from firm_hdl.gateware.positions import pick
 from firm_hdl.plan import BeginLoop, BeginRun, Plan, RunStep
 from firm_hdl.plan.transfers import transfers
 
-__all__ = ["COUNT_BITS", "Progress"]
+__all__ = ["COUNT_BITS", "CollectState"]
 
 COUNT_BITS = 32
 """Width of lengths. Counters have this width, because the items of any length are taken."""
 
 
-class Progress:
+class CollectState:
     """The place of the collector in the message and in the plan. Not a component: signals.
 
     Attributes

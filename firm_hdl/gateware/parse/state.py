@@ -11,10 +11,10 @@ from firm_hdl.gateware.positions import Ring
 from firm_hdl.plan import BeginLoop, BeginRun, MapStep, Plan, RunStep
 from firm_hdl.plan.geometry import geometry
 
-__all__ = ["Progress"]
+__all__ = ["ParseState"]
 
 
-class Progress:
+class ParseState:
     """Where the sequencer is in the packet and in the plan. Not a component: signals.
 
     Parameters
@@ -33,10 +33,10 @@ class Progress:
         What the length of a step means, by the step's index.
     flow : Flow
         Has the step and the counters; `state` and `step` are its own.
-    last : Signal(position)
+    last_at : Signal(position)
         Last byte of the step's map or word. A length of the step is the end of its map; so this is
         the length's last byte, too.
-    first : Signal(position)
+    first_at : Signal(position)
         First byte after the previous step, or the first item of a run.
     rest : Signal(range(lanes + 1))
         Items in the rest of the run that the step takes.
@@ -52,8 +52,8 @@ class Progress:
     new_error : Signal(1)
         The error was found in the cycle before, in this step. The step has no order yet.
     items_at, map_at : Signal(position)
-        First byte of the word of items, and of the last word of the map. Combinational, as are all
-        attributes below.
+        First byte of the word of items, and of the last word of the map. These signals, and all
+        below, are combinational.
     step_end : Signal(position)
         First byte after the step's map or word.
     left : Signal(position)
@@ -84,8 +84,9 @@ class Progress:
         }
         self.flow = self._flow()
         self.state, self.step = self.flow.state, self.flow.step
-        self.last = ring.position("last", init=shift_of(plan, plan.start.step) % (1 << ring.bits))
-        self.first = ring.position("first")
+        start = shift_of(plan, plan.start.step) % (1 << ring.bits)
+        self.last_at = ring.position("last_at", init=start)
+        self.first_at = ring.position("first_at")
         lanes = max((plan.leaves[run.items].lanes for run in plan.runs), default=1)
         self.rest = Signal(range(lanes + 1), name="rest")
         self.nul_at, self.has_nul = ring.position("nul_at"), Signal(name="has_nul")
