@@ -1,10 +1,10 @@
 """The generated test benches of a type, in GHDL.
 
-What ``firm-hdl build`` writes goes to a temporary folder. GHDL analyses all of its VHDL with
-warnings as errors; then the folder's own script runs the bench, which sends the packets
-of rosbags through both converters with random stalls. The packets that came out, and every transfer
-of every leaf, have to be what rosbags says. Types of fixed size have a second bench, of the record
-view.
+The output of ``firm-hdl build`` goes to a temporary folder. GHDL analyses all of its VHDL with
+warnings as errors. Then the folder's own script runs the bench. The bench sends the packets of
+rosbags through both converters with random stalls. The packets at the output, and every transfer
+of every leaf, have to match those of rosbags. Types of fixed size have a second bench for the
+record view.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ WARNINGS = ("--warn-error", "--warn-unused", "--warn-body", "--warn-default-bind
 
 
 def run_bench(given: tuple[Options, str], test: Test) -> Record:
-    """Build a type and run its bench. Nothing is raised: what goes wrong is in the record.
+    """Build a type and run its bench. Errors are not raised, but are in the record.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def run_bench(given: tuple[Options, str], test: Test) -> Record:
 
 
 def _run_bench(test: Test, options: Options, ghdl: str, watch: Stopwatch) -> Record:
-    """Return a record whose cases are packets that came out as the oracle has them."""
+    """Return a record whose cases are the packets that came out as the oracle wrote them."""
     try:
         with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
             packets, transfers = _packets_and_transfers(test, options, ghdl, Path(folder), watch)
@@ -66,7 +66,7 @@ def _run_bench(test: Test, options: Options, ghdl: str, watch: Stopwatch) -> Rec
 def _packets_and_transfers(
     test: Test, options: Options, ghdl: str, folder: Path, watch: Stopwatch
 ) -> tuple[int, int]:
-    """Return how many packets and transfers of leaves were right."""
+    """Return the numbers of correct packets and of correct transfers of leaves."""
     library = library_of(test.distro, options.paths)
     message = library.message(test.type)
     check_wire(message)
@@ -99,7 +99,7 @@ def _packets_and_transfers(
 
 
 def _cases(message: Message, plan: Plan, distro: str | None) -> list[Case]:
-    """Choose the packets of a bench; wide text needs somebody else who writes the same bytes."""
+    """Choose the packets of a bench. For wide text, another library has to confirm their bytes."""
     judge = judge_of(message, distro, stand_in=may_stand_in(message, WIDE_REFERENCES))
     cases = list(stimulus_cases(judge, plan))
     if not cases:
@@ -114,7 +114,7 @@ def _cases(message: Message, plan: Plan, distro: str | None) -> list[Case]:
 
 
 def _simulate(entity: str, vhdl: Path, ghdl: str) -> Path:
-    """Run a bench by the script that is beside it; return the folder of what it wrote."""
+    """Run a bench with the script beside it; return the folder with the files that it wrote."""
     work = vhdl / f"work_{entity}"
     environment = {"GHDL": ghdl, "WORK": str(work), "BENCH": entity}
     names = [f"-g{what}={what}.txt" for what in ("results", "transfers")]
@@ -125,12 +125,12 @@ def _simulate(entity: str, vhdl: Path, ghdl: str) -> Path:
 
 
 def _analyse(built: Built, ghdl: str) -> tuple[Path, list[str]]:
-    """Analyse everything in a folder of its own; GHDL must have nothing to say.
+    """Analyse all files in a temporary folder. Any message of GHDL is an error.
 
     Returns
     -------
     folder, benches
-        Where the VHDL is, and the entities to run.
+        The folder of the VHDL, and the entities to run.
     """
     manifest = json.loads((built.folder / MANIFEST).read_text(encoding="utf-8"))["vhdl"]
     vhdl = built.folder.resolve() / str(manifest["folder"])
@@ -143,7 +143,7 @@ def _analyse(built: Built, ghdl: str) -> tuple[Path, list[str]]:
 
 
 def _check_transfers(plan: Plan, cases: Sequence[Case], text: str) -> int:
-    """Compare what the bench wrote of each leaf with the oracle; return how many transfers."""
+    """Compare the transfers that the bench wrote with the oracle's; return their number."""
     shown: dict[str, list[str]] = {}
     for line in text.splitlines():
         _, name, *rest = line.split(" ")

@@ -1,4 +1,4 @@
-"""The generated test benches of many types, as a test system."""
+"""A test system that runs the generated test benches of many types."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ from firm_hdl.verify.systems.tasks import TypeUnderTest
 __all__ = ["Benches"]
 
 MOST_CHARACTERS = 2000
-"""Of a failure, so many are printed."""
+"""The most characters of a failure that are printed."""
 
 
 class Benches(TypesSystem):
-    """Generated benches; a test is the bench of a type of one distribution.
+    """The test system of generated benches. A test is the bench of a type of one distribution.
 
     Parameters
     ----------
@@ -49,15 +49,15 @@ class Benches(TypesSystem):
     name = "bench"
 
     def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
-        # Each distribution has its own bench, even if another has the same type: the headers of
-        # the files differ.
+        # Equal types of several distributions each have a bench, because the headers of the
+        # generated files differ.
         each = [replace(task, distro=name, same=(name,)) for task in tasks for name in task.same]
         super().__init__(each, request)
         self._ghdl = find_ghdl()
 
     @cached_property
     def tests(self) -> Sequence[Test]:
-        """All types with all buses."""
+        """The tests of all types on all buses."""
         return [each for width in self._request.widths for each in self._tests(width)]
 
     def _tests(self, bus_bytes: int) -> list[Test]:
