@@ -12,7 +12,7 @@ from firm_hdl.verify.cases.make import Case
 __all__ = ["DAMAGES", "broken_packets", "stalls_for"]
 
 MOST_STEPS = 500
-"""The most steps of a damaged packet, in addition to twice its beats."""
+"""The most steps of a damaged packet, in addition to twice the beats of the intact one."""
 
 
 def stalls_for(seed: str | float) -> Stalls:
@@ -23,11 +23,11 @@ def stalls_for(seed: str | float) -> Stalls:
 
 
 def broken_packets(plan: Plan, cases: Sequence[Case], rng: random.Random) -> Iterator[bytes]:
-    """Yield a damaged packet for each case: of as many kinds of damage as there are cases."""
+    """Yield a damaged packet for each case. All kinds of damage take turns, in random order."""
     kinds = rng.sample(DAMAGES, len(DAMAGES))
     for number, case in enumerate(cases):
         packet = kinds[number % len(kinds)](plan, case.packet, rng)
-        # What is made up for a damaged length takes long to simulate.
+        # A damaged length may stand for many items, which take long to simulate.
         steps = len(decode(plan, packet).steps)
         if steps > MOST_STEPS + 2 * len(case.packet) // plan.bus_bytes:
             packet = _cut(plan, case.packet, rng)
@@ -42,7 +42,7 @@ def _cut(plan: Plan, packet: bytes, rng: random.Random) -> bytes:
 
 
 def _shorter(plan: Plan, packet: bytes, rng: random.Random) -> bytes:
-    """Take the last byte, or the last ones; what is missing may be no more than that."""
+    """Remove only a few bytes at the end: one, two, or as many as a beat has."""
     return packet[: -rng.choice((1, 1, 2, plan.bus_bytes))]
 
 
@@ -56,7 +56,7 @@ def _trailing(plan: Plan, packet: bytes, rng: random.Random) -> bytes:
 
 
 def _header(plan: Plan, packet: bytes, rng: random.Random) -> bytes:
-    """Name another representation, in either byte; options do not matter."""
+    """Change the representation identifier, in either of its bytes. The options are random."""
     if not plan.header_bytes:
         return _longer(plan, packet, rng)
     name = rng.choice((b"\0\0", b"\0\2", b"\0\3", b"\0\7", b"\1\1", b"\x80\1", b"\1\0"))
@@ -64,7 +64,7 @@ def _header(plan: Plan, packet: bytes, rng: random.Random) -> bytes:
 
 
 def _change(plan: Plan, packet: bytes, rng: random.Random) -> bytes:
-    """Change some bytes: of lengths and terminators among others."""
+    """Change a few bytes, which may be bytes of lengths and terminators."""
     changed = bytearray(packet)
     for _ in range(rng.choice((1, 1, 2, 6)) if len(packet) > plan.header_bytes else 0):
         at = rng.randrange(plan.header_bytes, len(packet))
@@ -73,7 +73,7 @@ def _change(plan: Plan, packet: bytes, rng: random.Random) -> bytes:
 
 
 def _fill(plan: Plan, packet: bytes, rng: random.Random) -> bytes:
-    """Fill a stretch with anything."""
+    """Overwrite some bytes in a row with zeros, ones, or random bits."""
     if len(packet) <= plan.header_bytes:
         return _longer(plan, packet, rng)
     at = rng.randrange(plan.header_bytes, len(packet))

@@ -1,10 +1,9 @@
-"""Cases until every decision of a plan was taken.
+"""Further cases, until every decision of a plan was taken.
 
-:mod:`firm_hdl.verify.cases.make` chooses lengths and values for themselves. Some decisions need
-more: a padding of five bytes between two strings, or a second element in the last turn of an outer
-loop.
-So more cases are drawn, and each that takes a new decision is kept. The record of a test names the
-decisions that are still missing.
+:mod:`firm_hdl.verify.cases.make` chooses each length and value independently of the others. Some
+decisions need a combination: a padding of five bytes between two strings, or a second element in
+the last turn of an outer loop. So this module draws more cases, and keeps those that take a new
+decision. The record of a test names the decisions that are still missing.
 """
 
 from __future__ import annotations
@@ -19,22 +18,22 @@ from firm_hdl.verify.references.oracle import RosbagsOracle
 __all__ = ["bare_packets", "more_cases"]
 
 TRIES = 300
-"""The search ends after so many seeds in a row without a new decision."""
+"""The search ends after this many seeds in a row without a new decision."""
 
 
 def more_cases(
     oracle: RosbagsOracle, name: str, plan: Plan, cases: Sequence[Case], *, seed: int = 0
 ) -> list[Case]:
-    """Return cases that take decisions which none of the given ones takes.
+    """Return cases that take decisions which no given case takes.
 
     Parameters
     ----------
     name : str
         ``package/msg/Type``.
     plan : Plan
-        Of that type.
+        The plan of that type.
     seed : int
-        Of the given cases.
+        The seed of the given cases.
     """
     missing = set(edges(plan))
     for case in cases:
@@ -62,7 +61,10 @@ def more_cases(
 
 
 def _taken(plan: Plan, case: Case) -> frozenset[Edge]:
-    """Return the decisions of a case, and those that only its form with bare strings takes."""
+    """Return the decisions that a case takes.
+
+    Decisions that only bare strings take count if the case takes them with bare strings.
+    """
     decoded = decode(plan, case.packet)
     bare = _bare_edges(plan)
     if not bare:
@@ -72,10 +74,11 @@ def _taken(plan: Plan, case: Case) -> frozenset[Edge]:
 
 
 def bare_packets(plan: Plan, cases: Iterable[Case]) -> list[tuple[Case, bytes]]:
-    """Return what cases with empty CDR strings look like if those have the length 0.
+    """Return cases with packets in which the empty CDR strings are bare: their length is 0.
 
-    ROS 2 reads such packets, and so does a deserializer, but nobody writes them: a converter's
-    answer is the case's own packet. Empty for ROS 1, and for types without strings.
+    ROS 2 and our deserializer read such packets, but no library writes them. The serializer
+    answers with the case's own packet. Only cases are returned whose bare strings take a new
+    decision; so there are none for ROS 1, and for types without strings.
     """
     missing = _bare_edges(plan)
     found = []
@@ -91,8 +94,8 @@ def bare_packets(plan: Plan, cases: Iterable[Case]) -> list[tuple[Case, bytes]]:
 
 
 def _bare_edges(plan: Plan) -> frozenset[Edge]:
-    """Return the decisions that only the length 0 of a CDR string takes: not even a NUL is left."""
-    # Steps that a packet also reaches without an earlier string have no rest anyway.
+    """Return the decisions that only a CDR string of length 0 takes, which has not even a NUL."""
+    # Other paths than the end of a string lead to these steps, and there is no rest on them.
     others = {plan.start.step}
     for step in plan.steps:
         if isinstance(step.begin, BeginLoop):

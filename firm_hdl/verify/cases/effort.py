@@ -1,9 +1,9 @@
-"""Which cases of a type there are, and which of them are simulated, stalled and damaged.
+"""The choice of a type's cases, and of those that are simulated, stalled and damaged.
 
 The Python simulator takes time for every leaf in every cycle. So a type of a thousand leaves takes
-minutes if all of its cases run, and an array of 8 MiB takes an hour. Of such types, those cases are
-chosen that take the most decisions of the plan for their size. The golden model still sees all
-cases. The result says what was left out.
+minutes if all of its cases run, and an array of 8 MiB takes an hour. For such types, only the cases
+that take the most decisions of the plan for their size are simulated. The golden model still sees
+all cases. The result says what was left out.
 """
 
 from __future__ import annotations
@@ -33,24 +33,24 @@ MAX_MESSAGE_BYTES = 1 << 16
 """Small enough that a packet with a length over this limit can be completed in simulation."""
 
 LARGE_WORK = 300_000
-"""The work of all cases of a large type, which is stalled and damaged less often."""
+"""A type is large if its cases together are more work. It is stalled and damaged less often."""
 
 LARGE_STRIDE = 4
-"""Of the cases of a large type, one in so many is stalled and damaged."""
+"""One in this many cases of a large type is stalled and damaged."""
 
 MOST_WORK = 1_000_000
 """The most work of all cases of a type that are simulated."""
 
 MORE_FOR_NEW = 4
-"""The factor for `MOST_WORK` for packets that take a decision which no other packet takes."""
+"""The factor for `MOST_WORK` for packets with a decision that no packet chosen before takes."""
 
 MOST_WORK_OF_ONE = 1_500_000
-"""The most work of the smallest message of a type; no larger type is simulated."""
+"""A type is not simulated if its smallest message is more work than this."""
 
 MOST_CASE_BYTES = 1 << 18
-"""No more cases are made when all packets together have so many bytes."""
+"""No more cases are made once all packets together have this many bytes."""
 
-# A circuit of few leaves has other work to do in a cycle.
+# A circuit with fewer leaves has other work in a cycle, so it counts as one with this many.
 LEAST_LEAVES = 8
 
 
@@ -60,7 +60,7 @@ def message_limit(min_bytes: int) -> int:
     Parameters
     ----------
     min_bytes : int
-        Of the type's smallest message.
+        The size of the type's smallest message.
     """
     return MAX_MESSAGE_BYTES + (min_bytes if min_bytes > MAX_MESSAGE_BYTES // 2 else 0)
 
@@ -71,7 +71,7 @@ def work_of(plan: Plan, packet_bytes: int) -> int:
 
 
 def too_large(plan: Plan, min_bytes: int) -> str:
-    """Say why a type is too large to simulate, if it is."""
+    """Return why a type is too large to simulate; empty if it is not."""
     if work_of(plan, min_bytes) <= MOST_WORK_OF_ONE:
         return ""
     return (
@@ -83,7 +83,7 @@ def too_large(plan: Plan, min_bytes: int) -> str:
 def all_cases(
     oracle: RosbagsOracle, name: str, plan: Plan, *, seed: int = 0, most: int | None = None
 ) -> list[Case]:
-    """Make at most `most` cases; without a limit, also those that the plan's other decisions need.
+    """Make at most `most` cases; without a limit, add cases for the plan's remaining decisions.
 
     Parameters are those of `make_cases`.
     """
@@ -96,12 +96,12 @@ def all_cases(
 
 
 def _size(cases: Iterable[Case]) -> int:
-    """Return the size of packets together, in bytes."""
+    """Return the total size of the packets in bytes."""
     return sum(len(case.packet) for case in cases)
 
 
 def _some(cases: Iterable[Case]) -> Iterator[Case]:
-    """Yield cases until they are large together; the first in any case."""
+    """Yield at least one case, and more until their total size reaches `MOST_CASE_BYTES`."""
     size = 0
     for case in cases:
         yield case
@@ -116,12 +116,12 @@ def is_large(plan: Plan, cases: Sequence[Case]) -> bool:
 
 
 def disturbed(plan: Plan, cases: Sequence[Case]) -> list[Case]:
-    """Choose what to stall and damage of a large type's cases; nothing if all are too large."""
+    """Choose which cases of a large type to stall and damage; none if all are too large."""
     return within(plan, cases[::LARGE_STRIDE], LARGE_WORK)
 
 
 def within(plan: Plan, cases: Sequence[Case], most: int) -> list[Case]:
-    """Return cases in their order, without the largest of them if all would be too much work."""
+    """Return cases in their order; leave out the largest until the work is at most `most`."""
     left = sorted(range(len(cases)), key=lambda number: (len(cases[number].packet), number))
     while sum(work_of(plan, len(cases[number].packet)) for number in left) > most:
         left.pop()
@@ -137,12 +137,12 @@ def chosen(
     ----------
     plan : Plan
     packets : sequence of bytes
-        At least one.
+        At least one packet.
     taken : sequence of set of Edge
         The decisions that each packet takes.
     most : int
-        Work that all of them together may be. The first that is chosen may be more, and so may
-        those that take decisions which none before takes, up to `MORE_FOR_NEW` times this.
+        The most work of the chosen packets together. The first packet may be more work. Packets
+        with new decisions may bring the work to `MORE_FOR_NEW` times this limit.
 
     Returns
     -------
@@ -157,7 +157,7 @@ def chosen(
     seen: set[Edge] = set()
     spent = 0
     while left:
-        # The most that is new for its work; where nothing is, the least work.
+        # The most new decisions for the work; if nothing is new, the least work.
         best = max(left, key=lambda n: (len(taken[n] - seen) / works[n], -works[n], -n))
         left.remove(best)
         limit = most if taken[best] <= seen else MORE_FOR_NEW * most

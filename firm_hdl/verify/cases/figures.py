@@ -23,7 +23,7 @@ def figures(message: Message, plan: Plan, packets: Sequence[bytes]) -> dict[str,
     Parameters
     ----------
     packets : sequence of bytes
-        Of all cases.
+        The packets of all cases.
     """
     of_the_type = metrics_of(message, plan.wire)
     found: dict[str, float] = {name: getattr(of_the_type, name) for name in OF_THE_TYPE}
@@ -36,5 +36,5 @@ def figures(message: Message, plan: Plan, packets: Sequence[bytes]) -> dict[str,
 
 
 def digest(plan: Plan) -> str:
-    """Return a digest of the shape of a plan: equal where circuits are."""
+    """Return a digest of the shape of a plan. Plans with equal circuits have equal digests."""
     return hashlib.sha256(repr(shape(plan)).encode()).hexdigest()[:16]

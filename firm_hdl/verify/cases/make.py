@@ -1,9 +1,10 @@
 """Test cases: messages of a type with chosen values.
 
 Over the cases of a type, every string, sequence and run takes the lengths 0, 1 and 2, every residue
-modulo the bus, lengths over two bus words, and its bound, each in an order of its own, so that
-combinations differ. Primitives are all zero, all highest, all lowest, all special (signed zeros,
-infinities, NaN with payloads, subnormal numbers) and then mixed. Everything follows from the seed.
+modulo the bus, lengths over two bus words, and its bound. Each of them takes its lengths in another
+order, so that combinations differ. Primitives are all zero, all highest, all lowest, all special
+(signed zeros, infinities, NaN with payloads, subnormal numbers) and then mixed. Everything follows
+from the seed.
 """
 
 from __future__ import annotations
@@ -66,13 +67,13 @@ class Case:
     Attributes
     ----------
     what : str
-        Describes how its values were chosen.
+        A description of how the values were chosen.
     value : object
         The rosbags object.
     packet : bytes
-        What rosbags writes for it.
+        The packet that rosbags writes for `value`.
     transfers : dict of path to list
-        The transfers of its leaves, from what rosbags reads in the packet.
+        The transfers of the message's leaves, from what rosbags reads in the packet.
     given : bytes or None
         The input of the deserializer, if it differs from `packet`.
     status : str
@@ -113,14 +114,14 @@ def make_cases(
     seed: int = 0,
     most: int | None = None,
 ) -> Iterator[Case]:
-    """Yield the cases of a type, as many as its lengths need.
+    """Yield the cases of a type, as many as are needed for all lengths.
 
     Parameters
     ----------
     name : str
         ``package/msg/Type``.
     most : int or None
-        Most cases.
+        The maximum number of cases; `None`: as many as the lengths need.
     """
     visits: dict[tuple[str, ...], _Visits] = {}
     number = 0
@@ -145,7 +146,10 @@ class _Visits:
 
 
 def _more(number: int, most: int | None, visits: dict[tuple[str, ...], _Visits]) -> bool:
-    """Whether another case is needed: until every length was taken, within reason."""
+    """Whether another case is needed: for all modes, and then until every length was taken.
+
+    After twice as many cases as a place has lengths, no more cases are made.
+    """
     if most is not None and number >= most:
         return False
     if number < len(MODES):
@@ -156,14 +160,15 @@ def _more(number: int, most: int | None, visits: dict[tuple[str, ...], _Visits])
 
 @dataclass(slots=True)
 class _Maker:
-    """Values of one case. `visits` goes from case to case."""
+    """Makes the values of one case. All cases of a type share `visits`."""
 
     oracle: RosbagsOracle
     bus_bytes: int
     rng: random.Random
     mode: str
     visits: dict[tuple[str, ...], _Visits]
-    # What may still be spent on lengths that were there before, so that nesting does not explode.
+    # What is left for items. Once it is spent, lengths that are repeated are 0 or 1: otherwise,
+    # nested sequences would explode.
     budget: int = 1000
 
     def message(self, name: str, path: tuple[str, ...]) -> Any:
@@ -197,10 +202,10 @@ class _Maker:
         return [self.field(element, (*path, "item")) for _ in range(count)]
 
     def length(self, path: tuple[str, ...], lengths: list[int], cost: int = 1) -> int:
-        """Choose a length that this place did not have yet, or any length if it had all."""
+        """Choose a length that this place has not had yet, or any length if it has had all."""
         visits = self.visits.get(path)
         if visits is None:
-            # In an order of its own, so that neighbours combine differently in each case.
+            # Each place has its own order, so that neighbours combine differently in each case.
             order = self.rng.sample(lengths, len(lengths))
             visits = self.visits[path] = _Visits(left=order, lengths=lengths)
         if visits.left:
@@ -227,7 +232,7 @@ class _Maker:
         if name in FLOATS:
             size = SIZES[name]
             if is_nan(bits, size):
-                # A Python float does not keep a signalling NaN; so it is quiet from the start.
+                # A Python float does not keep a signalling NaN, so the NaN is quiet at once.
                 bits |= 1 << (22 if size == 4 else 51)
             return as_float(bits, size)
         # rosbags takes -128 to 127 for a byte, in ROS 2 as well.

@@ -1,6 +1,6 @@
 """Packets for the test benches of generated VHDL: chosen messages, written by rosbags.
 
-Any type will do, a user's own included; see :mod:`firm_hdl.verify.references.user_oracle`.
+The type may be a user's own; see :mod:`firm_hdl.verify.references.user_oracle`.
 """
 
 from __future__ import annotations
@@ -17,13 +17,16 @@ __all__ = ["stimuli", "stimulus_cases"]
 
 MOST_PACKETS = 16
 MOST_BYTES = 1 << 15
-"""Of all packets together, so that a bench takes a second; the first packet may have more."""
+"""The most bytes of all packets together, so that a bench takes about a second.
+
+The first packet may be longer.
+"""
 
 
 def stimuli(message: Message, plan: Plan) -> list[bytes]:
     """Return packets of a type; none, if rosbags cannot write it."""
     try:
-        # A bench shows what the circuits do; that these are the bytes of a wstring, TS3 says.
+        # A bench only shows what the circuits do. TS3 checks that the bytes are those of a wstring.
         judge = judge_of(message, stand_in=True)
         return [case.packet for case in stimulus_cases(judge, plan)]
     except NotJudgedError:
@@ -52,6 +55,6 @@ def stimulus_cases(judge: Judge, plan: Plan) -> Iterator[Case]:
                 yield case
     except NotJudgedError:
         raise
-    # What rosbags raises for what it cannot write has no common base.
+    # The exceptions of rosbags for values that it cannot write have no common base class.
     except Exception as error:
         raise NotJudgedError(f"rosbags cannot write it: {type(error).__name__}: {error}") from None
