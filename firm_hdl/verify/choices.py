@@ -1,7 +1,7 @@
-"""What the arguments of ``firm-hdl verify`` can say: names, and limits.
+"""Names and limits that the arguments of ``firm-hdl verify`` accept.
 
-Names only, so that a command which is called wrongly, or about a type that cannot be used, need not
-wait for the imports of those modules. Where the things themselves are, a test compares the names.
+This module imports nothing. So a call with a wrong argument or an unusable type fails without
+waiting for slow imports. A test compares the names with the objects that they stand for.
 """
 
 from __future__ import annotations
@@ -50,13 +50,16 @@ CLIENT_NAMES = (
 """Client libraries: :data:`firm_hdl.verify.references.clients.CLIENTS`."""
 
 WRITER_NAMES = ("genpy", "fastcdr", "fastcdr-2.2", "fastcdr-2.3", "cyclonedds")
-"""Those that can be references of TS3: :data:`firm_hdl.verify.references.choice.WRITERS`."""
+"""Client libraries that can be references of TS3.
+
+They are the keys of :data:`firm_hdl.verify.references.choice.WRITERS`.
+"""
 
 NO_REFERENCE = "none"
-"""Says that no library has to confirm rosbags' bytes."""
+"""The value of ``--reference`` for which no library has to confirm rosbags' bytes."""
 
 MOST_MESSAGES = 100
-"""Most messages of each type in a recording to replay, if nobody says otherwise."""
+"""Default limit for the messages of each type that are replayed from recordings."""
 
 LONGEST = 1 << 18
-"""Longest recorded message to replay, if nobody says otherwise: it takes a minute or so."""
+"""Default size in bytes of the longest recorded message to replay, which takes about a minute."""

@@ -33,7 +33,7 @@ from firm_hdl.verify.systems.tasks import UnknownTypeError
 
 __all__ = ["add_verify_arguments", "run_verify"]
 
-# Arguments that are not for a library under test.
+# Arguments that cannot be combined with ``--sut``.
 _OTHERS = (
     *("bag", "bus_bytes", "executor", "golden", "mutations", "oracle", "reference"),
     *("report", "results", "share_circuits", "simulator", "systems", "vcd"),
@@ -46,14 +46,14 @@ def run_verify(given: argparse.Namespace) -> int:
     Raises
     ------
     DefinitionError
-        If a definition that is named cannot be used. Of all types, those that can are tested, and
-        then the others are printed.
+        If a definition that is named cannot be used. Without names, the usable types are tested,
+        and the errors in the others are printed at the end.
     """
     request = _request(given)
     try:
         work = Workload(request)
         if request.types and not request.is_ts1_alone:
-            # A type that cannot be used is told before simulators and oracles are imported.
+            # Report a type that cannot be used before simulators and oracles are imported.
             _ = work.tasks
     except UnknownTypeError as error:
         print(f"error: {error}", file=sys.stderr)
@@ -64,10 +64,10 @@ def run_verify(given: argparse.Namespace) -> int:
 
 
 def _request(given: argparse.Namespace) -> Request:
-    """Check arguments, and return what they ask for."""
+    """Check the arguments, and turn them into a request."""
     _check_replay(given)
     _check_libraries(given)
-    # Without a type, all that a recording has are meant.
+    # Without named types, ``--bag`` means all types of the recordings.
     is_all = given.all or (bool(given.bag) and not given.types)
     if bool(given.types) == is_all:
         given.usage_error("name types, or all of them with --all")
@@ -108,7 +108,7 @@ def _request(given: argparse.Namespace) -> Request:
 
 
 def _check_replay(given: argparse.Namespace) -> None:
-    """Refuse what recordings cannot be combined with."""
+    """Refuse arguments that cannot be combined with recordings, and the reverse."""
     if not given.bag:
         if given.max_message_bytes is not None:
             given.usage_error("--max-message-bytes needs --bag")
@@ -126,7 +126,7 @@ def _check_replay(given: argparse.Namespace) -> None:
 
 
 def _check_libraries(given: argparse.Namespace) -> None:
-    """Refuse what libraries, as references or under test, cannot be combined with."""
+    """Refuse arguments that cannot be combined with references or with libraries under test."""
     if NO_REFERENCE in given.reference and len(given.reference) > 1:
         given.usage_error(f"--reference {NO_REFERENCE} goes with no other")
     if not given.sut:
@@ -139,7 +139,7 @@ def _check_libraries(given: argparse.Namespace) -> None:
 
 
 def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command, all but how it is called."""
+    """Add the arguments of the command to a parser."""
     add_types_or_all(
         parser, "all types; with --path, all in those folders; with --bag, all that have topics"
     )

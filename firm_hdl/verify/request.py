@@ -1,4 +1,4 @@
-"""What ``firm-hdl verify`` is asked for, and the types that this is about."""
+"""The request of a call of ``firm-hdl verify``, with the types to test."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ __all__ = ["Workload"]
 
 
 class Workload:
-    """A request, and its types, which are looked up when the first test system needs them.
+    """A request and its types, which are looked up when a test system first needs them.
 
-    Types that are named and that no distribution has are looked up in the active workspace, as if
-    by ``--path``. TS1 alone does so anyway.
+    Named types that no distribution has are looked up in the active workspace, as with ``--path``.
+    If only TS1 runs, TS1 itself looks up the types.
 
     Attributes
     ----------
     request : Request
-        With the folders of the workspace, if they are needed.
+        Its `paths` are the folders of the workspace if the types are looked up there.
     problems : dict of str to Diagnostic
-        What is wrong with definitions that do not keep the others from being tested, by its text.
+        Errors by their texts. Types without errors are tested nevertheless.
     """
 
     def __init__(self, request: Request):
@@ -49,7 +49,7 @@ class Workload:
         DefinitionError
             If a definition that is named cannot be used.
         UnknownTypeError
-            If nobody has a type that is named.
+            If a type that is named does not exist.
         """
         request = self.request
         if request.bags:
@@ -63,7 +63,7 @@ class Workload:
                 problems=self.problems,
             )
         if request.paths:
-            # A type that is wrong does not keep the others from being tested.
+            # An invalid type does not keep the others from being tested.
             own = [path for path in request.paths if path not in request.depends]
             distros: Sequence[str] = request.distros or [DEFAULT_DISTRO]
             return collect_own(
@@ -85,5 +85,5 @@ class Workload:
             if found:
                 self.request = replace(self.request, paths=tuple(found))
             else:
-                # Some of the types may be there.
+                # Some of the types may exist: these are tested.
                 self.__dict__["tasks"] = collect_tasks(distros, types, problems=self.problems)

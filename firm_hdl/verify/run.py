@@ -1,10 +1,10 @@
 """A run of ``firm-hdl verify``: test systems, or client libraries under test.
 
-A test system is a line in :data:`SYSTEMS`: a function that makes it of what is asked for. What each
-of them finds out goes to one file of results, which says first what all of them are to test.
+A test system is an entry of :data:`SYSTEMS`: a function that makes the system for a workload. All
+systems write to one file of results, which lists the planned tests of all systems first.
 
-What was asked for by name has to be judged. Of all types, those that nobody can judge are listed
-and do not count. A run that judged nothing at all is no pass.
+A type that was asked for by name has to be judged. If all types are tested, those that no oracle
+can judge are listed and do not count. A run that judged nothing at all is no pass.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ __all__ = ["SYSTEMS", "concluded", "is_well", "run_workload"]
 
 
 def run_workload(work: Workload) -> int:
-    """Do what is asked for; print what came of it, and return the exit status.
+    """Run the tests of a workload, print a summary, and return the exit status.
 
     Raises
     ------
     DefinitionError
-        If a definition that is named cannot be used. Of all types, those that can are tested, and
-        then the others are printed.
+        If a definition that is named cannot be used. Without names, the usable types are tested,
+        and the errors in the others are printed at the end.
     """
     request = work.request
     try:
@@ -69,12 +69,12 @@ def run_workload(work: Workload) -> int:
 
 
 def is_well(found: Sequence[Judged], *, is_named: bool) -> bool:
-    """Say whether a run is a success, which its exit status tells.
+    """Return whether a run is a success: no test failed, and enough was judged.
 
     Parameters
     ----------
     is_named : bool
-        Whether what was tested was asked for by name, and not all that there is.
+        Whether the user named the types. Then every test has to be judged; otherwise, one.
     """
     verdicts = [each.verdict for each in found]
     if any(isinstance(verdict, Failed) for verdict in verdicts):
@@ -84,7 +84,7 @@ def is_well(found: Sequence[Judged], *, is_named: bool) -> bool:
 
 
 def concluded(found: Sequence[Judged], *, is_named: bool) -> list[str]:
-    """Return lines for the end of a run: each test that was not judged, and what that means."""
+    """Return lines for the end of a run: the tests that were not judged, and the consequence."""
     silent = [(each.what, each.verdict) for each in found if isinstance(each.verdict, NotJudged)]
     lines = [f"not judged: {what}: {verdict.reason}" for what, verdict in silent]
     if len(silent) == len(found):
@@ -97,7 +97,7 @@ def concluded(found: Sequence[Judged], *, is_named: bool) -> list[str]:
 
 
 def _run_systems(work: Workload) -> list[Judged]:
-    """Run the test systems; return what came of all tests."""
+    """Run the test systems; return all tests with their verdicts."""
     with ExitStack() as stack:
         systems = [SYSTEMS[name](work) for name in work.request.systems]
         for system in systems:
@@ -105,12 +105,12 @@ def _run_systems(work: Workload) -> list[Judged]:
         writer = None
         if work.request.results is not None:
             writer = stack.enter_context(_writer(work, work.request.results, systems))
-        # Each of them, whatever comes of the first.
+        # All systems run, even if an earlier one has failures.
         return [each for system in systems for each in system.run(Recorder(writer))]
 
 
 def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWriter:
-    """Open the file of results, new or to be continued."""
+    """Open a new file of results, or one to continue."""
     request = work.request
     read = [*request.paths, *request.bags, *filter(None, [request.golden])]
     options = {
@@ -125,7 +125,7 @@ def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWrit
         options |= system.options
     more = {"executor": request.executor}
     if problems := work.problems:
-        # They are no tests of TS2 and of what follows, and nobody is to think that all is well.
+        # TS2, TS3 and the benches have no tests of these definitions, so the file names them here.
         more["definitions that are refused"] = f"{len(problems)}: {min(problems)}"
     return ResultsWriter(
         path,
@@ -141,4 +141,4 @@ SYSTEMS: dict[str, Callable[[Workload], System]] = {
     "ts3": lambda work: Ts3(work.tasks, work.request),
     "bench": lambda work: Benches(work.tasks, work.request),
 }
-"""By the name that ``--systems`` takes."""
+"""Test systems by the names that ``--systems`` takes."""
