@@ -1,4 +1,4 @@
-"""``firm-hdl verify --sut``: what it prints of client libraries."""
+"""``firm-hdl verify --sut``: judges client libraries and prints the differences."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ from firm_hdl.wire import Wire
 __all__ = ["run_sut"]
 
 MOST_SHOWN = 5
-"""So many differences of each library are made small and shown."""
+"""This many kinds of difference per library are shrunk and shown, counted over all libraries."""
 
 MOST_NAMED = 5
-"""So many types are named with each kind of difference."""
+"""This many types are named with each kind of difference, and this many reasons per library."""
 
 MOST_CHARACTERS = 400
 
@@ -42,16 +42,16 @@ _SAID = {
     Failed.name: "differ",
     NotJudged.name: "not judged",
 }
-"""What is printed of a library, in the order of the columns."""
+"""The columns of the summary, in order: their verdicts and headings."""
 
 
 def run_sut(tasks: Sequence[TypeUnderTest], options: Request) -> list[Judged]:
-    """Judge libraries on types, print what came of it, and return it.
+    """Judge libraries on types, print the results, and return them.
 
     Raises
     ------
     ClientMissingError
-        If a library is not here.
+        If a library under test is not installed.
     """
     began = time.perf_counter()
     references = {name for wire in _wires(tasks, options) for name in REFERENCES[wire]}
@@ -97,7 +97,7 @@ def _judges(
     missing: dict[str, str],
     here: Sequence[str],
 ) -> Iterator[str]:
-    """Say who judges whom."""
+    """Yield lines that say which reference judges which library."""
     for wire in wires:
         ros = REFERENCES[wire][0]
         if ros in missing:
@@ -110,7 +110,7 @@ def _judges(
 
 
 def _differences(trials: Sequence[tuple[TypeUnderTest, Trial]], options: Request) -> Iterator[str]:
-    """Print what is new, the first few of each library with the smallest case."""
+    """Yield lines about unknown differences, the first ones with the smallest case."""
     shown_of: Counter[tuple[str, str]] = Counter()
     for task, trial in sorted(trials, key=lambda each: (each[1].library, each[1].type)):
         for finding in trial.findings:

@@ -1,4 +1,4 @@
-"""The differences between client libraries and ROS's own serializers that are known.
+"""The known differences between client libraries and ROS's own serializers.
 
 docs/divergences.md explains each, by its key.
 """
@@ -13,7 +13,7 @@ from firm_hdl.verify.references.values import Change, Plain, is_nan
 
 __all__ = ["KNOWN"]
 
-# What is done to values.
+# Changes of values, for `KnownDivergence.take_out` and `KnownDivergence.same`.
 
 
 def _quiet(kind: FieldType, value: Plain) -> Plain:
@@ -45,7 +45,7 @@ def _same_times(kind: FieldType, value: Plain) -> Plain:
 
 
 def _positive_times(kind: FieldType, value: Plain) -> Plain:
-    """Clear the sign of what rosbags has with another sign than ROS 1."""
+    """Clear the sign bits of members that are signed in either rosbags or ROS 1, but not both."""
     if not _is_time(kind):
         return value
     member = "secs" if kind.name == "time" else "nsecs"
@@ -56,7 +56,7 @@ def _canonical(kind: FieldType, value: Plain) -> Plain:
     if not _is_time(kind):
         return value
     more, nsecs = divmod(value["nsecs"], 1_000_000_000)
-    # What is carried over may be more than a time's seconds have room for.
+    # The carry may be more than the seconds of a time have room for.
     mask = 0xFFFFFFFF if kind.name == "time" else -1
     return {"secs": value["secs"] + more & mask, "nsecs": nsecs}
 
@@ -105,7 +105,7 @@ _GENPY = _Entries("genpy", "mcap-ros1", wires="ros1")
 _MCAP_ROS2, _ROSBAGS = _Entries("mcap-ros2"), _Entries("rosbags")
 _CUTS = ("cut-1", "cut-half", "cut-all", "long-text", "long-items")
 
-# Values that they write or read in another way.
+# Values that libraries write or read differently from ROS.
 
 _Entries(*("rosbags", "cyclonedds", "mcap-ros2"), *_GENPY.libraries, wires="ros1 cdr").add(
     "python-signalling-nan",

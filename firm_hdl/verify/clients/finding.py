@@ -22,10 +22,10 @@ class Finding:
     library, reference : str
     wire : Wire
     what : str
-        ``encode`` or ``decode``, the name of an oddity, or ``encode`` with that.
+        ``encode``, ``decode``, the name of an odd packet, or ``encode`` and that of an odd value.
     message : Message
     value : Plain
-        The value to write, or that of the packet.
+        The value to write, or the value of the packet.
     packet : bytes
         The packet to read.
     expected, got : bytes, Plain or Refusal
@@ -43,7 +43,7 @@ class Finding:
     got: Any = field(repr=False)
 
     def answers(self, library: str) -> tuple[Any, Any]:
-        """Return the answer of one of the two, and that of the other."""
+        """Return the answer of one of the two libraries, and the answer of the other."""
         if library == self.library:
             return self.got, self.expected
         return self.expected, self.got
@@ -56,7 +56,7 @@ class KnownDivergence:
     Attributes
     ----------
     key : str
-        Its name, here and in docs/divergences.md.
+        The name of the difference, here and in docs/divergences.md.
     libraries : tuple of str
         Libraries that differ from ROS.
     wires : str
@@ -70,7 +70,8 @@ class KnownDivergence:
     whats : tuple of str
         Oddities of this divergence.
     answer : "takes", "refuses" or None
-        The answer of the libraries if the other one does the opposite; `None`: both take them.
+        What the libraries do with the oddities while the other side does the opposite. `None`:
+        both sides take the oddities.
     """
 
     key: str
@@ -83,17 +84,17 @@ class KnownDivergence:
     answer: Literal["takes", "refuses"] | None = None
 
     def is_about(self, finding: Finding) -> str | None:
-        """Return the library that it is about; `None` if neither."""
+        """Return the library of a finding that this difference is about; `None` if neither is."""
         return self.whose(finding.wire, finding.library, finding.reference)
 
     def whose(self, wire: Wire, *libraries: str) -> str | None:
-        """Return which of some libraries it is about on a wire; `None` if none."""
+        """Return the first library that this difference is about on a wire; `None` if none is."""
         if wire not in self.wires.split():
             return None
         return next((name for name in libraries if name in self.libraries), None)
 
     def explains_answer(self, finding: Finding) -> bool:
-        """Whether it explains who takes an odd packet or value."""
+        """Whether this difference explains which side takes an odd packet or value."""
         name = self.is_about(finding)
         if name is None or finding.what not in self.whats:
             return False

@@ -41,7 +41,7 @@ class Trial:
     library, reference : str
     type : str
     comparisons : int
-        Number of questions that both were asked.
+        Number of questions that both libraries were asked.
     answers : int
         Number of questions that the reference answered and did not refuse.
     known : counter of str
@@ -53,8 +53,8 @@ class Trial:
     obstacle : NotJudged, Failed or None
         Why there is no result: a library lacks the type, or died.
     is_asked : bool
-        Whether the library was asked to judge just this: not if it does not speak the wire of a
-        distribution that nobody named.
+        Whether the trial counts. It does not if the library does not speak the wire of the type,
+        and the user named neither wires nor distributions.
     """
 
     library: str
@@ -171,12 +171,12 @@ class Contest:
     def ask(
         self, message: Message, what: str, value: Plain
     ) -> tuple[Finding, Sequence[str]] | None:
-        """Ask for one thing, and return a difference and what explains it; `None` if there is none.
+        """Ask one question; return a difference and the keys that explain it; `None` without one.
 
         Parameters
         ----------
         what : str
-            See `Finding`. What is odd is done to `value`, or to its packet.
+            See `Finding`. An oddity is put into `value`, or into its packet.
         """
         try:
             theirs, right = self._open(message)
@@ -191,7 +191,7 @@ class Contest:
         return None if expected == got else (finding, known_keys(finding, theirs, right))
 
     def again(self, message: Message, what: str, value: Plain) -> Finding | None:
-        """Ask for one thing; return a difference that nothing explains."""
+        """Ask one question; return the difference if no known divergence explains it."""
         found = self.ask(message, what, value)
         return None if found is None or found[1] else found[0]
 
@@ -213,7 +213,7 @@ class Contest:
 
 @dataclass(frozen=True, slots=True)
 class _Asked:
-    """What both are asked: to write a value, or, if there is a packet, to read that."""
+    """A question to both libraries: to read `packet` or, if it is `None`, to write `value`."""
 
     what: str
     value: Plain
@@ -221,7 +221,7 @@ class _Asked:
 
 
 def _answers(name: str, codec: Codec, asked: Sequence[_Asked]) -> list[Any]:
-    """Ask a library, all values and all packets at once."""
+    """Ask a library about all values at once, and about all packets at once."""
     values = [each.value for each in asked if each.packet is None]
     packets = [each.packet for each in asked if each.packet is not None]
     written = iter(each_answered(name, values, codec.encode_all(values)) if values else ())

@@ -1,9 +1,9 @@
 """Which known divergences explain a difference.
 
-A difference in values is explained if the values are equal without the parts that an entry is
-about. So a known divergence hides no other. If one library takes an odd packet and the other
-refuses it, the oddity and the library explain the difference. A difference that no entry explains
-is new.
+A difference in values is explained if the values are equal without the parts that known divergences
+are about. So a known divergence hides no other difference. If one library takes an odd packet and
+the other refuses it, the oddity and the library explain the difference. A difference that no entry
+explains is new.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ __all__ = ["known_keys", "known_writing"]
 
 
 def known_keys(finding: Finding, theirs: Codec, right: Codec) -> Sequence[str]:
-    """Return the keys of what explains a difference; none if it is new."""
+    """Return the keys of the divergences that explain a difference; none if it is new."""
     entries = [entry for entry in KNOWN if entry.is_about(finding)]
     for entry in entries:
         if entry.explains_answer(finding):
@@ -64,20 +64,20 @@ def _explained_writing(
 def known_writing(
     message: Message, wire: Wire, value: Plain, library: str, reference: str, codec: Codec
 ) -> Sequence[str]:
-    """Return the keys of what explains that two libraries write a value in different ways.
+    """Return the keys of the divergences that explain why two libraries write a value differently.
 
-    It does if the library writes the value without what is known in the way of the reference.
-    Nothing does if the reference does not have the type.
+    The divergences explain it if both libraries write the same packet once the parts that the
+    divergences are about are taken out of the value. There are none without the reference's type.
 
     Parameters
     ----------
     codec : Codec
-        Of `library`. That of the reference is opened here.
+        The codec of `library`. That of the reference is opened here.
     """
     try:
         right = client(reference).open(message, wire)
     except UnsupportedError:
-        # Without the type, there is nothing in its way.
+        # A reference without the type writes nothing to compare.
         return ()
     entries = [entry for entry in KNOWN if entry.whose(wire, library, reference) is not None]
     return _explained_writing(message, value, entries, codec, right)

@@ -1,8 +1,8 @@
-"""Odd packets, which are unusual or malformed, and odd values: what do libraries make of them?
+"""Odd packets, which are unusual or malformed, and odd values.
 
-Each is the packet of a case in which one thing is done in another way, at its first place. The
-writer here is our own. Its packets are used only if the reference writes the same packet for the
-case itself.
+An odd packet is the packet of a case with one oddity, at the first place that can have the oddity.
+The writer here is our own. Its odd packets are used only if it writes the case itself like the
+reference.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ MOST_PACKET_BYTES = 1 << 12
 """Longer packets are not made odd."""
 
 MOST_OF_A_KIND = 2
-"""Of a type, so many packets and so many values of each kind are made odd."""
+"""The most odd packets of each kind, and the most odd values of each kind, for a type."""
 
 MOST_BOUND = 64
-"""Higher bounds are not exceeded."""
+"""Oddities exceed no higher bound than this."""
 
 TOO_LONG = 70_000
-"""More than any packet here has, and no more than what a library may be made to allocate."""
+"""A length that exceeds every packet here, but that a library can still allocate."""
 
 _CODES = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
@@ -48,8 +48,8 @@ ODDITIES: dict[str, str] = {
     "big-endian": "cdr",  # The packet is big-endian.
     "options": "cdr",  # The options in the header are not zero.
     "dirty-padding": "cdr",  # Padding is not zero.
-    **dict.fromkeys(("pad-1", "pad-2", "pad-3"), "cdr"),  # So many zero bytes follow.
-    # It need not take these.
+    **dict.fromkeys(("pad-1", "pad-2", "pad-3"), "cdr"),  # One to three zero bytes follow.
+    # A receiver may refuse these packets.
     "no-nul": "cdr",  # A string has no NUL after it.
     "nul-inside": "ros1 cdr",  # A string has a NUL among its characters.
     "not-utf8": "ros1 cdr",  # A string is not UTF-8.
@@ -58,14 +58,14 @@ ODDITIES: dict[str, str] = {
     "trailing-4": "ros1 cdr",  # Four zero bytes follow.
     "cut-1": "ros1 cdr",  # The last byte is missing.
     "cut-half": "ros1 cdr",  # The second half is missing.
-    "cut-all": "ros1 cdr",  # There is nothing.
-    "cut-header": "cdr",  # There is nothing but half a header.
+    "cut-all": "ros1 cdr",  # The packet is empty.
+    "cut-header": "cdr",  # The packet is half a header.
     "bound-text": "ros1 cdr",  # A string is longer than its bound.
     "bound-items": "ros1 cdr",  # A sequence is longer than its bound.
     "long-text": "ros1 cdr",  # The length of a string exceeds the packet.
     "long-items": "ros1 cdr",  # The length of a sequence exceeds the packet.
 }
-"""What is done in another way, and the wires that have it: ``ros1``, ``cdr``, or both."""
+"""Oddities by name, and the wires that can have them: ``ros1``, ``cdr``, or both."""
 
 _TAILS: dict[str, Callable[[bytes], bytes]] = {
     "options": lambda packet: packet[:2] + b"\x00\x03" + packet[4:],
@@ -84,7 +84,7 @@ _TAILS: dict[str, Callable[[bytes], bytes]] = {
 def odd_packets(
     message: Message, wire: Wire, values: Sequence[Plain]
 ) -> Iterator[tuple[str, Plain, bytes]]:
-    """Yield oddities, values, and their odd packets: `MOST_OF_A_KIND` of each at most."""
+    """Yield oddities, values, and their odd packets: at most `MOST_OF_A_KIND` of each oddity."""
     for odd, wires in ODDITIES.items():
         if wire in wires.split():
             packets = ((value, odd_packet(message, wire, value, odd)) for value in values)
@@ -110,7 +110,7 @@ _VALUE_ODDITIES = ("nul-inside", "not-utf8", "bound-text", "bound-items")
 
 
 def odd_values(message: Message, values: Sequence[Plain]) -> Iterator[tuple[str, Plain]]:
-    """Yield oddities and odd values, `MOST_OF_A_KIND` of each at most; what do libraries write?"""
+    """Yield oddities and odd values to be written: at most `MOST_OF_A_KIND` of each oddity."""
     for odd in _VALUE_ODDITIES:
         found = (odd_value(message, value, odd) for value in values)
         yield from islice(((odd, value) for value in found if value is not None), MOST_OF_A_KIND)
@@ -155,7 +155,7 @@ class _Writer:
     data: bytearray = field(default_factory=bytearray)
 
     def here(self, odd: str) -> bool:
-        """Whether this is the first place for what is odd."""
+        """Return whether the oddity goes here, at the first place for it; mark it as done."""
         if odd != self.odd or self.is_done:
             return False
         self.is_done = True
@@ -225,7 +225,7 @@ class _Writer:
         return value
 
     def odd_part(self, kind: FieldType, value: Plain) -> Plain:
-        """Return a value with what is odd in it, but for what is in its parts."""
+        """Return a value with the oddity in itself, not in its parts."""
         match kind:
             case String(wide=False):
                 return self.odd_text(kind, value)

@@ -21,7 +21,7 @@ from firm_hdl.wire import Wire, lay_out
 __all__ = ["command_of", "contest_of", "judge_type", "judge_types", "reference_of"]
 
 BUS_BYTES = 8
-"""Lengths of sequences and texts are chosen as for a bus of so many bytes."""
+"""Lengths of sequences and texts are chosen as for a bus of this width."""
 
 
 def command_of(request: Request, distro: str, name: str, library: str) -> str:
@@ -38,30 +38,30 @@ def command_of(request: Request, distro: str, name: str, library: str) -> str:
 
 
 def reference_of(library: str, wire: Wire, here: Sequence[str]) -> str | None:
-    """Return who judges a library on a wire, if it has the type; `None` if nobody is here."""
+    """Return the first reference for a library on a wire; `None` if none is installed."""
     return next(iter(_references(library, wire, here)), None)
 
 
 def _references(library: str, wire: Wire, here: Sequence[str]) -> list[str]:
     own, *others = REFERENCES[wire]
-    # ROS's own is not judged by another release of itself, if anybody else is here.
+    # ROS's own serializer is judged by rosbags first, and only then by other releases of itself.
     names = reversed(others) if library == own else (own, *others)
     return [name for name in names if name in here and name != library]
 
 
 def contest_of(trial: Trial, wire: Wire) -> Contest:
-    """Return what a trial came from, to ask again."""
+    """Return the contest of a trial, to repeat its questions."""
     return Contest(client(trial.library), client(trial.reference), wire)
 
 
 def judge_type(distro: str, name: str, options: Request, here: Sequence[str]) -> list[Trial]:
-    """Judge all libraries on one type. Nothing is raised: what goes wrong is in the trials.
+    """Judge all libraries on one type. Errors are not raised, but are in the trials.
 
     Parameters
     ----------
     options : Request
         `libraries`, `wire`, `seed`, `most_cases`, `paths` and `names_wires` are used. If the user
-        chose wires, a library that lacks one of them is not judged.
+        chose wires, a library that lacks one of them counts as not judged.
     here : sequence of str
         References that can be used.
     """
@@ -69,7 +69,7 @@ def judge_type(distro: str, name: str, options: Request, here: Sequence[str]) ->
         message = library_of(distro, options.paths).message(name)
         wire = options.wire or message.wire
         values = _values(distro, message, wire, options)
-    # Whatever it is, the other types are to go on.
+    # The other types are judged in any case.
     except (NotJudgedError, DefinitionError, ValueError) as error:
         return [_not_judged(library, name, str(error)) for library in options.libraries]
     trials = [_judged(library, message, wire, values, here) for library in options.libraries]
@@ -96,7 +96,7 @@ def _not_judged(library: str, name: str, why: str) -> Trial:
 
 
 def _values(distro: str, message: Message, wire: Wire, options: Request) -> list[Plain]:
-    """Choose values as TS3 does: all lengths and extremes, and what decisions of a plan need."""
+    """Choose values as TS3 does: all lengths and extremes, and values for a plan's decisions."""
     judge = judge_of(message, None if options.paths else distro, stand_in=True)
     plan = build_plan(lay_out(message, wire), bus_bytes=BUS_BYTES)
     seed, most = options.seed, options.most_cases
@@ -107,10 +107,10 @@ def _values(distro: str, message: Message, wire: Wire, options: Request) -> list
 def judge_types(
     tasks: Sequence[TypeUnderTest], options: Request, here: Sequence[str]
 ) -> Generator[tuple[TypeUnderTest, list[Trial]], None, None]:
-    """Judge all libraries on types, and yield what comes of each, as it comes."""
+    """Judge all libraries on types, and yield each type's trials when they are done."""
     work = [(task, (task.distro, task.name, options, here)) for task in tasks]
     for task, trials in in_processes(judge_type, work, options.jobs):
         if isinstance(trials, Exception):
-            # In one process: an exception of our own code. Such a run is no result.
+            # A worker process died, or our own code raised: the run has no result.
             raise trials
         yield task, trials

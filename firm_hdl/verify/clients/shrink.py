@@ -28,7 +28,7 @@ def shrunk(
     Parameters
     ----------
     again : callable
-        Asks again for what was asked, of another type and value; see `Contest.again`.
+        Repeats the question with another type and value; see `Contest.again`.
     seconds : float
         The time limit; after it, the smallest difference so far is returned.
     """
@@ -40,7 +40,7 @@ def shrunk(
             if time.monotonic() > until:
                 return finding
             found = again(message, finding.what, value)
-            # What is odd may have been put back into the value.
+            # The oddity may have been put back into the value, which is no smaller then.
             if found is not None and _size(found) < _size(finding):
                 finding, is_smaller = found, True
                 break
@@ -48,7 +48,7 @@ def shrunk(
 
 
 def _size(finding: Finding) -> tuple[int, int, int]:
-    """Return the sizes of the definition and of the value, and the bytes that are not plain."""
+    """Return the sizes of definition and value, and the number of bytes other than NUL and x."""
     data = packed(finding.message, finding.value)
     return len(full_text(finding.message)), len(data), sum(byte not in b"\0x" for byte in data)
 
@@ -100,7 +100,7 @@ def _smaller_field(kind: FieldType, value: Plain) -> Iterator[tuple[FieldType, P
         case String(wide=False) if value.strip(b"x"):
             yield kind, b"x" * len(value)
         case Array(element=element) | SequenceType(element=element) if value:
-            # One at a time: what all have at once, is not minimal.
+            # One element at a time, so that each becomes as small as it can be.
             for n, each in enumerate(value[:8]):
                 for inner, less in _smaller_field(element, each):
                     if inner == element:
@@ -113,7 +113,7 @@ def _smaller_field(kind: FieldType, value: Plain) -> Iterator[tuple[FieldType, P
 
 
 def _without(message: Message, value: Plain, owner: Message, item: Field) -> tuple[Message, Plain]:
-    """Take a field out of a nested message type, wherever that is."""
+    """Take a field out of a nested message type, wherever the type occurs."""
 
     def is_kept(kind: Message, name: str) -> bool:
         return kind.name != owner.name or name != item.name
