@@ -1,8 +1,9 @@
 """Libraries that read and write packets of ROS messages, behind one interface.
 
 A library is a :class:`~firm_hdl.verify.references.client.Client`: rosbags, Cyclone DDS, mcap's ROS
-packages, ROS's own genpy and Fast CDR, and our converters. They are references of TS3 and of each
-other; `firm_hdl.verify.clients` has them under test. rosbags is also the oracle, see `oracle`.
+packages, ROS's own genpy and Fast CDR, and our converters. Some of them are references: TS3
+compares rosbags with them, and `firm_hdl.verify.clients` judges other libraries by them. rosbags is
+also the oracle; see `oracle`.
 """
 
 __all__ = []

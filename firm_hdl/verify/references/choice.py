@@ -1,4 +1,4 @@
-"""Which libraries confirm the bytes that rosbags writes, and which of them are here."""
+"""The choice of libraries that confirm the bytes that rosbags writes."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ __all__ = [
 WRITERS: dict[str, frozenset[Wire]] = {
     name: kind.wires for name, kind in CLIENTS.items() if kind.may_confirm
 }
-"""Libraries that may confirm what rosbags writes, and on which wires."""
+"""Libraries that may confirm what rosbags writes, with the wires on which they may."""
 
 WIDE_REFERENCES = ("fastcdr", *(kind.name for kind in NEWER))
-"""Who has wide text, which rosbags has not: one of them is enough."""
+"""Libraries that support wide text, which rosbags does not. One of them is enough."""
 
 
 def find_clients(names: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
-    """Return versions of the libraries that are here, and why the others are not."""
+    """Return the versions of the installed libraries, and why the others cannot be used."""
     versions, missing = {}, {}
     for name in names:
         why = client(name).missing()
@@ -38,30 +38,30 @@ def find_clients(names: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
             versions[name] = client(name).version()
         else:
             missing[name] = why
-    # Processes that are forked must not have ours.
+    # Forked processes must not inherit the clients of this process.
     close_clients()
     return versions, missing
 
 
 def references_here(wanted: Sequence[str] | None = None) -> tuple[str, ...]:
-    """Return the libraries that can be asked in this process, `None`: of all."""
+    """Return those of the wanted libraries that can be asked in this process; `None`: of all."""
     names = WRITERS if wanted is None else [name for name in WRITERS if name in wanted]
     return tuple(name for name in names if client(name).missing() is None)
 
 
 def may_stand_in(message: Message, wanted: Sequence[str] | None = None) -> bool:
-    """Whether a type has wide text, and somebody is here who knows how it is written."""
+    """Whether a type has wide text, and a library that can confirm its bytes is installed."""
     names = [name for name in WIDE_REFERENCES if wanted is None or name in wanted]
     return bool(stand_ins(closure([message]))) and bool(references_here(names))
 
 
 def find_references(wanted: Sequence[str] | None, wires: Sequence[str]) -> list[str]:
-    """Say which libraries are not here; for a process that starts others.
+    """Return a line for each library that cannot be used; for a process that starts others.
 
     Raises
     ------
     ClientMissingError
-        If one of those that are wanted by name is not.
+        If a library that is wanted by name cannot be used.
     """
     names = [name for name in WRITERS if set(wires) & WRITERS[name]]
     _, missing = find_clients(names if wanted is None else wanted)

@@ -32,7 +32,7 @@ class Refusal(Exception):  # noqa: N818 - it is an answer, which may be right.
     """A library refuses a value or a packet; the text is its message."""
 
     def __eq__(self, other: object) -> bool:
-        # Nobody agrees on words.
+        # Libraries word their messages differently.
         return isinstance(other, Refusal)
 
     def __hash__(self) -> int:
@@ -58,7 +58,7 @@ class Codec:
     """A library's writer and reader of one message type on one wire.
 
     A subclass defines `encode` and `decode`, or, if its library is in another process, `encode_all`
-    and `decode_all`. The other two follow.
+    and `decode_all`. The other two methods call these.
     """
 
     def encode(self, value: Plain) -> bytes:
@@ -80,11 +80,11 @@ class Codec:
         return _accepted(self.decode_all([packet]))
 
     def encode_all(self, values: Sequence[Plain]) -> list[bytes | Refusal]:
-        """Write packets; what is refused is in the list."""
+        """Write packets; a refused value has a `Refusal` in the list."""
         return [_answer(self.encode, value) for value in values]
 
     def decode_all(self, packets: Sequence[bytes]) -> list[Plain | Refusal]:
-        """Read packets; what is refused is in the list."""
+        """Read packets; a refused packet has a `Refusal` in the list."""
         return [_answer(self.decode, packet) for packet in packets]
 
 
@@ -122,13 +122,13 @@ class Client(ABC):
     Attributes
     ----------
     name : str
-        As ``--sut`` takes it.
+        The name that ``--sut`` takes.
     wires : set of "ros1" and "cdr"
         The wire formats that it supports.
     byte_orders : tuple of "little" and "big"
         The byte orders of CDR that it supports.
     may_confirm : bool
-        Whether TS3 asks it to write what rosbags writes, on its wires (``--reference``).
+        Whether TS3 may compare its packets with those of rosbags (``--reference``).
     """
 
     name: ClassVar[str]
@@ -142,7 +142,7 @@ class Client(ABC):
 
     @abstractmethod
     def version(self) -> str:
-        """Return the release of the library, which is installed."""
+        """Return the version of the installed library."""
 
     @abstractmethod
     def open(self, message: Message, wire: Wire) -> Codec:

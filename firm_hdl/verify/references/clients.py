@@ -33,28 +33,30 @@ REFERENCES: dict[Wire, tuple[str, ...]] = {
     "ros1": ("genpy", "rosbags"),
     "cdr": ("fastcdr", *(kind.name for kind in reversed(NEWER)), "rosbags"),
 }
-"""Who judges a library on a wire: ROS's own serializer, and who comes next if it is not here, is
-the one that is judged, or does not have the type."""
+"""The references of each wire, ROS's own serializer first.
+
+The next reference is asked if one is not installed, is itself under test, or lacks the type.
+"""
 
 
 def client(name: str) -> Client:
-    """Return a client library, of which there is one in a process."""
+    """Return a client library. There is one object of each library in a process."""
     return _client(name, os.getpid())
 
 
 @cache
 def _client(name: str, process: int) -> Client:
-    # A process that was forked must not talk to what its parent has started.
+    # A forked process must not talk to processes that its parent has started.
     return CLIENTS[name]()
 
 
 def close_clients() -> None:
-    """End what client libraries of this process have started."""
+    """End the processes that the client libraries of this process have started."""
     if _client.cache_info().currsize:
         for name in CLIENTS:
             client(name).close()
         _client.cache_clear()
 
 
-# Processes that they started wait for more otherwise.
+# Otherwise, the processes that the libraries started would wait for more requests.
 atexit.register(close_clients)

@@ -1,9 +1,9 @@
 """eProsima Fast CDR, which writes and reads the messages of ROS 2's default middleware.
 
-``fastcdr_worker.cpp`` calls the library for each field of a type that is described to it, so that
-nothing is compiled for a type. The program is compiled when it is first needed, for each release
-of Fast CDR, and kept in the user's cache folder. Debian has the Fast CDR of ROS 2 humble; those of
-newer releases are PyPI's, and their names end in their versions.
+``fastcdr_worker.cpp`` receives the description of a type, and calls the library for each field of
+the type. So no code is compiled for a type. The program is compiled for each release of Fast CDR
+when it is first needed, and kept in the user's cache folder. Debian has the Fast CDR of ROS 2
+humble. Newer releases come from PyPI, and the names of their clients end in their versions.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ class FastCdr(Client):
     Attributes
     ----------
     release : Release or None
-        Whose environment it is in; `None`: the system's.
+        The ROS release whose environment has the library; `None`: the system has it.
     wchar_bytes : int
-        What it writes for a wide character.
+        How many bytes the library writes for a wide character.
     """
 
     name: ClassVar[str] = "fastcdr"
@@ -119,7 +119,7 @@ def _newer() -> Iterator[type[FastCdr]]:
 
 
 NEWER = tuple(_newer())
-"""Releases that PyPI has, oldest first."""
+"""Clients for the releases that PyPI has, oldest first."""
 
 
 def _wchar_sizes(message: Message) -> set[int]:
@@ -128,7 +128,7 @@ def _wchar_sizes(message: Message) -> set[int]:
 
 
 def _described(message: Message) -> str:
-    """Describe a type as the program wants it."""
+    """Describe a type in the form that the program reads."""
     kinds = closure([message])
     lines = {kind.name: number for number, kind in enumerate(kinds)}
 
@@ -156,7 +156,7 @@ def _integer(kind: Primitive) -> str:
 
 
 class _Program:
-    """The program as it runs; it is started again if it dies."""
+    """The running program, which is started again after it died."""
 
     def __init__(self, file: Path):
         self._file = file
@@ -171,7 +171,7 @@ class _Program:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            # It ends when its input does, not when somebody presses Ctrl-C.
+            # The program ends at the end of its input, and not on Ctrl-C.
             start_new_session=True,
         )
         self._types = ""
@@ -211,7 +211,8 @@ class _Program:
         if self._process is None:
             return
         process, self._process = self._process, None
-        # It has nothing to put in order; and a process that was forked may hold its input open.
+        # Kill the program at once: it needs no clean-up, and would not see the end of its input
+        # if a forked process holds the input open.
         hang_up(process)
 
 
@@ -230,17 +231,17 @@ def _text(answer: bytes) -> str:
 
 
 def _compiled(release: Release | None) -> Path:
-    """Return the program, compiled if it was not yet.
+    """Return the program; compile it if it is not in the cache.
 
     Parameters
     ----------
     release : Release or None
-        Whose Fast CDR; `None`: that of the system.
+        The ROS release whose Fast CDR is used; `None`: that of the system.
 
     Raises
     ------
     ToolError
-        If that fails; the text says how to get what it needs.
+        If the program cannot be compiled; the text says what is missing and how to install it.
     """
     compiler = shutil.which(os.environ.get("CXX") or "g++")
     how = _HOW if release is None else release.how
@@ -253,7 +254,7 @@ def _compiled(release: Release | None) -> Path:
         where = [f"-I{home}/include"]
         link = [f"-L{home}/lib", *link, f"-Wl,-rpath,{home}/lib"]
         if not os.path.exists(f"{home}/include/fastcdr/Cdr.h"):
-            # The system may have other ones.
+            # The compiler might find headers of another version in the system.
             raise ToolError(f"Fast CDR {release.fastcdr} is not installed {how}")
     found = _found_headers([compiler, *where])
     if b"FASTCDR" not in found:
@@ -268,13 +269,13 @@ def _compiled(release: Release | None) -> Path:
     with tempfile.TemporaryDirectory(dir=folder) as scratch:
         made = Path(scratch) / "program"
         run_tool([*command, "-o", str(made), str(_SOURCE), *link], Path(scratch))
-        # Whoever comes second puts the same in its place.
+        # If two processes compile the program at once, the second replaces it with an equal one.
         os.replace(made_by(compiler, made), program)
     return program
 
 
 def _found_headers(compiler: Sequence[str]) -> bytes:
-    """Return what identifies the compiler and the library that it finds; empty without them."""
+    """Return the versions of the compiler and of the Fast CDR it finds; empty without them."""
     done = subprocess.run(
         [*compiler, "-E", "-dM", "-include", "fastcdr/Cdr.h", "-x", "c++", os.devnull],
         capture_output=True,
@@ -287,7 +288,7 @@ def _found_headers(compiler: Sequence[str]) -> bytes:
 
 
 def _cache_folder() -> Path:
-    """Return the folder for compiled programs; where nothing can be kept, one for this process."""
+    """Return the folder for compiled programs; a temporary one if the cache is not writable."""
     base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
     folder = Path(base) / "firm-hdl"
     try:

@@ -1,4 +1,4 @@
-"""genpy, ROS 1's own serializer in Python, in the Python that Debian has it for."""
+"""genpy, ROS 1's own serializer in Python, which runs in the Python that has ROS's modules."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ __all__ = ["Genpy", "field_table"]
 
 
 def field_table(message: Message) -> dict[str, list[tuple[str, bool, str]]]:
-    """List the fields of all types that a type is made of, as `genpy_objects` wants them."""
+    """List the fields of a type and of its nested types, as `genpy_objects` takes them."""
     return {
         kind.name: [
             (item.name, isinstance(item.type, Array | SequenceType), _base(item.type))
@@ -43,7 +43,7 @@ def _base(kind: FieldType) -> str:
 
 
 class Genpy(Client):
-    """genpy, on classes that it makes from the text of a definition."""
+    """genpy, with classes that genpy generates from the text of a definition."""
 
     name = "genpy"
     wires: ClassVar = frozenset({"ros1"})
@@ -73,7 +73,7 @@ class Genpy(Client):
 
 class _GenpyCodec(Codec):
     _opened: ClassVar[dict[int, _GenpyCodec]] = {}
-    """Which codec a worker is ready for."""
+    """The codec that each worker is ready for, by the `id` of the worker."""
 
     def __init__(self, worker: worker.Worker, message: Message):
         self._worker = worker

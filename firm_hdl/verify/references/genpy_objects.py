@@ -1,9 +1,9 @@
-"""Plain values and genpy's objects, wherever that genpy is.
+"""Conversion between plain values and genpy's objects, for ROS's own genpy and for mcap's.
 
 This file is also run by the Python that ROS's modules are installed for, so it imports nothing of
 firm-hdl. Plain values are described in `firm_hdl.verify.references.values`; bytes may be text in
-Latin-1. A table has the fields of each message type: name, whether it is an array, and the type's
-name.
+Latin-1. A table lists the fields of each message type. Each field has its name, whether it is an
+array or a sequence, and the name of its type.
 """
 
 import io
@@ -44,7 +44,7 @@ class Objects:
         return self.plain(name, message)
 
     def made(self, name: str, value: Any) -> Any:
-        """Make what genpy has for a plain value of a type."""
+        """Return genpy's object for a plain value of a type."""
         if name in FLOATS:
             bits, number = FLOATS[name]
             return struct.unpack(number, struct.pack(bits, value))[0]
@@ -53,7 +53,7 @@ class Objects:
             return data.decode("utf-8", "surrogateescape")
         if name in self.times:
             found = self.times[name]()
-            # As they are: what is given to the constructor is normalized.
+            # Set the attributes, because the constructor would normalize them.
             found.secs, found.nsecs = value["secs"], value["nsecs"]
             return found
         if name not in self.table:
@@ -66,7 +66,7 @@ class Objects:
         return message
 
     def plain(self, name: str, value: Any) -> Any:
-        """Return the plain value of what genpy has for a type."""
+        """Return the plain value of genpy's object of a type."""
         if name in FLOATS:
             bits, number = FLOATS[name]
             return struct.unpack(bits, struct.pack(number, value))[0]
@@ -88,12 +88,12 @@ class Objects:
 
 
 def _attribute(message: Any, field: str) -> str:
-    """Return what genpy calls a field: names that Python does not take get a trailing `_`."""
+    """Return genpy's name of a field, with a trailing `_` if Python reserves the ROS name."""
     return field if field in message.__slots__ else field + "_"
 
 
 def to_json(value: Any) -> Any:
-    """Turn a plain value into what JSON's writer takes."""
+    """Turn a plain value into one that the `json` module can write."""
     if isinstance(value, bytes):
         return value.decode("latin-1")
     if isinstance(value, dict):

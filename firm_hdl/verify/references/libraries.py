@@ -41,9 +41,9 @@ class _Imported(Client):
     Attributes
     ----------
     package : str
-        As PyPI calls it.
+        Its name on PyPI.
     module : str
-        What is imported of it.
+        The module of it that is imported.
     """
 
     package: ClassVar[str]
@@ -64,7 +64,7 @@ class _Imported(Client):
 
 
 class Rosbags(_Imported):
-    """rosbags, given the fields as they were resolved."""
+    """rosbags, with definitions that are written from the resolved fields."""
 
     name = package = module = "rosbags"
     wires: ClassVar = frozenset({"ros1", "cdr"})
@@ -121,7 +121,7 @@ class _RosbagsCodec(ObjectCodec):
         if kind.kind == "float":
             values = values.astype(f"<f{kind.bytes}").view(f"<u{kind.bytes}")
         elif kind.name == "byte" and kind.signed:
-            # An array of bytes is not signed to it, and neither is right or wrong in ROS 1.
+            # rosbags has arrays of bytes as unsigned. In ROS 1, neither sign is right or wrong.
             values = values.view(np.int8)
         return list(values.tolist())
 
@@ -136,11 +136,11 @@ def _dtype(kind: Primitive) -> str:
 
 
 MOST_CYCLONE_BOUND = 0xFFFF
-"""Of sequences in cyclonedds 11.0.1; text and arrays may be longer."""
+"""The highest bound of sequences in cyclonedds 11.0.1. Text and arrays may be longer."""
 
 
 class CycloneDds(_Imported):
-    """Eclipse Cyclone DDS: its own serializer in Python, on classes that are made for a type."""
+    """Eclipse Cyclone DDS: its own serializer in Python, with classes generated for a type."""
 
     name = package = "cyclonedds"
     module = "cyclonedds.idl"
@@ -166,10 +166,10 @@ class _CycloneCodec(ObjectCodec):
         # Names do not reach the wire, and some of ROS's are keywords of Python.
         members = {f"m{n}": self._type(item.type) for n, item in enumerate(kind.fields)}
         name = "T_" + "".join(c if c.isalnum() else "_" for c in kind.name)
-        # What rosidl gives a message without fields, which IDL does not have.
+        # rosidl gives an empty message one byte, because IDL has no structs without members.
         members = members or {"m0": self._types.uint8}
         found = self._idl.make_idl_struct(name, name, members, dataclassify=False)
-        # Instead of the data class that it makes otherwise, which takes its time.
+        # A simple constructor, because making the default data class takes long.
         found.__init__ = _take_members
         return found
 
@@ -220,16 +220,16 @@ def _take_members(self: Any, **members: Any) -> None:
 
 def _opened(kind: Callable[[Message], Codec], message: Message, library: str) -> Codec:
     try:
-        # Its parser prints what it does not take.
+        # The parser prints what it does not accept.
         with redirect_stdout(StringIO()), redirect_stderr(StringIO()):
             return kind(message)
-    # Whatever its parser raises.
+    # The exceptions of the parser have no common base class.
     except Exception as error:
         raise UnsupportedError(f"{library} refuses the definition: {first_line(error)}") from None
 
 
 class McapRos2(_Imported):
-    """mcap-ros2-support: what reads and writes the messages of ROS 2 in MCAP files."""
+    """mcap-ros2-support, which reads and writes the messages of ROS 2 in MCAP files."""
 
     name = "mcap-ros2"
     package = "mcap-ros2-support"
@@ -262,7 +262,7 @@ class _McapRos2Codec(ObjectCodec):
 
 
 class McapRos1(_Imported):
-    """mcap-ros1-support: what reads and writes the messages of ROS 1 in MCAP files."""
+    """mcap-ros1-support, which reads and writes the messages of ROS 1 in MCAP files."""
 
     name = "mcap-ros1"
     package = "mcap-ros1-support"
@@ -274,12 +274,12 @@ class McapRos1(_Imported):
 
 
 class _McapRos1Codec(Codec):
-    """It has a genpy of its own, whose objects are those of genpy."""
+    """A codec of mcap-ros1-support, which has its own copy of genpy with the same classes."""
 
     def __init__(self, message: Message):
         dynamic: Any = importlib.import_module("mcap_ros1.decoder").dynamic
         genpy: Any = importlib.import_module(dynamic.__name__.rpartition(".")[0])
-        # It reports each text that is not UTF-8, to standard error if nobody else listens.
+        # It logs each text that is not UTF-8. Without a handler, that goes to standard error.
         logging.getLogger("rosout").addHandler(logging.NullHandler())
         with _unchanged_path():
             classes = dynamic.generate_dynamic(message.name, full_text(message))
@@ -297,14 +297,14 @@ class _McapRos1Codec(Codec):
 def _refused(work: Any, name: str, given: Any) -> Any:
     try:
         return work(name, given)
-    # What it raises has no common base.
+    # The exceptions of genpy have no common base class.
     except Exception as error:
         raise Refusal(first_line(error)) from None
 
 
 @contextmanager
 def _unchanged_path() -> Iterator[None]:
-    """Undo what genpy does to the search path for each module that it makes."""
+    """Remove what genpy adds to the search path for each module that it generates."""
     before = list(sys.path)
     try:
         yield

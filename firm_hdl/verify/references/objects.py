@@ -1,7 +1,7 @@
-"""Codecs of libraries whose messages are Python objects; and definitions in ROS's own words.
+"""Codecs of libraries whose messages are Python objects, and texts of definitions in ROS's syntax.
 
-A text is a `str` to all of them. Bytes that are no UTF-8 become lone surrogates, which a library
-refuses to write in its own words.
+All of these libraries represent text as `str`. Bytes that are not UTF-8 become lone surrogates,
+which a library refuses to write with its own error.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ __all__ = [
 
 
 class ObjectCodec(Codec):
-    """A codec of one type, by way of objects of the library.
+    """A codec of one type that converts plain values to and from objects of the library.
 
     Parameters
     ----------
@@ -49,11 +49,11 @@ class ObjectCodec(Codec):
 
     @abstractmethod
     def write(self, value: Any) -> bytes:
-        """Serialize an object. Whatever is raised is a refusal."""
+        """Serialize an object. Any exception is a refusal."""
 
     @abstractmethod
     def read(self, packet: bytes) -> Any:
-        """Deserialize a packet. Whatever is raised is a refusal."""
+        """Deserialize a packet. Any exception is a refusal."""
 
     @abstractmethod
     def made(self, kind: Message, members: dict[str, Any]) -> Any:
@@ -64,17 +64,17 @@ class ObjectCodec(Codec):
         return getattr(value, name)
 
     def array(self, kind: Primitive, numbers: list[Any]) -> Any:
-        """Make what the library wants for an array of numbers."""
+        """Return the library's form of an array or a sequence of numbers."""
         return [_number(kind, each) for each in numbers]
 
     def items(self, kind: Primitive, values: Any) -> list[Plain]:
-        """Return what an array of numbers has."""
+        """Return the numbers of the library's form of an array or a sequence."""
         return [_plain_number(kind, each) for each in values]
 
     def encode(self, value: Plain) -> bytes:
         try:
             return self.write(self._built(self.message, value))
-        # What libraries raise for what they do not take has no common base.
+        # The exceptions of libraries that refuse a value have no common base class.
         except Exception as error:
             raise Refusal(first_line(error)) from None
 
@@ -128,7 +128,7 @@ def _plain_number(kind: Primitive, value: Any) -> Plain:
 
 
 def first_line(error: Exception) -> str:
-    """Say in one line what somebody else's exception says."""
+    """Return the type and the first line of a library's exception."""
     lines = str(error).strip().splitlines()
     return f"{type(error).__name__}: {lines[0][:300]}" if lines else type(error).__name__
 
@@ -146,9 +146,9 @@ def _spelled(kind: FieldType) -> str:
 
 
 def plainly_named(message: Message) -> Message:
-    """Return a type in which the messages of services and actions have names like any others.
+    """Return a type whose messages of services and actions have names without ``_``.
 
-    No name stands on a wire, and some parsers take no ``_``.
+    Some parsers do not accept ``_``. Names may be changed, because packets do not contain them.
     """
     numbers = count()
 
@@ -162,8 +162,8 @@ def plainly_named(message: Message) -> Message:
 
 
 def full_text(message: Message) -> str:
-    """Write the definitions of a type and of all that it is made of, as recordings have them."""
-    # genpy wants an empty line where there are no fields.
+    """Write the definitions of a type and of its nested types in the form that recordings have."""
+    # genpy needs an empty line in a definition without fields.
     parts = [definition_text(message) or "\n"]
     for kind in closure([message])[:-1]:
         if kind.package:
@@ -172,7 +172,7 @@ def full_text(message: Message) -> str:
 
 
 def refuse_wide(message: Message, library: str) -> None:
-    """Refuse a type with wide text, for a library that has none.
+    """Refuse a type with wide text, for a library that does not support it.
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """The oracle: rosbags, which writes and reads messages without any code of ours.
 
-Wire bytes are rosbags' own. Leaf transfers are found by a walk over the objects that rosbags
-decoded and the field definitions that rosbags keeps; it shares no code with the model, the layout
-or the plan, so a mistake that both directions of our converters share still shows. docs/errata.md
+Wire bytes are rosbags' own. Leaf transfers come from a walk over the objects that rosbags decoded
+and the field definitions that rosbags keeps. The walk shares no code with the model, the layout or
+the plan. So it also shows a mistake that both directions of our converters share. docs/errata.md
 lists where rosbags differs from ROS itself.
 """
 
@@ -40,7 +40,7 @@ DISTRO_STORES = {
     "kilted": Stores.ROS2_KILTED,
     "lyrical": Stores.ROS2_LYRICAL,
 }
-"""What rosbags calls the types of each distribution."""
+"""rosbags' name for the set of types of each distribution."""
 
 FieldType: TypeAlias = "tuple[Nodetype, Any]"
 """How rosbags describes the type of a field."""
@@ -49,7 +49,7 @@ Transfers: TypeAlias = "dict[tuple[str, ...], list[int | tuple[tuple[int, ...], 
 """Payloads of each leaf, in order, by the leaf's path."""
 
 ROSBAGS_WIRES: frozenset[Wire] = frozenset({"ros1", "cdr"})
-"""What rosbags writes and reads; of any other wire, it can say nothing."""
+"""The wires that rosbags writes and reads. It cannot judge any other wire."""
 
 SIZES = {"bool": 1, "byte": 1, "octet": 1, "char": 1, "float32": 4, "float64": 8}
 SIZES |= {f"{sign}int{8 * size}": size for sign in ("", "u") for size in (1, 2, 4, 8)}
@@ -66,7 +66,8 @@ class RosbagsOracle:
     ----------
     store : Typestore
     dialect : "ros1" or "ros2"
-        What the types are: in ROS 1, ``byte`` is signed and times have ``secs`` and ``nsecs``.
+        The dialect of the types. In ROS 1, ``byte`` is signed, and times have ``secs`` and
+        ``nsecs``.
     """
 
     store: Typestore
@@ -78,11 +79,11 @@ class RosbagsOracle:
         return sorted(name for name in self.store.fielddefs if name not in builtin)
 
     def fields(self, name: str) -> list[tuple[str, FieldType]]:
-        """Return the fields of a type. An empty message of ROS 2 has its one byte here."""
+        """Return the fields of a type. An empty message of ROS 2 has its one-byte member here."""
         return list(self.store.fielddefs[name][1])
 
     def structure(self, name: str) -> tuple[Any, ...]:
-        """Return all that decides how a type stands on the wire, nested types included."""
+        """Return all that determines the wire format of a type, including its nested types."""
 
         def expand(kind: FieldType) -> Any:
             node, detail = kind

@@ -20,7 +20,7 @@ __all__ = ["FirmHdl"]
 
 BUS_BYTES = 8
 MAX_MESSAGE_BYTES = 1 << 16
-"""Small enough that a length over what it leaves room for can be completed in simulation."""
+"""Small enough that a packet with a length over this limit can be completed in simulation."""
 
 
 class FirmHdl(Client):
@@ -40,7 +40,7 @@ class FirmHdl(Client):
 
 
 class _Converters(Codec):
-    """Each is made when it is needed."""
+    """Both converters of a type, each made when it is first needed."""
 
     def __init__(self, message: Message, wire: Wire):
         self._message = message

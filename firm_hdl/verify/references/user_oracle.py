@@ -1,8 +1,9 @@
 """rosbags as the oracle of any type, a user's own included.
 
-rosbags gets the definitions of the type and of all that it is made of. It reads some texts in
-another way than ROS does, or not at all (``uint8 a = 1`` is a field to it); so it gets the fields
-as they were resolved, and whether it reads the texts to the same effect is said beside the result.
+rosbags gets the definitions of the type and of its nested types. It reads some texts differently
+from ROS, or not at all: it takes ``uint8 a = 1`` for a field. So it gets definitions that are
+written from the resolved fields. A note beside the result says if rosbags reads the original texts
+differently.
 """
 
 from __future__ import annotations
@@ -34,14 +35,14 @@ _TIMES = dict.fromkeys(_BUILTIN, "int32 sec\nuint32 nanosec\n")
 
 @dataclass(frozen=True, slots=True)
 class Judge:
-    """An oracle that knows a type, and by which name.
+    """An oracle that knows a type, and the oracle's name of the type.
 
     Attributes
     ----------
     oracle : RosbagsOracle
     name : str
     note : str
-        What is to be known about it; empty in most cases.
+        A remark about the oracle; empty in most cases.
     """
 
     oracle: RosbagsOracle
@@ -55,11 +56,12 @@ def judge_of(message: Message, distro: str | None = None, *, stand_in: bool = Fa
     Parameters
     ----------
     distro : str or None
-        The distribution, if `message` is one of its own types: rosbags has its own definition then.
+        The distribution, if `message` is one of its types. Then rosbags' own definition is used,
+        if there is one.
     stand_in : bool
-        Whether a wstring may be a message of numbers, see
-        :mod:`firm_hdl.verify.references.wide_oracle`.
-        Somebody who has wstring has to say whether the bytes are right.
+        Whether a message of numbers may replace a wstring, see
+        :mod:`firm_hdl.verify.references.wide_oracle`. Then a library that supports wstring has to
+        confirm the bytes.
 
     Raises
     ------
@@ -78,7 +80,7 @@ def judge_of(message: Message, distro: str | None = None, *, stand_in: bool = Fa
 
 
 def resolved_oracle(message: Message, *, stand_in: bool = False) -> RosbagsOracle:
-    """Return an oracle that has the type and all that it is made of, as they were resolved.
+    """Return an oracle with a type and its nested types, defined by their resolved fields.
 
     Raises
     ------
@@ -100,7 +102,7 @@ def resolved_oracle(message: Message, *, stand_in: bool = False) -> RosbagsOracl
 
 
 def _spelled(kind: model.FieldType) -> str:
-    """Return a type as rosbags has it, whose ``char`` is that of ``.msg`` files: not signed."""
+    """Return a type in rosbags' spelling, in which ``char`` is unsigned as in ``.msg`` files."""
     inner = element_of(kind)
     if isinstance(inner, String) and inner.wide:
         return stand_in_type(kind, inner)
@@ -111,7 +113,7 @@ def _spelled(kind: model.FieldType) -> str:
 
 
 def check_wire(message: Message) -> None:
-    """Raise `NotJudgedError` if a message has a field that no wire has: there is no packet."""
+    """Raise `NotJudgedError` if a message has a field that no wire supports."""
     if wrong := refusals(message):
         raise NotJudgedError(wrong[0].message)
 
@@ -121,7 +123,7 @@ def oracle_name(message: Message) -> str:
     if message.name in _BUILTIN:
         return _BUILTIN[message.name]
     head, _, base = message.name.rpartition("/")
-    # rosbags' own rule: whatever is not in `msg` or `action` gets a `msg` before its name.
+    # This is rosbags' own rule: a type outside of `msg` and `action` gets a `msg` before its name.
     return message.name if head.endswith(("/msg", "/action")) else f"{head}/msg/{base}"
 
 
@@ -143,7 +145,7 @@ def _oracle(
             store.register(get_types_from_msg(text, names[name]))
         for name, text in (wide or {}).items():
             store.register(get_types_from_msg(text, name))
-    # What rosbags raises for what it does not know has no common base.
+    # The exceptions of rosbags for definitions that it refuses have no common base class.
     except Exception as error:
         said = str(error).strip().splitlines() or [type(error).__name__]
         raise NotJudgedError(f"rosbags refuses the definition: {said[0]}") from None
@@ -151,7 +153,7 @@ def _oracle(
 
 
 def _unknown(oracle: RosbagsOracle, name: str) -> str:
-    """Return the first type that is named and not there."""
+    """Return the first type that is used but not defined; empty if there is none."""
     seen, pending = {name}, [name]
     while pending:
         owner = pending.pop()
@@ -173,7 +175,7 @@ def _named(kind: FieldType) -> str | None:
 
 
 def _note(message: Message, oracle: RosbagsOracle, name: str) -> str:
-    """Say whether rosbags reads the texts as we have."""
+    """Return a note if rosbags reads the original texts differently from us; else nothing."""
     texts = {kind.name: kind.text for kind in closure([message])}
     try:
         other = _oracle(message, texts)

@@ -1,6 +1,6 @@
-"""Plain values: what all client libraries' messages are turned into, to be compared.
+"""Plain values: the common form of messages in which all client libraries are compared.
 
-A plain value says exactly what stands in a packet, whatever a library may make of it:
+A plain value says exactly what a packet contains, independent of any library's types:
 
 =====================  ============================================================
 message                `dict`, by the fields' ROS names in order; empty if it has none
@@ -12,8 +12,9 @@ float                  `int`: the bits. So NaN payloads, signalling NaN and -0 s
 array, sequence        `list`
 =====================  ============================================================
 
-Two of them are the same if they are equal. As JSON, a string is text whose characters are its
-bytes (Latin-1); :func:`packed` is a form without names for programs that know the type.
+Two messages are the same if their plain values are equal. In JSON, a string is text whose
+characters are its bytes (Latin-1). :func:`packed` is a form without names for programs that know
+the type.
 """
 
 from __future__ import annotations
@@ -47,22 +48,22 @@ Plain: TypeAlias = "Any"
 """A value in the form that this module describes."""
 
 Change: TypeAlias = "Callable[[FieldType, Plain], Plain]"
-"""Returns what replaces a value of a type."""
+"""A function that returns the replacement of a value of a type."""
 
 _FLOATS = {4: ("<I", "<f"), 8: ("<Q", "<d")}
 _CODES = {(1, False): "B", (2, False): "H", (4, False): "I", (8, False): "Q"}
 _CODES |= {(size, True): code.lower() for (size, _), code in _CODES.items()}
-# rosbags calls the members of ROS 1 time and duration as ROS 2 does.
+# rosbags has the names of ROS 2 for the members of ROS 1's time and duration.
 _ALIASES = {"secs": "sec", "nsecs": "nanosec"}
 
 
 def bits_of(number: float, size: int) -> int:
-    """Return the bits of a Python float as one of `size` bytes.
+    """Return the bits of a Python float as a float of `size` bytes.
 
     Raises
     ------
     OverflowError
-        If it is too large for it.
+        If the number is too large for that size.
     """
     bits, code = _FLOATS[size]
     return int(struct.unpack(bits, struct.pack(code, number))[0])
@@ -75,14 +76,14 @@ def as_float(bits: int, size: int) -> float:
 
 
 def is_nan(bits: int, size: int) -> bool:
-    """Tell whether some bits are not a number."""
+    """Return whether some bits are a NaN."""
     fraction = 23 if size == 4 else 52
     exponent = (1 << 8 * size - 1) - (1 << fraction)
     return bits & exponent == exponent and bool(bits & ((1 << fraction) - 1))
 
 
 def from_objects(kind: FieldType, value: Any) -> Plain:
-    """Return the plain value of what rosbags has for a value: objects, numpy's arrays, texts."""
+    """Return the plain value of rosbags' form of a value: objects, NumPy arrays and texts."""
     match kind:
         case Message():
             return {
@@ -122,7 +123,7 @@ def _plain_number(kind: Primitive, value: Any) -> int:
 
 
 def from_json(value: Any) -> Plain:
-    """Turn what JSON's reader made of a plain value back into it."""
+    """Return the plain value that the `json` module has read."""
     match value:
         case str():
             return value.encode("latin-1")
@@ -135,9 +136,9 @@ def from_json(value: Any) -> Plain:
 
 
 def changed(kind: FieldType, value: Plain, change: Change) -> Plain:
-    """Return a value with every part replaced: a whole first, and then what is in it.
+    """Return a value with `change` applied to each part: to a whole first, and then to its parts.
 
-    Fields that `change` leaves out of a message are left out.
+    Fields that `change` removes from a message are not visited.
     """
     value = change(kind, value)
     match kind:
@@ -151,12 +152,12 @@ def changed(kind: FieldType, value: Plain, change: Change) -> Plain:
 
 
 def to_numbers(kind: FieldType, value: Plain) -> Any:
-    """Return what :func:`firm_hdl.sim.values.to_transfers` takes for a plain value."""
+    """Return a plain value in the form that :func:`firm_hdl.sim.values.to_transfers` takes."""
     match kind:
         case Message():
             return {item.name: to_numbers(item.type, value[item.name]) for item in kind.fields}
         case Primitive(kind="float", bytes=size):
-            # A scalar of numpy: its bits are kept.
+            # A NumPy scalar, because it keeps the bits.
             return np.array([value], f"u{size}").view(f"f{size}")[0]
         case (
             Array(element=Primitive(kind="float", bytes=size))
@@ -172,8 +173,9 @@ def to_numbers(kind: FieldType, value: Plain) -> Any:
 def packed(kind: FieldType, value: Plain) -> bytes:
     """Write a plain value without names, padding and headers, all numbers little-endian.
 
-    A number has its size; a text its length in 4 bytes and its bytes, or its units in 4 bytes each;
-    a sequence its length in 4 bytes and its elements; an array and a message what they are made of.
+    A number has its own size. A text has its length in 4 bytes, and then its bytes; a wide text has
+    units of 4 bytes each. A sequence has its length in 4 bytes, and then its elements. An array has
+    its elements, and a message has its fields.
     """
     parts: list[bytes] = []
     _pack(kind, value, parts)
@@ -206,7 +208,7 @@ def unpacked(kind: FieldType, data: bytes) -> Plain:
     Raises
     ------
     ValueError
-        If it is too short or too long.
+        If the data is too short or too long.
     """
     reader = _Reader(data)
     try:
@@ -250,14 +252,14 @@ class _Reader:
 
 
 def _code(kind: Primitive) -> str:
-    """Return the letter that `struct` has for a number, of a float for its bits."""
+    """Return the code of a number in `struct`; for a float, the code of its bits."""
     if kind.kind == "bool":
         return "?"
     return _CODES[kind.bytes, kind.signed and kind.kind == "int"]
 
 
 def shown(kind: FieldType, value: Plain) -> str:
-    """Print a plain value for people: floats as numbers, those that are none with their bits."""
+    """Return a plain value as text for people. Floats are numbers; NaNs also have their bits."""
     return ", ".join(_lines(kind, value))
 
 

@@ -1,8 +1,8 @@
 """rosbags as the oracle of types with wide text, which it does not have.
 
-A `wstring` of today's ROS 2 middlewares is a count and that many numbers of four bytes, and so is a
-message with nothing in it but a sequence of ``uint32``. So rosbags gets such a message instead, and
-all that is left to others is to confirm that these are the bytes of a wstring: Fast CDR has it
+A `wstring` of today's ROS 2 middlewares is a count and that many numbers of four bytes. A message
+whose only field is a sequence of ``uint32`` has the same bytes. So rosbags gets such a message in
+place of a wstring. Fast CDR, which supports wstring, confirms that the bytes are those of a wstring
 (:mod:`firm_hdl.verify.ts3.confirm`).
 """
 
@@ -26,12 +26,12 @@ _PACKAGE = "firm_hdl_wide"
 
 
 def stand_in_type(kind: FieldType, text: String) -> str:
-    """Return what stands for a wide text, or for an array or a sequence of such."""
+    """Return the type that replaces a wide text, or an array or a sequence of wide texts."""
     return spelled(kind, f"{_PACKAGE}/{_base_name(text)}")
 
 
 def stand_ins(messages: Iterable[Message]) -> dict[str, str]:
-    """Return the definitions of what stands for the wide texts in messages, by rosbags' names."""
+    """Return definitions of the types that replace wide texts in messages, by rosbags' names."""
     found: dict[str, str] = {}
     for message in messages:
         for item in message.fields:
@@ -52,7 +52,7 @@ class WideOracle(RosbagsOracle):
     __slots__ = ()
 
     def write(self, value: object, name: str, wire: str) -> bytes:
-        """Serialize an object, whose units are made to fit first."""
+        """Serialize an object, after its numbers were made units of wide text by `fit_units`."""
         return super().write(_fitted(value), name, wire)
 
     def transfers(self, value: object, name: str, wire: str, bus_bytes: int) -> Transfers:
@@ -65,7 +65,7 @@ class WideOracle(RosbagsOracle):
 
 
 def fit_units(numbers: Any) -> Any:
-    """Return units that an array of numbers stands for: 16 bits, and no NUL, which ends a text."""
+    """Map numbers to units of 16 bits that are not NUL, because a NUL would end the text."""
     return numbers % 0xFFFF + 1
 
 

@@ -1,8 +1,8 @@
-"""The far end of ``ts1/worker_script.py`` for genpy: packets instead of definitions.
+"""The module of genpy for ``ros_python/worker_script.py``, which handles packets, not definitions.
 
 A request to ``open`` has the name of a type, the ``text`` of its definition, and its ``table`` of
-fields. Then those to ``encode`` have ``items`` that are plain values, and those to ``decode`` ones
-that are packets, bytes always as text in Latin-1. An answer has as many, ``{"item": ...}`` or
+fields. Later requests have ``items``: plain values to ``encode``, or packets to ``decode``. Bytes
+are always text in Latin-1. An answer has one entry for each item: ``{"item": ...}`` or
 ``{"refused": "why"}``.
 """
 
@@ -14,7 +14,7 @@ __all__ = ["readers"]
 
 
 def readers(folder):
-    """Load genpy; return what answers requests, and which modules these are."""
+    """Load genpy; return the functions that answer requests, and the names of its modules."""
     import genpy
     import genpy.dynamic
 
@@ -31,7 +31,7 @@ class _Genpy:
     def open(self, request):
         before = list(sys.path)
         classes = self.genpy.dynamic.generate_dynamic(request["name"], request["text"])
-        # It makes a module for each, and a place in the search path.
+        # genpy generates a module for each type, and adds its folder to the search path.
         sys.path[:] = before
         self.objects = Objects(self.genpy, classes, request["table"])
         self.name = request["name"]
