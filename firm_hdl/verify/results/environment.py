@@ -1,4 +1,4 @@
-"""The environment of a run: the versions of all that results may depend on."""
+"""The environment of a run: versions of the software that results may depend on."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _INPUTS = (".msg", ".srv", ".action", ".idl", ".xml", ".yaml")
 """Suffixes of the files that definitions, packages and golden plans are read from."""
 
 _MOST_BYTES = 1 << 22
-"""No definition is larger (`firm_hdl.frontend.sources`); of a larger file, the size counts."""
+"""No definition is larger (`firm_hdl.frontend.sources`). Of a larger file, only the size counts."""
 
 
 def environment(**more: str) -> dict[str, str]:
@@ -82,7 +82,7 @@ def inputs_digest(paths: Iterable[str]) -> str:
 
 
 def _files(path: str) -> Iterator[str]:
-    """Yield a file itself, or the files of a folder that count, in order; links are followed."""
+    """Yield a file itself, or the relevant files of a folder in order; links are followed."""
     if not os.path.isdir(path):
         yield path
     seen: set[str] = set()

@@ -1,10 +1,10 @@
 """Results of a run as JSON lines, so that they survive the end of the process.
 
-The first line says what is tested and how. Each other line is a record or the environment of a
-session. A record is on the disk before it is counted. A run that was stopped goes on with the same
-file, and does not repeat the tests in it. A last line without a line end is dropped: its writer was
-killed. Only a run with the same options and the same tests can continue a file, because its figures
-would mean nothing otherwise.
+The first line has the options of the run and its planned tests. Each other line is a record or the
+environment of a session. A record is on the disk before it is counted. A run that was stopped can
+be continued with the same file, and does not repeat the tests in the file. A last line without a
+line end is dropped, because its writer was killed. Only a run with the same options and the same
+tests can continue a file. Otherwise, the figures of the file would mean nothing.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ __all__ = ["FORMAT", "Results", "ResultsError", "ResultsWriter", "read_results"]
 FORMAT = "firm-hdl results 2"
 
 
-# A thousand types on seven widths have a hundredth of that.
+# The results of a thousand types on seven widths have a hundredth of this size.
 _MOST_BYTES = 1 << 28
 
 
 class ResultsError(ValueError):
-    """A file does not contain results, or those of another run; the text says which and why."""
+    """A file contains no results, or the results of another run; the text names file and reason."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,13 +43,13 @@ class Results:
     Attributes
     ----------
     options : mapping of str to object
-        Of the run.
+        The options of the run.
     planned : tuple of Test
         All tests of the run, with and without records.
     records : mapping of str to Record
-        By key. The last of several records with the same key counts.
+        Records by key. The last of several records with the same key counts.
     sessions : tuple of mapping of str to str
-        What each session of the run ran on.
+        The environment of each session.
     """
 
     options: Mapping[str, Any] = field(default_factory=dict)
@@ -76,7 +76,7 @@ def read_results(path: str | os.PathLike[str]) -> Results:
 
 
 def _read(path: Path) -> tuple[Results, int]:
-    """Return what is in a file, and how many bytes of it are whole lines."""
+    """Return the content of a file, and the number of bytes in its complete lines."""
     data = read_file(path, _MOST_BYTES)
     whole = data.rfind(b"\n") + 1
     lines = data[:whole].splitlines()
@@ -96,7 +96,7 @@ def _read(path: Path) -> tuple[Results, int]:
                 record = from_json(Record, given["record"])
                 records[record.test.key] = record
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            # What `Record` and `Test` say of what they need; Python's own words start small.
+            # Only our own messages about wrong values are shown. Python's start in lower case.
             is_ours = isinstance(error, ValueError | TypeError) and " must be " in str(error)
             reason = str(error) if is_ours and str(error)[0].isupper() else "it is damaged"
             raise ResultsError(f"'{path}', line {number}: {reason}") from None
@@ -115,7 +115,7 @@ def _header(path: Path, line: bytes) -> tuple[Mapping[str, Any], tuple[Test, ...
 
 
 def _value(line: bytes) -> Any:
-    """Read a line. JSON has no infinite numbers, which Python reads, and reports cannot write."""
+    """Read a line. Refuse NaN and infinities: Python reads them, but reports cannot write them."""
 
     def number(text: str) -> float:
         value = float(text)
@@ -140,7 +140,7 @@ class ResultsWriter:
     path : path
         A new file, or one to continue.
     options : mapping of str to object
-        Of the run, in values that JSON has.
+        The options of the run, in values that JSON can represent.
     planned : sequence of Test
         All tests of the run.
     session : mapping of str to str
@@ -169,7 +169,7 @@ class ResultsWriter:
     ):
         self.path = Path(path)
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        # Unbuffered, and each write at the end, wherever that is.
+        # Unbuffered, and each write is appended.
         self._file = FileIO(os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666), "a")
         try:
             self.before = self._open(json.loads(json.dumps(dict(options))), planned)
@@ -220,7 +220,7 @@ class ResultsWriter:
 
 
 def _sync_folder(folder: Path) -> None:
-    # So that the new file's name is on the disk, too, where a folder can be synced.
+    # Write the new file's name to the disk as well, if the system can sync folders.
     with suppress(OSError):
         number = os.open(folder, os.O_RDONLY)
         try:

@@ -45,7 +45,7 @@ class Test:
     system : str
         ``ts1``, ``ts2``, ``ts3`` or ``bench``.
     distro, type : str
-        The type is a message; of ``ts1``, what a file defines, such as a service.
+        The type is a message. For ``ts1``, the type is what a file defines, such as a service.
     same : tuple of str
         All distributions that the result counts for, `distro` included: those with an equal
         definition of the type.
@@ -73,7 +73,7 @@ class Test:
 
     @property
     def key(self) -> str:
-        """Identifies the test."""
+        """The key that identifies the test."""
         circuit = f"{self.wire}/{self.bus_bytes}" if self.bus_bytes else self.wire
         parts = (self.system, self.simulator, self.distro, self.type, circuit, self.options)
         return " ".join(part for part in parts if part)
@@ -106,8 +106,8 @@ class Seconds:
         ready to run, with its cases.
     simulation : float
     testing : float
-        Asking oracles, and comparing: the output with the oracle and the golden model, the plan
-        with its layout, the model with the readings of oracles.
+        Asking oracles and comparing. TS3 compares the output with the oracle and the golden model,
+        TS2 the plan with its layout, and TS1 the model with the readings of oracles.
     """
 
     generation: float = 0.0
@@ -128,7 +128,7 @@ class PlanCoverage:
     ----------
     taken, possible : int
     missing : tuple of str
-        Names of those that were not taken.
+        Names of the decisions that were not taken.
     """
 
     taken: int
@@ -161,7 +161,8 @@ class Record:
     Attributes
     ----------
     verdict : Verdict
-        Of this test alone; see `settled` for a test that relies on the circuit of another.
+        The verdict of this test alone. For a test that relies on the circuit of another test, see
+        `settled`.
     note : str
         A remark about the oracle.
     seconds : Seconds
@@ -178,13 +179,13 @@ class Record:
         Key of the test that simulated the same circuit for another type; empty if the circuit of
         this type was simulated.
     verdicts : tuple of OracleVerdict
-        Of all oracles that read the definition.
+        The verdicts of all oracles that read the definition.
     written_by : tuple of str
-        Libraries that wrote its packets, all from the same values.
+        Libraries that wrote the packets, all from the same values.
     command : str
-        Repeats the test.
+        The command that repeats the test.
     waveform_command : str
-        Repeats it and writes a waveform; empty if there is none.
+        The command that repeats the test and writes a waveform; empty if there is none.
     """
 
     test: Test
@@ -219,7 +220,7 @@ def _clipped(failures: Sequence[str]) -> tuple[str, ...]:
 
 
 def clipped_verdict(verdict: Verdict) -> Verdict:
-    """Return a verdict as a record keeps it: with a limited number and length of texts."""
+    """Return a verdict for a record: the number and the length of its texts are limited."""
     match verdict:
         case Failed(failures):
             return Failed(_clipped(failures))
@@ -230,12 +231,12 @@ def clipped_verdict(verdict: Verdict) -> Verdict:
 
 
 def settled(record: Record, records: Mapping[str, Record]) -> Verdict:
-    """Return the verdict that counts: it includes that of the test which simulated the circuit.
+    """Return the verdict that counts. It depends on the test that simulated the circuit, too.
 
     Parameters
     ----------
     records : mapping of str to Record
-        By key.
+        Records of all tests, by key.
     """
     if isinstance(record.verdict, Failed | NotJudged) or not record.same_as:
         return record.verdict
@@ -252,10 +253,10 @@ def settled(record: Record, records: Mapping[str, Record]) -> Verdict:
 
 
 def to_json(value: Any) -> Any:
-    """Return a record, or a part of one, in values that JSON has.
+    """Return a record, or a part of one, in values that JSON can represent.
 
-    A dataclass becomes an object. What is empty is left out, unless it has to be given. Floats are
-    rounded to 6 decimal places, so times to microseconds.
+    A dataclass becomes an object. Empty values are left out unless they are required. Floats are
+    rounded to 6 decimal places; so times are rounded to microseconds.
     """
     match value:
         case float():
@@ -272,7 +273,7 @@ def to_json(value: Any) -> Any:
             found = {each.name: to_json(getattr(value, each.name)) for each in fields(value)}
             required = _REQUIRED[type(value)]
             found = {name: each for name, each in found.items() if each or name in required}
-            # An oracle's verdict is an object with a verdict's own names.
+            # The object of an `OracleVerdict` has the names of its verdict beside its own.
             verdict = found.pop("verdict") if isinstance(value, OracleVerdict) else {}
             return found | verdict
         case _:
@@ -316,12 +317,12 @@ def _read(hint: Any, given: Any) -> Any:
         return tuple(_read(kinds[0], each) for each in given)
     if get_origin(hint) is Mapping and isinstance(given, dict):
         return {name: _read(kinds[1], each) for name, each in given.items()}
-    # What may be `None` is left out then.
+    # A value that is `None` is not in the JSON, so the other type of the union applies.
     hint = kinds[0] if get_origin(hint) is UnionType else hint
     if is_dataclass(hint):
         part: Any = from_json(hint, given)  # type: ignore[arg-type]
         return part
-    # A truth value is no number.
+    # Compare types exactly, because a bool of Python is an int as well.
     if type(given) is hint or (hint is float and type(given) is int):
         return given
     raise TypeError
@@ -348,7 +349,7 @@ _VERDICT = _HINTS[Record]["verdict"]
 _CALLED: dict[type, str] = {Record: "A record", OracleVerdict: "What an oracle says"}
 
 _JSON = {dict: "an object", list: "a list", str: "a text", bool: "a truth value"}
-"""What values that JSON has are called; all others but null are numbers."""
+"""Names of the types of JSON values. All other values except null are numbers."""
 
 
 def _object(given: object, what: str) -> dict[str, Any]:

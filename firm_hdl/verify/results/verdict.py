@@ -13,7 +13,7 @@ from typing import ClassVar, TypeAlias
 __all__ = ["Failed", "KnownDifference", "NotJudged", "NotJudgedError", "Passed", "Verdict"]
 
 SILENT = "failed without saying why"
-"""What stands for the text of a failure that has none."""
+"""The text of a failure whose own text is blank."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ class Failed:
 
 @dataclass(frozen=True, slots=True)
 class NotJudged:
-    """No oracle could judge it.
+    """No oracle could judge the test.
 
     Attributes
     ----------
@@ -106,12 +106,12 @@ class NotJudgedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class KnownDifference:
-    """It differs only as documented.
+    """The readings or packets differ only as documented.
 
     Attributes
     ----------
     keys : tuple of str
-        Keys of the documented differences that explain it; at least one.
+        Keys of the documented differences that explain the verdict; at least one.
     cases : int
         Number of cases that were compared without the known difference; at least 1.
 
