@@ -1,8 +1,8 @@
-"""Newer releases of ROS 2 than Debian has, from PyPI: their rosidl and their Fast CDR.
+"""rosidl and Fast CDR of ROS 2 releases that are newer than Debian's, from PyPI.
 
-Each release is in an environment of its own, which `make oracles-ros2` makes: packages of two
-releases have the same names, and those of ROS may run code of theirs when Python starts. What is in
-it stands in ``ros2_wheels/RELEASE.txt``.
+Each release has its own environment, which `make oracles-ros2` creates. Packages of two releases
+have the same names, and packages of ROS may run code when Python starts. The packages of an
+environment are listed beside this file, such as in ``jazzy.txt``.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ class Release:
     Attributes
     ----------
     name : str
-        As that of the distribution.
+        The name of the distribution.
     rosidl, fastcdr : str
-        Versions, as far as names of oracles have them.
+        Versions, as they occur in the names of oracles and client libraries.
     """
 
     name: str
@@ -35,17 +35,17 @@ class Release:
 
     @property
     def folder(self) -> Path:
-        """Where its environment is: in the one that runs this, or where the user says."""
+        """The folder of its environment, by default inside the environment that runs this."""
         return Path(os.environ.get(_FOLDER) or os.path.join(sys.prefix, "ros2")) / self.name
 
     @property
     def python(self) -> Path:
-        """The Python of its environment, which need not be there."""
+        """The Python of its environment, which may not exist."""
         return self.folder / "bin" / "python"
 
     @property
     def how(self) -> str:
-        """How to get it, in a few words."""
+        """A short text that says how to install the release."""
         return (
             f"(make oracles-ros2, or {_FOLDER}=DIR where DIR/{self.name} is an environment of "
             f"Python with it)"
@@ -56,4 +56,4 @@ RELEASES = (
     Release(name="jazzy", rosidl="4.6", fastcdr="2.2"),
     Release(name="kilted", rosidl="4.9", fastcdr="2.3"),
 )
-"""Oldest first."""
+"""Releases, oldest first."""
