@@ -1,4 +1,4 @@
-"""The near end of `worker_script`: a process that answers requests, and is replaced if it dies."""
+"""Starts `worker_script` in a process, and sends requests to it. If it dies, it is restarted."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from firm_hdl.jobs.processes import hang_up
 __all__ = ["DIED", "ROS_PYTHON", "Worker"]
 
 ROS_PYTHON = os.environ.get("FIRM_HDL_ROS_PYTHON", "/usr/bin/python3")
-"""The Python that ROS's modules are installed for; Debian's is the system's."""
+"""The Python that ROS's modules are installed for. In Debian, this is the system's Python."""
 
 DIED = "the process that was asked died"
 
@@ -23,18 +23,18 @@ _SCRIPT = Path(__file__).with_name("worker_script.py")
 
 
 class Worker:
-    """Readers of one family, over a folder of definitions.
+    """A process with the readers of one family, for a folder of definitions.
 
     Parameters
     ----------
     family : str
-        Of the module ``worker_FAMILY``, which has the readers.
+        ``FAMILY`` in the name of the module ``worker_FAMILY``, which has the readers.
     folder : str
-        What the definitions are in.
+        The folder of the definitions.
     modules : Path
-        Folder of that module.
+        The folder of that module.
     python : str
-        Which Python runs it.
+        The Python that runs the process.
     """
 
     def __init__(
@@ -58,16 +58,16 @@ class Worker:
 
     @property
     def cpu_seconds(self) -> float:
-        """Processor time of the process so far; 0 where the system does not say."""
+        """Processor time of the process so far; 0 if the system does not tell."""
         if self._process is None:
             return 0.0
-        # The clock of another process: clock_getcpuclockid(3) computes its number so on Linux.
+        # The number of the other process's clock, as clock_getcpuclockid(3) has it on Linux.
         with suppress(OSError):
             return time.clock_gettime((~self._process.pid << 3) | 2)
         return 0.0
 
     def close(self) -> None:
-        """End the process. It can be asked again, which starts another."""
+        """End the process. The next request starts another one."""
         if self._process is None:
             return
         process, self._process = self._process, None
@@ -105,10 +105,10 @@ class Worker:
 
 
 def _environment(python: str) -> dict[str, str]:
-    # As ROS's tools are run by most: in an environment that speaks UTF-8. What rosidl_parser 3.3.1
-    # makes of a text that lark can read in two ways depends on the order of sets, so on the seed.
+    # Most users run ROS's tools in a UTF-8 environment. The hash seed is fixed, because the order
+    # of sets decides how rosidl_parser 3.3.1 reads a text that lark can read in two ways.
     found = {**os.environ, "LC_ALL": "C.UTF-8", "PYTHONUTF8": "1", "PYTHONHASHSEED": "0"}
     if python != ROS_PYTHON:
-        # A release of ROS that is sourced must not stand in for the one that was asked for.
+        # A sourced release of ROS must not replace the release that was asked for.
         found.pop("PYTHONPATH", None)
     return found

@@ -1,18 +1,18 @@
-"""ROS's own readers of definitions, behind lines of JSON.
+"""ROS's own Python modules, which answer requests in lines of JSON.
 
-This file is run by the Python that ROS's modules are installed for, which is seldom the one that
-firm-hdl runs on, so it imports nothing of firm-hdl. It is started with the name of a family of
-oracles (``genmsg`` or ``rosidl``), a folder of definitions, ``PACKAGE/msg|srv|action/FILE``, and
-the folder of the module ``worker_FAMILY``. It says in its first line what it has. Then each line in
-is a request and gets a line out:
+This file is run by the Python that ROS's modules are installed for. firm-hdl often runs on another
+one, so this file imports nothing of firm-hdl. Its arguments are the name of a family (``genmsg``,
+``rosidl`` or ``genpy``), a folder of definitions, ``PACKAGE/msg|srv|action/FILE``, and the folder
+of the module ``worker_FAMILY``. The first output line names the readers and their versions. Then
+each input line is a request, and each output line is an answer:
 
     {"oracle": "genmsg", "package": "p", "kind": "msg", "name": "A", "file": "A.msg", "text": null,
      "has_events": false}
     {"facts": {...}} or {"refused": "why"} or {"failed": "why"}
 
-Facts are described in `firm_hdl.verify.ts1.facts`. A text that is given stands for the file's;
-``has_events`` says whether services have event messages and types have hashes. It ends when its
-input does.
+Facts are described in `firm_hdl.verify.ts1.facts`. A ``text`` that is not null replaces the text of
+the file. ``has_events`` says whether services have event messages and types have hashes. The
+process ends at the end of its input.
 """
 
 import importlib
@@ -25,23 +25,23 @@ from importlib import metadata
 
 __all__ = ["main"]
 
-MOST_SECONDS = 60  # Of the processor's time: the machine may have other things to do.
+MOST_SECONDS = 60  # Processor time, because the machine may be busy with other work.
 MOST_BYTES = 3 << 30
 
 
 def main():
     """Answer requests until there are no more."""
-    # ROS's modules print, and templates replace sys.stdout: what is ours is out of their way.
+    # ROS's modules print, and templates replace sys.stdout. So answers go to a copy of stdout.
     answers = os.fdopen(os.dup(1), "w", encoding="ascii")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     os.dup2(1, 2)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Whoever started this ends it.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent process ends this one.
     signal.signal(signal.SIGPROF, _too_slow)
     resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
     sys.path[0] = sys.argv[3]
     try:
         family = importlib.import_module(f"worker_{sys.argv[1]}")
-        del sys.path[0]  # Our other modules have names that ROS may use, too.
+        del sys.path[0]  # ROS may have modules with the names of our other modules.
         judges, modules = family.readers(sys.argv[2])
     except Exception as error:
         _say(answers, {"missing": f"{type(error).__name__}: {error}"})
@@ -78,7 +78,7 @@ def _too_slow(signum, frame):
 
 
 def _say(answers, value):
-    # `json` writes NaN and the infinities as the other end reads them.
+    # `json` writes NaN and infinities in the form that the `json` of the parent reads.
     print(json.dumps(value), file=answers, flush=True)
 
 
