@@ -1,8 +1,8 @@
 """Simulators of exported text, behind one small interface.
 
-A simulator replays a trace (:mod:`firm_hdl.verify.simulators.trace`): it makes the text of the
-devices, drives the rows of inputs, and gives the rows of outputs that it saw. To add one is to
-write a class with the members of `TextSimulator` and to name it in `SIMULATORS`.
+A simulator replays a trace (:mod:`firm_hdl.verify.simulators.trace`). It exports the devices as
+text, drives the rows of inputs, and returns the rows of outputs that it saw. To add a simulator,
+write a class with the members of `TextSimulator`, and name it in `SIMULATORS`.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class TextSimulator(Protocol):
     Attributes
     ----------
     title : str
-        What it is called in reports.
+        The name of the simulator in messages.
     """
 
     title: str
@@ -40,14 +40,14 @@ class TextSimulator(Protocol):
     def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:
         """Run a trace; return rows of outputs as they are in `Trace.expected`.
 
-        A bit that is undefined in the simulator is any letter, such as ``X``.
+        A bit that is undefined in the simulator is a letter, such as ``X``.
 
         Parameters
         ----------
         tops : callable
-            Gives the devices, in order, to be exported.
+            Returns the tops of the devices to export, in order.
         folder : Path
-            An empty one, for what the simulator needs and leaves.
+            An empty folder for the files of the simulator.
 
         Raises
         ------
@@ -60,11 +60,11 @@ SIMULATORS: dict[str, Callable[[], TextSimulator]] = {
     "iverilog": Icarus,
     "verilator": Verilator,
 }
-"""By the name that ``firm-hdl verify --simulator`` takes."""
+"""Simulators by the names that ``firm-hdl verify --simulator`` takes."""
 
 
 def simulator(name: str) -> TextSimulator | None:
-    """Return a simulator by its name; `None` for ``python``, which is there anyway.
+    """Return a simulator by its name; `None` for ``python``, which is always used.
 
     Raises
     ------

@@ -26,7 +26,7 @@ def written(name: str, trace: Trace, **more: Any) -> str:
     Parameters
     ----------
     name : str
-        Of the template, without ``.j2``.
+        The name of the template, without ``.j2``.
     **more
         Other variables of the template.
     """

@@ -1,10 +1,10 @@
 """Exported text against the Python simulation, cycle by cycle.
 
-All runs of a type's converters in Python are recorded, and replayed in a simulator of exported text
-in one go, with a reset between two runs. The first output of any port in any cycle that differs
-is reported. What was seen over there is also put together again to packets, transfers of leaves and
-statuses, which must be those of the Python simulation: so that "no difference" is not the silence
-of a recording that had nothing in it.
+All runs of a type's converters in Python are recorded. A simulator of exported text replays them in
+one go, with a reset between two runs. The first output that differs, of any port in any cycle, is
+reported. The packets, transfers of leaves and statuses are also reconstructed from the rows of the
+other simulator, and compared with those of the Python simulation. So an empty recording does not
+pass as "no difference".
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ class Comparison:
     Attributes
     ----------
     failures : tuple of str
-        What differs.
+        Texts about the differences.
     cycles, packets, transfers, statuses : int
         Counted in what the other simulator showed: cycles compared, packets that came out,
         transfers of leaves, and statuses of both converters.
     seconds : float
-        That it took.
+        The duration of the replay.
     """
 
     failures: tuple[str, ...]
@@ -60,7 +60,7 @@ class Comparison:
 
 @dataclass(slots=True)
 class Crosscheck:
-    """The runs of one type.
+    """The recorded runs of one type, and their replay.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class Crosscheck:
     cores : sequence
         Converters that are simulated in Python, the deserializer first.
     make : callable
-        Gives the same converters anew, to be exported.
+        Returns new instances of the same converters, to be exported.
     message : str
         Name of the type.
 
@@ -99,7 +99,7 @@ class Crosscheck:
         return self.trace.observe
 
     def done(self, seen: RunResult) -> None:
-        """Keep the result of the last run, which came to its end."""
+        """Keep the result of the last run, which is complete."""
         self.seen[-1] = seen
 
     def compare(self) -> Comparison:
@@ -159,7 +159,7 @@ def first_difference(trace: Trace, rows: Sequence[str]) -> str | None:
                 )
     if len(rows) != len(trace.expected):
         return f"{len(rows)} cycles instead of {len(trace.expected)}"
-    # The same values, told in another way: a port that was written without a change.
+    # The values are equal. One of the rows has a port that did not change.
     return None
 
 

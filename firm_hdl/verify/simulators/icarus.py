@@ -25,8 +25,8 @@ class Icarus:
     Parameters
     ----------
     standard : str
-        The language that the Verilog is read as: what comes after ``-g``. 2012 is SystemVerilog,
-        and what cocotb takes.
+        The language standard that the Verilog is read as, for the option ``-g``. 2012 is
+        SystemVerilog, which cocotb uses.
 
     Raises
     ------
@@ -38,7 +38,7 @@ class Icarus:
     def __init__(self, standard: str = "2012") -> None:
         self.standard = standard
         self.path = find_program(self.title, "IVERILOG", ["iverilog"], PACKAGE)
-        # The two belong together: look beside the compiler first.
+        # The compiler and vvp belong together, so look for vvp beside the compiler first.
         beside = os.pathsep.join([str(Path(self.path).parent), os.environ.get("PATH", "")])
         run = shutil.which("vvp", path=beside)
         if run is None:

@@ -24,7 +24,7 @@ class Traffic:
     Attributes
     ----------
     name : str
-        The run's.
+        The name of the run.
     packets, packet_errors, statuses, sent_statuses
         As in :class:`firm_hdl.sim.record.RunResult`; statuses as bits.
     transfers : dict of int to list of str
@@ -90,7 +90,7 @@ def traffic(trace: Trace, rows: Sequence[str]) -> list[Traffic]:
         watching.setdefault(stream.valid, []).append(stream)
         watching.setdefault(stream.ready, []).append(stream)
     values: dict[str, str] = {}
-    # In the order in which they were found to transfer; sets have none.
+    # A dictionary, because streams are kept in the order in which they began to transfer.
     firing: dict[_Stream, None] = {}
     plan = trace.devices[0].plan
     found = [Traffic(name=name, plan=plan) for name, _ in trace.runs]
@@ -109,7 +109,7 @@ def traffic(trace: Trace, rows: Sequence[str]) -> list[Traffic]:
 
 
 def _cycles(trace: Trace, rows: Sequence[str]) -> Iterator[tuple[int | None, dict[str, str]]]:
-    """Yield the run, `None` in a reset, and what changed in each cycle."""
+    """Yield the run (`None` in a reset) and the changed ports of each cycle."""
     starts = {first: number for number, (_, first) in enumerate(trace.runs)}
     run = at = 0
     for stimulus in trace.stimuli:
@@ -173,12 +173,12 @@ class _Beats:
 
     def take(self, run: Traffic, payload: list[str]) -> None:
         if run is not self.run:
-            # A reset, and what had come of a packet is gone.
+            # There was a reset, so the parts of an incomplete packet are dropped.
             self.run, self.parts = run, []
         data, keep, last, user = payload
         count = keep[::-1].find("0") if "0" in keep else len(keep)
         lanes = [data[at : at + 8] for at in range(len(data) - 8, -1, -8)]
-        # What is undefined is no byte: the packet is too short, and differs.
+        # Undefined bytes are left out. The packet is too short then, and differs.
         defined = [lane for lane in lanes[:count] if not set(lane) - {"0", "1"}]
         self.parts.append(bytes(int(lane, 2) for lane in defined))
         if last == "1":

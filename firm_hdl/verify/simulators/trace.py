@@ -1,13 +1,13 @@
 """What every port of both exported converters did in each cycle of a Python simulation.
 
-The simulation runs the converters themselves; what is recorded is what the ports of their exported
-tops (:class:`firm_hdl.export.top.Top`) would carry, so that any simulator of the exported text can
-be given the same inputs and must show the same outputs, in the same cycles, payloads included that
-nobody looks at.
+The simulation runs the converters themselves. The trace has the values that the ports of their
+exported tops (:class:`firm_hdl.export.top.Top`) would have. So any simulator of the exported text
+can be given the same inputs, and must show the same outputs in the same cycles. This includes
+payloads that are not valid.
 
 Form. A trace is two lists of rows of text, one row a cycle. A row has a number and bits for each
 port that changed, such as ``3 0101 7 1``. A row of inputs begins with ``1``, or with ``0`` if no
-row of outputs belongs to it: so it is in the cycles of a reset, which stand between runs.
+row of outputs belongs to it. Rows with ``0`` are the cycles of a reset between two runs.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ ARESETN = 0
 """The number of the reset among the inputs; both converters share it."""
 
 CHUNK = 24
-"""Pins that are looked at together: all are, when one of them changes."""
+"""The number of pins in one probe. If a probe changes, each of its pins is checked."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,7 +67,8 @@ class Pin:
     device : int
     port : Port
     number : int
-        In rows: inputs and outputs are numbered apart, over all devices.
+        The number of the port in rows. Inputs and outputs are numbered separately, over all
+        devices.
     """
 
     device: int
@@ -81,7 +82,7 @@ class Trace:
     Parameters
     ----------
     cores : sequence of Deserializer or Serializer
-        Those that are simulated.
+        The converters that are simulated.
     message : str
         Name of their type.
 
@@ -89,13 +90,13 @@ class Trace:
     ----------
     devices : list of Device
     inputs, outputs : list of Pin
-        `aclk` and `aresetn` left out.
+        All ports except `aclk` and `aresetn`.
     stimuli, expected : list of str
         Rows of inputs of all cycles, and rows of outputs of all cycles but those of resets.
     probes : list of Value
-        What is to be observed: the pins, several at once.
+        The values to observe. Each of them has several pins.
     runs : list of (str, int)
-        What each run is called, and with which row of outputs it begins.
+        The name of each run, and the index of its first row of outputs.
     """
 
     def __init__(self, cores: Sequence[Deserializer | Serializer], message: str):
@@ -121,7 +122,7 @@ class Trace:
         self._is_reset = False
 
     def start(self, name: str) -> None:
-        """Begin a run; all but the first, which tests what registers hold initially, by a reset."""
+        """Begin a run, with a reset if it is not the first. The first one tests initial values."""
         if self.runs:
             self.stimuli += [f"0 {ARESETN} 0", *["0"] * (RESET_CYCLES - 1)]
         self.runs.append((name, len(self.expected)))
@@ -136,13 +137,13 @@ class Trace:
         self.expected.append(" ".join(self._outputs.next(values[split:])))
 
     def run_of(self, row: int) -> tuple[str, int]:
-        """Return the run to which a row of outputs belongs, and which of its cycles that is."""
+        """Return the name of the run that a row of outputs belongs to, and its cycle there."""
         name, first = next(run for run in reversed(self.runs) if run[1] <= row)
         return name, row - first
 
 
 class _Changes:
-    """The pins that have changed since the last cycle, as words of a row."""
+    """Finds the pins that have changed since the last cycle, and yields them as words of a row."""
 
     def __init__(self, pins: Sequence[Pin], values: Sequence[Value]):
         self.probes: list[Value] = []
@@ -171,7 +172,7 @@ class _Changes:
 
 
 def _port_values(core: Deserializer | Serializer) -> dict[str, Value]:
-    """Return what the ports of a converter's top carry, by their names."""
+    """Return the values of the ports of a converter's top, by port name."""
     plan = core.plan
     packets, status = core.packets, core.status
     side = "s_axis" if isinstance(core, Deserializer) else "m_axis"
@@ -200,6 +201,6 @@ def _port_values(core: Deserializer | Serializer) -> dict[str, Value]:
 
 
 def read_row(row: str) -> Iterable[tuple[int, str]]:
-    """Yield number and bits of each change in a row of outputs."""
+    """Yield the number and the bits of each change in a row, without the flag of inputs."""
     words = iter(row.split())
     return zip(map(int, words), words, strict=True)

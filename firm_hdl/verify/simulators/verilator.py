@@ -1,8 +1,8 @@
 """Verilator, on exported Verilog: compiled to C++, and quick to run.
 
-Verilator knows 0 and 1 only. What the text does not define, such as a register without an initial
-value, is 0 in one copy of the devices and 1 in another; a bit of an output that differs between
-the two is reported as ``X``.
+Verilator knows 0 and 1 only. A value that the text does not define, such as that of a register
+without an initial value, is 0 in one copy of the devices and 1 in another. A bit of an output that
+differs between the two copies is reported as ``X``.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ __all__ = ["Verilator"]
 
 PACKAGE = "verilator g++"
 COMPILERS = ("g++", "c++", "clang++")
-# What is compiled runs for less than a second: anything that is optimized takes longer to compile.
+# The program runs for less than a second, so optimization would take longer than it saves.
 COMPILE = ("-O0", "-w", "-std=gnu++17")
 MODELS = "model"
 PARTS = "Vreplay_classes.mk"
 HERE = Path(__file__).parent
 VERILATE = (
-    # Warnings are the business of `waivers.vlt`; what is no Verilog fails all the same.
+    # Warnings are checked elsewhere, with `waivers.vlt`. Invalid Verilog fails all the same.
     *("--cc", "-Wno-lint", "-Wno-style", "-Wno-fatal"),
     *("--x-initial", "unique", "--x-assign", "unique"),
     *("--prefix", "Vreplay", "--top-module", "replay", "--Mdir", MODELS),
@@ -61,7 +61,7 @@ class Verilator:
         run_tool([self.path, *VERILATE, "replay.v", *files], folder)
         models = folder / MODELS
         made_by(self.title, models / PARTS)
-        # As one file, since most of what the compiler reads are Verilator's headers.
+        # Compile all sources as one file, because the compiler mostly reads Verilator's headers.
         sources = sorted(path.name for path in models.glob("*.cpp"))
         text = written("replay_main.cc", trace, sources=sources)
         (models / "main.cc").write_text(text, encoding="utf-8")
@@ -88,12 +88,12 @@ def _find_compiler() -> tuple[str, ...]:
 
 
 class _Runtime:
-    """What every program of Verilator is linked with, compiled once in a process.
+    """Verilator's runtime, which every program is linked with; compiled once in a process.
 
     Attributes
     ----------
     includes : list of str
-        Options that say where its headers are.
+        Compiler options with the folders of the headers.
     objects : list of str
     """
 

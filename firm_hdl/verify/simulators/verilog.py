@@ -1,4 +1,4 @@
-"""What simulators of Verilog have in common: the modules, and the rows of inputs."""
+"""Functions that simulators of Verilog share, for the modules and the rows of inputs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def modules_of(trace: Trace) -> list[str]:
 def write_inputs(trace: Trace, tops: Sequence[Top], folder: Path) -> list[str]:
     """Write the Verilog and the rows of inputs; return the names of the files of Verilog.
 
-    A row has the number of its changes first, as the formats of Verilog know no end of a line.
+    A row begins with the number of its changes, because Verilog's formats cannot find a line end.
     """
     files = []
     for module, top in zip(modules_of(trace), tops, strict=True):
