@@ -39,8 +39,8 @@ class Options:
     vcd : str or None
         Folder for a waveform of each run.
     simulated : bool
-        Whether the circuit is simulated, and not the golden model alone. The same circuit may
-        have been simulated for another type.
+        Whether the circuit is simulated, and not only the golden model. It need not be if the
+        same circuit is simulated for another type.
     """
 
     bus_bytes: int = 8
@@ -128,7 +128,7 @@ class Request(Options):
         """Whether one type is simulated for all that have the same circuit."""
         if self.share_circuits is not None:
             return self.share_circuits
-        # Who names a type wants to see it run; a recording has messages of each type.
+        # A user who names a type wants it simulated. A recording has messages for each type.
         return not self.types and not self.bags
 
     @property
@@ -143,10 +143,10 @@ def command_again(*names: str, **options: object) -> str:
     Parameters
     ----------
     *names : str
-        What is tested, at the end.
+        The names of what is tested, which come last.
     **options
-        By their names, with underscores for dashes, in the order in which they are to stand. `None`
-        and `False` leave one out; `True` is one without a value; a tuple repeats it.
+        Options by their names, with underscores for dashes, in order. `None` and `False` leave an
+        option out. `True` is an option without a value. A tuple repeats the option.
     """
     words = ["firm-hdl", "verify"]
     for option, value in options.items():

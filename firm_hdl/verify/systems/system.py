@@ -115,7 +115,7 @@ class System(ABC):
     Attributes
     ----------
     name : str
-        As ``--systems`` takes it.
+        The name that ``--systems`` takes.
     """
 
     name: ClassVar[str]
@@ -129,12 +129,12 @@ class System(ABC):
     @property
     @abstractmethod
     def tests(self) -> Sequence[Test]:
-        """All tests, in the order in which they are begun."""
+        """All tests, in the order in which they start."""
 
     @property
     @abstractmethod
     def options(self) -> Mapping[str, Any]:
-        """What results depend on, in values that JSON has; a name means the same in all systems."""
+        """Options that results depend on, as JSON values; a name means the same in all systems."""
 
     @abstractmethod
     def run(self, recorder: Recorder) -> list[Judged]:
@@ -167,7 +167,7 @@ class TypesSystem(System):
         )
 
     def _command(self, test: Test, **more: object) -> str:
-        """Return the command that runs one test again, by its bus if nothing else is given."""
+        """Return the command that runs one test again, with its bus unless `more` is given."""
         return command_again(
             test.type,
             systems=self.name,
@@ -211,7 +211,7 @@ def recorded(test: Test, run: Callable[[Stopwatch], Record]) -> Record:
         record = run(watch)
     except NotJudgedError as error:
         record = Record(test=test, verdict=NotJudged(str(error) or type(error).__name__))
-    except Exception as error:  # Whatever it is, the other types are to go on.
+    except Exception as error:  # The other types are tested in any case.
         record = Record(test=test, verdict=Failed((described(error),)))
     seconds, processor = watch.stop()
     return replace(record, seconds=seconds, cpu_seconds=processor)
@@ -267,7 +267,7 @@ def run_tests(
     executor: str = PROCESSES,
     jobs: int | None = None,
 ) -> Made[Test]:
-    """Call ``work(context, test)`` for each test, and yield records as they come.
+    """Call ``work(context, test)`` for each test, and yield records when they are ready.
 
     Parameters
     ----------
@@ -276,7 +276,7 @@ def run_tests(
     said : callable
         Returns the lines to print about a record.
     most : int
-        The largest number of tests that a process gets at a time; their records come together.
+        The largest number of tests that a process gets at once. Their records come together.
     """
     shares = shares_of(tests, most)
     run = run_shares(_work_share, (work, context), shares, executor=executor, jobs=jobs)
@@ -316,9 +316,9 @@ def run_shares(
     executor: str = PROCESSES,
     jobs: int | None = None,
 ) -> Generator[tuple[tuple[K, ...], R | Exception], None, None]:
-    """Call ``work(context, share)`` for each share, and yield shares with results as they come.
+    """Call ``work(context, share)`` for each share, and yield each share with its result.
 
-    If a process dies of a share, the share is run again item by item, to find the item at fault.
+    If a process dies in a share, the share is run again item by item, to find the item at fault.
 
     Raises
     ------

@@ -20,7 +20,7 @@ __all__ = ["TypeUnderTest", "UnknownTypeError", "collect_own", "collect_tasks", 
 
 
 class UnknownTypeError(ValueError):
-    """No distribution has a type of this name."""
+    """No distribution or recording has a type that was asked for."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,18 +65,18 @@ def collect_tasks(
     Parameters
     ----------
     distros : iterable of str
-        None: all of them.
+        Empty: all distributions.
     names : sequence of str
-        Types as ``package/Type`` or ``package/msg/Type``; none: all types.
+        Types as ``package/Type`` or ``package/msg/Type``; empty: all types.
     problems : dict or None
-        Takes the error about names that no distribution has, by its text, if other names exist.
+        Receives the error about names that no distribution has, by its text, if other names exist.
 
     Raises
     ------
     UnknownTypeError
         If no distribution has a type of a name.
     """
-    # rosbags' types and NumPy come along, which a user's own definitions need not wait for.
+    # This import loads rosbags' types and NumPy, which a user's own definitions do not need.
     from firm_hdl.verify.references.oracle import DISTRO_STORES, distro_oracle
 
     wanted = {_full(name) for name in names}
@@ -95,7 +95,7 @@ def collect_tasks(
             raise UnknownTypeError(f"No distribution has {which}")
         unknown = Diagnostic(message=f"no distribution has {which}")
         problems[str(unknown)] = unknown
-    # The largest first, so that no processor is left with one at the end.
+    # The largest first, so that no large type runs alone at the end.
     keys = sorted(found, key=lambda key: (-weights[key], key))
     return [TypeUnderTest(distro=found[k][-1], name=k[0], same=tuple(found[k])) for k in keys]
 
@@ -113,15 +113,15 @@ def collect_own(
     Parameters
     ----------
     distros : iterable of str
-        Whose rules and types are used to read those in the folders, one after the other.
+        The distributions by whose rules and types the definitions are read, one after the other.
     names : sequence of str
-        Types, services or actions; none: all that are in the folders. Types that are named must not
-        be too large to be laid out (:func:`firm_hdl.wire.too_large`).
+        Types, services or actions; empty: all that are in the folders. Types that are named must
+        not be too large to be laid out (:func:`firm_hdl.wire.too_large`).
     paths : sequence of str
     own : sequence of str or None
-        Those of `paths` whose types are meant by all; `None`: all of them.
+        Those of `paths` whose types are tested if `names` is empty; `None`: all of `paths`.
     problems : dict or None
-        Takes errors in definitions, by their texts; these definitions are left out then.
+        Receives errors in definitions, by their texts. These definitions are left out then.
 
     Raises
     ------
@@ -139,7 +139,7 @@ def collect_own(
             except DefinitionError as error:
                 wrong.update((str(problem), problem) for problem in error.diagnostics)
                 continue
-            # Such a type is an error at once if it is named; of all, it is not judged.
+            # A type that is too large is an error if it is named. Otherwise it is not judged.
             if large := [each for message in messages for each in too_large(message) if names]:
                 wrong.update((str(problem), problem) for problem in large)
                 continue
