@@ -1,3 +1,3 @@
-"""TS2: is the plan of a type right, and is it still the one that was accepted?"""
+"""TS2: is the plan of a type correct, and does it still match the accepted golden plan?"""
 
 __all__ = []

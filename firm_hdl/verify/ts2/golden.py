@@ -1,9 +1,8 @@
-"""Golden plans: what converters are known to do, kept in files and compared by meaning (TS2).
+"""Golden plans: accepted plans that are kept in files and compared by meaning (TS2).
 
 A folder has a plan in YAML for each chosen type, below the name of its distribution:
-``lyrical/sensor_msgs_msg_Imu_cdr_8.yaml``. The file says itself which type, wire and bus it is of.
-Checking never writes; a change is accepted by an explicit command, and then reviewed where the
-folder is kept, in version control.
+``lyrical/sensor_msgs_msg_Imu_cdr_8.yaml``. The file itself names its type, wire and bus. Checking
+never writes. An explicit command accepts changes, which are then reviewed in version control.
 """
 
 from __future__ import annotations
@@ -29,21 +28,22 @@ __all__ = ["Checked", "Golden", "add", "check_golden", "read_golden", "summarise
 
 
 _MOST_BYTES = 1 << 26
-"""No golden plan is larger."""
+"""The largest size of a file with a golden plan."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Golden:
-    """One file.
+    """One golden plan.
 
     Attributes
     ----------
     path : Path
     distro : str
-        Name of the folder that it is in.
+        Name of the folder that the file is in.
     plan : Plan
-        What it says.
+        The plan in the file.
     text : str
+        The text of the file.
     """
 
     path: Path
@@ -54,16 +54,16 @@ class Golden:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Checked:
-    """What became of a golden plan.
+    """The result of checking a golden plan.
 
     Attributes
     ----------
     text : str
-        Today's plan; empty if there is none.
+        Today's plan in YAML; empty if there is none.
     changes : tuple of Change
-        From the golden plan to today's.
+        Changes from the golden plan to today's.
     problems : tuple of str
-        Why there is no plan, or which invariants it breaks.
+        Why there is no plan today, or which invariants today's plan breaks.
     """
 
     golden: Golden
@@ -73,7 +73,7 @@ class Checked:
 
     @property
     def verdict(self) -> Verdict:
-        """Passed if nothing is to be looked at."""
+        """Passed if there are neither problems nor changes."""
         wrong = (*self.problems, *map(str, self.changes))
         return Failed(wrong) if wrong else Passed(1)
 
@@ -111,12 +111,12 @@ def check_golden(
     paths: Sequence[str | os.PathLike[str]] = (),
     bags: Sequence[str | os.PathLike[str]] = (),
 ) -> list[Checked]:
-    """Plan each type again, and compare; every plan is checked for its invariants, too.
+    """Plan each type again, compare the plans, and check the invariants of each new plan.
 
     Parameters
     ----------
     paths, bags
-        As for `open_library`; each plan is of its own distribution.
+        As for `open_library`, which is called for the distribution of each golden plan.
     """
     libraries: dict[str, Library] = {}
     results = []
@@ -153,7 +153,7 @@ def add(folder: str | os.PathLike[str], distro: str, message: Message, plan: Pla
 
 
 def summarise(results: Iterable[Checked]) -> dict[str, list[str]]:
-    """Group what differs by its kind, so that one cause in many types is seen as one.
+    """Group changes by their kind, so that one cause in many types shows as one kind.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""``firm-hdl golden``: golden plans, checked, accepted and added."""
+"""``firm-hdl golden``: checks golden plans, accepts their changes, and adds new ones."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["add_golden_arguments", "run_golden"]
 
 
 def add_golden_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare what ``firm-hdl golden`` takes, beside ``--distro``, ``--path`` and the options."""
+    """Add the arguments of ``firm-hdl golden``, except those that it shares with other commands."""
     parser.add_argument(
         "do",
         choices=["check", "accept", "add"],
@@ -26,7 +26,7 @@ def add_golden_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run_golden(given: argparse.Namespace) -> int:
-    """Run ``firm-hdl golden``; return 0 if nothing is left to look at."""
+    """Run ``firm-hdl golden``; return 0 if no difference is left."""
     if given.do == "add":
         return _add(given)
     try:

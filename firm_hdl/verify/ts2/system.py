@@ -1,8 +1,8 @@
-"""TS2: what a converter is meant to do, checked and compared before there is any circuit.
+"""TS2: checks plans, and compares them with golden plans, before there is any circuit.
 
-Every plan must keep the invariants of plans and be one of its layout (:func:`firm_hdl.plan.check`),
-and its printed form must say all of it: read back, it is the same plan. Where golden plans are
-given, those of the types that were asked for must mean the same as today's.
+Every plan must keep the invariants of plans and match its layout (:func:`firm_hdl.plan.check`). Its
+YAML must be complete: read back, it must be the same plan. If golden plans are given, those of the
+types that were asked for must mean the same as today's plans.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from firm_hdl.wire import Wire, lay_out, refusals
 __all__ = ["Ts2", "check_plan"]
 
 YAML_STEPS = 2000
-"""Longer plans are not printed and read back: it takes a second per some thousand steps."""
+"""Longer plans are not written as YAML and read back: a few thousand steps take a second."""
 MOST_IN_A_SHARE = 16
 
 
@@ -58,7 +58,7 @@ def check_plan(message: Message, test: Test, wire: Wire | None, watch: Stopwatch
     if len(plan.steps) <= YAML_STEPS and from_yaml(to_yaml(plan)) != plan:
         problems.append("the plan in YAML, read back, is another one")
     metrics = figures(message, plan, ())
-    # There are no cases.
+    # The plan has no cases, so this figure means nothing.
     metrics.pop("case_bytes", None)
     verdict = Failed(tuple(problems)) if problems else Passed(1)
     return Record(test=test, verdict=verdict, shape=digest(plan), metrics=metrics)
@@ -76,7 +76,7 @@ class Ts2(TypesSystem):
     Raises
     ------
     BuildError
-        When its tests are asked for, if the folder is not one of golden plans.
+        From `tests`, if the folder of golden plans cannot be used.
     """
 
     name = "ts2"
@@ -87,17 +87,17 @@ class Ts2(TypesSystem):
 
     @cached_property
     def tests(self) -> Sequence[Test]:
-        """Those of plans, and those of golden plans."""
+        """The tests of plans, and then the tests of golden plans."""
         return [*self._plans, *map(self._golden_test, self._goldens)]
 
     @property
     def options(self) -> Mapping[str, Any]:
-        """Where golden plans are."""
+        """The folder of golden plans."""
         return {"golden": self._request.golden}
 
     def run(self, recorder: Recorder) -> list[Judged]:
         """Check all plans, and compare golden ones."""
-        # Before the first plan is made.
+        # Read the golden plans before any plan is made, so that errors show at once.
         goldens = self._goldens
         tests = {test: test for test in self._plans}
         records = kept(tests, recorder, self._records, label="TS2", unit="plan")
@@ -198,5 +198,5 @@ def _count(records: Sequence[Record]) -> None:
 
 
 def _plain(name: str) -> str:
-    """Return a name as both ROS 1 and rosbags may write it."""
+    """Return a name without ``msg``, so that names of ROS 1 and of rosbags are equal."""
     return name.replace("/msg/", "/")
