@@ -1,3 +1,3 @@
-"""TS3: do the converters of a type do as ROS's libraries, with chosen and recorded messages?"""
+"""TS3: do the converters of a type agree with ROS's libraries on chosen and recorded messages?"""
 
 __all__ = []

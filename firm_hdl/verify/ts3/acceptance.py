@@ -1,12 +1,12 @@
 """Acceptance: every case of a type through simulated converters, against the oracle.
 
-For each case of :mod:`firm_hdl.verify.cases.make` the loopback of deserializer and serializer must
-give the packet back byte for byte, every leaf must have transferred what the oracle says, and every
-status must be ``OK``: once with nothing stalled and all packets back to back, and once with every
+For each case of :mod:`firm_hdl.verify.cases.make`, the loopback of deserializer and serializer must
+return the packet byte for byte. Every leaf must transfer what the oracle says, and every status
+must be ``OK``. Cases run once without stalls and with all packets back to back, and once with every
 stream stalled. The golden model (:mod:`firm_hdl.plan.interpret`) must agree in both directions.
-Then packets are broken, each between two good ones, and hardware and golden model must agree on
-what is left of them. If a simulator of exported text is asked for, all of that is replayed in it,
-cycle by cycle (:mod:`firm_hdl.verify.simulators.crosscheck`).
+Then broken packets are sent, each followed by a good one. Hardware and golden model must agree on
+the results. If a simulator of exported text is asked for, it replays all runs, cycle by cycle
+(:mod:`firm_hdl.verify.simulators.crosscheck`).
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ __all__ = ["Acceptance", "accept", "accept_message", "measured"]
 
 
 def accept(distro: str, name: str, options: Options | None = None) -> Result:
-    """Run all cases of an embedded type. Nothing is raised: what goes wrong is in the result.
+    """Run all cases of a type. Errors are not raised, but are in the result.
 
     Parameters
     ----------
@@ -79,12 +79,12 @@ def measured(
     options: Options,
     run: Callable[[Message, Judge, Options, Result], None],
 ) -> Result:
-    """Find a type and its oracle, run something on it, and return what became of it, and when.
+    """Find a type and its oracle, call `run` with them, and return the result with its times.
 
     Parameters
     ----------
     run : callable
-        Adds to the result. It may raise anything, which goes to the result as well.
+        Adds to the result. An exception of `run` goes into the result as well.
     """
     result = Result(distro=distro, name=name, command=command_of(options, distro, name))
     try:
@@ -98,7 +98,7 @@ def measured(
         run(message, judge, options, result)
     except NotJudgedError as error:
         result.obstacle = NotJudged(str(error) or type(error).__name__)
-    except Exception as error:  # Whatever it is, the other types are to go on.
+    except Exception as error:  # The other types are tested in any case.
         result.failures.append(described(error))
     result.seconds, result.cpu_seconds = result.watch.stop()
     return result
@@ -148,7 +148,7 @@ def _confirm(
     result: Result,
     is_needed: bool,
 ) -> None:
-    """Have other libraries write the cases; `is_needed`: rosbags' word is not enough."""
+    """Compare other libraries' packets; `is_needed`: one of them must support the wide text."""
     found = confirm(message, wire, cases, options.references)
     result.written_by, result.known = found.by, found.known
     result.failures += found.failures
@@ -157,7 +157,7 @@ def _confirm(
             f"{WIDE_REFERENCES[0]} could not write wide text, which rosbags has not"
         )
     if options.references and found.unable:
-        # They were asked for by name.
+        # These libraries were asked for by name.
         result.obstacle = NotJudged("; ".join(found.unable.values()))
 
 
@@ -170,15 +170,15 @@ class Acceptance:
     wire : Wire
     options : Options
     result : Result
-        Takes failures and figures.
+        Receives failures and figures.
     max_message_bytes : int or None
-        Of the converters; `None`: what the type needs.
+        The limit of the converters; `None`: `message_limit` of the type.
 
     Attributes
     ----------
     plan : Plan
     circuit : Circuit
-        Only if it is to be simulated.
+        Only if the circuit is to be simulated.
 
     Raises
     ------
@@ -215,7 +215,7 @@ class Acceptance:
     ) -> list[AbstractSet[Edge]]:
         """Check the golden model against the oracle; return the decisions of each packet.
 
-        It alone is judged if the circuit is not to be simulated.
+        The golden model alone is judged if the circuit is not to be simulated.
         """
         failures, plan = self._result.failures, self.plan
         leaves = {leaf.path: number for number, leaf in enumerate(plan.leaves)}
@@ -244,7 +244,7 @@ class Acceptance:
         return taken
 
     def cover(self, taken: Iterable[AbstractSet[Edge]]) -> None:
-        """Note which decisions of the plan some packets take."""
+        """Store which decisions of the plan some packets take."""
         possible = edges(self.plan)
         missing = sorted(possible.difference(*taken))
         self._result.coverage = PlanCoverage(
@@ -259,7 +259,7 @@ class Acceptance:
         stalls: Stalls | None,
         bare: Sequence[tuple[Case, bytes]] = (),
     ) -> None:
-        """Check the hardware against the oracle; `bare` packets are to come out as their cases."""
+        """Check the hardware against the oracle; `bare` packets must come out as their cases do."""
         sent = [case.sent for case in cases] + [packet for _, packet in bare]
         where = "hardware" if stalls is None else f"hardware, {stalls}"
         seen = self.circuit.send(where, sent, stalls)
@@ -279,7 +279,7 @@ class Acceptance:
         self._result.judged += len(seen.packets)
 
     def broken(self, cases: Sequence[Case]) -> None:
-        """Check the hardware against the golden model on packets that are wrong."""
+        """Check the hardware against the golden model with damaged packets."""
         sample = list(cases[:: max(1, len(cases) // len(DAMAGES))])
         broken = list(broken_packets(self.plan, sample, self._random))
         packets = list(chain.from_iterable(zip(broken, (c.packet for c in sample), strict=True)))

@@ -23,26 +23,25 @@ from firm_hdl.verify.ts3.result import Result
 __all__ = ["Circuit"]
 
 FULL_CYCLES = 60
-"""After so many cycles in which nothing leaves, converters are full of any packets."""
+"""Converters are full after this many cycles in which nothing leaves them."""
 
 
 class Circuit:
-    """Both converters of a type in a loop, simulated in Python, and what is replayed elsewhere.
+    """Both converters of a type in a loop, simulated in Python and replayed in another simulator.
 
     Parameters
     ----------
     message : Message
     plan : Plan
-        The type's; its wire, bus and limit are what the converters are made for.
+        The type's plan. The converters are made for its wire, bus and limit.
     options : Options
     result : Result
-        Takes failures, and what was simulated and how long it took.
+        Receives failures, numbers of packets and cycles, and times.
 
     Raises
     ------
     NotJudgedError
-        If the converters are too large to be exported, and a simulator of exported text is asked
-        for.
+        If a simulator of exported text is asked for, and the converters are too large to export.
     """
 
     def __init__(self, message: Message, plan: Plan, options: Options, result: Result):
@@ -54,7 +53,7 @@ class Circuit:
             None if other is None else Crosscheck(other, (rx, tx), self._converters, message.name)
         )
         probes = () if self._cross is None else self._cross.trace.probes
-        # Exported text runs on after a reset, and so does what it is compared with.
+        # Exported text keeps its state between runs, so the Python simulation keeps it as well.
         self._harness = Harness(
             rx,
             tx,
@@ -65,7 +64,7 @@ class Circuit:
         )
         self._waves = self._harness
         if self._cross is not None and options.vcd is not None:
-            # Waveforms begin with a start, not with a reset.
+            # Waveforms come from another harness, in which each run starts from initial values.
             self._waves = Harness(*self._converters(), message=message, gated=options.stalled)
 
     def _converters(self) -> tuple[Deserializer, Serializer]:
@@ -81,7 +80,7 @@ class Circuit:
         Parameters
         ----------
         where : str
-            What the run is called in failures.
+            The name of the run in failures.
         """
         observe = None if self._cross is None else self._cross.start(where)
         self._result.watch.enter("simulation")
@@ -104,7 +103,7 @@ class Circuit:
         return seen
 
     def interrupt(self, packets: Sequence[bytes]) -> None:
-        """Fill the circuits and stop, for another simulator to meet that with a reset."""
+        """Fill the circuits and stop, so that the next run resets full ones in the replay."""
         if self._cross is None:
             return
         blocked = Stalls.bits("0" * (2 * FULL_CYCLES) + "1")
@@ -115,21 +114,21 @@ class Circuit:
             options = RunOptions(stalls=stalls, limit=FULL_CYCLES, observe=observe)
             self._harness.run_packets(packets, options)
         except DeadlineError:
-            # As it is meant to end.
+            # The run is meant to end like this.
             pass
         except AssertionError as error:
             self._result.failures.append(f"{where}: {type(error).__name__}: {error}")
         self._result.simulated_cycles += self._harness.bench.cycles
 
     def crosscheck(self) -> None:
-        """Compare everything that was sent with another simulator, if there is one."""
+        """Replay all runs in another simulator, if there is one, and compare."""
         if self._cross is None:
             return
         self._result.watch.enter("simulation")
         self._result.comparison = found = self._cross.compare()
         self._result.watch.enter("testing")
         title = self._cross.simulator.title
-        # The simulator was asked for, so its silence is one of the failures.
+        # The simulator was asked for, so a missing judgement is a failure.
         silent = isinstance(found.verdict, NotJudged)
         self._result.failures += [
             f"{title}: {detail}" if silent else detail for detail in found.verdict.details

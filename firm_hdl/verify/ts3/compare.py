@@ -1,7 +1,7 @@
-"""Compares the output of converters with the expected one: each first difference is a line.
+"""Compares the output of converters with the expected output; yields a line for a first difference.
 
-`names` are those of the messages, in order, so that a line says which of them it is about; without
-names it says numbers alone.
+`names` are the names of the messages, in order. A line then names the message that differs. Without
+names, a line has the message's number only.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Expected:
-    """What a run of both converters has to show.
+    """The expected output of a run of both converters.
 
     Attributes
     ----------
     packets : sequence of bytes
-        Which come out. Those whose status of the serializer is not ``OK`` are marked.
+        Packets that come out. They are marked as errors if the serializer's status is not ``OK``.
     transfers : sequence of mapping
         Payloads by path of the leaf, a mapping for each message.
     statuses, sent_statuses : sequence of str
-        Of the deserializer and of the serializer.
+        Statuses of the deserializer, and of the serializer.
     """
 
     packets: Sequence[bytes]
@@ -45,7 +45,7 @@ class Expected:
 def run_differences(
     where: str, plan: Plan, seen: RunResult, wanted: Expected, names: Sequence[str] = ()
 ) -> Iterator[str]:
-    """Say what is the first that differs of packets, of each leaf, of statuses and of marks."""
+    """Yield the first difference of packets, of each leaf, of statuses, and of error marks."""
     yield from packet_differences(where, seen.packets, wanted.packets, names)
     yield from transfer_differences(where, plan, seen.transfers, wanted.transfers, names)
     for what, statuses, right in (
@@ -62,7 +62,7 @@ def run_differences(
 def _status_differences(
     what: str, got: Sequence[str], wanted: Sequence[str], names: Sequence[str] = ()
 ) -> Iterator[str]:
-    """Say which status is the first that differs, if one does."""
+    """Yield the first status that differs, if one does."""
     number = first_difference(got, wanted)
     if number < min(len(got), len(wanted)):
         statuses = f"{got[number]} instead of {wanted[number]}"
@@ -74,7 +74,7 @@ def _status_differences(
 def packet_differences(
     where: str, got: Sequence[bytes], wanted: Sequence[bytes], names: Sequence[str] = ()
 ) -> Iterator[str]:
-    """Say which packet is the first that differs, if one does, and where."""
+    """Yield the first packet that differs, if one does, and the byte at which it does."""
     number = first_difference(got, wanted)
     if number < min(len(got), len(wanted)):
         one, other = got[number], wanted[number]
@@ -94,7 +94,7 @@ def transfer_differences(
     wanted: Sequence[Transfers],
     names: Sequence[str] = (),
 ) -> Iterator[str]:
-    """Say which transfer is the first that differs of each leaf.
+    """Yield the first transfer of each leaf that differs.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def _name(names: Sequence[str], number: int) -> str:
 
 
 def _message_of(path: tuple[str, ...], transfer: int, messages: Sequence[Transfers]) -> int:
-    """Return which of some messages a transfer of a leaf belongs to."""
+    """Return the index of the message that a transfer of a leaf belongs to."""
     for number, message in enumerate(messages):
         transfer -= len(message.get(path, ()))
         if transfer < 0:

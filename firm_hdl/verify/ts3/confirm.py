@@ -1,8 +1,8 @@
 """Reference libraries of TS3: libraries that have to write the same bytes as rosbags.
 
-Cases, and what their leaves transfer, come from rosbags. Every other library that is here is given
-the same value and has to write the same packet, so that a mistake of rosbags alone does not pass.
-Known divergences (docs/divergences.md) are told by their keys.
+Cases and the transfers of their leaves come from rosbags. Every other installed library gets the
+same value, and has to write the same packet. So a mistake of rosbags alone does not pass. Known
+divergences (docs/divergences.md) are reported by their keys.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from firm_hdl.wire import Wire
 __all__ = ["confirm"]
 
 MOST_BYTES = 1 << 18
-"""The most bytes of all packets of a type that are written again; the first always is."""
+"""The most bytes of all packets that a library writes for a type; the first is always written."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,7 +37,7 @@ class Confirmation:
     Attributes
     ----------
     by : tuple of str
-        Libraries that wrote the cases, with the same bytes or not.
+        Libraries that could be asked to write the cases, with or without differences.
     failures : tuple of str
         Unknown differences.
     known : tuple of str
@@ -55,12 +55,12 @@ class Confirmation:
 def confirm(
     message: Message, wire: Wire, cases: Sequence[Case], wanted: Sequence[str] | None = None
 ) -> Confirmation:
-    """Have cases written by other libraries.
+    """Have other libraries write cases, and compare their packets with those of rosbags.
 
     Parameters
     ----------
     wanted : sequence of str or None
-        `None`: all that are here.
+        Names of libraries; `None`: all that are installed.
     """
     here = references_here(wanted)
     unable = {name: f"{name} has no wire '{wire}'" for name in here if wire not in WRITERS[name]}
@@ -98,7 +98,7 @@ def _sample(cases: Sequence[Case]) -> list[Case]:
 def _differences(
     message: Message, wire: Wire, cases: Sequence[Case], values: Sequence[Plain], name: str
 ) -> tuple[list[str], list[str]]:
-    """Return differences that nobody knows, and keys of those that are known."""
+    """Return unknown differences, and the keys of known ones."""
     codec = client(name).open(message, wire)
     found: list[str] = []
     known: list[str] = []

@@ -1,7 +1,8 @@
-"""The messages of recordings: of which types, a few of them spread evenly, and their bytes.
+"""The messages of recordings: their types, and a selection of messages that are spread evenly.
 
-Files are read twice: first only sizes are kept, so that which messages to take is decided with all
-of them known, however long the recording is; then those are taken, just as they were recorded.
+Files are read twice. The first pass keeps only the sizes of all messages, however long the
+recording is. The messages are selected by these sizes. The second pass reads the bytes of the
+selected messages.
 """
 
 from __future__ import annotations
@@ -29,14 +30,14 @@ _Place: TypeAlias = "tuple[str, str, int]"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Topic:
-    """A topic of a recording; one that is recorded in several ways counts several times.
+    """A topic of a recording. A topic with several types or digests counts several times.
 
     Attributes
     ----------
     bag : str
     name : str
     type : str
-        ``package/msg/Type``, as rosbags calls it in both kinds of ROS.
+        ``package/msg/Type``, the name that rosbags uses for ROS 1 and ROS 2.
     digest : str
         The recorded md5 sum or type hash; empty if there is none.
     """
@@ -56,9 +57,9 @@ class RecordedMessage:
     bag : str
     topic : str
     number : int
-        Messages of a topic are counted from 0, in the order of their times.
+        The index of the message in its topic, from 0, in the order of times.
     nanoseconds : int
-        When it was recorded.
+        The time of the recording.
     data : bytes
     """
 
@@ -80,15 +81,15 @@ class Selection:
     Attributes
     ----------
     messages : tuple of RecordedMessage
-        Recording by recording, in the order of their times.
+        Selected messages, recording by recording, in the order of their times.
     total : int
-        How many messages there are.
+        The number of all messages of the type.
     topics : int
-        How many topics these are from.
+        The number of topics with these messages.
     too_long : tuple of int
-        Sizes of those that are too long, in bytes.
+        Sizes in bytes of the messages that are too long.
     sparse : bool
-        Whether there are fewer than asked for, because all together have too many bytes.
+        Whether fewer messages than asked for were selected, because of their total size.
     """
 
     messages: tuple[RecordedMessage, ...]
@@ -104,7 +105,7 @@ def topics_of(bag: str) -> list[Topic]:
     Raises
     ------
     DefinitionError
-        If it cannot be read.
+        If the recording cannot be read.
     """
     found = use_recording(bag, lambda reader: [_topic(bag, each) for each in reader.connections])
     return list(dict.fromkeys(found))
@@ -113,23 +114,23 @@ def topics_of(bag: str) -> list[Topic]:
 def select(
     topics: Sequence[Topic], *, most: int, longest: int, most_bytes: int | None = None
 ) -> Selection:
-    """Select messages, spread evenly over each topic, and over the topics as evenly as can be.
+    """Select messages that are spread evenly over each topic, and if possible over the topics.
 
     Parameters
     ----------
     topics : sequence of Topic
-        All of the same type.
+        Topics, all of the same type.
     most : int
-        Most messages.
+        The maximum number of messages.
     longest : int
-        Most bytes of a message.
+        The maximum size of a message in bytes.
     most_bytes : int or None
-        Most bytes of all together. One message, the shortest, is selected in any case.
+        The maximum size of all messages together. The shortest message is selected in any case.
 
     Raises
     ------
     DefinitionError
-        If a recording cannot be read, to its end.
+        If a recording cannot be read to its end.
     """
     sizes: dict[tuple[str, str], Sequence[int]] = {}
     for bag in dict.fromkeys(topic.bag for topic in topics):
@@ -146,7 +147,7 @@ def select(
 
 
 def _topic(bag: str, connection: Connection) -> Topic:
-    # DDS tools write the scopes of IDL; whether the definition can be read is said elsewhere.
+    # DDS tools write names with ``::``. Whether the definition can be read is checked elsewhere.
     name = connection.msgtype.replace("::", "/")
     return Topic(bag=bag, name=connection.topic, type=name, digest=connection.digest or "")
 
@@ -175,7 +176,7 @@ def _sizes(reader: Reader, bag: str, topics: Sequence[Topic]) -> dict[str, Seque
 def _choose(
     sizes: Mapping[tuple[str, str], Sequence[int]], most: int, longest: int, most_bytes: int | None
 ) -> tuple[list[_Place], bool]:
-    """Return the places of what is selected, and whether bytes were what limits it."""
+    """Return the places of the selected messages, and whether `most_bytes` limited their number."""
     short = {
         topic: [number for number, size in enumerate(each) if size <= longest]
         for topic, each in sizes.items()
@@ -200,7 +201,7 @@ def _choose(
 def _shares(
     numbers: Mapping[tuple[str, str], Sequence[int]], most: int
 ) -> dict[tuple[str, str], int]:
-    """Divide `most` among topics; what one that is short leaves, the others get."""
+    """Divide `most` among topics. Topics with few messages leave the rest to the others."""
     shares = {}
     order = sorted(numbers, key=lambda topic: len(numbers[topic]))
     for index, topic in enumerate(order):
@@ -252,26 +253,26 @@ def collect_recorded(
     wire: Wire | None,
     problems: dict[str, Diagnostic],
 ) -> list[TypeUnderTest]:
-    """List the types to replay: those that are named, or all that there are topics of.
+    """List the types to replay: those that are named, or all types that have topics.
 
     Parameters
     ----------
     distro : str or None
-        By whose rules definitions are read; `None`: the recordings' own.
+        The distribution by whose rules definitions are read; `None`: the one of the recordings.
     names : sequence of str
-        None: all types.
+        Types by name; empty: all types.
     wire : Wire or None
         The wire format that is asked for.
     problems : dict
-        Takes what is wrong with the definition of one of all types, by its text.
+        Receives errors in definitions, by their texts, if no type is named.
 
     Raises
     ------
     DefinitionError
-        If a recording cannot be used, or the definition of a type that is named: it must not be
+        If a recording cannot be used, or if the definition of a named type cannot be used or is
         too large to be laid out (:func:`firm_hdl.wire.too_large`).
     UnknownTypeError
-        If there is no topic of a type that is named, or the recording is of another wire format.
+        If a named type has no topic, or if the recording has another wire format.
     """
     library = open_library(distro, bags=bags)
     if wire not in (None, there := "ros1" if library.dialect == "ros1" else "cdr"):

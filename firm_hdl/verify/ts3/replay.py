@@ -1,9 +1,9 @@
 """Replay: the messages of a recording through deserializer, no-op accelerator and serializer.
 
-Each message is sent as it was recorded. What its leaves must transfer is what rosbags decodes from
-it, and what must come out is what rosbags writes for that, which is the recorded packet itself
-unless that was written in some other way that the format allows. docs/interface.md says what
-packets get that do not fit; for these, hardware and golden model must agree.
+Each message is sent as it was recorded. Its leaves must transfer the values that rosbags decodes.
+The packet that comes out must be the one that rosbags writes for these values. This is the recorded
+packet itself, unless its writer used another form that the format allows. docs/interface.md
+describes the answers to packets that do not fit. For these, hardware and golden model must agree.
 """
 
 from __future__ import annotations
@@ -55,20 +55,20 @@ REPRESENTATIONS = {
     10: "a big-endian parameter list of XCDR2",
     11: "a parameter list of XCDR2",
 }
-"""What the second byte of a CDR packet says; OMG DDS-XTypes 1.3, clause 7.6.2.1.2."""
+"""Meanings of the second byte of a CDR packet; OMG DDS-XTypes 1.3, clause 7.6.2.1.2."""
 
 
 def replay(distro: str, name: str, options: Options) -> Result:
-    """Replay the messages of a type. Nothing is raised: what goes wrong is in the result.
+    """Replay the messages of a type. Errors are not raised, but are in the result.
 
     Parameters
     ----------
     distro : str
-        By whose rules the definitions in the recordings are read.
+        The distribution by whose rules the definitions in the recordings are read.
     name : str
         ``package/Type`` or ``package/msg/Type``.
     options : Options
-        With recordings.
+        Options with recordings.
     """
     return measured(distro, name, options, _replay)
 
@@ -98,7 +98,7 @@ def _replay(message: Message, judge: Judge, options: Options, result: Result) ->
 
 
 def _room(longest: int) -> int:
-    """Return the longest message that converters are to take: a power of two.
+    """Return the limit of the converters for the size of a message: a power of two.
 
     So recordings of the same robot mostly have the same circuits.
     """
@@ -108,13 +108,16 @@ def _room(longest: int) -> int:
 def _topics(
     message: Message, library: Library, bags: Sequence[str]
 ) -> tuple[list[Topic], list[str]]:
-    """Return the topics of a type, and which are left out because their definition differs."""
+    """Return the topics of a type, and lines about topics that are left out.
+
+    A topic is left out if its definition differs from that of the first topic.
+    """
 
     def is_meant(topic: Topic) -> bool:
         try:
             return library.message(topic.type).name == message.name
         except DefinitionError:
-            # A definition that cannot be used is that of another type.
+            # A definition that cannot be used belongs to another type.
             return False
 
     mine = [topic for bag in bags for topic in topics_of(bag) if is_meant(topic)]
@@ -126,7 +129,7 @@ def _topics(
 
 
 def _select(message: Message, topics: Sequence[Topic], options: Options) -> Selection:
-    """Select messages, or say why there are none."""
+    """Select messages; raise `NotJudgedError` if there are none."""
     most_bytes = None
     if options.most_cases is None:
         plan = build_plan(
@@ -153,15 +156,15 @@ def _select(message: Message, topics: Sequence[Topic], options: Options) -> Sele
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Judged:
-    """A message with what is to become of it.
+    """A message and the expected results of its replay.
 
     Attributes
     ----------
     case : Case
     kind : str
-        In which way it is not as rosbags would have written it; empty if it is.
+        How the packet differs from the one that rosbags writes; empty if it does not.
     finding : str
-        What is wrong with the message itself; empty if nothing is.
+        What is wrong with the message itself; empty if nothing is wrong.
     """
 
     case: Case
@@ -184,7 +187,7 @@ def _judge(plan: Plan, judge: Judge, message: RecordedMessage, with_bag: bool) -
         return _Judged(case=by_golden, kind=_representation(packet))
     try:
         answer, transfers = _ask(plan, judge, packet)
-    # What rosbags raises for what it cannot read has no common base.
+    # The exceptions of rosbags for packets that it cannot read have no common base class.
     except Exception as error:
         return _refused(plan, judge, by_golden, decoded, error)
     if decoded.status != "OK":
@@ -197,7 +200,7 @@ def _judge(plan: Plan, judge: Judge, message: RecordedMessage, with_bag: bool) -
 
 
 def _ask(plan: Plan, judge: Judge, packet: bytes) -> tuple[bytes, Transfers]:
-    """Return the packet that rosbags writes for another one, and what leaves transfer."""
+    """Return the packet that rosbags writes for the content of a packet, and its transfers."""
     value = judge.oracle.read(packet, judge.name, plan.wire)
     _make_bools_plain(value)
     return (
@@ -207,7 +210,7 @@ def _ask(plan: Plan, judge: Judge, packet: bytes) -> tuple[bytes, Transfers]:
 
 
 def _make_bools_plain(value: Any) -> None:
-    """Make every item of arrays of bools 0 or 1: numpy keeps the byte that was read."""
+    """Make every item of arrays of bools 0 or 1, because NumPy keeps the byte that was read."""
     for field in fields(value):
         member = getattr(value, field.name)
         if isinstance(member, np.ndarray) and member.dtype == np.bool_:
@@ -218,7 +221,7 @@ def _make_bools_plain(value: Any) -> None:
 
 
 def _refused(plan: Plan, judge: Judge, case: Case, decoded: Decoded, error: Exception) -> _Judged:
-    """Judge a packet that rosbags does not read."""
+    """Judge a packet that rosbags refuses to read."""
     said = str(error).strip().splitlines() or [type(error).__name__]
     text = f"rosbags says: {said[0]}"
     if decoded.status != "OK":
@@ -233,7 +236,7 @@ def _refused(plan: Plan, judge: Judge, case: Case, decoded: Decoded, error: Exce
 
 
 def _tamed(plan: Plan, judge: Judge, case: Case, decoded: Decoded, kind: str, text: str) -> _Judged:
-    """Judge a packet by another one, in which rosbags can read what is in the way."""
+    """Judge a packet by a similar one without the floats and texts that rosbags cannot read."""
     kept = _changed(plan, decoded.streams, _in_python)
     streams = _changed(plan, kept, _in_ascii)
     packet = encode(plan, streams)[0]
@@ -269,7 +272,7 @@ def _changed(
 
 
 def _in_python(leaf: Leaf, payload: Payload) -> Payload:
-    """Return a payload as Python would have it: not any 32 bits are one of its floats."""
+    """Return a payload after a conversion to a Python float, which loses signalling NaNs."""
     if leaf.kind != "scalar" or leaf.type not in ("float32", "float64"):
         return payload
     assert isinstance(payload, int)
@@ -277,7 +280,7 @@ def _in_python(leaf: Leaf, payload: Payload) -> Payload:
 
 
 def _in_ascii(leaf: Leaf, payload: Payload) -> Payload:
-    """Return a payload without the highest bits of bytes, so that all text is ASCII."""
+    """Return a payload with the highest bit of each byte cleared, so that all text is ASCII."""
     if isinstance(payload, int) or leaf.item_bytes != 1 or leaf.signed:
         return payload
     items, last = payload
@@ -291,7 +294,7 @@ def _representation(packet: bytes) -> str:
 
 
 def _difference(packet: bytes, answer: bytes, header_bytes: int) -> str:
-    """Say in which ways a packet that means the same is not as rosbags writes it."""
+    """Return a text about how a packet differs from rosbags' packet with the same meaning."""
     found = []
     if packet[:header_bytes] != answer[:header_bytes]:
         found.append("option bits")
@@ -304,7 +307,7 @@ def _difference(packet: bytes, answer: bytes, header_bytes: int) -> str:
 
 
 def _counts(selection: Selection, options: Options) -> list[str]:
-    """Say how many messages were replayed, and what was left out and why."""
+    """Return texts about how many messages were replayed, and which were left out and why."""
     topics = "1 topic" if selection.topics == 1 else f"{selection.topics} topics"
     found = [f"{len(selection.messages)} of {selection.total} messages of {topics} replayed"]
     if selection.sparse:
@@ -318,7 +321,7 @@ def _counts(selection: Selection, options: Options) -> list[str]:
 
 
 def _kinds(judged: Sequence[_Judged]) -> list[str]:
-    """Count what was not written as rosbags does, and name the first of each kind."""
+    """Count packets that rosbags would write differently, and name the first of each kind."""
     counts = Counter(each.kind for each in judged if each.kind)
     first = {each.kind: each.case.what for each in reversed(judged)}
     return [f"{count} {kind} (first: {first[kind]})" for kind, count in counts.items()]

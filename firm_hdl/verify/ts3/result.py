@@ -1,4 +1,4 @@
-"""The test of a type with some options, its result, and the record of that."""
+"""The test of a type with some options, its result, and the record of the result."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from firm_hdl.wire import lay_out
 __all__ = ["Result", "command_of", "record_of", "same_circuits", "test_of"]
 
 WAVEFORM_FOLDER = "waveforms"
-"""The folder that the command for a waveform writes."""
+"""The folder that the command for a waveform writes to."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -33,18 +33,18 @@ class Result:
     ----------
     distro, name : str
     failures : list of str
-        In the order in which they are found.
+        Failures in the order in which they were found.
     judged : int
         Packets whose bytes and transfers were compared with the oracle's: those that came out of
         the circuit, or of the golden model if the circuit is not to be simulated.
     obstacle : NotJudged or None
-        Why no oracle knows the type, so that nothing was run.
+        Why the type cannot be judged, or why a library that was named could not confirm it.
     cases, packets : int
         Cases of the type, and packets sent for them in all runs.
     beats, cycles : int
-        Of the run without stalls.
+        Beats and cycles of the run without stalls.
     simulated_cycles : int
-        Of all runs.
+        Cycles of all runs.
     watch : Stopwatch
         Measures the stages of the test.
     seconds : Seconds
@@ -64,7 +64,7 @@ class Result:
     known : tuple of str
         Keys of the known divergences between rosbags and these libraries.
     comparison : Comparison or None
-        With another simulator, if there was one.
+        The comparison with another simulator, if there was one.
     """
 
     distro: str
@@ -150,7 +150,7 @@ def test_of(task: TypeUnderTest, options: Options) -> Test:
     )
 
 
-# Pytest takes functions of such names for tests, wherever they come from.
+# Pytest takes functions with such names for tests, even if a test module only imports them.
 test_of.__test__ = False  # type: ignore[attr-defined]
 
 
@@ -186,7 +186,7 @@ def record_of(task: TypeUnderTest, result: Result, options: Options, same_as: st
 def same_circuits(
     tasks: Sequence[TypeUnderTest], options: Options
 ) -> dict[TypeUnderTest, TypeUnderTest]:
-    """Return tasks whose circuit is equal to that of an earlier task, and that task.
+    """Return the tasks whose circuit is equal to that of an earlier task, with the earlier task.
 
     Circuits are equal if plans are equal apart from names.
     """
@@ -199,7 +199,7 @@ def same_circuits(
             limit = message_limit(lay_out(message, wire).min_bytes)
             plan = plan_of(message, wire, options.bus_bytes, limit)
         except (DefinitionError, BuildError, ValueError):
-            # Whatever is wrong with it, its own test says.
+            # The task's own test reports the error.
             continue
         other = first.setdefault(digest(plan), task)
         if other is not task:

@@ -1,4 +1,4 @@
-"""TS3 for the command: acceptance of types, with a bar, a table, and how to repeat what failed."""
+"""TS3 for the command: runs types with a progress bar, and prints failures and a summary."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ from firm_hdl.verify.ts3.result import Result, command_of, record_of, same_circu
 __all__ = ["Ts3", "run_tasks"]
 
 MOST_CHARACTERS = 600
-"""Of a failure, so many are printed."""
+"""The most characters of a failure that are printed."""
 
 
 class Ts3(System):
-    """Acceptance; a test is one type with one set of options.
+    """The test system of TS3. A test is one type with one set of options.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Ts3(System):
     Raises
     ------
     ProgramMissingError, ClientMissingError
-        When it is entered.
+        When the system is entered.
     """
 
     name = "ts3"
@@ -59,7 +59,7 @@ class Ts3(System):
 
     def __enter__(self) -> Ts3:
         request = self._request
-        # Before the first type is run, and once: not by each type.
+        # Look for programs and libraries once, before the first type runs.
         simulator(request.simulator)
         if not request.bags:
             wires = [wire_of(task.distro, request.wire) for task in self._tasks]
@@ -69,12 +69,12 @@ class Ts3(System):
 
     @property
     def tests(self) -> Sequence[Test]:
-        """All types with all options."""
+        """The tests of all types with all sets of options."""
         return [test_of(task, each) for each in self._options for task in self._tasks]
 
     @property
     def options(self) -> Mapping[str, Any]:
-        """What cases there are, and what becomes of them."""
+        """The options that determine the cases, and how the cases are tested."""
         request = self._request
         return {
             "simulator": request.simulator,
@@ -116,7 +116,7 @@ class Ts3(System):
                     results.append(result)
                     same_as = tasks[same[task]].key if task in same else ""
                     notes[result.note] += 1
-                    # A replay says of each type how many messages there were.
+                    # The note of a replay has the number of messages, so it is always printed.
                     is_new = notes[result.note] == 1 or bool(options.bags)
                     record = record_of(task, result, options, same_as)
                     yield [(task, record, _said(task, result, is_new=is_new))]
@@ -137,14 +137,14 @@ def run_tasks(
     executor: str = PROCESSES,
     golden_only: Container[TypeUnderTest] = (),
 ) -> Generator[tuple[TypeUnderTest, Result], None, None]:
-    """Run tasks in `jobs` processes (`None`: one per processor), and yield results as they come.
+    """Run tasks in `jobs` processes (`None`: one per processor); yield results as they are ready.
 
     Parameters
     ----------
     executor : str
         See :func:`firm_hdl.jobs.executors.run_each`.
     golden_only : container of TypeUnderTest
-        Those whose circuit is not to be simulated.
+        Tasks whose circuit is not to be simulated.
     """
     without = replace(options, simulated=False)
     work = [
@@ -163,7 +163,7 @@ def run_tasks(
 
 
 def _said(task: TypeUnderTest, result: Result, *, is_new: bool) -> Iterator[str]:
-    """Say what is to be known of a type; what is said of many types, of the first one only."""
+    """Yield the failure and the note of a type; a note only if it is new."""
     if isinstance(result.verdict, Failed):
         yield _describe(task, result, result.verdict)
     if result.note and is_new:
@@ -171,7 +171,7 @@ def _said(task: TypeUnderTest, result: Result, *, is_new: bool) -> Iterator[str]
 
 
 def _repeat(notes: Mapping[str, int]) -> None:
-    """Print how many types a note was left out of."""
+    """Print for each note how many further types have it."""
     for note, count in notes.items():
         if note and count > 1:
             print(f"note: {count - 1} more types: {note}")
