@@ -17,14 +17,14 @@ FORMAT = "firm-hdl report 2"
 
 def to_json(summary: Summary) -> str:
     """Write a report as JSON: the fields of `Summary`, and tests with their records."""
-    # Of a hundred thousand tests, each is written once.
+    # Each outcome is written once, below, because there may be a hundred thousand of them.
     content: dict[str, Any] = {"format": FORMAT, **asdict(replace(summary, outcomes=()))}
     content["verdict"] = summary.counts.verdict
     del content["outcomes"]
     for name in ("failed", "not_run", "not_judged", "uncovered", "slowest", "most_complex"):
         content[name] = [outcome.test.key for outcome in getattr(summary, name)]
     text = _written(content, indent=1).removesuffix("\n}")
-    # A line each, which is also much faster to write than with indents.
+    # One line for each test, which is also much faster to write than indented JSON.
     tests = ",\n".join(f"  {_written(_outcome(outcome))}" for outcome in summary.outcomes)
     return f'{text},\n "outcomes": [\n{tests}\n ]\n}}\n'
 

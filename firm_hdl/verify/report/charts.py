@@ -44,7 +44,7 @@ def counts_bar(counts: Counts) -> str:
     """Draw counts as one bar."""
     figure = Figure(BAR_WIDTH, 12, "")
     values = {name: getattr(counts, name) for name, _ in PARTS}
-    # What is there is seen, however little it is; what most tests did makes room for it.
+    # Each part has a minimum width, so that small parts can be seen. The widest part gets narrower.
     widths = {name: max(4.0, BAR_WIDTH * v / counts.total) for name, v in values.items() if v}
     most = max(widths, key=lambda name: widths[name])
     widths[most] -= sum(widths.values()) - BAR_WIDTH
@@ -82,7 +82,7 @@ def stages(curve: Curve) -> str:
     height = 64
     bottom = 12 + height * len(names)
     figure = Figure(760, bottom + 44, f"Run times of the stages, {curve.suite}")
-    # Not of the points, which are some of the values.
+    # The ends come from all values, because the points are only some of them.
     ends = (v for stage in names for v in (curve.stages[stage].least, curve.stages[stage].most))
     x = Scale.logarithmic(ends, 96, 740)
     figure.x_axis(x, bottom, "time per test in s, logarithmic", 12)

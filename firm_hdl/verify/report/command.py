@@ -1,4 +1,4 @@
-"""``firm-hdl report``: results in, a report out."""
+"""``firm-hdl report``: makes a report of files of results."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ FORMATS: Mapping[str, Callable[[Summary], str]] = {
     "md": to_markdown,
     "json": to_json,
 }
-"""By the end of a file's name."""
+"""Functions that write reports, by the suffixes of file names."""
 
 
 def add_report_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare what ``firm-hdl report`` takes."""
+    """Add the arguments of ``firm-hdl report``."""
     parser.add_argument(
         "results", nargs="+", metavar="RESULTS", help="files that firm-hdl verify --results wrote"
     )
@@ -64,12 +64,12 @@ def write_report(
     ----------
     out : path
     form : str or None
-        A key of `FORMATS`; `None`: what the name of `out` ends in.
+        A key of `FORMATS`; `None`: the suffix of `out`.
 
     Raises
     ------
     BuildError
-        If a file is not one of results, or if the form cannot be told.
+        If a file is not one of results, or if the suffix of `out` is not a key of `FORMATS`.
     """
     path = Path(out)
     form = form or path.suffix.lstrip(".").lower()
@@ -78,8 +78,8 @@ def write_report(
         raise BuildError(f"'{out}': the name of a report must end in {ends}, or give --format")
     text = _made(results, form, title)
     path.parent.mkdir(parents=True, exist_ok=True)
-    # Nobody finds half a page, however this ends. Names of files may have bytes that are no UTF-8:
-    # they come as in JSON and in Python, "\udcff".
+    # Replace the file at the end, so that it is never incomplete. Names of files may have bytes
+    # that are not UTF-8. These are written as in JSON and in Python, "\udcff".
     part = path.with_name(path.name + ".part")
     part.write_text(text, encoding="utf-8", newline="\n", errors="backslashreplace")
     part.replace(path)

@@ -1,4 +1,4 @@
-"""A report as one page of HTML that needs nothing else: no server, no network, no other file."""
+"""A report as one page of HTML that needs no server, no network and no other file."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def to_html(summary: Summary) -> str:
         "names": MOST_NAMES,
         "open_rows": MOST_OPEN_ROWS,
     }
-    # The template's macros are not told what they are about.
+    # Globals are visible in the macros of the template without being parameters.
     found = environment(is_html=True, cell=_cell)
     found.globals.update(summary=summary, most=most)
     page = found.get_template("page.html.j2")
@@ -41,7 +41,7 @@ def _cell(cell: TableCell) -> Markup:
         return Markup('<td class="{}" data-v="{:.9g}">{}</td>').format(
             f"n {kind}".strip(), cell.value, cell.text
         )
-    # Nothing is gained by breaking what is short.
+    # Short text is not broken into lines.
     if kind or len(cell.text) < SHORT:
         return Markup('<td class="{}">{}</td>').format(f"t {kind}".strip(), cell.text)
     return Markup("<td>{}</td>").format(cell.text)

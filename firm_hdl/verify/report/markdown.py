@@ -43,12 +43,12 @@ def _row(cells: Iterable[str]) -> str:
 
 
 def _text(text: str) -> str:
-    """Write text such that nothing in it is a mark."""
+    """Escape text, so that nothing in it is Markdown syntax."""
     return re.sub(r"([\\`*{}\[\]<>#|~]|\b_|_\b)", r"\\\1", " ".join(text.split()))
 
 
 def _block(texts: Sequence[str]) -> str:
-    """Write texts as they are, inside a fence that is in none of them."""
+    """Write texts unchanged inside a fence that is longer than any fence in the texts."""
     longest = max((len(found) for text in texts for found in re.findall("`+", text)), default=0)
     fence = "`" * max(3, longest + 1)
     return "\n".join([fence, *texts, fence, ""])

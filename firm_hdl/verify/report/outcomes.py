@@ -1,7 +1,7 @@
 """The outcome of every planned test: the input of a report.
 
 A test counts as passed only if a record says so. A test without a record was not run. A test that
-relies on the circuit of another type is worth what the record of that type is worth.
+relies on the circuit of another type passes only if the test of that type has passed, too.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Outcome:
     verdict : Verdict or NotRun
     record : Record or None
     circuit_of : str
-        Name of the type whose equal circuit was simulated in place of this one's.
+        Name of the type whose equal circuit was simulated instead of the circuit of this type.
     """
 
     test: Test
@@ -66,7 +66,7 @@ class Counts:
 
     @property
     def total(self) -> int:
-        """All tests."""
+        """The number of all tests."""
         return self.passed + self.known + self.failed + self.not_judged + self.not_run
 
     @property
@@ -101,7 +101,7 @@ def failures_of(outcome: Outcome) -> tuple[str, ...]:
 def outcomes_of(files: Sequence[Results]) -> list[Outcome]:
     """Return the outcome of every test of some files, sorted by key.
 
-    A test that is in several files failed if it failed in one.
+    A test that is in several files counts as failed if it failed in one of them.
     """
     tests: dict[str, Test] = {}
     records: dict[str, Record] = {}

@@ -46,11 +46,11 @@ def facts(summary: Summary) -> Iterator[tuple[str, str]]:
     counts = summary.counts
     yield number(counts.failed), "failed"
     yield number(counts.total), "tests"
-    # ROS 1 does not say the kind of a message.
+    # Names of ROS 1 do not contain ``msg``.
     names = {outcome.test.type.replace("/msg/", "/") for outcome in summary.outcomes}
     yield number(len(names)), "types"
     if summary.circuits:
-        # Each test system has the same ones.
+        # Test systems have the same circuits, so the numbers are not added.
         systems: dict[str, set[str]] = {}
         for outcome in summary.outcomes:
             if outcome.record is not None and outcome.record.shape:
@@ -65,7 +65,7 @@ def facts(summary: Summary) -> Iterator[tuple[str, str]]:
 
 
 def _cpu_facts(summary: Summary) -> Iterator[tuple[str, str]]:
-    """Yield processor times: of the types that have tests of all suites, and of everything."""
+    """Yield the median processor time of the types with most tests, and the total time."""
     spent: dict[tuple[str, str], float] = defaultdict(float)
     tests: dict[tuple[str, str], int] = defaultdict(int)
     for outcome in summary.outcomes:
@@ -111,7 +111,7 @@ def shown_tests(summary: Summary, most: int) -> tuple[list[Outcome], str]:
 
 
 def shown_packages(summary: Summary, most: int) -> tuple[list[Group], str]:
-    """Choose which packages to list: all, or those first that did not pass."""
+    """Choose which packages to list: all, or the first ones, beginning with those not passed."""
     found = list(summary.by_package)
     left = len(found) - most
     if left <= 0:
@@ -121,7 +121,7 @@ def shown_packages(summary: Summary, most: int) -> tuple[list[Group], str]:
 
 
 def shown_trends(trends: Iterable[Trend], most: int) -> list[Trend]:
-    """Choose which trends of a suite to draw: those that explain most."""
+    """Choose which trends of a suite to draw: those with the strongest correlation."""
     found = [
         trend for trend in trends if trend.time == "total" and trend.correlation.power is not None
     ]

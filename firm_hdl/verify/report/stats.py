@@ -1,7 +1,7 @@
 """The statistics of a report: quantiles, shares within a time, correlations, and fitted functions.
 
-Functions are fitted by least squares: a line in the figures as they are, and a power law as a line
-in their logarithms. R² is that of the space that the fit was made in.
+Functions are fitted by least squares: a line to the figures themselves, and a power law as a line
+to their logarithms. R² is computed in the space of the fit: of the figures or of the logarithms.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Box:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fit:
-    """A fitted function: ``a + b x`` of a line, ``a x^b`` of a power law."""
+    """A fitted function: ``a + b x`` for a line, ``a x^b`` for a power law."""
 
     a: float
     b: float
@@ -58,11 +58,11 @@ class Correlation:
     Attributes
     ----------
     count : int
-        Of pairs.
+        The number of pairs.
     pearson, spearman : float
-        Of the values, and of their ranks.
+        The correlation of the values, and that of their ranks.
     linear, power : Fit or None
-        `None` if there are too few points; the power law is of those above zero.
+        `None` if there are too few points. Only pairs above zero count for the power law.
     """
 
     count: int
@@ -73,7 +73,7 @@ class Correlation:
 
 
 def box_of(values: Sequence[float]) -> Box | None:
-    """Return the distribution of values; `None` of no values."""
+    """Return the distribution of values; `None` if there are no values."""
     if not values:
         return None
     at = np.quantile(np.asarray(values, dtype=float), (0, 0.25, 0.5, 0.75, 0.95, 1))
@@ -106,7 +106,7 @@ def correlate(
     Returns
     -------
     Correlation or None
-        `None` where one of them does not vary.
+        `None` if one of the figures does not vary.
     """
     xs, ys = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if len(xs) < 2 or np.ptp(xs) == 0 or np.ptp(ys) == 0:
@@ -127,7 +127,7 @@ def _line(xs: np.ndarray, ys: np.ndarray) -> Fit | None:
     if len(xs) < LEAST_POINTS or len(np.unique(xs)) < LEAST_VALUES or np.ptp(ys) == 0:
         return None
     x, y = xs - xs.mean(), ys - ys.mean()
-    # Not `@`, whose threads cost more than they gain on so little.
+    # `@` would start threads, which cost more time than they save with so few values.
     b = float((x * y).sum() / (x * x).sum())
     left = y - b * x
     r2 = float(1 - (left * left).sum() / (y * y).sum())
@@ -135,7 +135,7 @@ def _line(xs: np.ndarray, ys: np.ndarray) -> Fit | None:
 
 
 def _ranks(values: np.ndarray) -> np.ndarray:
-    """Return ranks, the mean one of equal values."""
+    """Return ranks. Equal values get the mean of their ranks."""
     _, which, counts = np.unique(values, return_inverse=True, return_counts=True)
     ends = np.cumsum(counts)
     return np.asarray(((ends - counts + ends + 1) / 2)[which])

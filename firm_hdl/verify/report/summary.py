@@ -19,7 +19,7 @@ from firm_hdl.verify.results.verdict import Failed, NotJudged
 __all__ = ["LIMITS", "CoverageSum", "Curve", "Group", "RunSummary", "Summary", "Trend", "summarise"]
 
 LIMITS = (0.01, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 60)
-"""Times in seconds; the report has the share of tests within each."""
+"""Times in seconds. The report has the share of tests that took at most each of these times."""
 
 MOST_POINTS = 1000
 """The largest number of points in a chart; statistics use all points."""
@@ -35,7 +35,7 @@ class Group:
     Attributes
     ----------
     labels : tuple of str
-        What they have in common.
+        What the tests have in common, such as the suite and the distribution.
     counts : Counts
     cpu_seconds : float
     """
@@ -53,15 +53,15 @@ class Curve:
     ----------
     suite : str
     points : tuple of (float, float)
-        Seconds, and the share of tests within this time.
+        Times in seconds, and the share of tests that took at most this time.
     within : mapping of float to float
-        That share at `LIMITS`.
+        The same share for each of `LIMITS`.
     seconds, cpu_seconds : Box or None
         Wall-clock time, and processor time.
     stages : mapping of str to Box
         Times of each stage that took time.
     stage_values : mapping of str to tuple of float
-        At most `MOST_POINTS` of them.
+        Times of each stage, at most `MOST_POINTS` of them.
     """
 
     suite: str
@@ -83,7 +83,7 @@ class Trend:
         `time` is the name of a stage, or ``total``.
     correlation : Correlation
     points : tuple of (float, float)
-        Figure and seconds, at most `MOST_POINTS` of them; those of `time` ``total`` alone.
+        Pairs of figure and seconds, at most `MOST_POINTS` of them; only if `time` is ``total``.
     """
 
     suite: str
@@ -101,9 +101,9 @@ class CoverageSum:
     ----------
     suite : str
     types, full : int
-        Tests with figures, and those among them with every decision taken.
+        The number of tests with plan coverage, and the number of those with every decision taken.
     taken, possible : int
-        Decisions of all of them.
+        Decisions of all of these tests.
     """
 
     suite: str
@@ -134,27 +134,27 @@ class RunSummary:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
-    """What a report says.
+    """The content of a report.
 
     Attributes
     ----------
     title : str
     counts : Counts
     by_suite, by_distro, by_package : tuple of Group
-        A test counts once in `by_suite`, and in each of its distributions in the others.
+        A test counts once in `by_suite`, and once for each of its distributions in the others.
     outcomes : tuple of Outcome
     circuits : mapping of str to (int, int)
         By suite: different circuits, and tests that rely on the circuit of another type.
     writers : mapping of str to (mapping of str to int)
-        By suite: libraries that wrote the packets, and of how many tests.
+        By suite: libraries that wrote packets, and the number of tests for which they did.
     curves : tuple of Curve
     trends : tuple of Trend
     coverage : tuple of CoverageSum
     oracles : tuple of OracleSum
-        What readers of definitions said.
-    said : tuple of Said
-        Known differences from them, and why they did not judge.
-    runs : tuple of Run
+        The verdicts of the oracles of definitions.
+    said : tuple of Remark
+        Known differences from these oracles, and reasons why they did not judge.
+    runs : tuple of RunSummary
     """
 
     title: str
@@ -189,7 +189,7 @@ class Summary:
 
     @property
     def noted(self) -> list[Outcome]:
-        """Tests with a note, but for definitions: known differences from oracles are in `said`."""
+        """Tests with a note, except those of definitions: their known differences are in `said`."""
         records = ((each, each.record) for each in self.outcomes)
         return [each for each, r in records if r is not None and r.note and not r.verdicts]
 
@@ -200,7 +200,7 @@ class Summary:
 
     @property
     def most_complex(self) -> list[Outcome]:
-        """The types with most leaves, of the steps of their plans among equals: a test of each."""
+        """One test of each of the types with most leaves; ties are decided by steps and time."""
 
         def by(record: Record) -> tuple[float, float, float]:
             figures = record.metrics
@@ -328,7 +328,7 @@ def _curve(suite: str, outcomes: Sequence[Outcome]) -> Curve:
 
 
 def _trends(suite: str, outcomes: Sequence[Outcome]) -> Iterable[Trend]:
-    # Whose circuit was not simulated has no time to speak of.
+    # Tests that rely on another test's circuit take hardly any time.
     records = [record for record in _ran(outcomes) if not record.same_as]
     times = {
         time: np.array([getattr(record.seconds, time) for record in records], dtype=float)

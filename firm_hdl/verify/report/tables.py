@@ -66,9 +66,9 @@ class TableCell:
     value : float or None
         The value to sort by, if it is a number.
     verdict : str
-        Its colour; empty for that of text.
+        The verdict that gives the cell its colour; empty: the colour of text.
     counts : Counts or None
-        Drawn as a bar in HTML.
+        Counts that are drawn as a bar in HTML.
     """
 
     text: str
@@ -110,7 +110,7 @@ def _cell(value: TableCell | str | float) -> TableCell:
 
 
 def _with(headings: str) -> Callable[[Callable[[T], Iterator[Row]]], Callable[[T], Table]]:
-    """Decorate a function that yields rows: it returns a table with the headings."""
+    """Decorate a function that yields rows, so that it returns a table with the headings."""
 
     def decorate(rows: Callable[[T], Iterator[Row]]) -> Callable[[T], Table]:
         @wraps(rows)
@@ -184,7 +184,7 @@ def circuits_table(summary: Summary) -> Iterator[Row]:
 
 @_with("Distribution|Oracle|Agree#|Of these, both refuse#|Known difference#|Differ#|Not judged#")
 def oracle_table(summary: Summary) -> Iterator[Row]:
-    """Count what oracles said of definitions."""
+    """Count the verdicts of oracles of definitions."""
     for each in summary.oracles:
         verdict = Failed.name if each.differ else ""
         differ = TableCell(number(each.differ), each.differ, verdict=verdict)
@@ -194,14 +194,14 @@ def oracle_table(summary: Summary) -> Iterator[Row]:
 
 @_with("Oracle|Verdict|Key or reason|Definitions#|Such as")
 def said_table(summary: Summary) -> Iterator[Row]:
-    """List known differences from oracles, and why they did not judge."""
+    """List known differences from oracles, and reasons why oracles did not judge."""
     for each in summary.said:
         yield each.oracle, each.verdict, each.what, each.count, each.example
 
 
 @_with("Test|Failure|Repeat it")
 def failure_table(outcomes: Iterable[Outcome]) -> Iterator[Row]:
-    """List failed tests in a line each."""
+    """List failed tests, one in a row."""
     for outcome in outcomes:
         text = failures_of(outcome)[0]
         shown = text if len(text) <= MOST_TEXT else f"{text[:MOST_TEXT]}..."
@@ -218,7 +218,7 @@ def within_table(curves: Iterable[Curve]) -> Iterator[Row]:
 
 def _percent(share: float) -> str:
     text = f"{share:.1%}"
-    # Rounding must not say that all is done.
+    # Rounding must not turn a share below 1 into 100 %.
     return "99.9%" if text == "100.0%" and share < 1 else text
 
 
@@ -236,7 +236,7 @@ def stage_table(curves: Iterable[Curve]) -> Iterator[Row]:
 
 @_with("Test system|Figure x|Time|Tests#|Spearman#|Pearson r#|Power law, in s|R²#|Line, in s|R²#")
 def trend_table(trends: Iterable[Trend]) -> Iterator[Row]:
-    """List how figures go with times."""
+    """List the correlations of figures with times."""
     for trend in trends:
         found = trend.correlation
         yield (

@@ -1,4 +1,4 @@
-"""Templates of reports: what all of them may use."""
+"""The Jinja environment of the templates of reports."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ def text_of(name: str) -> str:
 
 
 def environment(*, is_html: bool, **filters: Any) -> Environment:
-    """Return where templates are made.
+    """Return a Jinja environment with the functions that templates may use.
 
     Parameters
     ----------
     is_html : bool
         Whether text is escaped, so that nothing in it is a tag.
     **filters
-        By the names that the template calls them.
+        Filters by the names that templates have for them.
     """
     found = Environment(
         loader=FunctionLoader(text_of),

@@ -1,4 +1,4 @@
-"""What a report says of oracles, and of tests without a verdict: counts, and reasons in groups."""
+"""Counts of the verdicts of oracles, and groups of tests that were not judged or not run."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ __all__ = ["OracleSum", "Remark", "oracle_sums", "reason_groups", "said_of"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OracleSum:
-    """What an oracle said of the definitions of a distribution.
+    """The verdicts of an oracle on the definitions of a distribution.
 
     Attributes
     ----------
     distro, oracle : str
     agree, refused, known, differ, not_judged : int
-        Definitions; `refused` are those among `agree` that both refuse.
+        Numbers of definitions. `refused` are those among `agree` that firm-hdl and the oracle
+        refuse.
     """
 
     distro: str
@@ -35,7 +36,7 @@ class OracleSum:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Remark:
-    """A known difference from an oracle, or why it did not judge.
+    """A known difference from an oracle, or a reason why the oracle did not judge.
 
     Attributes
     ----------
@@ -45,9 +46,9 @@ class Remark:
     what : str
         Key of a known difference, or a reason.
     count : int
-        Of definitions.
+        The number of definitions.
     example : str
-        Name of one of them.
+        Name of one of these definitions.
     """
 
     oracle: str
@@ -64,7 +65,7 @@ class Reason:
     Attributes
     ----------
     text : str
-        Of the first of them.
+        The text of the first of these tests.
     outcomes : tuple of Outcome
     """
 
@@ -120,12 +121,12 @@ def said_of(outcomes: Iterable[Outcome]) -> tuple[Remark, ...]:
 def reason_groups(
     outcomes: Iterable[Outcome], text_of: Callable[[Outcome], str] | None = None
 ) -> list[Reason]:
-    """Put tests together that were not judged for the same reason, the largest group first.
+    """Group tests that were not judged for the same reason, the largest group first.
 
     Parameters
     ----------
     text_of : callable or None
-        Gives what is the same for a group; `None`: why a test was not judged or not run.
+        Returns the text to group a test by; `None`: why a test was not judged or not run.
     """
     groups: dict[str, list[Outcome]] = defaultdict(list)
     texts: dict[str, str] = {}
@@ -139,10 +140,10 @@ def reason_groups(
 
 
 def _reason_of(outcome: Outcome) -> str:
-    """Say why a test was not judged or not run; empty for one that was judged."""
+    """Return why a test was not judged or not run; empty if it was judged."""
     return outcome.verdict.reason if isinstance(outcome.verdict, NotJudged | NotRun) else ""
 
 
 def _without_names(text: str) -> str:
-    """Return a text without what differs between types: names with a ``/``, and numbers."""
+    """Return a text without the parts that differ between types: names with ``/``, and numbers."""
     return re.sub(r"\d[\d,.]*", "0", re.sub(r"[^\s'\"]*/[^\s'\",;:]*", "...", text))
