@@ -44,7 +44,7 @@ from firm_hdl.bench.tools import BenchError, versions
 from firm_hdl.terminal import printable_streams
 
 PARTS = (*MEASURED, "beats", "software")
-"""Groups of figures, by what the command line calls them."""
+"""Groups of figures, by their names on the command line."""
 
 KEPT = "performance.json"
 """File of all measured figures, beside the page's plots."""
@@ -52,7 +52,7 @@ KEPT = "performance.json"
 
 @printable_streams()
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Measure, and write the page; return 0 if there are all figures, however they changed."""
+    """Measure, and write the page; return 0 if no figure is missing, even if figures got worse."""
     parser = argparse.ArgumentParser(prog="python -m firm_hdl.bench", description=__doc__)
     parser.add_argument("--page", default="docs/performance.md", help="default: %(default)s")
     parser.add_argument(
@@ -131,7 +131,7 @@ def _order(result: Result) -> tuple[str, ...]:
 
 
 def _compare_all(software: list[list[Result]]) -> list[Compared]:
-    """Time libraries with the messages of converters, when nothing else runs."""
+    """Time libraries with the messages of converters; run nothing else at the same time."""
     found: list[Compared] = []
     for group, results in zip(SOFTWARE, software, strict=False):
         for task in group_tasks(group):
@@ -183,9 +183,10 @@ def _write_parts(
 
 
 def _keep(file: Path, estimates: Path, results: list[Result]) -> None:
-    """Say what changed since the file was written, and write it; figures of others stay.
+    """Print what changed since the file was written, and update the file.
 
-    The file of estimates is made from all of them.
+    Figures of converters without a new result stay in the file. The file of estimates is made from
+    all figures, old and new.
     """
     old = read_results(file) if file.exists() else []
     new = {result.key: result for result in results}

@@ -1,4 +1,4 @@
-"""Figures that were computed before, by everything that they depend on."""
+"""A cache of figures. The key has all inputs that determine the figures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from firm_hdl.bench.tools import versions
 __all__ = ["measure_once"]
 
 FORMAT = 1
-"""Changes when figures of the same circuit do, for another reason than those in the key."""
+"""A part of the key. Change it if the figures of a circuit change for a reason not in the key."""
 
 
 def measure_once(
@@ -26,7 +26,7 @@ def measure_once(
     """Measure a circuit, unless the folder has its figures. Parameters as for `measure`.
 
     A file's name is a hash of the RTLIL, the device's options, the seeds, and the versions of the
-    tools. Without clock rates for all seeds, nothing is kept.
+    tools. A result without clock rates for all seeds is not kept.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def measure_once(
     found = measure(rtlil, device, seeds, mapping=mapping)
     if not found.problem:
         folder.mkdir(parents=True, exist_ok=True)
-        # Another process may do the same, or read it.
+        # Write to a temporary file, because another process may write or read the same file.
         part = folder / f"{key}.{os.getpid()}.part"
         part.write_text(json.dumps(measured_to_json(found)), encoding="utf-8")
         part.replace(file)

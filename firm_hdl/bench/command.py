@@ -111,7 +111,7 @@ def _seeds(text: str) -> tuple[int, ...]:
 
 
 def run_bench(given: argparse.Namespace) -> int:
-    """Run the command; return 1 if a figure is missing, or worse than it was.
+    """Run the command; return 1 if a figure is missing, or worse than in the older file.
 
     Raises
     ------
@@ -153,7 +153,7 @@ def run_bench(given: argparse.Namespace) -> int:
 
 
 def _run_software(given: argparse.Namespace) -> int:
-    """Time libraries, and say which of them have no figure; return 1 if a converter has none."""
+    """Time libraries, and print which have no figure; return 1 if a converter has no figure."""
     for name in ("json", "compare", "cache", "bus_bytes", "direction"):
         if getattr(given, name) is not None:
             given.usage_error(f"--software has no --{name.replace('_', '-')}")

@@ -1,4 +1,4 @@
-"""What changed between two sets of results, and by how much."""
+"""Compare two sets of results: which figures changed, and by how much."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from firm_hdl.bench.results import Result
 
 __all__ = ["Change", "compare", "compared"]
 
-# By name: whether more is better.
+# Names of figures, and whether a larger value is better.
 FIGURES = {
     "LUT": False,
     "FF": False,
@@ -30,7 +30,7 @@ class Change:
     Attributes
     ----------
     result : Result
-        The newer one.
+        The newer result of the converter.
     figure : str
         One of `FIGURES`.
     old, new : float or None
@@ -44,7 +44,7 @@ class Change:
 
     @property
     def share(self) -> float:
-        """The change as a part of the old figure; infinite if that was 0 or one is missing."""
+        """The change, divided by the old figure; infinite if that is 0 or a figure is missing."""
         if self.old is None or self.new is None or self.old == 0:
             return float("inf")
         return (self.new - self.old) / self.old
@@ -69,7 +69,7 @@ def compare(old: Iterable[Result], new: Iterable[Result], threshold: float) -> I
     Parameters
     ----------
     threshold : float
-        As a part of the old figure: 0.02 is two percent.
+        Largest change to ignore, divided by the old figure: 0.02 is two percent.
     """
     before = {result.key: result for result in old}
     for result in new:
@@ -85,10 +85,10 @@ def compare(old: Iterable[Result], new: Iterable[Result], threshold: float) -> I
 
 
 def compared(old: Iterable[Result], new: Iterable[Result], threshold: float) -> tuple[str, bool]:
-    """Compare two sets; return a text, and whether nothing is worse.
+    """Compare two sets; return a text, and whether some converter is in both and none is worse.
 
-    What is in one set only is counted, and a mapping that differs is named: figures of different
-    tools or options say little of the circuit.
+    The text counts converters in one set only. It names different tools or options, because a
+    difference of the figures may then have nothing to do with the circuit.
     """
     olds, news = list(old), list(new)
     before = {result.key: result for result in olds}
@@ -126,7 +126,7 @@ def _figures(result: Result) -> dict[str, float]:
 
 
 def _made_by(result: Result) -> str:
-    """Say how figures were made: seeds, tools, options, messages."""
+    """Describe how figures were made: seeds, tools, options, messages."""
     parts = []
     if (found := result.measured) is not None:
         seeds = " ".join(str(each.seed) for each in found.placed)

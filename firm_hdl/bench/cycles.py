@@ -18,7 +18,7 @@ Direction: TypeAlias = Literal["deserializer", "serializer"]
 DIRECTIONS: tuple[Direction, ...] = ("deserializer", "serializer")
 
 MOST_BEATS = 10_000
-"""Beats after which no further message is added: nested sequences have thousands in each."""
+"""Number of beats after which no message is added: a nested sequence may have thousands."""
 
 Converter: TypeAlias = "Deserializer | Serializer"
 
@@ -30,15 +30,15 @@ class Cycles:
     Attributes
     ----------
     messages : Stated
-        The messages, with how many of them there were.
+        The messages; `count` is the number of messages that were measured.
     bytes, beats : int
-        Of their packets.
+        Size of the packets of the measured messages.
     cycles : int
-        From the end of the first message, which is not counted, to the end of the last. A message
-        ends with the last transfer of a leaf or beat, or with its status if that is later.
+        Cycles from the end of the first message, which is not measured, to the end of the last. A
+        message ends with its last transfer out: that of a leaf or beat, or a later status.
     latency : int
-        Of the first message, alone: cycles from its last transfer in, a beat or that of a leaf, to
-        its last transfer out.
+        Cycles of the first message alone, from its last transfer in to its last transfer out.
+        Transfers are those of leaves or beats.
     """
 
     messages: Stated
@@ -49,7 +49,7 @@ class Cycles:
 
     @property
     def per_beat(self) -> float:
-        """Cycles per beat; 1 is the best that there is."""
+        """Cycles per beat; the best possible value is 1."""
         return self.cycles / self.beats
 
     @property
@@ -59,14 +59,14 @@ class Cycles:
 
 
 def count_cycles(converter: Converter, message: Message, stated: Stated = STATED) -> Cycles:
-    """Run a converter with the stated messages, or with as many as have `MOST_BEATS`.
+    """Run a converter with the stated messages, or with fewer if they reach `MOST_BEATS`.
 
     Parameters
     ----------
     converter : Deserializer or Serializer
-        Not yet elaborated.
+        The converter, not yet elaborated.
     message : Message
-        Its type.
+        The message type of the converter.
     """
     sent, packets = stated_messages(converter.plan, message, stated)
 
@@ -94,7 +94,7 @@ def stated_messages(
 ) -> tuple[list[dict[int, list[Payload]]], list[bytes]]:
     """Return the transfers of the stated messages, and their packets; the first is not measured.
 
-    They end with the one that makes `MOST_BEATS` of those that are measured.
+    The list ends early with the message at which the measured messages reach `MOST_BEATS`.
     """
     sent: list[dict[int, list[Payload]]] = []
     packets: list[bytes] = []

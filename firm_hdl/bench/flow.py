@@ -18,8 +18,8 @@ from firm_hdl.bench.tools import BenchError, Tool, find_nextpnr, find_yosys, wri
 
 __all__ = ["Measured", "Placed", "measure"]
 
-# Yosys 0.70 aborts on some circuits after ABC, but not if they are flattened before. Without names
-# it never did, but then a critical path has none either.
+# Yosys 0.70 aborts on some circuits after ABC, but not if they are flattened before. It has never
+# aborted on circuits without names, but then a critical path has no names either.
 PREPARATIONS = (
     "",
     "hierarchy -top top; proc; flatten; opt_clean; ",
@@ -36,7 +36,7 @@ class Placed:
     seed : int
     mhz : float
     path : CriticalPath
-        What limits it.
+        The path that limits the clock rate.
     """
 
     seed: int
@@ -52,9 +52,9 @@ class Measured:
     ----------
     device : Device
     area : Area
-        Of the circuit alone.
+        Area of the circuit alone.
     port_registers : int
-        Flip-flops outside of its ports, which are not in `area`.
+        Number of flip-flops outside of the circuit's ports. They are not in `area`.
     placed : tuple of Placed
         One for each seed; none if the device has no nextpnr.
     mapping : str
@@ -106,11 +106,11 @@ def measure(
     rtlil : str
         As `amaranth.back.rtlil.convert` returns it, with the name ``top``. Its clock is ``clk``.
     seeds : sequence of int
-        Seeds of nextpnr. Each is one run.
+        Seeds of nextpnr, one for each run.
     mapping : str
         Commands of Yosys before the mapping, such as ``scratchpad -set abc9.D 4000``.
     report : callable
-        Is called after each run.
+        Called after each run.
 
     Raises
     ------
@@ -153,7 +153,7 @@ def measure(
 
 
 def _area(device: Device, top: dict[str, Any]) -> Area:
-    """Count a mapped circuit's cells. Unknown names of cells are an error, not zero cells."""
+    """Count a mapped circuit's cells. If no cell counts, its names are unknown: an error."""
     counts = cell_counts(top)
     area = device.area(counts)
     if not area.lut and not area.ff:

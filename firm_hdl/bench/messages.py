@@ -1,4 +1,4 @@
-"""The messages that cycles are measured with: short strings and short sequences, from a seed."""
+"""The messages for measuring cycles: random, with short strings and sequences, from a seed."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ __all__ = ["STATED", "Stated", "values"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stated:
-    """What messages are like.
+    """Parameters of the messages.
 
     Attributes
     ----------
     count : int
-        How many messages are measured, after one that is not.
+        Number of messages that are measured, after a first one that is not.
     characters : (int, int)
-        Fewest and most characters of a string, if its bound allows so many.
+        Fewest and most characters of a string; both are limited by the string's bound.
     elements : (int, int)
-        The same for the elements of a sequence.
+        Fewest and most elements of a sequence, limited likewise.
     seed : int
     """
 
@@ -44,7 +44,7 @@ STATED = Stated()
 
 
 def values(message: Message, stated: Stated = STATED) -> Iterator[dict[str, Any]]:
-    """Yield values of a message without end, the same ones for the same seed."""
+    """Yield values of a message without end; a seed always gives the same values."""
     chance = random.Random(f"{stated.seed} {message.name}")
     while True:
         yield _of_message(message, stated, chance)

@@ -12,7 +12,7 @@ from firm_hdl.bench.tools import BenchError
 __all__ = ["PORT", "Names", "cell_counts", "top_module"]
 
 PORT = "port "
-"""How names of flip-flops outside of ports start; see :mod:`firm_hdl.bench.surroundings`."""
+"""Prefix of the names of flip-flops outside of ports; see :mod:`firm_hdl.bench.surroundings`."""
 
 _PACKED = re.compile(r"_(?:DFF)?LC$|\$.*$")
 
@@ -37,10 +37,11 @@ def cell_counts(top: Mapping[str, Any]) -> Counter[str]:
 
 
 class Names:
-    """What the design itself calls the nets of a netlist.
+    """The design's own names of the nets of a netlist.
 
     Most nets between look-up tables have no name in the design. Yosys names them after a neighbour,
-    such as ``fill_LUT4_A_Z``; those names are not used, because the neighbour may be any.
+    such as ``fill_LUT4_A_Z``. These names are not used, because the choice of the neighbour is
+    arbitrary.
 
     Parameters
     ----------
@@ -78,7 +79,7 @@ class Names:
     def register(self, cell: str) -> str:
         """Return the design's name of a flip-flop, from the name of its cell.
 
-        A placed cell of iCE40 has the name of its look-up table, whose output the flip-flop takes.
+        On iCE40, a placed cell has the name of the look-up table in it, which drives the flip-flop.
         """
         if cell.startswith(PORT):
             return cell.partition("[")[0]
@@ -97,9 +98,9 @@ class Names:
         return cell if cell in self._cells else _PACKED.sub("", cell)
 
     def joining(self, cell: str, net: str) -> Iterator[str]:
-        """Yield the design's names of what enters a cell, through other logic, beside one net.
+        """Yield the design's names of the nets that a cell depends on, except one net.
 
-        The nearest come first, and none comes twice.
+        Logic without names is followed backwards. The nearest nets come first, each name once.
         """
         seen = {self._bits.get(net, -1)}
         told: set[str] = set()

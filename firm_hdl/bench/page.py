@@ -26,7 +26,7 @@ def write_page(page: Path, parts: Mapping[str, str]) -> None:
     Raises
     ------
     BenchError
-        If the page lacks a part.
+        If the page does not have the marks of a part.
     """
     text = page.read_text(encoding="utf-8")
     for name, part in parts.items():
@@ -39,7 +39,7 @@ def write_page(page: Path, parts: Mapping[str, str]) -> None:
 
 
 def converter_table(results: Iterable[Result]) -> str:
-    """Write a line for each converter, with all figures but the path, and then the paths."""
+    """Write a line for each converter, with all figures except the path, and then the paths."""
     found = list(results)
     lines = [
         "| Type | Wire | Bus | Direction | LUT | FF | Carry | RAM | MHz (each seed) | "
@@ -117,7 +117,7 @@ def beats_table(sets: Mapping[str, Sequence[Result]]) -> str:
 
 
 def made_with(results: Iterable[Result]) -> str:
-    """Write how figures were made: device, tools, options, for each way that there is."""
+    """Write each combination of device, tools and options with which figures were made."""
     ways: dict[str, int] = {}
     for result in results:
         if (found := result.measured) is None:

@@ -13,7 +13,7 @@ from firm_hdl.bench.tools import BenchError
 __all__ = ["CriticalPath", "critical_path"]
 
 MOST_NAMES = 3
-"""Most signals that are named where they enter a path."""
+"""Largest number of named signals that join a path at one point."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,15 +23,15 @@ class CriticalPath:
     Attributes
     ----------
     ns : float
-        Its delay.
+        Delay of the path.
     routing_ns : float
-        The part of it that is wires.
+        The part of the delay that is routing.
     cells : int
         Number of look-up tables, carry chains and the like on the way.
     points : tuple of (float, str)
-        Signals on the way, and when they are reached in ns. The first and the last are the
-        registers. Signals after ``&`` join the path there, directly or through other logic, and
-        have not joined it before.
+        Signals on the path, each with its arrival time in ns. The first and the last are the
+        registers. Signals after ``&`` join the path there, directly or through other logic. Each
+        joining signal is named only once.
     """
 
     ns: float
@@ -51,7 +51,7 @@ def critical_path(report: Mapping[str, Any], names: Names) -> CriticalPath:
     Raises
     ------
     BenchError
-        If there is none.
+        If the report has no such path.
     """
     for found in report.get("critical_paths", []):
         if "async" not in found["from"] and "async" not in found["to"]:
@@ -80,7 +80,7 @@ def _described(path: list[Mapping[str, Any]], names: Names) -> CriticalPath:
                 new = list(islice((each for each in joining if each not in known), MOST_NAMES))
                 known.update(new)
                 name = "& " + ", ".join(new) if new else ""
-        # The net that a register drives has its name.
+        # A register and the net that it drives have the same name.
         if name and (name not in known or segment["type"] == "setup"):
             points.append((round(now, 2), name))
             known.add(name)

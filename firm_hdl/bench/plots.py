@@ -56,7 +56,7 @@ def area_plot(results: Sequence[Result]) -> str:
 
 
 def beats_plot(sets: Mapping[str, Sequence[Result]]) -> str:
-    """Draw which share of converters has at most so many beats per cycle, a line for each set."""
+    """Draw the cumulative share of converters over their beats per cycle, a line for each set."""
     figure = Figure(WIDTH, 340, "Beats per cycle of all converters")
     found = {name: beats_per_cycle(results) for name, results in sets.items()}
     x, y = Scale(0, 1, 62, RIGHT), Scale(0, 1, 286, TOP)
@@ -107,7 +107,7 @@ def _bar(
     title: str,
     most: float = 0.0,
 ) -> None:
-    """Draw a bar, and its number after it and after `most`."""
+    """Draw a bar; write its number to the right of the bar and of `most`."""
     kind = f"bar {COLOURS[result.converter.direction]}"
     figure.box(LEFT, y, scale(value) - LEFT, 12, kind, title)
     figure.text(scale(max(value, most)) + 4, y + 10, f"{value:.0f}", anchor="start")

@@ -27,14 +27,14 @@ __all__ = [
 ]
 
 FORMAT = 1
-"""Version of the form of files."""
+"""Version of the file format."""
 
 MOST_BYTES = 1 << 28
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, order=True)
 class Converted:
-    """Which converter it is.
+    """The identification of a converter.
 
     Attributes
     ----------
@@ -81,20 +81,20 @@ class Result:
 
     @property
     def gbit_per_s(self) -> float | None:
-        """Packets in 10⁹ bits per second: those of a cycle, with the stated messages, at `mhz`."""
+        """Throughput of packets in 10⁹ bits per second, with the stated messages, at `mhz`."""
         if self.mhz is None or self.cycles is None:
             return None
         return self.mhz * self.cycles.bits_per_cycle / 1000
 
     @property
     def key(self) -> tuple[str, ...]:
-        """What has to agree for a comparison: the converter, and the device."""
+        """The key of comparisons: the converter, and the device."""
         device = "" if self.measured is None else self.measured.device.name
         return (*(str(value) for value in asdict(self.converter).values()), device)
 
 
 def measured_to_json(measured: Measured) -> dict[str, Any]:
-    """Return the figures of a circuit as JSON has them."""
+    """Return the figures of a circuit as a value for JSON."""
     return {
         "device": measured.device.name,
         "part": measured.device.title,
@@ -167,9 +167,9 @@ def read_results(path: str | Path) -> list[Result]:
     Raises
     ------
     BenchError
-        If it is not such a file.
+        If the file is not a file of results.
     OSError
-        If it cannot be read.
+        If the file cannot be read.
     """
     try:
         found = json.loads(read_file(path, MOST_BYTES))

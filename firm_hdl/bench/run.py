@@ -66,7 +66,7 @@ def run_tasks(tasks: Sequence[BenchTask], jobs: int | None = None) -> Iterator[R
 
 
 def run_task(task: BenchTask) -> Result:
-    """Run a task. What is wrong with a type, or a tool that fails, is the result's problem."""
+    """Run a task. If a type is wrong, or a tool fails, the result has the reason in `problem`."""
     what = task.converter
     cycles: Cycles | None = None
     measured: Measured | None = None

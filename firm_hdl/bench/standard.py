@@ -24,7 +24,7 @@ class Group:
     ----------
     title : str
     types : dict of str to tuple of str
-        Names by distribution; no names are all types of the distribution.
+        Names by distribution; an empty tuple means all types of the distribution.
     bus_bytes : tuple of int
     devices : tuple of str
         Empty: cycles only.
@@ -87,7 +87,7 @@ ALL_TYPES = {
     for bus_bytes in (8, 64)
     for distro in ("lyrical", "noetic")
 }
-"""Groups with cycles only, by what the page calls them."""
+"""Groups with cycles only, by their names on the page."""
 
 _IMAGE = Stated(count=2, elements=(1 << 16, 1 << 16))
 
@@ -96,7 +96,7 @@ SOFTWARE = (
         title="messages of software",
         types={
             "lyrical": MEASURED["figures"].types["lyrical"],
-            # There, tf2_msgs is not in the distribution's set.
+            # rosbags has no tf2_msgs for this distribution.
             "noetic": tuple(
                 name.replace("/msg/", "/")
                 for name in MEASURED["figures"].types["lyrical"]

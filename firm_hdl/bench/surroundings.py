@@ -1,12 +1,13 @@
-"""What is put around a circuit, so that its clock rate can be measured.
+"""Surround a circuit with flip-flops, so that its clock rate can be measured.
 
-A clock rate of a circuit alone leaves out the paths from its input ports and to its output ports.
-So every bit of a port gets a flip-flop outside. They are put into the netlist after it was mapped:
-the circuit inside is the one whose cells were counted, and nothing is optimized across its ports.
+The clock rate of a circuit alone does not include the paths from input ports and to output ports.
+So every bit of a port gets a flip-flop outside. The flip-flops are added to the netlist after
+mapping. So the circuit inside is the one whose cells were counted, and nothing is optimized across
+its ports.
 
-Some devices have to have a pin for every port, and converters have more ports than that. There, the
-flip-flops of inputs are one long shift register, and those of outputs are added up, modulo 2, three
-at a time, in another. Both have a flip-flop at each end of each wire, and limit no clock.
+On some devices, every port must have a pin, and converters have more ports than there are pins.
+There, the flip-flops of inputs form a long shift register. A second one reduces the outputs by XOR,
+three at a time. Paths in both are short, from flip-flop to flip-flop, and do not limit the clock.
 """
 
 from __future__ import annotations
@@ -22,16 +23,16 @@ from firm_hdl.bench.tools import BenchError
 __all__ = ["surround"]
 
 UNREGISTERED = ("clk", "rst")
-"""Clock and reset. A reset comes from a register of its own, whose path is not the circuit's."""
+"""Clock and reset. In a design, reset comes from a register whose path is not measured here."""
 
 
 def surround(top: dict[str, Any], placer: Placer) -> int:
-    """Put flip-flops outside of all ports but clock and reset, and pins where a device needs them.
+    """Put flip-flops outside of all ports except clock and reset; add pins if the device needs any.
 
     Parameters
     ----------
     top : dict
-        A module, as `top_module` returns it; is changed.
+        A module, as `top_module` returns it. It is changed.
 
     Returns
     -------
@@ -104,7 +105,7 @@ class _Around:
             connections = self.top["cells"][name]["connections"]
             connections[data] = [before]
             (before,) = connections[self.placer.register.output]
-        # The end of the first chain is the start of the second, so that nothing is without use.
+        # The end of the first chain is the start of the second, so that no logic is unused.
         for index in range(0, len(outputs), 3):
             three = (outputs[index : index + 3] + [before] * 2)[:3]
             total, after = next(self.fresh), next(self.fresh)
@@ -120,7 +121,7 @@ class _Around:
         self.buffer()
 
     def buffer(self) -> None:
-        """Put buffers at the pins, if the device does not do so itself."""
+        """Put buffers at the pins, unless nextpnr adds them."""
         pins = self.placer.pins
         assert pins is not None
         if pins.input_buffer is None or pins.output_buffer is None:

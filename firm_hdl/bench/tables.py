@@ -15,13 +15,13 @@ _ROW = "{:<52}{:>4} {:>6}{:>7}{:>6}{:>5}{:>5}  {:<28}{:>11}{:>8}{:>8}"
 
 
 def geometric_mean(values: Iterable[float]) -> float:
-    """Return the geometric mean of positive numbers, of which there has to be one."""
+    """Return the geometric mean of one or more positive numbers."""
     logs = [log(value) for value in values]
     return exp(fsum(logs) / len(logs))
 
 
 def beats_per_cycle(results: Iterable[Result]) -> list[tuple[float, Result]]:
-    """Return the beats per cycle of all results that have any, the lowest first."""
+    """Return the beats per cycle of all results with cycles, the lowest first."""
     found = [(1 / each.cycles.per_beat, each) for each in results if each.cycles is not None]
     return sorted(found, key=lambda pair: (pair[0], pair[1].key))
 
@@ -34,7 +34,7 @@ def head(device: Device | None) -> str:
 
 
 def row(result: Result, *, path: bool = True) -> str:
-    """Return the line of a converter, and below it what limits its clock, or why there are none."""
+    """Return the line of a converter, then its critical path, or why figures are missing."""
     what, measured, cycles = result.converter, result.measured, result.cycles
     area = [""] * 5
     rates = ""
@@ -58,7 +58,7 @@ def row(result: Result, *, path: bool = True) -> str:
 
 
 def summary(results: Sequence[Result], stated: Stated | None) -> str:
-    """Say how the figures were made, and what they are together."""
+    """Describe how the figures were made, and summarize them."""
     lines = []
     mappings = sorted({each.measured.mapping for each in results if each.measured is not None})
     for mapping in mappings:

@@ -60,10 +60,10 @@ class Tool:
     version: str
 
     def run(self, folder: Path, *arguments: str) -> str:
-        """Run the program in a folder, to which file names are relative; return what it printed.
+        """Run the program in a folder, to which file names are relative; return its output.
 
-        Programs of YoWASP have a ``/tmp`` of their own, and Yosys may print nothing after its first
-        `abc`. So names are relative, and results are files, as the log is; see `written`.
+        Programs of YoWASP have a ``/tmp`` of their own, so file names must be relative. Yosys may
+        print nothing after its first `abc`, so results and logs must be files; see `written`.
 
         Raises
         ------
@@ -81,7 +81,7 @@ class Tool:
 
 
 def _error_in(output: str, lines: int = 0) -> str:
-    """Return what went wrong: the lines that say so, or else the last `lines` lines."""
+    """Return the lines of an output that report errors, or else the last `lines` lines."""
     all_lines = [line.strip() for line in output.splitlines() if line.strip()]
     errors = [line for line in all_lines if line.startswith("ERROR")]
     return " ".join(errors[:2] or (all_lines[-lines:] if lines else []))
@@ -93,7 +93,7 @@ def written(tool: Tool, file: Path) -> str:
     Raises
     ------
     BenchError
-        If it does not exist or is empty: a tool may end without an error and have done nothing.
+        If the file does not exist or is empty. A tool may end without an error and without result.
     """
     try:
         text = file.read_text(encoding="utf-8")
@@ -154,7 +154,7 @@ def versions(device: Device, *, with_placer: bool = True) -> dict[str, str]:
 
 
 def _find(title: str, package: str, program: str, option: str, version: str) -> Tool | None:
-    """Find a program, and ask it for its version. What does not say one is not the program.
+    """Find a program by asking it for its version; a program that gives none does not count.
 
     The first run of a package of YoWASP compiles WebAssembly for a minute or more.
     """

@@ -39,7 +39,7 @@ def _run(arguments: Sequence[str] | None) -> int:
             try:
                 return _dispatch(sys.argv[1:] if arguments is None else list(arguments))
             finally:
-                # Also after help, which ends by an exception.
+                # Flush also after `--help`, which ends with an exception.
                 sys.stdout.flush()
         except OSError as error:
             return _failed(error)
@@ -76,7 +76,7 @@ def _failed(error: OSError) -> int:
         return 1
     where = f"'{os.fsdecode(error.filename)}': " if error.filename is not None else ""
     _print_error(f"error: {where}{error.strerror or error}")
-    # The rest of the output would fail again when Python ends.
+    # Discard the rest of the output, which would fail again when Python ends.
     with suppress(OSError, ValueError):
         sys.stdout.flush()
         return 1
@@ -85,7 +85,7 @@ def _failed(error: OSError) -> int:
 
 
 def _abandon() -> None:
-    """Discard the rest of the output: Python would try to write it again at its end."""
+    """Discard the rest of the output, which Python would try to write again when it ends."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 

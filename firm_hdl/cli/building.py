@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 __all__ = ["PORT_NAMES", "add_build", "add_info", "add_plan"]
 
 PORT_NAMES = ("records", "flat")
-"""What ``--ports`` takes: `firm_hdl.export.backend.PORTS`, without the imports of that."""
+"""Values of ``--ports``: `firm_hdl.export.backend.PORTS`, copied to avoid that module's imports."""
 
 
 class _Gone(argparse.Action):
-    """An option that there is no more."""
+    """An option that was removed; the error says why."""
 
     def __call__(self, *_: object) -> None:
         raise argparse.ArgumentError(
@@ -55,7 +55,7 @@ def _build(args: argparse.Namespace) -> None:
     from firm_hdl.export.build import build
 
     def packets_of(message: Message, plan: Plan) -> list[bytes]:
-        # This imports NumPy and rosbags, which takes time that a failing build does not need.
+        # Import late: NumPy and rosbags take time, which a failing build does not need.
         from firm_hdl.verify.cases.stimuli import stimuli
 
         return stimuli(message, plan)

@@ -94,7 +94,7 @@ def _metrics(args: argparse.Namespace) -> None:
     from firm_hdl.metrics.command import metrics_text
 
     if args.all and not args.types:
-        # The distribution's types, too: a user compares his own types with them.
+        # Include the distribution's types, so that users can compare their own types with them.
         names = open_library(args.distro, args.path, args.bag).interfaces()
     else:
         names = names_of(args)

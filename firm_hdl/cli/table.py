@@ -1,7 +1,7 @@
 """The table of commands of ``firm-hdl``, with the modules that define them.
 
-The module of a command is imported when the command is called. It imports further modules when
-their work starts.
+The module of a command is imported when the command is called. It imports other modules only when
+it needs them.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ __all__ = ["library_of", "names_of"]
 
 
 def names_of(args: argparse.Namespace) -> list[str]:
-    """Give the types to work on: those named, or all types of the folders or recordings."""
+    """Return the types to work on: the named types, or all types of the folders or recordings."""
     if args.all == bool(args.types):
         args.usage_error("name either types or --all")
     if not args.all:
@@ -19,5 +19,5 @@ def names_of(args: argparse.Namespace) -> list[str]:
 
 
 def library_of(args: argparse.Namespace) -> Library:
-    """Open the library in which a command looks types up."""
+    """Open the library in which a command searches for types."""
     return open_library(args.distro, args.path, args.bag, depends=args.depends)

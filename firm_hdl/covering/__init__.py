@@ -1,4 +1,4 @@
-"""Covering sets: a few types that have every feature of many, and the command that chooses them."""
+"""Covering sets: a few types with every feature of many types, and the command to choose them."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 """The branches that the generator takes for a type, in layout, plan and elaboration.
 
 A branch is a step from one line of the generator's code to the next one within a function, as
-Python's tracing reports it. The names contain line numbers. So they are valid only within one run
-on one version of Python, to compare types with each other. The code of the export is left out: it
-transcribes the elaborated circuit, and takes ten times as long.
+Python's tracing reports it. The names of branches contain line numbers. So they are valid only
+within one run on one version of Python, to compare types with each other. The code of the export is
+left out, because it only writes the elaborated circuit, and takes ten times as long.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def traced(work: Callable[[], object], folders: Iterable[Path]) -> frozenset[str
 
         return step
 
-    # Another tool, such as one for coverage, may be tracing already.
+    # Restore the tracing of another tool, such as one for coverage.
     before = sys.gettrace()
     sys.settrace(enter)
     try:

@@ -2,9 +2,9 @@
 
 Features of a type belong to five families: the productions of the grammar that its text uses, the
 constructs of its definition, of its layout and of its plan, and the branches that the generator
-takes for it (:mod:`firm_hdl.covering.branches`). The set is chosen greedily: each time the type
-that adds most features per cost. The result is within a logarithmic factor of the smallest set
-(Chvatal, 1979), and the same on every run.
+takes for it (:mod:`firm_hdl.covering.branches`). The set is chosen greedily: each step takes the
+type that adds most features per cost. The cost of the result is within a logarithmic factor of the
+smallest possible cost (Chvatal, 1979). The result is the same on every run.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Chosen:
     ----------
     name : str
     adds : tuple of str
-        The features that no type chosen before has.
+        The features that no type chosen before this one has.
     """
 
     name: str
@@ -178,8 +178,8 @@ def choose(types: Mapping[str, Iterable[str]], costs: Mapping[str, float]) -> li
     types : mapping of str to iterable of str
         Features by name of type.
     costs : mapping of str to float
-        Cost of testing each type, above zero. Of types that add equally many features per cost, the
-        first by name is taken.
+        Cost of testing each type, above zero. If several types add equally many features per cost,
+        the first by name is taken.
     """
     left = {name: set(found) for name, found in types.items()}
     missing = set().union(*left.values()) if left else set()

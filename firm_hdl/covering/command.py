@@ -118,7 +118,7 @@ def _check(types: Mapping[str, frozenset[str]], kept: list[str], path: str) -> i
         raise BuildError(f"'{path}' names types that are not among the given ones: {names}")
     missing = _union(types.values()) - _union(types[name] for name in kept)
     for feature in sorted(missing):
-        # The type with the fewest features shows the missing one best.
+        # Name the type with the fewest features: it shows the missing feature best.
         having = [name for name in types if feature in types[name]]
         least = min(having, key=lambda name: (len(types[name]), name))
         print(f"missing: {feature} (in {least})")

@@ -1,4 +1,4 @@
-"""Figures as files of their own, which bring their colours for light and for dark."""
+"""Figures as standalone files, with a style sheet for light and for dark mode."""
 
 from __future__ import annotations
 

@@ -81,7 +81,7 @@ class Scale:
         return round(self.start + share * (self.end - self.start), 1)
 
     def ticks(self) -> list[float]:
-        """Return a few round values; of a linear scale, the ends of its fifths."""
+        """Return a few round values; for a linear scale, six values at equal distances."""
         if not self.is_log:
             return [self.low + (self.high - self.low) * fifths / 5 for fifths in range(6)]
         decades = math.log10(self.high / self.low)

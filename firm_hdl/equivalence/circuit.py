@@ -1,7 +1,7 @@
 """One side of a proof: a flat netlist of bits, with its registers kept separately.
 
 Both sides are converted to this form: the VHDL through GHDL, the RTLIL through Yosys. The cells are
-those of Yosys, which defines their function. No code of the VHDL back end reads either side.
+those of Yosys, and Yosys defines their function. No code of the VHDL back end reads either side.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Flop:
     data, clock : Bit
         Next state, and clock.
     rising : bool
-        The register changes at the rising edge of the clock; otherwise at the falling edge.
+        Whether the register changes at the rising edge of the clock; otherwise at the falling edge.
     init : str
         Initial value: ``0``, ``1``, or ``x`` for any value.
     reset : Bit or None

@@ -1,4 +1,4 @@
-"""Types to prove: together, their converters have every feature that a converter can have.
+"""Types to prove. Together, their converters have every feature of converters.
 
 Embedded types are chosen by the features of their definitions and plans. Definitions of our own
 have features that no embedded type has. A few popular types are added.

@@ -1,7 +1,7 @@
 """Read the output of ``ghdl --synth --out=dump``: GHDL's own netlist, gate by gate.
 
-GHDL can also print a netlist as Verilog and as VHDL. Another tool would have to interpret these
-texts, and GHDL 2.0's Verilog drops the last arm of a `case`. The dump has one statement for each
+GHDL can also print a netlist as Verilog and as VHDL. But another tool would have to interpret these
+texts, and GHDL 2.0 drops the last arm of a `case` in Verilog. The dump has one statement for each
 gate. Any unknown statement is an error.
 """
 
@@ -58,8 +58,8 @@ class Module:
     ports : mapping of str to int or None
         Widths of all ports; `None` is any width.
     own : Instance or None
-        The module's ports as an instance inside it: its inputs drive the module's output ports, and
-        its outputs are driven by the module's input ports.
+        The module's ports as an instance inside the module. The inputs of the instance drive the
+        module's output ports, and the module's input ports drive the outputs of the instance.
     """
 
     name: str
@@ -94,7 +94,7 @@ def parse_dump(text: str) -> dict[str, Module]:
 
 
 def _blocks(lines: list[str], start: str) -> Iterator[list[str]]:
-    """Split lines before each that starts with `start`."""
+    """Split lines into blocks, each of which begins with a line that starts with `start`."""
     block: list[str] = []
     for line in lines:
         if line.startswith(start) and block:

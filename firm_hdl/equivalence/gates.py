@@ -1,8 +1,8 @@
 """Convert GHDL's gates to cells of Yosys.
 
-The function of a gate is taken from the VHDL that GHDL itself writes for the gate. Gates that only
+The function of a gate is that of the VHDL that GHDL itself writes for the gate. Gates that only
 rename bits (signals, concatenations, slices, extensions) become no cells. An unknown value ('X') of
-GHDL may be any value, and a proof has to hold for all of them.
+GHDL may be any value, and a proof must hold for all values.
 """
 
 from __future__ import annotations
@@ -260,7 +260,7 @@ def operator_cell(
     signed : bool
         The operands are signed.
     second_signed : bool or None
-        B is signed; `None`: as `signed` says.
+        B is signed; `None`: B is as `signed` says.
     """
     parameters: dict[str, int | str] = {"Y_WIDTH": len(output)}
     for port, bits in inputs.items():

@@ -1,8 +1,8 @@
 """Match the registers of the VHDL with those of the RTLIL.
 
-The back end reports the names that it has given. They are only a guess: a wrong one makes a proof
-fail, never succeed, because a proof that assumes two registers to be equal also proves that they
-start equal and stay equal.
+The back end reports the names that it has given. They are only a guess. A wrong name can make a
+proof fail, but not succeed: if a proof assumes that two registers are equal, it also proves that
+they start equal and stay equal.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Names(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Match:
-    """What matches what; all paths are without the top.
+    """The matching signals and memories; paths are without the outermost module.
 
     Attributes
     ----------

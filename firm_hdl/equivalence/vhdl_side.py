@@ -36,7 +36,7 @@ def read_vhdl(dump: str, memories: Mapping[tuple[str, ...], int] | None = None) 
 
 
 def _words(path: tuple[str, ...], bits: Bits, count: int) -> dict[tuple[str, ...], Bits]:
-    """Split a memory; GHDL puts the first element of an array to the highest bits."""
+    """Split a memory into words; in GHDL, the first element of an array has the highest bits."""
     width, rest = divmod(len(bits), count)
     if rest:
         raise ProofError(f"memory {path[-1]} of the VHDL has not {count} words")
@@ -54,7 +54,7 @@ class _Flattener:
         self._modules = modules
         self._memories = memories
         self._numbers = count(2)
-        # The bits of each net of the dump, by path and number; nets that are aliases of others.
+        # The bits of each net of the dump, by path and number; then the nets that are aliases.
         self._nets: dict[tuple[tuple[str, ...], int], tuple[int, ...]] = {}
         self._aliases: dict[int, Bit] = {}
         self._cells: list[Cell] = []
@@ -104,7 +104,7 @@ class _Flattener:
         return tuple(next(self._numbers) for _ in range(width))
 
     def _net(self, path: tuple[str, ...], net: Net) -> tuple[int, ...]:
-        """Return the bits of a net; make them when the net is first met."""
+        """Return the bits of a net; make them at the first use of the net."""
         bits = self._nets.get((path, net.number))
         if bits is None:
             bits = self._nets[path, net.number] = self._fresh(net.width)

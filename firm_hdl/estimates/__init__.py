@@ -1,4 +1,4 @@
-"""Area and clock rate of a converter, estimated from those of converters that were measured."""
+"""Estimated area and clock rate of a converter: the measured figures of a similar converter."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
-"""The converters that were measured, and the one that is nearest to another.
+"""Find the measured converter that is nearest to a given one.
 
-``python -m firm_hdl.bench`` writes ``figures.json``. Nothing is computed from the figures: an
-estimate is what was measured of another converter with the same bus width and direction. The
-nearest one has the smallest distance. That is the sum, over the features of a plan (bits of the
-payloads of all leaves, steps, and lengths), of how many times one has to be doubled to give the
-other, and 1 more for another wire format.
+``python -m firm_hdl.bench`` writes ``figures.json``. An estimate is the measured figures of the
+nearest converter with the same bus width and direction; nothing is computed from them. The nearest
+converter has the smallest distance. A plan has three features: bits of the payloads of all leaves,
+steps, and lengths; each is increased by 1 because it may be 0. The distance is the sum of the
+absolute binary logarithms of the features' ratios, plus 1 for another wire format.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Estimate:
     type : str
         The type that was measured.
     is_same : bool
-        Whether that is the type itself, with a plan of the same features.
+        Whether the measured type is the type itself, with a plan of the same features.
     """
 
     part: str

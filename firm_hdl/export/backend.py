@@ -1,6 +1,6 @@
 # amaranth: UnusedElaboratable=no
-# A build that fails leaves converters that nobody elaborated; its message is enough.
-"""What back ends share: the options of a build, a type's converters, and the output.
+# A failed build leaves converters without elaboration. Amaranth's warning about them does not help.
+"""Shared parts of back ends: the options of a build, a type's converters, and the output.
 
 A back end turns a type's converters into files and into entries of the manifest.
 """
@@ -59,7 +59,7 @@ class Options:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Converters:
-    """The converters of a message type, which back ends write in their languages.
+    """The converters of a message type; back ends write them in their languages.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class Converters:
     stimuli : sequence of bytes
         Packets for test benches.
     circuits : mapping of direction to str
-        RTLIL with named ports, from which all languages are written; empty until
+        RTLIL with named ports, the source of the text in all languages. Empty until
         :meth:`make_circuits` has made it.
     """
 
@@ -115,7 +115,7 @@ class Converters:
         name : str
             Name of the module, or of the folder.
         what : str
-            What it is, such as ``"the serializer"``.
+            Description of the file's content, such as ``"the serializer"``.
         """
         if not self.inputs:
             return ""

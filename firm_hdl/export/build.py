@@ -112,7 +112,7 @@ def build(
         Called with each type when it is done.
     jobs : int or None
         Number of processes (`None`: one per processor); 1 writes everything in this process. The
-        files do not depend on it.
+        number does not change the files.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def build(
         With all errors in the definitions. Nothing was written.
     BuildError
         If a type cannot be built with these options; nothing was written. Also if writing fails;
-        each folder is then complete, either the old or the new one.
+        every folder is then complete, either the old or the new one.
     """
     library = Library() if library is None else library
     options = Options() if options is None else options
@@ -151,7 +151,7 @@ def _build_all(
 def _build_each(
     tasks: Sequence[_Task], force: bool, jobs: int | None
 ) -> Iterator[tuple[int, Built]]:
-    """Build each type; yield its number and folder as they are done. The first error ends it."""
+    """Build types in any order; yield number and folder of each. Stop at the first error."""
     if jobs == 1:
         yield from ((number, _build_one(task, force)) for number, task in enumerate(tasks))
         return
@@ -231,8 +231,8 @@ def _check_folders(tasks: list[_Task]) -> None:
 def _check_packages(tasks: list[_Task]) -> None:
     """Refuse messages in neighbouring folders that use one VHDL package name for two ROS types.
 
-    Within a message, the second of the two gets a number. A design with both messages compiles each
-    file name once, so the name has to mean the same in all folders.
+    Within a message, the second of two equal names gets a number. A design with both messages
+    compiles each file name once, so a name must belong to the same type in all folders.
     """
     owners: dict[Path, tuple[str, Path]] = {}
     for task in (task for task in tasks if task.converters.options.ports == "records"):

@@ -80,7 +80,7 @@ class Declaration:
 def named_constants(
     message: Message, taken: Iterable[str], *, nested: bool = True
 ) -> list[NamedConstant]:
-    """Name the constants of a message; with `nested`, those of all types in it, too.
+    """Name the constants of a message; with `nested`, also those of all types in the message.
 
     The message's own constants keep their names, unless these would hide names that VHDL code needs
     (`ERROR` is a severity, and `NS` a unit). Names of other constants start with their type's name.
@@ -157,7 +157,7 @@ def declarations(
 
 
 def _declared(entry: NamedConstant, used: set[str]) -> Iterator[Declaration]:
-    """Yield what a constant becomes; a float becomes a real number and its bits."""
+    """Yield the declarations of a constant; a float has two: a real number, and its bits."""
     name, kind, value = entry.name, entry.constant.type, entry.constant.value
     if not isinstance(kind, Primitive):
         yield Declaration(name=name, form="string", value=_string_bytes(value))

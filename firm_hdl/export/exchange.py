@@ -1,7 +1,7 @@
-"""Atomic exchange of two folders, and a lock on a folder, which the standard library lacks.
+"""Atomic exchange of two folders, which the standard library lacks, and a lock on a folder.
 
 Linux exchanges two paths in one step (``renameat2`` with ``RENAME_EXCHANGE``) on file systems that
-support it; at no time is one of them missing. Other systems have no such call.
+support this; both paths exist at any time. Other systems have no such call.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _RENAME_EXCHANGE = 2
 _UNSUPPORTED = frozenset({errno.ENOSYS, errno.EINVAL, errno.ENOTSUP, errno.EPERM})
 
 LOCK_SECONDS = 60.0
-"""How long to wait for another build that writes the folder. Writing takes less than a second."""
+"""Longest wait for another build that writes the folder. Writing takes less than a second."""
 
 
 def exchange(one: Path, other: Path) -> bool:
@@ -32,7 +32,7 @@ def exchange(one: Path, other: Path) -> bool:
     Returns
     -------
     bool
-        `False` if this system or file system has no such call; nothing was changed then.
+        `False` if this system or file system does not support the call; nothing was changed.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def locked(folder: Path) -> Iterator[bool]:
     """Hold an advisory lock on a folder: only one build at a time writes there.
 
     The lock is on the folder itself. So it leaves no file, and it ends with the process. Yields
-    whether the lock is held: `False` on systems without such locks.
+    `False` on systems without such locks, else `True`.
 
     Raises
     ------

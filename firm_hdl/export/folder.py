@@ -1,12 +1,12 @@
 """Replace a type's folder as a whole, and keep the user files in it.
 
 A new folder is staged beside the old one, under a unique name. Then the two are exchanged in one
-step. So other processes see either the old or the new folder, and a build that is killed leaves one
-of them in place. Other leftovers of a killed build are deleted by the next build, under a lock.
+step. So other processes see either the old or the new folder, and a killed build leaves one of them
+in place. The next build deletes other leftovers of a killed build, under a lock.
 
-Only files that firm-hdl wrote are deleted; the manifest lists them. All other files are put into
-the new folder before the old one is deleted, as hard links where the file system has them. Files
-that are written to the old folder after that are moved to the new one.
+Only files that firm-hdl wrote are deleted; the manifest lists them. All other files are user files.
+They are put into the new folder before the old one is deleted: as hard links if possible, else as
+copies. User files that are written to the old folder after that are moved to the new one.
 """
 
 from __future__ import annotations
@@ -74,13 +74,13 @@ def replace(folder: Path, files: Mapping[str, str]) -> dict[str, str]:
     Returns
     -------
     dict of str to str
-        New names of user files by their old names: of files that had the name of a generated file,
-        and of files that were written while the folder was replaced.
+        New names of user files by their old names. The files are those that had the name of a
+        generated file, and those that were written while the folder was replaced.
 
     Raises
     ------
     OSError
-        If that is not possible. The folder is unchanged.
+        If the folder cannot be replaced. It is unchanged.
     """
     folder = _resolve_link(folder)
     folder.parent.mkdir(parents=True, exist_ok=True)
@@ -118,7 +118,7 @@ def _resolve_link(folder: Path) -> Path:
 
 
 def _prefix(folder: Path) -> str:
-    # A hash, because the folder's own name may already have the greatest length that is allowed.
+    # Use a hash, because the folder's own name may already have the maximum length.
     return f".firm-hdl.{hashlib.sha256(os.fsencode(folder.name)).hexdigest()[:16]}."
 
 
@@ -136,12 +136,12 @@ def _leftovers(folder: Path) -> list[Path]:
     prefix = _prefix(folder)
     endings = f".{_OLD}", f".{_NEW}"
     names = [n for n in os.listdir(folder.parent) if n.startswith(prefix) and n.endswith(endings)]
-    # Old folders come first: one of them may be put back, and files are then moved into it.
+    # Old folders come first: one of them may be put back before user files are moved into it.
     return [folder.with_name(name) for name in sorted(names, key=lambda n: n.endswith(_NEW))]
 
 
 def _write_files(staging: Path, files: Mapping[str, str]) -> None:
-    """Write the files, the manifest first: it lists what to delete if the build is killed."""
+    """Write the files, the manifest first: if the build is killed, it lists the files to delete."""
     for name in sorted(files, key=lambda name: name != MANIFEST):
         (staging / name).parent.mkdir(exist_ok=True)
         (staging / name).write_text(files[name], encoding="utf-8", newline="\n")
@@ -164,7 +164,7 @@ def _swap(folder: Path, staging: Path, made: list[Path]) -> None:
 
 
 def _walk(root: Path) -> list[tuple[str, bool]]:
-    """List the relative paths of all that is in a folder, and whether each is a folder.
+    """List the relative paths of all files and folders in a folder, and whether each is a folder.
 
     The content of a folder comes before the folder itself.
     """
@@ -217,7 +217,7 @@ def _keep_user_files(folder: Path, staging: Path, files: Mapping[str, str]) -> d
 
 
 def _free_name(name: str, is_folder: bool, files: Mapping[str, str]) -> str:
-    """Return the name for a user file or folder; another one if a generated file has its name."""
+    """Return the name for a user file or folder: its own, unless a generated file has that name."""
     folders = {os.path.dirname(file) for file in files}
     path = ""
     for part in name.split("/"):
@@ -254,32 +254,32 @@ def _link(source: Path, target: Path) -> None:
 
 
 def _clear_up(folder: Path, leftovers: list[Path]) -> dict[str, str]:
-    """Delete leftovers but keep user files; return new names of these by their old names."""
+    """Delete leftovers but keep user files; return new names of user files by their old names."""
     renamed: dict[str, str] = {}
     for leftover in leftovers:
         is_missing = leftover.name.endswith(_OLD) and not os.path.lexists(folder)
         if is_missing and read_manifest(leftover) is not None:
             leftover.rename(folder)
         else:
-            # What cannot be deleted stays for the next build; the folder itself is complete.
+            # Leave what cannot be deleted to the next build. The folder in use is complete.
             with suppress(OSError):
                 _discard(leftover, folder, renamed)
     return renamed
 
 
 def _discard(leftover: Path, folder: Path, renamed: dict[str, str]) -> None:
-    """Delete a leftover folder; move user files that exist only there to the folder in use."""
+    """Delete a leftover folder; move user files that exist only in it to the folder in use."""
     ours = _generated_files(leftover)
     linked = {_identity(folder / name) for name, _ in _walk(folder)} if folder.is_dir() else set()
     _permit(leftover)
     for name, is_folder in _walk(leftover):
         entry = leftover / name
         if is_folder:
-            # A folder that still holds files that were not moved stays.
+            # A folder is not empty, and stays, if a file in it was not moved.
             with suppress(OSError):
                 entry.rmdir()
         elif name == MANIFEST:
-            continue  # Deleted last, because it lists our files.
+            continue  # The manifest is deleted last, because it lists our files.
         elif name in ours or _identity(entry) in linked or _is_copied(leftover, folder, name):
             entry.unlink()
         elif folder.is_dir():

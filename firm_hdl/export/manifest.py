@@ -34,7 +34,7 @@ MANIFEST = "manifest.json"
 def inputs_of(
     message: Message, plan: Plan, *, distro: str, definition_sha256: str, ports: str = "records"
 ) -> dict[str, Any]:
-    """Return everything that the content of the generated files depends on."""
+    """Return all inputs that determine the content of the generated files."""
     return {
         "message": message.name,
         "dialect": message.dialect,
@@ -147,7 +147,7 @@ def _leaves(message: Message, plan: Plan) -> Iterator[dict[str, Any]]:
 
 
 def _layout(leaf: Leaf) -> dict[str, int]:
-    """Return the layout of ``data``: item k starts at bit k * item_bits."""
+    """Return the layout of a leaf's ``data``; item k starts at bit k * item_bits."""
     bits = 1 if leaf.primitive.kind == "bool" else 8 * leaf.primitive.bytes
     return {"lanes": leaf.lanes, "item_bits": bits, "data_bits": leaf.lanes * bits}
 

@@ -1,8 +1,8 @@
 """ROS's primitives, and the types of the packages that all messages share.
 
 Records in VHDL and structs in SystemVerilog have the same names. The number of items in a transfer
-depends only on the primitive and on the width of the bus. So one package per bus width has the
-strings, arrays and sequences of primitives for all messages.
+depends only on the primitive and on the width of the bus. So all messages on a bus of one width
+share a package with the strings, arrays and sequences of primitives.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ SHARED_TYPES = frozenset(
         *(f"{kind}_{what}_t" for kind in PRIMITIVE_BITS for what in ("stream", "items")),
     ]
 )
-"""Types of record members that are not declared in the message's own package, in lower case."""
+"""Types of record members that shared packages declare, in lower case."""
 
 _STATUSES: Any = Status
 

@@ -23,7 +23,7 @@ _RECORD = "msg"
 
 
 def why_no_record(message: Message, plan: Plan) -> str:
-    """Return why a message has no record view; empty if it can have one."""
+    """Return why a message cannot have a record view; empty if it can."""
     if not message.is_fixed_size:
         return f"{message.name} has no fixed size"
     try:

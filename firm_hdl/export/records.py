@@ -1,4 +1,4 @@
-"""Records of streams, for every language: what VHDL has as records, SystemVerilog has as structs.
+"""Records of streams for both languages: VHDL has them as records, SystemVerilog as structs.
 
 A record has a stem, such as ``twist``. Each language declares ``twist_t`` with data and valid of
 the members, ``twist_ready_t`` with ready in the opposite direction, and two constants:
@@ -28,9 +28,9 @@ class Member:
     stem : str
         Stem of its type.
     is_leaf : bool
-        It is a stream, and its ready is a single bit.
+        Whether the member is a stream, so that its ready is a single bit.
     package : str
-        The message type's package that declares the type; empty if the name is visible as it is.
+        The other message type's package that declares the type; empty if there is no such package.
     comment : str
         The comment of the definition.
     remark : str
@@ -90,7 +90,7 @@ def _items(primitive: str) -> Member:
 
 
 def _member(node: Node, package: Package) -> Member:
-    # With use clauses, equal names in two packages would hide each other.
+    # Write the package's name: with use clauses, equal names in two packages hide each other.
     foreign = node.package != package.name
     return Member(
         name=node.name,
@@ -108,9 +108,9 @@ def head_of(package: Package, plan: Plan, *, what: str, advice: str, mark: str) 
     Parameters
     ----------
     what : str
-        What the language calls records.
+        Name of records in the language.
     advice : str
-        End of the sentence that all converters share the file.
+        End of the sentence that says that all converters share the file.
     mark : str
         The comment mark of the language.
     """

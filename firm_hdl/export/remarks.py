@@ -38,7 +38,7 @@ def remark(text: str, indent: str = "  ", mark: str = "//") -> Iterator[str]:
 def quoted(text: str, indent: str = "  ", mark: str = "//") -> Iterator[str]:
     """Yield a comment of a definition; each line keeps the ``#`` that it has in the definition.
 
-    Tools take comments that begin with certain words, such as ``synthesis`` and ``psl``, as
+    Tools interpret comments that begin with certain words, such as ``synthesis`` and ``psl``, as
     directives. The ``#`` comes before the text of the definition, so no comment begins with such a
     word.
     """
@@ -58,7 +58,7 @@ def _ascii(text: str) -> str:
 
 
 def origin(source: Field, name: str) -> str:
-    """Describe the ROS field of a record member: its type and unit, its name if it differs.
+    """Describe the ROS field of a record member: type and unit, and the name if it is another.
 
     Parameters
     ----------

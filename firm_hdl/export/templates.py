@@ -1,4 +1,4 @@
-"""Generated files that are data of this package, each beside the module that writes it.
+"""Generated files and templates that are data of this package, beside the modules that use them.
 
 A file that is the same for every type is stored as it is. A file with few variables is a template
 of jinja2. Text that depends on the type in most lines is written by Python instead.

@@ -1,4 +1,4 @@
-"""Top levels: a converter behind ports that a design in VHDL or Verilog connects to.
+"""Top levels: a converter with ports for a design in VHDL or Verilog.
 
 Packets and statuses are AXI4-Stream (Arm IHI 0051). Each leaf of the message is a stream of its own
 under the field's name. Ports are plain vectors. Each :class:`Port` has a description, which the
@@ -37,9 +37,10 @@ Direction: TypeAlias = Literal["deserializer", "serializer"]
 DIRECTIONS: tuple[Direction, ...] = ("deserializer", "serializer")
 
 MAX_INPUT_BITS = MAX_CELL_BITS
-"""Most input bits of a design: Amaranth makes one cell of all inputs."""
+"""Largest number of input bits of a design, because Amaranth makes one cell of all inputs."""
 
-# Names that no leaf may have, because its ports are its name with ``_data``, ``_last`` and so on.
+# Names that no leaf may have. A leaf's ports are its name with ``_data``, ``_last`` and so on, and
+# these must not be names of packet or status ports.
 _RESERVED = ("s_axis", "m_axis", "m_axis_status")
 
 
@@ -88,7 +89,8 @@ def field_of(message: Message, leaf: Leaf) -> Field | None:
             break
         found, kind = match, match.type
         if isinstance(kind, Array | Sequence):
-            # The leaf's own "length" or "items", or "item" on the way to the element.
+            # Skip the next part of the path: "length" or "items" of the leaf, or "item" before an
+            # element.
             next(names, None)
             kind = kind.element
         current = kind if isinstance(kind, Message) else None
@@ -105,7 +107,7 @@ def ports_of(plan: Plan, direction: Direction) -> tuple[Port, ...]:
     ]
     for index, leaf in enumerate(plan.leaves):
         ports += _leaf_ports(leaf, index, names[leaf.path], direction)
-    # AXI4-Stream has whole bytes.
+    # The width of AXI4-Stream's tdata is a multiple of 8 bits.
     status = [("tdata", 8, "Status of a packet, one transfer per packet; 0 is OK.")]
     ports += _stream("m_axis_status", "t", status, "status", is_input=False)
     return tuple(ports)
@@ -148,7 +150,7 @@ def _stream(
     signed: bool = False,
     leaf: int | None = None,
 ) -> list[Port]:
-    """List the ports of a stream; `signed` is that of ``data``."""
+    """List the ports of a stream; `signed` applies to ``data``."""
     forward, backward = ("in", "out") if is_input else ("out", "in")
     whole = [
         *((forward, *entry) for entry in payload),
@@ -220,7 +222,7 @@ class Top(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        # The port is the clock: an assignment between the two would cost a delta cycle.
+        # Use the port itself as the clock: an assignment would delay the clock by a delta cycle.
         domain = ClockDomain("sync", local=True)
         domain.clk = self.aclk
         m.domains += domain
@@ -288,7 +290,7 @@ class Top(wiring.Component):
 def _ones(keep: Value) -> Value:
     """Return the number of ones from bit 0 up to the first zero."""
     lanes = len(keep)
-    # One-hot, independent of the bits above the first zero.
+    # One-hot; bits above the first zero have no effect.
     found = {n: keep[:n].all() & ~keep[n] for n in range(1, lanes)} | {lanes: keep.all()}
     bits = range(lanes.bit_length())
     return Cat(Cat(here for n, here in found.items() if n >> bit & 1).any() for bit in bits)

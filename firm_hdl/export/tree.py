@@ -2,8 +2,9 @@
 
 :mod:`firm_hdl.export.vhdl.package` prints them as records of VHDL, and
 :mod:`firm_hdl.export.systemverilog.package` as structs. A ROS type has one package for each wire
-format and bus width. Its names depend only on the type, not on the message that contains it. So all
-converters of a design share the packages, and a header of one message can be assigned to another.
+format and bus width. The names in a package depend only on the type, not on the message that
+contains it. So all converters of a design share the packages, and a header of one message can be
+assigned to the header of another.
 """
 
 from __future__ import annotations
@@ -105,7 +106,8 @@ class Tree:
     ----------
     root : Node
     packages : tuple of Package
-        Of all message types in it, each after those that it needs; the message's own comes last.
+        Packages of all message types in the message, each after those that it needs. The message's
+        own package comes last.
     """
 
     root: Node
@@ -172,7 +174,7 @@ def taken_names(package: Package, plan: Plan) -> frozenset[str]:
 
 
 def tree_of(message: Message, plan: Plan, reserved: Collection[str] = ()) -> Tree:
-    """Decide on the records of a message.
+    """Determine the records of a message, and all names in them.
 
     Parameters
     ----------
@@ -238,7 +240,7 @@ class _Maker:
         found = self.packages.get(message.name)
         if found is None:
             wanted = package_name(message, self.plan.wire, self.plan.bus_bytes)
-            # `a_b/C` and `a/b_C` have one name here; the second gets a number.
+            # `a_b/C` and `a/b_C` would have the same name, so the second gets a number.
             name = first_free(wanted.removesuffix("_pkg"), self.taken, lambda n: (f"{n}_pkg",))
             self.taken.add(f"{name}_pkg")
             wanted = snake(re.sub(r"[^A-Za-z0-9]+", "_", message.base_name)) or "message"

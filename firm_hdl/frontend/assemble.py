@@ -25,7 +25,7 @@ def assemble(unit: Unit, resolve: Callable[[str], Message | None]) -> Service | 
     Raises
     ------
     DefinitionError
-        With the errors of all of its messages.
+        With the errors of all messages of the service or action.
     """
     messages = _resolve_all(unit, resolve)
     if unit.name.kind == "srv":

@@ -58,7 +58,7 @@ def check_members(syntax: MessageSyntax) -> Iterator[Diagnostic]:
         elif isinstance(member.default, ValueSyntax):
             yield from _check_value(member.default, member.type, primitives)
         elif isinstance(member.default, ListSyntax) and member.default is not checked:
-            checked = member.default  # In IDL, several names may share it.
+            checked = member.default  # In IDL, several fields of one line share a default.
             yield from _check_list(member.default, member.type, primitives)
     yield from _check_names(syntax)
 
@@ -66,8 +66,8 @@ def check_members(syntax: MessageSyntax) -> Iterator[Diagnostic]:
 def _check_names(syntax: MessageSyntax) -> Iterator[Diagnostic]:
     """Find names that are declared twice.
 
-    ROS 2 keeps fields and constants apart by their spelling. genmsg looks at fields only, and lets
-    a constant be declared again, or be called like a field.
+    In ``.msg`` files of ROS 2, constants are in upper case and fields in lower case, so they never
+    clash. genmsg checks fields only: a constant may be declared twice, or have a field's name.
     """
     seen: dict[str, Span] = {}
     for member in syntax.members:

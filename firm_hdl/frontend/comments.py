@@ -1,9 +1,9 @@
-"""Which comment belongs to which field, and the unit that a comment names.
+"""Assign comments to fields, and find the unit that a comment names.
 
 The rule is that of ``rosidl_adapter`` (``parse_message_string``, ``process_comments``), used for
 both dialects. Comment lines at the very top describe the message. A comment above a definition, or
-after it in its line, describes that definition. An indented comment line continues the previous
-one.
+after it on the same line, describes that definition. An indented comment line continues the comment
+of the definition before it.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ def condense(lines: list[str]) -> tuple[str, str | None]:
     Returns
     -------
     tuple of str and (str or None)
-        The comment, without common indentation and without empty lines at its ends or doubled
-        inside; and the text of its only ``[...]``, if there is exactly one.
+        The comment and its unit. Common indentation and empty lines at both ends are removed, and
+        several empty lines become one. The unit is the text in brackets, if there is exactly one.
     """
     units = list(_units("\n".join(lines)))
     unit = None
@@ -41,10 +41,10 @@ def condense(lines: list[str]) -> tuple[str, str | None]:
 
 
 def _units(comment: str) -> Iterator[tuple[str, str]]:
-    r"""Yield each ``[unit]`` with the blanks in front of it, and what is inside.
+    r"""Yield each ``[unit]`` with the blanks in front of it, and the unit alone.
 
-    A comma inside the brackets means a range, which is no unit. This is what the expression
-    ``\s*\[([^,\]]+)\]`` finds, in linear time.
+    A comma inside the brackets means a range, not a unit. The regular expression
+    ``\s*\[([^,\]]+)\]`` finds the same, but not in linear time.
     """
     for part in comment.split(","):
         *closed, _ = part.split("]")
@@ -70,11 +70,11 @@ class CommentCollector:
         Parameters
         ----------
         comment : str
-            All of it, from its first ``#`` to the end of the line.
+            The whole comment, from its first ``#`` to the end of the line.
         is_indented : bool
-            Whether blanks precede it. Ignored unless it is alone.
+            Whether blanks precede the comment. Ignored unless `is_alone`.
         is_alone : bool
-            Whether its line has no definition.
+            Whether the line has no definition.
         """
         text = comment.lstrip("#").rstrip()
         if not is_alone:

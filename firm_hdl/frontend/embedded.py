@@ -1,9 +1,9 @@
 """The definitions that rosbags ships for every ROS distribution, as ``.msg`` text.
 
-rosbags keeps parsed definitions only. They are written out as text again and read by our own
-parser, so that an embedded type is processed like a user's. rosbags does not keep comments, nor the
-difference between ``builtin_interfaces/Time`` and ``time``; both are lost. The few default values
-are kept here.
+rosbags has parsed definitions only. This module writes them as text again for our own parser, so
+that embedded types and the user's types are processed in the same way. Two things are lost, because
+rosbags does not keep them: comments, and the difference between ``builtin_interfaces/Time`` and
+``time``. rosbags does not keep default values either; this module has the few that exist.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ class Distro:
     has_events : bool
         Whether services have a message for introspection, ``_Event``: since iron.
     wchar_bytes : int
-        Size of a ``wchar`` of IDL as the default middleware writes it: 4 with Fast CDR 1, which
-        iron is the last to have, and 2 with Fast CDR 2.
+        Size of a ``wchar`` of IDL as the default middleware writes it. It is 4 with Fast CDR 1, up
+        to iron, and 2 with Fast CDR 2.
     """
 
     name: str
@@ -66,8 +66,8 @@ DEFAULT_DISTRO = "lyrical"
 # - ParameterDescriptor: ros2/rcl_interfaces, pull requests 35 (read_only, 0.7.1 of 2019) and 118
 #   (dynamic_typing, 1.0.2 of 2021).
 # - FieldType: ros2/rcl_interfaces, pull request 146, 1.5.0 of April 2023; no change since.
-# All types of jazzy and kilted were compared with what ROS published on PyPI (common_interfaces
-# 5.3.6 and 5.5.1, rcl_interfaces 2.0.3 and 2.3.0); a test does so for these four packages.
+# All types of jazzy and kilted were compared with ROS's packages on PyPI (common_interfaces 5.3.6
+# and 5.5.1, rcl_interfaces 2.0.3 and 2.3.0). A test repeats the comparison for the packages above.
 _DEFAULTS: dict[tuple[str, str, str], tuple[str, str]] = {
     ("geometry_msgs", "Quaternion", "x"): ("0", "foxy"),
     ("geometry_msgs", "Quaternion", "y"): ("0", "foxy"),

@@ -1,9 +1,8 @@
 """Limit how much a recording may expand to: rosbags decompresses without any limit.
 
-A chunk or a file of some kilobytes can expand to gigabytes, in memory or on the disk. The functions
-with which rosbags decompresses are therefore replaced, by their names in rosbags' modules. The
-replacements count the decompressed bytes while a recording is `bounded`; otherwise they behave like
-the originals.
+A chunk or a file of some kilobytes can expand to gigabytes, in memory or on the disk. Therefore,
+this module replaces the decompression functions in rosbags' modules. The replacements count the
+decompressed bytes inside `bounded`. Outside, they behave like the originals.
 """
 
 from __future__ import annotations
@@ -25,13 +24,13 @@ from rosbags.rosbag2 import storage_mcap
 __all__ = ["MAX_CHUNK_BYTES", "MAX_RATIO", "MIN_BUDGET_BYTES", "Budget", "bounded"]
 
 MIN_BUDGET_BYTES = 1 << 28
-"""Decompressed bytes that every recording may have."""
+"""Number of decompressed bytes that a recording of any size may have."""
 
 MAX_RATIO = 100
-"""Decompressed bytes per byte of a larger recording. Those of real sensors have 3 to 10."""
+"""Most decompressed bytes per byte of a recording. Recordings of real sensors have 3 to 10."""
 
 MAX_CHUNK_BYTES = 1 << 29
-"""Decompressed bytes of one chunk, which is held in memory. Writers close chunks at megabytes."""
+"""Most decompressed bytes of a chunk, which is held in memory. Writers make chunks of megabytes."""
 
 _READ_BYTES = 1 << 20
 
@@ -46,12 +45,12 @@ class Budget:
     Parameters
     ----------
     compressed : int
-        Size of its files, in bytes.
+        Size of the recording's files, in bytes.
 
     Attributes
     ----------
     excess : str
-        Why the budget was exceeded; empty while it was not.
+        Why the budget was exceeded; empty if it was not exceeded.
     """
 
     def __init__(self, compressed: int) -> None:

@@ -1,7 +1,7 @@
 """The wording of all syntax errors in lines of ``.msg``, ``.srv`` and ``.action`` files.
 
-A parser knows which terminals it expected. This module puts that into the user's words, and names
-common mistakes.
+A parser knows which terminals it expected. This module describes them in the user's words, and
+recognizes common mistakes.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ NAME_RULES = {
 
 _ROS1_CONSTANT_RULE = "letters, digits and underscores, no digit first"
 
-# In the order in which they are listed to the user.
+# Terminals in the order in which a message lists them.
 _PHRASES = {
     "INT_TYPE": "a type",
     "PACKAGE": "a type",
@@ -109,7 +109,7 @@ def clip(text: str) -> str:
 
 
 def similar_builtin(word: str, dialect: Dialect) -> list[str]:
-    """List the builtin type that was probably meant by a word, or nothing."""
+    """List the builtin type that the user probably meant by a word; empty if there is none."""
     if word in _FOREIGN:
         return [_FOREIGN[word]]
     return get_close_matches(word, [*PRIMITIVES[dialect], "string"], n=1, cutoff=0.7)

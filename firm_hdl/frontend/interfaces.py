@@ -1,11 +1,11 @@
 """Split definition files into messages: a service has two parts, an action has three.
 
 This module gives the syntax of all messages of a definition file: of each part between the lines
-``---``, and of the messages that ROS derives from them. They are resolved like those of ``.msg``
-files.
+``---``, and of the messages that ROS derives from these parts. All of them are resolved like
+messages of ``.msg`` files.
 
-The rules are those of ``genmsg.msg_loader`` and of ``genaction.py`` of actionlib_msgs for ROS 1, of
-``rosidl_adapter.parser`` and ``rosidl_parser.definition`` for ROS 2.
+For ROS 1, the rules are those of ``genmsg.msg_loader`` and of ``genaction.py`` in actionlib_msgs.
+For ROS 2, they are those of ``rosidl_adapter.parser`` and ``rosidl_parser.definition``.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ class Unit:
     diagnostics : tuple of Diagnostic
         Errors in the text.
     is_message : bool
-        Whether the file declares one message only. Every definition of a recording does: there,
-        each message of a service has a definition of its own.
+        Whether the file declares one message only. This holds for every definition of a recording,
+        because each message of a recorded service has a definition of its own.
     """
 
     name: TypeName
@@ -90,7 +90,7 @@ def read_unit(
     if definition.language == "idl":
         messages, wrong = read_idl(source, _with_own_folder(name, include))
         wrong = wrong or list(_check_structs(name, source, messages))
-        # A struct of another name cannot be looked up.
+        # Drop structs of other names, because nothing can look them up.
         messages = {part: messages[part] for part in _structs(name) if part in messages}
     else:
         messages, wrong = _read_parts(name, source, definition.language)
@@ -134,7 +134,7 @@ def _structs(name: TypeName) -> list[str]:
 def _check_structs(
     name: TypeName, source: Source, messages: dict[str, MessageSyntax]
 ) -> Iterator[Diagnostic]:
-    """Check that an IDL file declares the type of its name; rosidl leaves that to the compiler."""
+    """Check that an IDL file declares the type of its name; rosidl does not check this."""
     start = Span(source=source, start=0, end=0)
     if name.dialect == "ros1":
         yield Diagnostic(message="ROS 1 has no definitions in IDL", span=start)
@@ -154,7 +154,7 @@ def _read_parts(
         return {name.name: syntax}, diagnostics
     parts, separators = _split(source, name.dialect)
     if language == "srv" and name.dialect == "ros1":
-        # genmsg is lenient: without a separator the response is empty, further ones are ignored.
+        # As in genmsg, a missing separator means an empty response, and extra ones are ignored.
         parts = [parts[0], [line for part in parts[1:] for line in part]]
         diagnostics = []
     else:
@@ -262,7 +262,7 @@ _DERIVED_LINE = re.compile(r"(?:(\w+)/)?(\w+)(?:\[<=(\d+)\])? (\w+)")
 def _derived_syntax(name: TypeName, suffix: str, text: str) -> MessageSyntax:
     """Parse the text of a derived message.
 
-    Unlike a user's text, it may name messages of the interface.
+    Unlike a user's text, a derived text may name messages of the same interface.
     """
     full = replace(name, name=name.name + suffix)
     source = Source(name=f"<made from {name}>/{full.name}.msg", text=text)

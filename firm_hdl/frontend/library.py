@@ -80,7 +80,8 @@ class Library:
     def interfaces(self) -> list[str]:
         """List the full names of all messages, services and actions with a definition, sorted.
 
-        Where two have the same name in ROS 1, the second has the kind in it: ``package/srv/Name``.
+        If two types of ROS 1 have the same name, the second is listed with its kind:
+        ``package/srv/Name``.
         """
         names: dict[str, TypeName] = {}
         order = {kind: index for index, kind in enumerate(KINDS)}
@@ -174,11 +175,11 @@ class Library:
             text = message.text.replace("\r\n", "\n").replace("\r", "\n")
             parts = [message.name, text]
             if "#include" in text:
-                # An included file may declare no type: hash what its constants and typedefs gave.
+                # A file without types is not hashed: hash the effect of its constants and typedefs.
                 parts += [f"{item.type} {item.name} {item.default!r}" for item in message.fields]
                 parts += [f"{c.type} {c.name} {c.value!r}" for c in message.constants]
             for part in parts:
-                # The length at the start keeps neighbours apart.
+                # With its length in front, a text cannot run into the next one.
                 data = part.encode()
                 digest.update(b"%d:" % len(data) + data)
         return digest.hexdigest()
@@ -218,7 +219,8 @@ class Library:
     def _by_origin(self, names: list[TypeName]) -> list[TypeName]:
         """Sort names by the origin that defines them; drop those that no origin defines.
 
-        `TestGoal` may be a message of the distribution, and part of an action in a user's folder.
+        For example, `TestGoal` may be a message of the distribution, and also a part of an action
+        in a user's folder.
         """
         found: dict[TypeName, None] = {}
         asked = {other: name for name in names for other in (name, *owners(name))}
@@ -228,7 +230,7 @@ class Library:
 
     def _unknown(self, names: list[TypeName]) -> DefinitionError:
         for each in names:
-            # A recording may raise an error with the reason why it has no definition.
+            # For a recording, `find` may raise an error that says why there is no definition.
             self._sources.find(each.package, each.kind, each.name)
         name = names[0]
         message = unknown_type(self._sources, name.package, name.name)

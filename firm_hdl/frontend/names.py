@@ -1,6 +1,6 @@
 """The names of interfaces and of their messages.
 
-A service or an action has several messages, and each has a name of its own: that of the interface
+A service or an action has several messages. The name of each message is the name of the interface
 and a suffix. The suffixes are those of genmsg and of ``genaction.py`` (ROS 1), and of
 ``rosidl_parser.definition`` (ROS 2).
 """
@@ -59,7 +59,7 @@ PARTS: dict[tuple[Dialect, Kind], tuple[str, ...]] = {
 """Suffixes of the messages that a definition declares itself, in the order of its text."""
 
 EVENT = "_Event"
-"""Suffix of the message that ROS 2 derives from a service, from iron on."""
+"""Suffix of the message that ROS 2 derives from a service, since iron."""
 
 ACTION_SERVICES = ("_SendGoal", "_GetResult")
 """Suffixes of the services that ROS 2 derives from an action."""
@@ -68,7 +68,7 @@ ACTION_WRAPPERS: dict[Dialect, tuple[str, ...]] = {
     "ros1": ("ActionGoal", "ActionResult", "ActionFeedback", "Action"),
     "ros2": ("_FeedbackMessage",),
 }
-"""Suffixes of the messages that ROS puts around those of an action."""
+"""Suffixes of the messages in which ROS wraps the messages of an action."""
 
 
 def _suffixes(dialect: Dialect, kind: Kind) -> tuple[str, ...]:

@@ -1,6 +1,6 @@
 """Text to syntax, line by line.
 
-The lines of a ``.msg`` text are independent. So each one is parsed by itself, and an error never
+The lines of a ``.msg`` text are independent. So each line is parsed by itself, and an error never
 hides the next one. The grammars of a line are ``ros1_msg.lark`` and ``ros2_msg.lark``; this module
 turns their parse trees into syntax.
 """
@@ -36,8 +36,8 @@ from firm_hdl.model import Dialect
 __all__ = ["is_type_name", "line_trees", "lines_of", "parse_message", "read_message"]
 
 _LINE_ENDS = {
-    # genmsg and rosidl_adapter read files in text mode; the latter then splits at all that Python
-    # calls a line boundary.
+    # genmsg and rosidl_adapter read files in text mode. rosidl_adapter then splits at every line
+    # boundary of Python's `splitlines`.
     "ros1": re.compile(r"\r\n|[\n\r]"),
     "ros2": re.compile("\r\n|[\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029]"),
 }
@@ -74,7 +74,7 @@ def read_message(
     lines : iterable of tuple of int and str
         The lines from `lines_of` that belong to the message; by default all.
     text : str or None
-        The text of the message, where that is not the whole source.
+        The text of the message, if it is not the whole source.
 
     Returns
     -------
@@ -149,7 +149,7 @@ def lines_of(text: str, dialect: Dialect) -> Iterator[tuple[int, str]]:
         line, too; it may be empty.
     """
     if dialect == "ros2":
-        text = text.replace("\t", " ")  # So does rosidl_adapter, in texts and comments, too.
+        text = text.replace("\t", " ")  # As in rosidl_adapter, even in texts and comments.
     start = 0
     for end in _LINE_ENDS[dialect].finditer(text):
         yield start, text[start : end.start()]
@@ -328,7 +328,7 @@ def _integer(token: Token) -> int:
             return int(token, base)
         except ValueError:
             continue
-    # The grammar accepts integers only, so the number is over Python's limit on digits.
+    # The grammar accepts integers only, so conversion fails only at Python's limit on digits.
     raise _TokenError(token, f"a number of {len(token)} digits is too long")
 
 
@@ -343,7 +343,7 @@ def _unquoted(text: str) -> str:
 
 
 def _item(token: Token) -> str:
-    """Read an element of a list of texts as rosidl does, which unquotes and strips it twice."""
+    """Read an element of a list of texts; like rosidl, unquote and strip it twice."""
     text = str(token)  # A plain string, not a token.
     if text[0] in "\"'":
         text = _unquoted(text).strip()

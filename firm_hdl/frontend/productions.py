@@ -35,7 +35,7 @@ def productions(text: str, dialect: Dialect, *, is_idl: bool = False) -> frozens
 
 
 def _productions(tree: Tree[Token]) -> Iterator[str]:
-    # Not recursive: a tree of IDL may be deep.
+    # Iterate instead of recursing, because a tree of IDL may be deep.
     for node in tree.iter_subtrees():
         kinds = [_kind(child) for child in node.children if child is not None]
         parts = [f"{kind}+" if len(list(same)) > 1 else kind for kind, same in groupby(kinds)]

@@ -1,8 +1,8 @@
 """Split IDL sections of a recording that declare several messages.
 
-ROS has one message per file, and so one in each section that it records. Other writers put all
-types of a topic into one section. Each struct gets a text of its struct, in which the other structs
-are blank. So constants, typedefs and line numbers stay.
+ROS has one message per file, and records one section per file. Other writers put all types of a
+topic into one section. Here, each struct gets a copy of the section in which the other structs are
+replaced by blanks. So constants, typedefs and line numbers stay.
 """
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ class _Struct:
 def structs_of(text: str) -> dict[tuple[str, Kind, str], str]:
     """Cut a section into texts of one message each, by package, folder and name.
 
-    The result is empty if there is nothing to cut: one message, a service or an action.
+    The result is empty if there is nothing to cut: the section has one message, a service or an
+    action.
     """
     found = _find(_blank(text))
     if len(found) < 2 or any(each.name.endswith(_SUFFIXES) for each in found):
@@ -48,7 +49,7 @@ def structs_of(text: str) -> dict[tuple[str, Kind, str], str]:
 
 
 def _blank(text: str) -> str:
-    """Return a text of the same length with blanks for its texts and comments."""
+    """Replace string literals and comments by blanks; the length stays the same."""
     return _TEXT_OR_COMMENT.sub(lambda match: _blanks(match[0]), text)
 
 
@@ -61,7 +62,7 @@ def _find(code: str) -> list[_Struct]:
     scopes: list[tuple[str, str, int]] = []
     for mark in _MARK.finditer(code):
         if mark[0] != "}":
-            # Annotations stand between a struct and the end of what precedes it.
+            # The part starts after the previous declaration, so that it includes annotations.
             start = max(code.rfind(sign, 0, mark.start()) for sign in ";{}") + 1
             kind = "module" if mark["module"] else "struct" if mark["struct"] else ""
             scopes.append((kind, mark["module"] or mark["struct"] or "", start))

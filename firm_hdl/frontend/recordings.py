@@ -1,9 +1,9 @@
 """Definitions in recordings, for users who have the data but not the packages.
 
 A ``.bag`` of ROS 1 has the definition of every topic's type, followed by those of all types in it.
-An ``.mcap`` of ROS 2 has them, too, and so has a ``.db3`` from iron on. Their format is described
-in ros2/rosbag2, ``docs/message_definition_encoding.md``. rosbags reads the files; the texts are
-then processed like any other.
+An ``.mcap`` of ROS 2 and, since iron, a ``.db3`` have them, too. The format of these definitions is
+described in ros2/rosbag2, ``docs/message_definition_encoding.md``. rosbags reads the files; the
+texts are then processed like the texts of definition files.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ __all__ = ["Reader", "RecordingOrigin", "use_recording"]
 Reader: TypeAlias = "Reader1 | Reader2"
 """rosbags' reader of a recording."""
 
-# rosbags reads the whole file.
+# Limit on the metadata file, because rosbags reads the whole file.
 _MAX_METADATA_BYTES = 1 << 20
 _MAGIC, _MAGIC_BYTES = b"#ROSBAG V", 64
 
@@ -68,7 +68,7 @@ class RecordingOrigin:
     path : str
     dialect : "ros1" or "ros2"
     distro : str or None
-        The distribution that the recording says it was made with, if it is one of `DISTROS`.
+        The distribution that the recording names as its origin, if it is one of `DISTROS`.
 
     Raises
     ------
@@ -84,7 +84,7 @@ class RecordingOrigin:
         self._missing: set[_Name] = set()
         # Messages without fields have definitions without text.
         self._empty: set[_Name] = set()
-        # Types of topics whose names do not have ROS's form.
+        # Names of topics' types that do not have ROS's form.
         self._not_ros: set[str] = set()
         # Types in OMG IDL as DDS tools write it: all types in one text, without headings.
         self._of_dds: set[_Name] = set()
@@ -122,7 +122,7 @@ class RecordingOrigin:
                 self.distro = distro
             connections = list(recording.connections)
             for each in connections:
-                # In a database, any column can hold anything.
+                # SQLite does not enforce the types of columns.
                 if not isinstance(each.msgtype, str) or not isinstance(each.msgdef.data, str):
                     raise TypeError
             return connections
@@ -132,7 +132,7 @@ class RecordingOrigin:
     def _add(self, connection: Connection) -> None:
         text, language = connection.msgdef.data, connection.msgdef.format
         is_idl = language == MessageDefinitionFormat.IDL
-        # In omgidl, names have scopes of IDL.
+        # In omgidl, names have the scope operator of IDL.
         name = _parse(connection.msgtype.replace("::", "/") if is_idl else connection.msgtype)
         if name is None:
             self._not_ros.add(connection.msgtype)
@@ -167,13 +167,13 @@ class RecordingOrigin:
 
 
 def use_recording(path: str, use: Callable[[Reader], _T]) -> _T:
-    """Open a recording for as long as a function uses it, and return what that returns.
+    """Open a recording, call a function with its reader, and return the function's result.
 
     Parameters
     ----------
     use : callable
-        Called with rosbags' reader. It must only read: any other exception in it is reported as
-        damage of the file.
+        Called with rosbags' reader. It must only read, because any exception in it is reported as
+        an unreadable file.
 
     Raises
     ------
@@ -203,7 +203,7 @@ def _use(path: str, use: Callable[[Reader], _T], budget: Budget) -> _T:
         # A damaged file has offsets that no file can have.
         reason = "it is damaged" if error.errno == errno.EINVAL else error.strerror or str(error)
     except (ReaderError1, ReaderError2) as error:
-        # Where rosbags does not check the data, its message is that of Python's exception.
+        # rosbags wraps exceptions from data that it does not check. Their messages do not help.
         unchecked = TypeError | AttributeError | KeyError | ValueError
         reason = "it is damaged" if isinstance(error.__context__, unchecked) else str(error)
     except KeyError as error:
@@ -234,7 +234,7 @@ def _check_files(path: str) -> None:
 
 
 def _is_bag(path: str) -> bool:
-    """Tell whether a file starts like a bag of ROS 1; rosbags reads a line, which may not end."""
+    """Tell whether a file starts like a bag of ROS 1; rosbags would read a line of any length."""
     with open(path, "rb") as file:
         start = file.read(_MAGIC_BYTES)
     return start.startswith(_MAGIC) and b"\n" in start
@@ -274,7 +274,7 @@ def _split(name: _Name, text: str, is_idl: bool) -> Iterator[tuple[_Name, Langua
         if part is None or (is_idl and index == 0 and not body.strip() and marks):
             continue  # In IDL, the first definition has a heading, too.
         if index < len(marks) and body.endswith("\n"):
-            # Writers put an empty line, or at least the line's end, between definitions.
+            # Writers add an empty line, or at least a line end, after each definition.
             body = body[:-1]
         if body and not body.endswith("\n"):
             body += "\n"
@@ -286,13 +286,13 @@ def _split(name: _Name, text: str, is_idl: bool) -> Iterator[tuple[_Name, Langua
 
 
 def _messages(name: _Name, text: str) -> dict[_Name, str]:
-    """Give the texts of all messages of an IDL section, if its heading names one of several."""
+    """Give the texts of all messages of an IDL section that declares `name` and other messages."""
     found = structs_of(text)
     return found if name in found else {}
 
 
 def _normalized(text: str) -> str:
-    """Write a definition as in its file; some writers indent it or write types' names in full."""
+    """Write a definition as in its file: some writers indent it, or write full names of types."""
     return _FULL_NAME.sub(r"\1/", _INDENTED.sub("", text))
 
 

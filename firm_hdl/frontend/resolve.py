@@ -1,8 +1,8 @@
 """Resolve syntax to the model: names become types, and all errors are found.
 
-A message is resolved once, after the messages that it names. Errors are kept with their text, so
-that an error in a dependency is reported once, at its own place. Dependencies are walked with an
-explicit stack, because they may nest deeper than Python's recursion limit.
+A message is resolved once, after the messages that it names. Errors are kept with the text that
+has them, so that an error in a dependency is reported once, at its own place. Dependencies are
+walked with an explicit stack, because they may nest deeper than Python's recursion limit.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ class Resolver:
         return self._units[name]
 
     def unit_of(self, name: TypeName) -> Unit | None:
-        """Read the file that declares a message or that it is derived from; as `unit`."""
+        """Read the file that declares a message or its interface; errors are those of `unit`."""
         for owner in self._sources.by_origin([name, *owners(name)]):
             unit = self.unit(owner)
             if unit is not None and (name.name in unit.messages or unit.diagnostics):
@@ -221,7 +221,7 @@ class Resolver:
     def _need(self, type_: TypeSyntax, package: str) -> TypeName | None:
         if type_.is_builtin:
             return None
-        # REP 100; genmsg does so for the bare word only, so that ``Header[]`` is the package's own.
+        # REP 100; as in genmsg, only for the bare word: ``Header[]`` is a type of the package.
         is_header = type_.name == "Header" and type_.package is None and type_.array == "one"
         if is_header and self._dialect == "ros1":
             return TypeName("std_msgs", "msg", "Header", self._dialect)

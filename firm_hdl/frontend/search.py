@@ -1,8 +1,8 @@
-"""Where a command searches for definitions: in the places of its options and the environment.
+"""Search for definitions in the places that options of a command and the environment name.
 
-ROS's tools find packages by variables that a ROS setup file sets. The command reads them, too, so
-that it finds the packages of the active workspace. In both variables the first folder that has a
-package wins, as in ROS; here, this is decided type by type.
+ROS's tools find packages by environment variables that a ROS setup file sets. The command reads the
+same variables, so that it finds the packages of the active workspace. In ROS, the first folder that
+has a package wins. Here, the first folder that has a type wins.
 """
 
 from __future__ import annotations
@@ -41,17 +41,18 @@ def open_library(
     depends: Iterable[str | os.PathLike[str]] = (),
     environment: Mapping[str, str] | None = None,
 ) -> Library:
-    """Open all definitions that a command is to see.
+    """Open a library of all definitions that a command uses.
 
     Parameters
     ----------
     distro : str or None
         `None`: the distribution that the recordings name, else the newest one of their dialect.
+        Without recordings, the default distribution.
     paths : iterable of str or path
-        Folders with ROS packages. They come first, then those of the environment, then the
-        distribution's own types.
+        Folders with ROS packages. They are searched first, then those of the environment, then
+        the distribution's own types.
     bags : iterable of str or path
-        Recordings. If there are any, definitions come from nowhere else but `depends`.
+        Recordings. If there are any, definitions come only from them and from `depends`.
     depends : iterable of str or path
         Folders with packages that others depend on, searched after `paths` or the recordings.
     environment : mapping or None
@@ -99,7 +100,7 @@ def environment_origins(dialect: Dialect, environment: Mapping[str, str]) -> Ite
 def workspace_folders(
     distro: str, packages: Container[str], environment: Mapping[str, str] | None = None
 ) -> list[str]:
-    """List the folders that the environment names and that have one of some packages.
+    """List the folders that the environment names and that have one of the given packages.
 
     Parameters
     ----------
@@ -117,11 +118,11 @@ def workspace_folders(
 def _folders(dialect: Dialect, environment: Mapping[str, str]) -> Iterator[str]:
     for place in environment.get(ENVIRONMENT[dialect], "").split(os.pathsep):
         if not os.path.isdir(place):
-            continue  # ROS's tools skip it, too. An empty entry is not a folder, either.
+            continue  # ROS's tools skip such entries, too, and also empty ones.
         if dialect == "ros1":
             yield place
         else:
-            # A prefix may be all of ``/usr``: only packages are looked into.
+            # The prefix may be ``/usr``, so only folders of packages are searched.
             share = Path(place, "share")
             for package in sorted(share.iterdir()) if share.is_dir() else []:
                 if any((package / kind).is_dir() for kind in KINDS):
@@ -164,7 +165,7 @@ def _error(message: str) -> DefinitionError:
 
 
 def load_all(library: Library, types: Iterable[str]) -> list[Message]:
-    """Load the messages of types that are to be laid out, each once.
+    """Load the messages of types, each once, and check that they can be laid out.
 
     A service or an action gives all of its messages.
 

@@ -1,10 +1,10 @@
 """Definitions printed the way ROS's own tools print them.
 
-For ROS 1 that is ``rosmsg show`` and ``rossrv show``: what the definition means, constants first.
-For ROS 2 it is ``ros2 interface show``: the text as it stands, with the definitions of nested types
-under each field. Comments of nested types are left out completely; released versions of ros2cli
-leave a stray ``#``, which is a known bug (ros2cli issue 769). A definition in IDL is shown as the
-``.msg`` text that means the same.
+For ROS 1, the tools are ``rosmsg show`` and ``rossrv show``. They print the parsed definition,
+constants first. For ROS 2, the tool is ``ros2 interface show``. It prints the text as it is
+written, with the definitions of nested types under each field. Here, comments of nested types are
+left out completely; released versions of ros2cli leave a stray ``#`` (ros2cli issue 769). A
+definition in IDL is shown as an equivalent ``.msg`` text.
 """
 
 from __future__ import annotations
@@ -72,8 +72,8 @@ _Entries = Iterator[tuple[str, "Message | None"]]
 
 
 def _check_characters(printer: _Ros1 | _Ros2, interface: Interface) -> None:
-    """Refuse a text that would be too long, without writing the nested types out."""
-    # Lines and characters of each type when it is not indented.
+    """Refuse a text that would be too long; count its characters instead of writing it."""
+    # Lines and characters of each type's text without indentation.
     lines: dict[str, int] = {}
     characters: dict[str, int] = {}
 

@@ -1,8 +1,8 @@
 """The origins of definitions, searched in order: the first one that has a type wins.
 
-An origin can list names and find a text: a folder with ROS packages, the types of a distribution, a
-recording. Each type is looked up by itself: a package in a folder adds types to the embedded
-package of that name, and overrides types of the same name.
+An origin can list names and find a text. Origins are folders with ROS packages, the types of a
+distribution, and recordings. Each type is looked up by itself: a package in a folder adds types to
+the embedded package of that name, and overrides types of the same name.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ __all__ = ["Definition", "EmbeddedOrigin", "FolderOrigin", "Language", "Origin",
 Language: TypeAlias = Literal["msg", "srv", "action", "idl"]
 """The language of a definition's text."""
 
-# Ten times the longest definition of a thousand packages.
+# Limit on a file: ten times the longest definition in a thousand packages.
 _MAX_BYTES = 1 << 22
 
 # Files that make colcon and catkin skip a folder.
@@ -47,12 +47,12 @@ class Origin(Protocol):
         """List package, kind and name of everything that is defined here."""
 
     def find(self, package: str, kind: Kind, name: str) -> Definition | None:
-        """Read a definition; `None` if it is not here.
+        """Read a definition; `None` if this origin does not have it.
 
         Raises
         ------
         DefinitionError
-            If it is here, but cannot be read.
+            If the origin has the definition, but cannot read it.
         """
 
 
@@ -84,7 +84,7 @@ class FolderOrigin:
 
     The folder is scanned once, for names only; a file is read when its type is needed. A package
     has its files in ``msg/``, ``srv/`` and ``action/``, in source or in installed layout. An
-    installation has each type in ROS's own form and in IDL; the former is read.
+    installation has each type in ROS's own language and in IDL; the file in ROS's language is read.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ class FolderOrigin:
         return Definition(source=_read(file), language=language)
 
     def include(self, path: str) -> Source | None:
-        """Read what an ``#include "package/folder/file.idl"`` names; `None` if it is not here."""
+        """Read the file of an ``#include "package/folder/file.idl"``; `None` if it is not here."""
         package, _, rest = path.partition("/")
         folder = self._packages.get(package)
         if folder is None or rest.startswith("/") or ".." in rest.split("/"):
@@ -179,7 +179,7 @@ class Sources:
     def packages_of(self) -> dict[tuple[Kind, str], list[str]]:
         """Packages that have a definition of a kind and name, those of the last origin first.
 
-        The last origin is the distribution, whose types are the likeliest to be meant.
+        The last origin is the distribution, and a user most probably means one of its types.
         """
         found: dict[tuple[Kind, str], dict[str, None]] = {}
         for names in reversed(self._names):
@@ -207,14 +207,13 @@ class Sources:
         return None
 
     def include(self, path: str) -> Source | None:
-        """Read what an IDL file includes.
+        """Read a file that an IDL file includes.
 
         Returns
         -------
         Source or None
-            `None` if the file does not exist. ROS generates an IDL file from every definition in
-            another language. The types of that file are found by name, so its text is returned as
-            empty.
+            `None` if the file does not exist. Empty if the file is one that ROS generates from a
+            definition in another language, because its types are found by name.
         """
         for origin in self._origins:
             if isinstance(origin, FolderOrigin):
@@ -233,7 +232,7 @@ class Sources:
 def _packages(root: str) -> Iterator[tuple[str, str, str]]:
     """Yield name and folder of every package at or below a folder, in order of their paths.
 
-    The third item is the reason why the package cannot be used; empty for nearly all.
+    The third item is the reason why the package cannot be used; empty if it can be used.
     """
     seen: set[tuple[int, int]] = set()
     pending = [root]
@@ -254,7 +253,7 @@ def _packages(root: str) -> Iterator[tuple[str, str, str]]:
             name, wrong = _package_name(folder, "package.xml" in names)
             yield name, folder, wrong
         if "package.xml" in names:
-            continue  # As for colcon and catkin, a package contains no other.
+            continue  # As in colcon and catkin, a package contains no other packages.
         pending += [
             entry.path
             for entry in reversed(entries)
@@ -283,7 +282,7 @@ def _package_name(folder: str, is_named: bool) -> tuple[str, str]:
         try:
             name = ElementTree.fromstring(read_file(path, _MAX_BYTES)).findtext("name")
         except ElementTree.ParseError:
-            pass  # The folder nearly always has the name of the package.
+            pass  # Use the folder's name, which is nearly always that of the package.
         except OSError as error:
             wrong = f"'{path}' cannot be read: {error.strerror}"
         except (LookupError, ValueError):

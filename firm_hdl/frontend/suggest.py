@@ -1,4 +1,4 @@
-"""Messages about names that are not defined, and suggestions of what was meant."""
+"""Messages about names that are not defined, with suggestions of similar names."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def unknown_type(sources: Sources, package: str, name: str) -> str:
 def similar_types(
     sources: Sources, package: str, name: str, *, kinds: tuple[Kind, ...] = KINDS
 ) -> list[tuple[str, Kind, str]]:
-    """List package, kind and name of the types that may have been meant, the likeliest first.
+    """List package, kind and name of the types that the user may mean, the likeliest first.
 
     The order is: the same name in a package with a similar name, then in any other package; then
     a similar name in the package, if it exists.

@@ -49,16 +49,16 @@ class TypeSyntax:
     Attributes
     ----------
     package : str or None
-        The word before the slash.
+        The package, if the text has one: the word before the slash.
     name : str
-        A builtin type's name, or that of a message type.
+        Name of a builtin type or of a message type.
     is_builtin : bool
         Whether `name` is a builtin type of the dialect.
     kind : "msg", "srv", "action" or None
         The namespace of a message type, if the text has it (in IDL ``pkg::action::X_Goal``).
         `None` means "msg", as everywhere in ``.msg``, ``.srv`` and ``.action`` files.
     bound : SizeSyntax or None
-        What follows ``string<=``.
+        The bound of a string: the number after ``string<=``.
     array : "one", "array" or "sequence"
         Whether brackets follow, and whether they fix the number of elements.
     size : SizeSyntax or None

@@ -1,7 +1,7 @@
 """What ROS's own tools compute for an interface: md5 sum, type hash, and the text of an example.
 
-All of it is computed from the model. So it can be compared with the output of ROS's tools for the
-same definition.
+All results are computed from the model. So they can be compared with the output of ROS's tools for
+the same definition.
 """
 
 from __future__ import annotations

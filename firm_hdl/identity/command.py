@@ -17,7 +17,7 @@ __all__ = ["hash_lines", "load_interfaces", "md5_lines", "proto_texts"]
 
 
 def md5_lines(library: Library, names: Iterable[str]) -> tuple[list[str], DefinitionError | None]:
-    """List md5 sums, each with the name of its type. An action gives those of its messages.
+    """List md5 sums, each with the name of its type. An action gives the sums of its messages.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def hash_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defin
 def proto_texts(
     library: Library, names: Iterable[str], *, quotes: bool
 ) -> tuple[dict[str, str], DefinitionError | None]:
-    """Give the texts of `proto` for types, each with its last line end.
+    """Give the texts of `proto` for types, each with a line end after its last line.
 
     Returns
     -------

@@ -1,10 +1,10 @@
 """An example of a message as ``rosmsg-proto`` prints it.
 
-The example is the YAML of a new message, with one element in every sequence. Whether YAML's block
-style or flow style (braces and brackets) is used depends on the parts before: the tool starts with
-block style. At the first message with more than four fields, or the first fixed array of more than
-four elements, it leaves the choice to PyYAML for the rest of the text. That includes the enclosing
-parts, whose style is not decided yet at that point.
+The example is the YAML of a new message, with one element in every sequence. The style of a part,
+block or flow (braces and brackets), depends on the parts before. The tool starts with block style.
+At the first message with more than four fields, or with a fixed array of more than four elements,
+it leaves the choice to PyYAML for the rest of the text. This includes the enclosing parts, because
+their style is decided at their end.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ from firm_hdl.model import (
 
 __all__ = ["ros1_proto"]
 
-# With more, PyYAML takes minutes.
+# Limit on the size of an example: with more values, PyYAML takes minutes.
 _MAX_VALUES = 1_000_000
-# PyYAML recurses for each level.
+# Limit on nesting, because PyYAML recurses for each level.
 _MAX_LEVELS = 100
 
 # Largest number of fields or elements that rosmsg writes in block style.
@@ -40,10 +40,10 @@ _MAX_BLOCK = 4
 
 _TAG = "tag:yaml.org,2002:"
 
-# Names to which genpy, whose attributes are printed, adds an underscore.
+# Field names to which genpy adds an underscore. The example has the names of genpy's attributes.
 _RESERVED = frozenset({*keyword.kwlist, "self"})
 
-# Element types of arrays that are `bytes` in Python, and so one value.
+# Element types of arrays that are `bytes` in Python. Such an array is a single value.
 _PACKED = frozenset({"uint8", "char"})
 
 
@@ -79,7 +79,7 @@ def _values(kind: FieldType, values: dict[str, int]) -> int:
 
 @dataclass(slots=True)
 class _Writer:
-    """Builds YAML nodes in the order in which rosmsg does, which decides their style."""
+    """Builds YAML nodes in the order of rosmsg, because the order decides their style."""
 
     name: str
     # `flow_style` of PyYAML. `False`: one line for each item; `None`: PyYAML's own choice.
@@ -119,7 +119,7 @@ class _Writer:
                 # rosmsg writes an element of the message `Time` or `Duration` instead.
                 return self.sequence([self.mapping([("data", _field(element))], level + 1)])
             case Sequence(element=element):
-                # rosmsg writes 0 for any number, also for a float.
+                # As the element of a sequence, rosmsg writes 0 even for a float.
                 number = isinstance(element, Primitive) and element.kind == "float"
                 return self.sequence([self.value(_INTEGER if number else element, level)])
             case String():

@@ -1,8 +1,8 @@
 """An example of a message as ``ros2 interface proto`` prints it.
 
 The example is the YAML of a new message: fixed arrays are written out, sequences are empty,
-defaults are applied. The text of each type is joined once from the texts of its parts, so that an
-array of millions costs no more than its text.
+defaults are applied. The text of each type is made only once, from the texts of its parts. So an
+array of millions of elements costs only the concatenation of their texts.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def _size(message: Message, sizes: dict[str, _Size]) -> _Size:
     Raises
     ------
     TooLargeError
-        If it would be too long.
+        If the text would be too long.
     """
     characters = lines = 0
     for item in message.fields:
@@ -107,7 +107,7 @@ def _field(item: Field, texts: dict[str, str]) -> str:
 
 
 def _key(item: Field) -> str:
-    # Some names need quotes.
+    # YAML needs quotes around some names.
     return _dump({item.name: 0}).removesuffix(" 0\n")
 
 
@@ -150,7 +150,7 @@ def _is_character(kind: Primitive) -> bool:
 
 
 def _listed(value: Any, kind: Any) -> Any:
-    """Round as NumPy's array of float32 does; a single float32 is a Python float in ROS 2."""
+    """Round float32 in lists, which are NumPy arrays in ROS 2; a single float32 is not rounded."""
     if not isinstance(kind, Primitive) or kind.name != "float32":
         return value
     try:

@@ -72,8 +72,8 @@ def type_description(interface: Interface) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If the definition is of ROS 1. If it is or has a service without an event message: services
-        have event messages and hashes from iron on.
+        If the definition is of ROS 1, or if it is or has a service without an event message.
+        Services have event messages and hashes since iron.
     """
     if interface.dialect != "ros2":
         raise ValueError(f"Only types of ROS 2 have type hashes, and {interface} is of ROS 1")

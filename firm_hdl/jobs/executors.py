@@ -2,8 +2,8 @@
 
 Results do not depend on the executor. Each task is one call of a function with arguments that can
 be pickled. Results come back in any order, and every task gives a result or an error. If a process
-dies, the tasks that were running are repeated, each in a process of its own; only a task whose
-process dies again has failed.
+dies, each task that was running is repeated in a process of its own. A task fails only if that
+process dies, too.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ CONNECT_SECONDS = 10
 CHECK_SECONDS = 5
 MAX_IDLE_SECONDS = 60
 
-# Tasks per worker that are submitted at a time: no worker is idle, and few tasks are repeated if a
-# worker dies.
+# Number of submitted tasks per worker. With two, no worker waits for its next task. With more, more
+# tasks would be repeated when a worker dies.
 TASKS_PER_WORKER = 2
 
 
 class ExecutorError(ValueError):
-    """An executor cannot be reached, or was lost; the message gives the reason."""
+    """There is no such executor, it is out of reach, or it was lost; the message says which."""
 
 
 def check_executor(name: str) -> str:
@@ -126,8 +126,8 @@ class _PoolSource:
     workers, window : int
         Number of workers, and largest number of submitted tasks.
     is_busy : callable
-        Whether a worker is running a task. A pool of this machine reports that a process died; a
-        cluster that has lost its workers reports nothing.
+        Return whether a worker is running a task. It is needed for clusters: a cluster does not
+        report that it has lost all workers, whereas a pool of this machine reports a dead process.
     """
 
     open: Callable[[int], AbstractContextManager[Executor]]
@@ -146,7 +146,7 @@ def _run_on(
         with source.open(source.workers) as pool:
             suspects = yield from _distribute(pool, source, source.window, work, remaining)
         for key, arguments in suspects:
-            # One of these ended a worker. In a process of its own, it cannot lose other results.
+            # One of the suspects ended the worker. Alone in a process, it cannot end other tasks.
             with source.open(1) as pool:
                 again = deque([(key, arguments)])
                 dead = yield from _distribute(pool, source, 1, work, again)
@@ -182,7 +182,7 @@ def _distribute(
         if not running:
             return suspects
         finished = _finished(running, source)
-        # In the order of the tasks: a set of futures has none.
+        # Keep the order of the tasks; the set of finished futures is unordered.
         for future in [each for each in running if each in finished]:
             key, arguments = running.pop(future)
             try:
@@ -198,7 +198,7 @@ def _distribute(
 
 
 def _finished(running: Collection[Future[R]], source: _PoolSource) -> set[Future[R]]:
-    """Wait for results while a worker is busy."""
+    """Wait for at least one result; give up if no worker has been busy for a while."""
     idle = 0
     while True:
         finished, _ = wait(running, timeout=CHECK_SECONDS, return_when=FIRST_COMPLETED)

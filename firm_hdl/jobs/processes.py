@@ -1,7 +1,7 @@
 """Run programs and worker processes such that an interruption leaves neither processes nor files.
 
-A program runs in a process group of its own. When the process that waits for it is stopped, the
-group is killed. Worker processes are stopped, and not waited for, when their parent is interrupted.
+A program runs in a process group of its own. When the process that waits for the program is
+stopped, the group is killed. An interrupted parent stops its workers without waiting for them.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def cpu_seconds() -> float:
 
 
 class ToolError(Exception):
-    """A program failed, did not end, or did not do its work.
+    """A program failed, took too long, or did not write its result.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def made_by(tool: str, file: Path) -> Path:
     Raises
     ------
     ToolError
-        If the file does not exist: a program may end without an error and have done nothing.
+        If the file does not exist. A program may end without an error and still not write it.
     """
     if not file.is_file():
         raise ToolError(f"{tool} ended without an error, but did not write {file.name}")
@@ -150,7 +150,7 @@ def in_processes(
             if error is None:
                 yield futures[future], future.result()
             else:
-                # Only this task is lost, not the others.
+                # The results of the other tasks are kept.
                 yield futures[future], Exception(f"{type(error).__name__}: {error}")
 
 
@@ -172,7 +172,7 @@ def worker_pool(jobs: int | None) -> Iterator[ProcessPoolExecutor]:
 
 @contextmanager
 def unwound_when_terminated() -> Iterator[None]:
-    """Let SIGTERM end this process by an exception, so that it cleans up."""
+    """Make SIGTERM raise an exception, so that this process cleans up before it ends."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -200,8 +200,8 @@ def _prepare(folder: str, parent: int) -> None:
 
 def _end_with(parent: int, folder: str) -> None:
     """End this process when its parent has been killed; no signal reports that."""
-    # The process that forked this one: the parent, or a fork server that ends with the parent. An
-    # orphan gets another parent, even while the dead one still is a zombie.
+    # This process was forked by the parent, or by a fork server that ends with the parent. When the
+    # forking process dies, `getppid` changes at once, even if the dead process is still a zombie.
     forked_by = os.getppid()
     while os.getppid() == forked_by and _exists(parent):
         time.sleep(1)
@@ -226,7 +226,7 @@ def _stop(number: int, frame: object) -> None:
 
 
 def _kill(process: subprocess.Popen[str]) -> None:
-    # After a process has been waited for, another process may have its number.
+    # After a process has been waited for, its number may belong to another process.
     if process.poll() is None:
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)

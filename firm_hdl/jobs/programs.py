@@ -1,4 +1,4 @@
-"""Find the programs that are run, such as GHDL."""
+"""Find external programs, such as GHDL."""
 
 from __future__ import annotations
 

@@ -1,12 +1,12 @@
 """Static figures of a message type: how deep, how large and how regular it is.
 
-The paper explains test results by such figures. Each is an attribute of a type that follows from
-those of its parts. It is computed once per type; sizes and alignment once per type and offset
-modulo 8 at which the type may start. Nothing is unrolled and nothing recurses, so that neither
+The paper explains test results by such figures. Each figure is an attribute of a type, computed
+from the attributes of its parts. It is computed once per type; sizes and alignment are computed
+once per type and start offset modulo 8. Nothing is unrolled and nothing recurses, so that neither
 arrays of millions of elements nor deep nesting take long.
 
-The shortest message is the one in which every part is as short as possible, and the longest
-likewise. This holds on any wire, because a part that starts later never ends earlier.
+In the shortest message, every part is as short as possible; in the longest, as long as possible.
+This holds on any wire, because a part that starts later never ends earlier.
 """
 
 from __future__ import annotations
@@ -55,15 +55,16 @@ class Metrics:
     max_bytes : int or None
         Size of the longest message; `None` if sizes are not limited.
     aligned, padded, shifting : int or None
-        Number of values on the wire (lengths of sequences and strings included) that never have
-        padding before them, that have the same padding in each message, and whose padding differs.
+        Number of values on the wire (lengths of sequences and strings included) by their padding:
+        those that never have padding before them, those that have the same padding in each
+        message, and those whose padding differs.
     features : tuple of str
         Keys of `FEATURES` that occur in the type or in any message in it.
     definition_bytes : int
         Size of the text that defines the type; that of the whole file for a message of a service or
         an action.
     unsized : str
-        Why sizes and alignment are `None`: the type has a field that no wire format has
+        Why sizes and alignment are `None`: the type has a field without a wire format
         (:func:`firm_hdl.wire.refusals`). Empty for all other types.
     """
 
@@ -98,7 +99,7 @@ class _Type:
     Attributes
     ----------
     after : list of int
-        Residues where it may end, by the residue where it starts.
+        Residues where a value may end, by the residue where it starts.
     min_bytes : list of int
         Bytes of the shortest value, by the residue where it starts.
     max_bytes : list of int or None
@@ -175,7 +176,7 @@ class Analyses:
         largest = None if known.max_bytes is None else header + known.max_bytes[0]
         return header + known.min_bytes[0], largest, *self._alignment(message)
 
-    # The attributes of a type are computed from those of its parts, which are known by then.
+    # The attributes of a type are computed after those of its parts.
 
     def _analyse(self, message: Message) -> _Type:
         kinds = [item.type for item in message.fields]
@@ -252,7 +253,7 @@ class Analyses:
         return min(size, self._rules.max_align)
 
     def _repeated(self, kind: FieldType, start: int, count: int, longest: bool) -> int | None:
-        """Add up the sizes of elements; their start recurs modulo 8, so few are computed."""
+        """Add up the sizes of elements; compute few of them, because starts recur modulo 8."""
         seen: dict[int, tuple[int, int]] = {}
         at, done = start, 0
         while done < count:
@@ -319,7 +320,7 @@ class Analyses:
         return self._places[root]
 
     def _direct_places(self, key: _Key) -> tuple[list[int], list[_Key]]:
-        """Count the values of a type without its message fields; list these and their starts."""
+        """Count the values of a type except its message fields; list those fields and starts."""
         message, at = key
         counts = [0, 0, 0]
         parts: list[_Key] = []

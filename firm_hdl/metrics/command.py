@@ -25,7 +25,7 @@ def metrics_text(
     *,
     bar: bool,
 ) -> tuple[str, DefinitionError | None]:
-    """Write the figures of types. A service or an action gives those of its messages.
+    """Write the figures of types. A service or an action gives the figures of its messages.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ __all__ = ["FORMATS", "report"]
 
 _COLUMNS = tuple(item.name for item in fields(Metrics))
 
-# Columns of the table with their headings. The table leaves out some figures that are easy to find.
+# Columns of the table with their headings. The table does not have all figures.
 _HEADINGS = {
     "name": "name",
     "depth": "depth",

@@ -15,7 +15,7 @@ def closure(roots: Iterable[Message]) -> list[Message]:
     """List messages and all messages in them, each once and after those in its fields.
 
     The stack is explicit, because definitions may nest deeper than Python's recursion limit.
-    Messages of the same name are taken for the same type, as in one library.
+    Messages of the same name count as the same type, as in one library.
     """
     done: dict[str, Message] = {}
     for root in roots:
@@ -34,12 +34,12 @@ def closure(roots: Iterable[Message]) -> list[Message]:
 
 
 def rebuilt(message: Message, change: Callable[[Message], Message]) -> Message:
-    """Return a message type with every message in it changed, each once and the nested ones first.
+    """Return a message type with every message in it changed: each once, nested messages first.
 
     Parameters
     ----------
     change : callable
-        Called with each message, whose nested messages have been changed already.
+        Returns the changed message. Messages in its argument have been changed already.
     """
     made: dict[str, Message] = {}
 

@@ -21,9 +21,9 @@ class Service:
         Full name: ``std_srvs/srv/SetBool`` in ROS 2, ``std_srvs/SetBool`` in ROS 1.
     dialect : "ros1" or "ros2"
     request, response : Message
-        Named ``<name>_Request`` and ``<name>_Response`` in ROS 2, without the underscore in ROS 1.
+        Named ``<name>_Request`` and ``<name>_Response`` in ROS 2; in ROS 1, without underscore.
     event : Message or None
-        ``<name>_Event``, which ROS 2 publishes for introspection from iron on.
+        ``<name>_Event``, which ROS 2 publishes for introspection since iron.
     comment : str
         The comment at the head of the file.
     text : str

@@ -154,10 +154,11 @@ class Message:
 
     @cached_property
     def leaf_count(self) -> int:
-        """Number of fields of all levels that are not messages; an array counts one element.
+        """Number of fields of all levels that are not messages.
 
-        A sequence counts one element, too, and a message without fields counts as one. The number
-        can grow exponentially with the number of types, so it is never counted field by field.
+        An array or a sequence counts as one element, and a message without fields counts as one.
+        The number can grow exponentially with the number of types. Therefore, each type is counted
+        only once.
         """
         self._evaluate_children("leaf_count")
 

@@ -64,10 +64,10 @@ class Primitive:
 
     @property
     def has_wire_format(self) -> bool:
-        """Whether all systems write it with the same bytes; false for `long double` only.
+        """Whether all systems write the type with the same bytes; false for `long double` only.
 
-        In OMG CDR, a `long double` is an IEEE quadruple. ROS 2 uses the compiler's type of that
-        name, and Fast CDR warns that Windows and Unix cannot exchange it.
+        In OMG CDR, a `long double` is an IEEE 754 quadruple. ROS 2 uses the compiler's type of that
+        name. Fast CDR warns that Windows and Unix cannot exchange such values.
         """
         return self.name != "long double"
 

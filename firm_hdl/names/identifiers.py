@@ -102,7 +102,7 @@ def flat_names(
 def _assign(wanted: Mapping[_Key, str], reserved: Collection[str]) -> dict[_Key, str]:
     taken = {name.lower() for name in reserved}
     given: dict[_Key, str] = {}
-    # Legal names come first, so that the changed name of another one never takes their place.
+    # Legal names come first, so that no other name takes a legal one when it is changed.
     for key, text in wanted.items():
         if identifier(text) == text and text.lower() not in taken:
             taken.add(text.lower())

@@ -1,7 +1,8 @@
 """Reserved words of VHDL and Verilog, in lower case.
 
-IEEE Std 1076-2008, clause 15.10 (VHDL), with the additions of IEEE Std 1076-2019; and IEEE Std
-1800-2017, annex B (SystemVerilog), which contains those of IEEE Std 1364-2005 (Verilog).
+The words of VHDL are those of IEEE Std 1076-2008, clause 15.10, and the additions of IEEE Std
+1076-2019. The words of SystemVerilog are those of IEEE Std 1800-2017, annex B. Annex B contains
+all words of Verilog (IEEE Std 1364-2005).
 """
 
 from __future__ import annotations

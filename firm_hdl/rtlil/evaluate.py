@@ -102,7 +102,7 @@ def _binary(kind: str, a: int, b: int, size: int) -> int:
     if kind == "$shl":
         return a << min(b, 1 << 16)
     if kind in _SHIFTS:
-        # A has its own width: if it is signed and negative, the shift keeps the sign.
+        # A negative `a`, from a signed operand, is shifted arithmetically.
         return a >> min(b, 1 << 16)
     results = {
         "$add": a + b,

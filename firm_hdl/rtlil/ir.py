@@ -47,7 +47,7 @@ class Bits:
 
 @dataclass(frozen=True, slots=True)
 class Slice:
-    """`width` bits of a wire from bit `low` up. `bare`: printed as the wire's name alone."""
+    """`width` bits of a wire from bit `low` up; `bare` if the text has the wire's name alone."""
 
     wire: str
     low: int
@@ -164,7 +164,7 @@ class Case:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Switch:
-    """The first case with a pattern that matches `selector` is taken."""
+    """A choice: the first case with a pattern that matches `selector` is taken."""
 
     selector: Spec
     cases: tuple[Case, ...]

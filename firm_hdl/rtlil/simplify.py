@@ -1,8 +1,9 @@
 """Simplify a module: replace values that are constant or equal to another value.
 
-Amaranth emits operators on constants unchanged. Generated circuits have many of them, such as a
-comparison with a constant 0, or a condition that no message of the type can meet. Registers with a
-constant value are replaced, too; memories and instances stay. A constant signal keeps its name.
+Amaranth does not evaluate operators on constants. Generated circuits have many such operators: for
+example, a comparison with a constant 0, or a condition that no message of the type can meet.
+Registers with a constant value are replaced, too; memories and instances stay. A constant signal
+keeps its name.
 """
 
 from __future__ import annotations
@@ -212,7 +213,7 @@ def _append(result: list[Statement], statement: Assign) -> None:
 
 
 def _whole_target(process: Process) -> Spec | None:
-    """Return the wire that a process drives, which is the target of its first assignment."""
+    """Return the wire that a process drives: the target of the first assignment."""
     first = process.body[0] if process.body else None
     if not isinstance(first, Assign) or not first.target:
         return None
@@ -232,7 +233,7 @@ def _overlaid(value: Spec, statement: Assign) -> Spec:
 
 
 def _split(selector: Spec) -> tuple[dict[int, str], Spec, list[int]]:
-    """Split a selector into its constant bits and the rest, with the pattern positions of each."""
+    """Split a selector into constant bits by pattern position, other bits, and their positions."""
     fixed: dict[int, str] = {}
     kept: list[Spec] = []
     positions: list[int] = []

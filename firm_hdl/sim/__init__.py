@@ -1,8 +1,8 @@
 """Simulation helpers to test accelerators in plain Amaranth.
 
-For a user's own testbenches: `send_packets`, `receive_packets`, `MessagePort`, `watch`. To run
-converters as functions: `loopback`, `decode`, `encode`. To run a circuit many times: `Harness` with
-`RunOptions`.
+`send_packets`, `receive_packets`, `MessagePort` and `watch` are for a user's own testbenches.
+`loopback`, `decode` and `encode` run converters as functions. `Harness` with `RunOptions` runs one
+circuit many times.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """A fast bench for whole designs: one testbench that drives and observes all streams.
 
-A bench packs all signals that it drives into a few wide signals, and all that it reads in every
-cycle into one. It also drives the clock. So the simulator settles once per clock edge, and payloads
-are read only where a transfer happens or waits. This is several times faster than one testbench per
-stream, which matters for thousands of cases. For users' own testbenches, see
+A bench packs all signals that it drives into a few wide signals, and all signals that it reads in
+every cycle into one. It also drives the clock. So the simulator settles once per clock edge. A
+payload is read only if its transfer happens or waits. This is several times faster than one
+testbench per stream, which matters for thousands of cases. For users' own testbenches, see
 :mod:`firm_hdl.sim.streams`.
 """
 
@@ -80,15 +80,15 @@ class Bench:
     probes : sequence of Value
         Values that runs may observe.
     keeps_state : bool
-        Between runs, the design is reset as hardware is: registers without a reset and memories
-        keep their values. Otherwise each run starts with the initial values of all.
+        Between runs, only reset the design, as in hardware: memories and registers without a reset
+        keep their values. Otherwise each run starts with all initial values.
 
     Attributes
     ----------
     names : list of str
         Names of all streams.
     cycles : int
-        Number of cycles of the last run, also if that run failed.
+        Number of cycles of the last run, even if that run failed.
     """
 
     def __init__(
@@ -120,17 +120,17 @@ class Bench:
         self.probes = [_gathered(top, [value]) for value in probes]
         self._circuit = top
         self._simulator = Simulator(divided(top))
-        # A waveform shows modules as they were written.
+        # A waveform shows the modules as they were written, so it needs a second simulator.
         self._for_waveforms: Simulator | None = None
         self._started: set[Simulator] = set()
 
     def run(self, job: Job) -> int:
-        """Run a job from reset; return the number of cycles, the settling included.
+        """Run a job from reset; return the number of cycles, including those of the settling.
 
         Raises
         ------
         ValueError
-            If a bench that keeps its state shall write a waveform.
+            If the job asks for a waveform, and the bench keeps its state.
         """
         vcd = job.options.vcd
         if vcd is not None and self._keeps_state:
@@ -200,7 +200,7 @@ class Bench:
             self._reset(ctx)
 
     def _reset(self, ctx: SimulatorContext) -> None:
-        """End the last cycle of a run, and reset the design with its inputs as they are."""
+        """End the last cycle of a run, and reset the design without changing its inputs."""
         for is_reset in (0, *[1] * RESET_CYCLES):
             ctx.set(self.clock, 0)
             ctx.set(self.reset, is_reset)
@@ -248,7 +248,8 @@ def in_chunks(items: Sequence[T]) -> Iterator[Sequence[T]]:
     """Yield items in groups, each of a good size for one module.
 
     The simulator evaluates all combinational assignments of a module again whenever one of their
-    inputs changes. So hundreds of assignments in one module are slow; so are hundreds of modules.
+    inputs changes. Hundreds of assignments in one module are therefore slow, and so are hundreds
+    of modules.
     """
     for start in range(0, len(items), CHUNK):
         yield items[start : start + CHUNK]
@@ -318,7 +319,7 @@ class _Watch:
         return fired, valid & ~ready
 
     def _rest(self, valid: int) -> None:
-        """Count a cycle without transfers; `valid`: bit mask of the ports that offer one."""
+        """Count a cycle without transfers; `valid` is the bit mask of the ports that offer one."""
         self.quiet += 1
         self.settled = 0 if valid & self.watched else self.settled + 1
         self.over = self.finished and self.settled >= self.job.options.settle

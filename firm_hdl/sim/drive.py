@@ -17,7 +17,7 @@ __all__ = ["Drive"]
 
 @dataclass(slots=True)
 class _Source:
-    """A stream that the bench sends on: the payload that is offered, and those after it."""
+    """A stream on which the bench sends: the offered payload, and the payloads after it."""
 
     valid: int
     word: int
@@ -64,7 +64,7 @@ class Drive:
         fired : int
             Bit mask of the ports that transferred in this cycle.
         held : int
-            Bit mask of the ports that offered a transfer that was not taken.
+            Bit mask of the ports whose offered transfer was not taken.
         """
         held &= self.gates & self.control
         control = self.control

@@ -40,12 +40,12 @@ class Harness:
     message : Message or None
         Their message type, so that errors can name missing leaves.
     gated : bool
-        Leaf streams between the two can be stalled.
+        Whether leaf streams between the two converters can be stalled.
     probes : sequence of Value
         Values that a run may observe.
     keeps_state : bool
-        Between runs, the converters are reset as hardware is, by their reset, and what has none
-        keeps its values. Otherwise each run starts with the initial values of all.
+        Between runs, only reset the converters, as in hardware: memories and registers without a
+        reset keep their values. Otherwise each run starts with all initial values.
     """
 
     def __init__(
@@ -122,7 +122,7 @@ class Harness:
     def _run(
         self, sources: dict[str, Iterable[int]], messages: int, size: int, options: RunOptions
     ) -> RunResult:
-        """Run until `messages` messages have come; `size`: bytes or transfers that are sent."""
+        """Run until `messages` messages have come; `size` is the number of bytes or transfers."""
         if self.deserializer is not None and self.serializer is not None and not self.gated:
             self._refuse_leaf_stalls(options.stalls)
         if options.limit is None:

@@ -22,12 +22,12 @@ class RunOptions:
     deadline : int
         Most cycles in a row without any transfer, in addition to the longest stall.
     limit : int or None
-        Most cycles in total. `None`: 1,000,000; a :class:`.Harness` allows many more than any valid
+        Most cycles in total. `None`: 1,000,000; for a :class:`.Harness`, many more than any valid
         packets take.
     settle : int
         Cycles without any transfer after which a finished run ends.
     vcd : path or None
-        Where to write a waveform. Slow.
+        File for a waveform, which makes the run slow.
     observe : callable or None
         Called with the values of the bench's probes, before the first clock edge and then in each
         cycle after all signals have settled.
@@ -50,8 +50,8 @@ class Job:
     sources : dict of str to iterable of int
         Payloads to send, as bits, by the name of the stream.
     takes : dict of str to callable
-        By the name of a stream: called at each of its transfers, with the cycle and the payload's
-        bits.
+        Functions by the name of a stream. They are called at each transfer of the stream, with the
+        cycle and the payload's bits.
     finished : callable
         Returns whether everything expected has come; called after each cycle with a transfer.
     outstanding : callable

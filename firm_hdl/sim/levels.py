@@ -1,9 +1,9 @@
 """Combinational logic divided by depth, so that a simulation evaluates less of it.
 
-Amaranth's simulator has one process for the combinational logic of a module. A change of any input
-runs the whole process, and so does a change of a signal that the process itself drives: a module
-with a chain of n signals is evaluated n times in a cycle. With processes for a few signals of one
-depth each, a change runs only what depends on it. Values are the same.
+Amaranth's simulator has one process for the combinational logic of a module. The whole process runs
+again when an input changes, or a signal that the process itself drives. So a module with a chain of
+n signals is evaluated n times in a cycle. This module makes many processes, each for a few signals
+of one depth. Then a change runs only the processes that depend on it. The values do not change.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from amaranth.hdl._mem import MemoryInstance
 
 __all__ = ["divided"]
 
-# Fewer signals in a process: less is evaluated in vain, but there are more processes to generate.
+# Signals per process. With fewer signals, less is evaluated without need, but there are more
+# processes to generate.
 PART = 12
 
 
@@ -44,7 +45,7 @@ def _divide(fragment: Fragment) -> None:
 
 
 def _driving(statements: Iterable[Statement], signals: SignalSet) -> Iterator[Statement]:
-    """Yield what drives the given signals."""
+    """Yield the statements, or the parts of them, that drive the given signals."""
     for statement in statements:
         if isinstance(statement, Switch):
             cases = [
@@ -58,10 +59,11 @@ def _driving(statements: Iterable[Statement], signals: SignalSet) -> Iterator[St
 
 
 class _Levels:
-    """The signals that statements drive, and how deep they are.
+    """The signals that statements drive, and the depth of each.
 
-    A depth is the number of driven signals on the longest path to a signal. Loops exist only among
-    signals that one statement drives; their order does not matter.
+    The depth of a signal is the number of driven signals on the longest path to it. Signals of one
+    statement are in one group, and so are those of statements that share a signal. Loops exist only
+    inside a group.
     """
 
     def __init__(self, statements: Iterable[Statement]):
@@ -89,7 +91,7 @@ class _Levels:
                 self.groups[signal] = group
 
     def found(self) -> list[SignalSet]:
-        """Return the signals of each depth, in the order of depths; at most PART or so together."""
+        """Return sets of about PART signals of one depth, in the order of depths."""
         levels: dict[int, list[SignalSet]] = {}
         placed = SignalSet()
         for signal, group in self.groups.items():

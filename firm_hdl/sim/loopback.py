@@ -1,4 +1,4 @@
-"""Converters run as functions: packets in, packets out; every stream in between is checked.
+"""Run converters as functions: packets in, packets out; every stream in between is checked.
 
 `loopback` runs a deserializer connected to a serializer. `decode` and `encode` run one of the two
 alone. Each function builds its circuit and runs it once. To run one circuit many times, use
@@ -121,14 +121,15 @@ def loopback(
     wire, bus_bytes, max_message_bytes
         As for the converters.
     stalls : Stalls, mapping or None
-        Stalls of ``packets_in``, ``packets_out``, ``status``, ``sent_status`` and ``message`` with
-        everything below it (``message.header.frame_id.items``). A single record is for all of them.
+        Stalls of ``packets_in``, ``packets_out``, ``status``, ``sent_status``, ``message``, and
+        streams below ``message`` (``message.header.frame_id.items``). A single record applies to
+        all of them.
     deadline : int
         Most cycles without a transfer on any stream, in addition to the longest stall.
     limit : int or None
         Most cycles in total; `None`: many more than any valid packets take.
     vcd : path or None
-        Where to write a waveform. Slow.
+        File for a waveform, which makes the run slow.
 
     Raises
     ------
@@ -198,12 +199,12 @@ def encode(
 
 
 def _select(kind: type[T], result: RunResult) -> T:
-    """Return those observations of a run that a function returns."""
+    """Return the observations of a run that have a field in `kind`."""
     return kind(**{item.name: getattr(result, item.name) for item in fields(kind)})
 
 
 def _as_transfers(plan: Plan, message: Message, value: object) -> Mapping[int, list[Payload]]:
-    """Return the transfers of a message, which is given as transfers or as a value."""
+    """Return the transfers of a message that is given as transfers or as a value."""
     if isinstance(value, Mapping) and value and all(isinstance(key, int) for key in value):
         return value
     return to_transfers(plan, message, value)

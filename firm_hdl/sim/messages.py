@@ -1,8 +1,8 @@
 """Whole messages on message interfaces, for users' own testbenches.
 
-A :class:`MessagePort` has the leaf of each stream. All leaves transfer independently. A sending
+A :class:`MessagePort` has the stream of each leaf. All leaves transfer independently. A sending
 leaf offers its transfers as soon as it can. A receiving leaf is ready only while more of its
-transfers are known to follow; the lengths that have arrived determine this.
+transfers are known to follow. The lengths that have arrived determine the number of transfers.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class MessagePort:
         Parameters
         ----------
         value : mapping or object
-            A dict by field names, or an object with such attributes, such as those of rosbags.
+            A dict by field names, or an object with the fields as attributes, as in rosbags.
         stalls : Stalls, mapping or None
             Cycles in which leaves do not offer their next transfer, by ``message.`` and the leaf's
             path.

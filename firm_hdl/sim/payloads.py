@@ -2,8 +2,8 @@
 
 Simulation is several times faster with integers than with structures. So :mod:`firm_hdl.sim` moves
 payloads as bits of a stream, and converts them only at its interfaces. The payload of a leaf is an
-integer, which is negative for a negative value of a signed leaf; a float is its bits. The payload
-of `items` is a tuple of the lanes, and whether `last` is set.
+integer, which is negative for a negative value of a signed leaf. A float is given by its bits. The
+payload of `items` is a tuple: the lanes, and whether `last` is set.
 
 Bits that a receiver has to ignore are random in simulation, so that a circuit that uses them fails.
 """
@@ -78,10 +78,10 @@ def packet_beats(
     Parameters
     ----------
     noise : random.Random or None
-        Generator of the bytes of lanes that are not valid; `None`: they are 0.
+        Generator for the bytes of lanes that are not valid; `None`: these bytes are 0.
     counts : bool
-        In beats that are not the last, `count` is random, too. A deserializer ignores it there;
-        other components need not.
+        Make `count` random, too, in beats that are not the last. A deserializer ignores `count`
+        there; other components may not.
     """
     count_at = 8 * bus_bytes
     last_at = count_at + bus_bytes.bit_length()

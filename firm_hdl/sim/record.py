@@ -67,7 +67,7 @@ class RunResult:
 
     @property
     def end_cycle(self) -> int:
-        """Cycle of the last transfer out, that of a status included; -1 without any."""
+        """Cycle of the last transfer out, statuses included; -1 without any."""
         return max(self.last_cycle, self.last_status_cycle)
 
 
@@ -85,7 +85,7 @@ class Recorder:
     expected : int
         Number of packets and of statuses that are expected.
     decodes, encodes : bool
-        The harness has a deserializer; it has a serializer.
+        Whether the harness has a deserializer, and whether it has a serializer.
     table : TransferTable or None
         Transfers that messages require, to name missing leaves.
     """
@@ -183,7 +183,7 @@ class Recorder:
         return all(len(got) >= self.expected for got in self.counted.values())
 
     def outstanding(self) -> str:
-        """Describe what has not come, for an error."""
+        """Describe the packets, statuses and leaves that have not come, for an error."""
         missing = [
             f"{name} ({len(got)} of {self.expected})"
             for name, got in self.counted.items()

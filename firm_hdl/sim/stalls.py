@@ -1,8 +1,8 @@
 """Stalls: the cycles in which a stream may not transfer, as one frozen record with a seed.
 
-A record can be used for any stream. Each stream gets a pattern of its own, which depends only on
-the seed and on the stream's name. So the record alone makes a run reproducible, and two streams
-with the same record have different patterns.
+A record can be used for any stream. The random pattern of a stream depends only on the record and
+on the stream's name. So a run is reproducible, and two streams with the same record have different
+patterns. A fixed `pattern` is the same for all streams.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class Stalls:
         return self.max_cycles if self else 0
 
     def cycles(self, name: str) -> Iterator[bool]:
-        """Yield, without end, whether the stream of that name is stalled in each cycle."""
+        """Yield for each cycle, without end, whether the stream of that name is stalled."""
         while self.pattern:
             yield from (bit == "0" for bit in self.pattern)
         # A string seeds the same way in every process and Python release, unlike a hash.
@@ -91,8 +91,9 @@ Stalls.none = Stalls()
 StallPlan: TypeAlias = "Stalls | Mapping[str, Stalls] | None"
 """Stalls of many streams: one record for all of them, or records by stream name.
 
-A name also stands for all streams below it: ``message`` for every leaf, ``message.header`` for
-those of the header. The longest name that fits a stream counts. Other streams are not stalled.
+A name also includes all streams below it: ``message`` includes every leaf, and ``message.header``
+the leaves of the header. The longest name that fits a stream counts. Streams that no name fits are
+not stalled.
 """
 
 

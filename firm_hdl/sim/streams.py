@@ -1,11 +1,11 @@
 """Drivers and monitors of single streams, for users' own testbenches.
 
-All are async functions to be awaited in a testbench of `amaranth.sim`. Functions that are to run at
-the same time need separate testbenches. Each function starts in the current cycle and returns right
-after the clock edge of its last transfer. Payloads are the values that `ctx.set` and `ctx.get` use
-for the stream.
+All are async functions; await them in a testbench of `amaranth.sim`. To run functions at the same
+time, use separate testbenches. Each function starts in the current cycle and returns right after
+the clock edge of its last transfer. Payloads are the values that `ctx.set` and `ctx.get` use for
+the stream.
 
-The receiving side checks the deadline: if no transfer comes for that many cycles, it raises
+The receiving side checks the deadline. If no transfer comes for that many cycles, it raises a
 `DeadlineError`, which names the transfers that were still expected.
 """
 
@@ -49,7 +49,7 @@ async def send(
     Parameters
     ----------
     payloads : iterable
-        Payloads; an integer is taken as bits.
+        Payloads. An integer is interpreted as the bits of a payload.
     stalls : Stalls
         Cycles in which the next payload is not offered.
     name : str
@@ -65,7 +65,7 @@ async def send(
         else:
             ctx.set(port.payload, payload)
         ctx.set(port.valid, 1)
-        # Not `until`: its generator raises if a simulation ends with an error in the meantime.
+        # Do not use `until`: its generator raises if the simulation ends with an error before it.
         taken = 0
         while not taken:
             _, _, taken = await ctx.tick().sample(port.ready)

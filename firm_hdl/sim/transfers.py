@@ -1,8 +1,8 @@
 """Count, split and join the transfers of messages.
 
-Each length determines the number of transfers of the leaves directly below it. So one table, made
-from the layout, gives the transfers that a message still requires, in whatever order its leaves
-transfer.
+Each length determines the number of transfers of the leaves directly below it. A table, made from
+the layout, has these relations. It gives the transfers that a message still requires, in whatever
+order its leaves transfer.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ class TransferTable:
     start : tuple of (leaf, count)
         Transfers that every message has.
     below : dict of int to tuple of (leaf, count)
-        By the leaf of a length: transfers for each element that the length counts.
+        For the leaf of a length: the transfers for each element that the length counts.
     items : dict of int to (leaf, lanes)
-        By the leaf of a length: the leaf of the items that it counts, and its items per transfer.
+        For the leaf of a length: the leaf of the items that it counts, and the items per transfer.
     """
 
     start: tuple[tuple[int, int], ...]

@@ -1,8 +1,8 @@
 """Convert values of a message to transfers of its leaves, and back.
 
-A value is a nested dict by ROS field names, or an object with such attributes, such as a message of
-rosbags. The code here walks over the message model and finds leaves by their paths only. So it is
-independent of the plan that it is used to test.
+A value is a nested dict by ROS field names, or an object with the fields as attributes, such as a
+message of rosbags. The code here walks over the message model and finds leaves only by their paths.
+So the code is independent of the plan that it tests.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ def to_transfers(
         Mappings have the ROS field names as keys, objects have them as attributes (rosbags'
         spellings ``from_`` and ``nanosec`` are accepted). Numbers may be Python's or numpy's. The
         bits of a float are kept if it is a numpy scalar or array of the field's own width. Text is
-        `str`, or `bytes` without conversion (`wstring`: UTF-16 units as numbers). A ``byte`` may be
-        -128 to 255, or one byte of `bytes`.
+        `str`, or `bytes` without conversion. For a `wstring`, UTF-16 units as numbers are accepted
+        instead of `bytes`. A ``byte`` is a number from -128 to 255, or `bytes` of length 1.
     check_bounds : bool
         Raise an error for more elements than a declared bound.
 
@@ -70,14 +70,15 @@ def from_transfers(
 ) -> dict[str, Any]:
     """Return the value of a message, given its transfers.
 
-    Numbers become `int`, `float` and `bool`, text `str` (or `bytes` if it is not UTF-8, a list of
-    numbers if a `wstring` has units over 0xFFFF), arrays and sequences lists, messages dicts.
+    Numbers become `int`, `float` and `bool`, arrays and sequences become lists, and messages become
+    dicts. Text becomes `str`. Text that is not UTF-8 becomes `bytes`, and a `wstring` with units
+    over 0xFFFF becomes a list of numbers.
 
     Parameters
     ----------
     exact : bool
-        Return floats as their bits, because a Python float does not keep every NaN, text always as
-        `bytes`, and wide text always as a list of numbers.
+        Return floats as their bits, because a Python float does not keep every NaN. Return text
+        always as `bytes`, and wide text always as a list of numbers.
 
     Raises
     ------
@@ -257,7 +258,7 @@ def _spellings(item: Field) -> list[str]:
 
 
 def _bits(kind: Primitive, value: Any, where: str, *, either: bool = False) -> int:
-    """Return the number that a leaf transfers; `either`: accept signed and unsigned values."""
+    """Return the number that a leaf transfers; with `either`, accept signed and unsigned values."""
     if kind.kind == "float":
         return _float_bits(kind, value, where)
     if kind.kind == "bool":
@@ -286,7 +287,7 @@ def _signed(bits: int, width: int) -> int:
 
 def _float_bits(kind: Primitive, value: Any, where: str) -> int:
     if getattr(value, "dtype", None) == f"float{8 * kind.bytes}":
-        # Taken from the array's bytes, because conversion to a Python float may change a NaN.
+        # Use the bytes of the array, because conversion to a Python float may change a NaN.
         return int.from_bytes(value.astype(value.dtype.newbyteorder("<")).tobytes(), "little")
     if isinstance(value, bool) or not hasattr(value, "__float__"):
         raise TypeError(f"{where} must be a number, not {value!r}")

@@ -1,6 +1,6 @@
 """Check the rules of streams.
 
-Rules 1 and 2 are those rules of `amaranth.lib.stream` that can be observed in every cycle. Rules 3
+Rules 1 and 2 are the rules of `amaranth.lib.stream` that can be observed in every cycle. Rules 3
 and 4 are those of packets (:func:`firm_hdl.gateware.signatures.packet_layout`):
 
 1. Once `valid` is high, it stays high until the transfer.
@@ -46,7 +46,7 @@ class StreamRuleError(AssertionError):
 class StreamRules:
     """Rules 1 and 2 for a set of streams, checked in each cycle.
 
-    Streams are bits of integers, so that a cycle in which no transfer waits is checked quickly.
+    Each stream is a bit in an integer, so that a cycle in which no transfer waits is checked fast.
 
     Attributes
     ----------
@@ -118,7 +118,7 @@ def watch(streams: Mapping[str, stream.Interface]) -> Callable[[SimulatorContext
     Parameters
     ----------
     streams : mapping of str to stream.Interface
-        Streams by name, for errors. Streams of packets are also checked for rules 3 and 4.
+        Streams by name, for errors. Packet streams are also checked for rules 3 and 4.
 
     Raises
     ------

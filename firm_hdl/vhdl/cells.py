@@ -1,8 +1,8 @@
 """Amaranth's operators in terms of `ieee.numeric_std`.
 
-The rules of widths are those of Yosys (`kernel/calc.cc`). Operands are extended to the width of the
-result, or to that of the wider operand if it is larger; they are sign-extended only if both are
-signed. The result is cut to its width.
+The rules of widths are those of Yosys (`kernel/calc.cc`). Operands are extended to the largest of
+three widths: those of the result and of both operands. They are sign-extended only if both are
+signed. The result is then cut to its own width.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Cells:
         return self._values.width(output(cell))
 
     def is_condition(self, cell: Cell) -> bool:
-        """Return whether a result is better written as a condition: it is made of comparisons."""
+        """Return whether a result is made of comparisons, so that it reads best as a condition."""
         if cell.kind in COMPARISONS:
             return spec_width(cell.ports["A"]) > 1 or spec_width(cell.ports["B"]) > 1
         if cell.kind in ("$and", "$or", "$not") and self.width(cell) == 1:
@@ -169,11 +169,11 @@ class Cells:
             a, b = b, a
         if spec_width(a) == 1:
             return infix(operator, values.unsigned(a, width), self._short(b))
-        # numeric_std extends the shorter operand by itself.
+        # The operators of numeric_std extend the shorter operand.
         return infix(operator, self._short(a), self._short(b))
 
     def _short(self, spec: Spec) -> Expression:
-        """Write an operand that numeric_std may extend: VHDL-2008 adds single bits, too."""
+        """Write an operand that numeric_std may extend; in VHDL-2008, also a single bit."""
         return self._values.logic(spec) if spec_width(spec) == 1 else self._values.unsigned(spec)
 
     def _product(self, cell: Cell, width: int, signed: bool) -> Expression:

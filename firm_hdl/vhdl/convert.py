@@ -1,12 +1,12 @@
 """Convert any Amaranth design to VHDL-2008.
 
 The design's hierarchy stays: one entity and architecture for each module, in a file of its own.
-Signals and instances keep their names as far as VHDL allows; `Vhdl.entities` lists all names. The
+Signals and instances keep their names if VHDL allows them; `Vhdl.entities` lists all names. The
 text depends on the design only: it has no paths, no dates and no source locations.
 
-Types: one bit is `std_logic`, several bits are `unsigned`, whatever their sign, because in RTLIL
-each operator has its own flag for signed operands. Ports of the outermost entity are
-`std_logic_vector`, or `unsigned` by option.
+A signal of one bit is `std_logic`. A signal of several bits is `unsigned`, even if it is signed in
+Amaranth, because in RTLIL each operator has its own flag for signed operands. Ports of the
+outermost entity are `std_logic_vector`, or `unsigned` by option.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ class Vhdl:
     files : mapping of str to str
         Texts by file name, in an order in which they compile.
     entities : mapping of str to EntityNames
-        Names of ports, signals, memories and instances, by module of the netlist. Wires without
-        bits, and generated wires (``$1``) that became part of an expression, have no entry.
+        Names of ports, signals, memories and instances, by module of the netlist. A wire without
+        bits has no entry, nor has a generated wire (``$1``) that became part of an expression.
     """
 
     top: str
@@ -133,7 +133,7 @@ def _port_names(netlist: Design, entities: Mapping[str, str]) -> dict[str, dict[
 
 
 def _avoided(netlist: Design, module: Module) -> Collection[str]:
-    """Return words that are left to the ports of the outermost entity, which users see."""
+    """Return the words that only ports of the outermost entity may have, because users see them."""
     return () if module is netlist.top else AMS
 
 

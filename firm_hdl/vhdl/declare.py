@@ -74,7 +74,7 @@ class Names:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Driver:
-    """The driver of a wire, and a name for the wire in case that the design has none."""
+    """The driver of a wire, and a name for the wire if the design has none."""
 
     kind: DriverKind
     name: str
@@ -149,7 +149,7 @@ def _request(graph: Graph, wire: str, owner: str, driver: _Driver) -> _Request:
 
 
 def _signals(graph: Graph, requests: list[_Request], scope: Scope) -> Iterator[Signal]:
-    """Return the requested signals their identifiers; names of the design come first."""
+    """Give the requested signals their identifiers; names of the design come first."""
     given: dict[str, str] = {}
     for generated in (False, True):
         given |= scope.give_all({r.wire: r.name for r in requests if r.generated is generated})
@@ -168,10 +168,10 @@ def _ports(
     *,
     vectors: bool,
 ) -> tuple[list[Port], list[Signal]]:
-    """List the ports, and the inner signals of those that logic cannot assign to.
+    """List the ports, and the inner signals of ports that logic cannot assign to.
 
-    A register needs an inner signal for its initial value, because not all tools use that of a
-    port. An instance's output needs one if its type differs from that of the port.
+    A register needs an inner signal for its initial value, because some tools ignore the initial
+    value of a port. An instance's output needs an inner signal if its type is not that of the port.
     """
     source_of = {owner: wire for wire, owner in graph.name_of.items()}
     # Ports of submodules are `unsigned`, those of foreign components `std_logic_vector`.
@@ -197,7 +197,7 @@ def _ports(
 
 
 def part_names(module: Module) -> dict[str, str]:
-    """Name generated wires after the named signal of which they are a part."""
+    """Name generated wires after the named signal to which they are connected as a part."""
     names: dict[str, str] = {}
     for target, value in module.connections:
         to = target[0] if target else None

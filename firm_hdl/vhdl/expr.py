@@ -1,7 +1,7 @@
 """Netlist values as VHDL expressions: signals, slices, concatenations, constants.
 
-A value can be written as one of four types: `std_logic` (one bit), `unsigned` (any number of bits,
-also one), `signed`, or a `boolean` condition. Operators are in :mod:`firm_hdl.vhdl.cells`.
+A value can be written as one of four types: `std_logic` (one bit), `unsigned` (one or more bits),
+`signed`, or a `boolean` condition. Operators are in :mod:`firm_hdl.vhdl.cells`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ __all__ = ["Declared", "Values"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Declared:
-    """A signal or port. `vector`: its type is `std_logic_vector`, which is converted when read."""
+    """A signal or port; if `vector`, its type is `std_logic_vector`, and reads convert it."""
 
     name: str
     width: int
@@ -39,7 +39,7 @@ class Declared:
         return "'0'" if self.width == 1 else "(others => '0')"
 
     def part(self, low: int, width: int) -> str:
-        """Name `width` bits from bit `low` up; of a vector, the name is a target only."""
+        """Name `width` bits from bit `low` up; for a vector, only as an assignment's target."""
         if width == self.width:
             return self.name
         if width == 1:
@@ -50,7 +50,7 @@ class Declared:
         """Write a value with the type that can be assigned to `width` of its bits."""
         if not self.vector or width == 1 or value.operator == "literal":
             return value.text
-        # A type conversion does not determine the type of its operand.
+        # In VHDL, a type conversion does not determine the type of its operand.
         if value.operator == "&":
             return f"std_logic_vector(unsigned'({value.text}))"
         return f"std_logic_vector({value.text})"
@@ -124,8 +124,8 @@ class Values:
         Parameters
         ----------
         target : bool
-            Whether the context gives the type, as the target of an assignment does. Then a
-            concatenation needs no qualification.
+            Whether the context gives the type, as in an assignment to a signal. If so, a
+            concatenation needs no type qualification.
         """
         natural = spec_width(spec)
         if width is None:
@@ -231,7 +231,7 @@ def _run_length(spec: Spec, index: int) -> int:
 
 
 def _constant(bits: str, *, target: bool) -> Expression:
-    """Write a constant; the type of a literal depends on its context only."""
+    """Write a constant, qualified by its type unless the `target` determines the type."""
     if target:
         return Expression(literal(bits), "literal")
     if len(bits) > 8 and "1" not in bits:

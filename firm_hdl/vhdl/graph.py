@@ -78,8 +78,8 @@ class Graph:
     def is_output(self, cell: Cell, port: str) -> bool:
         """Return whether a port of an instance is an output.
 
-        For a foreign component, Amaranth prints the wire of an output without a slice, and
-        everything else with one.
+        For a foreign component, Amaranth prints the wire of an output without a slice. It prints
+        every other connection with a slice.
         """
         if cell.kind in self.modules:
             return self.modules[cell.kind].wires[port].direction == "output"
@@ -104,7 +104,7 @@ def only(spec: Spec) -> Slice | None:
 
 
 def target_of(process: Process) -> str | None:
-    """Name the wire that a process drives, if it has bits: each signal has its own process."""
+    """Name the wire that a process drives, if any has bits; a process drives one wire only."""
     for statement in process.body:
         if isinstance(statement, Assign) and statement.target:
             chunk = statement.target[0]

@@ -3,8 +3,9 @@
 As in Amaranth's simulator, a read beyond the last word gives 0, and a write there has no effect. A
 read register starts at 0. A port that is transparent for a write port reads the data being written.
 
-The text has the form from which synthesis tools infer RAM: an array of vectors, also if a word has
-one bit; writes in a clocked process; reads of whole words, outside of it if they are asynchronous.
+Synthesis tools infer RAM from the form of the text. The memory is an array of vectors, even if a
+word has one bit. Writes are in a clocked process. Reads are of whole words; asynchronous reads are
+outside of the process.
 """
 
 from __future__ import annotations
@@ -126,12 +127,12 @@ class MemoryText:
 
     def _word(self, address: Spec) -> str:
         constant = self._values.constant(address)
-        # The guard of such an address is false, but VHDL checks a constant index statically.
+        # The guard of a constant address out of range is false, but VHDL checks the index anyway.
         number = "0" if (constant or 0) >= self._memory.size else self._values.number(address).text
         return f"{self._name}({number})"
 
     def _read_word(self, address: Spec) -> Expression:
-        """Write the value of a word; one of a single bit is `std_logic`, as all such values are."""
+        """Write the value of a word; like every value of one bit, a one-bit word is `std_logic`."""
         return atom(self._word(address) + ("(0)" if self._memory.width == 1 else ""))
 
     def _write(self, cell: Cell) -> Iterator[str]:

@@ -1,8 +1,9 @@
 """Amaranth's `Print`, `Assert` and `Assume` as VHDL reports and assertions.
 
-They are for simulators and stand between ``translate_off`` marks. Without a clock they are in
-postponed processes, which run when all signals have settled. `Cover` has no VHDL counterpart
-outside PSL and stays a comment. A format keeps the kind of number, but not the field width.
+They are for simulators, so they are between ``translate_off`` and ``translate_on``. Without a clock
+they are in postponed processes, which run when all signals have settled. `Cover` becomes a comment,
+because VHDL has cover statements only in PSL. A format keeps its base (such as hexadecimal), but
+not its field width.
 """
 
 from __future__ import annotations
@@ -75,7 +76,7 @@ def _field(cell: Cell, values: Values, match: re.Match[str], low: int) -> str:
     if kind is None:
         return f"to_characters({values.unsigned(cut(spec, 0, 8), 8).text})"
     if kind == "c":
-        # The first character is in the lowest bits here.
+        # In RTLIL, the first character of this format is in the lowest bits.
         reverse: Spec = ()
         for byte in range(0, width, 8):
             reverse = cut(spec, byte, 8) + reverse
@@ -87,7 +88,7 @@ def _field(cell: Cell, values: Values, match: re.Match[str], low: int) -> str:
 
 
 def _plain(text: str) -> list[str]:
-    """Write characters as string literals; VHDL's hold no control characters."""
+    """Write characters as string literals; VHDL allows no control characters in them."""
     parts: list[str] = []
     for piece in re.split(r"([\x00-\x1f\x7f])", text):
         if len(piece) == 1 and not piece.isprintable():

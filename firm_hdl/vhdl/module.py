@@ -106,7 +106,7 @@ class ModuleWriter:
         )
 
     def text(self) -> str:
-        """Write entity and architecture; lines have at most 100 columns if they can be broken."""
+        """Write entity and architecture; a line is longer than 100 columns only if unbreakable."""
         lines = [*self._entity_lines(), "", *self._architecture()]
         return "\n".join(part for line in lines for part in wrap(line)) + "\n"
 
@@ -141,7 +141,7 @@ class ModuleWriter:
         yield "end entity;"
 
     def _remark(self, name: str) -> str:
-        """Write a comment on what the type of a wire does not show: its sign and enumeration."""
+        """Write a comment on the sign and the enumeration of a wire; its VHDL type has neither."""
         wire = self._module.wires[name]
         remarks = ["signed"] if wire.signed and wire.width > 1 else []
         values = [

@@ -1,9 +1,9 @@
 """Names of a netlist as VHDL identifiers.
 
 A name that is a legal identifier stays as it is. Other names lose the characters that VHDL forbids:
-double, leading and trailing underscores, ``$``, ``.`` and brackets. A name gets a suffix if it is
-then a keyword, a name that the generated text uses, or equal to a neighbour, ignoring case. So
-different names get different identifiers.
+double, leading and trailing underscores, ``$``, ``.`` and brackets. The result gets a suffix if it
+is a keyword, a name that the generated text uses, or equal to a neighbour, ignoring case.
+Therefore, different names get different identifiers.
 IEEE Std 1076-2008, clause 15.4 (identifiers) and 12.2 (scope).
 """
 
@@ -36,7 +36,7 @@ AMS = frozenset(
 )
 """Reserved words of VHDL-AMS (IEEE Std 1076.1) that are not reserved in VHDL.
 
-They are legal, but GHDL warns of them. Only ports of the outermost entity keep such names.
+They are legal in VHDL, but GHDL warns of them. Only ports of the outermost entity keep such names.
 """
 
 PREDEFINED = frozenset(
@@ -57,9 +57,9 @@ PREDEFINED = frozenset(
 )
 """Identifiers of std.standard, ieee.std_logic_1164 and ieee.numeric_std that are not in `USED`.
 
-Nearly every design makes them visible by use clauses. If use clauses make two declarations of one
-name visible, VHDL hides both, unless both are subprograms or literals (12.4): after ``use`` of a
-package with a constant ``NS``, ``5 ns`` is an error.
+Nearly every design makes them visible by use clauses. If two use clauses name different
+declarations of one name, neither is visible, unless both are subprograms or literals (12.4). For
+example, ``5 ns`` is an error after ``use`` of a package with a constant ``NS``.
 """
 
 _IDENTIFIER = re.compile(r"[A-Za-z](?:_?[A-Za-z0-9])*\Z")
@@ -84,7 +84,7 @@ class Scope:
     reserved : iterable of str
         Identifiers that are taken already.
     avoided : collection of str
-        Legal identifiers that are not given, in lower case.
+        Legal identifiers that this scope does not give to any name, in lower case.
     """
 
     def __init__(self, reserved: Iterable[str], avoided: Collection[str] = ()) -> None:

@@ -1,4 +1,4 @@
-"""The VHDL package with functions that VHDL-2008 lacks and the generated text uses."""
+"""The VHDL package with functions that the generated text uses and VHDL-2008 does not have."""
 
 from __future__ import annotations
 

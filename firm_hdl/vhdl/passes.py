@@ -17,7 +17,7 @@ __all__ = ["PASSES", "graph_of"]
 
 _COMPARISONS = frozenset("$eq $ne $lt $le $gt $ge".split())
 
-# The most operands of an expression, and how often a comparison may be repeated.
+# Largest number of operands in an expression, and of copies of a comparison.
 _MAX_OPERANDS = 6
 _MAX_REPEATS = 3
 
@@ -266,7 +266,7 @@ def _fold(graph: Graph) -> Graph:
 
 
 def _may_repeat(cell: Cell, uses: int, folded: dict[str, Cell]) -> bool:
-    """Return whether an expression is short: an inverted bit, or a comparison of two signals."""
+    """Return whether an expression may have copies: an inverted bit, or a simple comparison."""
     specs = [spec for port, spec in cell.ports.items() if port != "Y"]
     if any(len(spec) > 1 for spec in specs):
         return False
@@ -320,4 +320,4 @@ PASSES: tuple[Callable[[Graph], Graph], ...] = (
     _pair_registers,
     _fold,
 )
-"""In order: each pass relies on those before it."""
+"""The passes in order: each pass relies on those before it."""

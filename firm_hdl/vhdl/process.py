@@ -2,7 +2,7 @@
 
 RTLIL's switch takes the first arm that matches, and its patterns may have don't-care bits. If all
 patterns are distinct and have no don't-care bits, the switch becomes a `case`. Otherwise it becomes
-a chain of conditions, such as the Amaranth `If` from which many switches come.
+a chain of conditions; many of these switches were an `If` in Amaranth.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from firm_hdl.vhdl.text import Expression, atom, chain, infix, literal
 
 __all__ = ["Arm", "Statements", "flatten", "merged"]
 
-# More choices make a conditional assignment hard to read; fewer make a `case` an `if`.
+# Most choices of a conditional assignment, for readability; fewest of a `case` instead of an `if`.
 _MAX_CHOICES = 6
 _MIN_CHOICES = 3
 
@@ -165,7 +165,7 @@ class Statements:
             position += chunk.width
 
     def _choose(self, chunk: Slice, cell: Cell) -> Iterator[str]:
-        """Yield the assignment of a multiplexer, which reads better as an `if`."""
+        """Yield the assignment of a multiplexer as an `if`, which is easier to read."""
         yield f"if {self._values.boolean(cell.ports['S']).text} then"
         for port, end in (("B", "else"), ("A", "end if;")):
             value = cut(cell.ports[port], 0, chunk.width)
@@ -272,7 +272,7 @@ class Statements:
             elif new:
                 plain.append((new, case))
         otherwise = default.body if default is not None else ()
-        # All choices differ, so a choice with the body of `others` can be left out.
+        # The order of distinct choices does not matter, so choices equal to `others` are left out.
         plain = [(new, case) for new, case in plain if case.body != otherwise]
         if len(plain) < 2 and sum(len(new) for new, _ in plain) < _MIN_CHOICES:
             return None

@@ -92,7 +92,7 @@ class Registers:
         if cell.kind == "$dff" and body and (reset := self._reset_of(body[-1], wire)):
             body = body[:-1]
         if not body:
-            # The register holds its value; a process with a reset only would be a latch.
+            # Assign the register to itself: a process that only resets it would be a latch.
             whole = (Slice(wire, 0, self._graph.width[wire]),)
             body = (Assign(target=whole, value=whole),)
         return _Register(wire, cell, body, reset)

@@ -71,7 +71,7 @@ def infix(operator: str, left: Expression, right: Expression) -> Expression:
     """Apply a binary operator. The left operand may have the same operator without parentheses."""
     level = _LEVELS[operator]
     if level == 1:
-        # VHDL does not mix logical operators, nor `not` with a relation, without parentheses.
+        # Without parentheses, VHDL allows neither mixed logical operators nor `not` of a relation.
         return chain(operator, left, right)
     strict = level + (level == 2)
     return Expression(f"{left.inside(strict)} {operator} {right.inside(level + 1)}", operator)
@@ -106,7 +106,7 @@ def literal(bits: str) -> str:
 def wrap(line: str) -> list[str]:
     """Break a line of code that is too long, at spaces outside of strings.
 
-    A comment at the end of such a line becomes a line of its own before it.
+    If the line ends with a comment, the comment is written on its own line before the code.
     """
     indent = " " * (len(line) - len(line.lstrip()))
     code, mark, comment = line.partition("  -- ")

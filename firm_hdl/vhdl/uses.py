@@ -83,7 +83,7 @@ def enable_runs(spec: Spec) -> list[tuple[Chunk, int, int]]:
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """One use of a specification. `inline`: an expression may replace it."""
+    """One use of a specification; `inline` if an expression may replace the specification."""
 
     spec: Spec
     inline: bool
@@ -95,7 +95,7 @@ def uses_of(cell: Cell, width: Mapping[str, int]) -> Iterator[Use]:
     if kind in INLINE:
         bits = width[output(cell)]
         for port, spec in ports.items():
-            # A select and a shift distance are read as a whole, also if the result is cut.
+            # All bits of a select and of a shift distance are read, even if the result is cut.
             cut_port = kind in _MODULAR and port != "S" and (kind != "$shl" or port != "B")
             if port != "Y":
                 yield Use(trim(spec, bits) if cut_port else spec, True)
@@ -132,7 +132,7 @@ def statement_uses(body: tuple[Statement, ...]) -> Iterator[Use]:
 
 
 def _selector_uses(switch: Switch) -> Iterator[Use]:
-    """Yield the uses of a selector. A bit may be an expression if only one arm depends on it."""
+    """Yield the uses of a selector; a bit may be an expression if it is tested only once."""
     position = spec_width(switch.selector)
     for chunk in reversed(switch.selector):
         low = position - chunk.width

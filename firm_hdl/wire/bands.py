@@ -1,7 +1,7 @@
 """The bytes of a message as bands: the parts of a picture of its layout, from top to bottom.
 
-Offsets are those in the packet while they are the same in every packet. After a part whose size
-varies, offsets start again from 0.
+Offsets count from the start of the packet up to the first :class:`Note`. After a note and after a
+loop, offsets start again from 0.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Grid:
     depth : int
         Number of loops around the grid.
     start : int or None
-        Offset in the packet, if that is the same in every packet.
+        Offset in the packet; `None` after the first note.
     cells : list of BandCell
     """
 
@@ -47,7 +47,7 @@ class Grid:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Note:
-    """A line of text for a part whose size varies, or for the start of a loop.
+    """A line of text: a part whose size varies, a message without bytes, or the start of a loop.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ def bands(layout: Layout) -> list[Band]:
     header = layout.rules.header_bytes
     if header:
         drawing.cell("header", header, "encapsulation", f"{header} bytes")
-        # Alignment counts from the end of the header, and so do the rows.
+        # Rows start at the end of the header, because alignment counts from there.
         drawing.grid = None
     drawing.nodes(layout.nodes, header)
     return drawing.bands
@@ -79,7 +79,7 @@ class _Drawing:
     bands: list[Band] = field(default_factory=list)
     grid: Grid | None = None
     depth: int = 0
-    # Offset in the packet, while it is the same in every packet.
+    # Offset in the packet; `None` after the first note.
     at: int | None = 0
 
     def cell(self, kind: Kind, size: int, name: str, type_: str = "") -> None:

@@ -1,9 +1,9 @@
 """Layout: a message on a wire, field by field, with the statically known part of its offsets.
 
 The layout is a tree in wire order. Alignment is decided here and nowhere else: each node has a
-:class:`Gap`, the padding before it. The gap is a number of bytes where the abstract
-interpretation of :mod:`firm_hdl.wire.residues` finds a single one; otherwise it is the alignment
-that the circuit must reach.
+:class:`Gap`, the padding before it. :mod:`firm_hdl.wire.residues` finds the possible sizes of a
+gap by abstract interpretation. If there is only one, the gap has this number of bytes. Otherwise
+the circuit must pad to the alignment at run time.
 """
 
 from __future__ import annotations
@@ -200,7 +200,7 @@ class _Builder:
         align = self.align(primitive)
         return Gap(align=align, bytes=rs.pad_of(at, align))
 
-    # Residues where a value of a type may end, by those where it may start.
+    # For the residues where a value may start, return the residues where it may end.
 
     def after(self, kind: FieldType, at: int) -> int:
         result = 0
@@ -309,7 +309,7 @@ class _Builder:
     # Sizes.
 
     def min_bytes(self, kind: FieldType) -> int:
-        """Return a lower bound of a value's size: without padding, which depends on the offset."""
+        """Return a lower bound of a value's size, without padding, which depends on the offset."""
         if kind not in self._min:
             self._min[kind] = self._min_bytes(kind)
         return self._min[kind]

@@ -1,7 +1,7 @@
 """A picture of a message's bytes, as SVG: eight bytes per row, in wire order.
 
-Libraries for bit fields cannot draw it: messages have parts whose size varies, and hundreds of
-equal items, of which only the outer rows are shown.
+Libraries for bit fields cannot draw such a picture. Messages have parts whose size varies, and some
+have hundreds of equal items. Only the first and the last rows of such items are shown.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ STYLE = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Piece:
-    """A cell's part of a row. It may stand for a number of rows that are left out."""
+    """A cell's part of a row, or the mark for rows of a cell that are left out."""
 
     cell: BandCell
     row: int
@@ -123,7 +123,7 @@ def _grid(grid: Grid, left: int, y: int) -> tuple[list[str], int, int]:
 
 
 def _pieces(cell: BandCell) -> Iterator[_Piece]:
-    """Cut a cell into rows. If there are many, only the outer ones are drawn."""
+    """Cut a cell into rows; if there are many, keep only the first and the last rows."""
     end = cell.at + cell.bytes
     rows = list(range(cell.at // ROW_BYTES, -(-end // ROW_BYTES)))
     shown = rows if len(rows) <= 4 else [rows[0], rows[1], rows[-1]]

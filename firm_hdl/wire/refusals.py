@@ -30,9 +30,9 @@ def refusals(message: Message) -> list[Diagnostic]:
     Returns
     -------
     list of Diagnostic
-        One for each field without a wire format, of the message and of all messages in it, in the
-        order in which the types are first named; the span is the field's name. If no field has such
-        an error, at most one for the size, without a span. Empty if the message can be laid out.
+        One for each field without a wire format, in the message and in all messages in it. The
+        types are walked depth first, and the span is the field's name. If there is no such field,
+        at most one for the size, without a span. Empty if the message can be laid out.
     """
     return _without_bytes(message) or too_large(message)
 

@@ -1,8 +1,9 @@
 """Sets of residues: the statically known part of the offsets where a field may start.
 
-A set is a mask: bit r is set if the offset may be r modulo 8. Eight is enough because no primitive
-has a larger alignment; for positions in a bus word, a plan takes a larger power of two. Every
-operation distributes over union, so the image of a set is the union of the images of its members.
+A set is a bit mask: bit r is set if the offset may be r modulo 8. Modulo 8 is enough for alignment,
+because no primitive has a larger one. For positions in a bus word, a plan uses a larger power of
+two. Every operation distributes over union: the image of a set is the union of the images of its
+members.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ def aligned(residues: int, align: int, modulus: int = MODULUS) -> int:
 
 
 def pad_of(residues: int, align: int) -> int | None:
-    """Return the padding to a multiple of `align` bytes if it is the same for all, else `None`."""
+    """Return the padding to a multiple of `align` bytes, or `None` if it depends on the offset."""
     pads = {-r % align for r in members(residues)}
     return pads.pop() if len(pads) == 1 else None
 
@@ -77,7 +78,7 @@ def repeat(residues: int, body: Callable[[int], int], count: int | None) -> tupl
     seen: list[int] = []
     now = residues
     entry = 0
-    # There are finitely many sets, so they recur; the first one that recurs closes the cycle.
+    # There are finitely many sets, so one of them recurs. From there on, the sets form a cycle.
     while now not in seen and (count is None or len(seen) < count):
         seen.append(now)
         entry |= now

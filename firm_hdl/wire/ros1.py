@@ -1,6 +1,6 @@
 """The ROS 1 wire format: packed, little-endian, no header, no padding.
 
-As genpy and roscpp write it: a message body without the length that TCPROS puts before it.
+The format is that of genpy and roscpp: a message body without the length that TCPROS puts first.
 """
 
 from __future__ import annotations

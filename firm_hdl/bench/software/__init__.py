@@ -1,7 +1,7 @@
-"""Time that libraries on a processor take for the messages that cycles are counted with.
+"""Time of software libraries for the same messages for which cycles are counted.
 
-rosbags and genpy are what a user of Python has, and Fast CDR, called as ROS 2's type support calls
-it, what one of C++ has.
+rosbags and genpy are the libraries for Python. Fast CDR, called as in ROS 2's type support, is the
+library for C++.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """A message type in C++ for Fast CDR: structures, and the calls of ROS 2's type support.
 
-Which call a field needs is the rule of rosidl_typesupport_fastrtps_cpp: arrays and vectors of
-numbers and of text at once, those of messages and of wide text one by one, a bool as an octet where
-it is read, and an octet for a message without fields. Members have numbers, because a field's name
-may be a keyword of C++.
+The calls follow rosidl_typesupport_fastrtps_cpp. Arrays and vectors of numbers and of text need one
+call. Those of messages and of wide text need one call for each element. A bool is read as an octet,
+and a message without fields is an octet. Members are numbered, because a field's name may be a
+keyword of C++.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ __all__ = ["cpp_types"]
 
 
 def cpp_types(message: Message) -> str:
-    """Return the C++ of a type, which is called ``Root``, and of all that it is made of.
+    """Return the C++ of a type, named ``Root``, and of all message types in it.
 
     Raises
     ------
     NoFigureError
-        If a field has a type that is not written: wide characters, and floats of 16 bytes.
+        If a field has a type that is not supported here: wide characters, and floats of 16 bytes.
     """
     kinds = closure([message])
     numbers = {kind.name: number for number, kind in enumerate(kinds)}
@@ -76,7 +76,7 @@ def _number(kind: Primitive) -> str:
 
 
 def _is_whole(kind: FieldType) -> bool:
-    """Whether Fast CDR takes an array or a vector of this at once."""
+    """Return whether Fast CDR has a single call for an array or a vector of a type."""
     return isinstance(kind, Primitive) or (isinstance(kind, String) and not kind.wide)
 
 

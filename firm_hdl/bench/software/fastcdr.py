@@ -18,7 +18,7 @@ from firm_hdl.jobs import ToolError, run_tool
 __all__ = ["OPTIONS", "fastcdr_versions", "time_fastcdr"]
 
 OPTIONS = ("-std=c++17", "-O2")
-"""Of the compiler; ``-O2`` is what ROS's packages are built with."""
+"""Options of the compiler. ROS's packages are built with ``-O2``."""
 
 _SOURCE = Path(__file__).with_name("fastcdr_timing.cpp")
 _HOW = "(Debian, Ubuntu: apt install g++ libfastcdr-dev)"
@@ -59,7 +59,7 @@ def time_fastcdr(sample: Sample, runs: int = RUNS, run_seconds: float = RUN_SECO
     ------
     MissingToolError
     NoFigureError
-        If it does not have the wire format, or the type is not written in C++.
+        If Fast CDR does not have the wire format, or `cpp_types` does not support the type.
     BenchError
         If the program cannot be compiled, or does not write what it has read.
     """

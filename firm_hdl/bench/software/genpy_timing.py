@@ -1,8 +1,8 @@
-"""Times genpy, in the Python that it is installed for; so this imports nothing of firm-hdl.
+"""Time genpy, in the Python for which it is installed. So this file imports nothing of firm-hdl.
 
-JSON on the standard input has ``name`` and ``text``, which is the type's definition, and
-``packets`` as text in Latin-1. The answer has ``deserialize`` and ``serialize`` in ns per message,
-and ``versions``; or ``missing`` or ``wrong``, and why.
+The request is JSON on standard input: ``name``, ``text`` (the type's definition), and ``packets``
+as text in Latin-1. The answer has ``deserialize`` and ``serialize`` in ns per message, and
+``versions``. Otherwise it has ``missing`` or ``wrong`` with the reason.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ __all__ = ["main"]
 
 
 def main() -> dict[str, Any]:
-    """Answer the one request; without a name, with the versions only."""
+    """Answer the request; if it has no name, the answer has only the versions."""
     request = json.load(sys.stdin)
     del sys.path[0]  # Our other modules have names that others may use, too.
     try:
@@ -40,7 +40,7 @@ def main() -> dict[str, Any]:
 
 
 def _timed(kind: Any, packets: list[bytes]) -> dict[str, Any]:
-    # rospy makes an object for each message, and uses one buffer for all.
+    # As in rospy, make an object for each message, and use one buffer for all messages.
     def read(packet: bytes) -> Any:
         message = kind()
         message.deserialize(packet)

@@ -1,4 +1,4 @@
-"""Time rosbags, in this Python, and genpy, in the one that it is installed for."""
+"""Time rosbags in this Python, and genpy in the Python for which it is installed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SCRIPT = Path(__file__).with_name("genpy_timing.py")
 
 
 def rosbags_versions() -> dict[str, str]:
-    """Return the versions of rosbags and of what it runs on."""
+    """Return the versions of rosbags, NumPy and Python."""
     found = {name: metadata.version(name) for name in ("rosbags", "numpy")}
     return {**found, "Python": platform.python_version()}
 

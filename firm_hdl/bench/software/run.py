@@ -1,4 +1,4 @@
-"""Libraries and converters with the same messages."""
+"""Compare libraries and converters with the same messages."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from firm_hdl.frontend import open_library
 __all__ = ["CLOCK_MHZ", "LIBRARIES", "Compared", "compare_software", "library_versions", "machine"]
 
 CLOCK_MHZ = 156.25
-"""Clock that a converter's cycles are turned into time with: 8 bytes per cycle are 10 Gbit/s."""
+"""Clock rate for the time of a converter's cycles: 8 bytes per cycle are 10 Gbit/s."""
 
 LIBRARIES: dict[str, Callable[[Sample], Timed]] = {
     "rosbags": time_rosbags,
     "genpy": time_genpy,
     "Fast CDR": time_fastcdr,
 }
-"""What is timed, in the order of tables."""
+"""The libraries that are timed, in the order of tables."""
 
 _VERSIONS: dict[str, Callable[[], dict[str, str]]] = {
     "rosbags": rosbags_versions,
@@ -49,13 +49,13 @@ class Compared:
     Attributes
     ----------
     bytes : float
-        Of a packet, mean.
+        Mean size of a packet.
     times : mapping
-        By name of the library.
+        Times by name of the library.
     missing : mapping
-        Why there is no time, by name of the library.
+        Reasons for missing times, by name of the library.
     results : tuple of Result
-        The converters, with cycles.
+        Results of the converters, with cycles.
     """
 
     bytes: float
@@ -70,7 +70,7 @@ def compare_software(task: BenchTask, results: Sequence[Result]) -> Compared:
     Parameters
     ----------
     task : BenchTask
-        Its direction does not matter.
+        A task of the type; its direction does not matter.
     results : sequence of Result
         Converters of the same type.
 
@@ -100,18 +100,18 @@ def compare_software(task: BenchTask, results: Sequence[Result]) -> Compared:
 
 
 def library_versions() -> dict[str, dict[str, str]]:
-    """Return the versions of each library and of what it runs on.
+    """Return the versions of each library and of its Python or compiler.
 
     Raises
     ------
     MissingToolError
-        If one is not installed.
+        If a library is not installed.
     """
     return {name: found() for name, found in _VERSIONS.items()}
 
 
 def machine() -> str:
-    """Return the name of the processor, as far as the system says."""
+    """Return the name of the processor, if the system gives one."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:

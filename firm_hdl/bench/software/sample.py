@@ -1,4 +1,4 @@
-"""What libraries are timed with, and what comes out."""
+"""The packets for timing libraries, and the results."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ class Timed:
 
 
 def check_written(library: str, sample: Sample, written: bytes, packet: bytes) -> None:
-    """Check what a library has written of a packet that it has read.
+    """Check that a library writes the packet that it has read.
 
     Raises
     ------
     BenchError
-        If it is another packet.
+        If the written packet differs.
     """
     if written != packet:
         raise BenchError(

@@ -1,4 +1,4 @@
-"""How calls in Python are timed.
+"""Time calls in Python.
 
 The Python that has genpy also runs this file, so it imports nothing of firm-hdl.
 """
@@ -12,7 +12,7 @@ from typing import Any
 __all__ = ["RUNS", "RUN_SECONDS", "best_ns"]
 
 RUNS = 5
-"""Runs, of which the fastest counts: whatever else the machine does only adds time."""
+"""Number of runs. The fastest one counts, because other load of the machine only adds time."""
 
 RUN_SECONDS = 0.1
 """Least length of a run, in seconds of processor time."""
@@ -31,7 +31,7 @@ def best_ns(
     work : callable
         Takes an item.
     items : list
-        Each is worked on as often as the others.
+        The items; `work` is called equally often with each.
     runs : int
     run_seconds : float
     """

@@ -1,7 +1,7 @@
 """Files for tools that compile a folder's VHDL: lists of files, FuseSoC, Vivado, make, VUnit.
 
-All facts come from the manifest. The packages that are the same for all types are packaged
-separately, so that a project with several types has them once.
+All facts come from the manifest. VHDL packages that several types share are packaged separately, so
+that a project with several types has them once.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ __all__ = ["packaging"]
 
 
 def packaging(manifest: Manifest) -> dict[str, str]:
-    """Return the texts of all files by name; the files belong into the folder of the VHDL.
+    """Return the texts of all files by name, for the VHDL folder.
 
     ``files.txt`` lists the files to synthesize, one per line, in compile order. ``bench_files.txt``
     lists the files of the test benches, which compile after the design.

@@ -61,7 +61,7 @@ def _bench(manifest: Manifest) -> str:
 
 
 def _package_name(manifest: Manifest, name: str) -> str:
-    """Return the core of a shared package; types may differ between distributions."""
+    """Name the core of a shared package, with the distribution, because types may differ."""
     [package] = [each for each in shared_packages(manifest) if each["name"] == name]
     library = manifest["inputs"]["distro"] if package["message"] else "vhdl"
     return f"firm-hdl:{library}:{name}:{version(manifest)}"
@@ -111,7 +111,7 @@ def _type(manifest: Manifest) -> dict[str, Any]:
         "targets": {"default": {"filesets": ["rtl"]}},
     }
     if stimuli is not None:
-        # Copied to the folder of the simulation, where the bench looks for it.
+        # FuseSoC copies the packets to the folder of the simulation, where the bench reads them.
         copied = {stimuli: {"file_type": "user", "copyto": stimuli}}
         document["filesets"]["stimuli"] = {"files": [copied]}
         document["targets"] |= {

@@ -47,7 +47,7 @@ def wrapper_name(folder: str, direction: Direction) -> str:
 
 
 class SystemVerilog(BackEnd):
-    """SystemVerilog-2012 around the modules in Verilog; entry `systemverilog` of the manifest.
+    """SystemVerilog-2012 around the Verilog modules; writes the manifest's entry `systemverilog`.
 
     With flat ports, the back end writes nothing.
     """

@@ -58,7 +58,7 @@ def _constant(each: Declaration, _width: int) -> str:
             value = f"{each.bits}'{letter}h{each.digits};{remark if each.remark else ''}"
             return f"  localparam logic{sign} [{each.bits - 1}:0] {each.name} = {value}\n"
         case "real":
-            # Python's form has digits after the point or an exponent, which SystemVerilog needs.
+            # SystemVerilog needs digits after the point or an exponent; Python's `repr` has them.
             return f"  localparam real {each.name} = {each.value!r};{remark}\n"
     return f"  localparam {each.name} =\n    {_string(each.value)};\n"
 
@@ -70,7 +70,7 @@ def _string(data: bytes) -> str:
 
 
 def _literal(data: bytes) -> str:
-    # Escaped, because some tools see comments, directives and macros even inside a literal.
+    # Escape characters, because some tools find comments, directives and macros in literals.
     text = "".join(
         chr(byte) if 32 <= byte < 127 and chr(byte) not in '"\\/-*`' else f"\\{byte:03o}"
         for byte in data

@@ -13,7 +13,7 @@ __all__ = ["guarded", "package_name", "stream_structs", "struct"]
 def package_name(package: str) -> str:
     """Return the name of a message type's package, given the name of its VHDL package.
 
-    The two differ, because simulators of both languages may keep them in one library.
+    The two names differ, because a simulator of both languages may have them in one library.
 
     >>> package_name("std_msgs_msg_header_cdr_8_pkg")
     'std_msgs_msg_header_cdr_8_sv_pkg'
@@ -29,7 +29,7 @@ def guarded(package: str, text: Iterable[str]) -> str:
 
 def struct(name: str, members: Sequence[tuple[str, str, str, Iterable[str]]]) -> Iterator[str]:
     """Yield a struct; its members are given by name, type, comment after it, and lines above."""
-    # Types of other packages are long, and do not count for the columns.
+    # Long types of other packages do not widen the column.
     width = max((len(kind) for _, kind, *_ in members if "::" not in kind), default=0)
     yield "\n  typedef struct packed {\n"
     for member, kind, remark, above in members:

@@ -1,7 +1,7 @@
 """The SystemVerilog packages that all messages share: one of primitives, one per bus width.
 
-Their texts do not depend on the message type. So a task for, say, a `float64_stream_t` works for
-all types, and all converters of a design have the same status type.
+Their texts do not depend on the message type. So a task for a `float64_stream_t`, for example,
+works for all message types, and all converters of a design have the same status type.
 """
 
 from __future__ import annotations

@@ -61,7 +61,7 @@ def _ports(plan: Plan, tree: Tree, direction: Direction) -> Iterator[str]:
 
 
 def _body(plan: Plan, tree: Tree, direction: Direction, core: str) -> Iterator[str]:
-    # An assignment to an enumeration needs a cast.
+    # The status is an enumeration, so it is assigned by a cast from plain bits.
     yield "\n  logic [7:0] status;\n\n"
     yield f"  assign {_STATUS}.tdata = {TYPES_NAME}::{STATUS}'(status);\n"
     if direction == "deserializer":

@@ -25,7 +25,7 @@ _WAIVED = {
 
 
 class Verilog(BackEnd):
-    """Verilog-2005 that means the same in SystemVerilog; entry `converters` of the manifest."""
+    """Verilog-2005 that is also SystemVerilog; writes the manifest's entry `converters`."""
 
     name = "verilog"
 
@@ -50,7 +50,7 @@ def _waivers(modules: Iterable[str]) -> str:
     Parameters
     ----------
     modules : iterable of str
-        Each in the file ``module.v``.
+        Names of the modules. The file of a module is its name with ``.v``.
     """
     lines = [
         "// Warnings of Verilator that are harmless here, each with the reason. To lint:\n",

@@ -1,4 +1,4 @@
-"""What RTLIL leaves open about memories, and Verilog must not: as in Amaranth's simulator."""
+"""Determine properties of memories that RTLIL leaves open, as Amaranth's simulator does."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ _PRIORITY = re.compile(r"(?<=parameter \\PRIORITY_MASK )0$", re.MULTILINE)
 
 
 def settled_memories(design: str) -> str:
-    """Settle initial values of read ports, and the order of write ports.
+    """Determine the initial values of read ports, and the order of write ports.
 
-    The register of a read port starts at 0. Of ports of one clock that write one word at the same
-    time, the port with the highest number is the last; without this, Yosys writes processes
-    whose order is open.
+    The register of a read port starts at 0. If ports of one clock write the same word at the same
+    time, the port with the highest number writes last. Without this order, Yosys would write
+    processes that a simulator may run in any order.
 
     Parameters
     ----------

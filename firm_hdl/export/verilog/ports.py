@@ -1,8 +1,8 @@
-"""Names for ports of submodules to which Amaranth gives none.
+"""Names for ports of submodules that have no name in Amaranth.
 
-If the bits of a signal come from several places, such as a register and logic, Amaranth makes a
-port of each part. These ports have numbers for names. Here they get the name of the signal, with
-the place of the part's lowest bit, as in the VHDL.
+If the bits of a signal have several sources, such as a register and logic, Amaranth makes a port
+for each part of the signal, with a number as its name. Here such a port gets the name of the
+signal, with the index of the part's lowest bit, as in the VHDL.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Instantiation templates in Verilog-2005, as FPGA vendors have them, with all fields tied off."""
+"""Instantiation templates in Verilog-2005, like those of FPGA vendors, with all fields tied off."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _connections(
         left -= len(of_leaf)
         end = "," if left else ""
         if index is None:
-            # A packet waits until its status is taken, so ready is 1.
+            # Tie the ready of the status to 1, because a packet waits until its status is taken.
             actuals = {port.name: port.name for port in of_leaf} | (
                 {_STATUS_READY: "1'b1"} if not left else {}
             )
@@ -120,5 +120,5 @@ def _tied(leaf: Leaf, port: Port, transfers: int | None) -> str:
         return ""
     if port.member == "data":
         return f"{port.width}'d{int(leaf.kind == 'trigger')}"
-    # A constant `last` cannot end an array of several transfers, so such an array is not offered.
+    # A leaf with several transfers needs a `last` that is not constant, so its `valid` is 0.
     return "1'b1" if port.member == "ready" or transfers == 1 else "1'b0"

@@ -1,9 +1,9 @@
-"""Vectors that are put together from others keep a net of their own in Verilog.
+"""Keep a net in Verilog for each vector that is a concatenation of other signals.
 
 In the netlist of Amaranth, such a vector is connected to a concatenation, or a process without
-conditions assigns its parts. Yosys would use the name of the vector for those parts of other
-signals, and write assignments to parts of several vectors. Tools that look at whole vectors would
-see loops: Verilator warns of them, and simulates them slowly.
+conditions assigns its parts. Yosys would replace the other signals by parts of the vector, and
+write assignments to parts of several vectors. Tools that look at whole vectors would see loops:
+Verilator warns of them, and simulates them slowly.
 """
 
 from __future__ import annotations
@@ -73,5 +73,5 @@ def _joined(parts: str, default: str) -> str | None:
             pieces.append(f"{len(bits)}'{bits}")
         pieces.append(value)
         at = high + 1
-    # What is after the last part is no part.
+    # The last piece is the empty end mark.
     return f"{{ {' '.join(reversed(pieces[:-1]))} }}"

@@ -112,7 +112,7 @@ def to_verilog(top: Top | str, *, module: str, header: str) -> str:
     Parameters
     ----------
     top : Top or str
-        Or its RTLIL.
+        The top level, or its RTLIL.
     module : str
         Name of the module; submodules are called ``module.something``.
     header : str
@@ -133,7 +133,7 @@ def to_verilog(top: Top | str, *, module: str, header: str) -> str:
     with _builtin_yosys():
         yosys = find_yosys(lambda version: version >= (0, 40))
         try:
-            # Yosys warns of all processes.
+            # Ignore warnings: Yosys warns of all processes.
             text = yosys.run(["-q", "-"], script, ignore_warnings=True)
         except Exception as error:
             # The WebAssembly runtime raises many exception types of its own.
@@ -151,7 +151,7 @@ def to_verilog(top: Top | str, *, module: str, header: str) -> str:
 
 
 def _named_choices(text: str) -> str:
-    """Rename signals and functions of multiplexers: `$` may not begin the name of a function."""
+    """Rename signals and functions of multiplexers: `$` must not begin the name of a function."""
     prefix = "choice"
     while f"{prefix}_" in text:
         prefix += "_"
@@ -171,7 +171,7 @@ def _without_keywords(design: str) -> str:
             used.add(names[name].lower())
         return f"\\{names.get(name, name)}"
 
-    # Parameters and attributes have names that Yosys knows, such as PRIORITY of a memory.
+    # Keep names of parameters and attributes: Yosys knows them, such as PRIORITY of a memory.
     parts: list[str] = []
     place = 0
     for setting in _SETTING.finditer(design):

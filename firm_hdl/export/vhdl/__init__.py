@@ -1,4 +1,4 @@
-"""The back end for VHDL: records of a message, converters with such ports, and test benches."""
+"""The back end for VHDL: records of a message, converters with record ports, and test benches."""
 
 from __future__ import annotations
 

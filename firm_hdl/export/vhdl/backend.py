@@ -31,7 +31,7 @@ COMMON = (f"{TYPES_NAME}.vhd", f"{PACKAGE_NAME}.vhd")
 
 
 class Vhdl(BackEnd):
-    """VHDL-2008; entry `vhdl` of the manifest."""
+    """VHDL-2008; writes the manifest's entry `vhdl`."""
 
     name = "vhdl"
 
@@ -45,7 +45,7 @@ class Vhdl(BackEnd):
 
 @dataclass(slots=True, kw_only=True)
 class _Parts:
-    """The parts made so far; `design` and `benches` are texts by file name, in compile order."""
+    """Parts of the folder; `design` and `benches` are texts by file name, in compile order."""
 
     base: str
     header: str

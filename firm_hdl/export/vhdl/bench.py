@@ -1,8 +1,8 @@
 """Test benches in VHDL for each message type, and a script that runs them in GHDL.
 
-Packets from a file go through the deserializer, an accelerator that does nothing, and the
-serializer, all with random stalls. The packets that come out are compared byte for byte with
-another file. The bench writes all packets and all transfers of leaves to files.
+Packets from a file go through the deserializer, an accelerator that changes nothing, and the
+serializer, all with random stalls. The bench compares the packets that come out byte for byte with
+another file. It writes all packets and all transfers of leaves to files.
 """
 
 from __future__ import annotations

@@ -69,8 +69,8 @@ class View:
     bit_keep: bool = False
 
 
-# Names of the message's package are written in full, because its constants may have names of
-# `std.textio`. The use clause is for tools that find the compile order of files.
+# Names of the message's package are written in full, because constants in it may have the names of
+# declarations in `std.textio`. The use clause is for tools that find the compile order of files.
 _USES = """\
 use work.firm_hdl_bench_pkg.all;
 use work.{types}.all;

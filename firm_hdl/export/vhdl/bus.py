@@ -1,7 +1,7 @@
 """The VHDL package of a bus width: strings, arrays and sequences of primitives as streams.
 
 The number of items in a transfer depends only on the primitive and on the width of the bus. So all
-messages on a bus of one width have these types in common.
+messages on a bus of one width share these types.
 """
 
 from __future__ import annotations

@@ -53,13 +53,13 @@ def _real(value: float) -> str:
 def _string(data: bytes) -> str:
     """Write the bytes of a string as an expression, with at most 80 characters per line."""
     parts = []
-    # No literal contains `--`, because some tools see a comment there, even in a string.
+    # No literal contains `--`, because some tools find a comment even in a string.
     for piece in re.findall(rb"(?:[ -,.-~]|-(?!-)){1,80}|-|[^ -~]", data):
         if len(piece) == 1 and not 32 <= piece[0] < 127:
             parts.append(f"character'val({piece[0]})")
         else:
             parts.append('"' + piece.decode("ascii").replace('"', '""') + '"')
-    # A single character is no string, so an empty string comes first.
+    # A single `character` is not a string, so concatenate it with an empty string.
     if not parts or (len(parts) == 1 and parts[0].startswith("character")):
         parts.insert(0, '""')
     return " &\n    ".join(parts)

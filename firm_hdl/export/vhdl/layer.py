@@ -1,10 +1,10 @@
-"""The user's layer in VHDL: a message as nested records, and converters with such ports.
+"""The user's layer in VHDL: a message as nested records, and converters with record ports.
 
-A message type gets a package with the records of its fields and its constants, which all converters
-share, a package with components, and an entity per direction around the core. The core with its
-flat ports can also be used directly. A message of fixed size also gets entities that transfer the
-whole message at once. :mod:`firm_hdl.export.tree` and :mod:`firm_hdl.export.vhdl.values` decide on
-the records.
+A message type gets a package with the records of its fields and its constants; all converters share
+this package. It also gets a package with components, and an entity per direction around the core.
+The core with its flat ports can also be used directly. A message of fixed size also gets entities
+that transfer the whole message at once. :mod:`firm_hdl.export.tree` and
+:mod:`firm_hdl.export.vhdl.values` determine the records.
 """
 
 from __future__ import annotations
@@ -41,15 +41,15 @@ __all__ = ["Shared", "UserLayer", "flat_package", "user_layer"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shared:
-    """A package that the folders of other message types have, too, with the same text.
+    """A package that folders of other message types may also have, with the same text.
 
     Attributes
     ----------
     name : str
     needs : tuple of str
-        Shared packages that it uses, except the package of primitives.
+        Shared packages that this package uses, except the package of primitives.
     message : str
-        The message type that it declares; empty for the package of the bus width.
+        The message type that the package declares; empty for the package of the bus width.
     """
 
     name: str

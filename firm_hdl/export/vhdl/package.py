@@ -42,8 +42,8 @@ def message_package(package: Package, plan: Plan, values: ValueType | None) -> s
 
 def _head(package: Package, plan: Plan) -> Iterator[str]:
     yield from head_of(package, plan, what="Records", advice=": compile it once", mark="--")
-    # These clauses are for tools that find the compile order of files. The names are written in
-    # full below, because types of the same name in two packages would hide each other.
+    # These use clauses are only for tools that find the compile order of files. Names below are
+    # written in full, because use clauses hide types that have the same name in two packages.
     needs = "".join(f"use work.{name};\n" for name in package.needs)
     yield f"""
 library ieee;

@@ -13,7 +13,7 @@ __all__ = ["record_elements", "stream_record"]
 def record_elements(elements: Sequence[tuple[str, str, str, Iterable[str]]]) -> Iterator[str]:
     """Yield elements of a record, given by name, type, comment after it, and lines above."""
     width = max(len(name) for name, *_ in elements)
-    # Types of other packages are long, and do not count for the columns.
+    # Long types of other packages do not widen the column.
     short = [len(kind) for _, kind, *_ in elements if not kind.startswith("work.")]
     kinds = max(short, default=0) + 1
     for name, kind, remark, above in elements:

@@ -1,7 +1,8 @@
 """The VHDL package that all messages share: streams of primitives, and status codes.
 
-Its text does not depend on the message type. So a procedure for, say, a `float64_stream_t` works
-for all types and bus widths, and all converters of a design have the same status codes.
+Its text does not depend on the message type. So a procedure for a `float64_stream_t`, for example,
+works for all message types and bus widths, and all converters of a design have the same status
+codes.
 """
 
 from __future__ import annotations

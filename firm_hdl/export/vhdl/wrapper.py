@@ -79,7 +79,7 @@ def record_lines(plan: Plan, values: ValueType, direction: Direction) -> list[Li
 
 
 def _outer_line(port: Port) -> Line:
-    """Return a port of the user's layer, which is like that of the core except for ``tkeep``."""
+    """Return a port of the user's layer: the core's port, but ``tkeep`` is always a vector."""
     kind = _kind(port.width, vector=port.width > 1 or _is_vector(port))
     return port.name, f"{port.direction:3} {kind}", port.meaning
 
@@ -101,7 +101,7 @@ def _kind(width: int, *, vector: bool) -> str:
 
 
 def _is_vector(port: Port) -> bool:
-    """Return whether a port is a vector even if it has one bit, as ``tkeep`` of AXI4-Stream."""
+    """Return whether a port is a vector even if it has one bit, like ``tkeep`` of AXI4-Stream."""
     return port.name.endswith("_tkeep")
 
 

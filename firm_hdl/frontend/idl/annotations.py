@@ -1,8 +1,8 @@
 """Annotations: comments, units and defaults.
 
-All others are ignored, as rosidl_parser does. The exception are those that change the bytes on the
-wire by the standard: ROS 2 ignores them, too, but their author expects otherwise, so they are
-errors.
+Other annotations are ignored, as in rosidl_parser, unless they change the bytes on the wire in the
+standard. ROS 2 ignores these, too, but the author of the definition does not expect this. Therefore
+they are errors.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ def _default_expression(annotation: Annotation) -> Expression:
     raise IdlError("a default needs a value: '@default(value=...)'", annotation.span)
 
 
-# An element of a Python list. Each is a single token, so lists cannot nest.
+# An element of a Python list: a single token, so that lists cannot nest.
 _ITEM = re.compile(
     r"""\s*(?P<item>[+-]?[\w.]+(?:(?<=[eE])[+-]\d+)?|'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*")\s*(?:,|$)"""
 )

@@ -1,7 +1,7 @@
 """The wording of syntax errors in IDL, and of constructs that ROS 2 does not support.
 
-A parser knows which terminals it expected. This module puts that into the user's words, and names
-the constructs that the standard has and ROS 2 does not support.
+A parser knows which terminals it expected. This module describes them in the user's words, and
+recognizes constructs of the standard that ROS 2 does not support.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _REFUSED = {
     "union": "unions are",
     "valuetype": "value types are",
 }
-# In the order in which they are listed to the user.
+# Terminals in the order in which a message lists them.
 _PHRASES = {
     "_MODULE": "'module'",
     "_CONST": "'const'",
@@ -86,7 +86,7 @@ def explain(error: UnexpectedInput, text: str, accepts: Iterable[str]) -> tuple[
     """
     start = _place(error, text)
     expected = frozenset(accepts)
-    # Names and comments may be long, but a known mistake is recognized by a short context.
+    # A short context is enough to recognize a known mistake, even after long names or comments.
     before = text[max(0, start - 200) : start]
     for rule in (_wrong_character, _wrong_word, _wrong_sign):
         found = rule(text, start, before, expected)
@@ -176,7 +176,7 @@ def _in_general(text: str, start: int, expected: frozenset[str]) -> tuple[int, i
         phrases = ["a definition"]
         phrases += [_PHRASES[name] for name in ("_CLOSE", "$END") if name in expected]
     else:
-        # In an expression, `<` and `>` are shifts.
+        # Do not list `>` here: in an expression, it is the start of a shift.
         hidden = {"_GREATER"} if "OR" in expected and "_END_BRACKET" in expected else set()
         names = [name for name in _PHRASES if name in expected - hidden]
         phrases = list(dict.fromkeys(_PHRASES[name] for name in names))

@@ -1,8 +1,8 @@
-"""The names in an IDL file: constants, typedefs and types, also of included files.
+"""The names in an IDL file and in the files that it includes: constants, typedefs and types.
 
-rosidl_parser does not read included files and has no scopes: a typedef is known by its last name in
-the whole file. Constants are looked up as the standard requires, from the inner module to the
-outer, and then in the modules ``..._Constants``, which ROS 2 puts beside the struct.
+rosidl_parser does not read included files and has no scopes: the last part of its name identifies a
+typedef in the whole file. Constants are looked up as the standard requires, from the inner module
+to the outer, and then in the modules ``..._Constants``, which ROS 2 puts beside the struct.
 """
 
 from __future__ import annotations
@@ -60,11 +60,11 @@ def definitions(file: FileSyntax) -> Iterator[tuple[Path, Definition]]:
 
 
 def included(file: FileSyntax, include: Callable[[str], Source | None]) -> list[FileSyntax]:
-    """Read all files that a file includes, directly or not; each follows those that it includes.
+    """Read all files that a file includes, directly or not; each comes after its own includes.
 
     A path is searched for as written, then in the folder of the including file. A file that is not
-    found, or has a syntax error, is left out: rosidl_parser does not read included files at all,
-    and a name that is missing is reported where it is used.
+    found, or has a syntax error, is left out, because rosidl_parser reads no included files at all.
+    A missing name is reported where it is used.
     """
     found: list[FileSyntax] = []
     seen = {file.source.name}
@@ -172,7 +172,7 @@ class Names:
         full = self._find(name, path, struct)
         value = self.constants[full]
         if value is None:
-            # The error was reported at the declaration; what depends on it has no value, either.
+            # The error was reported at the declaration. A dependent constant has no value, either.
             raise AlreadyReportedError(f"constant '{name}' is wrong", name.span)
         return value
 
@@ -196,7 +196,7 @@ class Names:
 
 
 def _describe(type_: TypeNode, declarator: Declarator) -> str:
-    """Write a type so that types have equal texts if rosidl_parser takes them for equal."""
+    """Write a type, with equal texts for types that are equal in rosidl_parser."""
     text = "".join(f"[{_words(size)}]" for size in declarator.sizes)
     while isinstance(type_, SequenceType):
         text += f"<{'' if type_.bound is None else _words(type_.bound)}>"

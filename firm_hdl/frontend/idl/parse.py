@@ -41,7 +41,7 @@ from firm_hdl.frontend.idl.tree import (
 
 __all__ = ["idl_tree", "parse_file"]
 
-# Entries on the parser's stack. A parenthesis takes one to twelve of them, a module six.
+# Limit on the parser's stack. A parenthesis takes one to twelve entries, a module six.
 _MOST_NESTED = 200
 
 _ROS_NAMES = {
@@ -70,7 +70,7 @@ _LITERALS: dict[str, Any] = {
 }
 
 
-# The same file is included by many others.
+# Cached, because many files include the same file.
 @lru_cache(maxsize=512)
 def parse_file(source: Source) -> FileSyntax | Diagnostic:
     """Parse an IDL file.

@@ -1,6 +1,6 @@
 """Convert IDL trees to the syntax that all languages share: one message per struct of a file.
 
-The checks are those of rosidl_parser, and those of a C++ compiler on the code that ROS 2 generates;
+The checks are those of rosidl_parser and those of a C++ compiler on the code that ROS 2 generates.
 ``docs/errata.md`` lists the differences. All errors are reported, and the parts with errors are
 left out.
 """
@@ -72,7 +72,7 @@ _DECLARED: dict[int, tuple[str, Kind]] = {
 def read_idl(
     source: Source, include: Callable[[str], Source | None]
 ) -> tuple[dict[str, MessageSyntax], list[Diagnostic]]:
-    """Read an IDL file as ROS 2 packages have them.
+    """Read an IDL file of a ROS 2 package.
 
     Parameters
     ----------
@@ -82,8 +82,8 @@ def read_idl(
     Returns
     -------
     tuple of (dict of str to MessageSyntax) and list of Diagnostic
-        The structs by their names, such as ``Imu`` or ``SetBool_Request``, with typedefs expanded
-        and constants evaluated; and the errors, in the order of the text.
+        The structs by their names, such as ``Imu`` or ``SetBool_Request``, and the errors in the
+        order of the text. In the structs, typedefs are expanded and constants are evaluated.
     """
     file = parse_file(source)
     if isinstance(file, Diagnostic):
@@ -145,11 +145,11 @@ class _Reader:
         try:
             value, *_ = self._value(node, path)
         except IdlError:
-            return  # A use of the constant is reported; this error belongs to the other file.
+            return  # The error belongs to the included file. A use of the constant is reported.
         self._names.add_constant((*path, node.name.text), value)
 
     def _constant(self, node: Constant, path: Path) -> None:
-        """Declare a constant, and keep it for the struct that it belongs to."""
+        """Declare a constant, and keep it for the struct to which it belongs."""
         full = (*path, node.name.text)
         name = NameSyntax(text=node.name.text, span=node.name.span)
         self.wrong += refusals(node.annotations)
@@ -257,7 +257,8 @@ class _Reader:
         self.wrong += refusals(node.annotations)
         comment, unit = comment_of(node.annotations), unit_of(node.annotations)
         array: Declarator | None = None
-        # A type and a default that precede several names are read once.
+        # Several names share a type and a default, which are read once for plain names and once
+        # for an array.
         known: dict[bool, tuple[TypeSyntax, ValueSyntax | ListSyntax | None]] = {}
         for declarator in node.declarators:
             name = declarator.name
@@ -328,7 +329,7 @@ def _check_structs(file: FileSyntax, structs: list[tuple[Path, Struct]]) -> Iter
     suffixes = PARTS["ros2", kind]
     names = [struct.name.text for _, struct in structs]
     if len(structs) == 2 and not any(name.endswith(suffixes) for name in names):
-        # The names are not those of a service.
+        # Two structs with such names are two messages, not a service.
         message = f"'{names[1]}' is a second struct beside '{names[0]}'; one message per file"
         yield Diagnostic(message=message, span=structs[1][1].name.span)
         return

@@ -1,8 +1,8 @@
 """The syntax tree of an IDL file: its content with positions, without its meaning.
 
-Typedefs are not expanded, expressions not evaluated, names not resolved. That is done by
-:mod:`firm_hdl.frontend.idl.names`, :mod:`~firm_hdl.frontend.idl.values` and
-:mod:`~firm_hdl.frontend.idl.types`, which produce the syntax that all languages share
+In the tree, typedefs are not expanded, expressions not evaluated, and names not resolved. Three
+modules do this: :mod:`firm_hdl.frontend.idl.names`, :mod:`~firm_hdl.frontend.idl.values` and
+:mod:`~firm_hdl.frontend.idl.types`. The result is the syntax that all languages share
 (:mod:`firm_hdl.frontend.syntax`).
 """
 
@@ -54,7 +54,7 @@ class ScopedName:
     Attributes
     ----------
     is_absolute : bool
-        Whether ``::`` stands in front.
+        Whether the reference starts with ``::``.
     """
 
     parts: tuple[str, ...]
@@ -74,7 +74,7 @@ class LiteralSyntax:
     text : str
         The literal as written; for a string of several tokens, all of them.
     parts : tuple of str
-        Its tokens; only a string can have several.
+        The tokens of the literal; only a string can have several.
     """
 
     kind: Literal["integer", "float", "fixed", "character", "boolean", "string", "wstring"]
@@ -96,7 +96,7 @@ class Unary:
 class Chain:
     """Operands joined by operators of one precedence, evaluated from the left.
 
-    A sum of a thousand numbers is one node, so that the tree is no deeper than its parentheses.
+    A sum of a thousand numbers is one node, so that only parentheses make the tree deep.
     """
 
     operands: tuple[Expression, ...]
@@ -129,7 +129,7 @@ class BasicType:
     Attributes
     ----------
     name : str
-        Its name in ROS; ``long double``, which only IDL has, keeps its name in IDL.
+        The name in ROS. ``long double`` has its name in IDL, because only IDL has this type.
     """
 
     name: str

@@ -1,7 +1,7 @@
 """Types with all typedefs expanded.
 
 ROS 2 has single elements, and arrays or sequences of them. With typedefs, rosidl_parser accepts an
-array of arrays or of sequences. It is an error here, because ROS 2 cannot build such a type.
+array of arrays or of sequences. Here such a type is an error, because ROS 2 cannot build it.
 """
 
 from __future__ import annotations
@@ -144,7 +144,7 @@ class Expander:
         return self._apply(layers, [*names], shape)
 
     def _apply(self, layers: list[_Layer], names: list[str], shape: _Shape) -> _Shape:
-        # The first layer may be a member, which has no name.
+        # The first layer may be a member. It has no typedef name, so pad the names with `None`.
         padded = [None] * (len(layers) - len(names)) + names
         for layer, name in zip(reversed(layers), reversed(padded), strict=True):
             shape = self._wrap(layer, shape)

@@ -1,8 +1,8 @@
 """Evaluate expressions, and check that their values fit their types.
 
-Expressions are those of OMG IDL 4.2, 7.4.1.4.3; rosidl_parser reads one literal with a sign, or
-one name. Strings have the values that rosidl_parser gives them, because programs of ROS 2 see
-those; it undoes backslashes twice.
+Expressions are those of OMG IDL 4.2, 7.4.1.4.3. rosidl_parser reads only one literal with a sign,
+or one name. Strings have the values of rosidl_parser, because ROS 2 programs see these values.
+rosidl_parser undoes backslashes twice.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ __all__ = [
 
 
 class IdlError(Exception):
-    """An error in a part of a file; callers that can go on without that part collect it."""
+    """An error in a part of a file. Callers that do not need the part collect such errors."""
 
     def __init__(self, message: str, span: Span) -> None:
         super().__init__(message)
@@ -52,7 +52,7 @@ class AlreadyReportedError(IdlError):
 
 
 class Value(NamedTuple):
-    """A value and the kind of its literal, which decides what it may be used for."""
+    """A value and the kind of its literal; the kind decides where the value may be used."""
 
     kind: Literal["integer", "float", "character", "boolean", "text"]
     value: bool | int | float | str
@@ -84,7 +84,7 @@ def evaluate(expression: Expression, lookup: Lookup, bits: int | None = None) ->
     Parameters
     ----------
     bits : int or None
-        Size of the target type if that is unsigned: the bits that `~` inverts.
+        Number of bits that `~` inverts: the size of the target type if that type is unsigned.
 
     Raises
     ------
@@ -163,7 +163,7 @@ def _literal(literal: LiteralSyntax) -> Value:
     match literal.kind:
         case "integer":
             digits = word.lstrip("0xX")
-            # Longer ones fit no type, and Python refuses to read very long ones.
+            # A longer number fits no type, and Python refuses to read very long numbers.
             if len(digits) > 30:
                 raise IdlError(f"a number of {len(digits)} digits is too long", span)
             base = 16 if word[:2] in ("0x", "0X") else 8 if word[0] == "0" else 10
@@ -189,7 +189,7 @@ def _literal(literal: LiteralSyntax) -> Value:
 
 
 def _text(text: str, wide: bool, span: Span) -> str:
-    """Undo escapes twice, as rosidl_parser does: a backslash needs four of them."""
+    """Undo escapes twice, as rosidl_parser does: one backslash is written as four."""
     return re.sub(r'\\(["\\])', r"\1", _unescape(text, wide, span))
 
 
@@ -238,7 +238,7 @@ _INTEGERS: dict[str, Callable[[int, int], int]] = {
     "+": operator.add,
     "-": operator.sub,
     "*": operator.mul,
-    # Towards zero, as in C.
+    # Rounded towards zero, as in C.
     "/": lambda a, b: abs(a) // abs(b) * (1 if (a < 0) == (b < 0) else -1),
     "%": lambda a, b: abs(a) % abs(b) * (-1 if a < 0 else 1),
 }
