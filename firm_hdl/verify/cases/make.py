@@ -1,10 +1,10 @@
 """Test cases: messages of a type with chosen values.
 
-Over the cases of a type, every string, sequence and run takes the lengths 0, 1 and 2, every residue
-modulo the bus, lengths over two bus words, and its bound. Each of them takes its lengths in another
-order, so that combinations differ. Primitives are all zero, all highest, all lowest, all special
-(signed zeros, infinities, NaN with payloads, subnormal numbers) and then mixed. Everything follows
-from the seed.
+Over the cases of a type, every string, sequence and run takes the lengths 0, 1 and 2. It also takes
+every residue modulo the bus, lengths over two bus words, and its bound. Each of them takes its
+lengths in another order, so that combinations differ. Primitives are all zero, all highest, all
+lowest, all special (signed zeros, infinities, NaN with payloads, subnormal numbers) and then mixed.
+Everything follows from the seed.
 """
 
 from __future__ import annotations

@@ -1,3 +1,3 @@
-"""What tests find out: verdicts, records of tests, and the file that keeps them."""
+"""The results of tests: verdicts, records of tests, and the file that keeps the records."""
 
 __all__ = []

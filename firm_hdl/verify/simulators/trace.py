@@ -1,8 +1,8 @@
-"""What every port of both exported converters did in each cycle of a Python simulation.
+"""Traces: the values of all ports of both exported converters, in each cycle of a simulation.
 
-The simulation runs the converters themselves. The trace has the values that the ports of their
-exported tops (:class:`firm_hdl.export.top.Top`) would have. So any simulator of the exported text
-can be given the same inputs, and must show the same outputs in the same cycles. This includes
+The Python simulation runs the converters themselves. The trace has the values that the ports of
+their exported tops (:class:`firm_hdl.export.top.Top`) would have. So any simulator of the exported
+text can be given the same inputs, and must show the same outputs in the same cycles. This includes
 payloads that are not valid.
 
 Form. A trace is two lists of rows of text, one row a cycle. A row has a number and bits for each

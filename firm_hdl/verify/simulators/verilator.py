@@ -1,8 +1,8 @@
 """Verilator, on exported Verilog: compiled to C++, and quick to run.
 
-Verilator knows 0 and 1 only. A value that the text does not define, such as that of a register
-without an initial value, is 0 in one copy of the devices and 1 in another. A bit of an output that
-differs between the two copies is reported as ``X``.
+Verilator knows 0 and 1 only, so there are two copies of the devices. A value that the text does not
+define is 0 in one copy and 1 in the other. An example is a register without an initial value. A bit
+of an output that differs between the two copies is reported as ``X``.
 """
 
 from __future__ import annotations

@@ -1,3 +1,3 @@
-"""What all test systems share: their interface, their options, and their tasks."""
+"""The common parts of all test systems: their interface, their options, and their tasks."""
 
 __all__ = []

@@ -1,7 +1,7 @@
 """TS1: does firm-hdl read a definition as ROS does?
 
-Oracles read each definition with code of their own. What they say of a definition is compared with
-our model in plain data. Differences that are meant to be have names.
+Oracles read each definition with their own code. Their readings are compared with our model as
+plain data. Each deliberate difference has a key.
 """
 
 __all__ = []

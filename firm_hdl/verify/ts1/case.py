@@ -1,4 +1,4 @@
-"""Definitions as oracles are given them."""
+"""Definitions in the form that oracles get."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ class DefinitionCase:
     Attributes
     ----------
     kind : "msg", "srv" or "action"
-        What it defines, and the name of the folder that it is in.
+        The kind of interface that is defined, and the name of the folder of the file.
     language : "msg", "srv", "action" or "idl"
-        What it is written in, and how the file's name ends.
+        The language of the definition, and the suffix of the file's name.
     text : str
-        All of it, line ends as they are.
+        The whole text, with its own line ends.
     source : str
-        Where it is: the name of a file, or of a text that comes with firm-hdl.
+        The name of the file, or of a text that comes with firm-hdl.
     before : str or None
-        If `text` is another one than the file's: that of the file.
+        The original text of the file, if `text` was changed.
     included : tuple of str
-        In IDL, the texts of the files that it includes, and of those that they do.
+        For IDL, the texts of all files that are included, directly or by other included files.
     """
 
     dialect: Dialect
@@ -44,12 +44,12 @@ class DefinitionCase:
 
     @property
     def is_changed(self) -> bool:
-        """Whether the text is another one than the file's."""
+        """Whether the text differs from that of the file."""
         return self.before is not None
 
     @property
     def changes(self) -> list[str]:
-        """Lines that a change took away (``-``) and put in (``+``)."""
+        """Lines that a change has removed (``-``) and added (``+``)."""
         lines = difflib.unified_diff(
             (self.before or "").splitlines(), self.text.splitlines(), lineterm="", n=0
         )
@@ -57,13 +57,13 @@ class DefinitionCase:
 
     @property
     def full_name(self) -> str:
-        """Name of the type, in which ROS 1 does not say the kind."""
+        """Name of the type. In ROS 1, it does not contain the kind."""
         middle = f"{self.kind}/" if self.dialect == "ros2" else ""
         return f"{self.package}/{middle}{self.name}"
 
     @property
     def spelled_name(self) -> str:
-        """Name of the type as the command takes it for any dialect and kind."""
+        """Name of the type in the form that the command accepts for any dialect and kind."""
         return f"{self.package}/{self.kind}/{self.name}"
 
     @property

@@ -1,4 +1,4 @@
-"""TS1 as a test system: what is recorded of each definition, and what is printed."""
+"""TS1 as a test system: records the verdicts on each definition, and prints them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["Tally", "Ts1", "command_of"]
 _MOST_DETAILS = 8
 
 _MOST_SHOWN = 20
-"""The verdicts on so many definitions are printed one by one."""
+"""The verdicts on at most this many definitions are printed one by one."""
 
 _SAID = {
     Passed.name: "agrees",
@@ -30,7 +30,7 @@ _SAID = {
     Failed.name: "differs",
     NotJudged.name: "not judged",
 }
-"""What is printed of an oracle, in the order of the columns."""
+"""Texts for the verdicts of an oracle, in the order of the columns."""
 
 
 def command_of(
@@ -39,7 +39,7 @@ def command_of(
     number: int | None = None,
     oracles: Sequence[str] = (),
 ) -> str:
-    """Return the command that judges one definition, or the mutation of a number, again."""
+    """Return the command that judges one definition, or the mutation with a number, again."""
     names = [case.spelled_name] if number is None else request.types or ["--all"]
     return command_again(
         *names,
@@ -53,15 +53,15 @@ def command_of(
 
 
 class Tally:
-    """How often each oracle said what.
+    """Counts the verdicts of each oracle.
 
     Attributes
     ----------
     verdicts : counter of (oracle, name of the verdict)
     refused : counter of oracle
-        How often both refuse; among those that agree.
+        How often both firm-hdl and the oracle refuse. These verdicts count as agreement, too.
     details : counter of (oracle, name of the verdict, text)
-        Keys of known differences, and reasons for what was not judged.
+        Keys of known differences, and reasons why a definition was not judged.
     """
 
     def __init__(self, found: Iterable[OracleVerdict]) -> None:
@@ -77,12 +77,12 @@ class Tally:
 
     @property
     def differences(self) -> int:
-        """How often an oracle differs."""
+        """The number of unknown differences from all oracles."""
         return sum(n for (_, name), n in self.verdicts.items() if name == Failed.name)
 
 
 class Ts1(System):
-    """Definitions before oracles; a test is one definition, or one mutation, before all of them.
+    """The test system of TS1. A test gives one definition, or one mutation, to all oracles.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ class Ts1(System):
     Raises
     ------
     DefinitionError
-        When it is entered: as `Ts1Run` does.
+        When the system is entered, as from `Ts1Run`.
     """
 
     name = "ts1"
@@ -114,12 +114,12 @@ class Ts1(System):
 
     @cached_property
     def tests(self) -> Sequence[Test]:
-        """All definitions of all distributions, or their mutations."""
+        """The tests of all definitions of all distributions, or of their mutations."""
         return [run.test(number) for run in self._runs for number in run.numbers]
 
     @property
     def options(self) -> Mapping[str, Any]:
-        """The oracles that are asked, with their versions, and what mutations are made from."""
+        """The oracles with their versions, and a digest of the definitions to mutate."""
         here = {f"{name} {v}".strip() for run in self._runs for name, v in run.versions.items()}
         mutated = {run.distro: run.digest for run in self._runs if run.request.mutations}
         return {"oracles": sorted(here), **({"mutated": mutated} if mutated else {})}
@@ -129,7 +129,7 @@ class Ts1(System):
         return [each for run in self._runs for each in self.judge(run, recorder)]
 
     def judge(self, run: Ts1Run, recorder: Recorder) -> list[Judged]:
-        """Judge the definitions of one run; an oracle that was asked for and is not here fails."""
+        """Judge the definitions of one run. A named oracle that is not installed is a failure."""
         began = time.perf_counter()
         what = "mutation" if run.request.mutations else "definition"
         tests = {number: run.test(number) for number in run.numbers}
@@ -162,7 +162,7 @@ def _again(run: Ts1Run, number: int, oracles: Sequence[str] = ()) -> str:
 
 
 def _kept(run: Ts1Run, number: int, record: Record) -> Record:
-    """Return a record with its command, and without long texts."""
+    """Return a record with its command, and with long texts shortened."""
     verdicts = [replace(v, verdict=clipped_verdict(v.verdict)) for v in record.verdicts]
     return replace(
         record,
@@ -173,7 +173,7 @@ def _kept(run: Ts1Run, number: int, record: Record) -> Record:
 
 
 def _differences(run: Ts1Run, number: int, record: Record) -> Iterator[str]:
-    """Yield what is printed of a definition, for each oracle that differs."""
+    """Yield the text to print about a definition for each oracle that differs."""
     case = run.case(number)
     for each in record.verdicts:
         if not isinstance(each.verdict, Failed):

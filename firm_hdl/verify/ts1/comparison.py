@@ -23,7 +23,8 @@ class Compared:
     ----------
     differences : tuple of Difference
     cases : int
-        Number of facts that were compared; 1 if one of the two refuses; 0 if the oracle has none.
+        Number of facts that were compared; 1 if one of the two refuses; 0 if the oracle gives no
+        facts.
     is_refused : bool
         Whether both refuse.
     """
@@ -44,7 +45,7 @@ def compared(
     alike: Mapping[str, str],
     show: Callable[[], str],
 ) -> Compared:
-    """Compare our reading with what an oracle, which has judged, answers.
+    """Compare our reading with the answer of an oracle, which must not be `NotJudged`.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ def compared(
     alike : mapping of str to str
         As for `structure`.
     show : callable
-        Prints the definition as ``firm-hdl show`` does.
+        Returns the definition as ``firm-hdl show`` prints it.
     """
     match ours, answer:
         case DefinitionError(), Refused():
@@ -84,7 +85,7 @@ def _said(answer: Answer) -> str:
 def _facts(
     ours: Interface, theirs: Facts, alike: Mapping[str, str], show: Callable[[], str]
 ) -> Facts:
-    """Say of our model what the oracle says of its own."""
+    """Return the same facts about our model as those that the oracle gives."""
     makers: dict[str, Callable[[], Any]] = {
         "structure": lambda: structure(ours, alike),
         "names": lambda: [ours.name],
@@ -99,12 +100,12 @@ def _facts(
 def _made(make: Callable[[], Any]) -> Any:
     try:
         return make()
-    except Exception as error:  # It is ours, and a difference like any other.
+    except Exception as error:  # An error of our code is a difference, too.
         return f"raises {type(error).__name__}: {error}"
 
 
 def _hashes(interface: Interface) -> dict[str, str]:
-    """Return the type hashes of an interface and of all that it is made of and has a name."""
+    """Return the type hashes of an interface, and of its messages and services."""
     services = interface.services if isinstance(interface, Action) else ()
     return {each.name: type_hash(each) for each in (interface, *interface.messages, *services)}
 

@@ -1,6 +1,7 @@
-"""What explains a difference from an oracle, if it is known.
+"""Decides whether known differences explain a difference from an oracle.
 
-Both readings are compared again without what is known: is any difference left?
+Both readings are compared again without the known differences. If no difference is left, the
+difference is known.
 """
 
 from __future__ import annotations
@@ -24,21 +25,20 @@ _Read: TypeAlias = "Callable[[Universe, DefinitionCase], Interface | Exception]"
 
 
 class Explainer:
-    """One definition before one oracle; it is compared as often as it takes.
+    """Compares the readings of one definition by us and by one oracle, if needed several times.
 
     Parameters
     ----------
     universe : Universe or None
-        Where other texts can be read; `None`: nothing can be read again, and no difference is
-        known.
+        Reads changed texts. `None`: no text can be read again, and no difference is known.
     oracle : Oracle
     case : DefinitionCase
     ours : Message, Service, Action or Exception
-        What we make of it.
+        Our reading.
     answer : Accepted or Refused
-        What the oracle makes of it.
+        The oracle's reading.
     read : callable
-        Reads a definition as we do.
+        Reads a definition with our reader.
     """
 
     def __init__(
@@ -57,12 +57,12 @@ class Explainer:
         self._plain = compared(ours, answer, oracle.alike(case), lambda: show(case))
 
     def verdict(self) -> tuple[Verdict, bool]:
-        """Say what is left of the differences, and whether both refuse."""
+        """Return the verdict without known differences, and whether both refuse."""
         plain = self._plain
         if not plain.cases:
             return NotJudged("the oracle takes the definition, and says nothing of it"), False
         if not plain.differences:
-            # Where it is known to err, we must not err as well.
+            # Where the oracle is known to err, we must not agree with it.
             found, _ = self._compared(self._entries(with_mistakes=False))
             if not found.differences:
                 return Passed(plain.cases), plain.is_refused
@@ -70,7 +70,7 @@ class Explainer:
         return self._known(plain)
 
     def _known(self, plain: Compared) -> tuple[Verdict, bool]:
-        # What we take is no mistake to us.
+        # Mistakes that the oracle accepts matter only if we refuse the definition.
         is_refused = isinstance(self._ours, DefinitionError)
         found, touched = self._compared(self._entries(with_mistakes=is_refused))
         if not found.differences and found.cases and touched:
@@ -97,7 +97,7 @@ class Explainer:
     def _needed(
         self, entries: Sequence[KnownRule], found: Compared
     ) -> tuple[Sequence[KnownRule], Compared]:
-        """Leave out entries without which nothing is left either."""
+        """Drop entries that are not needed: without them, no difference is left either."""
         for entry in entries:
             fewer = [each for each in entries if each is not entry]
             without, _ = self._compared(fewer)
@@ -106,7 +106,7 @@ class Explainer:
         return entries, found
 
     def _compared(self, entries: Sequence[KnownRule]) -> tuple[Compared, list[KnownRule]]:
-        """Compare without what some entries know; list those that have changed anything."""
+        """Compare without the differences of some entries; list entries that changed anything."""
         if not entries:
             return self._plain, []
         touched: dict[str, KnownRule] = {}
@@ -140,12 +140,12 @@ class Explainer:
             return self._plain, []
         found = compared(ours, answer, alike, lambda: self._show(case))
         if found.is_refused and any(entry.is_mistake for entry in touched.values()):
-            # A mistake was to be out of the way, so that the rest is read.
+            # The mistake was removed so that the rest can be compared, but both refuse the rest.
             found = Compared(cases=0)
         return found, [entry for entry in entries if entry.key in touched]
 
     def _asked(self, change: Callable[[DefinitionCase], DefinitionCase]) -> Answer:
-        """Ask the oracle about the text that a change makes; it keeps its word on the same text."""
+        """Ask the oracle about a changed text; reuse its answer if the text stays the same."""
         if change(self._case) is self._case and not self._oracle.changes_needs:
             return self._answer
         return self._oracle.judge_changed(self._case, change)
@@ -168,7 +168,7 @@ class Explainer:
         return "" if self._universe is None else self._universe.show(case)
 
     def _not_judged(self) -> Iterator[str]:
-        """Yield why the verdict on a text is none on what else is in it."""
+        """Yield reasons why the verdict says nothing about the definition itself."""
         if isinstance(self._ours, DefinitionError):
             for entry in self._entries():
                 if entry.spoils is not None and any(
@@ -181,7 +181,7 @@ class Explainer:
                 yield f"it needs {need.full_name}, a known difference: {', '.join(keys)}"
 
     def _needs(self) -> Iterator[DefinitionCase]:
-        """Yield definitions that it needs and that the oracle reads from their files."""
+        """Yield needed definitions that the oracle reads from their original files."""
         if self._universe is None or self._oracle.changes_needs:
             return
         if isinstance(self._ours, DefinitionError):

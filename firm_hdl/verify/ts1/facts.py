@@ -1,23 +1,23 @@
-"""Facts about a definition in plain data, so that readers of any kind can be compared.
+"""Facts about a definition as plain data, so that readers of any kind can be compared.
 
 Facts are a dictionary. Each reader gives the parts that it knows:
 
 ``structure``
-    Each message that the definition declares or that is derived from it, by full name. A message
-    has ``fields`` and ``constants``, lists in the order of the text, and a ``comment``. A field has
-    a ``name``, a ``type`` as ROS 2 writes it with the full names of messages (``string<=8[<=3]``,
-    ``std_msgs/msg/Header``), a ``default``, a ``comment`` and a ``unit``; a constant has a
-    ``value``, too, and in ROS 1 the ``text`` of it.
+    Each message that the definition declares or that is derived from the definition, by full name.
+    A message has ``fields`` and ``constants``, lists in the order of the text, and a ``comment``. A
+    field has a ``name``, a ``type`` as ROS 2 writes it with the full names of messages
+    (``string<=8[<=3]``, ``std_msgs/msg/Header``), a ``default``, a ``comment`` and a ``unit``. A
+    constant has a ``value`` instead of a default, and in ROS 1 the ``text`` of the value.
 ``names``
-    What a text in IDL itself calls its message.
+    The name that a text in IDL itself declares for its message.
 ``show``
-    What ``rosmsg show`` or ``rossrv show`` prints.
+    The output of ``rosmsg show`` or ``rossrv show``.
 ``md5``
     The md5sum of ROS 1 of each message and service, by full name.
 ``hash``
     The type hash of ROS 2 (RIHS01).
 ``proto``
-    What ``ros2 interface proto`` prints.
+    The output of ``ros2 interface proto``.
 """
 
 from __future__ import annotations
@@ -52,11 +52,11 @@ class Difference:
     Attributes
     ----------
     path : str
-        Where: ``verdict``, or a path through facts.
+        The place of the difference: ``verdict``, or a path through the facts.
     ours, theirs : str
-        The fact of each, in one line.
+        Our fact and the oracle's, in one line each.
     values : tuple
-        The fact of each, as it is.
+        Both facts as objects.
     """
 
     path: str
@@ -75,13 +75,13 @@ def structure(interface: Interface, alike: Mapping[str, str] | None = None) -> d
     ----------
     interface : Message, Service or Action
     alike : mapping of str to str
-        Names of primitives that whoever is compared with cannot tell from others, and those.
+        Primitives that the oracle cannot tell from others: their names, and those of the others.
     """
     return {each.name: _message(each, alike or {}) for each in interface.messages}
 
 
 def differences(ours: Any, theirs: Any, path: str = "") -> Iterator[Difference]:
-    """Yield the facts in `theirs` that differ. Facts that it lacks are not compared."""
+    """Yield the facts in `theirs` that differ. Facts that `theirs` lacks are not compared."""
     if isinstance(theirs, dict) and isinstance(ours, dict):
         for key, value in theirs.items():
             step = f"{path}/{key}" if path else key
@@ -101,7 +101,7 @@ def differences(ours: Any, theirs: Any, path: str = "") -> Iterator[Difference]:
 
 
 def count_facts(facts: Any) -> int:
-    """Return the number of single facts; an empty list is one."""
+    """Return the number of single facts. An empty list counts as one fact."""
     if isinstance(facts, dict):
         return sum(map(count_facts, facts.values()))
     if _is_members(facts):
@@ -118,7 +118,7 @@ def _is_members(value: Any) -> bool:
 
 
 def _same(ours: Any, theirs: Any) -> bool:
-    # By their texts: a NaN is one, zero has a sign, and True is not 1.
+    # Compare texts: NaN equals NaN, zeros differ by their signs, and True is not 1.
     return type(ours) is type(theirs) and repr(ours) == repr(theirs)
 
 
@@ -155,7 +155,7 @@ def _type(kind: FieldType, alike: Mapping[str, str]) -> str:
 
 
 def _value(value: Value) -> Any:
-    """Make of a value what JSON can carry."""
+    """Convert a value to one that JSON can represent."""
     if isinstance(value, tuple):
         return [_value(item) for item in value]
     return list(value) if isinstance(value, bytes) else value

@@ -26,7 +26,8 @@ def judge_case(
     Returns
     -------
     Record
-        ``generation`` is the time of our reading, ``testing`` that of the oracles and of comparing.
+        ``generation`` is the time of our reading. ``testing`` is the time of the oracles and of
+        comparisons.
         The processor time includes the oracles' processes.
     """
     watch = Stopwatch()
@@ -35,11 +36,11 @@ def judge_case(
     verdicts: list[OracleVerdict] = []
     elsewhere = 0.0
     for oracle in oracles:
-        # Two oracles may share a process, so only the difference is this one's.
+        # Two oracles may share a process, so only the difference is the time of this oracle.
         before = oracle.cpu_seconds()
         try:
             verdict = judge(universe, oracle, case, ours)
-        except Exception as error:  # As with ours: the next definition is to be judged, too.
+        except Exception as error:  # The other oracles and definitions are judged in any case.
             verdict = _failed(oracle, f"the oracle raised {type(error).__name__}: {error}")
         verdicts += [] if verdict is None else [verdict]
         elsewhere += max(0.0, oracle.cpu_seconds() - before)
@@ -51,7 +52,7 @@ def judge_case(
 
 
 def record_of(test: Test, language: str, verdicts: Sequence[OracleVerdict]) -> Record:
-    """Return the record of what oracles say of a definition in some language."""
+    """Return the record of a test from the oracles' verdicts on a definition in some language."""
     known = [
         f"known difference from {each.oracle}: {key}"
         for each in verdicts
@@ -63,7 +64,7 @@ def record_of(test: Test, language: str, verdicts: Sequence[OracleVerdict]) -> R
 
 
 def _common_verdict(language: str, verdicts: Sequence[OracleVerdict]) -> Verdict:
-    """Return what all oracles say together; those that did not judge count if nobody did."""
+    """Return the common verdict. Oracles that did not judge count only if no oracle judged."""
     details: dict[type[Verdict], list[str]] = {}
     for each in verdicts:
         lines = details.setdefault(type(each.verdict), [])
@@ -99,7 +100,7 @@ def judge(
     Parameters
     ----------
     ours : Message, Service, Action, Exception or None
-        Our reading; `None`: that of `read`.
+        Our reading; `None`: `read` is called for it.
     """
     if case.language not in oracle.languages.get(case.dialect, ()):
         return None
@@ -117,10 +118,10 @@ def _failed(oracle: Oracle, why: str) -> OracleVerdict:
 
 
 def read(universe: Universe, case: DefinitionCase) -> Interface | Exception:
-    """Read a definition as users of firm-hdl do."""
+    """Read a definition as users of firm-hdl do; return an exception instead of raising it."""
     try:
         return universe.interface(case)
-    except Exception as error:  # Whatever it is, the next definition is to be judged, too.
+    except Exception as error:  # The next definition is judged in any case.
         return error
 
 
@@ -136,9 +137,9 @@ def compare(
     Parameters
     ----------
     ours : Message, Service, Action or Exception
-        As `read` gives it.
+        The result of `read`.
     universe : Universe or None
-        Where the definition is; `None`: no difference is known.
+        The definitions of the run; `None`: no difference is known.
     """
     is_refused = False
     verdict: Verdict

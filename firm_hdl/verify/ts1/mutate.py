@@ -1,7 +1,7 @@
-"""Definitions with small mistakes, made by rule from real ones.
+"""Definitions with small mistakes, made by rules from real definitions.
 
-A mutation is decided by its number alone (and by the definitions that there are), so a report can
-name it and anybody can make it again.
+A mutation depends only on its number and on the definitions to choose from. So a report can name a
+mutation, and everybody can reproduce it.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ def mutation(cases: Sequence[DefinitionCase], number: int) -> DefinitionCase:
 
     Parameters
     ----------
-    cases : sequence of Case
-        What to choose from.
+    cases : sequence of DefinitionCase
+        The definitions to choose from.
     number : int
-        Which one.
+        The number of the mutation.
     """
     generator = random.Random(f"ts1 {number}")
     small = [case for case in cases if len(case.text) <= _MOST_CHARACTERS] or list(cases)
@@ -67,7 +67,7 @@ def mutate(text: str, generator: random.Random) -> str:
 
 
 def _place(generator: random.Random, text: str) -> int:
-    """Choose a place, seldom inside a comment, where hardly anything is wrong."""
+    """Choose a place, but seldom inside a comment, where hardly any change is a mistake."""
     place = 0
     for _ in range(4):
         place = generator.randrange(len(text) + 1)

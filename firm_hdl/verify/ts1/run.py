@@ -27,16 +27,17 @@ from firm_hdl.verify.ts1.universe import Universe, write_definitions
 
 __all__ = ["Ts1Run", "each_distro"]
 
-# What one process is given at a time: so many definitions, or so many characters of them.
+# A share has at most this many definitions, and ends as soon as it has this many characters.
 _MOST_CASES = 32
 _MOST_CHARACTERS = 30_000
 _LEAST_SHARES = 64
 
 
 def each_distro(request: Request) -> list[Request]:
-    """Return a request for each distribution that a request means.
+    """Return a request for each distribution of a request.
 
-    If it names none, these are the default one if there are paths, else all that have the types.
+    If the request names none, the default distribution is used with paths. Without paths, all
+    distributions that have the types are used.
 
     Raises
     ------
@@ -61,14 +62,14 @@ def _having(types: Sequence[str]) -> list[str]:
 
 
 class Ts1Run:
-    """One run; a context manager, because it keeps definitions in a temporary folder.
+    """One run; a context manager, because a run keeps definitions in a temporary folder.
 
     Parameters
     ----------
     request : Request
-        Of one distribution. `distros`, `paths`, `types`, `mutations`, `seed`, `oracles` and `jobs`
-        are used. Mutations are made from the definitions of the types; `seed` is the number of the
-        first.
+        A request for one distribution. `distros`, `paths`, `types`, `mutations`, `seed`, `oracles`
+        and `jobs` are used. Mutations are made from the definitions of the types. `seed` is the
+        number of the first mutation.
 
     Attributes
     ----------
@@ -78,12 +79,12 @@ class Ts1Run:
     versions : dict of str to str
         Releases of the oracles that are asked, by name.
     missing : dict of str to str
-        Why the others are not.
+        Why the other oracles cannot be asked, by name.
 
     Raises
     ------
     DefinitionError
-        If a path is no folder, or a type is not there.
+        If a path is not a folder, or a type does not exist.
     """
 
     def __init__(self, request: Request) -> None:
@@ -124,12 +125,12 @@ class Ts1Run:
 
     @property
     def total(self) -> int:
-        """Number of definitions that are to be judged."""
+        """Number of definitions or mutations to judge."""
         return self.request.mutations or len(self.cases)
 
     @cached_property
     def digest(self) -> str:
-        """Identifies the definitions that mutations are made from."""
+        """A digest of the definitions that mutations are made from."""
         digest = hashlib.sha256()
         for case in self.cases:
             digest.update(f"{case.spelled_name} {case.language} {len(case.text)}\n".encode())
@@ -137,28 +138,28 @@ class Ts1Run:
         return digest.hexdigest()[:16]
 
     def case(self, number: int) -> DefinitionCase:
-        """Return the definition of a number, or the mutation."""
+        """Return the definition or the mutation with a number."""
         return _case(self.request, self.cases, number)
 
     def test(self, number: int) -> Test:
-        """Return the test of a definition, or of a mutation."""
+        """Return the test of the definition or of the mutation with a number."""
         return _test(self.request, self.case(number), number)
 
     @property
     def numbers(self) -> range:
-        """Numbers of all that is to be judged."""
+        """Numbers of all definitions or mutations to judge."""
         first = self.request.seed if self.request.mutations else 0
         return range(first, first + self.total)
 
     def judgements(
         self, numbers: Sequence[int] | None = None
     ) -> Generator[list[tuple[int, Record]], None, None]:
-        """Judge definitions; yield their numbers and what came of them, as they come, in shares.
+        """Judge definitions; yield their numbers and records in shares, as these are ready.
 
         Parameters
         ----------
         numbers : sequence of int or None
-            Which of `numbers`; `None`: all.
+            Those of the property `numbers` to judge; `None`: all.
         """
         left = self.numbers if numbers is None else numbers
         if self.request.mutations:
@@ -169,7 +170,7 @@ class Ts1Run:
         with closing(run_shares(_judge_share, self._key, shares, jobs=jobs)) as run:
             for share, result in run:
                 if isinstance(result, ExecutorError):
-                    # One definition, alone in its process.
+                    # The process died although it had only one definition.
                     result = [self._died(share[0], str(result))]
                 if isinstance(result, Exception):
                     raise result
@@ -208,7 +209,7 @@ class _Key:
 
 @dataclass(frozen=True, slots=True)
 class _Session:
-    """What a process has for a run: our reader, the cases in the order of all, and oracles."""
+    """The objects of a process for a run: our reader, all cases in order, and the oracles."""
 
     universe: Universe
     cases: list[DefinitionCase]
@@ -224,14 +225,14 @@ def _session(key: _Key) -> _Session:
         cases = universe.select(key.request.types)
         oracles = [ORACLES[name](universe) for name in key.oracles]
         for oracle in oracles:
-            # Starts its process: no definition is to be blamed for the time that takes.
+            # Start the oracle's process now, so that no definition is charged for the time.
             oracle.missing()
         _sessions[key] = _Session(universe, cases, oracles)
     return _sessions[key]
 
 
 def _end_session(key: _Key) -> None:
-    # Those of other processes end with these.
+    # The sessions of other processes end with the processes.
     if key in _sessions:
         for oracle in _sessions.pop(key).oracles:
             oracle.close()

@@ -1,4 +1,4 @@
-"""All definitions of a run: a library for us, and files in a folder for oracles."""
+"""All definitions of a run: a library for our reader, and files in a folder for oracles."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Universe:
     paths : sequence of str
         As for `Library`. The folders that the environment names are searched, too.
     folder : str
-        Where `write_definitions` has put the files, ``PACKAGE/msg|srv|action/FILE``.
+        The folder for the files of `write_definitions`, ``PACKAGE/msg|srv|action/FILE``.
     """
 
     def __init__(self, distro: str, paths: Sequence[str] = (), folder: str = "") -> None:
@@ -46,18 +46,19 @@ class Universe:
 
     @property
     def dialect(self) -> Dialect:
-        """Whose rules the definitions follow."""
+        """The dialect whose rules the definitions follow."""
         return self.library.dialect
 
     def select(self, types: Iterable[str]) -> list[DefinitionCase]:
         """List the definitions of some types.
 
-        If none is named, these are all that the folders have, or if there are no folders, all.
+        If no type is named, these are all definitions in the folders. If the folders have none,
+        these are all definitions of the universe.
 
         Raises
         ------
         DefinitionError
-            If a type is not there.
+            If a type does not exist.
         """
         wanted = list(types)
         if wanted:
@@ -77,19 +78,19 @@ class Universe:
         for kind in kinds:
             if (package, kind, base) in self._sources.names:
                 return self._case(package, kind, base)
-        self.library.source(name)  # Says what is wrong with the name.
+        self.library.source(name)  # Raises an error that says what is wrong with the name.
         message = f"'{name}' has no definition of its own"
         raise DefinitionError([Diagnostic(message=message)])
 
     def message_case(self, package: str, name: str) -> DefinitionCase | None:
-        """Give the definition of a message; `None` if there is none."""
+        """Return the definition of a message; `None` if there is none."""
         if (package, "msg", name) not in self._sources.names:
             return None
         return self._case(package, "msg", name)
 
     @cached_property
     def by_source(self) -> dict[str, DefinitionCase]:
-        """Every definition by the name of its source, which may be that of a file."""
+        """Every definition by the name of its source, which may be a file."""
         cases = [self._case(*name) for name in sorted(self._sources.names)]
         return {case.source: case for case in cases}
 
@@ -99,7 +100,7 @@ class Universe:
             assert found is not None
             source, language = found.source, found.language
         except DefinitionError as error:
-            # A file that is no text: oracles are to say so, too.
+            # The file is not valid text. Oracles have to refuse it, too.
             source = _source_of(error)
             language = "idl" if source.name.endswith(".idl") else kind
         return DefinitionCase(
@@ -114,7 +115,7 @@ class Universe:
         )
 
     def _included(self, text: str) -> dict[str, str]:
-        """Give the texts of the files that one in IDL includes, by their types' names."""
+        """Return the texts of all files that a text in IDL includes, by the types' names."""
         found: dict[str, str] = {}
         pending = [text]
         while pending:
@@ -127,7 +128,7 @@ class Universe:
         return found
 
     def changed(self, change: Callable[[DefinitionCase], DefinitionCase]) -> Universe:
-        """Give the same definitions with the texts of messages in ``.msg`` changed."""
+        """Return the same definitions with the texts of messages in ``.msg`` changed."""
         other = copy.copy(self)
         other._origins = [_AllChanged(each, self.dialect, change) for each in self._origins]
         other._sources = Sources(other._origins)
@@ -140,12 +141,12 @@ class Universe:
         Raises
         ------
         DefinitionError
-            If it, or one that it depends on, is refused.
+            If the definition, or one that it depends on, is refused.
         """
         return self._library_with(case).interface(case.spelled_name)
 
     def show(self, case: DefinitionCase) -> str:
-        """Print a definition as ``firm-hdl show`` does."""
+        """Return a definition as ``firm-hdl show`` prints it."""
         return show(self._library_with(case), case.spelled_name)
 
     def _library_with(self, case: DefinitionCase) -> Library:
@@ -155,7 +156,7 @@ class Universe:
 
 
 class _Changed:
-    """An origin of one text."""
+    """An origin that has only the text of one case."""
 
     def __init__(self, case: DefinitionCase) -> None:
         self._case = case
@@ -208,7 +209,7 @@ def write_definitions(universe: Universe) -> None:
         os.makedirs(os.path.dirname(folder), exist_ok=True)
         origins = {os.path.dirname(case.source) for case in found}
         if len(origins) == 1 and all(os.path.isfile(case.source) for case in found):
-            # The usual case, which saves thousands of links.
+            # In the usual case, one link to the folder saves thousands of links to files.
             os.symlink(os.path.abspath(origins.pop()), folder)
             continue
         os.makedirs(folder)

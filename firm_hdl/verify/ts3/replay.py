@@ -110,7 +110,7 @@ def _topics(
 ) -> tuple[list[Topic], list[str]]:
     """Return the topics of a type, and lines about topics that are left out.
 
-    A topic is left out if its definition differs from that of the first topic.
+    A topic is left out if its digest differs from the first digest of the type's topics.
     """
 
     def is_meant(topic: Topic) -> bool:

@@ -35,8 +35,8 @@ class Result:
     failures : list of str
         Failures in the order in which they were found.
     judged : int
-        Packets whose bytes and transfers were compared with the oracle's: those that came out of
-        the circuit, or of the golden model if the circuit is not to be simulated.
+        The number of packets whose bytes and transfers were compared with the oracle's. They come
+        from the circuit, or from the golden model if the circuit is not to be simulated.
     obstacle : NotJudged or None
         Why the type cannot be judged, or why a library that was named could not confirm it.
     cases, packets : int

@@ -1,8 +1,8 @@
-"""Differences between oracles and us that are meant to be: docs/errata.md says why.
+"""Deliberate differences between oracles and firm-hdl. docs/errata.md gives the reasons.
 
-Each has a key, by which a report names it. An entry normalises what it knows, and the rest is
-compared again (`firm_hdl.verify.ts1.explain`). A difference that is left then is a mistake of
-somebody's.
+Reports name each difference by its key. An entry removes its difference, and the rest is compared
+again (`firm_hdl.verify.ts1.explain`). A difference that is left then is a mistake of the oracle or
+of firm-hdl.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Where rosidl_parser says otherwise than we of what is written in IDL, on purpose."""
+"""Deliberate differences from rosidl_parser in reading IDL."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from firm_hdl.verify.ts1.known.texts import renamed
 __all__ = ["RULES"]
 
 RULES = Rules("rosidl_parser", language="idl")
-"""What is known of rosidl_parser and IDL."""
+"""Known differences from rosidl_parser in IDL."""
 
 # Names.
 
@@ -26,7 +26,7 @@ _PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
     "idl-names", "A type in IDL is called by its package and its file, whatever its modules say."
 )
 def _named_as_file(facts: Facts, case: DefinitionCase) -> Facts:
-    """Give the message its package and folder, where other modules are around it."""
+    """Name the message by its package and folder if the text has other modules around it."""
     if "names" not in facts:
         return _parts_named_as_file(facts, case)
     (name,) = facts["names"]
@@ -36,7 +36,7 @@ def _named_as_file(facts: Facts, case: DefinitionCase) -> Facts:
 
 
 def _parts_named_as_file(facts: Facts, case: DefinitionCase) -> Facts:
-    """Give the messages of a service or an action its package and folder."""
+    """Name the messages of a service or of an action by their package and folder."""
     messages = facts.get("structure", {})
     scopes = {name.rpartition("/")[0] for name in messages}
     own = f"{case.package}/{case.kind}"
@@ -66,7 +66,7 @@ def _parts_named_as_file(facts: Facts, case: DefinitionCase) -> Facts:
     is_mistake=True,
 )
 def _called_as_file(case: DefinitionCase) -> str:
-    """Call what a file declares as the file is called."""
+    """Rename the declared type to the name of the file."""
     found = re.findall(r"\bstruct\s+(\w+)", blanked(case.text))
     bases = {re.sub(rf"_(?:{'|'.join(_PARTS)})$", "", name) for name in found}
     if len(bases) != 1 or case.name in found:
@@ -97,7 +97,7 @@ def _bounds_by_value(case: DefinitionCase) -> str:
 
 
 def _as_float(kind: str, value: Any) -> Any:
-    """Make floating-point numbers of integers that are given for such."""
+    """Convert integers that are values of floating-point types to floats."""
     if re.split(r"[\[<]", kind, maxsplit=1)[0] not in ("float32", "float64", "long double"):
         return value
     if isinstance(value, list):
@@ -117,13 +117,13 @@ RULES.add(
     "rosidl_generator_type_description raises KeyError for a long double; we have a hash.",
 )
 def _without_long_double_hash(facts: Facts, case: DefinitionCase) -> Facts:
-    """Take away what rosidl raises in place of the hash of a long double; it has no other."""
+    """Remove the error that rosidl raises in place of the hash of a long double."""
     if facts.get("hash") != "raises KeyError: 'long double'":
         return facts
     return without_hash(facts)
 
 
-# What C++ would have twice.
+# Names that C++ would declare twice.
 
 
 def _scopes(text: str) -> Iterator[tuple[int, int]]:
@@ -144,8 +144,8 @@ _NAMES = re.compile(
     is_mistake=True,
 )
 def _declared_once(case: DefinitionCase) -> str:
-    """Give what is declared again in the same braces another name."""
-    # As long as the text, so that places in it are those in the text.
+    """Rename what is declared again inside the same braces."""
+    # Blanks keep the length, so that places in `code` are places in the text.
     code = blanked(case.text)
     code = re.sub(r"<[^<>;{}]*>", lambda match: " " * len(match[0]), code)
     changes: list[tuple[int, int, str]] = []
@@ -163,7 +163,7 @@ def _declared_once(case: DefinitionCase) -> str:
     return changed(case.text, changes)
 
 
-# What rosidl_parser does not look at.
+# Mistakes that rosidl_parser does not check for.
 
 
 @RULES.text("idl-lengths", "rosidl_parser takes arrays of negative lengths.", is_mistake=True)
@@ -182,7 +182,7 @@ _GLUED = (
 
 @RULES.text("idl-words", "rosidl_parser takes words that run together.", is_mistake=True)
 def _words_apart(case: DefinitionCase) -> str:
-    """Write a blank after a type that a name, or a part of its own name, follows at once."""
+    """Write a blank after a type, or a word of it, that the next word follows without one."""
     return in_code(case.text, _GLUED, lambda m: f"{m[1] or m[3] or ''}{m[2] or m[4]} ")
 
 
@@ -197,7 +197,7 @@ _SCOPED_ELEMENT = r"(\bsequence\s*<\s*)((?:\w+\s*::\s*)+\w+)(?=\s*[,>])"
     is_mistake=True,
 )
 def _types_of_ros(case: DefinitionCase) -> str:
-    """Write a builtin type in place of one whose scopes are none of ROS."""
+    """Write a builtin type in place of one whose scopes do not follow ROS's rules."""
 
     def kind(name: str) -> str:
         scopes = [each.strip() for each in name.split("::")]
@@ -210,7 +210,7 @@ def _types_of_ros(case: DefinitionCase) -> str:
     return in_code(text, _SCOPED_ELEMENT, element)
 
 
-# What we refuse by name.
+# Constructs that firm-hdl refuses by name.
 
 _UNSUPPORTED = r"@(?:optional|mutable)\b(?:\s*\([^()]*\))?|@extensibility\s*\(\s*MUTABLE\s*\)"
 
@@ -229,7 +229,7 @@ def _without_unsupported(case: DefinitionCase) -> str:
     "Lists of lists by typedefs are refused; rosidl_parser takes some, and nothing after it.",
 )
 def _has_lists_of_lists(case: DefinitionCase) -> bool:
-    """Whether a list of a type that is a list itself, by a typedef, is declared."""
+    """Whether the text declares a list of a type that is a list by a typedef."""
     code = blanked(case.text)
     lists = set(re.findall(r"\btypedef\s+sequence\s*<[^;]*>\s*(\w+)\s*;", code))
     arrays = set(re.findall(r"\btypedef\s+[^;]*?\b(\w+)\s*\[[^;\]]*\]\s*;", code))

@@ -1,7 +1,8 @@
-"""Values in IDL that do not fit their types, and what another file declares.
+"""Values in IDL that do not fit their types, and declarations of included files.
 
-rosidl_parser takes any literal for the value of anything; what is generated from it does not
-compile, or has other values. Names that an included file declares are names to it.
+rosidl_parser accepts any literal as a value of any type. The code that is generated from such a
+value does not compile, or has other values. rosidl_parser does not look up names that an included
+file declares.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from firm_hdl.verify.ts1.known.texts import limits
 __all__ = ["RULES"]
 
 RULES = Rules("rosidl_parser", language="idl")
-"""What is known of rosidl_parser, values and included files."""
+"""Known differences from rosidl_parser in values and included files."""
 
 _INTEGERS = {
     "int8": ("char",),
@@ -50,12 +51,12 @@ _NUMBER = re.compile(r"[-+]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _WORD = re.compile(r"[A-Za-z_]\w*")
 
 
-# What another file declares.
+# Declarations of included files.
 
 
 @RULES.text("idl-includes", "rosidl_parser does not look at included files.")
 def _without_includes(case: DefinitionCase) -> str:
-    """Write what included files declare in place of its names."""
+    """Replace names that included files declare by their values and types."""
     values: dict[str, int] = {}
     kinds: dict[str, str] = {}
     for code in map(blanked, case.included):
@@ -99,7 +100,7 @@ _DEFAULT = re.compile(r"@\s*default\s*\(\s*value\s*=(?P<value>(?:[^()]|\([^()]*\
 
 @dataclass(frozen=True, slots=True)
 class _Default:
-    """A default, and where it stands: at `start` up to `end`."""
+    """A default, and its place in the text: from `start` up to `end`."""
 
     start: int
     end: int
@@ -120,14 +121,14 @@ def _members(case: DefinitionCase) -> Iterator[tuple[re.Match[str], list[_Defaul
 
 @RULES.text("idl-defaults", "rosidl_parser takes several defaults of a member.", is_mistake=True)
 def _one_default(case: DefinitionCase) -> str:
-    """Leave all defaults of a member out but the first."""
+    """Remove all defaults of a member except the first."""
     further = [each for _, defaults in _members(case) for each in defaults[1:]]
     return changed(case.text, [(each.start, each.end, "") for each in further])
 
 
 @dataclass(frozen=True, slots=True)
 class _Names:
-    """What values may refer to: integers, and all that is declared."""
+    """Names that values may refer to: integers with their values, and all declared constants."""
 
     integers: Mapping[str, int]
     modules: set[str]
@@ -148,7 +149,7 @@ class _Names:
 
 
 def _is_value(kind: str, text: str, names: _Names) -> bool:
-    """Whether a text is a value of a scalar type; what is not understood is one."""
+    """Whether a text is a value of a scalar type. A text that is not understood counts as one."""
     if _WORD.fullmatch(text) and text not in ("TRUE", "FALSE"):
         return text in names.declared
     is_truth, is_text = text in ("TRUE", "FALSE"), text[:1] == '"' or text[:2] == 'L"'
@@ -182,7 +183,7 @@ def _is_list(kind: str, text: str, count: int | None, at_most: bool, names: _Nam
     except (ValueError, SyntaxError, MemoryError, RecursionError):
         return True
     if not isinstance(items, tuple | list):
-        return True  # That is another matter.
+        return True  # This is not a list, but another mistake.
     if count is not None and (len(items) > count if at_most else len(items) != count):
         return False
     return all(
@@ -199,13 +200,13 @@ def _literal(item: Any) -> str:
     "idl-values", "rosidl_parser takes values that are none of their types.", is_mistake=True
 )
 def _fitting_values(case: DefinitionCase) -> str:
-    """Write a value that fits in place of one that does not, and leave such defaults out."""
+    """Replace values of constants that do not fit, and remove defaults that do not fit."""
     names = _Names.of(case)
     code = blanked(case.text)
     changes: list[tuple[int, int, str]] = []
     for match in DECLARED.finditer(code):
         kind = " ".join(match[1].split())
-        # Texts are blank there.
+        # Look for "=" in `code`, because texts are blank there.
         start, end = code.index("=", match.end(2)) + 1, match.end() - 1
         if not _is_value(kind, case.text[start:end].strip(), names):
             fit = {"boolean": "FALSE", "string": '""', "wstring": '""'}
@@ -248,7 +249,7 @@ def _lists_of_one(case: DefinitionCase) -> str:
     return changed(case.text, changes)
 
 
-# A bound that two share.
+# The bound of a sequence, and that of its texts.
 
 _WIDE = re.compile(r"\bsequence\s*<\s*wstring\s*<[^<>]*>\s*>\s+(\w+)|\bwstring<=\d+\[\] +(\w+)")
 
@@ -260,7 +261,7 @@ _WIDE = re.compile(r"\bsequence\s*<\s*wstring\s*<[^<>]*>\s*>\s+(\w+)|\bwstring<=
     dialect="ros2",
 )
 def _own_bounds(facts: Facts, case: DefinitionCase) -> Facts:
-    """Take the bound of texts away from a sequence of them that has none."""
+    """Remove the bound of the texts from a sequence that has no bound itself."""
     code = blanked(case.text) if case.language == "idl" else case.text
     names = {one or other for one, other in _WIDE.findall(code)}
 
@@ -272,5 +273,5 @@ def _own_bounds(facts: Facts, case: DefinitionCase) -> Facts:
     mended = mend_members("fields", own)(facts, case)
     if mended == facts:
         return facts
-    # It is that of another type.
+    # The hash is that of the type with the wrong bound.
     return without_hash(mended)

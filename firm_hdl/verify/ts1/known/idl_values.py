@@ -1,7 +1,7 @@
-"""Constants, expressions and typedefs in IDL, which rosidl_parser does not all evaluate.
+"""Constants, expressions and typedefs in IDL, some of which rosidl_parser does not evaluate.
 
-It knows one literal as a value. Values are worked out here by Python's own rules for integers, in
-which nothing of firm-hdl has a part, and written in place of expressions.
+rosidl_parser accepts only a single literal as a value. This module computes values by Python's own
+rules for integers, without code of firm-hdl's reader, and writes them in place of expressions.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from firm_hdl.verify.ts1.known.texts import renamed, renamed_back
 __all__ = ["RULES", "integer_of", "integers_of"]
 
 RULES = Rules("rosidl_parser", language="idl")
-"""What is known of rosidl_parser and values in IDL."""
+"""Known differences from rosidl_parser in values of IDL."""
 
 # Expressions.
 
@@ -53,7 +53,7 @@ _TWO_SIGNS = re.compile(r"(?:^|[(*/%&|^<>+~-])\s*[-+~]\s*[-+~]")
 
 
 def integer_of(expression: str, names: Mapping[str, int], modules: set[str]) -> int | None:
-    """Work out an integer; `None` if it is none, or none to IDL."""
+    """Evaluate an expression; `None` if it is not an integer, or not one in IDL."""
     scopes = re.findall(r"(\w+)\s*::", expression)
     is_odd = _TWO_SIGNS.search(expression) or _PYTHON_ONLY.search(expression)
     if is_odd or not modules.issuperset(scopes):
@@ -116,7 +116,7 @@ def _paths(code: str) -> list[str]:
     "rosidl_parser does not know typedefs of typedefs, and typedefs with their scopes.",
 )
 def _plain_typedefs(case: DefinitionCase) -> str:
-    """Write what a typedef of a typedef means, and typedefs without their scopes."""
+    """Write the original type in a typedef of a typedef, and typedefs without their scopes."""
     code = blanked(case.text)
     meanings: dict[str, tuple[str, str]] = {}
     changes: list[tuple[int, int, str]] = []
@@ -147,7 +147,7 @@ _PLACES = re.compile(
 
 
 def integers_of(code: str) -> dict[str, int]:
-    """Work out the integers that a text declares."""
+    """Evaluate the integer constants that a text declares."""
     names: dict[str, int] = {}
     modules = modules_of(code)
     for _, name, expression in DECLARED.findall(code):
@@ -171,7 +171,7 @@ def _literals(case: DefinitionCase) -> str:
         expression = match[which]
         if not expression or re.fullmatch(r"-?\s*(?:0|[1-9]\d*)", expression):
             continue
-        if which in "bcd" and "'" in expression:  # A character is no length.
+        if which in "bcd" and "'" in expression:  # A character is not a length or a bound.
             continue
         value = integer_of(expression, names, modules)
         if value is not None:
@@ -188,7 +188,7 @@ RULES.add(
 
 @RULES.text("idl-long-names", "rosidl_parser reads 'long longitude' as a long long called itude.")
 def _long_names(case: DefinitionCase) -> str:
-    """Call a long int32, where the name after it begins like the second word of a type."""
+    """Write int32 for a long whose member name begins like the second word of a type."""
     code = blanked(case.text)
     pattern = r"\b(unsigned\s+)?long(?=\s+(?:long|double)\w+\s*[;,\[])"
     changes = [
@@ -205,7 +205,7 @@ def _long_names(case: DefinitionCase) -> str:
     theirs=mend_constants(renamed_back),
 )
 def _own_constants(case: DefinitionCase) -> str:
-    """Give constants that another part has, too, names of their own."""
+    """Rename constants that an earlier part of the service or action declares as well."""
     code = blanked(case.text)
     seen: set[str] = set()
     changes: list[tuple[int, int, str]] = []

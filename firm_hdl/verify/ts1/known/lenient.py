@@ -1,7 +1,8 @@
-"""What rosbags takes although ROS refuses it: it is no judge of mistakes.
+"""Mistakes that rosbags accepts although ROS refuses them.
 
-Each entry finds one sort of mistake by itself, and corrects it. What is left is judged. A text that
-rosbags takes, we refuse, and no entry has anything against, is a difference.
+Each entry finds one kind of mistake without firm-hdl's reader, and corrects it. The corrected text
+is judged. If rosbags accepts a text that we refuse, and no entry finds a mistake in it, this is a
+difference.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from firm_hdl.verify.ts1.known.texts import FLOATS, INTEGERS, TEXTS, float_of, i
 __all__ = ["RULES"]
 
 RULES = Rules("rosbags", is_mistake=True)
-"""What rosbags takes."""
+"""Mistakes that rosbags accepts."""
 _PRIMITIVES = {*INTEGERS, *FLOATS, *TEXTS, "bool"}
 
 # Names of ROS 2.
@@ -46,7 +47,7 @@ def _legal_names(line: Line, case: DefinitionCase) -> Line:
     dialect="ros2",
 )
 def _has_illegal_type(case: DefinitionCase) -> bool:
-    """Whether a message, or one that it needs, is called as ROS 2 does not let it be."""
+    """Whether a message, or one that it needs, has a name that ROS 2 does not allow."""
     if case.dialect != "ros2":
         return False
     found: list[str] = [case.name]
@@ -60,7 +61,7 @@ def _has_illegal_type(case: DefinitionCase) -> bool:
     return not all(map(_TYPE_NAME.fullmatch, found))
 
 
-# What is declared twice.
+# Names that are declared twice.
 
 
 @RULES.text("rosbags-twice", "rosbags takes what is declared twice.")
@@ -68,7 +69,7 @@ def _distinct(case: DefinitionCase) -> str:
     seen: dict[str, int] = {}
 
     def change(line: Line, case: DefinitionCase) -> Line:
-        if line.equals and case.dialect == "ros1":  # There it may be.
+        if line.equals and case.dialect == "ros1":  # ROS 1 allows constants that are repeated.
             return line
         count = seen[line.name] = seen.get(line.name, 0) + 1
         suffix = f"{'TWICE' if line.equals else 'twice'}{count}"
@@ -81,7 +82,7 @@ def _distinct(case: DefinitionCase) -> str:
 
 
 def _is_value(kind: str, value: str, case: DefinitionCase) -> bool:
-    """Whether a value is one of a scalar type without a bound."""
+    """Whether a text is a value of a scalar type without a bound."""
     if kind in INTEGERS:
         number = integer_of(value, case.dialect)
         least, most = limits(kind, case.dialect)
@@ -96,7 +97,7 @@ def _is_value(kind: str, value: str, case: DefinitionCase) -> bool:
 
 
 def _fits(line: Line, case: DefinitionCase) -> bool:
-    """Whether the value of a constant or a default is one of its type."""
+    """Whether the value of a constant, or a default, fits its type."""
     match = re.fullmatch(r"(\w+)(?:<=(\d+))?(?:\[(<=)?(\d*)\])?", line.type)
     if match is None or match[1] not in _PRIMITIVES:
         return False
@@ -105,7 +106,7 @@ def _fits(line: Line, case: DefinitionCase) -> bool:
         return _is_value(kind, line.value, case) and _is_short(line.value, bound)
     if line.value[:1] != "[" or line.value[-1:] != "]":
         return False
-    if kind in TEXTS:  # A comma in quotes is none; nobody has to be right about those here.
+    if kind in TEXTS:  # Texts may have commas in quotes, so lists of texts are not checked.
         return True
     items = [each.strip() for each in line.value[1:-1].split(",")] if line.value != "[]" else []
     is_long = count and (len(items) > int(count) if at_most else len(items) != int(count))
@@ -145,7 +146,7 @@ def _legal_sizes(line: Line, case: DefinitionCase) -> Line:
 
 @RULES.lines("rosbags-ros2-forms", "rosbags takes bounds and defaults in ROS 1.", dialect="ros1")
 def _own_forms(line: Line, case: DefinitionCase) -> Line:
-    """Take away bounds and defaults, which ROS 1 does not have."""
+    """Remove bounds and defaults, which ROS 1 does not have."""
     plain = replace(line, type=re.sub(r"<=\d+", "", line.type))
     return plain.without_value() if line.value and not line.equals else plain
 

@@ -1,4 +1,4 @@
-"""Where ROS's own readers of ``.msg``, ``.srv`` and ``.action`` say otherwise, on purpose."""
+"""Deliberate differences from ROS's own readers of ``.msg``, ``.srv`` and ``.action``."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from firm_hdl.verify.ts1.known.texts import FLOATS, TEXTS, float_of, hidden, ren
 __all__ = ["MISTAKES", "RULES"]
 
 MISTAKES = Rules("genmsg", is_mistake=True)
-"""What readers of ROS take although it is a mistake."""
+"""Mistakes that readers of ROS accept."""
 RULES = Rules("rosidl_parser")
-"""What rosidl reads otherwise."""
+"""Definitions that rosidl reads differently from firm-hdl."""
 
 
 @MISTAKES.lines(
@@ -65,7 +65,7 @@ def _ascii_lines(case: DefinitionCase) -> str:
     def line(text: str) -> str:
         is_text = text.partition("#")[0].split(maxsplit=1)[:1] in (["string"], ["wstring"])
         code, sign, rest = text.partition("=" if is_text else "#")
-        # A line of text has a comment only after its value, which is not looked at.
+        # The value of a string constant is left alone, and so is all that follows it.
         return f"{_ascii(code)}{sign}{rest}" if sign or not is_text else text
 
     return each_line(case.text, line)
@@ -77,7 +77,7 @@ _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 @MISTAKES.text("ros1-constant-names", "genmsg takes anything for the name of a constant.")
 def _legal_constant_names(case: DefinitionCase) -> str:
-    # The name may have blanks in it, so that it is no `Line`.
+    # The name may have blanks in it, so the line cannot be a `Line`.
     def legal(line: str) -> str:
         match = _CONSTANT.fullmatch(line)
         if match is None or "=" not in line.partition("#")[0] or _NAME.fullmatch(match[4]):
@@ -90,7 +90,7 @@ def _legal_constant_names(case: DefinitionCase) -> str:
 
 @MISTAKES.lines("ros1-bool-literals", "genmsg takes any literal of Python for a truth value.")
 def _plain_bools(line: Line, case: DefinitionCase) -> Line:
-    """Write truth values as such."""
+    """Write truth values as ``True`` and ``False``."""
     if line.type != "bool" or not line.equals or line.value in ("True", "False"):
         return line
     try:
@@ -112,7 +112,7 @@ def _within_64_bits(line: Line, case: DefinitionCase) -> Line:
         number = int(line.value)
     except ValueError:
         return line
-    # One more than fits is what the rounded limits let through.
+    # The rounded limits let one number through that is too large by 1.
     return line.with_value(str(number - 1)) if number == limits[line.type] else line
 
 
@@ -130,7 +130,7 @@ _LARGEST = 2**32 - 1
     oracles="genmsg rosidl_adapter rosidl_parser",
 )
 def _sizes(case: DefinitionCase) -> str:
-    """Write sizes and bounds that take more than 32 bits as the largest that takes no more."""
+    """Replace sizes and bounds of more than 32 bits by the largest number of 32 bits."""
 
     def size(match: re.Match[str]) -> str:
         return match[1] + (match[2] if int(match[2]) <= _LARGEST else str(_LARGEST))
@@ -156,7 +156,7 @@ def _unquoted(element: Any) -> Any:
 
 
 def _unquoted_default(field: dict[str, Any]) -> dict[str, Any]:
-    """Put quotes back, and take those around an element away, as rosidl_adapter does to all."""
+    """Restore quotes in texts, and remove those around an element, as rosidl_adapter does."""
     default = field["default"]
     if not isinstance(default, list):
         return field
@@ -170,7 +170,7 @@ def _unquoted_default(field: dict[str, Any]) -> dict[str, Any]:
     theirs=mend_members("fields", _unquoted_default),
 )
 def _no_escaped_quotes(line: Line, case: DefinitionCase) -> Line:
-    """Write escaped quotes in lists as characters that stand for them."""
+    """Replace escaped quotes in lists by the placeholder characters of `hidden`."""
     if line.equals or line.base not in TEXTS or not line.value.startswith("["):
         return line
 
@@ -189,7 +189,7 @@ _QUOTED = re.compile(r"""\"(?:[^"\\]|\\.)*\"|'(?:[^'\\]|\\.)*'""")
     theirs=mend_values(lambda _, value: shown(value)),
 )
 def _no_backslashes(line: Line, case: DefinitionCase) -> Line:
-    """Write backslashes that escape nothing as characters that stand for them."""
+    """Replace backslashes that escape no quote by the placeholder characters of `hidden`."""
     if line.base not in TEXTS:
         return line
     return line.with_code(
@@ -197,7 +197,7 @@ def _no_backslashes(line: Line, case: DefinitionCase) -> Line:
     )
 
 
-# Numbers that IDL has, for those that it has no words for.
+# Finite numbers that stand for infinity and NaN, which IDL cannot write.
 _INFINITE, _NO_NUMBER = "1.25e300", "1.75e300"
 
 
@@ -216,7 +216,7 @@ def _float_back(value: Any) -> Any:
     theirs=mend_values(lambda _, value: _float_back(value)),
 )
 def _plain_floats(line: Line, case: DefinitionCase) -> Line:
-    """Write what is no finite number as one that stands for it."""
+    """Replace infinities and NaNs by the finite numbers that stand for them."""
     if line.base not in FLOATS:
         return line
 

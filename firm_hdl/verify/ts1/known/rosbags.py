@@ -1,6 +1,6 @@
-"""rosbags reads ``.msg`` in a language of its own: what it refuses or takes otherwise than ROS.
+"""Definitions in ``.msg`` that rosbags refuses, or reads differently from ROS.
 
-What it takes although ROS refuses it is in `firm_hdl.verify.ts1.known.lenient`.
+Mistakes that rosbags accepts and ROS refuses are in `firm_hdl.verify.ts1.known.lenient`.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ __all__ = ["RULES"]
 Member = TypeVar("Member", Field, Constant)
 
 RULES = Rules("rosbags")
-"""What rosbags refuses or reads otherwise."""
+"""Definitions that rosbags refuses or reads differently."""
 
 
 @RULES.text("rosbags-crlf", "rosbags refuses lines that end in CR LF.")
@@ -84,7 +84,7 @@ def _narrow_lines(line: Line, case: DefinitionCase) -> Line:
     return replace(line, type=line.type[1:]) if line.base == "wstring" else line
 
 
-# Names of constants: in ROS 1 they are any names.
+# Names of constants. In ROS 1, any name is allowed.
 
 _UPPER = re.compile(r"[A-Z](?:_?[A-Z0-9]+)*")
 _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
@@ -95,7 +95,7 @@ _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
     "rosbags takes time, duration and Header for builtin types where ROS does not.",
 )
 def _own_types(line: Line, case: DefinitionCase) -> Line:
-    """Write out the package of what is no special type to ROS."""
+    """Write the package of a type that is special to rosbags, but not to ROS."""
     is_special = line.base in ("time", "duration", "Header")
     if case.dialect == "ros1":
         is_special = line.base == "Header" and line.type != "Header"
@@ -115,7 +115,7 @@ def _upper_lines(line: Line, case: DefinitionCase) -> Line:
     return replace(line, name=renamed(line.name))
 
 
-# A name of a field that rosbags gives itself, to messages without any.
+# The name of the field that rosbags adds to messages without fields.
 
 _PLACEHOLDER, _STAND_IN = "structure_needs_at_least_one_member", "structure_has_one_more_member"
 
@@ -125,7 +125,7 @@ def _placeholders_back(facts: Facts, case: DefinitionCase) -> Facts:
         return {**field, "name": _PLACEHOLDER} if field["name"] == _STAND_IN else field
 
     facts = mend_members("fields", back)(facts, case)
-    # It is that of another name.
+    # The hash is that of a message with the other name.
     is_named = _PLACEHOLDER in (case.text if case.before is None else case.before)
     return without_hash(facts) if is_named else facts
 
@@ -140,7 +140,7 @@ def _plain_placeholders(line: Line, case: DefinitionCase) -> Line:
     return replace(line, name=_STAND_IN) if is_one else line
 
 
-# Texts: it looks for numbers in them, for quotes, and never for what ends them.
+# Texts: rosbags looks for numbers and quotes in them, but not for escapes and comments.
 
 
 def _text_of(line: Line, case: DefinitionCase) -> str | None:
@@ -205,7 +205,7 @@ _FRACTION = re.compile(
 
 
 def _float_constant(constant: dict[str, Any]) -> dict[str, Any]:
-    # Infinities and what is no number have no other form.
+    # rosbags has infinities and NaN as texts.
     number = float_of(constant["value"]) if isinstance(constant["value"], str) else None
     if constant["type"] not in FLOATS or number is None:
         return constant

@@ -1,8 +1,8 @@
 """A known difference between an oracle and firm-hdl.
 
-A rule removes one difference, and nothing else: from the text that the oracle reads, from the text
-that both read, or from what either of them says. Everything else is then compared, so that a known
-difference hides no other.
+A rule removes one difference, and nothing else. It changes the text that the oracle reads, the text
+that both read, the facts of the oracle, or our model. Everything else is then compared. So a known
+difference hides no other difference.
 """
 
 from __future__ import annotations
@@ -43,33 +43,33 @@ class KnownRule:
     Attributes
     ----------
     key : str
-        Its name, here and in docs/errata.md.
+        The name of the difference, here and in docs/errata.md.
     oracles : set of str
-        Whom it is a difference to.
+        The oracles that differ from us.
     text : str
         What differs, in one sentence.
     releases : pattern or None
-        What the oracle's release has to match as a whole; `None`: all do.
+        A pattern that the oracle's whole release has to match; `None`: all releases match.
     dialect : "ros1", "ros2" or None
-        Whose definitions it is about; `None`: those of both.
+        The dialect of the definitions; `None`: both.
     language : Language or None
-        What these are written in; `None`: in anything.
+        The language of the definitions; `None`: any.
     rewrite : callable or None
-        Gives the text without what is known. The oracle reads it instead.
+        Returns the text without the difference. The oracle reads this text instead.
     is_mistake : bool
-        Whether what is known is a mistake that we refuse and the oracle takes. Then we read the
+        Whether the difference is a mistake that we refuse and the oracle accepts. Then we read the
         rewritten text, too.
     theirs : callable or None
-        Gives what the oracle says without what is known, and with the names and values that are in
-        the text itself where `rewrite` has put others.
+        Returns the oracle's facts without the difference. Names and values that `rewrite` has
+        replaced are restored.
     ours : callable or None
-        Gives our model without what is known, where the oracle has to be given a text that means
-        another thing.
+        Returns our model without the difference. It is needed if the text of `rewrite` means
+        something else.
     alike : mapping of str to str
-        Names of primitives that `rewrite` makes others of, and those.
+        Primitives that `rewrite` replaces: their names, and those of the replacements.
     spoils : callable or None
-        Whether a definition has what is known, when nothing can be done about it: where we refuse
-        and the oracle accepts, it is not judged.
+        Whether a definition has the difference, if no text can avoid it. If we refuse such a
+        definition and the oracle accepts it, it is not judged.
     """
 
     key: str
@@ -86,9 +86,9 @@ class KnownRule:
     spoils: Callable[[DefinitionCase], bool] | None = None
 
     def is_about(self, oracle: str, release: str, case: DefinitionCase) -> bool:
-        """Whether it can explain a difference to some oracle about some definition."""
+        """Whether this rule can explain a difference from an oracle in a definition."""
         return (
-            # Where there are several releases at once, the newer ones have theirs in their names.
+            # The names of newer releases' oracles end in "-" and the version.
             oracle.partition("-")[0] in self.oracles
             and self.dialect in (None, case.dialect)
             and self.language in (None, case.language)
@@ -96,7 +96,7 @@ class KnownRule:
         )
 
     def changed(self, case: DefinitionCase) -> DefinitionCase:
-        """Give a definition with the text rewritten."""
+        """Return a definition with the text rewritten."""
         text = case.text if self.rewrite is None else self.rewrite(case)
         if text == case.text:
             return case
@@ -106,7 +106,7 @@ class KnownRule:
 class Rules(list[KnownRule]):
     """The known differences of a module, in the order in which they are applied.
 
-    A difference is declared by a decorator of the function that removes it.
+    A decorator declares a difference. It decorates the function that removes the difference.
 
     Parameters
     ----------
@@ -159,8 +159,8 @@ class Line:
     Attributes
     ----------
     indent, type, gap, name, equals, rest : str
-        Its parts, which together are the line. `equals` is empty if there is no constant; `rest` is
-        all that follows, a comment included.
+        The parts of the line, in order. `equals` is empty if the line declares no constant. `rest`
+        is all that follows, including a comment.
     """
 
     indent: str
@@ -177,23 +177,23 @@ class Line:
 
     @property
     def value(self) -> str:
-        """What follows, without a comment and blanks around it."""
+        """The value or default: `rest` without a comment, and without blanks around it."""
         return self.rest.partition("#")[0].strip()
 
     def with_value(self, value: str) -> Line:
-        """Give the line with another value, and the same comment."""
+        """Return the line with another value, and the same comment."""
         _, hash_, comment = self.rest.partition("#")
         blank = " " if hash_ or not self.equals else ""
         before = "" if self.equals else " "
         return replace(self, rest=f"{before}{value}{blank}{hash_}{comment}".rstrip(" "))
 
     def with_code(self, change: Callable[[str], str]) -> Line:
-        """Give the line with what follows changed, but for the comment."""
+        """Return the line with `rest` changed, except for the comment."""
         code, hash_, comment = self.rest.partition("#")
         return replace(self, rest=f"{change(code)}{hash_}{comment}")
 
     def without_value(self) -> Line:
-        """Give the line without a default, and the same comment."""
+        """Return the line without a default, and with the same comment."""
         return replace(self, rest=self.rest[self.rest.find("#") :] if "#" in self.rest else "")
 
     def __str__(self) -> str:
@@ -224,7 +224,7 @@ def by_lines(change: Callable[[Line, DefinitionCase], Line]) -> _Rewrite:
 
 
 def each_line(text: str, change: Callable[[str], str]) -> str:
-    """Change each line of a text, and leave what ends it."""
+    """Change each line of a text, and keep the line ends."""
     pieces = re.split(r"(\r\n|\r|\n)", text)
     pieces[::2] = map(change, pieces[::2])
     return "".join(pieces)
@@ -275,12 +275,12 @@ def mend_values(change: Callable[[str, Any], Any]) -> Mend:
 
 
 def whole_bool(constant: dict[str, Any]) -> dict[str, Any]:
-    """Give a truth value that is written as a number as such."""
+    """Convert the value of a bool constant that is written as a number to a bool."""
     value = constant["value"]
     is_number = constant["type"] == "bool" and type(value) is int
     return {**constant, "value": bool(value)} if is_number else constant
 
 
 def without_hash(facts: Facts) -> Facts:
-    """Return facts without the hash, which is that of another type."""
+    """Return facts without the hash, which belongs to another type."""
     return {name: fact for name, fact in facts.items() if name != "hash"}

@@ -1,8 +1,8 @@
-"""Values and names in definitions, as far as known differences are about them.
+"""Values and names in definitions, for the rules of known differences.
 
-A character that an oracle would read otherwise becomes one of a private-use area, a name becomes
-one that says what it was. Both are found again in what the oracle says. Numbers are read as Python,
-which both ROS 1 and ROS 2 leave them to, reads them.
+A character that an oracle would read differently is replaced by one of a private-use area. A name
+is replaced by one that encodes the original name. Both are restored in the oracle's facts. Numbers
+are read by Python's rules, as in ROS 1 and ROS 2.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ _RENAMED = re.compile(r"RENAMED((?:[0-9A-F]{2})+)")
 
 
 def hidden(text: str, characters: str) -> str:
-    """Replace each of some ASCII characters."""
+    """Replace some ASCII characters of a text by characters of a private-use area."""
     return text.translate({ord(each): chr(_AREA + ord(each)) for each in characters})
 
 
 def shown(value: Any) -> Any:
-    """Put back what `hidden` has replaced, in a text or in each one of a list."""
+    """Restore the characters that `hidden` has replaced, in a text or in each text of a list."""
     if isinstance(value, list):
         return [shown(each) for each in value]
     if not isinstance(value, str):
@@ -52,25 +52,25 @@ def shown(value: Any) -> Any:
 
 
 def renamed(name: str) -> str:
-    """Give a name that every reader takes for a constant's."""
+    """Return a name that encodes another one, and that every reader accepts for a constant."""
     return f"RENAMED{name.encode().hex().upper()}"
 
 
 def renamed_back(item: dict[str, Any]) -> dict[str, Any]:
-    """Give a constant the name back that `renamed` was given."""
+    """Restore the name of a constant that `renamed` has replaced."""
     found = _RENAMED.fullmatch(item["name"])
     return item if found is None else {**item, "name": bytes.fromhex(found[1]).decode()}
 
 
 def limits(kind: str, dialect: Dialect) -> tuple[int, int]:
-    """Return the least and the largest value of an integer type."""
+    """Return the smallest and the largest value of an integer type."""
     bits = INTEGERS[kind]
     is_signed = kind.startswith("int") or (kind == "byte" and dialect == "ros1")
     return (-(1 << bits - 1), (1 << bits - 1) - 1) if is_signed else (0, (1 << bits) - 1)
 
 
 def integer_of(value: str, dialect: Dialect) -> int | None:
-    """Read an integer as ROS does: with the prefix of another base in ROS 2 only."""
+    """Read an integer as ROS does. Only ROS 2 accepts prefixes of other bases."""
     for base in (10, 0) if dialect == "ros2" else (10,):
         try:
             return int(value, base)
@@ -80,7 +80,7 @@ def integer_of(value: str, dialect: Dialect) -> int | None:
 
 
 def float_of(value: str) -> float | None:
-    """Read a floating-point number; words for infinity and for none are some, too."""
+    """Read a floating-point number; the words for infinity and NaN are numbers, too."""
     try:
         return float(value.partition("#")[0])
     except ValueError:

@@ -1,4 +1,4 @@
-"""All oracles, and those that are here."""
+"""All oracles of definitions."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""ROS's own readers, which run in processes of their own: see `worker_script`.
+"""ROS's own readers, which run in separate processes; see `worker_script`.
 
-Debian has genmsg and the rosidl of humble. Newer releases of rosidl are PyPI's, and each has
-oracles of its own, whose names end in its version.
+Debian has genmsg and the rosidl of humble. Newer releases of rosidl come from PyPI. Each of them
+has its own oracles, whose names end in the version.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ __all__ = ["NEWER", "Genmsg", "RosidlAdapter", "RosidlParser"]
 
 
 class _Worked(Oracle):
-    """An oracle that a worker answers for."""
+    """An oracle whose answers come from a worker process."""
 
     family: ClassVar[str]
     judge_name: ClassVar[str]
-    """What the worker calls it."""
+    """The name that the worker has for the oracle."""
     release: ClassVar[Release | None] = None
-    """Whose environment it is in; `None`: the system's."""
+    """The release whose environment has the oracle; `None`: the system has it."""
 
     @cached_property
     def _worker(self) -> Worker:
@@ -68,7 +68,7 @@ class _Worked(Oracle):
 
 @cache
 def _shared_worker(family: str, folder: str, release: Release | None) -> Worker:
-    # Oracles of one family ask about the same texts, which it then reads once.
+    # Oracles of one family ask about the same texts, which a shared worker reads only once.
     python = ROS_PYTHON if release is None else str(release.python)
     return Worker(family, folder, modules=Path(__file__).parent, python=python)
 
@@ -97,7 +97,7 @@ class Genmsg(_Worked):
 class RosidlAdapter(_Worked):
     """rosidl_adapter: what ``.msg``, ``.srv`` and ``.action`` of ROS 2 declare, comments included.
 
-    A definition that it cannot write out as IDL is refused, as in a build.
+    A definition that rosidl_adapter cannot write as IDL is refused, as in a build.
     """
 
     name = judge_name = "rosidl_adapter"
@@ -106,9 +106,9 @@ class RosidlAdapter(_Worked):
 
 
 class RosidlParser(_Worked):
-    """rosidl_parser: what IDL declares. Other definitions go through rosidl_adapter before.
+    """rosidl_parser: what IDL declares. rosidl_adapter first converts other definitions to IDL.
 
-    From iron on with event messages of services, and the type hashes of all of it, which
+    From iron on, the facts include event messages of services, and the type hashes that
     rosidl_generator_type_description computes.
     """
 
@@ -123,7 +123,7 @@ class RosidlParser(_Worked):
             yield answer
 
     def alike(self, case: DefinitionCase) -> Mapping[str, str]:
-        # There is no char in the IDL that rosidl_adapter writes.
+        # rosidl_adapter writes char as uint8 in IDL.
         return {} if case.language == "idl" else {"char": "uint8"}
 
 
@@ -140,7 +140,7 @@ NEWER: tuple[type[Oracle], ...] = tuple(_newer())
 
 
 def _name_as_file(facts: Facts, case: DefinitionCase) -> None:
-    """Give a message of IDL the name of its file, which its modules may contradict."""
+    """Name a message of IDL by its file. The name in the text goes to the fact ``names``."""
     names = list(facts["structure"])
     if len(names) == 1:
         facts["names"] = names

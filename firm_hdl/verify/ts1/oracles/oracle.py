@@ -1,4 +1,4 @@
-"""What an oracle is: somebody else's reader of definitions."""
+"""The interface of oracles, which are readers of definitions by other projects."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["Accepted", "Answer", "NotJudged", "Oracle", "Refused"]
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
-    """The oracle takes the definition, and this is what it knows of it."""
+    """The oracle accepts the definition; `facts` are what it knows about the definition."""
 
     facts: Facts
 
@@ -42,9 +42,9 @@ class Oracle(ABC):
     ----------
     name : str
     languages : mapping of str to set of str
-        What it can read, for each dialect: ``msg``, ``srv``, ``action``, ``idl``.
+        The languages that it reads, for each dialect: ``msg``, ``srv``, ``action``, ``idl``.
     judges_changes : bool
-        Whether its word counts on texts that nobody wrote, and that are mostly wrong.
+        Whether it is asked about mutations, which mostly have mistakes.
     changes_needs : bool
         Whether `judge_changed` changes the definitions that a definition needs, too.
     """
@@ -59,30 +59,30 @@ class Oracle(ABC):
 
     @abstractmethod
     def missing(self) -> str | None:
-        """Tell why the oracle cannot be asked here; `None` if it can."""
+        """Return why the oracle cannot be asked here; `None` if it can."""
 
     @abstractmethod
     def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
-        """Answer for each case, in order. All are of languages that it can read."""
+        """Yield an answer to each case, in order. All cases are in languages of the oracle."""
 
     def judge_changed(
         self, case: DefinitionCase, change: Callable[[DefinitionCase], DefinitionCase]
     ) -> Answer:
-        """Answer for a case with its text changed."""
+        """Return the answer to a case with its text changed."""
         (answer,) = self.judge([change(case)])
         return answer
 
     def alike(self, case: DefinitionCase) -> Mapping[str, str]:
-        """Name the primitives that it cannot tell from others in a case, and those others."""
+        """Return the primitives that it cannot tell from others in a case, with the others."""
         return {}
 
     def version(self) -> str:
-        """Tell which release answers, as far as it is known."""
+        """Return the release of the oracle; empty if it is unknown."""
         return ""
 
     def cpu_seconds(self) -> float:
-        """Tell how much processor time a process of its own has used."""
+        """Return the processor time of the oracle's own process; 0 if it has none."""
         return 0.0
 
     def close(self) -> None:  # noqa: B027 - most have nothing to do.
-        """End what the oracle has started."""
+        """End the processes that the oracle has started."""

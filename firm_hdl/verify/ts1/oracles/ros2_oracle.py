@@ -1,4 +1,4 @@
-"""``ros2 interface proto``, where a user has ROS 2 sourced: nobody packages it otherwise."""
+"""``ros2 interface proto``, if the user has sourced ROS 2: there are no other packages of it."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _MOST_SECONDS = 60
 
 
 class Ros2Proto(Oracle):
-    """The command ``ros2 interface proto``, asked for each type that it has installed.
+    """The command ``ros2 interface proto``, which is called for each type.
 
-    It knows installed packages only, so a type that it does not find is not judged.
+    It knows installed packages only. So a type that it does not find is not judged.
     """
 
     name = "ros2"
@@ -45,5 +45,5 @@ class Ros2Proto(Oracle):
             return NotJudged(f"ros2 does not have it: {lines[-1]}")
         if not done.stdout.strip():
             return NotJudged("ros2 says nothing of it")
-        # One line end is print's.
+        # The command's `print` adds one line end.
         return Accepted({"proto": done.stdout.removesuffix("\n")})

@@ -1,7 +1,7 @@
 """rosbags as an oracle: it reads ``.msg``, and computes type hashes.
 
-It is right about bytes, but reads definitions in its own way; what it is known to refuse or to
-take otherwise is in `firm_hdl.verify.ts1.known`.
+rosbags is right about bytes, but reads definitions in its own way. Its known differences from ROS
+are in `firm_hdl.verify.ts1.known`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Orac
 
 __all__ = ["Rosbags"]
 
-# It gives the builtin types of ROS 1 the names that they have in ROS 2.
+# rosbags has the names of ROS 2 for the builtin types of ROS 1.
 _TIMES = {"builtin_interfaces/msg/Time": "time", "builtin_interfaces/msg/Duration": "duration"}
 _OWN_TIME = re.compile(r"(?m)^[ \t]*builtin_interfaces/(?:Time|Duration)\b")
 
@@ -56,7 +56,7 @@ class Rosbags(Oracle):
             return NotJudged("it is nested too deeply for rosbags")
         except _UnreadableError as error:
             return NotJudged(str(error))
-        # Its parser raises whatever its assertions and its code for hashes do.
+        # Assertions of the parser and code for hashes may raise anything.
         except Exception as error:
             why = " ".join(str(error).split())[-300:]
             is_meant = isinstance(error, TypesysError)
@@ -71,7 +71,7 @@ class Rosbags(Oracle):
         if missing is not None:
             return Refused(f"{missing} is not there")
         if self._last is not None and self._last[0] == (case.full_name, texts):
-            # Asked again, with a change that changes nothing.
+            # The texts are the same as in the last question.
             return self._last[1]
         answer = self._answer(case, found)
         self._last = (case.full_name, texts), answer
@@ -85,7 +85,8 @@ class Rosbags(Oracle):
         facts: Facts = {"structure": {case.full_name: _message(constants, fields, case.dialect)}}
         if case.dialect == "ros2":
             store = get_typestore(Stores.EMPTY)
-            # Its code for a class has constants in it, which may be no Python; hashes have none.
+            # Leave out constants: rosbags writes them into Python code, which may not be valid.
+            # Hashes do not depend on constants.
             store.register({name: ([], fields) for name, (_, fields) in found.items()})
             facts["hash"] = {case.full_name: store.hash_rihs01(full)}
         return Accepted(facts)
@@ -96,7 +97,7 @@ class Rosbags(Oracle):
         found: dict[str, Any],
         change: Callable[[DefinitionCase], DefinitionCase],
     ) -> str | None:
-        """Read a definition and what it needs; return the name of a type that is nowhere."""
+        """Read a definition and those that it needs; return the name of a type that is missing."""
         pending = [root]
         while pending:
             case = change(pending.pop())
@@ -118,7 +119,7 @@ class Rosbags(Oracle):
 
 @lru_cache(maxsize=1024)
 def _parsed(text: str, full: str) -> Any:
-    # Headers are in most messages, and most texts are asked about again.
+    # Most messages need the same Header, and most texts are read several times.
     return get_types_from_msg(text, full)[full]
 
 
@@ -128,11 +129,11 @@ def _noted(case: DefinitionCase, texts: list[str]) -> DefinitionCase:
 
 
 class _UnreadableError(Exception):
-    """Nothing is wrong with the definition, but rosbags cannot read it."""
+    """The definition may be correct, but rosbags cannot read it."""
 
 
 def _contains_itself(full: str, found: dict[str, Any]) -> bool:
-    """Whether a message needs itself, or one that needs itself."""
+    """Whether a message contains itself, or needs a message that contains itself."""
     done: set[str] = set()
     path: dict[str, None] = {}
 

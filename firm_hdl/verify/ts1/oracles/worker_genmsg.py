@@ -1,4 +1,4 @@
-"""The far end of `worker_script` for ROS 1: genmsg, and rosmsg on top of it."""
+"""The readers of ROS 1 for `worker_script`: genmsg, and rosmsg on top of it."""
 
 import os
 import tempfile
@@ -7,7 +7,7 @@ __all__ = ["readers"]
 
 
 def readers(folder):
-    """Load ROS 1's modules; return what answers requests, and which modules these are."""
+    """Load ROS 1's modules; return the functions that answer requests, and the modules' names."""
     import genmsg
     import genmsg.gentools
 

@@ -1,7 +1,7 @@
-"""The far end of `worker_script` for ROS 2, for any release of rosidl.
+"""The readers of ROS 2 for `worker_script`, for any release of rosidl.
 
-rosidl_adapter makes IDL of ``.msg``, ``.srv`` and ``.action``; rosidl_parser reads IDL; and what
-has rosidl_generator_type_description (iron and later) computes type hashes of what was read.
+rosidl_adapter converts ``.msg``, ``.srv`` and ``.action`` to IDL, and rosidl_parser reads IDL. From
+iron on, rosidl_generator_type_description computes the type hashes.
 """
 
 import ast
@@ -13,7 +13,7 @@ __all__ = ["readers"]
 
 
 def readers(folder):
-    """Load ROS 2's modules; return what answers requests, and which modules these are."""
+    """Load ROS 2's modules; return the functions that answer requests, and the modules' names."""
     import rosidl_adapter.parser
     import rosidl_adapter.resource
     import rosidl_parser.parser
@@ -43,7 +43,7 @@ class _Rosidl:
         self.parse_idl = functools.lru_cache(maxsize=64)(rosidl_parser.parser.parse_idl_string)
         self.folder = folder
         self.hashes = None
-        self.known = {}  # Message types by name: None, or why one cannot be used.
+        self.known = {}  # Message types by name: None, or why the type cannot be used.
         self.convert = functools.lru_cache(maxsize=512)(self._convert)
 
     def adapter(self, request):
@@ -55,7 +55,7 @@ class _Rosidl:
         content = self.content(request)
         parsed = _parsed(content, has_events=request["has_events"])
         facts = {"structure": self._without_placeholders(parsed, request)}
-        # What has a name for a bound has no hash: there is no number.
+        # A type whose bound is the name of a constant has no hash, because a number is missing.
         is_numbered = not _has_named_bounds(facts["structure"])
         if self.hashes is not None and request["has_events"] and is_numbered:
             facts["hash"] = self.hashes.of(content, request)
@@ -77,7 +77,7 @@ class _Rosidl:
         }
 
     def content(self, request):
-        """Read a definition and look for what it needs; return what rosidl_parser made of it."""
+        """Read a definition, and check the types that it needs; return rosidl_parser's object."""
         if request["file"].endswith(".idl"):
             content = self.parse_idl(self.text(request))
             self._check_needs(request, _idl_needs(_parsed(content)))
@@ -93,14 +93,14 @@ class _Rosidl:
 
     def text(self, request):
         if request["text"] is not None:
-            # Text mode makes one line end of all.
+            # Files are read in text mode, which converts all line ends to one form.
             return request["text"].replace("\r\n", "\n").replace("\r", "\n")
         path = os.path.join(self.folder, request["package"], request["kind"], request["file"])
         with open(path, encoding="utf-8") as lines:
             return lines.read()
 
     def _convert(self, package, kind, name, text):
-        """Read a text; return its messages by name, and the IDL that rosidl makes of it."""
+        """Read a text; return its messages by name, and the IDL that rosidl_adapter writes."""
         if kind == "msg":
             whole = self.reader.parse_message_string(package, name, text)
             parts = {f"{package}/msg/{name}": whole}
@@ -117,11 +117,11 @@ class _Rosidl:
         }
         data = {"pkg_name": package, "relative_input_file": f"{kind}/{name}.{kind}", kind: whole}
         idl = self.evaluate(f"{kind}.idl.em", data)
-        # It is written in one encoding and read in another, which undoes what its literals do.
+        # rosidl writes IDL in one encoding and reads it in another, which restores its literals.
         return parts, idl.encode("iso-8859-1").decode("utf-8")
 
     def _check_needs(self, request, needs):
-        """Refuse what needs a type that is not there or is refused itself: C++ would."""
+        """Refuse a definition if a type that it needs is missing or refused, as a build would."""
         own = f"{request['package']}/msg/{request['name']}"
         path = {own} if request["kind"] == "msg" else set()
         for need in needs:
@@ -165,7 +165,7 @@ class _Rosidl:
 
 def _idl_needs(messages):
     types = [field["type"] for message in messages.values() for field in message["fields"]]
-    # Types of other folders are messages of services and actions, whose files we do not look for.
+    # Types in other folders are messages of services and actions, which have no files.
     return [name for name in (each.partition("[")[0] for each in types) if "/msg/" in name]
 
 
@@ -208,13 +208,13 @@ IDL_NAMES = {"boolean": "bool", "octet": "byte", "float": "float32", "double": "
 
 
 def _element(content):
-    """Return what a file declares: a message, a service or an action."""
+    """Return the message, the service or the action that a file declares."""
     (element,) = [each for each in content.elements if not hasattr(each, "locator")]
     return element
 
 
 def _parsed(content, has_events=False):
-    """Describe what rosidl_parser made of a file."""
+    """Describe rosidl_parser's reading of a file."""
     element = _element(content)
     messages = []
     if hasattr(element, "structure"):
@@ -248,7 +248,7 @@ def _parsed_message(message):
     constants = []
     for each in message.constants:
         kind = type(each.type).__name__
-        # The bound of a constant text is its own length.
+        # The type of a string constant has its own length as a bound.
         name = {"BoundedString": "string", "BoundedWString": "wstring"}.get(kind)
         constants.append({"name": each.name, "type": name or _type(each.type), "value": each.value})
     return {"fields": members, "constants": constants}
@@ -277,26 +277,26 @@ def _default(member):
     if not member.has_annotation("default"):
         return None
     value = member.get_annotation_value("default")["value"]
-    # Lists are texts of Python's, which generators evaluate.
+    # Lists are texts in Python's syntax, which generators evaluate.
     is_list = type(member.type).__name__ in ("Array", "BoundedSequence", "UnboundedSequence")
     return list(ast.literal_eval(value)) if is_list and isinstance(value, str) else value
 
 
 class _Hashes:
-    """Type hashes of what rosidl_parser reads, computed by rosidl's own functions.
+    """Computes type hashes of what rosidl_parser reads, with rosidl's own functions.
 
-    ``generate_type_hash`` itself takes a package at a time, and finds what other packages have in
-    files that their builds left; these are its steps.
+    ``generate_type_hash`` itself takes a whole package, and reads other packages from the files of
+    their builds. This class takes the same steps for single definitions.
     """
 
     def __init__(self, reader, describing):
         self.reader, self.describing = reader, describing
-        self.needed = {}  # Individual descriptions of what is in files, by name.
+        self.needed = {}  # Individual descriptions of types in files, by name.
 
     def of(self, content, request):
         """Return the hash of a message, a service or an action, and those of its messages.
 
-        Or say what was raised: what cannot be hashed cannot be built.
+        If rosidl raises an error, return the error as text. Such a type cannot be built.
         """
         try:
             return self._of(_element(content), request)
@@ -319,9 +319,9 @@ class _Hashes:
         return {name: self._hash(name, described) for name in own}
 
     def _individual(self, element, request):
-        """Describe all types that a file declares, each by itself.
+        """Describe each type that a file declares.
 
-        They are called as the file is, whatever the modules of an IDL say.
+        Types are named by their file, even if the modules of an IDL have other names.
         """
         add = self.describing
         found = {}
@@ -358,7 +358,7 @@ class _Hashes:
         raise ValueError(f"{name} is not there")
 
     def _hash(self, name, described):
-        # It looks for what is needed alone, and fails if something is not there.
+        # rosidl extracts only the types that are needed, and fails if one of them is missing.
         return self.describing.calculate_type_hash(
             self.describing.extract_full_type_description(name, described)
         )
