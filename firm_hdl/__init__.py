@@ -44,7 +44,7 @@ __all__ = [
     "record_layout",
 ]
 
-# Amaranth takes seconds to import, and much of firm-hdl does without it.
+# Import lazily: Amaranth takes seconds to import, and much of firm-hdl does not need it.
 _HOME = {
     "DefinitionError": "errors",
     "Deserializer": "gateware",
@@ -63,7 +63,7 @@ _HOME = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import what is asked for, once."""
+    """Import an exported name at its first use."""
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     found = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)

@@ -36,7 +36,7 @@ def number_between(text: str, minimum: int, maximum: int | None) -> int:
     Parameters
     ----------
     text : str
-        In decimal, or with a prefix such as ``0x``.
+        The number in decimal, or with a prefix such as ``0x``.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def add_types_or_all(
 
 
 def add_origins(command: argparse.ArgumentParser) -> None:
-    """Add the origins of definitions. Without ``--distro``, a recording names its distribution."""
+    """Add the origins of definitions. ``--distro`` overrides the distribution of a recording."""
     command.add_argument(
         "--distro",
         choices=list(DISTROS),

@@ -24,8 +24,8 @@ class Source:
     Parameters
     ----------
     name : str
-        Name in messages: a file's path as the user wrote it, or ``<origin>/...`` for a text that is
-        in no file.
+        Name in messages: a file's path as the user wrote it, or ``<origin>/...`` for a text that
+        does not come from a file.
     text : str
         The whole text, with its original line ends.
     """
@@ -62,7 +62,7 @@ class Span:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Diagnostic:
-    """One problem: a sentence, and its place in a text (`None` if it has none)."""
+    """One problem: a sentence, and its place in a text (`None` if there is no place)."""
 
     message: str
     span: Span | None = None
@@ -79,7 +79,7 @@ class Diagnostic:
         head, words, tail = (
             printable(part) for part in (text[:before], text[before:end], text[end:])
         )
-        # Tabs stay tabs in front of the carets, so that these are aligned at any tab width.
+        # Keep the tabs of the line before the carets, so that carets are aligned at any tab width.
         indent = "".join("\t" if c == "\t" else " " for c in head)
         carets = "^" * max(1, len(words))
         return f"{where}: error: {message}\n{head}{words}{tail}\n{indent}{carets}"
@@ -99,7 +99,7 @@ def _clip(text: str, before: int) -> tuple[str, int]:
     return head + text[start:end] + tail, before - start + len(head)
 
 
-# A text with a thousand errors must not be searched from its start for each of them.
+# Cached, so that a text with a thousand errors is not searched from its start for each error.
 @lru_cache(maxsize=16)
 def _line_starts(text: str) -> list[int]:
     starts = [0]
@@ -123,7 +123,7 @@ class DefinitionError(Exception):
         super().__init__(self.diagnostics)
 
     def __str__(self) -> str:
-        # Formatted only when it is read: there may be a thousand errors in a thousand types.
+        # Format the text only when it is read: there may be a thousand errors in a thousand types.
         return "\n".join(str(d) for d in self.diagnostics)
 
 

@@ -30,11 +30,11 @@ def read_file(path: str | os.PathLike[str], max_bytes: int) -> bytes:
         If the file cannot be read, is not a regular file, or has more than `max_bytes`.
     """
     check_file(path, max_bytes)
-    # The file may have been replaced since the check, so it is opened without blocking.
+    # Open without blocking, because the file may have been replaced since the check.
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     with open(os.open(path, flags), "rb") as file:
         _check(os.fstat(file.fileno()), path, max_bytes)
-        # Some files, such as those of /proc, do not tell their size.
+        # Some files, such as those of /proc, report a size of 0.
         data = file.read(max_bytes + 1)
     if len(data) > max_bytes:
         raise _too_large(path, f"more than {max_bytes}", max_bytes)

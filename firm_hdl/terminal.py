@@ -38,7 +38,7 @@ class _Printable:
     ----------
     stream : text stream
     bars : bool
-        Whether progress bars are written to it, which return to the start of their lines.
+        Whether progress bars are written to the stream. They use carriage returns.
     """
 
     def __init__(self, stream: TextIO, *, bars: bool) -> None:

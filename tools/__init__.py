@@ -1,1 +1,1 @@
-"""Tools beside the tests, for those who work on the program."""
+"""Development tools besides the tests."""

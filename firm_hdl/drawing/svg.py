@@ -1,7 +1,7 @@
 """Scales with axes, and figures of text, lines and points, as SVG in a page.
 
 Colours are classes (``c1`` and so on). The style sheet of the page has a value for each of them in
-light and in dark mode. The ``<title>`` of a point says what it is.
+light and in dark mode. The ``<title>`` of a point describes it.
 """
 
 from __future__ import annotations

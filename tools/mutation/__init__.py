@@ -2,5 +2,5 @@
 
 ``python -m tools.mutation`` changes one place of the program in a private copy of the repository,
 runs tests there until one fails, and notes which. A mutant that no test notices is a survivor: it
-asks for a test, or for an explanation in ``survivors.yaml``.
+needs a new test, or an explanation in ``survivors.yaml``.
 """

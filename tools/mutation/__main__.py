@@ -38,7 +38,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.rule:
         mutants = [mutant for mutant in mutants if mutant.change.rule in options.rule]
     seed = randrange(10**6) if options.seed is None else options.seed
-    # Whoever interrupts it goes on with the same.
+    # With the same seed, an interrupted run can be continued.
     print(f"--seed {seed}", file=sys.stderr)
     chosen = sample(root, mutants, options.count, seed)
     out = Path(options.out)
@@ -108,7 +108,7 @@ def _is_due(record: Record | None, tree: str, options: argparse.Namespace) -> bo
 
 
 def _run(root: Path, todo: list[Mutant], files: list[str], options: argparse.Namespace) -> None:
-    """Run mutants, each in the first copy that is free."""
+    """Run mutants, each in the first free copy of the repository."""
     if not todo:
         return
     lock = Lock()
@@ -152,14 +152,14 @@ def _run(root: Path, todo: list[Mutant], files: list[str], options: argparse.Nam
             for done in [pool.submit(one, mutant) for mutant in todo]:
                 done.result()
         finally:
-            # What still runs, because of an error or of Ctrl-C, ends now.
+            # End the tests that still run after an error or Ctrl-C.
             for each in shops:
                 each.__exit__()
             pool.shutdown(cancel_futures=True)
 
 
 def _confirm(root: Path, records: Iterable[Record], nice: int) -> bool:
-    """Run the tests that noticed faults without one; tell whether all pass."""
+    """Run the tests that noticed faults, now without a fault; return whether all pass."""
     tests = {run.by for each in records for run in each.runs.values() if "::" in run.by}
     if not tests:
         return True
@@ -182,6 +182,6 @@ def _show(record: Record) -> None:
 
 
 if __name__ == "__main__":
-    # As with Ctrl-C, tests end and copies are removed.
+    # On SIGTERM, as on Ctrl-C, end tests and remove copies.
     signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
     sys.exit(main())

@@ -1,7 +1,7 @@
-"""A plugin of pytest: only the tests of a list, in its order.
+"""A plugin of pytest: run only the tests of a list, in the order of the list.
 
-``-p tools.mutation.chosen``, with the name of a file in the environment. Which test runs at the
-moment is written to another file, for whoever has to stop it.
+Use it by ``-p tools.mutation.chosen``, with the name of the list's file in the environment. The
+name of the running test is written to another file, for the process that may stop the run.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ RUNNING = "FIRM_HDL_MUTATION_RUNNING"
 
 
 def take_time() -> None:
-    """Let no random test fail because the machine is slow: it would count as one that notices."""
+    """Remove time limits of random tests: a failure on a slow machine would seem to be a kill."""
     calm = settings.get_profile("default")
     settings.register_profile(
         "mutation", calm, deadline=None, suppress_health_check=list(HealthCheck)
@@ -29,13 +29,13 @@ def take_time() -> None:
 
 
 def pytest_configure() -> None:
-    """Begin."""
+    """Remove time limits before tests run."""
     take_time()
 
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Drop what is not on the list. A fault may take tests away; what is left judges."""
+    """Drop tests that are not on the list; ignore tests that are missing because of a fault."""
     order = {name: at for at, name in enumerate(json.loads(Path(os.environ[CHOSEN]).read_text()))}
     kept = [item for item in items if item.nodeid in order]
     config.hook.pytest_deselected(items=[item for item in items if item.nodeid not in order])
@@ -43,5 +43,5 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def pytest_runtest_logstart(nodeid: str) -> None:
-    """Say which test runs."""
+    """Write the name of the running test to the file."""
     Path(os.environ[RUNNING]).write_text(nodeid)

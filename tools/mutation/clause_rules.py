@@ -1,7 +1,7 @@
 """Faults of meaning in conditions and sequences: a clause, limit, item or operand that is wrong.
 
-What has two sides is taken with one, what has an order in another one, and what has many items
-without the first or the last.
+For example, a condition loses one side, operands change their order, and a sequence loses its first
+or last item.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ BITS = (ast.BitAnd, ast.BitOr)
 ORDERED = (ast.Sub, ast.Div, ast.FloorDiv, ast.Mod, ast.LShift, ast.RShift)
 LIMITS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 MEMBERS = (ast.In, ast.NotIn)
-# Of these, one bit more or less is what a width rounds away.
+# Calls with a range as a shape. One value more or less rarely changes the width of a shape.
 SHAPES = ("Signal", "In", "Out", "Const", "C", "cast", "Shape")
 ENDLESS = ("count", "cycle", "repeat", "iter")
 UNWRAPPED = ("strip", "rstrip", "lstrip", "lower", "upper", "copy", "casefold")
@@ -48,7 +48,7 @@ def dropped_clause(source: Source, _: Index) -> Iterator[Change]:
 
 
 def dropped_filter(source: Source, _: Index) -> Iterator[Change]:
-    """Take all items, whatever a comprehension asks of them."""
+    """Replace a condition of a comprehension by `True`, so that no item is dropped."""
     for node in source.nodes:
         if isinstance(node, ast.comprehension):
             for test in node.ifs:
@@ -56,7 +56,7 @@ def dropped_filter(source: Source, _: Index) -> Iterator[Change]:
 
 
 def dropped_choice(source: Source, _: Index) -> Iterator[Change]:
-    """Leave out one of the values, types or patterns that something may be."""
+    """Leave out one of several accepted values, types or patterns."""
     for node in source.nodes:
         if isinstance(node, ast.Compare) and isinstance(node.ops[0], MEMBERS):
             choices = node.comparators[0]
@@ -76,7 +76,7 @@ def dropped_choice(source: Source, _: Index) -> Iterator[Change]:
 
 
 def swapped_operand(source: Source, index: Index) -> Iterator[Change]:
-    """Take one for the other, on both sides of an operator or in a call."""
+    """Swap both sides of an operator, or two neighbouring arguments of a call."""
     for node in source.nodes:
         sides: tuple[ast.expr, ...] = ()
         if isinstance(node, ast.BinOp) and isinstance(node.op, ORDERED):
@@ -97,12 +97,12 @@ def swapped_operand(source: Source, index: Index) -> Iterator[Change]:
 def _swap(source: Source, a: ast.expr, b: ast.expr) -> Change:
     (start, a_end), (b_start, end) = source.span(a), source.span(b)
     new = source.atom(b) + source.text[a_end:b_start] + source.atom(a)
-    # A bracket that is around one of the two stays where it is.
+    # Parentheses around one of the two operands stay where they are.
     return source.change("swapped operand", (start, end), new)
 
 
 def _pairs(node: ast.Call, index: Index) -> Iterator[tuple[ast.expr, ast.expr]]:
-    """Yield arguments that are next to each other and of one type."""
+    """Yield pairs of neighbouring arguments of the same type."""
     name = _called(node)
     if name in ("Mux", "Cat"):
         plain = node.args[1:] if name == "Mux" else node.args
@@ -143,7 +143,7 @@ def _off_by_one(source: Source, limit: ast.expr) -> Iterator[Change]:
 
 
 def ignored_item(source: Source, _: Index) -> Iterator[Change]:
-    """Leave out the first or last item of what is gone through, or stop after the first."""
+    """Leave out the first or last item of an iteration, or stop after the first item."""
     for node in source.nodes:
         if isinstance(node, (ast.For, ast.comprehension)):
             if isinstance(node.iter, ast.Call) and _called(node.iter) in (*ENDLESS, "range"):
@@ -161,7 +161,7 @@ def ignored_item(source: Source, _: Index) -> Iterator[Change]:
 
 
 def unwrapped(source: Source, _: Index) -> Iterator[Change]:
-    """Leave out what a text or sequence goes through."""
+    """Leave out a call that transforms a text, sequence or number."""
     for node in source.nodes:
         if not isinstance(node, ast.Call) or node.keywords:
             continue
@@ -175,7 +175,7 @@ def unwrapped(source: Source, _: Index) -> Iterator[Change]:
 
 
 def _called(node: ast.Call) -> str:
-    """Return the last name of what is called."""
+    """Return the name of a called function, without the object before it."""
     if isinstance(node.func, ast.Attribute):
         return node.func.attr
     return node.func.id if isinstance(node.func, ast.Name) else ""

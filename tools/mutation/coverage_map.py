@@ -1,4 +1,4 @@
-"""Which tests run which lines."""
+"""A map of which tests run which lines."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 __all__ = ["SHARED", "CoverageMap", "Part", "Test"]
 
-# What is run for all tests of a file, whichever comes first.
+# Owner of lines that run once for all tests of a file, in the first test that needs them.
 SHARED = "+"
 
 
@@ -18,16 +18,16 @@ class Test:
     Attributes
     ----------
     name : str
-        As pytest calls it.
+        Name in pytest.
     cpu_seconds : float
-        What it takes, with the processes that it starts, while lines are counted.
+        Processor time of the test and of its processes, with tracing.
     opaque : bool
-        It may run lines that the map does not know of.
+        Whether the test may run lines that are not in the map.
     snapshot : bool
-        It compares with a file that the program itself has written, once.
+        Whether the test compares with a file that the program itself has written.
     measured : bool
-        It was run. What was not, for having more sets of parameters than were asked for, is taken
-        to run what the measured ones of the same function do, and to take as long.
+        Whether the test was run. If a function has too many sets of parameters, some are not run.
+        These tests are assumed to run the same lines as the measured ones, and to take as long.
     """
 
     __test__ = False
@@ -40,12 +40,12 @@ class Test:
 
     @property
     def file(self) -> str:
-        """The file it is in."""
+        """The file of the test."""
         return self.name.partition("::")[0]
 
     @property
     def function(self) -> str:
-        """Its name without parameters."""
+        """The name of the test without parameters."""
         return self.name.partition("[")[0]
 
 
@@ -57,10 +57,10 @@ class Part:
     ----------
     tests : list of Test
     lines : mapping of str to mapping of str to int
-        By file of the program, and by number of the test or `SHARED`: the lines that were run; bit
-        n for line n.
+        The lines that were run, by file of the program and by number of the test (or `SHARED`).
+        They are a bit mask: bit n stands for line n.
     stale : bool
-        Something has changed since, so that tests may run other lines today.
+        Whether the program or its tests have changed since, so that tests may run other lines now.
     """
 
     tests: list[Test]
@@ -68,7 +68,7 @@ class Part:
     stale: bool = False
 
     def running(self, masks: Mapping[str, int], wanted: int) -> set[str]:
-        """Return names of tests that run one of some lines of a file themselves."""
+        """Return names of tests that themselves run one of the wanted lines of a file."""
         own = {
             test.name
             for number, test in enumerate(self.tests)
@@ -88,9 +88,9 @@ class CoverageMap:
     ----------
     parts : list of Part
     complete : bool
-        No test of the suite was left out.
+        Whether the map has all tests of the suite.
     tree : str
-        Names the program and its tests.
+        Digest of the program and its tests.
     """
 
     parts: list[Part]
@@ -98,7 +98,7 @@ class CoverageMap:
     tree: str
 
     def running(self, path: str, lines: Iterable[int]) -> Iterator[tuple[Test, bool]]:
-        """Yield tests for which one of some lines was run, and whether they ran it themselves."""
+        """Yield tests that need one of the lines, and whether they ran the line themselves."""
         wanted = sum(1 << line for line in set(lines))
         for part in self.parts:
             masks = part.lines.get(path, {})
@@ -109,16 +109,16 @@ class CoverageMap:
                     yield test, test.name in own
 
     def opaque(self) -> list[Test]:
-        """Return the tests of which not all is known."""
+        """Return the tests that may run lines that are not in the map."""
         return [test for part in self.parts for test in part.tests if test.opaque]
 
     def touching(self, path: str, *, stale: bool = False) -> set[str]:
-        """Return the names of tests that run something of a file, or folder, themselves.
+        """Return the names of tests that themselves run some line of a file or folder.
 
         Parameters
         ----------
         stale : bool, optional
-            Only those of which the map may be wrong today.
+            Return only tests of stale parts.
         """
         return {
             name

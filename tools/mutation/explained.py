@@ -1,4 +1,4 @@
-"""Survivors that have an explanation: found by what they change, not by line numbers."""
+"""Explanations of survivors. They name a survivor by its change, not by its line number."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ KINDS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Explanation:
-    """Why no test notices a mutant, or has to.
+    """The reason why no test notices a mutant, or why no test needs to.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class Explanation:
     why: str
 
     def fits(self, record: Record) -> bool:
-        """Tell whether it is about this mutant."""
+        """Return whether the explanation is about this mutant."""
         return all(
             getattr(self, name) == getattr(record, name)
             for name in ("path", "scope", "rule", "old", "new")
@@ -51,7 +51,7 @@ class Explanation:
 
 
 def read_explanations(path: Path = FILE) -> list[Explanation]:
-    """Return what a file explains."""
+    """Read the explanations of a file."""
     found = [Explanation(**entry) for entry in yaml.safe_load(path.read_text()) or []]
     unknown = {each.kind for each in found} - set(KINDS)
     if unknown:

@@ -13,7 +13,7 @@ from tools.mutation.mutants import Change
 __all__ = ["changes", "is_fault"]
 
 DEFINITION = re.compile(r"^(?P<name>[?!]*\w+)(?P<priority>\.\d+)?: *(?=\S)", re.MULTILINE)
-# A whole regular expression, text, or comment; and what a grammar consists of beside these.
+# A comment, a regular expression, a string, an arrow, or any other character.
 TOKEN = re.compile(r"//.*|/(?:\\.|\[(?:\\.|[^\]\\])*\]|[^/\\])+/\w*|\"(?:\\.|[^\"\\])*\"|->|.|\n")
 # A class of characters, an escape, an opening bracket with its meaning, any character.
 REGEX_TOKEN = re.compile(r"\[\^?\]?(?:\\.|[^\]\\])*\]|\\.|\(\?(?:<?[=!]|:)|\{\d+(?:,\d*)?\}|.")
@@ -29,7 +29,7 @@ def changes(text: str) -> list[Change]:
 
 
 def is_fault(text: str, change: Change, start: list[str]) -> bool:
-    """Tell changes with which Lark still loads the grammar."""
+    """Return whether Lark still loads the grammar with the change."""
     try:
         Lark(change.apply(text), parser="lalr", lexer="contextual", start=start)
     except (LarkError, re.error, ValueError, AssertionError):
@@ -75,7 +75,7 @@ def _regex(text: str, start: int, end: int, name: str) -> Iterator[Change]:
 
 
 def _structure(text: str, tokens: list[tuple[int, str]], name: str) -> Iterator[Change]:
-    """Yield what rules and regular expressions have in common."""
+    """Yield changes of constructs that rules and regular expressions have in common."""
     opened: list[int] = []
     # Where the alternatives of each open bracket start; the lowest is the whole rule.
     starts: list[list[int]] = [[tokens[0][0]]] if tokens else []
@@ -103,7 +103,7 @@ def _alternatives(text: str, starts: list[int], end: int, name: str) -> Iterator
     if len(starts) < 2:
         return
     for index, start in enumerate(starts):
-        if index + 1 < len(starts):  # With the sign after it.
+        if index + 1 < len(starts):  # Also drop the `|` after the alternative.
             yield Change(start, starts[index + 1], "", "drop alternative", name)
         else:
             yield Change(start - 1, end, "", "drop alternative", name)

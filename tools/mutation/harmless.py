@@ -1,6 +1,7 @@
-"""Changes that nobody could notice, whatever the program does; none of them is made.
+"""Recognize changes that cannot affect any result of the program. They are not made.
 
-Each function tells one class of them from its source alone, and says no where it is not sure.
+Each function recognizes one class of such changes by the source alone, and returns `False` if in
+doubt.
 """
 
 from __future__ import annotations
@@ -12,25 +13,25 @@ from tools.mutation.source import Functions, Source
 
 __all__ = ["are_independent", "durations", "is_plain_bool", "is_read_only"]
 
-# What a list, set, dictionary or deque is told, and changes nothing else.
+# Methods that change a list, set, dictionary or deque, and nothing else.
 COLLECTS = {
     *("add", "append", "appendleft", "clear", "discard", "extend", "insert", "pop", "remove"),
     *("setdefault", "sort", "update"),
 }
-# What may be called for an argument without a change of anything.
+# Functions and methods without side effects, which arguments may call.
 PURE = {"bool", "bytes", "dict", "frozenset", "int", "join", "len", "list", "max", "min"}
 PURE |= {"replace", "set", "sorted", "str", "tuple"}
-# What a command line is told; in which order shows in its help alone.
+# Calls that declare arguments of a command line. Their order changes only the help text.
 DECLARES = re.compile(r"add_argument|set_defaults|_?add_[a-z0-9_]*")
 _OF_A_PARSER = {"argparse.ArgumentParser", "argparse._ArgumentGroup", "ArgumentParser"}
 DURATION = re.compile(r"(^|_)(seconds|timeout)(_|$)", re.IGNORECASE)
 
 
 def are_independent(source: Source, one: ast.Call, two: ast.Call) -> bool:
-    """Tell whether two calls may come in any order.
+    """Return whether two calls may come in any order.
 
-    They tell two different collections something that does not depend on the other one, or declare
-    arguments of a command line. Of two arguments without dashes, the first comes first.
+    This holds if they change two different collections, and neither reads the other's collection.
+    It also holds for declarations of command line arguments, unless both are positional.
     """
     if _declares(source, one) and _declares(source, two):
         return not (_takes_place(source, one) and _takes_place(source, two))
@@ -50,13 +51,13 @@ def are_independent(source: Source, one: ast.Call, two: ast.Call) -> bool:
 
 
 def _collection(call: ast.Call) -> str | None:
-    """Return the name that a collection has, or nothing if it is not told by a name alone."""
+    """Return the name of the collection that a call changes, or `None` if it has no plain name."""
     function = call.func
     if not isinstance(function, ast.Attribute) or function.attr not in COLLECTS:
         return None
     inner: ast.expr = function.value
     if isinstance(inner, ast.Call) and _collection(inner) is not None:
-        return _collection(inner)  # What `setdefault` returns is in the collection.
+        return _collection(inner)  # For example, the result of `setdefault` is in the collection.
     name = ast.unparse(inner)
     return name if re.fullmatch(r"[A-Za-z_][\w.]*", name) else None
 
@@ -67,7 +68,7 @@ def _is_pure(call: ast.Call) -> bool:
 
 
 def _declares(source: Source, call: ast.Call) -> bool:
-    """Tell what declares arguments of a command line."""
+    """Return whether a call declares arguments of a command line."""
     name = ast.unparse(call.func).rpartition(".")[2]
     return name in ("add_argument", "set_defaults") or (
         DECLARES.fullmatch(name) is not None and bool(_OF_A_PARSER & _names(source, call))
@@ -75,7 +76,7 @@ def _declares(source: Source, call: ast.Call) -> bool:
 
 
 def _names(source: Source, call: ast.Call) -> set[str]:
-    """Return the types of what a call is given, by the parameters of the function around it."""
+    """Return the types of names in a call that are parameters of the enclosing function."""
     function = source.function(call)
     given = {each.id for each in ast.walk(call) if isinstance(each, ast.Name)}
     arguments = function.args.args if function is not None else []
@@ -83,7 +84,7 @@ def _names(source: Source, call: ast.Call) -> set[str]:
 
 
 def _takes_place(source: Source, call: ast.Call, seen: frozenset[str] = frozenset()) -> bool:
-    """Tell what declares an argument without dashes, or may do so."""
+    """Return whether a call declares, or may declare, a positional argument."""
     name = ast.unparse(call.func).rpartition(".")[2]
     if name == "set_defaults":
         return False
@@ -102,9 +103,9 @@ def _takes_place(source: Source, call: ast.Call, seen: frozenset[str] = frozense
 
 
 def durations(text: str) -> set[tuple[int, int]]:
-    """Return where numbers of seconds are, of which one more or less is not noticed.
+    """Return the places of numbers of seconds, because no test notices one second more or less.
 
-    Of 0, 1 and 2 it is.
+    Numbers up to 2 are excluded, because tests may notice a change of them.
     """
     source = Source(text)
     numbers = [node for node in source.nodes if isinstance(node, ast.Constant)]
@@ -126,7 +127,7 @@ def _is_duration(source: Source, number: ast.Constant) -> bool:
 
 
 def is_read_only(source: Source, factory: ast.keyword) -> bool:
-    """Tell the default of a field whose type lets nobody change it: all objects may share one."""
+    """Return whether a default factory is for a read-only type: objects may share the value."""
     field = source.parent(factory)
     declared = source.parent(field) if field is not None else None
     return isinstance(declared, ast.AnnAssign) and ast.unparse(declared.annotation).startswith(
@@ -135,9 +136,10 @@ def is_read_only(source: Source, factory: ast.keyword) -> bool:
 
 
 def is_plain_bool(source: Source, call: ast.Call) -> bool:
-    """Tell `int` of a comparison, which is a number anyway, and `bool` of what is only asked for.
+    """Return whether a conversion to `int` or `bool` has no effect.
 
-    That is, what a function returns that is declared to return a truth value.
+    It has none for `int` of a comparison, which is a number anyway, and for `bool` of the result of
+    a function that is declared to return a `bool`.
     """
     name, argument = ast.unparse(call.func), call.args[0]
     if name == "int":

@@ -1,4 +1,4 @@
-"""What a program declares, so that a name can be taken for another one of its type."""
+"""An index of a program's declarations, to replace a name by another one of the same type."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PROPERTIES = ("property", "cached_property", "functools.cached_property")
 
 @dataclass(frozen=True)
 class Parameter:
-    """One of a function, or a field of a dataclass."""
+    """A parameter of a function, or a field of a dataclass."""
 
     name: str
     annotation: str
@@ -31,12 +31,12 @@ class Index:
     Attributes
     ----------
     fields : mapping
-        Class to names of its fields and properties, each with its annotation, in order.
+        By class: the names of its fields and properties, each with its annotation, in order.
     enums : mapping
-        Class to names of its members.
+        By enumeration: the names of its members.
     calls : mapping
-        Function or dataclass to its parameters, without `self`. Of a name with different
-        declarations, nothing is known: None.
+        By function or dataclass: its parameters, without `self`; `None` if a name has several
+        different declarations.
     """
 
     fields: dict[str, dict[str, str]] = field(default_factory=dict)
@@ -44,12 +44,12 @@ class Index:
     calls: dict[str, list[Parameter] | None] = field(default_factory=dict)
 
     def neighbours(self, name: str, of: str | None = None) -> list[str]:
-        """Return other attributes that may stand where one stands, the nearest first.
+        """Return other attributes of the same type as an attribute, the nearest first.
 
         Parameters
         ----------
         of : str, optional
-            The class, if it is known. Otherwise it may be any that has the attribute.
+            The class, if it is known. Otherwise it may be any class that has the attribute.
         """
         if of in self.fields and name in self.fields[of]:
             classes = [self.fields[of]]
@@ -59,11 +59,11 @@ class Index:
         return [each for each in found[0] if all(each in rest for rest in found)] if found else []
 
     def parameters(self, name: str) -> Mapping[str, Parameter]:
-        """Return those of what is called by a name, if that is known."""
+        """Return the parameters of a function or dataclass by name; empty if not known."""
         return {each.name: each for each in self.calls.get(name) or ()}
 
     def positional(self, name: str) -> Sequence[Parameter]:
-        """Return those that take no name."""
+        """Return the positional parameters of a function or dataclass; empty if not known."""
         return [each for each in self.calls.get(name) or () if each.positional]
 
 
@@ -76,7 +76,7 @@ def _same(fields: Mapping[str, str], name: str) -> list[str]:
 
 
 def index_of(texts: Iterable[str]) -> Index:
-    """Return what some modules declare."""
+    """Return the index of some modules."""
     result = Index()
     seen: dict[str, list[list[Parameter]]] = defaultdict(list)
     for text in texts:
@@ -91,7 +91,7 @@ def index_of(texts: Iterable[str]) -> Index:
 
 
 def index_of_program(root: Path) -> Index:
-    """Return what the program at `root` declares."""
+    """Return the index of the program at `root`."""
     return index_of(
         path.read_text(encoding="utf-8") for path in sorted(root.glob("firm_hdl/**/*.py"))
     )
@@ -116,7 +116,7 @@ def _class(node: ast.ClassDef, result: Index, seen: dict[str, list[list[Paramete
             decorators = {ast.unparse(decorator) for decorator in each.decorator_list}
             if decorators & set(PROPERTIES):
                 fields[each.name] = ast.unparse(each.returns)
-    # Signals and the like of the class's own.
+    # Attributes of objects of the class, such as signals.
     for inner in ast.walk(node):
         if isinstance(inner, ast.Assign) and isinstance(inner.value, ast.Call):
             target = inner.targets[0]

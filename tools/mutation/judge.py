@@ -1,4 +1,4 @@
-"""Lets tests at a mutant."""
+"""Run tests on a mutant."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tools.mutation.workshop import Run, Workshop
 
 __all__ = ["Judge"]
 
-# A fault may make tests slower, but not by so much.
+# A run of tests is stopped at so many times its usual processor time.
 FACTOR = 5
-# Others may use the machine, too.
+# The limit on elapsed time is higher, because other programs may use the machine.
 WALL_FACTOR = 20
 WALL_SECONDS = 120
-# A run that something ended from outside says nothing; so often it is repeated.
+# Number of runs if something from outside ends a run: its result means nothing.
 ATTEMPTS = 2
 
 
@@ -30,12 +30,13 @@ class Judge:
     ----------
     found : CoverageMap
     first : bool
-        Stop at the first test that notices. Otherwise all test systems are asked, one by one.
-        Snapshots are asked if nothing else notices.
+        Stop at the first test that notices the mutant. Otherwise run all test systems, one by one.
+        Snapshots run only if nothing else notices the mutant.
     least_cpu_seconds : float
-        What any run of tests may take at least.
+        Smallest time limit of a run of tests.
     most_cpu_seconds : float or None
-        Leave a mutant open whose tests would take longer altogether.
+        Largest total time of the tests of a mutant. If the tests take longer, the mutant stays
+        open.
     """
 
     def __init__(
@@ -52,7 +53,7 @@ class Judge:
         self._most = most_cpu_seconds
 
     def judge(self, workshop: Workshop, mutant: Mutant) -> Record:
-        """Return what tests say of a mutant."""
+        """Return the results of the tests of a mutant."""
         if not self._loads(workshop, mutant):
             runs = {LOADING: Run(status="failed", by=mutant.path, cpu_seconds=0)}
             return Record.of(mutant, runs, tests=0, complete=True, tree=self._found.tree)
@@ -63,7 +64,7 @@ class Judge:
         for system in [None] if self._first else [*SYSTEMS, REST]:
             mine = [test for test in asked if system in (None, system_of(test.name))]
             run = self._run(workshop, mutant, mine)
-            # Of systems that have all passed, each says so.
+            # If all tests pass, each of their systems gets this result.
             names = {system_of(test.name) for test in mine}
             if run.status != "passed":
                 names = {system or system_of(run.by)}
@@ -81,7 +82,7 @@ class Judge:
             return workshop.loads(mutant.path)
 
     def _run(self, workshop: Workshop, mutant: Mutant, tests: Sequence[Test]) -> Run:
-        """Run batches until one test notices."""
+        """Run batches until one test notices the mutant."""
         seconds = 0.0
         status, by = "passed", ""
         for batch in batches(tests):
@@ -106,7 +107,7 @@ class Judge:
 
 
 def affordable(tests: Sequence[Test], cpu_seconds: float | None) -> list[Test]:
-    """Return the first tests, as far as a time goes; at least one."""
+    """Return the first tests that together fit in a time; at least one."""
     if cpu_seconds is None:
         return list(tests)
     result: list[Test] = []

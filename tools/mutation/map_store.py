@@ -1,8 +1,8 @@
-"""Finds out which tests run which lines, once for each test file, and keeps it.
+"""Measure which tests run which lines, once for each test file, and store the result.
 
-A file's part of the map holds as long as that file stays as it is. If the program has changed
-since, the lines of the part are those of the old text; they are found again in the new one, and
-the part is `stale`. ``--fresh`` runs such files again.
+The part of a test file is valid until that file changes. If only the program has changed, the lines
+of the part are those of the old text. They are mapped to lines of the new text, and the part is
+`stale`. ``--fresh`` runs such files again.
 """
 
 from __future__ import annotations
@@ -33,32 +33,32 @@ __all__ = ["BrokenTreeError", "moved", "read_map", "tree_digest"]
 
 PROGRAM = ("firm_hdl", "examples", "pyproject.toml")
 SECONDS = 7200
-# On a busy machine, what waits for others may fail.
+# Number of attempts, because a test that waits may fail on a busy machine.
 ATTEMPTS = 2
 Lines = Mapping[str, Mapping[str, int]]
 
 
 class BrokenTreeError(Exception):
-    """Tests fail without any fault."""
+    """A test fails without any fault."""
 
 
 def tree_digest(root: Path, files: Sequence[str]) -> str:
-    """Name the program and some of its tests by what is in them."""
+    """Return a digest of the program and of some of its tests."""
     program = [path for name in PROGRAM for path in _files(root / name)]
     return _digest_of(root, [*program, *_helpers(root), *(root / name for name in files)])
 
 
 @dataclass(frozen=True)
 class _Kept:
-    """A part, and what it was made of.
+    """A part, and the digests of the files from which it was made.
 
     Attributes
     ----------
     part : Part
     made_of : mapping
-        What has to be the same for the part to be of any use.
+        Data that must be unchanged. Otherwise the part is not valid.
     around : str
-        Digest of what tests share beside the program's modules.
+        Digest of the files that tests share, other than the program's modules.
     sources : mapping
         Digests of the modules that have lines in the part.
     """
@@ -80,22 +80,21 @@ def read_map(
     workshops: Queue[Workshop],
     say: Callable[[str], None],
 ) -> CoverageMap:
-    """Return the map of test files; find out what `folder` does not have.
+    """Return the map of test files; measure the parts that `folder` does not have.
 
     Parameters
     ----------
     files : sequence of str
     each : float or None
-        Measure no more sets of parameters of a test that has taken so many seconds of the
-        processor.
+        Processor time after which no more sets of parameters of a test are measured.
     complete : bool
-        Whether `files` are all there are.
+        Whether `files` are all test files.
     fresh : bool
-        Run files again of which the map may be wrong by now.
+        Run files with a stale part again.
     workshops : Queue of Workshop
-        Copies to run them in; all come back.
+        Copies in which tests run. All are put back into the queue.
     say : callable
-        Gets a line on each file that is run.
+        Called with a line of text for each file that is run.
 
     Raises
     ------
@@ -134,7 +133,7 @@ def read_map(
 def _today(
     root: Path, folder: Path, kept: _Kept | None, made_of: Mapping[str, Any], around: str
 ) -> Part | None:
-    """Return a part with lines of today, if it is of use at all."""
+    """Return a part with line numbers of the present text, or `None` if it is not valid."""
     if kept is None or kept.made_of != made_of:
         return None
     now = _sources(root, kept.part)
@@ -153,10 +152,10 @@ def _today(
 
 
 def moved(masks: Mapping[str, int], before: str, after: str) -> dict[str, int]:
-    """Return lines of a text where they are in another one.
+    """Map line numbers of a text to those of its new version.
 
-    Who ran one of the lines that others have replaced runs all of those; who ran a line runs what
-    was put after it.
+    If a test ran one of some replaced lines, it is assumed to run all the lines that replace them.
+    If it ran a line, it is assumed to run lines that were inserted after that line.
     """
     matcher = difflib.SequenceMatcher(None, before.splitlines(), after.splitlines(), autojunk=False)
     steps = matcher.get_opcodes()
@@ -164,7 +163,7 @@ def moved(masks: Mapping[str, int], before: str, after: str) -> dict[str, int]:
     for owner, mask in masks.items():
         found = 0
         for kind, old, old_end, new, new_end in steps:
-            # Bit n is line n, from 1.
+            # Bit n is line n, counted from 1.
             here = mask >> (old + 1) & (1 << old_end - old) - 1
             whole = (1 << new_end - new) - 1
             if kind == "insert":
@@ -179,7 +178,7 @@ def moved(masks: Mapping[str, int], before: str, after: str) -> dict[str, int]:
 
 
 def _helpers(root: Path) -> list[Path]:
-    """Return what tests share."""
+    """Return the files that tests share."""
     own = root / "tests" / "mutation"
     found = [path for path in _files(root / "tests") if not path.name.startswith("test_")]
     return [path for path in found if own not in path.parents]
@@ -206,7 +205,7 @@ def _sources(root: Path, part: Part) -> dict[str, str]:
 
 
 def _trace(workshop: Workshop, name: str, each: float | None) -> Part:
-    """Run a test file and see what its tests run."""
+    """Run a test file and record the lines that its tests run."""
     folder = workshop.root.parent / f"{workshop.root.name}.trace"
     source = workshop.root / "firm_hdl"
     environment = {
@@ -226,7 +225,7 @@ def _trace(workshop: Workshop, name: str, each: float | None) -> Part:
             break
         failed[run.by] += 1
         if failed[run.by] == ATTEMPTS:
-            # It may be the counting that it does not bear.
+            # The test may fail only because of the tracing, so run it without.
             plain = workshop.run_tests([run.by], SECONDS, SECONDS) if "::" in run.by else run
             if plain.status != "passed":
                 raise BrokenTreeError(f"fails without a fault: {run.by or name}")
@@ -269,7 +268,7 @@ def _part(root: Path, given: Mapping[str, Any], folder: Path) -> Part:
 
 
 def _skipped(tests: Sequence[Test], given: Sequence[Mapping[str, Any]]) -> list[Test]:
-    """Return tests that were left out, each like those of its function."""
+    """Return tests that were left out, with the time of the measured tests of their function."""
     result = []
     for each in given:
         alike = [test for test in tests if test.function == each["id"].partition("[")[0]]
@@ -307,7 +306,7 @@ def _load(path: Path) -> _Kept | None:
 
 
 def _store(root: Path, folder: Path, path: Path, kept: _Kept) -> None:
-    """Write a part, whole or not at all, and the texts that its lines are of."""
+    """Write a part atomically, and the texts to which its line numbers refer."""
     texts = folder / "sources"
     texts.mkdir(parents=True, exist_ok=True)
     for name, digest in kept.sources.items():

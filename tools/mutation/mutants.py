@@ -1,4 +1,4 @@
-"""What a mutant is, and how it is told from others when lines move."""
+"""Mutants, and keys that identify them even if lines move."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ __all__ = ["Change", "Mutant", "Place", "identify"]
 
 @dataclass(frozen=True)
 class Change:
-    """A place of a text, and what stands there instead.
+    """A place of a text, and the new text for that place.
 
     Attributes
     ----------
     start, end : int
-        Where the text is that goes, in characters.
+        Start and end of the text that is replaced, in characters.
     new : str
-        The text that comes.
+        The new text.
     rule : str
         The name of the rule that made the change.
     scope : str
-        The function, class or grammar rule around it.
+        The function, class or grammar rule around the place.
     """
 
     start: int
@@ -70,11 +70,11 @@ class Mutant:
     target : str
         The part of the program that the file belongs to.
     line : int
-        Where the change starts.
+        Line where the change starts.
     change : Change
     place : Place
     number : int
-        Which of several changes that look the same, from 0.
+        Number of the change among changes that look the same, from 0.
     """
 
     path: str
@@ -86,7 +86,7 @@ class Mutant:
 
     @property
     def key(self) -> str:
-        """Name the mutant by its content, so that other lines may come and go."""
+        """A name for the mutant by its content, which does not depend on other lines."""
         what = (
             self.path,
             self.change.scope,

@@ -1,6 +1,7 @@
 """Faults of names: another attribute, variable or member of the same type; a default that is used.
 
-What has no type that the source names is left alone: another one of another type is mostly a crash.
+Names without a type in the source are not changed, because a name of another type mostly makes the
+program crash.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from tools.mutation.source import Source
 
 __all__ = ["RULES"]
 
-# Of streams, AXI, results of processes, places in texts.
+# Pairs of names that are easily confused: of streams, AXI, results of processes, places in texts.
 PAIRS = {
     "valid": "ready",
     "ready": "valid",
@@ -81,7 +82,7 @@ def wrong_variable(source: Source, _: Index) -> Iterator[Change]:
 
 
 def _alike(function: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[list[str]]:
-    """Yield names of one type, where there are several."""
+    """Yield groups of two or more names of the same type."""
     types: dict[str, list[str]] = defaultdict(list)
     given = function.args
     for argument in [*given.posonlyargs, *given.args, *given.kwonlyargs]:

@@ -1,7 +1,7 @@
-"""Faults of priority: what comes first of two branches, and of two assignments to one thing.
+"""Faults of priority: two branches, or two assignments to one target, in the wrong order.
 
-Amaranth's `m.If` and `m.Elif` stand in a row, and the last assignment to a signal
-counts; both are as easy to turn around as what Python itself has.
+The rules cover statements of Python and of Amaranth. In Amaranth, the first true condition of
+`m.If` and `m.Elif` counts, and the last assignment to a signal.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ ENDS = (ast.Return, ast.Raise, ast.Continue, ast.Break)
 
 
 def swapped_branches(source: Source, _: Index) -> Iterator[Change]:
-    """Ask the second of two conditions first."""
+    """Test the second of two conditions first."""
     for node in source.nodes:
         if isinstance(node, ast.If) and len(node.orelse) == 1:
             other = node.orelse[0]
@@ -37,7 +37,7 @@ def swapped_branches(source: Source, _: Index) -> Iterator[Change]:
     for block in blocks(source):
         for one, two in itertools.pairwise(block):
             if isinstance(one, ast.If) and isinstance(two, ast.If):
-                # Two reasons to leave: the first one counts.
+                # Both branches leave the block, so the first true condition counts.
                 plain = not one.orelse and not source.of(one).startswith("elif")
                 if plain and isinstance(one.body[-1], ENDS) and isinstance(two.body[-1], ENDS):
                     yield from _swap_arms(source, (one.test, one.body), (two.test, two.body))
@@ -48,7 +48,7 @@ def swapped_branches(source: Source, _: Index) -> Iterator[Change]:
 
 
 def overridden_assignment(source: Source, _: Index) -> Iterator[Change]:
-    """Let an assignment come after the one that is to override it."""
+    """Move an assignment after the one that should override it."""
     for block in blocks(source):
         for at, first in enumerate(block[:-1]):
             targets = assigned(first, deep=False)
@@ -64,7 +64,8 @@ def assigned(node: ast.stmt, *, deep: bool) -> set[str]:
     Parameters
     ----------
     deep : bool
-        In branches, too; and only there.
+        Return the assignments inside a branch instead. For a statement that is not a branch, return
+        only signals.
     """
     if deep:
         if not isinstance(node, ast.If) and not hardware_branch(node):
@@ -98,7 +99,7 @@ def blocks(source: Source) -> Iterator[list[ast.stmt]]:
 
 
 def hardware_branch(node: ast.stmt) -> str:
-    """Return `If`, `Elif`, `Else`, `Case`, or `Default` of Amaranth's, or nothing."""
+    """Return Amaranth's `If`, `Elif`, `Else`, `Case` or `Default`; empty for other statements."""
     if isinstance(node, ast.With) and isinstance(node.items[0].context_expr, ast.Call):
         function = node.items[0].context_expr.func
         branches = ("If", "Elif", "Else", "Case", "Default")
@@ -118,7 +119,7 @@ def _swap_arms(
 ) -> Iterator[Change]:
     same = ast.dump(ast.Module(one[1], [])) == ast.dump(ast.Module(two[1], []))
     if not same and not _disjoint(one[0], two[0]):
-        # Conditions may stand in brackets: these stay, and so does what is between.
+        # Conditions may be in parentheses. These stay, and so does the text between the conditions.
         first, second = source.span(one[0]), source.span(two[0])
         bodies = [_lines(source, body) for body in (one[1], two[1])]
         new = (
@@ -156,7 +157,7 @@ def _after(source: Source, first: ast.stmt, last: ast.stmt) -> Change:
 
 
 def _disjoint(one: ast.expr, two: ast.expr) -> bool:
-    """Tell conditions that plainly never hold both."""
+    """Return whether two conditions obviously never hold at the same time."""
     if isinstance(one, ast.Compare) and isinstance(two, ast.Compare):
         same = ast.unparse(one.left) == ast.unparse(two.left)
         exact = isinstance(one.ops[0], (ast.Eq, ast.Is)) and isinstance(
@@ -172,7 +173,7 @@ def _disjoint(one: ast.expr, two: ast.expr) -> bool:
 
 
 def _starts_otherwise(one: ast.expr, two: ast.expr) -> bool:
-    """Tell two beginnings that no text has both."""
+    """Return whether two conditions test for different beginnings, which no text has both."""
     receivers, begins = [], []
     for each in (one, two):
         if not (
@@ -190,7 +191,7 @@ def _starts_otherwise(one: ast.expr, two: ast.expr) -> bool:
 
 
 def _disjoint_cases(one: ast.match_case, two: ast.match_case) -> bool:
-    """Tell cases of different classes or values, and those that Python wants to be the last."""
+    """Return whether swapping two cases is no fault: they are disjoint, or one must be last."""
     kinds = (ast.MatchClass, ast.MatchValue, ast.MatchSingleton)
     parts = []
     for each in (one, two):

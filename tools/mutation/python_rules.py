@@ -1,7 +1,7 @@
 """Faults in Python: one operator, number, condition or statement changed.
 
-What is left out, because it states and does not compute: docstrings, annotations, `__all__`,
-imports, arguments of decorators, `assert`, the `strict` of `zip`, and texts of errors.
+Code that declares and does not compute is left out: docstrings, annotations, `__all__`, imports,
+arguments of decorators, `assert`, the `strict` of `zip`, and texts of errors.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def changes(text: str) -> list[Change]:
 
 
 def is_fault(text: str, change: Change) -> bool:
-    """Tell changes that compile, and to other code than before."""
+    """Return whether the changed text compiles, and compiles to different code."""
     try:
         code = compile(change.apply(text), "<module>", "exec", dont_inherit=True)
     except SyntaxError:
@@ -72,7 +72,7 @@ def same_code(a: CodeType, b: CodeType) -> bool:
     return len(a.co_consts) == len(b.co_consts) and all(
         same_code(x, y)
         if isinstance(x, CodeType) and isinstance(y, CodeType)
-        # 1 is True, and 0.0 is -0.0.
+        # Compare types and texts, because 1 equals True, and 0.0 equals -0.0.
         else (type(x), repr(x)) == (type(y), repr(y))
         for x, y in zip(a.co_consts, b.co_consts, strict=True)
     )
@@ -126,7 +126,7 @@ class _Finder(ast.NodeVisitor):
                 return run[0][0], run[-1][0] + len(words[-1])
         return None
 
-    # What is left out.
+    # Code that is left out.
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
         self._scope.append(node.name)
@@ -153,14 +153,14 @@ class _Finder(ast.NodeVisitor):
             self.generic_visit(node)
 
     def visit_Assert(self, node: ast.Assert) -> None:
-        """Leave it: it is there to never do anything."""
+        """Leave it out: in a correct program, an `assert` has no effect."""
 
     def visit_Raise(self, node: ast.Raise) -> None:
-        """Leave it: what is in it is the text of an error."""
+        """Leave it out: its content is the text of an error."""
 
     def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
-        # Before 3.12, what is inside has no places of its own.
-        """Leave it."""
+        # Before Python 3.12, nodes inside an f-string have wrong places.
+        """Leave it out."""
 
     def visit_If(self, node: ast.If) -> None:
         if ast.unparse(node.test) in ("TYPE_CHECKING", "__name__ == '__main__'"):
@@ -189,7 +189,7 @@ class _Finder(ast.NodeVisitor):
         self.generic_visit(node)
 
     def _condition(self, test: ast.expr) -> None:
-        # A comparison and a `not` are turned by rules of their own.
+        # A single comparison and a `not` have rules of their own.
         single = isinstance(test, ast.Compare) and isinstance(
             test.ops[0], (ast.Eq, ast.NotEq, ast.Is, ast.IsNot, ast.In, ast.NotIn)
         )
@@ -227,7 +227,7 @@ class _Finder(ast.NodeVisitor):
             for side in (node.left, node.right)
         )
         at = self._token(old, self._end(node.left), self._start(node.right)) if old else None
-        if at and not text:  # Of a text, any other operator is a crash.
+        if at and not text:  # With a text, any other operator makes the program crash.
             self._note("operator", *at, new)
         self.generic_visit(node)
 
@@ -297,7 +297,7 @@ class _Finder(ast.NodeVisitor):
 
     def _delete(self, node: ast.stmt, what: str) -> None:
         start, end = self._start(node), self._end(node)
-        # A generator that yields nothing is still one.
+        # Keep the function a generator, even if it yields nothing.
         new = "yield from ()" if what == "yield" else "pass"
         self._note(f"delete {what}", start, end, new)
 

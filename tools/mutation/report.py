@@ -1,4 +1,4 @@
-"""The score as a table, and what survived."""
+"""The score as a table, and the survivors."""
 
 from __future__ import annotations
 
@@ -25,10 +25,11 @@ COLUMNS = (
 
 
 def markdown(records: Iterable[Record], explanations: Sequence[Explanation], tree: str) -> str:
-    """Write a report on the tree of that name.
+    """Write a report on the tree with that digest.
 
-    The score is what tests of behaviour killed, of all that was judged. What is open, not noticed
-    by those tests that were run, counts as not killed, and so does what only a snapshot noticed.
+    The score is the share of judged mutants that tests of behaviour killed. Open mutants, which the
+    tests that were run did not notice, count as not killed. So do mutants that only a snapshot
+    noticed.
     """
     given = sorted(
         records, key=lambda each: (list(TARGETS).index(each.target), each.path, each.line)

@@ -1,4 +1,4 @@
-"""Results as JSON lines: one per mutant, the last one of a mutant counts."""
+"""Results as JSON lines, one per mutant; if a mutant has several lines, the last one counts."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from tools.mutation.workshop import Run
 
 __all__ = ["LOADING", "Record", "append", "read"]
 
-# In place of a test system: Python itself refused the mutant.
+# Used instead of a test system if Python itself could not load the mutant.
 LOADING = "loading"
 
 
 @dataclass(frozen=True)
 class Record:
-    """What happened to a mutant.
+    """The results of a mutant.
 
     Attributes
     ----------
     key, target, path, line, rule, scope, old, new
         As in `Mutant`.
     runs : mapping of str to Run
-        Test system to what it said, of those that had anything to say.
+        Results by test system, for the systems that have tests for the mutant.
     tests : int
-        How many tests may notice it.
+        Number of tests that may notice the mutant.
     complete : bool
-        Whether these are all, and all were run as far as nobody noticed.
+        Whether no test of behaviour that may notice the mutant was left out.
     tree : str
-        Names the program and the tests that it was found with.
+        Digest of the program and the tests that gave the results.
     """
 
     key: str
@@ -71,16 +71,16 @@ class Record:
 
     @property
     def killers(self) -> list[str]:
-        """The test systems that noticed; snapshots are one."""
+        """The test systems that noticed the mutant; snapshots are one of them."""
         return [name for name, run in self.runs.items() if run.status in ("failed", "timeout")]
 
     @property
     def status(self) -> str:
-        """What it came to.
+        """The result of all runs.
 
-        ``killed`` by a test of behaviour; by a ``snapshot`` alone; ``survived`` all tests;
-        ``unloaded`` if Python does not load it, so that it is no fault that somebody would leave;
-        ``open`` if some tests were not run, or ``error``.
+        ``killed`` by a test of behaviour; ``snapshot`` if only a snapshot noticed the mutant;
+        ``survived`` all tests; ``unloaded`` if Python cannot load it, so that the author would
+        notice the fault at once; ``open`` if some tests were not run; or ``error``.
         """
         if LOADING in self.runs:
             return "unloaded"
@@ -94,7 +94,7 @@ class Record:
 
 
 def read(path: Path) -> dict[str, Record]:
-    """Return the records of a file by key. A line that is not whole does not count."""
+    """Return the records of a file by key. Incomplete lines are ignored."""
     records: dict[str, Record] = {}
     if not path.exists():
         return records
@@ -110,7 +110,7 @@ def read(path: Path) -> dict[str, Record]:
 
 
 def append(path: Path, record: Record) -> None:
-    """Add a record to a file, after what an interrupted run has left there."""
+    """Add a record to a file, even if an interrupted run has left an incomplete line."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("a+b") as file:
         if file.tell():

@@ -1,8 +1,8 @@
-"""Which tests a mutant meets, and in which order.
+"""Select the tests for a mutant, and their order.
 
-Only a test that runs a changed line can notice the change, or one that has processes whose lines
-are not known. Of a statement over several lines, any line counts. A change of a grammar is noticed
-where the grammar is loaded, once for each test file that does.
+Two kinds of tests can notice a change: those that run a changed line, and those with processes
+whose lines are not known. If a statement has several lines, all of them count as changed. For a
+change of a grammar, the changed lines are those that load the grammar.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ from tools.mutation.systems import mirrored, mirrors
 
 __all__ = ["BATCH_SECONDS", "FOREIGN", "batches", "changed_lines", "judges"]
 
-# Processor time of the tests of each run; the last one is repeated.
+# Largest processor time of the tests of each run. The last value applies to all further runs.
 BATCH_SECONDS = (4.0, 15.0, 60.0, 300.0)
-# What the sets of parameters of one test take, before it is another one's turn; then twice as much.
+# Processor time for sets of parameters of one test before other tests get a turn. It then doubles.
 TURN_SECONDS = 0.25
-# Names of modules that another Python runs, and which module starts them.
+# Prefix of modules that another Python runs, and the module that starts them.
 FOREIGN = "worker_"
 STARTS_THEM = "firm_hdl/verify/ros_python/worker.py"
 Place = tuple[str, frozenset[int]]
 
 
 def changed_lines(root: Path, mutant: Mutant) -> list[Place]:
-    """Return files and lines of which one has to run before a change can be noticed."""
+    """Return files and lines. A test can notice the change only if it runs one of the lines."""
     path = root / mutant.path
     if path.suffix == ".lark":
         return list(_loaders(root, path))
@@ -42,10 +42,11 @@ def changed_lines(root: Path, mutant: Mutant) -> list[Place]:
 def judges(root: Path, found: CoverageMap, mutant: Mutant) -> list[Test]:
     """Return the tests that may notice a mutant, most promising first.
 
-    Those that run the line themselves come first, if everybody does that for himself; then those
-    that run something else of the file, or of its folder; then those that do what nobody sees.
-    Among them come those of tests of which less has been run so far, in seconds; then what mirrors
-    the module, and what is cheap.
+    First come the tests that run the line themselves, unless the line runs once for several tests.
+    Then come tests that run other lines of the file, then those of its folder, then others. Opaque
+    tests come last. In all groups but the first, tests in the folder that mirrors the module come
+    first. Then come measured tests, then tests of functions of which less time is spent so far,
+    then tests that mirror the module, then cheap tests.
     """
     own: set[str] = set()
     tests: dict[str, Test] = {}
@@ -55,9 +56,9 @@ def judges(root: Path, found: CoverageMap, mutant: Mutant) -> list[Test]:
         for test, itself in found.running(path, lines):
             tests[test.name] = test
             own |= {test.name} if itself else set()
-    # Who loads what all use may be a process that does nothing else.
+    # If the line is shared, the test that ran it may only have loaded something for others.
     shared = len(own) < len(tests)
-    # Of tests that an older program was measured with, some may run the line today.
+    # Tests that were measured with an older program may now run the line.
     for test in found.named(found.touching(mutant.path, stale=True)):
         tests.setdefault(test.name, test)
     same_folder = found.touching(str(PurePosixPath(mutant.path).parent) + "/")
@@ -75,7 +76,7 @@ def judges(root: Path, found: CoverageMap, mutant: Mutant) -> list[Test]:
         seconds[test.function] += test.cpu_seconds
         turn = int(seconds[test.function] / TURN_SECONDS).bit_length()
         mirror = mirrors(test.file, mutant.path)
-        # Of tests that do not run the line, those beside the module know what it is for.
+        # Of tests that do not run the line, prefer those in the folder that mirrors the module.
         beside = mirror or test.file.startswith(mirrored(mutant.path) + "/")
         first = group(test)
         far = first > 0 and not beside
@@ -85,7 +86,7 @@ def judges(root: Path, found: CoverageMap, mutant: Mutant) -> list[Test]:
 
 
 def batches(tests: Sequence[Test]) -> list[list[Test]]:
-    """Cut a sequence of tests into runs; within each, a file's tests stay together."""
+    """Split a sequence of tests into runs; within each run, a file's tests stay together."""
     result: list[list[Test]] = []
     batch: list[Test] = []
     seconds = 0.0
@@ -107,14 +108,14 @@ def _by_file(tests: list[Test]) -> list[Test]:
 
 
 def _statement(tree: ast.Module, line: int) -> set[int]:
-    """Return the lines of the smallest statement around one, without those of its body."""
+    """Return the lines of the smallest statement at a line, without the lines of its body."""
     lines, above = {line}, line
     for node in ast.walk(tree):  # From outer to inner ones.
         first, head, last = _span(node)
         if first <= line <= last:
             lines = {*range(first, head + 1), line}
             if isinstance(node, ast.match_case):
-                # Whether it is looked at shows in what chooses among all cases.
+                # Tracing shows the test of a case at the line of the enclosing statement.
                 lines.add(above)
             above = first
     return lines
@@ -138,7 +139,7 @@ def _span(node: ast.AST) -> tuple[int, int, int]:
 
 
 def _bodies(path: Path) -> set[int]:
-    """Return the lines of what functions do."""
+    """Return the lines of the bodies of all functions."""
     functions = [
         node
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))

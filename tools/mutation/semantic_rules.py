@@ -1,4 +1,4 @@
-"""Faults of the kind that an engineer makes, beside the operators and numbers of `python_rules`."""
+"""Faults that an engineer might make, besides the operators and numbers of `python_rules`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def changes(text: str, index: Index | None = None) -> list[Change]:
     Parameters
     ----------
     index : Index, optional
-        What the rest of the program declares; without it, only the module counts.
+        Declarations of the whole program. Without it, only those of the module are known.
     """
     source = Source(text)
     index = index_of([text]) if index is None else index

@@ -1,4 +1,4 @@
-"""A module of Python with the places of its nodes, and without what only states."""
+"""A Python module with the places of its nodes, without code that only declares."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from tools.mutation.mutants import Change
 
 __all__ = ["Functions", "Source"]
 
-# Code that no test runs, or that does nothing where the program is right.
+# No faults here: assertions have no effect in a correct program; f-strings are mostly messages.
 LEFT_OUT = (ast.Assert, ast.JoinedStr)
 Functions = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 
 class Source:
-    """What rules look at.
+    """The input of the rules.
 
     Attributes
     ----------
     text : str
     tree : ast.Module
     nodes : list of ast.AST
-        In order, without docstrings, annotations, decorators, `__all__`, `assert`, what is in
-        texts, and what is raised. (Before Python 3.12, what is in texts has no places of its own.)
+        Nodes in order, without docstrings, annotations, decorators, `__all__`, `assert`, f-strings,
+        and raised exceptions. (Before Python 3.12, nodes in f-strings have wrong places.)
     """
 
     def __init__(self, text: str) -> None:
@@ -53,11 +53,11 @@ class Source:
             self._walk(child, scope)
 
     def parent(self, node: ast.AST) -> ast.AST | None:
-        """Return what a node is in."""
+        """Return the parent of a node."""
         return self._parents.get(node)
 
     def around(self, node: ast.AST) -> Iterator[ast.AST]:
-        """Yield what a node is in, from the inside."""
+        """Yield the ancestors of a node, the innermost first."""
         above = self.parent(node)
         while above is not None:
             yield above
@@ -68,7 +68,7 @@ class Source:
         return next((each for each in self.around(node) if isinstance(each, Functions)), None)
 
     def at(self, line: int, column: int) -> int:
-        """Return a place, in characters. Columns of nodes are bytes of UTF-8."""
+        """Return a place in characters; `column` counts bytes of UTF-8, as in nodes."""
         return self._starts[line - 1] + len(self._lines[line - 1].encode()[:column].decode())
 
     def span(self, node: ast.AST) -> tuple[int, int]:
@@ -82,18 +82,18 @@ class Source:
         return self.text[start:end]
 
     def atom(self, node: ast.AST) -> str:
-        """Return the text of an expression, fit to stand in any other."""
+        """Return the text of an expression, in parentheses unless it is a name, call or such."""
         text = self.of(node)
         plain = (ast.Name, ast.Attribute, ast.Constant, ast.Call, ast.Subscript)
         return text if isinstance(node, plain) and "\n" not in text else f"({text})"
 
     def indent(self, node: ast.AST) -> str:
-        """Return what stands before the first statement of its line."""
+        """Return the indentation of the line of a node."""
         line = self._lines[node.lineno - 1]  # type: ignore[attr-defined]
         return line[: len(line) - len(line.lstrip())]
 
     def change(self, rule: str, where: ast.AST | tuple[int, int], new: str) -> Change:
-        """Make a change of a node, or of what is between two places."""
+        """Make a change of a node, or of the text between two places."""
         if isinstance(where, tuple):
             (start, end), scope = where, self._scope_at(where[0])
         else:
@@ -102,7 +102,7 @@ class Source:
         return Change(start=start, end=end, new=new, rule=rule, scope=scope)
 
     def _scope_at(self, place: int) -> str:
-        """Return the scope of the innermost statement that a place is in, or right after."""
+        """Return the scope of the innermost statement around a place, or right before it."""
         scope = ""
         for start, end, name in self._statements:
             if start <= place <= end:

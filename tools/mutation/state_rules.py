@@ -1,4 +1,4 @@
-"""Faults of statements and state: what is not done, not cleared, not reset, or kept too long."""
+"""Faults of statements and state: actions that are left out, state that is kept too long."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Name = ast.Name | ast.Attribute | ast.Subscript
 
 
 def dropped_branch(source: Source, _: Index) -> Iterator[Change]:
-    """Never do what is done under a condition; or always."""
+    """Never take a branch, or always take it."""
     for node in source.nodes:
         if isinstance(node, ast.If):
             yield source.change("dropped branch", node.test, "False")
@@ -29,7 +29,7 @@ def dropped_branch(source: Source, _: Index) -> Iterator[Change]:
                 yield source.change("ignored condition", node.test, "True")
         elif isinstance(node, ast.Match):
             for case in node.cases:
-                # A case for what never comes is no fault to leave out.
+                # Do not drop a wildcard case: often, it is for values that never occur.
                 wild = isinstance(case.pattern, ast.MatchAs) and case.pattern.pattern is None
                 if case.guard is not None:
                     yield source.change("dropped branch", case.guard, "False")
@@ -46,7 +46,7 @@ def dropped_branch(source: Source, _: Index) -> Iterator[Change]:
 
 
 def dropped_check(source: Source, _: Index) -> Iterator[Change]:
-    """Raise nothing, where that is not all that a condition is for."""
+    """Drop a `raise`, unless it is the only statement of an `if` (then the branch is dropped)."""
     for node in source.nodes:
         if isinstance(node, ast.Raise) and node.exc is not None:
             above = source.parent(node)
@@ -57,7 +57,7 @@ def dropped_check(source: Source, _: Index) -> Iterator[Change]:
 
 
 def dropped_assignment(source: Source, _: Index) -> Iterator[Change]:
-    """Leave a name, attribute or item as it was; a clear of a flag has a rule of its own."""
+    """Leave out an assignment; if it only clears a flag, the rule is called "sticky flag"."""
     for node in source.nodes:
         if not isinstance(node, ast.Assign) or len(node.targets) != 1:
             continue
@@ -66,7 +66,7 @@ def dropped_assignment(source: Source, _: Index) -> Iterator[Change]:
             rule = "sticky flag" if _is_nothing(node.value) else "dropped assignment"
             yield source.change(rule, node, "pass")
     for node in source.nodes:
-        # One of several signals.
+        # Drop one of several assignments to signals.
         if isinstance(node, ast.AugAssign) and ".d." in f"{ast.unparse(node.target)}.":
             many = node.value.elts if isinstance(node.value, (ast.List, ast.Tuple)) else []
             for one in many:
@@ -100,7 +100,7 @@ def _is_nothing(value: ast.expr) -> bool:
 
 
 def missing_reset(source: Source, _: Index) -> Iterator[Change]:
-    """Begin a loop's turn with what the turn before has left; leave a register out of a reset."""
+    """Keep state from one iteration of a loop to the next; leave a register out of a reset."""
     for node in source.nodes:
         if isinstance(node, (ast.For, ast.While)):
             first = node.body[0]
@@ -132,7 +132,7 @@ def _is_fresh(value: ast.expr) -> bool:
 
 
 def kept_state(source: Source, _: Index) -> Iterator[Change]:
-    """Share between calls, or objects, what each is to have for itself."""
+    """Share a collection between calls or objects, although each should have its own."""
     number = 0
     for node in source.nodes:
         if isinstance(node, ast.keyword) and node.arg == "default_factory":
@@ -143,14 +143,14 @@ def kept_state(source: Source, _: Index) -> Iterator[Change]:
             function = source.function(node)
             empty = _is_fresh(node.value) and not isinstance(node.value, ast.Constant)
             if empty and function is not None and source.parent(node) is function:
-                # What a default argument would be; a list of results that are never forgotten.
+                # Keep the collection in a global, as a mutable default argument would.
                 number += 1
                 kept = f'globals().setdefault("_kept_{number}", {source.of(node.value)})'
                 yield source.change("kept state", node.value, kept)
 
 
 def constant_return(source: Source, _: Index) -> Iterator[Change]:
-    """Return the same, whatever was found out."""
+    """Always return the same value."""
     for node in source.nodes:
         if not isinstance(node, ast.Return) or node.value is None:
             continue
@@ -172,7 +172,7 @@ def constant_return(source: Source, _: Index) -> Iterator[Change]:
 
 
 def swapped_calls(source: Source, _: Index) -> Iterator[Change]:
-    """Do the second of two steps first."""
+    """Swap two calls that follow each other."""
     for block in blocks(source):
         for one, two in itertools.pairwise(block):
             calls = [

@@ -1,7 +1,7 @@
-"""Which tests are which test system, and in which order test files are looked at.
+"""The test system of each test file, and the test files of a module.
 
-Linters are no test system here, and neither are tests of the same kind: what they would say of an
-injected fault says nothing about the tests.
+Linters are not a test system here, nor are tests that check the form of the source. If they notice
+an injected fault, this says nothing about the tests of behaviour.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ SYSTEMS = {
 }
 # All other tests.
 REST = "rest"
-# Of all systems, tests that compare with files that the program itself has written.
+# Tests of all systems that compare with files that the program itself has written.
 SNAPSHOT = "snapshot"
-# The tool's own tests judge the tool, and these the form of the source.
+# Tests that judge no mutants: the tests of this tool, and tests of the form of the source.
 NOT_JUDGES = ("tests/mutation/", "tests/test_architecture.py", "tests/test_ci.py")
 
 
@@ -42,18 +42,18 @@ def system_of(name: str) -> str:
 
 
 def mirrored(path: str) -> str:
-    """Return the folder of tests that mirrors the one of a module."""
+    """Return the folder of tests that mirrors the folder of a module."""
     return "tests" + str(PurePosixPath(path).parent).removeprefix("firm_hdl")
 
 
 def mirrors(name: str, path: str) -> bool:
-    """Tell whether a test file is the one of a module, or of a grammar."""
+    """Return whether a test file is that of a module or grammar."""
     module = "parse" if path.endswith(".lark") else PurePosixPath(path).stem
     return name == f"{mirrored(path)}/test_{module}.py"
 
 
 def test_files(root: Path, only: Sequence[str] = ()) -> list[str]:
-    """Return the files of all tests that judge, or of those below some folders and files."""
+    """Return all test files that judge mutants, or only those at or below some paths."""
     files = sorted(file.relative_to(root).as_posix() for file in root.glob("tests/**/test_*.py"))
     return [
         file

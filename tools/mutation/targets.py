@@ -1,4 +1,4 @@
-"""The parts of the program that get faults, and which of all faults are taken."""
+"""The parts of the program into which faults are injected, and the sampling of faults."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tools.mutation.mutants import Change, Mutant, identify
 
 __all__ = ["TARGETS", "all_mutants", "files", "is_fault", "sample"]
 
-# All of the program. A file is of the first target that has it.
+# All of the program. A file belongs to the first target that fits.
 TARGETS = {
     "grammar": ["firm_hdl/frontend/**/*.lark"],
     "idl": ["firm_hdl/frontend/idl/*.py"],
@@ -34,7 +34,7 @@ TARGETS = {
     "verify": ["firm_hdl/verify/**/*.py"],
     "top": ["firm_hdl/**/*.py"],
 }
-# What grammars are asked for.
+# Start rules of the grammars.
 IDL_STARTS, MESSAGE_STARTS = ["start"], ["line", "reference"]
 
 
@@ -68,14 +68,14 @@ def all_mutants(
 def _changes(path: Path, text: str, index: Index) -> list[Change]:
     if path.suffix == ".lark":
         return grammar_rules.changes(text)
-    # What two rules make is one mutant, by the rule that means more.
+    # If two rules make the same change, keep one mutant, preferably that of a semantic rule.
     found = [*semantic_rules.changes(text, index), *python_rules.changes(text)]
     first = {(each.start, each.end, each.new): each for each in reversed(found)}
     return sorted(first.values(), key=lambda each: (each.start, each.end, each.rule, each.new))
 
 
 def is_fault(root: Path, mutant: Mutant) -> bool:
-    """Tell mutants that load, and are not plainly the same program."""
+    """Return whether a mutant can be loaded, and is not obviously the same program."""
     text = (root / mutant.path).read_text(encoding="utf-8")
     if mutant.path.endswith(".lark"):
         starts = IDL_STARTS if "/idl/" in mutant.path else MESSAGE_STARTS
@@ -84,11 +84,12 @@ def is_fault(root: Path, mutant: Mutant) -> bool:
 
 
 def sample(root: Path, mutants: list[Mutant], count: int, seed: int) -> list[Mutant]:
-    """Choose faults: of each target by its size, of its files in proportion, of all rules alike.
+    """Choose faults by target, by file, and equally by rule.
 
-    The share of a target grows with the root of its size, so that small ones have one. The order
-    is random across targets, so that the first of them are a sample as well. A mutant's rank
-    depends on its content alone: an edit elsewhere leaves the choice as it was, nearly.
+    The share of a target is proportional to the square root of its size, so that small targets have
+    a share. The share of a file in its target is proportional to its size. The order is random
+    across targets, so that the first faults are a sample as well. A mutant's rank depends on its
+    content alone, so that an edit elsewhere hardly changes the choice.
     """
     by_target: dict[str, list[Mutant]] = defaultdict(list)
     for mutant in mutants:
@@ -112,7 +113,7 @@ def _of_target(root: Path, mutants: list[Mutant], quota: int, seed: int) -> list
     for mutant in sorted(mutants, key=lambda each: _rank(seed, each.key), reverse=True):
         by_file[mutant.path][mutant.change.rule].append(mutant)
     sizes = Counter(mutant.path for mutant in mutants)
-    # In turn from the file that is furthest behind its share, by the rule that is.
+    # Take the next mutant from the file that is furthest behind its share, by the least used rule.
     chosen: list[Mutant] = []
     taken, used = Counter[str](), Counter[str]()
     while len(chosen) < quota and by_file:

@@ -1,12 +1,12 @@
-"""A plugin of pytest: which lines each test runs, in all processes that it starts, and its time.
+"""A plugin of pytest: record the lines that each test runs, in all its processes, and its time.
 
-``-p tools.mutation.trace``, with the name of a folder in the environment. Each test is a context
-of coverage, named by its number. What runs for several tests, and only once, is marked: imports
-have no context, and cached functions and fixtures of a wider scope have one with a ``+`` before
-the number of the test that happened to need them first.
+Use it by ``-p tools.mutation.trace``, with the name of a folder in the environment. Each test is a
+context of coverage, named by its number. Code that runs only once for several tests is marked.
+Imports have no context. Cached functions and fixtures of a wider scope have a context with a ``+``
+before the number of the first test that needs them.
 
-Processes that leave without a word (killed ones, and those that were started without this
-environment) leave no lines. Tests with such processes are reported as opaque.
+Killed processes, and processes started without this environment, leave no lines. Tests with such
+processes are reported as opaque.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ __all__ = ["CONTEXT", "EACH", "FOLDER", "SETTINGS"]
 FOLDER = "FIRM_HDL_MUTATION_TRACE"
 EACH = "FIRM_HDL_MUTATION_EACH"
 CONTEXT = "FIRM_HDL_MUTATION_TEST"
-# Other processes than the first one have one context: that of the test that started them. The name
-# of their data says it, too, if they run nothing of the program.
+# Every process except the first one has a single context: that of the test that started it. The
+# name of its data file also has the context, in case the process runs no line of the program.
 SETTINGS = f"""[run]
 data_file = {{folder}}/data.${{{{{CONTEXT}-}}}}
 parallel = true
@@ -49,7 +49,7 @@ OURS = os.path.dirname(coverage.__file__)
 
 
 class _Trace:
-    """The contexts, and what becomes of the tests."""
+    """The contexts of coverage, and the records of the tests."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -60,10 +60,10 @@ class _Trace:
         self._depth = 0
         self._test = ""
         self.tests: list[dict[str, Any]] = []
-        # Left out because others of the same function have had its time.
+        # Tests that were left out, because other tests of the same function took long enough.
         self.skipped: list[dict[str, Any]] = []
         self.snapshot = False
-        # By test without parameters.
+        # Processor time by name of the test without parameters.
         self.seconds: dict[str, float] = defaultdict(float)
         self._coverage.start()
 
@@ -76,7 +76,7 @@ class _Trace:
         self._coverage.switch_context(self._test)
 
     def leave(self) -> None:
-        """End it."""
+        """End the test."""
         self.tests[-1]["cpu"] += _cpu_seconds()
         self.seconds[self.tests[-1]["id"].partition("[")[0]] += self.tests[-1]["cpu"]
         self._test = ""
@@ -85,7 +85,7 @@ class _Trace:
 
     @contextlib.contextmanager
     def shared(self) -> Iterator[None]:
-        """Mark what runs for other tests, too."""
+        """Mark lines that run for other tests, too."""
         self._depth += 1
         if self._depth == 1 and self._test:
             self._coverage.switch_context(f"+{self._test}")
@@ -97,17 +97,17 @@ class _Trace:
                 self._coverage.switch_context(self._test)
 
     def lose(self) -> None:
-        """Note that lines are hidden."""
+        """Note that lines of the test may be missing."""
         if self._test:
             self.tests[-1]["lost"] = True
 
     def count_process(self) -> None:
-        """Expect lines of one more process."""
+        """Count a started process, so that missing lines of it are detected."""
         if self._test:
             self.tests[-1]["started"] += 1
 
     def end(self) -> None:
-        """Write all down."""
+        """Write the lines and the records to files."""
         self._coverage.stop()
         self._coverage.save()
         given = {"tests": self.tests, "skipped": self.skipped}
@@ -124,13 +124,13 @@ def _cpu_seconds() -> float:
 
 
 def _here() -> _Trace | None:
-    """Return the trace in its own process, not in forks."""
+    """Return the trace; `None` in forked processes."""
     return _trace if os.getpid() == _main else None
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_load_initial_conftests() -> None:
-    """Begin before anything of the program is loaded."""
+    """Begin tracing before any module of the program is loaded."""
     global _trace, _main
     _main = os.getpid()
     _trace = _Trace(Path(os.environ[FOLDER]))
@@ -139,38 +139,38 @@ def pytest_load_initial_conftests() -> None:
 
 
 def pytest_configure() -> None:
-    """Let nothing fail because it takes longer."""
+    """Remove time limits, because tracing makes tests slower."""
     take_time()
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
-    """Leave out further sets of parameters of a test that has had its time, if so asked."""
+    """Leave out further sets of parameters of a test that has used its time, if it has a limit."""
     assert _trace
     _trace.snapshot = item.get_closest_marker("snapshot") is not None
     if _trace.seconds[item.nodeid.partition("[")[0]] <= float(os.environ.get(EACH) or "inf"):
         return None
     _trace.skipped.append({"id": item.nodeid, "snapshot": _trace.snapshot})
-    # The test before has left what this one would use.
+    # Tear down fixtures that the previous test has left for this one.
     item.session._setupstate.teardown_exact(nextitem)
     return True
 
 
 def pytest_runtest_logstart(nodeid: str) -> None:
-    """Let each test be a context."""
+    """Begin the context of a test."""
     assert _trace
     _trace.enter(nodeid)
 
 
 def pytest_runtest_logfinish() -> None:
-    """Let it end."""
+    """End the context of the test."""
     assert _trace
     _trace.leave()
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any]) -> Iterator[None]:
-    """Mark what fixtures do for several tests."""
+    """Mark lines of fixtures that serve several tests."""
     assert _trace
     wide = fixturedef.scope != "function"
     with _trace.shared() if wide else contextlib.nullcontext():
@@ -178,13 +178,13 @@ def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any]) -> Iterator[None]:
 
 
 def pytest_sessionfinish() -> None:
-    """Leave what was seen."""
+    """Write the results at the end of the session."""
     assert _trace
     _trace.end()
 
 
 def _watch_caches() -> None:
-    """Mark what caches keep: a later test that uses it does not run it."""
+    """Mark lines of cached functions: later tests use the result without running the lines."""
     lru_cache, cached_property = functools.lru_cache, functools.cached_property
 
     def watched(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -214,7 +214,7 @@ def _watch_caches() -> None:
 
 
 def _watch_processes() -> None:
-    """Count the processes that should leave lines, and note what hides lines in this one."""
+    """Count the processes that should leave lines; note events that hide lines of this process."""
 
     def audit(event: str, arguments: tuple[Any, ...]) -> None:
         if event not in ("subprocess.Popen", "sys.settrace", "os.fork"):

@@ -1,8 +1,8 @@
-"""Runs pytest again and again without loading other people's packages each time.
+"""Run pytest many times without loading third-party packages each time.
 
-``python -m tools.mutation.warm``, in the folder whose tests it shall run, reads one job per line
-from standard input and answers each with a line. Every job is a fork of its own, so that none sees
-modules of another; this process never loads `firm_hdl`.
+``python -m tools.mutation.warm`` runs in the folder whose tests it runs. It reads one job per line
+from standard input and answers each with a line. Every job is a fork of its own, so that no job
+sees modules of another. This process never loads `firm_hdl`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Any
 
 __all__ = ["main"]
 
-# Slow to load, and no part of what is tested.
+# Packages that are slow to load and not part of the tested program.
 PACKAGES = (
     "pytest numpy amaranth.hdl amaranth.lib.wiring amaranth.lib.stream amaranth.sim"
     " amaranth.back.rtlil lark yaml tqdm rosbags.typesys rosbags.serde hypothesis.strategies"
@@ -45,7 +45,7 @@ _running: list[int] = []
 
 
 def _end(*_: object) -> None:
-    """End, and what runs."""
+    """End this process and the running job."""
     for child in _running:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(child, signal.SIGKILL)
@@ -55,7 +55,7 @@ def _end(*_: object) -> None:
 def _serve(job: dict[str, Any]) -> dict[str, Any]:
     """Run one job: `args` of pytest, `log`, `environment`, limits `cpu_seconds` and `seconds`.
 
-    With `module`, load that instead.
+    With `module`, load that module instead of running tests.
     """
     sys.stdout.flush()
     child = os.fork()
@@ -72,7 +72,7 @@ def _serve(job: dict[str, Any]) -> dict[str, Any]:
             timed_out = True
             os.killpg(child, signal.SIGKILL)
         time.sleep(POLL_SECONDS)
-    # Simulators that a test left behind.
+    # Kill processes that a test has left running, such as simulators.
     with contextlib.suppress(ProcessLookupError):
         os.killpg(child, signal.SIGKILL)
     _running.clear()
@@ -82,7 +82,7 @@ def _serve(job: dict[str, Any]) -> dict[str, Any]:
 
 
 def _run(job: dict[str, Any]) -> None:
-    """Be the job; never return."""
+    """Run the job in this forked process; never return."""
     code = 99
     try:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)

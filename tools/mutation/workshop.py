@@ -1,4 +1,4 @@
-"""A private copy of the repository, in which one place at a time is wrong."""
+"""A private copy of the repository, with one fault at a time."""
 
 from __future__ import annotations
 
@@ -24,26 +24,26 @@ LEFT_OUT = shutil.ignore_patterns(
     ".git", ".venv", "__pycache__", ".*_cache", ".hypothesis", "*.egg-info", "build", "dist"
 )
 OPTIONS = ["-x", "-q", "--no-header", "--tb=line", "-p", "no:cacheprovider", "-p", "no:xdist"]
-# Hypothesis is loaded before pytest could rewrite what it asserts.
+# Hypothesis is loaded before pytest could rewrite its assertions, so ignore this warning.
 OPTIONS += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]
 SECONDS = 1800
 LOADING_SECONDS = 60
 FAILED = re.compile(r"^(?:FAILED|ERROR) (\S.*?)(?: - .*)?$", re.MULTILINE)
 WRONG_COPY = 98
-# No test was collected: of what is there, nothing judges.
+# Exit status of pytest if no test was collected: no present test judges the mutant.
 NOTHING = 5
 
 
 @dataclass(frozen=True)
 class Run:
-    """What a run of pytest came to.
+    """The result of a run of pytest.
 
     Attributes
     ----------
     status : str
         ``passed``, ``failed``, ``timeout``, or ``error`` if something else ended it.
     by : str
-        The first test that failed, or that ran when time was over.
+        The first test that failed, or the test that ran at the time limit.
     cpu_seconds : float
     """
 
@@ -53,24 +53,25 @@ class Run:
 
 
 def copy_tree(source: Path, to: Path) -> None:
-    """Copy a repository without what tools have made."""
+    """Copy a repository without the files that tools have made."""
     shutil.copytree(source, to, ignore=LEFT_OUT, dirs_exist_ok=True, symlinks=True)
 
 
 class Workshop:
-    """A copy, and a process that runs its tests; a context manager.
+    """A context manager: a copy of the repository, and a process that runs tests in it.
 
     Parameters
     ----------
     root : Path
-        The copy. It is changed, and as it was at the end.
+        The copy. Each change to it is undone.
     nice : int
     """
 
     def __init__(self, root: Path, nice: int = 0) -> None:
         self.root = root
         self._log = root.parent / f"{root.name}.log"
-        # Times of changed files, each later than all before: compiled files are told by them.
+        # Modification time of the next changed file. Each is later than all before, because Python
+        # finds outdated bytecode by it.
         self._now = 2_000_000_000
         environment = {
             **os.environ,
@@ -102,7 +103,7 @@ class Workshop:
 
     @contextlib.contextmanager
     def with_fault(self, mutant: Mutant) -> Iterator[None]:
-        """Put a fault in, and take it out again."""
+        """Insert a fault, and remove it at the end."""
         path = self.root / mutant.path
         before = path.read_bytes()
         try:
@@ -110,7 +111,7 @@ class Workshop:
             yield
         finally:
             self._write(path, before)
-            # It would bring examples that an earlier mutant failed on to a later one.
+            # Its database would give a later mutant the examples on which an earlier one failed.
             storage = self.root.parent / f"{self.root.name}.hypothesis"
             shutil.rmtree(storage, ignore_errors=True)
 
@@ -120,7 +121,7 @@ class Workshop:
         os.utime(path, (self._now, self._now))
 
     def run_tests(self, names: Sequence[str], cpu_seconds: float, seconds: float) -> Run:
-        """Run tests, in this order, until one fails. What is not there does not count."""
+        """Run tests in this order until one fails. Tests that do not exist are ignored."""
         beside = self.root.parent / self.root.name
         chosen, running = beside.with_suffix(".chosen"), beside.with_suffix(".running")
         chosen.write_text(json.dumps(list(names)))
@@ -130,11 +131,11 @@ class Workshop:
         run = self.run(
             ["-p", "tools.mutation.chosen", *files], cpu_seconds, environment, seconds=seconds
         )
-        # The whole name of the test that failed: what pytest prints may be cut at a ` - ` in it.
+        # Use the whole name of the failed test: pytest's output may cut it at a ` - ` in the name.
         last = running.read_text()
         if run.status == "passed" or (run.by.startswith("tests/") and not last.startswith(run.by)):
             return run
-        # If no test has begun, loading has not ended: of the first file, most likely.
+        # If no test has begun, the failure was in loading, most likely that of the first file.
         return replace(run, by=last or next(iter(files)))
 
     def run(
@@ -150,13 +151,13 @@ class Workshop:
         Parameters
         ----------
         arguments : sequence of str
-            Test files, and options beside the usual ones.
+            Test files, and options in addition to the usual ones.
         cpu_seconds : float
-            Of the process of pytest, without those that tests start.
+            Limit on the processor time of pytest, without processes that tests start.
         environment : mapping, optional
-            Variables beside the usual ones.
+            Variables in addition to the usual ones.
         seconds : float, optional
-            How long it may take altogether.
+            Limit on the elapsed time.
         """
         answer = self._ask(
             {
@@ -200,7 +201,7 @@ class Workshop:
 def _status(code: int, timeout: bool) -> str:
     if timeout:
         return "timeout"
-    # Killed by whoever needed the memory, or wanted an end of it: says nothing about the fault.
+    # The run was killed from outside, for example for lack of memory. This is no result.
     if code in (-signal.SIGKILL, -signal.SIGTERM, -signal.SIGINT, -signal.SIGHUP):
         return "error"
     return "passed" if code in (0, NOTHING) else "failed"
