@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from firm_hdl.gateware import (
         Deserializer,
         MessageSignature,
+        PacketFifo,
         PacketSignature,
         Parser,
         RecordReader,
@@ -32,6 +33,7 @@ __all__ = [
     "Deserializer",
     "Library",
     "MessageSignature",
+    "PacketFifo",
     "PacketSignature",
     "Parser",
     "RecordReader",
@@ -50,6 +52,7 @@ _HOME = {
     "Deserializer": "gateware",
     "Library": "frontend",
     "MessageSignature": "gateware",
+    "PacketFifo": "gateware",
     "PacketSignature": "gateware",
     "Parser": "gateware",
     "RecordReader": "gateware",
