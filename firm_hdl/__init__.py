@@ -14,8 +14,11 @@ if TYPE_CHECKING:
     from firm_hdl.frontend import Library, load_message
     from firm_hdl.gateware import (
         Deserializer,
+        GateStatus,
+        GateStatusSignature,
         MessageSignature,
         PacketFifo,
+        PacketGate,
         PacketSignature,
         Parser,
         RecordReader,
@@ -31,9 +34,12 @@ __version__ = "0.1.0"
 __all__ = [
     "DefinitionError",
     "Deserializer",
+    "GateStatus",
+    "GateStatusSignature",
     "Library",
     "MessageSignature",
     "PacketFifo",
+    "PacketGate",
     "PacketSignature",
     "Parser",
     "RecordReader",
@@ -50,9 +56,12 @@ __all__ = [
 _HOME = {
     "DefinitionError": "errors",
     "Deserializer": "gateware",
+    "GateStatus": "gateware",
+    "GateStatusSignature": "gateware",
     "Library": "frontend",
     "MessageSignature": "gateware",
     "PacketFifo": "gateware",
+    "PacketGate": "gateware",
     "PacketSignature": "gateware",
     "Parser": "gateware",
     "RecordReader": "gateware",

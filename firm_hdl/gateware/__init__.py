@@ -1,7 +1,12 @@
 """Converters as Amaranth components."""
 
 from firm_hdl.gateware.deserializer import Deserializer
-from firm_hdl.gateware.packets import PacketFifo
+from firm_hdl.gateware.packets import (
+    GateStatus,
+    GateStatusSignature,
+    PacketFifo,
+    PacketGate,
+)
 from firm_hdl.gateware.parser import Parser
 from firm_hdl.gateware.record import RecordReader, RecordWriter
 from firm_hdl.gateware.record_layout import record_layout
@@ -10,8 +15,11 @@ from firm_hdl.gateware.signatures import MessageSignature, PacketSignature, Stat
 
 __all__ = [
     "Deserializer",
+    "GateStatus",
+    "GateStatusSignature",
     "MessageSignature",
     "PacketFifo",
+    "PacketGate",
     "PacketSignature",
     "Parser",
     "RecordReader",
