@@ -4,8 +4,12 @@ from firm_hdl.gateware.deserializer import Deserializer
 from firm_hdl.gateware.packets import (
     GateStatus,
     GateStatusSignature,
+    PacketArbiter,
+    PacketCrossing,
     PacketFifo,
     PacketGate,
+    PacketRouter,
+    PacketWidth,
 )
 from firm_hdl.gateware.parser import Parser
 from firm_hdl.gateware.record import RecordReader, RecordWriter
@@ -18,9 +22,13 @@ __all__ = [
     "GateStatus",
     "GateStatusSignature",
     "MessageSignature",
+    "PacketArbiter",
+    "PacketCrossing",
     "PacketFifo",
     "PacketGate",
+    "PacketRouter",
     "PacketSignature",
+    "PacketWidth",
     "Parser",
     "RecordReader",
     "RecordWriter",
