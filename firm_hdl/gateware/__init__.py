@@ -1,6 +1,16 @@
 """Converters as Amaranth components."""
 
 from firm_hdl.gateware.deserializer import Deserializer
+from firm_hdl.gateware.packets import (
+    GateStatus,
+    GateStatusSignature,
+    PacketArbiter,
+    PacketCrossing,
+    PacketFifo,
+    PacketGate,
+    PacketRouter,
+    PacketWidth,
+)
 from firm_hdl.gateware.parser import Parser
 from firm_hdl.gateware.record import RecordReader, RecordWriter
 from firm_hdl.gateware.record_layout import record_layout
@@ -9,8 +19,16 @@ from firm_hdl.gateware.signatures import MessageSignature, PacketSignature, Stat
 
 __all__ = [
     "Deserializer",
+    "GateStatus",
+    "GateStatusSignature",
     "MessageSignature",
+    "PacketArbiter",
+    "PacketCrossing",
+    "PacketFifo",
+    "PacketGate",
+    "PacketRouter",
     "PacketSignature",
+    "PacketWidth",
     "Parser",
     "RecordReader",
     "RecordWriter",

@@ -15,7 +15,7 @@ from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan, check_bus
 from firm_hdl.plan.outline import outline
 from firm_hdl.wire import Wire, lay_out
 
-__all__ = ["Parser", "sizes_layout"]
+__all__ = ["Parser", "parser_plan", "sizes_layout"]
 
 SIZE_BITS = 32
 
@@ -32,6 +32,22 @@ def sizes_layout() -> data.StructLayout:
         Bytes of the packet after the message, if the status is `OK`.
     """
     return data.StructLayout({"packet": SIZE_BITS, "trailing": 2})
+
+
+def parser_plan(
+    message: Message, wire: Wire | None, bus_bytes: int, max_message_bytes: int
+) -> Plan:
+    """Return the plan of a parser with these parameters.
+
+    Raises
+    ------
+    TypeError, ValueError
+    """
+    layout = lay_out(message, wire)
+    check_bus_bytes(bus_bytes)
+    return build_plan(
+        outline(layout, bus_bytes), bus_bytes=bus_bytes, max_message_bytes=max_message_bytes
+    )
 
 
 class Parser(wiring.Component):
@@ -78,20 +94,24 @@ class Parser(wiring.Component):
         bus_bytes: int = 8,
         max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
     ):
-        layout = lay_out(message, wire)
-        check_bus_bytes(bus_bytes)
-        self.plan = build_plan(
-            outline(layout, bus_bytes),
-            bus_bytes=bus_bytes,
-            max_message_bytes=max_message_bytes,
-        )
+        self._init(parser_plan(message, wire, bus_bytes, max_message_bytes))
+
+    def _init(self, plan: Plan) -> None:
+        self.plan = plan
         super().__init__(
             {
-                "packets": In(PacketSignature(bus_bytes)),
+                "packets": In(PacketSignature(plan.bus_bytes)),
                 "status": Out(StatusSignature),
                 "sizes": Out(sizes_layout()),
             }
         )
+
+    @classmethod
+    def of_plan(cls, plan: Plan) -> Parser:
+        """Make the parser of a plan by :func:`parser_plan`."""
+        parser = cls.__new__(cls)
+        parser._init(plan)
+        return parser
 
     def elaborate(self, platform: object) -> Module:
         m = Module()

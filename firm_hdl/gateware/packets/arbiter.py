@@ -1,0 +1,98 @@
+"""Several packet streams become one."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Array, Cat, Module, Mux, Signal, Value
+from amaranth.lib import data, wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware.packets.slice import StreamSlice
+from firm_hdl.gateware.signatures import PacketSignature, packet_layout
+
+__all__ = ["PacketArbiter"]
+
+
+class PacketArbiter(wiring.Component):
+    """Let the packets of several streams leave on one stream, one whole packet after the other.
+
+    The inputs take turns. After the end of a packet, it is the turn of the next input that offers
+    one. So an input waits for at most one packet of each other input. `source` says where a packet
+    comes from.
+
+    Latency 1 cycle, if it is the input's turn; else one more. A beat leaves per cycle, without gaps
+    between packets of different inputs, and between packets of one input. A packet that has begun
+    is not interrupted: an input that begins a packet and does not go on holds all others. Gates and
+    FIFOs let no packet begin before all of it has come.
+
+    All outputs depend on registers only. One clock domain, `sync`; its reset discards the beats
+    inside, so the packets of all inputs have to begin again.
+
+    Parameters
+    ----------
+    bus_bytes : int
+        Bytes per beat: 1, 2, 4, 8, 16, 32 or 64.
+    inputs : int
+        Number of inputs, at least 1.
+
+    Members
+    -------
+    packets_in : array(inputs) of In(PacketSignature(bus_bytes))
+    packets_out : Out(PacketSignature(bus_bytes))
+    source : Out(range(inputs))
+        Number of the packet's input; valid with each beat of `packets_out`.
+    """
+
+    def __init__(self, bus_bytes: int, inputs: int):
+        if inputs < 1:
+            raise ValueError(f"Number of inputs must be at least 1, not {inputs}")
+        self.bus_bytes, self.inputs = bus_bytes, inputs
+        super().__init__(
+            {
+                "packets_in": In(PacketSignature(bus_bytes)).array(inputs),
+                "packets_out": Out(PacketSignature(bus_bytes)),
+                "source": Out(range(inputs)),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        turn, chosen = Signal(range(self.inputs)), Signal(range(self.inputs))
+        layout = data.StructLayout({"beat": packet_layout(self.bus_bytes), "source": turn.shape()})
+        m.submodules.slice = out = StreamSlice(layout)
+        valid, last, fires = Signal(), Signal(), Signal()
+        # A packet has begun and not ended.
+        inside = Signal()
+        beats = Array(Value.cast(port.payload) for port in self.packets_in)
+        m.d.comb += [
+            valid.eq(Cat(port.valid for port in self.packets_in).bit_select(turn, 1)),
+            Value.cast(out.i.payload.beat).eq(beats[turn]),
+            out.i.payload.source.eq(turn),
+            out.i.valid.eq(valid),
+            last.eq(out.i.payload.beat.last),
+            fires.eq(valid & out.i.ready),
+            self.packets_out.payload.eq(out.o.payload.beat),
+            self.packets_out.valid.eq(out.o.valid),
+            self.source.eq(out.o.payload.source),
+            out.o.ready.eq(self.packets_out.ready),
+        ]
+        for number, port in enumerate(self.packets_in):
+            m.d.comb += port.ready.eq(out.i.ready & (turn == number))
+        self._choose(m, turn, chosen)
+        with m.If(fires):
+            m.d.sync += inside.eq(~last)
+        with m.If(Mux(valid, fires & last, ~inside)):
+            m.d.sync += turn.eq(chosen)
+        return m
+
+    def _choose(self, m: Module, turn: Signal, chosen: Signal) -> None:
+        """Choose the next input after `turn` that offers a packet; else `turn` itself."""
+        count = self.inputs
+        m.d.comb += chosen.eq(turn)
+        with m.Switch(turn):
+            for number in range(count):
+                with m.Case(number):
+                    # The last assignment wins, so the nearest input comes last.
+                    for distance in reversed(range(1, count)):
+                        other = (number + distance) % count
+                        with m.If(self.packets_in[other].valid):
+                            m.d.comb += chosen.eq(other)

@@ -1,0 +1,79 @@
+"""A packet stream from one clock domain to another."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Module, Value
+from amaranth.lib import wiring
+from amaranth.lib.fifo import AsyncFIFO
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware.signatures import PacketSignature, packet_layout
+
+__all__ = ["PacketCrossing"]
+
+
+class PacketCrossing(wiring.Component):
+    """Carry packets from one clock domain to another.
+
+    Beats cross in a FIFO in block RAM, whose positions are exchanged as Gray codes. If it is empty,
+    a beat is valid after the second edge of the reading clock after its transfer; in hardware this
+    may take an edge more. With 16 beats or more, a beat crosses per cycle of the slower clock.
+    Packets need not fit into the FIFO. To let a packet leave only when all of it has come, put a
+    :class:`PacketFifo` behind the crossing.
+
+    All outputs depend on registers of their own clock domain only. A reset of the writing domain
+    empties the FIFO and ends in the reading domain some cycles later. A packet that is leaving is
+    cut by it without a last beat, so the reading side has to be reset, too. A reset of the reading
+    domain alone discards nothing.
+
+    Parameters
+    ----------
+    bus_bytes : int
+        Bytes per beat: 1, 2, 4, 8, 16, 32 or 64.
+    beats : int
+        Beats in the FIFO: a power of two, at least 4.
+    write_domain, read_domain : str
+        Clock domains of `packets_in` and `packets_out`.
+
+    Members
+    -------
+    packets_in : In(PacketSignature(bus_bytes))
+    packets_out : Out(PacketSignature(bus_bytes))
+    """
+
+    def __init__(
+        self,
+        bus_bytes: int,
+        beats: int = 16,
+        *,
+        write_domain: str = "write",
+        read_domain: str = "read",
+    ):
+        if beats < 4 or beats & (beats - 1):
+            raise ValueError(f"Number of beats must be a power of two from 4 on, not {beats}")
+        self.bus_bytes, self.beats = bus_bytes, beats
+        self.write_domain, self.read_domain = write_domain, read_domain
+        super().__init__(
+            {
+                "packets_in": In(PacketSignature(bus_bytes)),
+                "packets_out": Out(PacketSignature(bus_bytes)),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.submodules.fifo = fifo = AsyncFIFO(
+            width=packet_layout(self.bus_bytes).size,
+            depth=self.beats,
+            w_domain=self.write_domain,
+            r_domain=self.read_domain,
+        )
+        m.d.comb += [
+            fifo.w_data.eq(Value.cast(self.packets_in.payload)),
+            fifo.w_en.eq(self.packets_in.valid),
+            self.packets_in.ready.eq(fifo.w_rdy),
+            Value.cast(self.packets_out.payload).eq(fifo.r_data),
+            self.packets_out.valid.eq(fifo.r_rdy),
+            fifo.r_en.eq(self.packets_out.ready),
+        ]
+        return m

@@ -1,0 +1,143 @@
+"""A FIFO that keeps or drops whole packets."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Module, Signal
+from amaranth.lib import wiring
+from amaranth.lib.memory import Memory
+from amaranth.lib.wiring import In, Out
+from amaranth.utils import ceil_log2
+
+from firm_hdl.gateware.memories import LutMemory
+from firm_hdl.gateware.packets.counters import add_counters, counters_layout
+from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull, check_policy
+from firm_hdl.gateware.packets.reader import PacketReader
+from firm_hdl.gateware.packets.writer import PacketWriter
+from firm_hdl.gateware.signatures import PacketSignature, packet_layout
+
+__all__ = ["PacketFifo"]
+
+
+class PacketFifo(wiring.Component):
+    """Store whole packets in block RAM, and let them leave whole.
+
+    A packet begins to leave after its last beat has come, and only if it is kept. `abort` drops it.
+    So for packets of a :class:`Serializer`, connect `packet_error` to `abort`: then only good
+    packets leave.
+
+    The first beat of a packet is valid 4 cycles after the transfer of its last beat, if no packet
+    is before it. A beat is taken per cycle, and a beat leaves per cycle, at the same time and
+    without gaps between packets. A packet that is dropped gives its memory back at once.
+
+    There is room for a beat if the memory has a free word, and fewer than `packets` packets are
+    stored. A packet of exactly `memory_bytes` has room. Without room, the policy decides:
+
+    * `"wait"`: `packets_in.ready` is low until there is room.
+    * `"drop"`: the packet is dropped whole. `packets_in.ready` is always high.
+
+    A packet that is larger than the memory is dropped with either policy. Its memory is free again
+    when a beat too many would be stored, and then the rest of its beats are taken one per cycle.
+    With `"wait"`, this is after all packets before it have left.
+
+    The memory has one write port and one synchronous read port; it is never initialized. All
+    outputs are registers, or constant. No path leads from an input to an output. One clock domain,
+    `sync`; its reset discards all packets inside. The first beat after the reset begins a packet.
+
+    Parameters
+    ----------
+    bus_bytes : int
+        Bytes per beat: 1, 2, 4, 8, 16, 32 or 64.
+    memory_bytes : int
+        Size of the memory: a power of two, and at least two beats.
+    packets : int
+        Most packets that are stored, besides the one that is leaving. At least 1.
+    when_full : "wait" or "drop"
+
+    Members
+    -------
+    packets_in : In(PacketSignature(bus_bytes))
+    abort : In(1)
+        Drop the packet. Only counts in the transfer of a last beat.
+    packets_out : Out(PacketSignature(bus_bytes))
+    size : Out(range(memory_bytes + 1))
+        Bytes of the packet on `packets_out`, from its first beat to its last one.
+    ended : Out(1)
+        High for one cycle per packet, 2 cycles after the transfer of its last beat.
+    outcome : Out(Outcome)
+        What became of the packet; valid with `ended`.
+    counters : Out(counters_layout("passed", "aborted", "full", "large"))
+        Packets by outcome, each with 32 bits; a counter stops at its largest value. Counted 2
+        cycles after `ended`.
+    """
+
+    def __init__(
+        self, bus_bytes: int, memory_bytes: int, packets: int, *, when_full: WhenFull = "wait"
+    ):
+        self.shape = MemoryShape(bus_bytes, memory_bytes, packets)
+        check_policy(when_full)
+        self.when_full = when_full
+        super().__init__(
+            {
+                "packets_in": In(PacketSignature(bus_bytes)),
+                "abort": In(1),
+                "packets_out": Out(PacketSignature(bus_bytes)),
+                "size": Out(range(memory_bytes + 1)),
+                "ended": Out(1),
+                "outcome": Out(Outcome),
+                "counters": Out(counters_layout("passed", "aborted", "full", "large")),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        shape = self.shape
+        m.submodules.memory = memory = Memory(
+            shape=packet_layout(shape.bus_bytes), depth=shape.beats, init=[]
+        )
+        write, read = memory.write_port(), memory.read_port()
+        m.submodules.writer = writer = PacketWriter(shape, self.when_full)
+        m.submodules.reader = reader = PacketReader(shape)
+        m.d.comb += [
+            writer.packets.payload.eq(self.packets_in.payload),
+            writer.packets.valid.eq(self.packets_in.valid),
+            self.packets_in.ready.eq(writer.packets.ready),
+            writer.abort.eq(self.abort),
+            write.addr.eq(writer.at),
+            write.data.eq(writer.word),
+            write.en.eq(writer.writes),
+            writer.freed.eq(reader.at),
+            reader.kept.eq(writer.kept),
+            read.addr.eq(reader.at),
+            read.en.eq(reader.reads),
+            reader.word.eq(read.data),
+            self.packets_out.payload.eq(reader.packets.payload),
+            self.packets_out.valid.eq(reader.packets.valid),
+            reader.packets.ready.eq(self.packets_out.ready),
+            self.size.eq(reader.size),
+            self.ended.eq(writer.ended),
+            self.outcome.eq(writer.outcome),
+        ]
+        self._store_sizes(m, writer, reader)
+        outcomes = {"passed": Outcome.KEPT, "aborted": Outcome.ABORTED}
+        outcomes |= {"full": Outcome.FULL, "large": Outcome.LARGE}
+        events = {name: self.ended & (self.outcome == each) for name, each in outcomes.items()}
+        add_counters(m, self.counters, events)
+        return m
+
+    def _store_sizes(self, m: Module, writer: PacketWriter, reader: PacketReader) -> None:
+        """Store the sizes of packets that have not begun to leave."""
+        packets = self.shape.packets
+        stored = Signal(range(packets + 1), name="stored")
+        sizes = LutMemory(m, "sizes", writer.size.shape(), 1 << max(1, ceil_log2(packets)))
+        write, read = sizes.write, sizes.reader()
+        m.d.comb += [
+            write.data.eq(writer.size),
+            write.en.eq(writer.keeps),
+            reader.next_size.eq(read.data),
+            writer.stored.eq(stored),
+        ]
+        m.d.sync += [
+            write.addr.eq(write.addr + writer.keeps),
+            read.addr.eq(read.addr + reader.begins),
+            stored.eq(stored + writer.keeps - reader.begins),
+        ]

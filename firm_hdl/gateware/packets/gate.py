@@ -1,0 +1,298 @@
+"""A gate that only good packets pass."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Module, Mux, Signal, Value
+from amaranth.lib import data, stream, wiring
+from amaranth.lib.fifo import SyncFIFO, SyncFIFOBuffered
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware.packets.counters import add_counters, counters_layout
+from firm_hdl.gateware.packets.door import MOST_LOST, PacketDoor, door_layout
+from firm_hdl.gateware.packets.fifo import PacketFifo
+from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull, check_policy
+from firm_hdl.gateware.packets.status import GateStatus, GateStatusSignature
+from firm_hdl.gateware.parser import Parser, parser_plan
+from firm_hdl.gateware.signatures import PacketSignature, Status
+from firm_hdl.model import Message
+from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
+from firm_hdl.plan.geometry import ring_beats
+from firm_hdl.wire import Wire
+
+__all__ = ["PacketGate"]
+
+STATUSES = 8
+"""Statuses that wait until they are taken."""
+
+EARLY_BEATS = 257
+"""Beats that wait for the parser, if the link cannot be held: 256 in block RAM, and a register."""
+
+COUNTED = {
+    "passed": GateStatus.OK,
+    "truncated": GateStatus.TRUNCATED,
+    "trailing": GateStatus.TRAILING,
+    "length": GateStatus.LENGTH,
+    "encapsulation": GateStatus.ENCAPSULATION,
+    "string": GateStatus.STRING,
+    "full": GateStatus.FULL,
+    "large": GateStatus.LARGE,
+}
+
+
+class PacketGate(wiring.Component):
+    """Let only good packets of a message type pass.
+
+    A :class:`Parser` judges each packet while it is stored in a :class:`PacketFifo`, which drops
+    the packets that are not `OK`. What leaves is what came, whole and in order. So behind a gate,
+    the status of a :class:`Deserializer` with the same parameters is always `OK`.
+
+    Both the first beat of a packet and its status are valid 4 cycles after the parser's status: 7
+    cycles after the transfer of the last beat, if one step of the parser's plan ends in this beat,
+    and nothing is before the packet; 9 cycles with `"drop"`. A beat is taken per cycle and leaves
+    per cycle, without gaps between packets, as long as there are no more steps than beats.
+
+    A bad packet occupies the gate for as many cycles as it has beats, or the parser has steps
+    before its first error, whichever is more, and at most 4 cycles more. What its lengths claim
+    does not count. Then its memory is free.
+
+    The policy is that of :class:`PacketFifo`. With `"wait"`, `packets_in.ready` is also low while
+    the parser is behind, or while statuses wait: 8 statuses are stored, and the packets after them
+    wait for these to be taken. A gate whose statuses are not needed has a constant 1 at
+    `status.ready`. With `"drop"`, `packets_in.ready` is always high. 257 beats wait for the parser;
+    packets that come while there is no room for more are dropped with the status `LATE`.
+
+    Each packet has exactly one transfer on `status`, in the order of the packets. There is one
+    exception: with `"drop"`, packets are counted but have no status if more than 255 in a row stay
+    outside, because nobody takes statuses.
+
+    All outputs depend on registers only. One clock domain, `sync`; its reset discards all packets
+    inside. The first beat after the reset begins a packet.
+
+    Parameters
+    ----------
+    message, wire, bus_bytes, max_message_bytes
+        As for :class:`Deserializer`.
+    memory_bytes, packets, when_full
+        As for :class:`PacketFifo`.
+
+    Members
+    -------
+    packets_in : In(PacketSignature(bus_bytes))
+    packets_out : Out(PacketSignature(bus_bytes))
+    size : Out(range(memory_bytes + 1))
+        Bytes of the packet on `packets_out`, from its first beat to its last one.
+    status : Out(GateStatusSignature)
+        One transfer per packet.
+    counters : Out(counters_layout("passed", "truncated", ..., "full", "large", "late"))
+        Packets by status, each with 32 bits; a counter stops at its largest value. A packet is
+        counted when its status becomes valid, or would if those before it were taken; with `LATE`,
+        2 cycles after its last beat.
+
+    Attributes
+    ----------
+    plan : Plan
+        The plan of the parser.
+    """
+
+    def __init__(
+        self,
+        message: Message,
+        *,
+        wire: Wire | None = None,
+        bus_bytes: int = 8,
+        memory_bytes: int = 1 << 16,
+        packets: int = 64,
+        when_full: WhenFull = "wait",
+        max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+    ):
+        check_policy(when_full)
+        self.bus_bytes, self.when_full = bus_bytes, when_full
+        self.plan = parser_plan(message, wire, bus_bytes, max_message_bytes)
+        self.shape = MemoryShape(bus_bytes, memory_bytes, packets)
+        super().__init__(
+            {
+                "packets_in": In(PacketSignature(bus_bytes)),
+                "packets_out": Out(PacketSignature(bus_bytes)),
+                "size": Out(range(memory_bytes + 1)),
+                "status": Out(GateStatusSignature),
+                "counters": Out(counters_layout(*COUNTED, "late")),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.submodules.parser = parser = Parser.of_plan(self.plan)
+        m.submodules.fifo = fifo = PacketFifo(
+            self.bus_bytes,
+            self.shape.memory_bytes,
+            self.shape.packets,
+            when_full=self.when_full,
+        )
+        # Beats that the parser has, and the memory has not. Only the last beat of a packet waits
+        # for a verdict, and beats after it. While a packet is not judged, the beats after it are in
+        # the parser's ring, too.
+        layout = _layout(self)
+        m.submodules.waiting = waiting = SyncFIFO(
+            width=layout.size, depth=2 * ring_beats(self.bus_bytes)
+        )
+        beats = stream.Signature(layout).create(path=("beats",))
+        m.d.comb += [
+            waiting.w_data.eq(Value.cast(beats.payload)),
+            waiting.w_en.eq(beats.valid & parser.packets.ready),
+            parser.packets.payload.eq(beats.payload.beat),
+            parser.packets.valid.eq(beats.valid & waiting.w_rdy),
+            beats.ready.eq(parser.packets.ready & waiting.w_rdy),
+            self.packets_out.payload.eq(fifo.packets_out.payload),
+            self.packets_out.valid.eq(fifo.packets_out.valid),
+            fifo.packets_out.ready.eq(self.packets_out.ready),
+            self.size.eq(fifo.size),
+        ]
+        verdicts = _Verdicts(m, self, parser, fifo, waiting)
+        verdicts.give_statuses()
+        if self.when_full == "wait":
+            m.d.comb += [
+                beats.valid.eq(self.packets_in.valid),
+                beats.payload.beat.eq(self.packets_in.payload),
+                self.packets_in.ready.eq(beats.ready),
+            ]
+        else:
+            m.submodules.door = door = PacketDoor(self.bus_bytes)
+            m.submodules.early = early = SyncFIFOBuffered(width=layout.size, depth=EARLY_BEATS)
+            m.d.comb += [
+                door.packets.valid.eq(self.packets_in.valid),
+                door.packets.payload.eq(self.packets_in.payload),
+                self.packets_in.ready.eq(door.packets.ready),
+                early.w_data.eq(Value.cast(door.inside.payload)),
+                early.w_en.eq(door.inside.valid),
+                door.inside.ready.eq(early.w_rdy),
+                Value.cast(beats.payload).eq(early.r_data),
+                beats.valid.eq(early.r_rdy),
+                early.r_en.eq(beats.ready),
+            ]
+            verdicts.report_lost(door, early.level == 0)
+        return m
+
+
+def _layout(gate: PacketGate) -> data.StructLayout:
+    """Return the shape of beats that wait for the memory."""
+    whole = door_layout(gate.bus_bytes)
+    return data.StructLayout({"beat": whole["beat"].shape}) if gate.when_full == "wait" else whole
+
+
+class _Verdicts:
+    """The logic between beats that wait and the memory: the verdict on each packet, and its status.
+
+    Parameters
+    ----------
+    m : Module
+    gate : PacketGate
+    parser, fifo
+        Those of the gate.
+    waiting : SyncFIFO
+        Beats, of `_layout`.
+    """
+
+    def __init__(
+        self,
+        m: Module,
+        gate: PacketGate,
+        parser: Parser,
+        fifo: PacketFifo,
+        waiting: SyncFIFO,
+    ):
+        self.m, self.gate, self.parser, self.fifo = m, gate, parser, fifo
+        self.waiting = waiting
+        self.head = Signal(_layout(gate), name="head")
+        # The beat is the end of a packet whose rest stayed outside.
+        self.cut = Signal(name="cut")
+        # There is room for a status, with those on the way.
+        self.room = Signal(name="room")
+        # A status of a packet that stayed outside is due before the beat, or because there is none.
+        self.owes, self.reports = Signal(name="owes"), Signal(name="reports")
+        # The first beat of a packet is next.
+        self.starts = Signal(name="starts", init=1)
+        self.ends = Signal(name="ends")
+        # A packet that stays outside, or is cut, ends now.
+        self.late = Signal(name="late")
+        m.d.comb += self.head.eq(waiting.r_data)
+        self._store()
+
+    def _store(self) -> None:
+        """Give beats to the memory; the last one of a packet only with the verdict."""
+        m, head, waiting = self.m, self.head, self.waiting
+        fifo, status = self.fifo, self.parser.status
+        store = fifo.packets_in
+        m.d.comb += [
+            store.payload.eq(head.beat),
+            store.valid.eq(
+                waiting.r_rdy & ~self.owes & (~head.beat.last | (status.valid & self.room))
+            ),
+            fifo.abort.eq((status.payload != Status.OK) | self.cut),
+            waiting.r_en.eq(store.valid & store.ready),
+            self.ends.eq(waiting.r_en & head.beat.last),
+            status.ready.eq(self.ends),
+        ]
+        with m.If(waiting.r_en):
+            m.d.sync += self.starts.eq(head.beat.last)
+
+    def report_lost(self, door: PacketDoor, none_waits: Value) -> None:
+        """Give the statuses of packets that stayed outside, before the packet after them.
+
+        Parameters
+        ----------
+        none_waits : Value
+            No beat is between the door and the parser.
+        """
+        m, head, waiting = self.m, self.head, self.waiting
+        reported = Signal(range(MOST_LOST + 1), name="reported")
+        directly = Signal(name="directly")
+        m.d.comb += [
+            self.cut.eq(head.cut),
+            self.late.eq(door.drops),
+            self.owes.eq(self.starts & (reported != head.lost)),
+            # No packet is inside, and none comes.
+            directly.eq(none_waits & ~waiting.r_rdy & door.lost.any() & ~door.inside.valid),
+            door.report.eq(directly & self.starts & self.room),
+            self.reports.eq(self.room & self.starts & (directly | (waiting.r_rdy & self.owes))),
+        ]
+        with m.If(waiting.r_en):
+            m.d.sync += reported.eq(0)
+        with m.Elif(waiting.r_rdy & self.owes & self.room):
+            m.d.sync += reported.eq(reported + 1)
+
+    def give_statuses(self) -> None:
+        """Join the parser's verdict with what the memory did, 2 cycles later."""
+        m, gate, parsed = self.m, self.gate, self.parser.status.payload
+        unsent = Signal(range(2 * STATUSES), name="unsent")
+        enters, is_due, is_ready = Signal(name="enters"), Signal(name="is_due"), Signal(name="due")
+        code, judged = Signal(GateStatus, name="code"), Signal(GateStatus, name="judged")
+        final = Signal(GateStatus, name="final")
+        bits = GateStatus.as_shape().width
+        m.submodules.statuses = statuses = SyncFIFOBuffered(width=bits, depth=STATUSES + 1)
+        m.d.comb += [
+            self.room.eq(unsent < STATUSES),
+            enters.eq(self.ends | self.reports),
+            final.eq(judged),
+            statuses.w_en.eq(is_ready),
+            statuses.w_data.eq(Value.cast(final)),
+            Value.cast(gate.status.payload).eq(statuses.r_data),
+            gate.status.valid.eq(statuses.r_rdy),
+            statuses.r_en.eq(gate.status.ready),
+        ]
+        m.d.sync += [
+            unsent.eq(unsent + enters - (gate.status.valid & gate.status.ready)),
+            is_due.eq(enters),
+            Value.cast(code).eq(
+                Mux(self.reports | self.cut, Value.cast(GateStatus.LATE), Value.cast(parsed))
+            ),
+            is_ready.eq(is_due),
+            judged.eq(code),
+        ]
+        # `outcome` is of this packet, if it was not aborted.
+        with m.If((judged == GateStatus.OK) & (self.fifo.outcome == Outcome.FULL)):
+            m.d.comb += final.eq(GateStatus.FULL)
+        with m.If((judged == GateStatus.OK) & (self.fifo.outcome == Outcome.LARGE)):
+            m.d.comb += final.eq(GateStatus.LARGE)
+        events = {name: is_ready & (final == each) for name, each in COUNTED.items()}
+        events["late"] = self.late
+        add_counters(m, gate.counters, events)

@@ -1,0 +1,84 @@
+"""The size of a packet memory, as its writer and its reader see it."""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias, get_args
+
+from amaranth.lib import enum
+from amaranth.utils import ceil_log2
+
+from firm_hdl.plan import check_bus_bytes
+
+__all__ = ["MemoryShape", "Outcome", "WhenFull", "check_policy"]
+
+WhenFull: TypeAlias = Literal["wait", "drop"]
+"""What happens to a packet for which there is no room."""
+
+
+class Outcome(enum.Enum, shape=2):  # type: ignore[call-arg]
+    """What became of a packet that a :class:`PacketFifo` received.
+
+    Members
+    -------
+    KEPT
+        It leaves.
+    ABORTED
+        It was dropped because of `abort`, whether or not it had room.
+    FULL
+        It was dropped because there was no room.
+    LARGE
+        It was dropped because it is larger than the memory.
+    """
+
+    KEPT = 0
+    ABORTED = 1
+    FULL = 2
+    LARGE = 3
+
+
+def check_policy(when_full: WhenFull) -> None:
+    """Raise a `ValueError` if a policy does not exist."""
+    if when_full not in get_args(WhenFull):
+        raise ValueError(f"Policy must be 'wait' or 'drop', not {when_full!r}")
+
+
+class MemoryShape:
+    """The size of a packet memory.
+
+    A position is the address of a beat, with a lap bit above it. So the difference of two positions
+    tells a full memory from an empty one.
+
+    Parameters
+    ----------
+    bus_bytes, memory_bytes, packets
+        As for :class:`PacketFifo`.
+
+    Attributes
+    ----------
+    beats : int
+        Beats in the memory.
+    address_bits, position_bits, lane_bits : int
+        Bits of an address, of a position, and of the number of a byte in its beat.
+
+    Raises
+    ------
+    TypeError, ValueError
+    """
+
+    def __init__(self, bus_bytes: int, memory_bytes: int, packets: int):
+        check_bus_bytes(bus_bytes)
+        for name, value in (("Memory size", memory_bytes), ("Number of packets", packets)):
+            if not isinstance(value, int):
+                raise TypeError(f"{name} must be an integer, not {value!r}")
+        if memory_bytes < 2 * bus_bytes or memory_bytes & (memory_bytes - 1):
+            least = 2 * bus_bytes
+            raise ValueError(
+                f"Memory size must be a power of two from {least} bytes on, not {memory_bytes}"
+            )
+        if packets < 1:
+            raise ValueError(f"Number of packets must be at least 1, not {packets}")
+        self.bus_bytes, self.memory_bytes, self.packets = bus_bytes, memory_bytes, packets
+        self.beats = memory_bytes // bus_bytes
+        self.lane_bits = ceil_log2(bus_bytes)
+        self.address_bits = ceil_log2(self.beats)
+        self.position_bits = self.address_bits + 1

@@ -1,0 +1,94 @@
+"""One packet stream becomes several."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Cat, Module, Mux, Signal
+from amaranth.lib import data, wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware.packets.counters import add_counters, counters_layout
+from firm_hdl.gateware.packets.slice import StreamSlice
+from firm_hdl.gateware.signatures import PacketSignature, packet_layout
+
+__all__ = ["PacketRouter"]
+
+
+class PacketRouter(wiring.Component):
+    """Send each packet to the output of its topic.
+
+    `topic` travels with the packet; the value beside its first beat counts. A packet whose topic
+    has no output is dropped whole, a beat per cycle, and counted.
+
+    Latency 1 cycle. A beat is taken and leaves per cycle, without gaps between packets. An output
+    that does not take its packet holds all that come after it, whatever their topics. Behind a
+    router, a :class:`PacketFifo` with the policy `"drop"` never does.
+
+    `packets_in.ready`, and `valid` and `payload` of the outputs, are registers. One clock domain,
+    `sync`; its reset discards the beats inside, and the next beat begins a packet.
+
+    Parameters
+    ----------
+    bus_bytes : int
+        Bytes per beat: 1, 2, 4, 8, 16, 32 or 64.
+    topics : int
+        Number of outputs, at least 1. A packet goes to the output with the number `topic`.
+    topic_bits : int
+        Bits of `topic`.
+
+    Members
+    -------
+    packets_in : In(PacketSignature(bus_bytes))
+    topic : In(topic_bits)
+        Topic of the packet; has to be stable while a first beat is offered.
+    packets_out : array(topics) of Out(PacketSignature(bus_bytes))
+    counters : Out(counters_layout("routed", "unknown"))
+        Packets that were sent to an output, and those that were dropped, each with 32 bits; a
+        counter stops at its largest value. Counted 2 cycles after the last beat was taken.
+    """
+
+    def __init__(self, bus_bytes: int, topics: int, *, topic_bits: int = 16):
+        if topics < 1:
+            raise ValueError(f"Number of topics must be at least 1, not {topics}")
+        if topics > 1 << topic_bits:
+            raise ValueError(f"{topics} topics do not fit into {topic_bits} bits")
+        self.bus_bytes, self.topics = bus_bytes, topics
+        super().__init__(
+            {
+                "packets_in": In(PacketSignature(bus_bytes)),
+                "topic": In(topic_bits),
+                "packets_out": Out(PacketSignature(bus_bytes)).array(topics),
+                "counters": Out(counters_layout("routed", "unknown")),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        packets, count = self.packets_in, self.topics
+        layout = data.StructLayout({"beat": packet_layout(self.bus_bytes), "to": count})
+        m.submodules.slice = out = StreamSlice(layout)
+        # A bit for each output: that of the topic, that of the packet that has begun, and which of
+        # both counts.
+        named, begun, to = Signal(count), Signal(count), Signal(count)
+        inside, ends = Signal(), Signal()
+        m.d.comb += [
+            named.eq(Cat(self.topic == number for number in range(count))),
+            to.eq(Mux(inside, begun, named)),
+            out.i.payload.beat.eq(packets.payload),
+            out.i.payload.to.eq(to),
+            # What has no output is taken and goes nowhere.
+            out.i.valid.eq(packets.valid & to.any()),
+            packets.ready.eq(out.i.ready),
+            ends.eq(packets.valid & packets.ready & packets.payload.last),
+        ]
+        takes = []
+        for number, port in enumerate(self.packets_out):
+            m.d.comb += [
+                port.payload.eq(out.o.payload.beat),
+                port.valid.eq(out.o.valid & out.o.payload.to[number]),
+            ]
+            takes.append(port.ready & out.o.payload.to[number])
+        m.d.comb += out.o.ready.eq(Cat(takes).any())
+        with m.If(packets.valid & packets.ready):
+            m.d.sync += [inside.eq(~packets.payload.last), begun.eq(to)]
+        add_counters(m, self.counters, {"routed": ends & to.any(), "unknown": ends & ~to.any()})
+        return m

@@ -1,0 +1,48 @@
+"""A register in a stream that separates both of its handshakes."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Module, Mux, ShapeLike, Signal, Value
+from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
+
+__all__ = ["StreamSlice"]
+
+
+class StreamSlice(wiring.Component):
+    """Register a stream. `i.ready`, `o.valid` and `o.payload` are registers.
+
+    Latency 1 cycle. A transfer per cycle.
+
+    Parameters
+    ----------
+    shape : shape-like
+        Of the payload.
+
+    Members
+    -------
+    i : In(stream.Signature(shape))
+    o : Out(stream.Signature(shape))
+    """
+
+    def __init__(self, shape: ShapeLike):
+        super().__init__({"i": In(stream.Signature(shape)), "o": Out(stream.Signature(shape))})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        # Holds what comes in the cycle in which `o` stops. It is empty if `i.ready`.
+        come, out = Value.cast(self.i.payload), Value.cast(self.o.payload)
+        second, ready = Signal(len(come), reset_less=True), Signal(init=1)
+        moves = Signal()
+        m.d.comb += [self.i.ready.eq(ready), moves.eq(~self.o.valid | self.o.ready)]
+        with m.If(moves):
+            m.d.sync += [
+                self.o.valid.eq(self.i.valid | ~ready),
+                out.eq(Mux(ready, come, second)),
+                ready.eq(1),
+            ]
+        with m.Elif(self.i.valid):
+            m.d.sync += ready.eq(0)
+        with m.If(ready):
+            m.d.sync += second.eq(come)
+        return m

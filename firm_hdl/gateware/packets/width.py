@@ -1,0 +1,116 @@
+"""A packet stream of another width."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware.packets.slice import StreamSlice
+from firm_hdl.gateware.signatures import PacketSignature, packet_layout
+
+__all__ = ["PacketWidth"]
+
+
+class PacketWidth(wiring.Component):
+    """Carry packets from a bus of one width to a bus of another width.
+
+    Packets stay what they are: their bytes, in order, and only the last beat is not full.
+
+    A beat per cycle on the narrower side, without gaps between packets. Latency from the narrow
+    beat that completes a wide one: 1 cycle. From a wide beat to its first narrow one: 2 cycles.
+    Between buses of the same width: 1 cycle.
+
+    `packets_in.ready`, and `valid` and `payload` of `packets_out`, are registers. One clock domain,
+    `sync`; its reset discards the bytes inside, and the next beat begins a packet.
+
+    Parameters
+    ----------
+    in_bytes, out_bytes : int
+        Bytes per beat: 1, 2, 4, 8, 16, 32 or 64.
+
+    Members
+    -------
+    packets_in : In(PacketSignature(in_bytes))
+    packets_out : Out(PacketSignature(out_bytes))
+    """
+
+    def __init__(self, in_bytes: int, out_bytes: int):
+        self.in_bytes, self.out_bytes = in_bytes, out_bytes
+        super().__init__(
+            {
+                "packets_in": In(PacketSignature(in_bytes)),
+                "packets_out": Out(PacketSignature(out_bytes)),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.submodules.slice = out = StreamSlice(packet_layout(self.out_bytes))
+        m.d.comb += [
+            self.packets_out.payload.eq(out.o.payload),
+            self.packets_out.valid.eq(out.o.valid),
+            out.o.ready.eq(self.packets_out.ready),
+        ]
+        if self.in_bytes > self.out_bytes:
+            self._split(m, out)
+        else:
+            self._join(m, out)
+        return m
+
+    def _join(self, m: Module, out: StreamSlice) -> None:
+        """Collect narrow beats in registers; the last one of a wide beat goes past them."""
+        ratio = self.out_bytes // self.in_bytes
+        packets, beat, wide = self.packets_in, self.packets_in.payload, out.i.payload
+        number, completes = Signal(range(ratio)), Signal()
+        m.d.comb += [
+            completes.eq(beat.last | (number == ratio - 1)),
+            packets.ready.eq(out.i.ready),
+            out.i.valid.eq(packets.valid & completes),
+            # Before this beat, all are full.
+            wide.count.eq(
+                Cat(Const(0, (self.in_bytes - 1).bit_length()), number)
+                + Mux(beat.last, beat.count, self.in_bytes)
+            ),
+            wide.last.eq(beat.last),
+        ]
+        bits = 8 * self.in_bytes
+        came, parts = Value.cast(beat.data), Value.cast(wide.data)
+        for place in range(ratio):
+            kept = Signal(bits, name=f"kept_{place}", reset_less=True)
+            is_here = number == place
+            m.d.comb += parts[bits * place : bits * (place + 1)].eq(Mux(is_here, came, kept))
+            with m.If(packets.valid & packets.ready & is_here):
+                m.d.sync += kept.eq(came)
+        with m.If(packets.valid & packets.ready):
+            m.d.sync += number.eq(Mux(completes, 0, number + 1))
+
+    def _split(self, m: Module, out: StreamSlice) -> None:
+        """Give a registered wide beat in parts."""
+        ratio, low = self.in_bytes // self.out_bytes, (self.out_bytes - 1).bit_length()
+        m.submodules.wide = wide = StreamSlice(packet_layout(self.in_bytes))
+        beat = wide.o.payload
+        number, final, is_final = Signal(range(ratio)), Signal(range(ratio)), Signal()
+        m.d.comb += [
+            wide.i.payload.eq(self.packets_in.payload),
+            wide.i.valid.eq(self.packets_in.valid),
+            self.packets_in.ready.eq(wide.i.ready),
+            # An empty packet has one beat, too.
+            final.eq(Mux(beat.last, Mux(beat.count == 0, 0, (beat.count - 1)[low:]), ratio - 1)),
+            is_final.eq(number == final),
+            out.i.valid.eq(wide.o.valid),
+            wide.o.ready.eq(out.i.ready & is_final),
+            Value.cast(out.i.payload.data).eq(
+                Value.cast(beat.data).word_select(number, 8 * self.out_bytes)
+            ),
+            out.i.payload.last.eq(beat.last & is_final),
+            out.i.payload.count.eq(
+                Mux(
+                    beat.last & is_final,
+                    beat.count - Cat(Const(0, low), number),
+                    self.out_bytes,
+                )
+            ),
+        ]
+        with m.If(out.i.valid & out.i.ready):
+            m.d.sync += number.eq(Mux(is_final, 0, number + 1))

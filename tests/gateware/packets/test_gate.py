@@ -1,0 +1,417 @@
+# amaranth: UnusedElaboratable=no
+"""The packet gate: only good packets pass, whole; each packet has a status; nothing holds it."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+from amaranth.hdl import Cat, Value
+
+from firm_hdl import Deserializer, GateStatus, PacketGate, load_message
+from firm_hdl.gateware.packets.door import MOST_LOST
+from firm_hdl.gateware.packets.gate import COUNTED, EARLY_BEATS, _Verdicts
+from firm_hdl.model import PRIMITIVES, Field, Message, Sequence
+from firm_hdl.plan import build_plan, decode
+from firm_hdl.sim import DeadlineError, Harness, RunOptions, Stalls
+from firm_hdl.sim.payloads import beats_of
+from firm_hdl.wire import lay_out
+from tests.gateware.packets.bench import PacketBench, beats
+from tests.gateware.test_parser import BAD, GOOD, HEADER, has_path, random_packets
+from tests.strategies import BUS_WIDTHS
+
+LATENCY = 7
+"""Cycles from the transfer of the last beat to the first beat, and to the status."""
+ERROR = 4
+"""Cycles that an error adds at most."""
+EARLY = 2
+"""Cycles more for a link that cannot be held."""
+
+OK, FULL, LARGE, LATE = GateStatus.OK, GateStatus.FULL, GateStatus.LARGE, GateStatus.LATE
+DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
+TEXT = "00010000 01000000 02000000 01000000 00 000000 a0bb0d00"
+BOMB = bytes.fromhex(TEXT).ljust(60, b"\0")
+"""A packet that claims 900,000 elements."""
+NO_BOMB = bytes.fromhex(TEXT[:-8] + "00000000")
+
+
+def bench_of(gate, **options):
+    names = [*COUNTED, "late"]
+    return PacketBench(
+        gate,
+        {"in": gate.packets_in},
+        {"out": (gate.packets_out, gate.bus_bytes, gate.size)},
+        others={"status": gate.status},
+        final={name: gate.counters[name] for name in names},
+        **options,
+    )
+
+
+class Run:
+    """Packets through a gate, with all that must hold of any run."""
+
+    def __init__(self, gate, packets, bench=None, want=None, **options):
+        bus = gate.bus_bytes
+        bench = bench or bench_of(gate)
+        total = sum(beats_of(len(packet), bus) for packet in packets)
+        want = {"in": total, "status": len(packets)} if want is None else want
+        source = beats(packets, bus, noise=random.Random(1))
+        seen = bench.run({"in": source}, want, **{"settle": 30, **options})
+        self.packets, self.taken, self.left = (
+            seen.packets["out"],
+            seen.times["in"],
+            seen.times["out"],
+        )
+        self.statuses = [GateStatus(bits) for bits in seen.others["status"]]
+        self.times = seen.times["status"]
+        self.counters = bench.state
+        self.lasts, at = [], -1
+        for packet in packets:
+            at += beats_of(len(packet), bus)
+            self.lasts.append(self.taken[at])
+        # One status per packet. What leaves is what was good, with its size.
+        assert len(self.statuses) == len(packets)
+        pairs = zip(packets, self.statuses, strict=True)
+        assert self.packets == [packet for packet, status in pairs if status == OK]
+        assert seen.sides["out"] == [{len(packet)} for packet in self.packets]
+        counted = {name: self.statuses.count(each) for name, each in COUNTED.items()}
+        assert self.counters == counted | {"late": self.statuses.count(LATE)}
+
+
+def judged(message, packets, bus_bytes, most=1 << 24):
+    """Return what the interpreter of the plan says of packets."""
+    plan = build_plan(lay_out(message), bus_bytes=bus_bytes, max_message_bytes=most)
+    return [GateStatus[str(decode(plan, packet).status)] for packet in packets]
+
+
+TYPES = [
+    (HEADER, "lyrical"),
+    ("sensor_msgs/Imu", "noetic"),
+    (DIAGNOSTICS, "lyrical"),
+    ("sensor_msgs/msg/PointCloud2", "lyrical"),
+    ("std_msgs/Empty", "noetic"),
+]
+
+
+@pytest.mark.parametrize("bus_bytes", [2, 8, 64])
+@pytest.mark.parametrize(("name", "distro"), TYPES)
+def test_only_good_packets_pass_whole_and_in_order_under_any_stall(name, distro, bus_bytes):
+    message = load_message(name, distro=distro)
+    most = 10_000
+    _, packets = random_packets(message, bus_bytes, 4)
+    want = judged(message, packets, bus_bytes, most)
+    largest = max(map(len, packets))
+    memory = max(2 * bus_bytes, 1 << largest.bit_length())
+    gate = PacketGate(
+        message, bus_bytes=bus_bytes, memory_bytes=memory, packets=4, max_message_bytes=most
+    )
+    bench = bench_of(gate)
+    for stalls in (
+        None,
+        Stalls(0.3, max_cycles=9, seed=2),
+        {"out": Stalls(0.8, max_cycles=5), "in": Stalls(0.1)},
+        {"status": Stalls.bits("0" * 40 + "1")},
+    ):
+        assert Run(gate, packets, bench, stalls=stalls).statuses == want
+
+
+@pytest.mark.parametrize("when_full", ["wait", "drop"])
+@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+def test_bad_packets_of_each_kind_between_good_ones(bus_bytes, when_full):
+    good = bytes.fromhex(GOOD)
+    packets, want = [good], [OK]
+    for text, status in BAD.values():
+        packets += [bytes.fromhex(text), good]
+        want += [GateStatus[status], OK]
+    gate = PacketGate(
+        load_message(HEADER), bus_bytes=bus_bytes, memory_bytes=256, when_full=when_full
+    )
+    gap = None if when_full == "wait" else {"in": Stalls.bits("01")}
+    run = Run(gate, packets, stalls=gap)
+    assert run.statuses == want
+    # What an error adds is less than the beats of these packets on a narrow bus.
+    if when_full == "wait" and bus_bytes < 4:
+        assert run.taken == list(range(run.taken[0], run.taken[0] + len(run.taken)))
+
+
+@pytest.mark.parametrize(("bus_bytes", "more"), [(1, 0), (2, 0), (4, 0), (8, 0), (64, 1)])
+def test_latency_is_exact(bus_bytes, more):
+    good, bad = bytes.fromhex(GOOD), bytes.fromhex(GOOD)[:11]
+    packets = [good, bad, good]
+    gate = PacketGate(load_message(HEADER), bus_bytes=bus_bytes, memory_bytes=1024)
+    run = Run(gate, packets, stalls={"in": Stalls.bits("0" * 15 + "1")})
+    late = [time - last for time, last in zip(run.times, run.lasts, strict=True)]
+    assert late[0] == late[2] == LATENCY + more
+    assert LATENCY <= late[1] <= LATENCY + ERROR
+    first = [run.left[0], run.left[beats_of(len(good), bus_bytes)]]
+    assert first == [run.times[0], run.times[2]]
+
+
+@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+def test_a_beat_per_cycle_through_long_packets(bus_bytes):
+    fields = (Field(name="data", type=Sequence(element=PRIMITIVES["ros1"]["uint8"])),)
+    message = Message(name="p/Long", dialect="ros1", fields=fields)
+    sizes = [700, 64, 701, 300]
+    packets = [size.to_bytes(4, "little") + random.Random(size).randbytes(size) for size in sizes]
+    gate = PacketGate(message, bus_bytes=bus_bytes, memory_bytes=4096)
+    run = Run(gate, packets)
+    total = sum(beats_of(len(packet), bus_bytes) for packet in packets)
+    assert run.taken == list(range(run.taken[0], run.taken[0] + total))
+    free = 0
+    for packet, status, last in zip(packets, run.times, run.lasts, strict=True):
+        assert LATENCY <= status - last <= LATENCY + 2
+        begin = max(status, free)
+        free = begin + beats_of(len(packet), bus_bytes)
+        assert run.left[: free - begin] == list(range(begin, free))
+        del run.left[: free - begin]
+
+
+def test_a_packet_per_cycle():
+    packets = [b"\0\1\0\0\1", b"\0\1\0\0\0"] * 50
+    for when_full in ("wait", "drop"):
+        gate = PacketGate(load_message("std_msgs/msg/Bool"), memory_bytes=256, when_full=when_full)
+        run = Run(gate, packets)
+        first = run.taken[0]
+        assert run.taken == list(range(first, first + 100))
+        first += LATENCY + (EARLY if when_full == "drop" else 0)
+        assert run.left == run.times == list(range(first, first + 100))
+
+
+@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+def test_a_packet_that_claims_nearly_a_million_elements_costs_its_beats_and_a_few_cycles(bus_bytes):
+    gate = PacketGate(load_message(DIAGNOSTICS), bus_bytes=bus_bytes, memory_bytes=256)
+    packets = [BOMB, NO_BOMB, BOMB, BOMB, NO_BOMB]
+    run = Run(gate, packets)
+    assert [status.name for status in run.statuses] == "TRUNCATED OK TRUNCATED TRUNCATED OK".split()
+    # Free again: the packet after it is in, whole, and has its status.
+    own, next_own = beats_of(len(BOMB), bus_bytes), beats_of(len(NO_BOMB), bus_bytes)
+    assert run.lasts[1] - run.taken[0] + 1 <= own + 16 + next_own
+    assert run.times[0] - run.taken[0] + 1 <= own + 16 + LATENCY
+    if bus_bytes == 8:
+        # The parser takes 15 cycles for a bomb, and 3 for the beats of the other packet.
+        assert run.times == [22, 25, 40, 55, 58]
+    # A thousand of them do not add up.
+    many = Run(gate, [BOMB] * 40 + [NO_BOMB])
+    steps = len(BOMB) // 4 + 4
+    assert many.times[-1] <= 40 * max(own, steps) + next_own + LATENCY + ERROR
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 8, 64])
+@pytest.mark.parametrize("when_full", ["wait", "drop"])
+def test_a_packet_as_large_as_the_memory_passes_and_a_larger_one_does_not(bus_bytes, when_full):
+    fields = (Field(name="data", type=Sequence(element=PRIMITIVES["ros1"]["uint8"])),)
+    message = Message(name="p/Long", dialect="ros1", fields=fields)
+    memory = 32 * bus_bytes
+
+    def packet(size):
+        return (size - 4).to_bytes(4, "little") + bytes(size - 4)
+
+    whole, more, small = packet(memory), packet(memory + 1), packet(10)
+    cut = more[:-1]
+    packets = [small, more, small, whole, more, whole, cut, small]
+    want = [OK, LARGE, OK, OK, LARGE, OK, GateStatus.TRUNCATED, OK]
+    gate = PacketGate(message, bus_bytes=bus_bytes, memory_bytes=memory, when_full=when_full)
+    gap = {"in": Stalls.bits("0" * 80 + "1" * beats_of(memory + 1, bus_bytes))}
+    if when_full == "wait":
+        assert Run(gate, packets).statuses == want
+    for each, status in zip(packets, want, strict=True):
+        assert Run(gate, [each], stalls=gap).statuses == [status]
+
+
+def test_the_link_is_held_exactly_when_nothing_has_room():
+    memory, bus = 256, 8
+    good, bad = bytes.fromhex(GOOD), bytes.fromhex(GOOD)[:11]
+    gate = PacketGate(load_message(HEADER), bus_bytes=bus, memory_bytes=memory)
+    waits = 200
+    # Bad packets need no memory, whatever stands before them.
+    packets = [good, *[bad] * 30, *[good] * 20]
+    stalls = {"out": Stalls.bits("0" * waits + "1" * 1000)}
+    run = Run(gate, packets, stalls=stalls, deadline=400)
+    inside = sum(cycle < waits for cycle in run.taken)
+    # Two words are in the registers of the reader. The parser has 2 statuses, and its ring is full.
+    assert inside == 30 * 2 + memory // bus + 2 + 15
+    # The link was held long before, and is free again soon.
+    assert run.taken[inside - 1] < waits - 30 < run.taken[inside] <= waits + 6
+
+
+def test_a_link_that_cannot_be_held_loses_whole_packets():
+    good, bad = bytes.fromhex(GOOD), bytes.fromhex(GOOD)[:11]
+    gate = PacketGate(
+        load_message(HEADER), bus_bytes=8, memory_bytes=64, when_full="drop", packets=16
+    )
+    stalls = {"out": Stalls.bits("0" * 200 + "1" * 1000)}
+    run = Run(gate, [good, good, good, bad, good, good, bad], stalls=stalls, deadline=400)
+    short = GateStatus.TRUNCATED
+    # 8 words and 2 in registers, for packets of 3 beats.
+    assert run.statuses == [OK, OK, OK, short, FULL, FULL, short]
+    assert run.taken == list(range(run.taken[0], run.taken[0] + len(run.taken)))
+
+
+def strings(bus_bytes, count):
+    """Return packets on which the parser falls behind, and their statuses.
+
+    Eight bytes are two empty strings: the parser takes at least two cycles per beat.
+    """
+    head = bytes.fromhex(TEXT[:-8])
+    long = head + (60).to_bytes(4, "little") + bytes(60 * 20)
+    cut = GateStatus.TRUNCATED
+    verdicts = {BOMB: cut, NO_BOMB: OK, long: OK, long[:-30]: cut}
+    rng = random.Random(bus_bytes)
+    packets = rng.choices([*verdicts], [1, 2, 3, 3], k=count)
+    return packets, [verdicts[packet] for packet in packets]
+
+
+def check_late(bus_bytes, takes):
+    packets, want = strings(bus_bytes, 80 if bus_bytes == 16 else 40)
+    message = load_message(DIAGNOSTICS)
+    gate = PacketGate(message, bus_bytes=bus_bytes, memory_bytes=4096, when_full="drop")
+    bench = bench_of(gate)
+    run = Run(gate, packets, bench, stalls={"status": Stalls.bits(takes)}, deadline=2000)
+    assert run.taken == list(range(run.taken[0], run.taken[0] + len(run.taken)))
+    assert LATE in run.statuses and OK in run.statuses
+    for status, without in zip(run.statuses, want, strict=True):
+        assert status in (without, LATE)
+    # Afterwards, all is as before.
+    gap = {"in": Stalls.bits("0" * 2 * bus_bytes + "1"), "status": Stalls.bits(takes)}
+    assert Run(gate, packets[-5:], bench, stalls=gap, deadline=2000).statuses == want[-5:]
+
+
+@pytest.mark.parametrize(
+    ("bus_bytes", "takes"), [(8, "1"), (16, "0" * 50 + "1" * 20), (64, "1"), (64, "011")]
+)
+def test_packets_that_come_while_the_parser_is_behind_are_lost_and_counted(bus_bytes, takes):
+    check_late(bus_bytes, takes)
+
+
+def test_statuses_that_nobody_takes_hold_the_gate_or_lose_packets():
+    good = b"\0\1\0\0\1"
+    message = load_message("std_msgs/msg/Bool")
+    never = {"status": Stalls.bits("0" * 500 + "1" * 1000)}
+    gate = PacketGate(message, memory_bytes=2048, packets=256)
+    run = Run(gate, [good] * 60, stalls=never, deadline=600)
+    # 8 statuses, 2 in the parser, and what its buffer takes then.
+    inside = sum(cycle < 500 for cycle in run.taken)
+    assert 10 <= inside <= 10 + 10
+    gate = PacketGate(message, memory_bytes=2048, packets=256, when_full="drop")
+    bench = bench_of(gate)
+    inside += EARLY_BEATS
+    run = Run(gate, [good] * 450, bench, stalls=never, deadline=600)
+    assert run.statuses == [OK] * inside + [LATE] * (450 - inside)
+    # More than 255 in a row have no status, but are counted.
+    for more in (0, 1):
+        sent = inside + MOST_LOST + more
+        never = {"status": Stalls.bits("0" * 600 + "1" * 1000)}
+        seen = bench.run(
+            {"in": beats([good] * sent, 8)},
+            {"in": sent, "status": sent - more},
+            stalls=never,
+            deadline=700,
+        )
+        assert len(seen.others["status"]) == inside + MOST_LOST
+        assert bench.state["passed"] == inside
+        assert bench.state["late"] == MOST_LOST + more
+
+
+def test_behind_a_gate_the_status_of_a_deserializer_is_ok():
+    message = load_message("sensor_msgs/msg/PointCloud2")
+    _, packets = random_packets(message, 8, 8)
+    gate = PacketGate(message, memory_bytes=4096, max_message_bytes=10_000)
+    passed = Run(gate, packets).packets
+    rx = Deserializer(message, max_message_bytes=10_000)
+    seen = Harness(rx, None, message=message).run_packets(passed, RunOptions())
+    assert {status.name for status in seen.statuses} == {"OK"}
+    assert len(seen.statuses) == len(passed) < len(packets)
+
+
+@pytest.mark.parametrize("when_full", ["wait", "drop"])
+def test_reset_in_the_middle_discards_all(when_full):
+    good, bad = bytes.fromhex(GOOD), bytes.fromhex(GOOD)[:11]
+    packets = [good, bad, BOMB, good]
+    gate = PacketGate(load_message(HEADER), bus_bytes=4, memory_bytes=128, when_full=when_full)
+    bench = bench_of(gate, keeps_state=True)
+    want = judged(load_message(HEADER), packets, 4)
+    source = list(beats(packets, 4))
+    for count in range(1, len(source)):
+        with pytest.raises(DeadlineError):
+            stuck = {"out": Stalls.bits("0" * 99 + "1"), "status": Stalls.bits("0" * 99 + "1")}
+            bench.run({"in": source[:count]}, {"in": 99}, stalls=stuck, limit=count + 2 + count % 7)
+        run = Run(gate, packets, bench)
+        assert run.statuses == want
+        assert run.left[0] == run.lasts[0] + LATENCY + (EARLY if when_full == "drop" else 0)
+
+
+@pytest.mark.parametrize("when_full", ["wait", "drop"])
+def test_no_output_depends_on_an_input_in_the_same_cycle(when_full):
+    gate = PacketGate(load_message(HEADER), bus_bytes=4, memory_bytes=64, when_full=when_full)
+    came, out, status = gate.packets_in, gate.packets_out, gate.status
+    inputs = Cat(Value.cast(came.payload), came.valid, out.ready, status.ready)
+    held = Cat(out.valid, Value.cast(out.payload), gate.size)
+    said = Cat(status.valid, Value.cast(status.payload))
+    assert not has_path(gate, inputs, Cat(came.ready, held, said))
+
+
+def test_parameters_are_checked():
+    message = load_message(HEADER)
+    with pytest.raises(ValueError, match=r"^Policy must be 'wait' or 'drop', not 'hold'$"):
+        PacketGate(message, when_full="hold")
+    with pytest.raises(ValueError, match=r"^Memory size must be a power of two from 16 bytes"):
+        PacketGate(message, memory_bytes=100)
+    with pytest.raises(TypeError, match=r"^Message must be a Message"):
+        PacketGate("std_msgs/msg/Header")
+
+
+# Twins: a gate with a fault, and the check that finds it.
+
+
+class _LetsAllPass(_Verdicts):
+    def __init__(self, m, gate, *others):
+        super().__init__(m, gate, *others)
+        m.d.comb += self.fifo.abort.eq(0)
+
+
+class _DoesNotWaitForTheVerdict(_Verdicts):
+    def __init__(self, m, gate, *others):
+        super().__init__(m, gate, *others)
+        m.d.comb += self.fifo.packets_in.valid.eq(self.waiting.r_rdy)
+
+
+class _LosesStatuses(_Verdicts):
+    def give_statuses(self):
+        super().give_statuses()
+        self.m.d.comb += self.room.eq(1)
+
+
+class _ReportsLostPacketsTooEarly(_Verdicts):
+    def report_lost(self, door, none_waits):
+        super().report_lost(door, none_waits)
+        self.m.d.comb += self.owes.eq(0)
+
+
+class _HasNoDoor(_Verdicts):
+    def report_lost(self, door, none_waits):
+        super().report_lost(door, none_waits)
+        self.m.d.comb += self.cut.eq(0)
+
+
+@pytest.mark.parametrize("fault", [_LetsAllPass, _DoesNotWaitForTheVerdict, _LosesStatuses])
+def test_a_fault_of_the_gate_is_found(monkeypatch, fault):
+    packets = [bytes.fromhex(GOOD), bytes.fromhex(GOOD)[:11]] * 20
+
+    def check():
+        gate = PacketGate(load_message(HEADER), bus_bytes=8, memory_bytes=64)
+        run = Run(gate, packets, stalls={"status": Stalls.bits("0" * 150 + "1" * 3)})
+        assert run.statuses == judged(load_message(HEADER), packets, 8)
+
+    check()
+    monkeypatch.setattr("firm_hdl.gateware.packets.gate._Verdicts", fault)
+    with pytest.raises(AssertionError):
+        check()
+
+
+@pytest.mark.parametrize(
+    ("fault", "bus_bytes"), [(_ReportsLostPacketsTooEarly, 64), (_HasNoDoor, 16)]
+)
+def test_a_fault_at_the_door_is_found(monkeypatch, fault, bus_bytes):
+    monkeypatch.setattr("firm_hdl.gateware.packets.gate._Verdicts", fault)
+    with pytest.raises(AssertionError):
+        check_late(bus_bytes, "1")
