@@ -93,7 +93,7 @@ TYPES = [
 ]
 
 
-@pytest.mark.parametrize("bus_bytes", [2, 8, 64])
+@pytest.mark.parametrize("bus_bytes", [2, 8])
 @pytest.mark.parametrize(("name", "distro"), TYPES)
 def test_only_good_packets_pass_whole_and_in_order_under_any_stall(name, distro, bus_bytes):
     message = load_message(name, distro=distro)
@@ -190,10 +190,10 @@ def test_a_packet_that_claims_nearly_a_million_elements_costs_its_beats_and_a_fe
     if bus_bytes == 8:
         # The parser takes 15 cycles for a bomb, and 3 for the beats of the other packet.
         assert run.times == [22, 25, 40, 55, 58]
-    # A thousand of them do not add up.
-    many = Run(gate, [BOMB] * 40 + [NO_BOMB])
+    # Many of them do not add up.
+    many = Run(gate, [BOMB] * 20 + [NO_BOMB])
     steps = len(BOMB) // 4 + 4
-    assert many.times[-1] <= 40 * max(own, steps) + next_own + LATENCY + ERROR
+    assert many.times[-1] <= 20 * max(own, steps) + next_own + LATENCY + ERROR
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 8, 64])
@@ -261,8 +261,14 @@ def strings(bus_bytes, count):
     return packets, [verdicts[packet] for packet in packets]
 
 
+@pytest.fixture
+def few_early(monkeypatch):
+    """Few beats wait for the parser, so that short traffic is too much."""
+    monkeypatch.setattr("firm_hdl.gateware.packets.gate.EARLY_BEATS", 33)
+
+
 def check_late(bus_bytes, takes):
-    packets, want = strings(bus_bytes, 80 if bus_bytes == 16 else 40)
+    packets, want = strings(bus_bytes, 25)
     message = load_message(DIAGNOSTICS)
     gate = PacketGate(message, bus_bytes=bus_bytes, memory_bytes=4096, when_full="drop")
     bench = bench_of(gate)
@@ -276,8 +282,9 @@ def check_late(bus_bytes, takes):
     assert Run(gate, packets[-5:], bench, stalls=gap, deadline=2000).statuses == want[-5:]
 
 
+@pytest.mark.usefixtures("few_early")
 @pytest.mark.parametrize(
-    ("bus_bytes", "takes"), [(8, "1"), (16, "0" * 50 + "1" * 20), (64, "1"), (64, "011")]
+    ("bus_bytes", "takes"), [(8, "1"), (16, "1"), (64, "1"), (64, "0" * 50 + "1" * 20)]
 )
 def test_packets_that_come_while_the_parser_is_behind_are_lost_and_counted(bus_bytes, takes):
     check_late(bus_bytes, takes)
@@ -338,6 +345,42 @@ def test_reset_in_the_middle_discards_all(when_full):
         run = Run(gate, packets, bench)
         assert run.statuses == want
         assert run.left[0] == run.lasts[0] + LATENCY + (EARLY if when_full == "drop" else 0)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_random_gates_with_random_stalls_and_resets(seed):
+    rng = random.Random(seed)
+    name, distro = rng.choice([("std_msgs/msg/Bool", "lyrical"), *TYPES])
+    message, bus = load_message(name, distro=distro), rng.choice(BUS_WIDTHS)
+    most = 10_000
+    packets = rng.choices(random_packets(message, bus, 5)[1], k=20)
+    memory = 1 << rng.randrange((2 * bus).bit_length() - 1, 11)
+    when_full = "wait" if seed % 2 else "drop"
+    gate = PacketGate(
+        message,
+        bus_bytes=bus,
+        memory_bytes=memory,
+        packets=rng.choice([1, 2, 3, 8]),
+        when_full=when_full,
+        max_message_bytes=most,
+    )
+    bench = bench_of(gate, keeps_state=True)
+    bad = judged(message, packets, bus, most)
+    for _ in range(2):
+        stalls = {
+            each: Stalls(rng.choice([0, 0.3, 0.8]), max_cycles=rng.choice([1, 5, 40]), seed=seed)
+            for each in ("in", "out", "status")
+        }
+        run = Run(gate, packets, bench, stalls=stalls, deadline=3000)
+        for packet, status, alone in zip(packets, run.statuses, bad, strict=True):
+            large = beats_of(len(packet), bus) * bus > memory
+            want = LARGE if large and alone == OK else alone
+            lost = {LATE} | ({FULL} if alone == OK else set())
+            assert status == want or (when_full == "drop" and status in lost)
+        # Stop somewhere; the next run begins with a reset.
+        source = list(beats(packets, bus))[: rng.randrange(1, 60)]
+        with pytest.raises(DeadlineError):
+            bench.run({"in": source}, {"in": 1000}, stalls=stalls, limit=rng.randrange(100))
 
 
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
@@ -408,6 +451,7 @@ def test_a_fault_of_the_gate_is_found(monkeypatch, fault):
         check()
 
 
+@pytest.mark.usefixtures("few_early")
 @pytest.mark.parametrize(
     ("fault", "bus_bytes"), [(_ReportsLostPacketsTooEarly, 64), (_HasNoDoor, 16)]
 )
