@@ -284,7 +284,7 @@ def check_late(bus_bytes, takes):
 
 @pytest.mark.usefixtures("few_early")
 @pytest.mark.parametrize(
-    ("bus_bytes", "takes"), [(8, "1"), (16, "1"), (64, "1"), (64, "0" * 50 + "1" * 20)]
+    ("bus_bytes", "takes"), [(8, "1"), (16, "0" * 50 + "1" * 20), (64, "1")]
 )
 def test_packets_that_come_while_the_parser_is_behind_are_lost_and_counted(bus_bytes, takes):
     check_late(bus_bytes, takes)
@@ -347,7 +347,7 @@ def test_reset_in_the_middle_discards_all(when_full):
         assert run.left[0] == run.lasts[0] + LATENCY + (EARLY if when_full == "drop" else 0)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(5))
 def test_random_gates_with_random_stalls_and_resets(seed):
     rng = random.Random(seed)
     name, distro = rng.choice([("std_msgs/msg/Bool", "lyrical"), *TYPES])
