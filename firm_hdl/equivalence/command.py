@@ -126,4 +126,3 @@ def _summary(results: Sequence[tuple[ProofTask, Attempt]]) -> str:
             f"({slowest}), {sum(each for each, _ in seconds):.0f} in total"
         )
     return text
-

@@ -165,9 +165,7 @@ class _Flattener:
         if instance.kind in _IGNORED:
             return
         if len(instance.outputs) != 1:
-            raise ProofError(
-                f"GHDL's netlist has {instance.kind}, which a proof does not support"
-            )
+            raise ProofError(f"GHDL's netlist has {instance.kind}, which a proof does not support")
 
         (net,) = instance.outputs.values()
         output = self._net(path, net)

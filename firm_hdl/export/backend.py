@@ -23,6 +23,7 @@ from firm_hdl.wire import Wire
 
 __all__ = ["PORTS", "BackEnd", "Converters", "Options", "Output", "Ports", "module_name"]
 
+
 def module_name(folder: str, direction: Direction) -> str:
     """Return the name of a converter's module in Verilog.
 

@@ -53,9 +53,7 @@ class Record:
     members: tuple[Member, ...]
 
 
-_LENGTH = Member(
-    name="length", stem="uint32_stream", is_leaf=True, remark="number of elements"
-)
+_LENGTH = Member(name="length", stem="uint32_stream", is_leaf=True, remark="number of elements")
 
 
 def shared_records() -> Iterator[Record]:

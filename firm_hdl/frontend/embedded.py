@@ -127,8 +127,8 @@ def embedded_source(distro: str, package: str, name: str) -> Source | None:
 def _default(distro: str, package: str, name: str, field: str) -> str:
     value, since = _DEFAULTS.get((package, name, field), ("", "noetic"))
     distros = list(DISTROS)
-    has_default = (
-        DISTROS[distro].dialect == "ros2" and distros.index(distro) >= distros.index(since)
+    has_default = DISTROS[distro].dialect == "ros2" and distros.index(distro) >= distros.index(
+        since
     )
     return f" {value}" if value and has_default else ""
 

@@ -112,14 +112,12 @@ class Flow:
         self.state = Signal(self.layout, init=self.layout.from_bits(self.start), name="state")
         self.step = self.state.step
         init = {
-            counter: self._words_or_elements(plan.start, counter)
-            for counter, _ in plan.start.enter
+            counter: self._words_or_elements(plan.start, counter) for counter, _ in plan.start.enter
         }
         most = self._most(limit)
         self.words = Counter(most[RUN_COUNTER], "words", init.get(RUN_COUNTER))
         self.levels = [
-            Counter(most[level], f"level_{level}", init.get(level))
-            for level in range(plan.levels)
+            Counter(most[level], f"level_{level}", init.get(level)) for level in range(plan.levels)
         ]
         self.exits = list(self._exits())
         width = self.layout.size

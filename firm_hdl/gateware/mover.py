@@ -153,9 +153,7 @@ class _MoverLogic:
                     self.good[name].eq(Cat(size > k for k in range(bus))),
                 ]
 
-    def _memories(
-        self, ports: dict[str, tuple[Value, tuple[int, ...]]]
-    ) -> dict[str, list[Value]]:
+    def _memories(self, ports: dict[str, tuple[Value, tuple[int, ...]]]) -> dict[str, list[Value]]:
         """Make a memory for each lane, which each word reads at its own address."""
         m, ring, beat = self.m, self.ring, self.c.beat
         found: dict[str, list[Value]] = {name: [] for name in ports}

@@ -145,9 +145,7 @@ class _PackerLogic:
         m.d.comb += pad.eq((phase - total) & mask)
         return Mux(last, total & ~Cat(mask, Const(0, size - len(mask))), total + pad)[:size]
 
-    def _rotated(
-        self, name: str, start: Value, size: Value, lanes: tuple[int, ...]
-    ) -> _Placed:
+    def _rotated(self, name: str, start: Value, size: Value, lanes: tuple[int, ...]) -> _Placed:
         """Rotate a word so that its first byte is in the lane of its position."""
         m, ring, bus = self.m, self.ring, self.plan.bus_bytes
         word = rotate(

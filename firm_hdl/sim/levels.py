@@ -118,9 +118,7 @@ class _Levels:
                 for source in self.reads[each]
                 if source in self.groups and source not in group
             ]
-            missing = [
-                each for each in sources if each not in self.depths and each not in entered
-            ]
+            missing = [each for each in sources if each not in self.depths and each not in entered]
             for each in group:
                 entered.add(each)
             if missing:

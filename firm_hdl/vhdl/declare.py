@@ -154,9 +154,7 @@ def _signals(graph: Graph, requests: list[_Request], scope: Scope) -> Iterator[S
     for generated in (False, True):
         given |= scope.give_all({r.wire: r.name for r in requests if r.generated is generated})
     for each in requests:
-        declared = Declared(
-            name=given[each.wire], width=graph.width[each.wire], vector=each.vector
-        )
+        declared = Declared(name=given[each.wire], width=graph.width[each.wire], vector=each.vector)
         yield Signal(wire=each.wire, declared=declared, role=each.role)
 
 

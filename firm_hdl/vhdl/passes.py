@@ -257,9 +257,7 @@ def _fold(graph: Graph) -> Graph:
             if port != "Y"
             for chunk in spec
         )
-        if weight <= _MAX_OPERANDS and (
-            count[name] == 1 or _may_repeat(cell, count[name], folded)
-        ):
+        if weight <= _MAX_OPERANDS and (count[name] == 1 or _may_repeat(cell, count[name], folded)):
             leaves[name] = weight
             folded[name] = cell
     return replace(graph, folded=folded)

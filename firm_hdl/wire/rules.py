@@ -9,7 +9,6 @@ from firm_hdl.model import Wire
 __all__ = ["WireRules"]
 
 
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WireRules:
     """Rules of a wire format.

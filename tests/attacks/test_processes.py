@@ -137,9 +137,7 @@ def exploding():
 def explode(place, source, name, commands, before=""):
     lines = [
         [command, *([] if command == "list" else [name]), source, str(place)]
-        + (
-            ["--systems", "ts1,ts2,ts3,bench"] if command == "verify" and source == "--path" else []
-        )
+        + (["--systems", "ts1,ts2,ts3,bench"] if command == "verify" and source == "--path" else [])
         for command in commands
     ]
     done = subprocess.run(

@@ -266,9 +266,7 @@ def test_crash_leaves_the_old_or_the_new(tmp_path, monkeypatch, fails_at, error,
     for turn in range(20):
         calls = 0
 
-        def fail(
-            self: Path, *args: object, _turn: int = turn, **options: object
-        ) -> object:
+        def fail(self: Path, *args: object, _turn: int = turn, **options: object) -> object:
             nonlocal calls
             # The build's own folders only: putting things back must work.
             if self.name.endswith((".json", ".yaml", ".svg", ".v", ".new")) or calls == 0:

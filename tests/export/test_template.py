@@ -69,9 +69,7 @@ def test_icarus_takes_templates_in_both_languages(iverilog, tmp_path, direction,
 
 
 def test_fields_are_tied_off(tmp_path):
-    text = (
-        "int8 x\nstring s\nuint8[8] one\nuint8[9] two\nbool[] list\nInner[2] inner\n"
-    )
+    text = "int8 x\nstring s\nuint8[8] one\nuint8[9] two\nbool[] list\nInner[2] inner\n"
     message = library(tmp_path, {"p/T": text, "p/Inner": "float64 y"}).message("p/T")
     taken = dict(CONNECTION.findall(template_of(message, "deserializer")))
     for name, value in taken.items():

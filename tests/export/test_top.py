@@ -30,8 +30,11 @@ class Loopback(Elaboratable):
         m.submodules.rx, m.submodules.tx = self.rx, self.tx
         for top in (self.rx, self.tx):
             m.d.comb += [top.aclk.eq(self.aclk), top.aresetn.eq(self.aresetn)]
-        leaves = {port.name for port in ports_of(self.rx.core.plan, "deserializer")
-                  if port.leaf is not None}
+        leaves = {
+            port.name
+            for port in ports_of(self.rx.core.plan, "deserializer")
+            if port.leaf is not None
+        }
         for name in sorted(leaves):
             source, sink = getattr(self.rx, name), getattr(self.tx, name)
             m.d.comb += source.eq(sink) if name.endswith("_ready") else sink.eq(source)

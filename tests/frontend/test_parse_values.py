@@ -206,7 +206,7 @@ def test_ros2_defaults_of_arrays(line, values):
         "bool[] x [2]",
         "string[] x [a, ]b",
         'string[] x ["a]',
-        '''string[] x ["'a'b'"]''',
+        """string[] x ["'a'b'"]""",
         "Foo x 1",
         "Foo[] x []",
     ],

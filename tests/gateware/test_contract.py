@@ -211,9 +211,7 @@ def test_padding_may_come_long_after_the_message(bus_bytes, slack):
     fixed = make("ros2", {"x": "uint16"})
     text = make("ros2", {"x": "uint16", "s": "string"})
     start = [0, 1, 0, 0, 7, 7]
-    texts = [
-        [*start, 0, 0, count + 1, 0, 0, 0, *range(1, count + 1), 0] for count in range(9)
-    ]
+    texts = [[*start, 0, 0, count + 1, 0, 0, 0, *range(1, count + 1), 0] for count in range(9)]
     for message, packets in ((fixed, [start]), (text, texts)):
         statuses = loopback(
             message,

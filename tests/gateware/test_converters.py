@@ -47,9 +47,7 @@ def test_messages_come_through_byte_for_byte(wire, data, case, options, stalls):
     packets = [serialize(definition, item, wire)[1] for item in (value, *more)]
     rx = Deserializer(definition.message, wire=wire, **options)
     tx = Serializer(definition.message, wire=wire, **options)
-    seen = Harness(rx, tx, gated=stalls is not None).run_packets(
-        packets, RunOptions(stalls=stalls)
-    )
+    seen = Harness(rx, tx, gated=stalls is not None).run_packets(packets, RunOptions(stalls=stalls))
     assert seen.packets == packets
     assert carried(seen.transfers) == expected(rx.plan, packets)[0]
     assert set(seen.statuses) | set(seen.sent_statuses) == {Status.OK}

@@ -111,9 +111,7 @@ def agree(plan, packets, seen):
     bus_bytes=st.sampled_from(BUS_WIDTHS),
     probability=st.sampled_from([0.0, 0.3, 0.8]),
 )
-def test_random_packets_get_the_status_of_the_interpreter(
-    wire, data, case, bus_bytes, probability
-):
+def test_random_packets_get_the_status_of_the_interpreter(wire, data, case, bus_bytes, probability):
     definition, value = case
     layout = lay_out(definition.message, wire)
     plan = build_plan(layout, bus_bytes=bus_bytes, max_message_bytes=100_000)
@@ -121,9 +119,7 @@ def test_random_packets_get_the_status_of_the_interpreter(
     packets = [good]
     for packet in data.draw(st.lists(damaged(good), min_size=1, max_size=6)):
         packets += [packet, good]
-    parser = Parser(
-        definition.message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=100_000
-    )
+    parser = Parser(definition.message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=100_000)
     stalls = Stalls(probability=probability, max_cycles=5, seed=1)
     agree(plan, packets, run(parser, packets, stalls=stalls))
 

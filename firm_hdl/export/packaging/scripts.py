@@ -30,6 +30,4 @@ def scripts(manifest: Manifest) -> dict[str, str]:
         "own_files": own_files(vhdl["files"], vhdl),
         "vunit_top": vunit_top,
     }
-    return {
-        name: render(f"packaging/{template}", **values) for name, template in templates.items()
-    }
+    return {name: render(f"packaging/{template}", **values) for name, template in templates.items()}

@@ -17,6 +17,7 @@ from firm_hdl.plan import Plan
 
 __all__ = ["constants_of", "message_package"]
 
+
 def constants_of(package: Package, plan: Plan) -> list[NamedConstant]:
     """Name the constants that a message itself declares."""
     return named_constants(package.message, _taken(package, plan), nested=False)

@@ -118,9 +118,7 @@ def to_vhdl(converters: Converters) -> Output:
     return Output(files=files, manifest=section)
 
 
-def _add_records(
-    parts: _Parts, converters: Converters, cores: Mapping[Direction, Core]
-) -> None:
+def _add_records(parts: _Parts, converters: Converters, cores: Mapping[Direction, Core]) -> None:
     """Add the layer with records and its benches."""
     message, plan = converters.message, converters.plan
     reason = why_no_record(message, plan)

@@ -14,6 +14,7 @@ from firm_hdl.export.vhdl.records import stream_record
 
 __all__ = ["bus_package"]
 
+
 def bus_package(bus_bytes: int) -> str:
     """Write the package."""
     return "".join(_package(bus_bytes))

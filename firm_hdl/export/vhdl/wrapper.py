@@ -154,9 +154,7 @@ def _entity(
     yield "\nend architecture;\n"
 
 
-def stream_wrapper(
-    plan: Plan, tree: Tree, direction: Direction, *, entity: str, core: Core
-) -> str:
+def stream_wrapper(plan: Plan, tree: Tree, direction: Direction, *, entity: str, core: Core) -> str:
     """Write a converter with a record of streams, one for each leaf."""
     package = tree.package.name
     conversions = _Conversions(plan, tree, direction)

@@ -54,9 +54,7 @@ class OfferedLength:
         with m.If(~self.held):
             self._decode(m, plan, begin, length)
 
-    def _decode(
-        self, m: Module, plan: Plan, begin: BeginRun | BeginLoop, length: Value
-    ) -> None:
+    def _decode(self, m: Module, plan: Plan, begin: BeginRun | BeginLoop, length: Value) -> None:
         zero = ~length.any()
         m.d.sync += [self.zero.eq(zero), self.over.eq(exceeds(length, begin.limit))]
         if isinstance(begin, BeginLoop):

@@ -8,10 +8,10 @@ from amaranth.lib.fifo import SyncFIFO, SyncFIFOBuffered
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
-from firm_hdl.gateware.packets.door import MOST_LOST, PacketDoor, door_layout
 from firm_hdl.gateware.packets.fifo import PacketFifo
 from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull, check_policy
 from firm_hdl.gateware.packets.status import GateStatus, GateStatusSignature
+from firm_hdl.gateware.packets.tail_drop import MOST_DROPPED, TailDrop, tail_drop_layout
 from firm_hdl.gateware.parser import Parser, parser_plan
 from firm_hdl.gateware.signatures import PacketSignature, Status
 from firm_hdl.model import Message
@@ -24,7 +24,7 @@ __all__ = ["PacketGate"]
 STATUSES = 8
 """Statuses that wait until they are taken."""
 
-EARLY_BEATS = 257
+BACKLOG_BEATS = 257
 """Beats that wait for the parser, if the link cannot be held: 256 in block RAM, and a register."""
 
 COUNTED = {
@@ -59,11 +59,11 @@ class PacketGate(wiring.Component):
     the parser is behind, or while statuses wait: 8 statuses are stored, and the packets after them
     wait for these to be taken. A gate whose statuses are not needed has a constant 1 at
     `status.ready`. With `"drop"`, `packets_in.ready` is always high. 257 beats wait for the parser;
-    packets that come while there is no room for more are dropped with the status `LATE`.
+    packets that come while there is no room for more are dropped with the status `OVERRUN`.
 
     Each packet has exactly one transfer on `status`, in the order of the packets. There is one
-    exception: with `"drop"`, packets are counted but have no status if more than 255 in a row stay
-    outside, because nobody takes statuses.
+    exception: with `"drop"`, packets are counted but have no status if more than 255 in a row are
+    dropped whole, because nobody takes statuses.
 
     All outputs depend on registers only. One clock domain, `sync`; its reset discards all packets
     inside. The first beat after the reset begins a packet.
@@ -83,10 +83,10 @@ class PacketGate(wiring.Component):
         Bytes of the packet on `packets_out`, from its first beat to its last one.
     status : Out(GateStatusSignature)
         One transfer per packet.
-    counters : Out(counters_layout("passed", "truncated", ..., "full", "large", "late"))
+    counters : Out(counters_layout("passed", "truncated", ..., "full", "large", "overrun"))
         Packets by status, each with 32 bits; a counter stops at its largest value. A packet is
-        counted when its status becomes valid, or would if those before it were taken; with `LATE`,
-        2 cycles after its last beat.
+        counted when its status becomes valid, or would if those before it were taken; with
+        `OVERRUN`, 2 cycles after its last beat.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ class PacketGate(wiring.Component):
                 "packets_out": Out(PacketSignature(bus_bytes)),
                 "size": Out(range(memory_bytes + 1)),
                 "status": Out(GateStatusSignature),
-                "counters": Out(counters_layout(*COUNTED, "late")),
+                "counters": Out(counters_layout(*COUNTED, "overrun")),
             }
         )
 
@@ -156,27 +156,31 @@ class PacketGate(wiring.Component):
                 self.packets_in.ready.eq(beats.ready),
             ]
         else:
-            m.submodules.door = door = PacketDoor(self.bus_bytes)
-            m.submodules.early = early = SyncFIFOBuffered(width=layout.size, depth=EARLY_BEATS)
+            m.submodules.tail_drop = tail_drop = TailDrop(self.bus_bytes)
+            m.submodules.backlog = backlog = SyncFIFOBuffered(
+                width=layout.size, depth=BACKLOG_BEATS
+            )
             m.d.comb += [
-                door.packets.valid.eq(self.packets_in.valid),
-                door.packets.payload.eq(self.packets_in.payload),
-                self.packets_in.ready.eq(door.packets.ready),
-                early.w_data.eq(Value.cast(door.inside.payload)),
-                early.w_en.eq(door.inside.valid),
-                door.inside.ready.eq(early.w_rdy),
-                Value.cast(beats.payload).eq(early.r_data),
-                beats.valid.eq(early.r_rdy),
-                early.r_en.eq(beats.ready),
+                tail_drop.packets_in.valid.eq(self.packets_in.valid),
+                tail_drop.packets_in.payload.eq(self.packets_in.payload),
+                self.packets_in.ready.eq(tail_drop.packets_in.ready),
+                backlog.w_data.eq(Value.cast(tail_drop.packets_out.payload)),
+                backlog.w_en.eq(tail_drop.packets_out.valid),
+                tail_drop.packets_out.ready.eq(backlog.w_rdy),
+                Value.cast(beats.payload).eq(backlog.r_data),
+                beats.valid.eq(backlog.r_rdy),
+                backlog.r_en.eq(beats.ready),
             ]
-            verdicts.report_lost(door, early.level == 0)
+            verdicts.report_dropped(tail_drop, backlog.level == 0)
         return m
 
 
 def _layout(gate: PacketGate) -> data.StructLayout:
     """Return the shape of beats that wait for the memory."""
-    whole = door_layout(gate.bus_bytes)
-    return data.StructLayout({"beat": whole["beat"].shape}) if gate.when_full == "wait" else whole
+    layout = tail_drop_layout(gate.bus_bytes)
+    if gate.when_full == "drop":
+        return layout
+    return data.StructLayout({"beat": layout["beat"].shape})
 
 
 class _Verdicts:
@@ -203,17 +207,19 @@ class _Verdicts:
         self.m, self.gate, self.parser, self.fifo = m, gate, parser, fifo
         self.waiting = waiting
         self.head = Signal(_layout(gate), name="head")
-        # The beat is the end of a packet whose rest stayed outside.
-        self.cut = Signal(name="cut")
+        # The beat is the end of a packet whose rest was dropped.
+        self.aborted = Signal(name="aborted")
         # There is room for a status, with those on the way.
         self.room = Signal(name="room")
-        # A status of a packet that stayed outside is due before the beat, or because there is none.
-        self.owes, self.reports = Signal(name="owes"), Signal(name="reports")
+        # Packets that were dropped whole before the packet of this beat have no status yet.
+        self.report_due = Signal(name="report_due")
+        # The status of such a packet is given.
+        self.reports = Signal(name="reports")
         # The first beat of a packet is next.
         self.starts = Signal(name="starts", init=1)
         self.ends = Signal(name="ends")
-        # A packet that stays outside, or is cut, ends now.
-        self.late = Signal(name="late")
+        # A packet of which beats were dropped ends now.
+        self.overrun = Signal(name="overrun")
         m.d.comb += self.head.eq(waiting.r_data)
         self._store()
 
@@ -225,9 +231,9 @@ class _Verdicts:
         m.d.comb += [
             store.payload.eq(head.beat),
             store.valid.eq(
-                waiting.r_rdy & ~self.owes & (~head.beat.last | (status.valid & self.room))
+                waiting.r_rdy & ~self.report_due & (~head.beat.last | (status.valid & self.room))
             ),
-            fifo.abort.eq((status.payload != Status.OK) | self.cut),
+            fifo.abort.eq((status.payload != Status.OK) | self.aborted),
             waiting.r_en.eq(store.valid & store.ready),
             self.ends.eq(waiting.r_en & head.beat.last),
             status.ready.eq(self.ends),
@@ -235,29 +241,33 @@ class _Verdicts:
         with m.If(waiting.r_en):
             m.d.sync += self.starts.eq(head.beat.last)
 
-    def report_lost(self, door: PacketDoor, none_waits: Value) -> None:
-        """Give the statuses of packets that stayed outside, before the packet after them.
+    def report_dropped(self, tail_drop: TailDrop, none_waits: Value) -> None:
+        """Give the statuses of packets that were dropped whole, before the packet after them.
 
         Parameters
         ----------
         none_waits : Value
-            No beat is between the door and the parser.
+            No beat is between the tail drop and the parser.
         """
         m, head, waiting = self.m, self.head, self.waiting
-        reported = Signal(range(MOST_LOST + 1), name="reported")
+        reported = Signal(range(MOST_DROPPED + 1), name="reported")
         directly = Signal(name="directly")
         m.d.comb += [
-            self.cut.eq(head.cut),
-            self.late.eq(door.drops),
-            self.owes.eq(self.starts & (reported != head.lost)),
-            # No packet is inside, and none comes.
-            directly.eq(none_waits & ~waiting.r_rdy & door.lost.any() & ~door.inside.valid),
-            door.report.eq(directly & self.starts & self.room),
-            self.reports.eq(self.room & self.starts & (directly | (waiting.r_rdy & self.owes))),
+            self.aborted.eq(head.aborted),
+            self.overrun.eq(tail_drop.drops),
+            self.report_due.eq(self.starts & (reported != head.dropped)),
+            # No packet waits, and none comes.
+            directly.eq(
+                none_waits & ~waiting.r_rdy & tail_drop.dropped.any() & ~tail_drop.packets_out.valid
+            ),
+            tail_drop.report.eq(directly & self.starts & self.room),
+            self.reports.eq(
+                self.room & self.starts & (directly | (waiting.r_rdy & self.report_due))
+            ),
         ]
         with m.If(waiting.r_en):
             m.d.sync += reported.eq(0)
-        with m.Elif(waiting.r_rdy & self.owes & self.room):
+        with m.Elif(waiting.r_rdy & self.report_due & self.room):
             m.d.sync += reported.eq(reported + 1)
 
     def give_statuses(self) -> None:
@@ -283,7 +293,7 @@ class _Verdicts:
             unsent.eq(unsent + enters - (gate.status.valid & gate.status.ready)),
             is_due.eq(enters),
             Value.cast(code).eq(
-                Mux(self.reports | self.cut, Value.cast(GateStatus.LATE), Value.cast(parsed))
+                Mux(self.reports | self.aborted, Value.cast(GateStatus.OVERRUN), Value.cast(parsed))
             ),
             is_ready.eq(is_due),
             judged.eq(code),
@@ -294,5 +304,5 @@ class _Verdicts:
         with m.If((judged == GateStatus.OK) & (self.fifo.outcome == Outcome.LARGE)):
             m.d.comb += final.eq(GateStatus.LARGE)
         events = {name: is_ready & (final == each) for name, each in COUNTED.items()}
-        events["late"] = self.late
+        events["overrun"] = self.overrun
         add_counters(m, gate.counters, events)

@@ -23,7 +23,7 @@ class GateStatus(enum.Enum, shape=4):  # type: ignore[call-arg]
         There was no room for the packet (`"drop"` only).
     LARGE
         The packet is larger than the memory.
-    LATE
+    OVERRUN
         The packet came while the gate was not ready, because short strings, sequences or elements
         take the parser more cycles than beats, or because statuses were not taken (`"drop"` only).
     """
@@ -36,7 +36,7 @@ class GateStatus(enum.Enum, shape=4):  # type: ignore[call-arg]
     STRING = 5
     FULL = 8
     LARGE = 9
-    LATE = 10
+    OVERRUN = 10
 
 
 GateStatusSignature = stream.Signature(GateStatus)

@@ -120,18 +120,18 @@ class PacketWriter(wiring.Component):
         words = Signal(shape.address_bits)
         # The packet lost a beat before the current one, because it is larger than the memory.
         dropping, large = Signal(), Signal(reset_less=True)
-        lost, fails, ends = Signal(), Signal(), Signal()
+        discarded, fails, ends = Signal(), Signal(), Signal()
         at = Signal(shape.position_bits)
         m.d.comb += [
             ends.eq(self.has_beat & beat.last),
-            lost.eq(dropping | ~self.fits),
-            fails.eq(lost | words.all()),
-            self.keeps.eq(ends & ~lost & ~self.aborts),
+            discarded.eq(dropping | ~self.fits),
+            fails.eq(discarded | words.all()),
+            self.keeps.eq(ends & ~discarded & ~self.aborts),
             self.drops.eq(Mux(self.has_beat, ~beat.last & fails, dropping)),
             self.rewinds.eq(self.has_beat & ~self.keeps & (beat.last | fails)),
             self.word.eq(beat),
             self.at.eq(at),
-            self.writes.eq(self.has_beat & ~lost),
+            self.writes.eq(self.has_beat & ~discarded),
             self.size.eq(Cat(Const(0, shape.lane_bits), words) + beat.count),
         ]
         m.d.sync += [
@@ -144,7 +144,7 @@ class PacketWriter(wiring.Component):
                     Mux(
                         dropping & large,
                         Outcome.LARGE,
-                        Mux(lost, Outcome.FULL, Outcome.KEPT),
+                        Mux(discarded, Outcome.FULL, Outcome.KEPT),
                     ),
                 )
             ),

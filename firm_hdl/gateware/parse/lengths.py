@@ -244,9 +244,7 @@ class Lengths(wiring.Component):
             else:
                 lanes = self._lanes_of(meaning)
                 word = self.plan.word(meaning.run.run)
-                skips, single, double = (
-                    ~exceeds(length, n * lanes + word) for n in range(3)
-                )
+                skips, single, double = (~exceeds(length, n * lanes + word) for n in range(3))
                 m.d.comb += entry[meaning.rest].eq(self._rest(length, lanes, word - lanes))
                 self._places(m, length, lane, entry, meaning)
             m.d.comb += [

@@ -93,9 +93,7 @@ def place_fields(plan: Plan) -> dict[str, int]:
     if bus < 8:
         widths["low"] = Ring(plan).bits
     names = {name for index in range(len(plan.steps)) for name, _ in _ways(plan, index)}
-    return {
-        f"{name}_{what}": bits for name in sorted(names) for what, bits in widths.items()
-    }
+    return {f"{name}_{what}": bits for name in sorted(names) for what, bits in widths.items()}
 
 
 class NextPlace:

@@ -183,9 +183,7 @@ _ROSBAGS.refuses(
     "rosbags-bare-string", "An empty string whose length is 0 is refused.", "bare-string"
 )
 _ROSBAGS.refuses("rosbags-no-nul", "A string without a NUL is refused.", "no-nul")
-_ROSBAGS.refuses(
-    "rosbags-trailing", "More than 3 bytes after a message are refused.", "trailing-4"
-)
+_ROSBAGS.refuses("rosbags-trailing", "More than 3 bytes after a message are refused.", "trailing-4")
 _ROSBAGS.takes(
     "rosbags-bounds", "Bounds of sequences are not checked.", "bound-items", "encode bound-items"
 )

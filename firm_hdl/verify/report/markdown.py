@@ -18,9 +18,7 @@ MOST_NAMES = 50
 def to_markdown(summary: Summary) -> str:
     """Write a report as Markdown."""
     found = environment(is_html=False, text=_text, table=_table, block=_block)
-    found.globals.update(
-        summary=summary, most={"failures": MOST_FAILURES, "names": MOST_NAMES}
-    )
+    found.globals.update(summary=summary, most={"failures": MOST_FAILURES, "names": MOST_NAMES})
     text = found.get_template("report.md.j2").render()
     return re.sub("\n{3,}", "\n\n", text).strip() + "\n"
 

@@ -26,6 +26,7 @@ __all__ = [
     "simulator",
 ]
 
+
 class TextSimulator(Protocol):
     """A simulator of exported text.
 

@@ -25,9 +25,7 @@ def test_bench_passes(ghdl, tmp_path, name, bus_bytes):
     packets = stimuli(message, plan)
     made, _ = vhdl_of(message, bus_bytes, packets, ports="flat")
     write(tmp_path / "vhdl", made.files)
-    analyse(
-        ghdl, tmp_path / "vhdl", [*made.manifest["files"], *made.manifest["bench"]["files"]]
-    )
+    analyse(ghdl, tmp_path / "vhdl", [*made.manifest["files"], *made.manifest["bench"]["files"]])
     status, said = run(tmp_path / "vhdl", GHDL=ghdl)
     assert status == 0, said
     assert said.startswith("PASS ") and f": {len(packets)} packets, " in said

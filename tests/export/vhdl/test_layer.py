@@ -191,9 +191,7 @@ def test_types_are_shared_and_no_two_names_meet(tmp_path):
 def test_nasty_names_are_analysed_without_warnings(ghdl, tmp_path, bus_bytes):
     made, _ = vhdl_of(nasty(tmp_path), bus_bytes)
     write(tmp_path / "vhdl", made.files)
-    analyse(
-        ghdl, tmp_path / "vhdl", [*made.manifest["files"], *made.manifest["bench"]["files"]]
-    )
+    analyse(ghdl, tmp_path / "vhdl", [*made.manifest["files"], *made.manifest["bench"]["files"]])
 
 
 USERS_OWN = """\

@@ -128,9 +128,7 @@ def test_swapped_members_fail(ghdl, tmp_path):
 def test_arrays_are_analysed_without_warnings(ghdl, tmp_path, distro):
     vhdl, _ = vhdl_of(arrays(tmp_path, distro))
     write(tmp_path / "vhdl", vhdl.files)
-    analyse(
-        ghdl, tmp_path / "vhdl", [*vhdl.manifest["files"], *vhdl.manifest["bench"]["files"]]
-    )
+    analyse(ghdl, tmp_path / "vhdl", [*vhdl.manifest["files"], *vhdl.manifest["bench"]["files"]])
     assert "--warn-hide" in WARNINGS
 
 

@@ -140,9 +140,7 @@ def simulated(ghdl: str, folders: list[Path], work: Path, expected: Iterable[byt
     files = [*once(folders, "files.txt"), *once(folders, "bench_files.txt")]
     files = [file for file in files if "_tb" not in file.name]
     options = ["--std=08", f"--workdir={work}"]
-    status, said = run(
-        [ghdl, "-a", *options, "--warn-error", *map(str, files), "design.vhd"], work
-    )
+    status, said = run([ghdl, "-a", *options, "--warn-error", *map(str, files), "design.vhd"], work)
     assert (status, said) == (0, "")
     return run([ghdl, "--elab-run", *options, "design", "--ieee-asserts=disable-at-0"], work)[1]
 

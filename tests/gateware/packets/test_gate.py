@@ -9,80 +9,28 @@ import pytest
 from amaranth.hdl import Cat, Value
 
 from firm_hdl import Deserializer, GateStatus, PacketGate, load_message
-from firm_hdl.gateware.packets.door import MOST_LOST
-from firm_hdl.gateware.packets.gate import COUNTED, EARLY_BEATS, _Verdicts
+from firm_hdl.gateware.packets.gate import _Verdicts
 from firm_hdl.model import PRIMITIVES, Field, Message, Sequence
-from firm_hdl.plan import build_plan, decode
 from firm_hdl.sim import DeadlineError, Harness, RunOptions, Stalls
 from firm_hdl.sim.payloads import beats_of
-from firm_hdl.wire import lay_out
-from tests.gateware.packets.bench import PacketBench, beats
+from tests.gateware.packets.bench import beats
+from tests.gateware.packets.gates import (
+    BACKLOG,
+    BOMB,
+    DIAGNOSTICS,
+    ERROR,
+    FULL,
+    LARGE,
+    LATENCY,
+    NO_BOMB,
+    OK,
+    OVERRUN,
+    GateRun,
+    gate_bench,
+    judged,
+)
 from tests.gateware.test_parser import BAD, GOOD, HEADER, has_path, random_packets
 from tests.strategies import BUS_WIDTHS
-
-LATENCY = 7
-"""Cycles from the transfer of the last beat to the first beat, and to the status."""
-ERROR = 4
-"""Cycles that an error adds at most."""
-EARLY = 2
-"""Cycles more for a link that cannot be held."""
-
-OK, FULL, LARGE, LATE = GateStatus.OK, GateStatus.FULL, GateStatus.LARGE, GateStatus.LATE
-DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
-TEXT = "00010000 01000000 02000000 01000000 00 000000 a0bb0d00"
-BOMB = bytes.fromhex(TEXT).ljust(60, b"\0")
-"""A packet that claims 900,000 elements."""
-NO_BOMB = bytes.fromhex(TEXT[:-8] + "00000000")
-
-
-def bench_of(gate, **options):
-    names = [*COUNTED, "late"]
-    return PacketBench(
-        gate,
-        {"in": gate.packets_in},
-        {"out": (gate.packets_out, gate.bus_bytes, gate.size)},
-        others={"status": gate.status},
-        final={name: gate.counters[name] for name in names},
-        **options,
-    )
-
-
-class Run:
-    """Packets through a gate, with all that must hold of any run."""
-
-    def __init__(self, gate, packets, bench=None, want=None, **options):
-        bus = gate.bus_bytes
-        bench = bench or bench_of(gate)
-        total = sum(beats_of(len(packet), bus) for packet in packets)
-        want = {"in": total, "status": len(packets)} if want is None else want
-        source = beats(packets, bus, noise=random.Random(1))
-        seen = bench.run({"in": source}, want, **{"settle": 30, **options})
-        self.packets, self.taken, self.left = (
-            seen.packets["out"],
-            seen.times["in"],
-            seen.times["out"],
-        )
-        self.statuses = [GateStatus(bits) for bits in seen.others["status"]]
-        self.times = seen.times["status"]
-        self.counters = bench.state
-        self.lasts, at = [], -1
-        for packet in packets:
-            at += beats_of(len(packet), bus)
-            self.lasts.append(self.taken[at])
-        # One status per packet. What leaves is what was good, with its size.
-        assert len(self.statuses) == len(packets)
-        pairs = zip(packets, self.statuses, strict=True)
-        assert self.packets == [packet for packet, status in pairs if status == OK]
-        assert seen.sides["out"] == [{len(packet)} for packet in self.packets]
-        counted = {name: self.statuses.count(each) for name, each in COUNTED.items()}
-        assert self.counters == counted | {"late": self.statuses.count(LATE)}
-
-
-def judged(message, packets, bus_bytes, most=1 << 24):
-    """Return what the interpreter of the plan says of packets."""
-    plan = build_plan(lay_out(message), bus_bytes=bus_bytes, max_message_bytes=most)
-    return [GateStatus[str(decode(plan, packet).status)] for packet in packets]
-
 
 TYPES = [
     (HEADER, "lyrical"),
@@ -105,14 +53,14 @@ def test_only_good_packets_pass_whole_and_in_order_under_any_stall(name, distro,
     gate = PacketGate(
         message, bus_bytes=bus_bytes, memory_bytes=memory, packets=4, max_message_bytes=most
     )
-    bench = bench_of(gate)
+    bench = gate_bench(gate)
     for stalls in (
         None,
         Stalls(0.3, max_cycles=9, seed=2),
         {"out": Stalls(0.8, max_cycles=5), "in": Stalls(0.1)},
         {"status": Stalls.bits("0" * 40 + "1")},
     ):
-        assert Run(gate, packets, bench, stalls=stalls).statuses == want
+        assert GateRun(gate, packets, bench, stalls=stalls).statuses == want
 
 
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
@@ -127,7 +75,7 @@ def test_bad_packets_of_each_kind_between_good_ones(bus_bytes, when_full):
         load_message(HEADER), bus_bytes=bus_bytes, memory_bytes=256, when_full=when_full
     )
     gap = None if when_full == "wait" else {"in": Stalls.bits("01")}
-    run = Run(gate, packets, stalls=gap)
+    run = GateRun(gate, packets, stalls=gap)
     assert run.statuses == want
     # What an error adds is less than the beats of these packets on a narrow bus.
     if when_full == "wait" and bus_bytes < 4:
@@ -139,7 +87,7 @@ def test_latency_is_exact(bus_bytes, more):
     good, bad = bytes.fromhex(GOOD), bytes.fromhex(GOOD)[:11]
     packets = [good, bad, good]
     gate = PacketGate(load_message(HEADER), bus_bytes=bus_bytes, memory_bytes=1024)
-    run = Run(gate, packets, stalls={"in": Stalls.bits("0" * 15 + "1")})
+    run = GateRun(gate, packets, stalls={"in": Stalls.bits("0" * 15 + "1")})
     late = [time - last for time, last in zip(run.times, run.lasts, strict=True)]
     assert late[0] == late[2] == LATENCY + more
     assert LATENCY <= late[1] <= LATENCY + ERROR
@@ -154,7 +102,7 @@ def test_a_beat_per_cycle_through_long_packets(bus_bytes):
     sizes = [700, 64, 701, 300]
     packets = [size.to_bytes(4, "little") + random.Random(size).randbytes(size) for size in sizes]
     gate = PacketGate(message, bus_bytes=bus_bytes, memory_bytes=4096)
-    run = Run(gate, packets)
+    run = GateRun(gate, packets)
     total = sum(beats_of(len(packet), bus_bytes) for packet in packets)
     assert run.taken == list(range(run.taken[0], run.taken[0] + total))
     free = 0
@@ -170,10 +118,10 @@ def test_a_packet_per_cycle():
     packets = [b"\0\1\0\0\1", b"\0\1\0\0\0"] * 50
     for when_full in ("wait", "drop"):
         gate = PacketGate(load_message("std_msgs/msg/Bool"), memory_bytes=256, when_full=when_full)
-        run = Run(gate, packets)
+        run = GateRun(gate, packets)
         first = run.taken[0]
         assert run.taken == list(range(first, first + 100))
-        first += LATENCY + (EARLY if when_full == "drop" else 0)
+        first += LATENCY + (BACKLOG if when_full == "drop" else 0)
         assert run.left == run.times == list(range(first, first + 100))
 
 
@@ -181,7 +129,7 @@ def test_a_packet_per_cycle():
 def test_a_packet_that_claims_nearly_a_million_elements_costs_its_beats_and_a_few_cycles(bus_bytes):
     gate = PacketGate(load_message(DIAGNOSTICS), bus_bytes=bus_bytes, memory_bytes=256)
     packets = [BOMB, NO_BOMB, BOMB, BOMB, NO_BOMB]
-    run = Run(gate, packets)
+    run = GateRun(gate, packets)
     assert [status.name for status in run.statuses] == "TRUNCATED OK TRUNCATED TRUNCATED OK".split()
     # Free again: the packet after it is in, whole, and has its status.
     own, next_own = beats_of(len(BOMB), bus_bytes), beats_of(len(NO_BOMB), bus_bytes)
@@ -191,7 +139,7 @@ def test_a_packet_that_claims_nearly_a_million_elements_costs_its_beats_and_a_fe
         # The parser takes 15 cycles for a bomb, and 3 for the beats of the other packet.
         assert run.times == [22, 25, 40, 55, 58]
     # Many of them do not add up.
-    many = Run(gate, [BOMB] * 20 + [NO_BOMB])
+    many = GateRun(gate, [BOMB] * 20 + [NO_BOMB])
     steps = len(BOMB) // 4 + 4
     assert many.times[-1] <= 20 * max(own, steps) + next_own + LATENCY + ERROR
 
@@ -213,9 +161,9 @@ def test_a_packet_as_large_as_the_memory_passes_and_a_larger_one_does_not(bus_by
     gate = PacketGate(message, bus_bytes=bus_bytes, memory_bytes=memory, when_full=when_full)
     gap = {"in": Stalls.bits("0" * 80 + "1" * beats_of(memory + 1, bus_bytes))}
     if when_full == "wait":
-        assert Run(gate, packets).statuses == want
+        assert GateRun(gate, packets).statuses == want
     for each, status in zip(packets, want, strict=True):
-        assert Run(gate, [each], stalls=gap).statuses == [status]
+        assert GateRun(gate, [each], stalls=gap).statuses == [status]
 
 
 def test_the_link_is_held_exactly_when_nothing_has_room():
@@ -226,7 +174,7 @@ def test_the_link_is_held_exactly_when_nothing_has_room():
     # Bad packets need no memory, whatever stands before them.
     packets = [good, *[bad] * 30, *[good] * 20]
     stalls = {"out": Stalls.bits("0" * waits + "1" * 1000)}
-    run = Run(gate, packets, stalls=stalls, deadline=400)
+    run = GateRun(gate, packets, stalls=stalls, deadline=400)
     inside = sum(cycle < waits for cycle in run.taken)
     # Two words are in the registers of the reader. The parser has 2 statuses, and its ring is full.
     assert inside == 30 * 2 + memory // bus + 2 + 15
@@ -234,96 +182,11 @@ def test_the_link_is_held_exactly_when_nothing_has_room():
     assert run.taken[inside - 1] < waits - 30 < run.taken[inside] <= waits + 6
 
 
-def test_a_link_that_cannot_be_held_loses_whole_packets():
-    good, bad = bytes.fromhex(GOOD), bytes.fromhex(GOOD)[:11]
-    gate = PacketGate(
-        load_message(HEADER), bus_bytes=8, memory_bytes=64, when_full="drop", packets=16
-    )
-    stalls = {"out": Stalls.bits("0" * 200 + "1" * 1000)}
-    run = Run(gate, [good, good, good, bad, good, good, bad], stalls=stalls, deadline=400)
-    short = GateStatus.TRUNCATED
-    # 8 words and 2 in registers, for packets of 3 beats.
-    assert run.statuses == [OK, OK, OK, short, FULL, FULL, short]
-    assert run.taken == list(range(run.taken[0], run.taken[0] + len(run.taken)))
-
-
-def strings(bus_bytes, count):
-    """Return packets on which the parser falls behind, and their statuses.
-
-    Eight bytes are two empty strings: the parser takes at least two cycles per beat.
-    """
-    head = bytes.fromhex(TEXT[:-8])
-    long = head + (60).to_bytes(4, "little") + bytes(60 * 20)
-    cut = GateStatus.TRUNCATED
-    verdicts = {BOMB: cut, NO_BOMB: OK, long: OK, long[:-30]: cut}
-    rng = random.Random(bus_bytes)
-    packets = rng.choices([*verdicts], [1, 2, 3, 3], k=count)
-    return packets, [verdicts[packet] for packet in packets]
-
-
-@pytest.fixture
-def few_early(monkeypatch):
-    """Few beats wait for the parser, so that short traffic is too much."""
-    monkeypatch.setattr("firm_hdl.gateware.packets.gate.EARLY_BEATS", 33)
-
-
-def check_late(bus_bytes, takes):
-    packets, want = strings(bus_bytes, 25)
-    message = load_message(DIAGNOSTICS)
-    gate = PacketGate(message, bus_bytes=bus_bytes, memory_bytes=4096, when_full="drop")
-    bench = bench_of(gate)
-    run = Run(gate, packets, bench, stalls={"status": Stalls.bits(takes)}, deadline=2000)
-    assert run.taken == list(range(run.taken[0], run.taken[0] + len(run.taken)))
-    assert LATE in run.statuses and OK in run.statuses
-    for status, without in zip(run.statuses, want, strict=True):
-        assert status in (without, LATE)
-    # Afterwards, all is as before.
-    gap = {"in": Stalls.bits("0" * 2 * bus_bytes + "1"), "status": Stalls.bits(takes)}
-    assert Run(gate, packets[-5:], bench, stalls=gap, deadline=2000).statuses == want[-5:]
-
-
-@pytest.mark.usefixtures("few_early")
-@pytest.mark.parametrize(
-    ("bus_bytes", "takes"), [(8, "1"), (16, "0" * 50 + "1" * 20), (64, "1")]
-)
-def test_packets_that_come_while_the_parser_is_behind_are_lost_and_counted(bus_bytes, takes):
-    check_late(bus_bytes, takes)
-
-
-def test_statuses_that_nobody_takes_hold_the_gate_or_lose_packets():
-    good = b"\0\1\0\0\1"
-    message = load_message("std_msgs/msg/Bool")
-    never = {"status": Stalls.bits("0" * 500 + "1" * 1000)}
-    gate = PacketGate(message, memory_bytes=2048, packets=256)
-    run = Run(gate, [good] * 60, stalls=never, deadline=600)
-    # 8 statuses, 2 in the parser, and what its buffer takes then.
-    inside = sum(cycle < 500 for cycle in run.taken)
-    assert 10 <= inside <= 10 + 10
-    gate = PacketGate(message, memory_bytes=2048, packets=256, when_full="drop")
-    bench = bench_of(gate)
-    inside += EARLY_BEATS
-    run = Run(gate, [good] * 450, bench, stalls=never, deadline=600)
-    assert run.statuses == [OK] * inside + [LATE] * (450 - inside)
-    # More than 255 in a row have no status, but are counted.
-    for more in (0, 1):
-        sent = inside + MOST_LOST + more
-        never = {"status": Stalls.bits("0" * 600 + "1" * 1000)}
-        seen = bench.run(
-            {"in": beats([good] * sent, 8)},
-            {"in": sent, "status": sent - more},
-            stalls=never,
-            deadline=700,
-        )
-        assert len(seen.others["status"]) == inside + MOST_LOST
-        assert bench.state["passed"] == inside
-        assert bench.state["late"] == MOST_LOST + more
-
-
 def test_behind_a_gate_the_status_of_a_deserializer_is_ok():
     message = load_message("sensor_msgs/msg/PointCloud2")
     _, packets = random_packets(message, 8, 8)
     gate = PacketGate(message, memory_bytes=4096, max_message_bytes=10_000)
-    passed = Run(gate, packets).packets
+    passed = GateRun(gate, packets).packets
     rx = Deserializer(message, max_message_bytes=10_000)
     seen = Harness(rx, None, message=message).run_packets(passed, RunOptions())
     assert {status.name for status in seen.statuses} == {"OK"}
@@ -335,16 +198,16 @@ def test_reset_in_the_middle_discards_all(when_full):
     good, bad = bytes.fromhex(GOOD), bytes.fromhex(GOOD)[:11]
     packets = [good, bad, BOMB, good]
     gate = PacketGate(load_message(HEADER), bus_bytes=4, memory_bytes=128, when_full=when_full)
-    bench = bench_of(gate, keeps_state=True)
+    bench = gate_bench(gate, keeps_state=True)
     want = judged(load_message(HEADER), packets, 4)
     source = list(beats(packets, 4))
     for count in range(1, len(source)):
         with pytest.raises(DeadlineError):
             stuck = {"out": Stalls.bits("0" * 99 + "1"), "status": Stalls.bits("0" * 99 + "1")}
             bench.run({"in": source[:count]}, {"in": 99}, stalls=stuck, limit=count + 2 + count % 7)
-        run = Run(gate, packets, bench)
+        run = GateRun(gate, packets, bench)
         assert run.statuses == want
-        assert run.left[0] == run.lasts[0] + LATENCY + (EARLY if when_full == "drop" else 0)
+        assert run.left[0] == run.lasts[0] + LATENCY + (BACKLOG if when_full == "drop" else 0)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -364,18 +227,18 @@ def test_random_gates_with_random_stalls_and_resets(seed):
         when_full=when_full,
         max_message_bytes=most,
     )
-    bench = bench_of(gate, keeps_state=True)
+    bench = gate_bench(gate, keeps_state=True)
     bad = judged(message, packets, bus, most)
     for _ in range(2):
         stalls = {
             each: Stalls(rng.choice([0, 0.3, 0.8]), max_cycles=rng.choice([1, 5, 40]), seed=seed)
             for each in ("in", "out", "status")
         }
-        run = Run(gate, packets, bench, stalls=stalls, deadline=3000)
+        run = GateRun(gate, packets, bench, stalls=stalls, deadline=3000)
         for packet, status, alone in zip(packets, run.statuses, bad, strict=True):
             large = beats_of(len(packet), bus) * bus > memory
             want = LARGE if large and alone == OK else alone
-            lost = {LATE} | ({FULL} if alone == OK else set())
+            lost = {OVERRUN} | ({FULL} if alone == OK else set())
             assert status == want or (when_full == "drop" and status in lost)
         # Stop somewhere; the next run begins with a reset.
         source = list(beats(packets, bus))[: rng.randrange(1, 60)]
@@ -424,38 +287,16 @@ class _LosesStatuses(_Verdicts):
         self.m.d.comb += self.room.eq(1)
 
 
-class _ReportsLostPacketsTooEarly(_Verdicts):
-    def report_lost(self, door, none_waits):
-        super().report_lost(door, none_waits)
-        self.m.d.comb += self.owes.eq(0)
-
-
-class _HasNoDoor(_Verdicts):
-    def report_lost(self, door, none_waits):
-        super().report_lost(door, none_waits)
-        self.m.d.comb += self.cut.eq(0)
-
-
 @pytest.mark.parametrize("fault", [_LetsAllPass, _DoesNotWaitForTheVerdict, _LosesStatuses])
 def test_a_fault_of_the_gate_is_found(monkeypatch, fault):
     packets = [bytes.fromhex(GOOD), bytes.fromhex(GOOD)[:11]] * 20
 
     def check():
         gate = PacketGate(load_message(HEADER), bus_bytes=8, memory_bytes=64)
-        run = Run(gate, packets, stalls={"status": Stalls.bits("0" * 150 + "1" * 3)})
+        run = GateRun(gate, packets, stalls={"status": Stalls.bits("0" * 150 + "1" * 3)})
         assert run.statuses == judged(load_message(HEADER), packets, 8)
 
     check()
     monkeypatch.setattr("firm_hdl.gateware.packets.gate._Verdicts", fault)
     with pytest.raises(AssertionError):
         check()
-
-
-@pytest.mark.usefixtures("few_early")
-@pytest.mark.parametrize(
-    ("fault", "bus_bytes"), [(_ReportsLostPacketsTooEarly, 64), (_HasNoDoor, 16)]
-)
-def test_a_fault_at_the_door_is_found(monkeypatch, fault, bus_bytes):
-    monkeypatch.setattr("firm_hdl.gateware.packets.gate._Verdicts", fault)
-    with pytest.raises(AssertionError):
-        check_late(bus_bytes, "1")

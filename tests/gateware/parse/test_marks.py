@@ -60,8 +60,7 @@ def compare(bus_bytes, tamper=lambda found: found):
 def mismatch(checks, present):
     """Return a bit for each step with checked bytes: whether one that is there differs."""
     wrong = [
-        any(present[k] != byte for k, byte in each if k < len(present))
-        for each in checks.values()
+        any(present[k] != byte for k, byte in each if k < len(present)) for each in checks.values()
     ]
     return sum(1 << k for k, flag in enumerate(wrong) if flag)
 

@@ -193,9 +193,7 @@ CASE = DefinitionCase(
     ],
 )
 def test_the_command_that_repeats_a_test(types, number, oracles, command):
-    request = Request(
-        distros=("iron",), paths=("a b", "c"), types=types, mutations=9, seed=4
-    )
+    request = Request(distros=("iron",), paths=("a b", "c"), types=types, mutations=9, seed=4)
     words = "firm-hdl verify --systems ts1 --distro iron --path 'a b' --path c"
     assert command_of(request, CASE, number, oracles) == f"{words} {command}"
 

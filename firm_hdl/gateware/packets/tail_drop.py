@@ -1,0 +1,109 @@
+"""Tail drop, for a link that cannot be held: packets that find no room are dropped."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Module, Mux, Signal
+from amaranth.lib import data, stream, wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware.signatures import PacketSignature, packet_layout
+
+__all__ = ["MOST_DROPPED", "TailDrop", "tail_drop_layout"]
+
+DROPPED_BITS = 8
+MOST_DROPPED = (1 << DROPPED_BITS) - 1
+"""Packets in a row that are dropped and still get a status each."""
+
+
+def tail_drop_layout(bus_bytes: int) -> data.StructLayout:
+    """Return a beat after a tail drop.
+
+    Members
+    -------
+    beat : packet_layout(bus_bytes)
+    aborted : unsigned(1)
+        In a last beat: the rest of the packet was dropped, and the beat has no meaning.
+    dropped : unsigned(8)
+        In a first beat: number of packets that were dropped whole since the packet before, at most
+        255.
+    """
+    return data.StructLayout(
+        {"beat": packet_layout(bus_bytes), "aborted": 1, "dropped": DROPPED_BITS}
+    )
+
+
+class TailDrop(wiring.Component):
+    """Pass packets on while `packets_out` is ready; drop them whole while it is not.
+
+    If `packets_out` is not ready for a beat of a packet that has begun, the packet is aborted: the
+    rest of it is dropped, and a last beat that says so is sent instead. Packets that begin before
+    this beat has been taken are dropped whole. The latency is 0.
+
+    Parameters
+    ----------
+    bus_bytes : int
+
+    Members
+    -------
+    packets_in : In(PacketSignature(bus_bytes))
+        `ready` is constantly 1.
+    packets_out : Out(stream.Signature(tail_drop_layout(bus_bytes)))
+        `valid` and `payload` depend on those of `packets_in`. The payload may change before the
+        transfer.
+    dropped : Out(8)
+        Packets that were dropped whole since the last one that was passed on. A register.
+    report : In(1)
+        One of `dropped` is reported, and no longer counts. Not if `packets_out` transfers.
+    drops : Out(1)
+        A packet of which beats were dropped ends in this cycle.
+    """
+
+    def __init__(self, bus_bytes: int):
+        self.bus_bytes = bus_bytes
+        super().__init__(
+            {
+                "packets_in": In(PacketSignature(bus_bytes)),
+                "packets_out": Out(stream.Signature(tail_drop_layout(bus_bytes))),
+                "dropped": Out(DROPPED_BITS),
+                "report": In(1),
+                "drops": Out(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        packets, out, beat = self.packets_in, self.packets_out, self.packets_in.payload
+        # A packet was aborted, and its last beat has not been sent.
+        abort_pending = Signal()
+        # The rest of the arriving packet is dropped; a beat of the arriving packet was passed on.
+        drops_rest, begun = Signal(), Signal()
+        passes, refused = Signal(), Signal()
+        m.d.comb += [
+            packets.ready.eq(1),
+            out.valid.eq(abort_pending | (packets.valid & ~drops_rest)),
+            out.payload.beat.eq(beat),
+            out.payload.beat.last.eq(beat.last | abort_pending),
+            out.payload.beat.count.eq(Mux(abort_pending, self.bus_bytes, beat.count)),
+            out.payload.aborted.eq(abort_pending),
+            out.payload.dropped.eq(self.dropped),
+            passes.eq(packets.valid & ~drops_rest & ~abort_pending & out.ready),
+            refused.eq(packets.valid & ~passes),
+            self.drops.eq(refused & beat.last),
+        ]
+        with m.If(abort_pending & out.ready):
+            m.d.sync += abort_pending.eq(0)
+        with m.If(passes):
+            m.d.sync += begun.eq(~beat.last)
+        with m.If(refused):
+            m.d.sync += drops_rest.eq(~beat.last)
+            with m.If(begun & ~drops_rest):
+                m.d.sync += abort_pending.eq(1)
+            with m.If(beat.last):
+                m.d.sync += begun.eq(0)
+        # A packet that was aborted gets its status with its last beat.
+        dropped_whole = Signal()
+        m.d.comb += dropped_whole.eq(self.drops & ~begun & ~self.dropped.all())
+        m.d.sync += self.dropped.eq(
+            Mux(passes & ~begun, 0, self.dropped + dropped_whole - self.report)
+        )
+        return m

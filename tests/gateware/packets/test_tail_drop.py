@@ -1,0 +1,135 @@
+# amaranth: UnusedElaboratable=no
+"""A gate on a link that cannot be held: whole packets are dropped, in order and counted."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from firm_hdl import GateStatus, PacketGate, load_message
+from firm_hdl.gateware.packets.gate import BACKLOG_BEATS, _Verdicts
+from firm_hdl.gateware.packets.tail_drop import MOST_DROPPED
+from firm_hdl.sim import Stalls
+from tests.gateware.packets.bench import beats
+from tests.gateware.packets.gates import (
+    BOMB,
+    BOMB_HEAD,
+    DIAGNOSTICS,
+    FULL,
+    NO_BOMB,
+    OK,
+    OVERRUN,
+    GateRun,
+    gate_bench,
+)
+from tests.gateware.test_parser import GOOD, HEADER
+
+
+def test_a_link_that_cannot_be_held_drops_whole_packets():
+    good, bad = bytes.fromhex(GOOD), bytes.fromhex(GOOD)[:11]
+    gate = PacketGate(
+        load_message(HEADER), bus_bytes=8, memory_bytes=64, when_full="drop", packets=16
+    )
+    stalls = {"out": Stalls.bits("0" * 200 + "1" * 1000)}
+    run = GateRun(gate, [good, good, good, bad, good, good, bad], stalls=stalls, deadline=400)
+    short = GateStatus.TRUNCATED
+    # 8 words and 2 in registers, for packets of 3 beats.
+    assert run.statuses == [OK, OK, OK, short, FULL, FULL, short]
+    assert run.taken == list(range(run.taken[0], run.taken[0] + len(run.taken)))
+
+
+def strings(bus_bytes, count):
+    """Return packets on which the parser falls behind, and their statuses.
+
+    Eight bytes are two empty strings: the parser takes at least two cycles per beat.
+    """
+    head = bytes.fromhex(BOMB_HEAD[:-8])
+    long = head + (60).to_bytes(4, "little") + bytes(60 * 20)
+    cut = GateStatus.TRUNCATED
+    verdicts = {BOMB: cut, NO_BOMB: OK, long: OK, long[:-30]: cut}
+    rng = random.Random(bus_bytes)
+    packets = rng.choices([*verdicts], [1, 2, 3, 3], k=count)
+    return packets, [verdicts[packet] for packet in packets]
+
+
+@pytest.fixture
+def short_backlog(monkeypatch):
+    """Few beats wait for the parser, so that short traffic is too much."""
+    monkeypatch.setattr("firm_hdl.gateware.packets.gate.BACKLOG_BEATS", 33)
+
+
+def check_overruns(bus_bytes, takes):
+    packets, want = strings(bus_bytes, 25)
+    message = load_message(DIAGNOSTICS)
+    gate = PacketGate(message, bus_bytes=bus_bytes, memory_bytes=4096, when_full="drop")
+    bench = gate_bench(gate)
+    run = GateRun(gate, packets, bench, stalls={"status": Stalls.bits(takes)}, deadline=2000)
+    assert run.taken == list(range(run.taken[0], run.taken[0] + len(run.taken)))
+    assert OVERRUN in run.statuses and OK in run.statuses
+    for status, without in zip(run.statuses, want, strict=True):
+        assert status in (without, OVERRUN)
+    # Afterwards, all is as before.
+    gap = {"in": Stalls.bits("0" * 2 * bus_bytes + "1"), "status": Stalls.bits(takes)}
+    assert GateRun(gate, packets[-5:], bench, stalls=gap, deadline=2000).statuses == want[-5:]
+
+
+@pytest.mark.usefixtures("short_backlog")
+@pytest.mark.parametrize(("bus_bytes", "takes"), [(8, "1"), (16, "0" * 50 + "1" * 20), (64, "1")])
+def test_packets_that_come_while_the_parser_is_behind_are_dropped_and_counted(bus_bytes, takes):
+    check_overruns(bus_bytes, takes)
+
+
+def test_statuses_that_nobody_takes_hold_the_gate_or_drop_packets():
+    good = b"\0\1\0\0\1"
+    message = load_message("std_msgs/msg/Bool")
+    never = {"status": Stalls.bits("0" * 500 + "1" * 1000)}
+    gate = PacketGate(message, memory_bytes=2048, packets=256)
+    run = GateRun(gate, [good] * 60, stalls=never, deadline=600)
+    # 8 statuses, 2 in the parser, and what its buffer takes then.
+    inside = sum(cycle < 500 for cycle in run.taken)
+    assert 10 <= inside <= 10 + 10
+    gate = PacketGate(message, memory_bytes=2048, packets=256, when_full="drop")
+    bench = gate_bench(gate)
+    inside += BACKLOG_BEATS
+    run = GateRun(gate, [good] * 450, bench, stalls=never, deadline=600)
+    assert run.statuses == [OK] * inside + [OVERRUN] * (450 - inside)
+    # More than 255 in a row have no status, but are counted.
+    for more in (0, 1):
+        sent = inside + MOST_DROPPED + more
+        never = {"status": Stalls.bits("0" * 600 + "1" * 1000)}
+        seen = bench.run(
+            {"in": beats([good] * sent, 8)},
+            {"in": sent, "status": sent - more},
+            stalls=never,
+            deadline=700,
+        )
+        assert len(seen.others["status"]) == inside + MOST_DROPPED
+        assert bench.state["passed"] == inside
+        assert bench.state["overrun"] == MOST_DROPPED + more
+
+
+# Twins: a gate with a fault, and the check that finds it.
+
+
+class _ReportsDroppedPacketsTooEarly(_Verdicts):
+    def report_dropped(self, tail_drop, none_waits):
+        super().report_dropped(tail_drop, none_waits)
+        self.m.d.comb += self.report_due.eq(0)
+
+
+class _ForgetsThatAPacketWasAborted(_Verdicts):
+    def report_dropped(self, tail_drop, none_waits):
+        super().report_dropped(tail_drop, none_waits)
+        self.m.d.comb += self.aborted.eq(0)
+
+
+@pytest.mark.usefixtures("short_backlog")
+@pytest.mark.parametrize(
+    ("fault", "bus_bytes"),
+    [(_ReportsDroppedPacketsTooEarly, 64), (_ForgetsThatAPacketWasAborted, 16)],
+)
+def test_a_fault_of_the_tail_drop_is_found(monkeypatch, fault, bus_bytes):
+    monkeypatch.setattr("firm_hdl.gateware.packets.gate._Verdicts", fault)
+    with pytest.raises(AssertionError):
+        check_overruns(bus_bytes, "1")
