@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import product
 
-__all__ = ["DEVICES", "Area", "CellPorts", "Device", "Pins", "Placer"]
+__all__ = ["DEVICES", "Area", "CellPorts", "Device", "Placer"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,7 +10,7 @@ from firm_hdl.estimates import features_of
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import open_library
 
-__all__ = ["entries_of", "estimates_json"]
+__all__ = ["estimates_json"]
 
 DEVICE = "ecp5"
 """The device of estimates."""

@@ -9,7 +9,7 @@ from firm_hdl.bench.tables import beats_per_cycle
 from firm_hdl.drawing.document import document
 from firm_hdl.drawing.svg import Figure, Scale
 
-__all__ = ["LINE_RATE_MHZ", "area_plot", "beats_plot", "clock_plot"]
+__all__ = ["area_plot", "beats_plot", "clock_plot"]
 
 LINE_RATE_MHZ = 156.25
 """Clock rate at which a beat of 8 bytes per cycle is 10 Gbit/s."""

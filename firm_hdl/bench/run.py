@@ -22,7 +22,7 @@ from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.jobs import run_each
 from firm_hdl.model import Message
 
-__all__ = ["BenchTask", "run_task", "run_tasks"]
+__all__ = ["BenchTask", "run_tasks"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

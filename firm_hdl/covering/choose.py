@@ -22,7 +22,7 @@ from firm_hdl.plan.shape import constructs
 from firm_hdl.wire import Wire, lay_out
 from firm_hdl.wire.layout import Gap, LoopNode, Node, RunNode, Scalar, walk
 
-__all__ = ["FAMILIES", "Chosen", "all_features", "choose", "cost", "features"]
+__all__ = ["FAMILIES", "all_features", "choose", "cost", "features"]
 
 FAMILIES = ("grammar", "definition", "layout", "plan", "branch")
 """The families of features. The names that `all_features` returns begin with ``family: ``."""

@@ -15,7 +15,10 @@ from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan, check_bus
 from firm_hdl.plan.outline import outline
 from firm_hdl.wire import Wire, lay_out
 
-__all__ = ["Parser", "parser_plan", "sizes_layout"]
+__all__ = [
+    "Parser",
+    "parser_plan",
+]
 
 SIZE_BITS = 32
 

@@ -13,7 +13,7 @@ from firm_hdl.rtlil.ir import Cell, Module, Process, Slice, Spec, spec_width
 from firm_hdl.vhdl.graph import Connection, Graph, only, target_of
 from firm_hdl.vhdl.uses import INLINE, Use, output, statement_uses, uses_of
 
-__all__ = ["PASSES", "graph_of"]
+__all__ = ["graph_of"]
 
 _COMPARISONS = frozenset("$eq $ne $lt $le $gt $ge".split())
 

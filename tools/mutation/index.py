@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-__all__ = ["Index", "Parameter", "index_of", "index_of_program"]
+__all__ = ["Index", "index_of", "index_of_program"]
 
 ENUMS = ("Enum", "IntEnum", "StrEnum", "Flag", "IntFlag")
 PROPERTIES = ("property", "cached_property", "functools.cached_property")

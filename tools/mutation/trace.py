@@ -28,7 +28,7 @@ import pytest
 
 from tools.mutation.chosen import take_time
 
-__all__ = ["CONTEXT", "EACH", "FOLDER", "SETTINGS"]
+__all__ = ["EACH", "FOLDER", "SETTINGS"]
 
 FOLDER = "FIRM_HDL_MUTATION_TRACE"
 EACH = "FIRM_HDL_MUTATION_EACH"

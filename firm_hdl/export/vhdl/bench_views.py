@@ -15,7 +15,7 @@ from firm_hdl.export.vhdl.layer import UserLayer
 from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.plan import Leaf, Plan
 
-__all__ = ["Channel", "View", "flat_view", "record_view", "stream_view"]
+__all__ = ["View", "flat_view", "record_view", "stream_view"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from amaranth.hdl import Module, Signal, Value
 from amaranth.lib import data
 
-__all__ = ["COUNTER_BITS", "add_counters", "counters_layout"]
+__all__ = ["add_counters", "counters_layout"]
 
 COUNTER_BITS = 32
 

@@ -24,7 +24,6 @@ from firm_hdl.wire import Wire
 
 __all__ = [
     "DISTRO_STORES",
-    "ROSBAGS_WIRES",
     "FieldType",
     "RosbagsOracle",
     "Transfers",

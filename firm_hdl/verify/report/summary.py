@@ -16,7 +16,7 @@ from firm_hdl.verify.results.file import Results
 from firm_hdl.verify.results.records import STAGES, Record
 from firm_hdl.verify.results.verdict import Failed, NotJudged
 
-__all__ = ["LIMITS", "CoverageSum", "Curve", "Group", "RunSummary", "Summary", "Trend", "summarise"]
+__all__ = ["LIMITS", "Curve", "Group", "Summary", "Trend", "summarise"]
 
 LIMITS = (0.01, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 60)
 """Times in seconds. The report has the share of tests that took at most each of these times."""

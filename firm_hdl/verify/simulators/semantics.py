@@ -14,7 +14,7 @@ from firm_hdl.sim.record import RunResult
 from firm_hdl.verify.results.texts import first_difference
 from firm_hdl.verify.simulators.trace import Trace, read_row
 
-__all__ = ["Traffic", "traffic"]
+__all__ = ["traffic"]
 
 
 @dataclass(slots=True, kw_only=True)

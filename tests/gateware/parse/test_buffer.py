@@ -48,70 +48,97 @@ class Reference:
         return (self.start + len(seen)) * self.bus, False, None
 
 
-def compare(dut, seed, tamper=None):
-    """Run a buffer with random traffic, and compare it in each cycle.
+class Comparison:
+    """A buffer with random traffic, compared with the reference in each cycle.
 
     `tamper`: a function that changes what was seen, so that a test can show that it matters.
     """
-    bus = dut.plan.bus_bytes
-    rng, reference = random.Random(seed), Reference(bus)
-    modulus = 2 * reference.depth
-    # All beats, and the longest time in which none was taken although all was free.
-    waiting = 0
 
-    async def testbench(ctx):
-        nonlocal waiting
-        offered = None
+    def __init__(self, dut, seed, tamper=None):
+        self.dut, self.tamper = dut, tamper
+        self.bus = dut.plan.bus_bytes
+        self.rng, self.reference = random.Random(seed), Reference(self.bus)
+        self.modulus = 2 * self.reference.depth
+        self.offered = None
+        # The longest time in which no beat was taken although all was free.
+        self.waiting = 0
+
+    async def run(self, ctx):
         for cycle in range(CYCLES):
-            limit, ended, following = reference.expected(cycle)
-            seen = {
-                "limit": ctx.get(dut.limit),
-                "ended": bool(ctx.get(dut.ended)),
-                "following": ctx.get(dut.following) if ended else None,
-            }
-            seen |= tamper(seen) if tamper else {}
-            want = {"limit": limit % (modulus * bus), "ended": ended, "following": None}
-            if ended:
-                want["following"] = following % modulus
-            assert seen == want, cycle
-            written = [k for k, beat in enumerate(reference.beats) if beat[0] + 1 == cycle]
-            assert ctx.get(dut.beat.valid) == len(written)
-            if written:
-                _, count, last = reference.beats[written[0]]
-                assert ctx.get(dut.beat.at) == written[0] % modulus
-                assert ctx.get(dut.beat.last) == last
-                assert ctx.get(dut.beat.count) == count
-                assert ctx.get(dut.beat.data) == written[0] % 256
-            if offered is None and rng.random() < 0.7:
-                last = rng.random() < 0.3
-                offered = rng.randint(1, bus) if last else rng.randint(0, bus), last
-            if offered is not None:
-                number = len(reference.beats)
-                ctx.set(dut.packets.payload, packet_beat(number, *offered, bus))
-            ctx.set(dut.packets.valid, offered is not None)
-            # The packet may be left; what is before the reader may be freed later.
-            leave = ended and rng.random() < 0.5
-            ctx.set(dut.next, leave)
-            here = limit // bus
-            if rng.random() < 0.6:
-                reference.freed = rng.randint(reference.freed, max(reference.freed, here))
-            ctx.set(dut.freed, reference.freed % modulus)
-            taken = offered is not None and ctx.get(dut.packets.ready)
-            waiting = 0 if taken or offered is None or reference.freed < here else waiting + 1
-            assert waiting < 4, "beats are not taken although there is room"
-            if taken:
-                reference.beats.append((cycle, *offered))
-                offered = None
+            limit, ended, following = self.reference.expected(cycle)
+            self.check_window(ctx, cycle, limit, ended, following)
+            self.check_beat(ctx, cycle)
+            self.offer(ctx)
+            leave = self.free(ctx, limit // self.bus, ended)
+            self.take(ctx, cycle, limit // self.bus)
             if leave:
-                reference.start = following
-            assert len(reference.beats) - reference.freed <= reference.depth
+                self.reference.start = following
+            assert len(self.reference.beats) - self.reference.freed <= self.reference.depth
             await ctx.tick()
 
+    def check_window(self, ctx, cycle, limit, ended, following):
+        dut = self.dut
+        seen = {
+            "limit": ctx.get(dut.limit),
+            "ended": bool(ctx.get(dut.ended)),
+            "following": ctx.get(dut.following) if ended else None,
+        }
+        seen |= self.tamper(seen) if self.tamper else {}
+        want = {"limit": limit % (self.modulus * self.bus), "ended": ended, "following": None}
+        if ended:
+            want["following"] = following % self.modulus
+        assert seen == want, cycle
+
+    def check_beat(self, ctx, cycle):
+        """Check the beat that is written to the buffer: it was taken in the cycle before."""
+        beat, beats = self.dut.beat, self.reference.beats
+        written = [k for k, (taken, *_) in enumerate(beats) if taken + 1 == cycle]
+        assert ctx.get(beat.valid) == len(written)
+        if written:
+            _, count, last = beats[written[0]]
+            assert ctx.get(beat.at) == written[0] % self.modulus
+            assert ctx.get(beat.last) == last
+            assert ctx.get(beat.count) == count
+            assert ctx.get(beat.data) == written[0] % 256
+
+    def offer(self, ctx):
+        rng, packets = self.rng, self.dut.packets
+        if self.offered is None and rng.random() < 0.7:
+            last = rng.random() < 0.3
+            self.offered = rng.randint(1, self.bus) if last else rng.randint(0, self.bus), last
+        if self.offered is not None:
+            number = len(self.reference.beats)
+            ctx.set(packets.payload, packet_beat(number, *self.offered, self.bus))
+        ctx.set(packets.valid, self.offered is not None)
+
+    def free(self, ctx, here, ended):
+        """Leave the packet or not; free some of the beats before the reader."""
+        reference = self.reference
+        leave = ended and self.rng.random() < 0.5
+        ctx.set(self.dut.next, leave)
+        if self.rng.random() < 0.6:
+            reference.freed = self.rng.randint(reference.freed, max(reference.freed, here))
+        ctx.set(self.dut.freed, reference.freed % self.modulus)
+        return leave
+
+    def take(self, ctx, cycle, here):
+        taken = self.offered is not None and ctx.get(self.dut.packets.ready)
+        has_room = self.reference.freed >= here
+        self.waiting = self.waiting + 1 if self.offered and not taken and has_room else 0
+        assert self.waiting < 4, "beats are not taken although there is room"
+        if taken:
+            self.reference.beats.append((cycle, *self.offered))
+            self.offered = None
+
+
+def compare(dut, seed, tamper=None):
+    """Run a comparison to its end, and return its reference."""
+    comparison = Comparison(dut, seed, tamper)
     simulator = Simulator(dut)
     simulator.add_clock(1e-6)
-    simulator.add_testbench(testbench)
+    simulator.add_testbench(comparison.run)
     simulator.run()
-    return reference
+    return comparison.reference
 
 
 def packet_beat(number, count, last, bus):
