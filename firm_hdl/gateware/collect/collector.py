@@ -82,34 +82,36 @@ class _Reader:
     go: Signal
 
 
-class _CollectorLogic(CollectState):
+class _CollectorLogic:
     """The collector's logic, built by one method for each part of it."""
 
     def __init__(self, collector: Collector):
-        streams = [collector.leaves[k] for k in range(len(collector.plan.leaves))]
-        super().__init__(Module(), collector.plan, streams)
         self.c = collector
+        self.m, self.plan = m, plan = Module(), collector.plan
+        streams = [collector.leaves[k] for k in range(len(plan.leaves))]
+        self.progress = progress = CollectState(m, plan, streams)
         self._decide()
-        self.readers = [self._readers(*each) for each in enumerate(self.plan.steps)]
+        self.readers = [self._readers(*each) for each in enumerate(plan.steps)]
         self._serve()
         self._hold_lengths()
         self._judge()
-        Filler(self, collector.words)
+        Filler(progress, collector.words)
         self._advance()
 
     # The step.
 
     def _decide(self) -> None:
-        m, flow, state, plan = self.m, self.flow, self.state, self.plan
+        m, plan, progress = self.m, self.plan, self.progress
+        state, flow = progress.state, progress.flow
         is_begin = state.run_begin | state.loop_begin
-        skips = self.of_length(lambda length: length.skips)
+        skips = progress.of_length(lambda length: length.skips)
         # A last step that only takes a rest is skipped if there is no rest.
         rests = {i for i, step in enumerate(plan.steps) if only_ends(step)}
         to_rest = any_of([each.taken for each in flow.exits if each.jump.step in rests])
-        no_rest = is_begin & self.zero & ~state.terminated & to_rest
+        no_rest = is_begin & progress.zero & ~state.terminated & to_rest
         m.d.comb += [
-            self.done.eq(state.plain | (is_begin & skips) | (state.words & flow.words.last)),
-            self.ends.eq(self.done & (flow.exit_ends | no_rest)),
+            progress.done.eq(state.plain | (is_begin & skips) | (state.words & flow.words.last)),
+            progress.ends.eq(progress.done & (flow.exit_ends | no_rest)),
         ]
 
     def _readers(self, index: int, step: Step) -> list[_Reader]:
@@ -133,13 +135,14 @@ class _CollectorLogic(CollectState):
 
     def _last(self, step: Step, part: Part | None) -> Value:
         """Return the value that `items.last` must have in a transfer."""
+        flow = self.progress.flow
         if part is not None:
             level = part.last_level
-            return Const(part.last, 1) if level is None else self.flow.levels[level].last
+            return Const(part.last, 1) if level is None else flow.levels[level].last
         if not isinstance(step, RunStep):
             return Const(1, 1)
         run = self.plan.runs[step.run]
-        return Const(0, 1) if run.counted else self.flow.words.last & run.last
+        return Const(0, 1) if run.counted else flow.words.last & run.last
 
     def _serve(self) -> None:
         """Take the leaves of a step in wire order, each as soon as it is offered.
@@ -147,7 +150,7 @@ class _CollectorLogic(CollectState):
         A producer may offer a leaf only after an earlier one was taken. So a step must not wait
         until all its leaves are offered. `served` records which of them were taken.
         """
-        m, c = self.m, self.c
+        m, c, progress, streams = self.m, self.c, self.progress, self.progress.streams
         ready: dict[int, list[Value]] = {}
         missing: list[Value] = []
         for index, (step, readers) in enumerate(zip(self.plan.steps, self.readers, strict=True)):
@@ -158,43 +161,44 @@ class _CollectorLogic(CollectState):
             # A transfer that continues in the next step is taken in that step.
             for part in step.parts:
                 if not part.completes:
-                    missing.append(self.step[index] & ~self.streams[part.leaf].valid)
+                    missing.append(progress.step[index] & ~streams[part.leaf].valid)
         for leaf, cases in ready.items():
-            m.d.comb += self.streams[leaf].ready.eq(any_of(cases))
+            m.d.comb += streams[leaf].ready.eq(any_of(cases))
         status_free = ~c.status.valid | c.status.ready
         m.d.comb += [
-            self.free.eq(~c.words.valid | c.words.ready),
-            self.complete.eq(self.free & ~any_of(missing) & (~self.ends | status_free)),
+            progress.free.eq(~c.words.valid | c.words.ready),
+            progress.complete.eq(progress.free & ~any_of(missing) & (~progress.ends | status_free)),
         ]
-        for slot, flag in enumerate(self.served):
+        for slot, flag in enumerate(progress.served):
             taken = [readers[slot].go for readers in self.readers if slot < len(readers)]
-            m.d.sync += flag.eq((flag | any_of(taken)) & ~self.complete)
+            m.d.sync += flag.eq((flag | any_of(taken)) & ~progress.complete)
 
     def _take(self, index: int, slot: int) -> None:
         """Take a transfer of a step when it is offered, after the earlier ones of the step."""
-        readers = self.readers[index]
+        progress, readers = self.progress, self.readers[index]
         reader = readers[slot]
-        valid = self.streams[reader.leaf].valid
-        if reader.leaf in self.lengths:
-            valid = valid & self.lengths[reader.leaf].known
-        wanted = self.rest.any() if reader.optional else Const(1, 1)
+        valid = progress.streams[reader.leaf].valid
+        if reader.leaf in progress.lengths:
+            valid = valid & progress.lengths[reader.leaf].known
+        wanted = progress.rest.any() if reader.optional else Const(1, 1)
         earlier = any_of([each.lacks for each in readers[:slot]])
         self.m.d.comb += [
-            reader.left.eq(self.step[index] & wanted & ~self.served[slot]),
+            reader.left.eq(progress.step[index] & wanted & ~progress.served[slot]),
             reader.lacks.eq(reader.left & ~valid),
-            reader.go.eq(reader.left & valid & self.free & ~earlier),
+            reader.go.eq(reader.left & valid & progress.free & ~earlier),
         ]
 
     def _hold_lengths(self) -> None:
         """Keep a length that is taken while its step waits until `status` is free."""
-        held: dict[int, list[Value]] = {leaf: [] for leaf in self.lengths}
+        progress = self.progress
+        held: dict[int, list[Value]] = {leaf: [] for leaf in progress.lengths}
         for index, (step, readers) in enumerate(zip(self.plan.steps, self.readers, strict=True)):
             for slot, reader in enumerate(readers):
                 if reader.leaf in held and self._may_wait_for_status(step):
-                    taken = reader.go | (self.step[index] & self.served[slot])
-                    held[reader.leaf].append(taken & ~self.complete)
+                    taken = reader.go | (progress.step[index] & progress.served[slot])
+                    held[reader.leaf].append(taken & ~progress.complete)
         for leaf, cases in held.items():
-            self.m.d.comb += self.lengths[leaf].held.eq(any_of(cases))
+            self.m.d.comb += progress.lengths[leaf].held.eq(any_of(cases))
 
     def _may_wait_for_status(self, step: Step) -> bool:
         """Tell whether a step may take its length, and then wait until `status` is free.
@@ -208,17 +212,17 @@ class _CollectorLogic(CollectState):
 
     def _judge(self) -> None:
         """Keep the packet's first error, and report it with the last step."""
-        m, c = self.m, self.c
+        m, c, progress, streams = self.m, self.c, self.progress, self.progress.streams
         wrong_items = any_of(
             [
-                reader.go & (self.streams[reader.leaf].payload.last != reader.last)
+                reader.go & (streams[reader.leaf].payload.last != reader.last)
                 for reader in chain.from_iterable(self.readers)
                 if self.plan.leaves[reader.leaf].kind == "items"
             ]
         )
         error, found = Signal(Status, name="error"), Signal(Status, name="found")
-        is_taken = any_of([self.streams[leaf].ready for leaf in self.lengths])
-        over = is_taken & self.of_length(lambda length: length.over)
+        is_taken = any_of([streams[leaf].ready for leaf in progress.lengths])
+        over = is_taken & progress.of_length(lambda length: length.over)
         # Items of a step come before its length in wire order, so their error counts.
         m.d.comb += found.eq(error)
         with m.If((error == Status.OK) & wrong_items):
@@ -228,46 +232,48 @@ class _CollectorLogic(CollectState):
         m.d.sync += error.eq(found)
         with m.If(c.status.ready):
             m.d.sync += c.status.valid.eq(0)
-        with m.If(self.complete & self.ends):
+        with m.If(progress.complete & progress.ends):
             m.d.sync += [
                 c.status.valid.eq(1),
                 c.status.payload.eq(found),
                 error.eq(Status.OK),
             ]
-        with m.If(self.free):
+        with m.If(progress.free):
             m.d.sync += c.words.payload.error.eq(found != Status.OK)
 
     # The next step.
 
     def _advance(self) -> None:
-        m, flow, state = self.m, self.flow, self.state
-        next_rest = self.of_length(lambda length: length.rest, len(self.rest), BeginRun)
-        single = self.of_length(lambda length: length.single)
+        m, progress = self.m, self.progress
+        state, flow = progress.state, progress.flow
+        next_rest = progress.of_length(lambda length: length.rest, len(progress.rest), BeginRun)
+        single = progress.of_length(lambda length: length.single)
         count = self._count()
         flow.count(
-            moves=self.complete,
-            ends=self.ends,
-            done=self.done,
+            moves=progress.complete,
+            ends=progress.ends,
+            done=progress.done,
             count=count,
             single=single,
             nul=False,
         )
-        with m.If(self.complete):
+        with m.If(progress.complete):
             m.d.sync += Value.cast(state).eq(
-                Mux(self.ends, flow.start, Mux(self.done, flow.exit_state, flow.body_state))
+                Mux(progress.ends, flow.start, Mux(progress.done, flow.exit_state, flow.body_state))
             )
-            with m.If(self.ends):
-                m.d.sync += [self.rest.eq(0), self.has_nul.eq(0)]
+            with m.If(progress.ends):
+                m.d.sync += [progress.rest.eq(0), progress.has_nul.eq(0)]
             with m.Else():
                 with m.If(state.run_begin):
-                    m.d.sync += [self.rest.eq(next_rest), self.has_nul.eq(state.terminated)]
+                    m.d.sync += [progress.rest.eq(next_rest), progress.has_nul.eq(state.terminated)]
                 with m.Elif(state.rest):
-                    m.d.sync += [self.rest.eq(0), self.has_nul.eq(0)]
+                    m.d.sync += [progress.rest.eq(0), progress.has_nul.eq(0)]
 
     def _count(self) -> Value:
         """Return the payload of the step's length, 32 bits; 0 if the step has no length."""
+        progress = self.progress
         cases = [
-            (self.step[i], self.streams[step.begin.length].payload)
+            (progress.step[i], progress.streams[step.begin.length].payload)
             for i, step in enumerate(self.plan.steps)
             if step.begin is not None
         ]

@@ -85,7 +85,7 @@ class Sequencer(wiring.Component):
         return _SequencerLogic(self).m
 
 
-class _SequencerLogic(ParseState):
+class _SequencerLogic:
     """The sequencer's logic, built by one method for each part of it.
 
     Few decisions come late in a cycle: whether the body of a length is skipped, whether all bytes
@@ -93,11 +93,12 @@ class _SequencerLogic(ParseState):
     """
 
     def __init__(self, sequencer: Sequencer):
-        super().__init__(Module(), sequencer.plan, has_leaves=sequencer.has_leaves)
         self.c = c = sequencer
-        self.length = StepLength(self, c.beat)
+        self.m, self.plan = m, plan = Module(), sequencer.plan
+        self.now = now = ParseState(m, plan, has_leaves=sequencer.has_leaves)
+        self.length = StepLength(now, c.beat)
         self._decide()
-        self.judge = Judge(self, self.length, c.beat, c.limit, c.ended, c.orders.ready)
+        self.judge = Judge(now, self.length, c.beat, c.limit, c.ended, c.orders.ready)
         self._order()
         self._proceed()
         self._move_on()
@@ -106,68 +107,69 @@ class _SequencerLogic(ParseState):
 
     def _decide(self) -> None:
         """Decide whether all bytes are present, and what follows the step."""
-        m, c, state, flow = self.m, self.c, self.state, self.flow
+        m, c, now = self.m, self.c, self.now
+        ring, state, flow = now.ring, now.state, now.flow
         is_begin = state.run_begin | state.loop_begin
-        ring = self.ring
-        word_before = Cat(ring.lane(self.map_at), ring.beat(self.map_at) - state.lead)
+        word_before = Cat(ring.lane(now.map_at), ring.beat(now.map_at) - state.lead)
         m.d.comb += [
-            self.step_end.eq(self.last_at + 1),
+            now.step_end.eq(now.last_at + 1),
             # limit - last_at - 1.
-            self.left.eq(c.limit + ~self.last_at),
-            c.trailing.eq(self.left),
-            self.present.eq(~self.left[-1]),
-            self.exits_always.eq(state.plain | (state.words & flow.words.last)),
-            self.done.eq(
-                self.exits_always
-                | (is_begin & self.bad)
+            now.left.eq(c.limit + ~now.last_at),
+            c.trailing.eq(now.left),
+            now.present.eq(~now.left[-1]),
+            now.exits_always.eq(state.plain | (state.words & flow.words.last)),
+            now.done.eq(
+                now.exits_always
+                | (is_begin & now.bad)
                 | self.length.run_skips
                 | self.length.loop_skips
             ),
             # Whether a length of 0 ends the message is known late; then the end is its own step.
-            self.ends_message.eq(state.end | (flow.exit_ends & self.exits_always)),
-            self.ends_packet.eq(self.ends_message & c.ended),
-            self.map_at.eq(self.last_at + state.back.as_signed()),
-            self.items_at.eq(Mux(state.rest, self.first_at, word_before)),
+            now.ends_message.eq(state.end | (flow.exit_ends & now.exits_always)),
+            now.ends_packet.eq(now.ends_message & c.ended),
+            now.map_at.eq(now.last_at + state.back.as_signed()),
+            now.items_at.eq(Mux(state.rest, now.first_at, word_before)),
         ]
 
     def _order(self) -> None:
-        m, c, state, flow = self.m, self.c, self.state, self.flow
-        order, bus, bad = c.orders.payload, self.plan.bus_bytes, self.bad
+        m, c, now = self.m, self.c, self.now
+        ring, state, flow = now.ring, now.state, now.flow
+        order, bus, bad = c.orders.payload, self.plan.bus_bytes, now.bad
         # Without an error, a step is ordered if it is allowed and its bytes are good. `good` is
         # late in the cycle; so it is a factor of its own, and all else is computed before it.
-        drains, allowed = self.drains, Signal(name="allowed")
-        ready, good, ends = c.orders.ready, self.judge.good, self.ends_packet
+        drains, allowed = now.drains, Signal(name="allowed")
+        ready, good, ends = c.orders.ready, self.judge.good, now.ends_packet
         m.d.comb += [
-            drains.eq(bad & ~self.new_error & (~state.end | c.ended)),
-            allowed.eq(~bad & (~self.ends_message | c.ended) & ~self._too_early()),
+            drains.eq(bad & ~now.new_error & (~state.end | c.ended)),
+            allowed.eq(~bad & (~now.ends_message | c.ended) & ~self._too_early()),
             c.orders.valid.eq(drains | (allowed & good)),
-            self.issue.eq((drains & ready) | (allowed & ready & good)),
+            now.issue.eq((drains & ready) | (allowed & ready & good)),
             c.next.eq((drains & ready & ends) | (allowed & ready & ends & good)),
         ]
         wanted = Signal(range(bus + 1), name="items_wanted")
         fits = self.judge.items_room >= wanted
         m.d.comb += [
-            wanted.eq(Mux(state.rest, self.flow.rest_bytes(self.rest), bus)),
+            wanted.eq(Mux(state.rest, flow.rest_bytes(now.rest), bus)),
             order.step.eq(
-                pick([(self.step[i], i) for i in range(len(self.plan.steps))], len(order.step))
+                pick([(now.step[i], i) for i in range(len(self.plan.steps))], len(order.step))
             ),
             order.blank.eq(state.end),
-            order.items_at.eq(self.items_at),
-            order.map_at.eq(self.map_at),
-            order.items_next.eq(self.ring.slot(self.items_at) + 1),
-            order.map_next.eq(self.ring.slot(self.map_at) + 1),
+            order.items_at.eq(now.items_at),
+            order.map_at.eq(now.map_at),
+            order.items_next.eq(ring.slot(now.items_at) + 1),
+            order.map_next.eq(ring.slot(now.map_at) + 1),
             order.items_bytes.eq(Mux(bad & ~fits, self.judge.items_room, wanted)),
             order.map_bytes.eq(Mux(bad, self.judge.map_room, bus)),
-            order.items.eq((state.rest & self.rest.any()) | state.counted),
+            order.items.eq((state.rest & now.rest.any()) | state.counted),
             order.last.eq(state.rest | (flow.words.last & ~state.counted)),
             order.counted.eq(~bad & ~self.length.zero & ~self.length.over),
             order.final.eq(Cat(level.last for level in flow.levels)),
-            order.first.eq(self.ring.beat(self.first_at)),
-            order.ends.eq(self.ends_packet),
+            order.first.eq(ring.beat(now.first_at)),
+            order.ends.eq(now.ends_packet),
             order.status.eq(
                 Mux(bad, self.judge.code, Mux(self.judge.trailing, Status.TRAILING, Status.OK))
             ),
-            c.oldest.eq(self.ring.beat(self.first_at)),
+            c.oldest.eq(ring.beat(now.first_at)),
         ]
 
     def _too_early(self) -> Value:
@@ -175,64 +177,65 @@ class _SequencerLogic(ParseState):
 
         Only for the leading steps without bytes: others wait for their bytes.
         """
+        now = self.now
         leading = takewhile(
             lambda i: not isinstance(self.plan.steps[i], RunStep) and not self.plan.steps[i].bytes,
             range(len(self.plan.steps)),
         )
-        return any_of([self.step[i] for i in leading]) & ~self.left.any() & ~self.c.ended
+        return any_of([now.step[i] for i in leading]) & ~now.left.any() & ~self.c.ended
 
     # The next step.
 
     def _proceed(self) -> None:
         """Go to the next step, and count."""
-        m, state, flow = self.m, self.state, self.flow
+        m, now, state, flow = self.m, self.now, self.now.state, self.now.flow
         next_state = Signal(flow.layout.size, name="next_state")
-        following = Mux(self.done, flow.exit_state, flow.body_state)
+        following = Mux(now.done, flow.exit_state, flow.body_state)
         if not self.c.has_leaves:
-            following = Mux(self.bad, flow.encode(None), following)
-        m.d.comb += next_state.eq(Mux(self.ends_packet, flow.start, following))
+            following = Mux(now.bad, flow.encode(None), following)
+        m.d.comb += next_state.eq(Mux(now.ends_packet, flow.start, following))
         flow.count(
-            moves=self.issue,
-            ends=self.ends_packet,
-            done=self.done,
+            moves=now.issue,
+            ends=now.ends_packet,
+            done=now.done,
             count=self.length.count,
             single=self.length.single,
             double=self.length.double,
             nul=True,
         )
-        with m.If(self.issue):
+        with m.If(now.issue):
             m.d.sync += Value.cast(state).eq(next_state)
-            with m.If(self.ends_packet):
-                m.d.sync += [self.rest.eq(0), self.has_nul.eq(0)]
+            with m.If(now.ends_packet):
+                m.d.sync += [now.rest.eq(0), now.has_nul.eq(0)]
             with m.Else():
                 self._begin_run()
 
     def _begin_run(self) -> None:
         """Store the rest of a run that begins; clear it after the step that takes it."""
-        m = self.m
-        good = ~self.bad & ~self.length.over
-        terminated = self.flow.on(
+        m, now = self.m, self.now
+        good = ~now.bad & ~self.length.over
+        terminated = now.flow.on(
             lambda s: isinstance(s.begin, BeginRun) and self.plan.runs[s.begin.run].terminated
         )
-        with m.If(self.state.run_begin):
+        with m.If(now.state.run_begin):
             m.d.sync += [
-                self.rest.eq(Mux(good, self.length.rest, 0)),
-                self.has_nul.eq(terminated & good & ~self.length.zero),
+                now.rest.eq(Mux(good, self.length.rest, 0)),
+                now.has_nul.eq(terminated & good & ~self.length.zero),
             ]
-        with m.Elif(self.state.rest):
-            m.d.sync += [self.rest.eq(0), self.has_nul.eq(0)]
+        with m.Elif(now.state.rest):
+            m.d.sync += [now.rest.eq(0), now.has_nul.eq(0)]
 
     def _move_on(self) -> None:
         """Compute the positions of the next step."""
-        m, c, ring, plan = self.m, self.c, self.ring, self.plan
+        m, c, now, ring, plan = self.m, self.c, self.now, self.now.ring, self.plan
         start = Signal(ring.bits, name="next_packet")
         m.d.comb += start.eq(Cat(Const(0, ring.lane_bits), c.following))
-        ways = NextPlace(m, self.flow, self.last_at, self.phase, self.meanings, self.length.entry)
+        ways = NextPlace(m, now.flow, now.last_at, now.phase, now.meanings, self.length.entry)
         # Decisions by a length are late. After an error, `last_at` has no meaning.
         early, last = ring.position("early_last"), ring.position("next_last")
         begin = start + shift_of(plan, plan.start.step)
         m.d.comb += [
-            early.eq(Mux(self.ends_packet, begin, Mux(self.exits_always, ways.exit, ways.body))),
+            early.eq(Mux(now.ends_packet, begin, Mux(now.exits_always, ways.exit, ways.body))),
             last.eq(
                 Mux(
                     self.length.run_skips,
@@ -242,27 +245,28 @@ class _SequencerLogic(ParseState):
             ),
         ]
         # After an error, `first_at` only frees beats; the end step drops the rest of the packet.
-        kept = Mux(self.state.end, c.limit, self.first_at)
-        first = Mux(self.ends_packet, start, Mux(self.bad, kept, self._items_start()))
-        with m.If(self.issue | (self.bad & self.state.end)):
-            m.d.sync += self.first_at.eq(first)
-        with m.If(self.issue):
-            m.d.sync += self.last_at.eq(last)
+        kept = Mux(now.state.end, c.limit, now.first_at)
+        first = Mux(now.ends_packet, start, Mux(now.bad, kept, self._items_start()))
+        with m.If(now.issue | (now.bad & now.state.end)):
+            m.d.sync += now.first_at.eq(first)
+        with m.If(now.issue):
+            m.d.sync += now.last_at.eq(last)
             if any(run.terminated for run in plan.runs):
-                rest = Mux(self.state.words, self.rest, self.length.rest)
-                m.d.sync += self.nul_at.eq(self.step_end + rest)
-            if isinstance(self.phase, Signal):
-                with m.If(self.ends_packet):
-                    m.d.sync += self.phase.eq(start + plan.header_bytes)
+                rest = Mux(now.state.words, now.rest, self.length.rest)
+                m.d.sync += now.nul_at.eq(now.step_end + rest)
+            if isinstance(now.phase, Signal):
+                with m.If(now.ends_packet):
+                    m.d.sync += now.phase.eq(start + plan.header_bytes)
 
     def _items_start(self) -> Value:
         """Return the first item of the run that the step begins; else the end of the step."""
-        start: Value = self.step_end
+        now = self.now
+        start: Value = now.step_end
         aligns = {s.begin.align for s in self.plan.steps if isinstance(s.begin, BeginRun)} - {1}
         for align in sorted(aligns):
             steps = enumerate(self.plan.steps)
             runs = [(i, s.begin) for i, s in steps if isinstance(s.begin, BeginRun)]
-            chosen = any_of([self.step[i] for i, begin in runs if begin.align == align])
-            aligned = align_up(self.m, self.step_end, 0, align, self.phase)
+            chosen = any_of([now.step[i] for i, begin in runs if begin.align == align])
+            aligned = align_up(self.m, now.step_end, 0, align, now.phase)
             start = Mux(chosen & ~self.length.zero, aligned, start)
         return start
