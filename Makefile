@@ -8,7 +8,7 @@ JOBS   ?= 2
 VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
+.PHONY: help demo test test-thorough lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
   verify-corpus verify-languages report prove oracles oracles-ros2 fuzz mutate bench examples tools \
   ghdl verilog clean
 
@@ -23,8 +23,12 @@ test: lint pytest ## linters, types and all tests
 pytest: $(VENV)/.compiled tools ## tests only; PYTEST_ARGS=tests/export takes some
 	$(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
+test-thorough: $(VENV)/.compiled tools ## all tests in full depth (half an hour); PYTEST_ARGS=-mthorough takes some
+	FIRM_HDL_THOROUGH=1 $(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
+
 lint: $(VENV)/.installed-dev ## ruff and mypy only
 	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
 coverage: $(VENV)/.compiled tools ## lines and branches of firm_hdl that the tests run
@@ -94,7 +98,7 @@ verify-vhdl: $(VENV)/.installed ghdl ## every bench of lyrical and noetic in GHD
 	$(BIN)/python -m firm_hdl.verify --systems bench --distro lyrical --distro noetic --jobs $(JOBS)
 
 verify-languages: $(VENV)/.installed-dev verilog ## Verilog of four types, in every language of Icarus and Verilator
-	FIRM_HDL_EVERY_LANGUAGE=1 CI=1 $(BIN)/python -m pytest -q -k "language or every_tool or come_back" \
+	FIRM_HDL_THOROUGH=1 CI=1 $(BIN)/python -m pytest -q -k "language or every_tool or come_back" \
 	  -n $(JOBS) tests/verify/simulators/test_crosscheck_verilog.py \
 	  tests/export/test_every_keyword.py tests/export/systemverilog/test_simulation.py
 

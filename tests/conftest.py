@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.depth import THOROUGH
 from tests.tools import need
 from tests.vhdl.ghdl import GHDL
 
@@ -18,6 +19,15 @@ gc.set_threshold(100_000, 20, 20)
 # The packages of the workspace that happens to be active are nobody's business here.
 for _name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
     os.environ.pop(_name, None)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out thorough tests, except in `make test-thorough`."""
+    if THOROUGH:
+        return
+    left_out = [item for item in items if item.get_closest_marker("thorough")]
+    config.hook.pytest_deselected(items=left_out)
+    items[:] = [item for item in items if item not in left_out]
 
 
 @pytest.fixture(scope="session")

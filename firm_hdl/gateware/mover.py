@@ -112,7 +112,7 @@ class _MoverLogic:
         self.word: dict[str, Signal] = {}
         self.good: dict[str, Signal] = {}
         self._read()
-        self.counted, self.last = self._kept("counted"), self._kept("last")
+        self.length_good, self.last = self._kept("length_good"), self._kept("last")
         self.final, self.ends = self._kept("final"), Signal(name="ends_now")
         self.writers = list(self._writers())
         self._serve()
@@ -350,8 +350,8 @@ class _MoverLogic:
         else:
             value, good = self._whole(writer, 0, part.size)
             if leaf.kind == "length":
-                value = value - plan.has_nul(plan.counted[writer.leaf])
-                good = good & self.counted
+                value = value - plan.has_nul(plan.begins[writer.leaf])
+                good = good & self.length_good
             self._put(payload, value, good, leaf.type)
 
     def _write_word(self, writer: _Writer) -> None:

@@ -27,7 +27,7 @@ def against_layout(plan: Plan, layout: Layout) -> list[str]:
             case RunNode():
                 comparison.run(node)
             case LoopNode(count=None):
-                comparison.counted(node, node.bound, terminated=False)
+                comparison.length(node, node.bound, terminated=False)
             case LoopNode(count=int() as count):
                 comparison.counts.append(count)
     if comparison.leaves != [(leaf.path, leaf.kind, leaf.type) for leaf in plan.leaves]:
@@ -44,9 +44,9 @@ class _Comparison:
         self.counts: list[int] = []
         self.problems: list[str] = []
         self.totals = _totals(plan)
-        self.begins = plan.counted
+        self.begins = plan.begins
 
-    def counted(self, node: RunNode | LoopNode, bound: int | None, *, terminated: bool) -> None:
+    def length(self, node: RunNode | LoopNode, bound: int | None, *, terminated: bool) -> None:
         name = ".".join(node.path)
         begin = self.begins.get(len(self.leaves))
         self.leaves.append(((*node.path, "length"), "length", "uint32"))
@@ -59,7 +59,7 @@ class _Comparison:
 
     def run(self, node: RunNode) -> None:
         if node.count is None:
-            self.counted(node, node.bound, terminated=node.terminated)
+            self.length(node, node.bound, terminated=node.terminated)
         else:
             # Items wider than the bus are planned as a loop over single items.
             wide = node.item.bytes > self.plan.bus_bytes and node.count > 1

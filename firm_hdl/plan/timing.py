@@ -119,7 +119,7 @@ def _cost(plan: Plan, elements: int, items: int, most: int | None = None) -> Cos
         raise _TooLongError
 
     runs = {leaf.path[:-1] for leaf in plan.leaves if leaf.kind == "items"}
-    limits = {leaf: begin.limit for leaf, begin in plan.counted.items()}
+    limits = {leaf: begin.limit for leaf, begin in plan.begins.items()}
     streams: dict[int, Iterable[Payload]] = {}
     for index, leaf in enumerate(plan.leaves):
         payload: Payload = 0

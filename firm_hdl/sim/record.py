@@ -110,11 +110,11 @@ class Recorder:
         self.result = RunResult(packets=self.out.packets)
         self.error_at = 8 * plan.bus_bytes + plan.bus_bytes.bit_length() + 1
         # Streams with one transfer or packet for each packet that goes in.
-        self.counted: dict[str, list[Status] | list[bytes]] = {"status": self.result.statuses}
+        self.per_message: dict[str, list[Status] | list[bytes]] = {"status": self.result.statuses}
         if encodes:
-            self.counted["packets_out"] = self.out.packets
+            self.per_message["packets_out"] = self.out.packets
         if encodes and decodes:
-            self.counted["sent_status"] = self.result.sent_statuses
+            self.per_message["sent_status"] = self.result.sent_statuses
 
     def takes(self) -> dict[str, Callable[[int, int], None]]:
         """Return the functions to call at each transfer, by the stream's name."""
@@ -136,7 +136,7 @@ class Recorder:
         return take
 
     def _limit(self, name: str, cycle: int) -> None:
-        if len(self.counted[name]) > self.expected:
+        if len(self.per_message[name]) > self.expected:
             raise AssertionError(
                 f"Stream {name!r} has more than the {self.expected} expected, in cycle {cycle}"
             )
@@ -180,13 +180,13 @@ class Recorder:
 
     def finished(self) -> bool:
         """Return whether every stream has had its expected transfers or packets."""
-        return all(len(got) >= self.expected for got in self.counted.values())
+        return all(len(got) >= self.expected for got in self.per_message.values())
 
     def outstanding(self) -> str:
         """Describe the packets, statuses and leaves that have not come, for an error."""
         missing = [
             f"{name} ({len(got)} of {self.expected})"
-            for name, got in self.counted.items()
+            for name, got in self.per_message.items()
             if len(got) < self.expected
         ]
         if self.out.partial:

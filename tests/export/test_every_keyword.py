@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 from collections.abc import Iterable
 from pathlib import Path
@@ -17,11 +16,12 @@ from firm_hdl.names import identifiers as names
 from firm_hdl.names.keywords import KEYWORDS, VERILOG, VHDL
 from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out
+from tests.depth import THOROUGH
 from tests.export.test_packaging import run
 from tests.frontend.workspace import make_files
 
-# Circuits of that many fields take 20 s: all by `make verify-languages`.
-ALL = os.environ.get("FIRM_HDL_EVERY_LANGUAGE")
+# Circuits of that many fields take 20 s.
+ALL = THOROUGH
 LANGUAGES = ("2001", "2005", "2005-sv", "2009", "2012")
 SPOT = sorted({*sorted(VHDL)[::60], *sorted(VERILOG)[::60], "buffer", "final"})
 

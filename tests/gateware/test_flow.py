@@ -91,7 +91,7 @@ def walk(plan, packets, tamper=lambda length: length):
         nonlocal steps
         for packet in packets:
             decoded = decode(plan, packet)
-            lengths = {leaf: iter(decoded.streams.get(leaf, [])) for leaf in plan.counted}
+            lengths = {leaf: iter(decoded.streams.get(leaf, [])) for leaf in plan.begins}
             for visit in decoded.steps:
                 step = plan.steps[visit.step]
                 assert ctx.get(dut.step) == 1 << visit.step

@@ -25,6 +25,7 @@ from firm_hdl.sim.bench import Bench, Ports
 from firm_hdl.sim.job import Job, RunOptions
 from firm_hdl.sim.payloads import all_beats, beats_of
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.plan.test_random_messages import damaged, typed_values
 from tests.strategies import BUS_WIDTHS
 from tests.tools import need
@@ -130,7 +131,7 @@ def random_packets(message, bus_bytes, count):
     rng = random.Random(f"{message.name} {bus_bytes}")
     counts = {
         index: [0, 1, 2, 3] if isinstance(begin, BeginLoop) else [0, 1, 3, 5, 9, 20]
-        for index, begin in plan.counted.items()
+        for index, begin in plan.begins.items()
     }
 
     def payloads(index, leaf):
@@ -184,7 +185,7 @@ def test_another_status_is_noticed():
 )
 def test_damaged_packets_of_ros_types(name, distro, bus_bytes):
     message = load_message(name, distro=distro)
-    plan, packets = random_packets(message, bus_bytes, 4)
+    plan, packets = random_packets(message, bus_bytes, by_depth(4, 16))
     parser = Parser(message, bus_bytes=bus_bytes, max_message_bytes=MOST)
     for stalls in (None, {"status": Stalls.bits("0000001")}):
         agree(plan, packets, run(parser, packets, stalls=stalls))

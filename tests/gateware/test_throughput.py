@@ -20,6 +20,7 @@ from firm_hdl.sim import Harness, Stalls, leaf_name, to_transfers
 from firm_hdl.sim.job import Job, RunOptions
 from firm_hdl.sim.payloads import all_beats, encoder_of
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.gateware.traffic import random_packets
 from tests.strategies import make
 
@@ -124,8 +125,8 @@ def blob(name, frame_id, size):
     ("name", "extra", "size"),
     [
         ("sensor_msgs/msg/Image", 12, BLOB_BYTES),
-        ("sensor_msgs/msg/CompressedImage", 11, BLOB_BYTES // 8),
-        ("sensor_msgs/msg/PointCloud2", 14, BLOB_BYTES // 8),
+        ("sensor_msgs/msg/CompressedImage", 11, by_depth(BLOB_BYTES // 8, BLOB_BYTES)),
+        ("sensor_msgs/msg/PointCloud2", 14, by_depth(BLOB_BYTES // 8, BLOB_BYTES)),
     ],
 )
 def test_blobs_run_at_line_rate(name, extra, size):

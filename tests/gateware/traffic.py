@@ -22,7 +22,7 @@ def random_packets(plan: Plan, count: int, seed: int = 0) -> list[bytes]:
         while True:
             if leaf.kind == "length":
                 most = 12 if leaf.path[:-1] in strings else 4
-                yield rng.randint(0, min(most, plan.counted[index].limit))
+                yield rng.randint(0, min(most, plan.begins[index].limit))
             elif leaf.kind == "items":
                 yield tuple(rng.getrandbits(bits) + low for _ in range(leaf.lanes)), False
             else:

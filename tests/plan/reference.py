@@ -32,7 +32,7 @@ class Reference:
         self.cdr = plan.wire == "cdr"
         self.packet = packet
         self.lanes = {str(leaf): leaf.lanes for leaf in plan.leaves}
-        self.limits = {str(plan.leaves[n]): begin.limit for n, begin in plan.counted.items()}
+        self.limits = {str(plan.leaves[n]): begin.limit for n, begin in plan.begins.items()}
         self.position = 0
         self.status = "OK"
         self.transfers: list[tuple[str, Payload]] = []

@@ -51,7 +51,7 @@ def test_lengths_and_their_limits_stay(wire, bus_bytes):
     message = load_message("visualization_msgs/msg/InteractiveMarker")
     plan, short = plans_of(message, wire, bus_bytes)
     names = [
-        {(leaf.path[:-1], p.counted[k].limit) for k, leaf in enumerate(p.leaves) if k in p.counted}
+        {(leaf.path[:-1], p.begins[k].limit) for k, leaf in enumerate(p.leaves) if k in p.begins}
         for p in (plan, short)
     ]
     # A sequence of numbers that are wider than the bus is a loop in both.
@@ -109,7 +109,7 @@ def test_elements_without_bytes_are_only_counted():
     assert len(short.steps) == 2
     assert decode(short, (996).to_bytes(4, "little")).status == "OK"
     assert decode(short, (997).to_bytes(4, "little")).status == "LENGTH"
-    assert next(iter(plan.counted.values())).limit == 996
+    assert next(iter(plan.begins.values())).limit == 996
 
 
 def test_a_message_without_bytes_has_one_step():

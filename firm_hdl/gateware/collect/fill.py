@@ -129,7 +129,7 @@ class Filler:
             case "items":
                 return Cat(_item_bits(item) for item in payload.data)
             case "length":
-                return (payload + plan.has_nul(plan.counted[leaf]))[:32]
+                return (payload + plan.has_nul(plan.begins[leaf]))[:32]
             case _:
                 return _item_bits(payload)
 

@@ -42,7 +42,7 @@ class OfferedLength:
     """
 
     def __init__(self, m: Module, plan: Plan, leaf: int, port: stream.Interface, taken: Value):
-        begin, length = plan.counted[leaf], port.payload
+        begin, length = plan.begins[leaf], port.payload
         self.leaf = leaf
         self.known = Signal(name=f"known_{leaf}")
         names = ("zero", "over", "skips", "single")

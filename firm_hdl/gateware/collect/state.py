@@ -57,7 +57,7 @@ class CollectState:
         self.m, self.plan, self.streams = m, plan, streams
         self.lengths = {
             leaf: OfferedLength(m, plan, leaf, streams[leaf], streams[leaf].ready)
-            for leaf in plan.counted
+            for leaf in plan.begins
         }
         self.flow = self._flow()
         self.state, self.step = self.flow.state, self.flow.step

@@ -33,7 +33,7 @@ def order_layout(plan: Plan) -> data.StructLayout:
         Items of a counted run transfer.
     last : unsigned(1)
         The transfer of items is the last one of the run.
-    counted : unsigned(1)
+    length_good : unsigned(1)
         The length is legal and not 0; otherwise it transfers as 0.
     final : unsigned(levels)
         Bit k: the current element of loop k is its last one.
@@ -57,7 +57,7 @@ def order_layout(plan: Plan) -> data.StructLayout:
             "map_bytes": range(bus + 1),
             "items": 1,
             "last": 1,
-            "counted": 1,
+            "length_good": 1,
             "final": max(1, plan.levels),
             "first": ring.beat_bits,
             "ends": 1,

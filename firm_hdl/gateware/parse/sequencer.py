@@ -162,7 +162,7 @@ class _SequencerLogic:
             order.map_bytes.eq(Mux(bad, self.judge.map_room, bus)),
             order.items.eq((state.rest & now.rest.any()) | state.counted),
             order.last.eq(state.rest | (flow.words.last & ~state.counted)),
-            order.counted.eq(~bad & ~self.length.zero & ~self.length.over),
+            order.length_good.eq(~bad & ~self.length.zero & ~self.length.over),
             order.final.eq(Cat(level.last for level in flow.levels)),
             order.first.eq(ring.beat(now.first_at)),
             order.ends.eq(now.ends_packet),

@@ -75,7 +75,7 @@ class Machine(ABC):
     begins: dict[int, Begin] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.begins = self.plan.counted
+        self.begins = self.plan.begins
 
     @property
     @abstractmethod

@@ -61,7 +61,7 @@ class Plan:
                 yield step.begin.body
 
     @property
-    def counted(self) -> dict[int, Begin]:
+    def begins(self) -> dict[int, Begin]:
         """The loop or run that each length counts, by the index of the length's leaf."""
         return {step.begin.length: step.begin for step in self.steps if step.begin is not None}
 

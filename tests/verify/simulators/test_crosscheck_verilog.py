@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,6 +17,7 @@ from firm_hdl.verify import Options, Result, accept
 from firm_hdl.verify.simulators import Icarus, TextSimulator, Verilator, verilator, verilog
 from firm_hdl.verify.simulators.trace import Trace
 from firm_hdl.verify.simulators.verilog import write_inputs
+from tests.depth import by_depth
 from tests.verify.judged import assert_passed
 
 HEADER = "std_msgs/msg/Header"
@@ -116,9 +116,8 @@ def test_process_that_waits_for_its_first_change_is_found(of_verilog, standards,
 
 
 EVERY_LANGUAGE = ("1364-2001", "1364-2005", "1800-2005", "1800-2009", "1800-2012", "1800-2017")
-# C++ takes its time: `make verify-languages` has the four types.
-IN_VERILATOR = [("lyrical", name, 8) for name in TYPES]
-IN_VERILATOR = IN_VERILATOR if os.environ.get("FIRM_HDL_EVERY_LANGUAGE") else [WIDE]
+# C++ takes its time.
+IN_VERILATOR = by_depth([WIDE], [("lyrical", name, 8) for name in TYPES])
 
 
 def model(folder: Path) -> dict[str, str]:

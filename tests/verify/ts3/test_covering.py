@@ -16,6 +16,7 @@ from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
 from firm_hdl.verify import Options, accept
+from tests.depth import THOROUGH
 from tests.verify.judged import NAN_KEY, assert_passed
 
 FOLDER = Path(__file__).parents[1] / "covering"
@@ -23,7 +24,7 @@ DISTROS = ("lyrical", "noetic")
 KEPT = {distro: read_chosen(FOLDER / f"{distro}.txt") for distro in DISTROS}
 # The generator's branches of all types take a minute: `make cover` looks at them.
 STRIDE = 20
-# All cases of these take as long as those of all others together: `make verify` has them.
+# All cases of these take as long as those of all others together.
 LARGE = ("InteractiveMarker", "InteractiveMarkerControl", "InteractiveMarkerInit")
 MOST_CASES = 4
 KNOWN = {("lyrical", "sensor_msgs/msg/Joy"): (NAN_KEY,)}
@@ -33,7 +34,7 @@ KNOWN = {("lyrical", "sensor_msgs/msg/Joy"): (NAN_KEY,)}
     ("distro", "name"), [(distro, name) for distro in DISTROS for name in KEPT[distro]]
 )
 def test_a_covering_type_passes_with_all_cases(distro, name):
-    most = MOST_CASES if name.rpartition("/")[2] in LARGE else None
+    most = MOST_CASES if name.rpartition("/")[2] in LARGE and not THOROUGH else None
     result = accept(distro, name, Options(bus_bytes=8, most_cases=most))
     known = KNOWN.get((distro, name), ())
     assert assert_passed(result, known) >= result.cases > 0
@@ -76,6 +77,7 @@ def not_taken(library, wanted, kept):
     return left
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("distro", DISTROS)
 def test_other_types_take_no_branch_that_the_kept_do_not(distro):
     library = Library(distro)

@@ -1,4 +1,4 @@
-"""Every type of every distribution, a few cases each; `make verify` simulates them all."""
+"""Every type of every distribution, a few cases each."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import pytest
 import firm_hdl.verify.ts3.acceptance as acceptance
 from firm_hdl.verify import Options, accept, collect_tasks
 from firm_hdl.verify.results.verdict import NotJudgedError
+from tests.depth import THOROUGH, by_depth
 from tests.verify.judged import assert_passed
 
 TASKS = list(collect_tasks((), ()))
@@ -14,8 +15,8 @@ WIDTHS = (8, 4)
 OTHER_WIDTHS = (1, 2, 16, 32, 64)
 LARGEST = 12
 """The first ones have so many leaves that they would take as long as a hundred others."""
-SAMPLE = range(LARGEST, len(TASKS), 18)
-SIMULATED = 5
+SAMPLE = range(by_depth(LARGEST, 0), len(TASKS), by_depth(18, 9))
+SIMULATED = by_depth(5, 1)
 """One in so many of the others is simulated. Of the rest, the plan alone is judged."""
 
 
@@ -24,10 +25,10 @@ def test_every_type_passes(index):
     task = TASKS[index]
     options = Options(
         bus_bytes=WIDTHS[index // SIMULATED % len(WIDTHS)],
-        most_cases=1 if index < LARGEST else 3,
-        stalled=index % (2 * SIMULATED) == 0,
+        most_cases=1 if index < LARGEST and not THOROUGH else 3,
+        stalled=THOROUGH or index % (2 * SIMULATED) == 0,
         broken=False,
-        simulated=index >= LARGEST and index % SIMULATED == 0,
+        simulated=THOROUGH or (index >= LARGEST and index % SIMULATED == 0),
     )
     result = accept(task.same[-1], task.name, options)
     assert_passed(result)

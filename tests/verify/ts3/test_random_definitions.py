@@ -10,6 +10,7 @@ from firm_hdl.plan import build_plan
 from firm_hdl.verify import Options, Result, RosbagsOracle, accept_message
 from firm_hdl.verify.cases.effort import work_of
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.strategies import BUS_WIDTHS, definitions
 from tests.verify.judged import NAN_KEY, TIME_KEY, assert_passed
 
@@ -20,7 +21,7 @@ MOST_WORK = 5_000
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 # Shrinking would simulate for many minutes; the message of a failure says how to repeat it.
 @settings(
-    max_examples=8,
+    max_examples=by_depth(8, 40),
     deadline=None,
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
     suppress_health_check=list(HealthCheck),
