@@ -15,6 +15,7 @@ from firm_hdl.equivalence.miter import make_miter
 from firm_hdl.equivalence.rtlil_side import read_rtlil
 from firm_hdl.equivalence.solve import solve
 from firm_hdl.vhdl.convert import Vhdl, convert
+from tests.depth import by_depth
 from tests.memory_designs import DESIGNS, Store, random_stores, rtlil_of
 
 FULL = {"mem": Store(depth=5, init=[1, 2, 3], granularity=4, reads=("comb", "transparent"))}
@@ -131,7 +132,7 @@ VHDL_TWINS = {
 }
 
 
-@pytest.mark.parametrize("what", VHDL_TWINS)
+@pytest.mark.parametrize("what", [*VHDL_TWINS][:: by_depth(3, 1)])
 def test_a_change_of_the_vhdl_is_found(what: str, tools: Tools) -> None:
     text, vhdl = _both()
     old, new = VHDL_TWINS[what]

@@ -22,6 +22,7 @@ from firm_hdl.plan.geometry import first_step
 from firm_hdl.sim import Harness, Stalls, leaf_name
 from firm_hdl.sim.job import Job, RunOptions
 from firm_hdl.sim.payloads import all_beats, encoder_of
+from tests.depth import by_depth
 
 GAP = 24
 # Encapsulation where there is one, then fields, each padded to its own size. No value is 0: that is
@@ -55,7 +56,7 @@ TYPES = {
     ),
 }
 every_type = pytest.mark.parametrize("case", TYPES)
-every_bus = pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8, 64])
+every_bus = pytest.mark.parametrize("bus_bytes", by_depth([1, 8, 64], [1, 2, 4, 8, 64]))
 
 
 def prefixes(plan, packet):

@@ -40,6 +40,8 @@ LATENCY = 3
 ERROR = 4
 """Cycles from the last beat to the status, and those that an error adds at most."""
 
+SOME_WIDTHS = by_depth([1, 8, 64], [1, 2, 4, 8, 64])
+
 MOST = 10_000
 """Most bytes of a message: the interpreter completes what a damaged length claims."""
 
@@ -169,7 +171,7 @@ def test_another_status_is_noticed():
         agree(plan, packets, seen)
 
 
-@pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8, 64])
+@pytest.mark.parametrize("bus_bytes", SOME_WIDTHS)
 @pytest.mark.parametrize(
     ("name", "distro"),
     [
@@ -214,7 +216,7 @@ def test_latency_is_exact(bus_bytes, more):
     assert seen.late(packets, bus_bytes) == [LATENCY + more] * 3
 
 
-@pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8, 64])
+@pytest.mark.parametrize("bus_bytes", SOME_WIDTHS)
 @pytest.mark.parametrize(("text", "status"), BAD.values(), ids=BAD)
 def test_each_error_is_late_by_a_few_cycles_and_then_forgotten(text, status, bus_bytes):
     good, bad = bytes.fromhex(GOOD), bytes.fromhex(text)

@@ -14,9 +14,10 @@ from firm_hdl.plan import build_plan, decode
 from firm_hdl.sim import Stalls, encode, loopback
 from firm_hdl.sim.values import from_transfers
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.strategies import make
 
-WIDTHS = (1, 2, 4, 8, 16, 64)
+WIDTHS = by_depth((1, 8, 64), (1, 2, 4, 8, 16, 64))
 TEXT = make("ros2", {"w": "wstring"})
 BETWEEN = make("ros2", {"x": "uint8", "w": "wstring", "y": "uint8"})
 BOUNDED = make("ros2", {"w": "wstring<=3", "y": "uint8"})

@@ -143,6 +143,7 @@ def test_hashes_of_embedded_types_are_those_of_rosbags(distro):
     assert 0 < len(differing) < 6 < len(names)
 
 
+@pytest.mark.thorough
 def test_hashes_of_the_corpus_are_those_of_rosbags(corpus):
     ours = Library("lyrical", [corpus / "ros2"])
     store = get_typestore(Stores.EMPTY)

@@ -121,6 +121,7 @@ class TestDask:
         found = dict(run_each(square_or_fail, TASKS, executor=executor))
         assert isinstance(found["task 7"], RuntimeError) and len(found) == len(TASKS)
 
+    @pytest.mark.thorough
     def test_verified_types_have_the_records_of_processes(self, cluster):
         _, executor = cluster
         options = Options(most_cases=3)

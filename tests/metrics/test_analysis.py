@@ -222,6 +222,7 @@ def test_large_arrays_and_deep_nesting_cost_nothing():
         assert (figures.depth, figures.leaves) == (1501, 3)
 
 
+@pytest.mark.thorough
 def test_the_whole_corpus_has_figures(corpus):
     for dialect, distro in (("ros1", "noetic"), ("ros2", "lyrical")):
         ours = Library(distro, [corpus / dialect])

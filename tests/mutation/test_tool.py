@@ -147,6 +147,7 @@ def parts(toy):
     return found
 
 
+@pytest.mark.thorough
 def test_just_the_tests_that_run_a_line_judge_it_and_runs_resume(toy, capsys):
     found = run(toy)
     lines = (toy.parent / "out.jsonl").read_bytes().splitlines(keepends=True)
@@ -241,6 +242,7 @@ def test_what_not_all_tests_met_stays_open(toy):
     assert run(toy, *more, "--retry")["half", "operator"].status == "killed"
 
 
+@pytest.mark.thorough
 def test_a_map_of_an_older_program_is_of_use(toy, capsys):
     (toy / "tests/test_processes.py").unlink()
     more = ["--rule", "comparison", "--retry"]

@@ -31,6 +31,7 @@ from amaranth.lib.wiring import In, Out
 
 from firm_hdl import Deserializer, Parser, Serializer, load_message
 from firm_hdl.vhdl.convert import convert
+from tests.depth import by_depth
 from tests.vhdl.ghdl import analyse, difference, expected, run, simulate, synthesize, vectors
 
 
@@ -409,7 +410,7 @@ def _ports(component: Any) -> tuple[dict[str, Value], dict[str, Value]]:
 
 
 @pytest.mark.usefixtures("ghdl")
-@pytest.mark.parametrize("bus_bytes", [1, 8, 64])
+@pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 8, 64]))
 @pytest.mark.parametrize("converter", [Deserializer, Serializer, Parser])
 @pytest.mark.parametrize(
     "name", ["geometry_msgs/msg/Twist", "sensor_msgs/msg/PointCloud2", "std_msgs/msg/Empty"]

@@ -11,13 +11,18 @@ from firm_hdl.cli import main
 from firm_hdl.export.backend import Options
 from firm_hdl.export.build import build
 from firm_hdl.verify.cases.stimuli import stimuli
+from tests.depth import by_depth
 from tests.export.vhdl.test_bench import run
 from tests.export.vhdl.test_layer import analyse, nasty, vhdl_of, write
 
 
 @pytest.mark.parametrize(
     ("name", "bus_bytes"),
-    [("sensor_msgs/msg/JointState", 8), ("std_msgs/msg/Bool", 1), ("", 1), ("", 8)],
+    [
+        ("sensor_msgs/msg/JointState", 8),
+        ("", 1),
+        *by_depth([], [("std_msgs/msg/Bool", 1), ("", 8)]),
+    ],
 )
 def test_bench_passes(ghdl, tmp_path, name, bus_bytes):
     message = load_message(name) if name else nasty(tmp_path)

@@ -15,7 +15,7 @@ WIDTHS = (8, 4)
 OTHER_WIDTHS = (1, 2, 16, 32, 64)
 LARGEST = 12
 """The first ones have so many leaves that they would take as long as a hundred others."""
-SAMPLE = range(by_depth(LARGEST, 0), len(TASKS), by_depth(18, 9))
+SAMPLE = range(by_depth(LARGEST, 0), len(TASKS), by_depth(36, 9))
 SIMULATED = by_depth(5, 1)
 """One in so many of the others is simulated. Of the rest, the plan alone is judged."""
 
