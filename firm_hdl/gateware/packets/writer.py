@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Cat, Const, Module, Mux, Signal
+from dataclasses import dataclass
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -10,6 +12,15 @@ from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull
 from firm_hdl.gateware.signatures import PacketSignature, packet_layout
 
 __all__ = ["PacketWriter"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Room:
+    """What follows from a position: the position after it, and whether one or two beats fit."""
+
+    next: Value
+    one: Value
+    two: Value
 
 
 class PacketWriter(wiring.Component):
@@ -89,29 +100,55 @@ class PacketWriter(wiring.Component):
         """Register a beat; look ahead whether there is room for the next one."""
         shape, packets = self.shape, self.packets
         # The position of the next beat that is received, if no packet were dropped.
-        arrived, base = Signal(shape.position_bits), Signal(shape.position_bits)
-        used = Signal(shape.position_bits)
+        arrived = Signal(shape.position_bits)
         room, counts, ends = Signal(init=1), Signal(), Signal()
-        will_be_stored = Signal(range(shape.packets + 3))
         m.d.comb += [
             packets.ready.eq(room if self.waits else 1),
             # Beats that are dropped need no room.
             counts.eq(packets.valid & room & ~self.drops),
             ends.eq(counts & packets.payload.last & ~self.abort),
-            base.eq(Mux(self.rewinds, self.kept, arrived)),
-            used.eq(base - self.freed),
-            will_be_stored.eq(self.stored + self.keeps + ends),
         ]
+        # Whether the packet goes back, and whether a beat comes, are known late in the cycle. So
+        # all that follows from a position is computed for both positions.
+        stays, goes_back = self._after(m, arrived), self._after(m, self.kept)
         # What becomes free in this cycle is seen in the next one.
         m.d.sync += [
-            arrived.eq(base + counts),
-            room.eq(~used[-1] & ~(used[:-1].all() & counts) & (will_be_stored < shape.packets)),
+            arrived.eq(
+                Mux(
+                    self.rewinds,
+                    Mux(counts, goes_back.next, self.kept),
+                    Mux(counts, stays.next, arrived),
+                )
+            ),
+            room.eq(
+                Mux(
+                    self.rewinds,
+                    Mux(counts, goes_back.two, goes_back.one),
+                    Mux(counts, stays.two, stays.one),
+                )
+                & self._may_store(ends)
+            ),
             self.has_beat.eq(packets.valid & packets.ready),
             self.beat.eq(packets.payload),
             self.beat.count.eq(Mux(packets.payload.last, packets.payload.count, shape.bus_bytes)),
             self.aborts.eq(self.abort),
             self.fits.eq(room),
         ]
+
+    def _after(self, m: Module, position: Value) -> _Room:
+        """Return what follows from the position of the next beat."""
+        used = Signal(len(position))
+        m.d.comb += used.eq(position - self.freed)
+        return _Room(
+            next=(position + 1)[: len(position)],
+            one=~used[-1],
+            two=~used[-1] & ~used[:-1].all(),
+        )
+
+    def _may_store(self, ends: Value) -> Value:
+        """Return whether one more packet may be stored; `ends`: a packet that may be kept ends."""
+        left = [self.stored < self.shape.packets - more for more in range(3)]
+        return Mux(self.keeps, Mux(ends, left[2], left[1]), Mux(ends, left[1], left[0]))
 
     def _write(self, m: Module) -> None:
         """Write the beat in the register, and decide on the packet with its last beat."""
