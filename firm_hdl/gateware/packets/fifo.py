@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Module, Signal
+from amaranth.hdl import Module, Signal, Value
 from amaranth.lib import wiring
-from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
-from firm_hdl.gateware.memories import LutMemory
+from firm_hdl.gateware.memories import BlockMemory, LutMemory
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull, check_policy
 from firm_hdl.gateware.packets.reader import PacketReader
@@ -91,10 +90,7 @@ class PacketFifo(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         shape = self.shape
-        m.submodules.memory = memory = Memory(
-            shape=packet_layout(shape.bus_bytes), depth=shape.beats, init=[]
-        )
-        write, read = memory.write_port(), memory.read_port()
+        memory = BlockMemory(m, packet_layout(shape.bus_bytes), shape.beats)
         m.submodules.writer = writer = PacketWriter(shape, self.when_full)
         m.submodules.reader = reader = PacketReader(shape)
         m.d.comb += [
@@ -102,14 +98,14 @@ class PacketFifo(wiring.Component):
             writer.packets.valid.eq(self.packets_in.valid),
             self.packets_in.ready.eq(writer.packets.ready),
             writer.abort.eq(self.abort),
-            write.addr.eq(writer.at),
-            write.data.eq(writer.word),
-            write.en.eq(writer.writes),
+            memory.write_at.eq(writer.at),
+            memory.write_word.eq(writer.word),
+            memory.writes.eq(writer.writes),
             writer.freed.eq(reader.at),
             reader.kept.eq(writer.kept),
-            read.addr.eq(reader.at),
-            read.en.eq(reader.reads),
-            reader.word.eq(read.data),
+            memory.read_at.eq(reader.at),
+            memory.reads.eq(reader.reads),
+            Value.cast(reader.word).eq(memory.word),
             self.packets_out.payload.eq(reader.packets.payload),
             self.packets_out.valid.eq(reader.packets.valid),
             reader.packets.ready.eq(self.packets_out.ready),
