@@ -10,6 +10,7 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.gateware.packets.fifo import PacketFifo
 from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull, check_policy
+from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.gateware.packets.status import GateStatus, GateStatusSignature
 from firm_hdl.gateware.packets.tail_drop import MOST_DROPPED, TailDrop, tail_drop_layout
 from firm_hdl.gateware.parser import Parser, parser_plan
@@ -25,7 +26,7 @@ STATUSES = 8
 """Statuses that wait until they are taken."""
 
 BACKLOG_BEATS = 257
-"""Beats that wait for the parser, if the link cannot be held: 256 in block RAM, and a register."""
+"""Beats that wait for the parser, if the link cannot be held, those in registers included."""
 
 COUNTED = {
     "passed": GateStatus.OK,
@@ -48,7 +49,7 @@ class PacketGate(wiring.Component):
 
     Both the first beat of a packet and its status are valid 4 cycles after the parser's status: 7
     cycles after the transfer of the last beat, if one step of the parser's plan ends in this beat,
-    and nothing is before the packet; 9 cycles with `"drop"`. A beat is taken per cycle and leaves
+    and nothing is before the packet; 10 cycles with `"drop"`. A beat is taken per cycle and leaves
     per cycle, without gaps between packets, as long as there are no more steps than beats.
 
     A bad packet occupies the gate for as many cycles as it has beats, or the parser has steps
@@ -158,8 +159,10 @@ class PacketGate(wiring.Component):
         else:
             m.submodules.tail_drop = tail_drop = TailDrop(self.bus_bytes)
             m.submodules.backlog = backlog = SyncFIFOBuffered(
-                width=layout.size, depth=BACKLOG_BEATS
+                width=layout.size, depth=BACKLOG_BEATS - 2
             )
+            # The output of the block RAM is late, and needs a register before any logic.
+            m.submodules.slice = after = StreamSlice(layout)
             m.d.comb += [
                 tail_drop.packets_in.valid.eq(self.packets_in.valid),
                 tail_drop.packets_in.payload.eq(self.packets_in.payload),
@@ -167,11 +170,14 @@ class PacketGate(wiring.Component):
                 backlog.w_data.eq(Value.cast(tail_drop.packets_out.payload)),
                 backlog.w_en.eq(tail_drop.packets_out.valid),
                 tail_drop.packets_out.ready.eq(backlog.w_rdy),
-                Value.cast(beats.payload).eq(backlog.r_data),
-                beats.valid.eq(backlog.r_rdy),
-                backlog.r_en.eq(beats.ready),
+                Value.cast(after.i.payload).eq(backlog.r_data),
+                after.i.valid.eq(backlog.r_rdy),
+                backlog.r_en.eq(after.i.ready),
+                beats.payload.eq(after.o.payload),
+                beats.valid.eq(after.o.valid),
+                after.o.ready.eq(beats.ready),
             ]
-            verdicts.report_dropped(tail_drop, backlog.level == 0)
+            verdicts.report_dropped(tail_drop, (backlog.level == 0) & ~after.o.valid)
         return m
 
 
@@ -251,11 +257,13 @@ class _Verdicts:
         """
         m, head, waiting = self.m, self.head, self.waiting
         reported = Signal(range(MOST_DROPPED + 1), name="reported")
+        # A register, because the number in the beat is late in the cycle.
+        all_reported = Signal(name="all_reported")
         directly = Signal(name="directly")
         m.d.comb += [
             self.aborted.eq(head.aborted),
             self.overrun.eq(tail_drop.drops),
-            self.report_due.eq(self.starts & (reported != head.dropped)),
+            self.report_due.eq(self.starts & head.any_dropped & ~all_reported),
             # No packet waits, and none comes.
             directly.eq(
                 none_waits & ~waiting.r_rdy & tail_drop.dropped.any() & ~tail_drop.packets_out.valid
@@ -266,9 +274,12 @@ class _Verdicts:
             ),
         ]
         with m.If(waiting.r_en):
-            m.d.sync += reported.eq(0)
+            m.d.sync += [reported.eq(0), all_reported.eq(0)]
         with m.Elif(waiting.r_rdy & self.report_due & self.room):
-            m.d.sync += reported.eq(reported + 1)
+            m.d.sync += [
+                reported.eq(reported + 1),
+                all_reported.eq(reported + 1 == head.dropped),
+            ]
 
     def give_statuses(self) -> None:
         """Join the parser's verdict with what the memory did, 2 cycles later."""

@@ -26,9 +26,16 @@ def tail_drop_layout(bus_bytes: int) -> data.StructLayout:
     dropped : unsigned(8)
         In a first beat: number of packets that were dropped whole since the packet before, at most
         255.
+    any_dropped : unsigned(1)
+        `dropped` is not 0.
     """
     return data.StructLayout(
-        {"beat": packet_layout(bus_bytes), "aborted": 1, "dropped": DROPPED_BITS}
+        {
+            "beat": packet_layout(bus_bytes),
+            "aborted": 1,
+            "dropped": DROPPED_BITS,
+            "any_dropped": 1,
+        }
     )
 
 
@@ -86,6 +93,7 @@ class TailDrop(wiring.Component):
             out.payload.beat.count.eq(Mux(abort_pending, self.bus_bytes, beat.count)),
             out.payload.aborted.eq(abort_pending),
             out.payload.dropped.eq(self.dropped),
+            out.payload.any_dropped.eq(self.dropped.any()),
             passes.eq(packets.valid & ~drops_rest & ~abort_pending & out.ready),
             refused.eq(packets.valid & ~passes),
             self.drops.eq(refused & beat.last),

@@ -16,7 +16,7 @@ LATENCY = 7
 """Cycles from the transfer of the last beat to the first beat, and to the status."""
 ERROR = 4
 """Cycles that an error adds at most."""
-BACKLOG = 2
+BACKLOG = 3
 """Cycles more for a link that cannot be held."""
 
 OK, FULL, LARGE, OVERRUN = GateStatus.OK, GateStatus.FULL, GateStatus.LARGE, GateStatus.OVERRUN
