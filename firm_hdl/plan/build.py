@@ -36,8 +36,20 @@ from firm_hdl.plan.limits import (
     check_max_message_bytes,
 )
 from firm_hdl.plan.link import END, NOWHERE, Mark, link
-from firm_hdl.wire import Layout, LoopNode, Node, Path, RunNode, Scalar, Trigger, walk
-from firm_hdl.wire.layout import LENGTH, OCTET, Gap
+from firm_hdl.wire import (
+    ConstantLength,
+    Gap,
+    Layout,
+    LengthField,
+    LoopNode,
+    Node,
+    Path,
+    RunNode,
+    Scalar,
+    Trigger,
+    walk,
+)
+from firm_hdl.wire.layout import LENGTH, OCTET
 
 __all__ = ["build_plan"]
 
@@ -68,7 +80,8 @@ def build_plan(
     check_bus_bytes(bus_bytes)
     check_max_message_bytes(layout, max_message_bytes)
     has_lengths = any(
-        isinstance(node, RunNode | LoopNode) and node.count is None for node in walk(layout.nodes)
+        isinstance(node, RunNode | LoopNode) and isinstance(node.length, LengthField)
+        for node in walk(layout.nodes)
     )
     builder = _Builder(layout, bus_bytes, max_message_bytes, has_lengths)
     start, steps = builder.build()
@@ -156,10 +169,10 @@ class _Builder:
                     self.value(self.leaf(node.path, "scalar", node.type), node.type.bytes)
                 case Trigger():
                     self.value(self.leaf(node.path, "trigger", OCTET), 0)
-                case RunNode(count=None):
-                    self.counted_run(node)
-                case RunNode():
-                    self.array(node)
+                case RunNode(length=LengthField() as length):
+                    self.counted_run(node, length)
+                case RunNode(length=ConstantLength(count=count)):
+                    self.array(node, count)
                 case LoopNode():
                     self.loop(node)
 
@@ -199,37 +212,43 @@ class _Builder:
     def lanes(self, item: Primitive) -> int:
         return max(1, self.bus_bytes // item.bytes)
 
-    def counted_run(self, node: RunNode) -> None:
+    def length(
+        self, path: Path, length: LengthField, item_bytes: int, end_bytes: int = 0
+    ) -> _Count:
+        """Add a length to the segment; return its leaf and limit."""
+        self.gap(length.gap)
+        leaf = self.leaf(path, "length", LENGTH)
+        self.value(leaf, LENGTH.bytes)
+        return _Count(length=leaf, limit=self.limit(length.bound, item_bytes, end_bytes))
+
+    def counted_run(self, node: RunNode, length: LengthField) -> None:
         """Plan a string or a sequence of primitives: a length, then a run or a loop."""
-        assert node.gap is not None
-        self.gap(node.gap)
-        length = self.leaf(node.path, "length", LENGTH)
-        self.value(length, LENGTH.bytes)
+        count = self.length(node.path, length, node.item.bytes, int(node.terminated))
         items = self.leaf(node.path, "items", node.item, self.lanes(node.item))
-        limit = self.limit(node.bound, node.item.bytes, int(node.terminated))
         if node.item.bytes > self.bus_bytes:
-            self.item_loop(node, items, _Count(length=length, limit=limit))
+            self.item_loop(node, items, count)
         else:
             run = self.new_run(items, terminated=node.terminated)
             align = node.item_gap.align if node.item_gap.bytes != 0 else 1
-            self.flush(BeginRun(length=length, limit=limit, run=run, align=align, body=END))
+            self.flush(
+                BeginRun(length=count.length, limit=count.limit, run=run, align=align, body=END)
+            )
             self.program.append(RunStep(run=run, exits=NOWHERE))
             self.rest = run
 
-    def array(self, node: RunNode) -> None:
+    def array(self, node: RunNode, count: int) -> None:
         """Plan an array of primitives: values of a segment, a run, or a loop."""
-        assert node.count is not None
         items = self.leaf(node.path, "items", node.item, self.lanes(node.item))
         size = node.item.bytes
-        if size > self.bus_bytes and node.count > 1:
-            self.item_loop(node, items, node.count)
+        if size > self.bus_bytes and count > 1:
+            self.item_loop(node, items, count)
             return
         self.gap(node.item_gap)
         lanes = self.lanes(node.item)
-        full, tail = divmod(node.count, lanes)
-        if node.count <= 2 * lanes:
+        full, tail = divmod(count, lanes)
+        if count <= 2 * lanes:
             # One or two transfers are as static as other values, and share steps with them.
-            remaining = node.count
+            remaining = count
             if remaining > lanes:
                 self.value(items, lanes * size)
                 remaining -= lanes
@@ -260,15 +279,11 @@ class _Builder:
         self.leave_loop()
 
     def loop(self, node: LoopNode) -> None:
-        if node.count is not None:
-            self.enter_loop(node.count)
-        else:
-            assert node.gap is not None
-            self.gap(node.gap)
-            length = self.leaf(node.path, "length", LENGTH)
-            self.value(length, LENGTH.bytes)
-            limit = self.limit(node.bound, node.min_body_bytes)
-            self.enter_loop(_Count(length=length, limit=limit))
+        match node.length:
+            case LengthField() as length:
+                self.enter_loop(self.length(node.path, length, node.min_body_bytes))
+            case ConstantLength(count=count):
+                self.enter_loop(count)
         self.nodes(node.body)
         self.leave_loop()
 
