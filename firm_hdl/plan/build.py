@@ -14,6 +14,7 @@ from firm_hdl.model import Primitive
 from firm_hdl.plan.cut import split, step_sizes
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
+    ArrayEnd,
     Begin,
     BeginLoop,
     BeginRun,
@@ -21,6 +22,7 @@ from firm_hdl.plan.ir import (
     Jump,
     Leaf,
     LeafKind,
+    LoopEnd,
     MapStep,
     Pad,
     Part,
@@ -196,11 +198,9 @@ class _Builder:
         elif gap.bytes:
             self.segment.append(Pad(at=self.segment_bytes, bytes=gap.bytes))
 
-    def value(self, leaf: int, size: int, *, last: bool = False, level: int | None = None) -> None:
+    def value(self, leaf: int, size: int, end: ArrayEnd | LoopEnd | None = None) -> None:
         at = self.segment_bytes
-        self.segment.append(
-            Part(at=at, bytes=size, leaf=leaf, first=0, size=size, last=last, last_level=level)
-        )
+        self.segment.append(Part(at=at, bytes=size, leaf=leaf, first=0, size=size, end=end))
 
     def limit(self, bound: int | None, item_bytes: int, end_bytes: int = 0) -> int:
         """Return the largest count that a legal message can have."""
@@ -252,7 +252,7 @@ class _Builder:
             if remaining > lanes:
                 self.value(items, lanes * size)
                 remaining -= lanes
-            self.value(items, remaining * size, last=True)
+            self.value(items, remaining * size, ArrayEnd())
             return
         self.flush()
         self.flush_rest()
@@ -260,7 +260,7 @@ class _Builder:
         self.program.append(Mark(kind="enter", counter=RUN_COUNTER, count=full * lanes))
         self.program.append(RunStep(align=self.take_align(), run=run, exits=NOWHERE))
         if tail:
-            self.value(items, tail * size, last=True)
+            self.value(items, tail * size, ArrayEnd())
 
     def new_run(
         self, items: int, *, counted: bool = True, terminated: bool = False, last: bool = True
@@ -275,7 +275,7 @@ class _Builder:
         # aligned already. The gap of the layout is that of the first item, so it cannot be static.
         if node.item_gap.bytes is None or node.item_gap.bytes:
             self.segment_align = node.item_gap.align
-        self.value(items, node.item.bytes, level=level)
+        self.value(items, node.item.bytes, LoopEnd(level=level))
         self.leave_loop()
 
     def loop(self, node: LoopNode) -> None:

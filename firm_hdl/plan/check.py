@@ -22,6 +22,7 @@ from firm_hdl.plan.ir import (
     Fixed,
     Jump,
     Leaf,
+    LoopEnd,
     MapStep,
     Pad,
     Part,
@@ -179,9 +180,8 @@ def _slice(plan: Plan, item: Slice) -> Iterator[str]:
         yield f"a transfer of {leaf} has {item.size} bytes"
     if item.first < 0 or item.first + item.bytes > item.size or (size and item.bytes < 1):
         yield f"{leaf} has no bytes {item.first} to {item.first + item.bytes - 1}"
-    marks = item.last + (item.last_level is not None)
-    if marks > (leaf.kind == "items"):
-        yield f"{leaf} has too many marks of its end"
+    if item.end is not None and leaf.kind != "items":
+        yield f"{leaf} has a mark of its end, which only items have"
 
 
 def _begin(plan: Plan, begin: Begin) -> Iterator[str]:
@@ -230,13 +230,13 @@ def _ends(plan: Plan, leaf: int, parts: list[Part], runs: list[int]) -> Iterator
     if plan.leaves[leaf].kind != "items" or not parts:
         return
     first, last = parts[0], parts[-1]
-    if not last.last and last.last_level is None:
+    if last.end is None:
         yield "its last transfer has no mark of its end"
-    elif last.last_level is not None and (runs or len(parts) > 1):
+    elif isinstance(last.end, LoopEnd) and (runs or len(parts) > 1):
         yield "the last of several transfers is in a loop"
     if len(parts) > 1:
         word = plan.leaves[leaf].lanes * plan.leaves[leaf].item_bytes
-        if first.last or first.last_level is not None or first.size != word:
+        if first.end is not None or first.size != word:
             yield "its first transfer is not a full word, or has a mark of its end"
 
 
@@ -254,8 +254,7 @@ def _joints(plan: Plan) -> Iterator[str]:
             fits = (
                 isinstance(cut, Part)
                 and isinstance(first, Part)
-                and (cut.leaf, cut.size, cut.last, cut.last_level)
-                == (first.leaf, first.size, first.last, first.last_level)
+                and (cut.leaf, cut.size, cut.end) == (first.leaf, first.size, first.end)
                 and cut.first + cut.bytes == first.first
                 and step.align == 1
             )
@@ -327,8 +326,8 @@ class _Walk:
             if count % leaf.lanes:
                 self.problems.append(f"{where}: {count} items do not fill words of {leaf.lanes}")
         for part in step.parts:
-            if part.last_level is not None and part.last_level != len(state) - 1:
-                self.problems.append(f"{where}: loop {part.last_level} is not the innermost")
+            if isinstance(part.end, LoopEnd) and part.end.level != len(state) - 1:
+                self.problems.append(f"{where}: loop {part.end.level} is not the innermost")
         after = index + 1
         begin = step.begin
         if isinstance(begin, BeginLoop):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from firm_hdl.plan.ir import RUN_COUNTER, Plan, RunStep
+from firm_hdl.plan.ir import RUN_COUNTER, LoopEnd, Plan, RunStep
 from firm_hdl.wire import (
     ConstantLength,
     Layout,
@@ -55,6 +55,9 @@ class _Comparison:
         self.problems: list[str] = []
         self.totals = _totals(plan)
         self.begins = plan.begins
+        self.loop_ends = {
+            part.leaf for step in plan.steps for part in step.parts if isinstance(part.end, LoopEnd)
+        }
 
     def length(self, path: Path, length: LengthField, *, terminated: bool) -> None:
         name, bound = ".".join(path), length.bound
@@ -68,16 +71,21 @@ class _Comparison:
             self.problems.append(f"{name} must have a NUL in both plan and layout, or in neither")
 
     def run(self, node: RunNode) -> None:
+        name = ".".join(node.path)
+        # Items wider than the bus are planned as a loop over single items.
+        is_loop = node.item.bytes > self.plan.bus_bytes
         match node.length:
             case LengthField() as length:
                 self.length(node.path, length, terminated=node.terminated)
             case ConstantLength(count=count):
-                # Items wider than the bus are planned as a loop over single items.
-                wide = node.item.bytes > self.plan.bus_bytes and count > 1
-                self.counts += [count] if wide else []
+                is_loop &= count > 1
+                self.counts += [count] if is_loop else []
                 total = self.totals.get(len(self.leaves))
-                if total != (1 if wide else count):
-                    self.problems.append(f"{'.'.join(node.path)} has {total} items, not {count}")
+                if total != (1 if is_loop else count):
+                    self.problems.append(f"{name} has {total} items, not {count}")
+        if (len(self.leaves) in self.loop_ends) != is_loop:
+            kind = "a loop" if is_loop else "an array"
+            self.problems.append(f"the last item of {name} must be that of {kind}")
         self.leaves.append(((*node.path, "items"), "items", node.item.name))
 
 

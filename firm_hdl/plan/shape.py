@@ -11,10 +11,12 @@ from dataclasses import replace
 
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
+    ArrayEnd,
     Begin,
     BeginLoop,
     Fixed,
     Jump,
+    LoopEnd,
     Pad,
     Part,
     Plan,
@@ -82,8 +84,14 @@ def _part(plan: Plan, part: Part) -> str:
         which = "whole"
     else:
         which = "first part" if not part.first else "last part" if part.completes else "inner part"
-    end = ", last" if part.last else ", last by its loop" if part.last_level is not None else ""
-    return f"{which} of {leaf.kind}, {leaf.item_bytes} bytes each{end}"
+    text = f"{which} of {leaf.kind}, {leaf.item_bytes} bytes each"
+    match part.end:
+        case ArrayEnd():
+            return f"{text}, last"
+        case LoopEnd():
+            return f"{text}, last by its loop"
+        case None:
+            return text
 
 
 def _begin(plan: Plan, begin: Begin) -> str:

@@ -15,7 +15,17 @@ The step after the run takes the rest together with its own bytes, so that the r
 The counter of the run has the size of the rest: 0 if no run was started, or the run was empty.
 """
 
-from firm_hdl.plan.ir.leaves import Fixed, Leaf, LeafKind, Pad, Part, Run, Slice
+from firm_hdl.plan.ir.leaves import (
+    ArrayEnd,
+    Fixed,
+    Leaf,
+    LeafKind,
+    LoopEnd,
+    Pad,
+    Part,
+    Run,
+    Slice,
+)
 from firm_hdl.plan.ir.plan import Plan
 from firm_hdl.plan.ir.steps import (
     RUN_COUNTER,
@@ -31,6 +41,7 @@ from firm_hdl.plan.ir.steps import (
 
 __all__ = [
     "RUN_COUNTER",
+    "ArrayEnd",
     "Begin",
     "BeginLoop",
     "BeginRun",
@@ -39,6 +50,7 @@ __all__ = [
     "Jump",
     "Leaf",
     "LeafKind",
+    "LoopEnd",
     "MapStep",
     "Pad",
     "Part",
