@@ -37,7 +37,7 @@ from firm_hdl.plan.limits import (
     check_bus_bytes,
     check_max_message_bytes,
 )
-from firm_hdl.plan.link import END, NOWHERE, Mark, link
+from firm_hdl.plan.link import END, NOWHERE, BodyEnd, BodyStart, Load, Mark, link
 from firm_hdl.wire import (
     ConstantLength,
     Gap,
@@ -257,7 +257,7 @@ class _Builder:
         self.flush()
         self.flush_rest()
         run = self.new_run(items, counted=False, last=not tail)
-        self.program.append(Mark(kind="enter", counter=RUN_COUNTER, count=full * lanes))
+        self.program.append(Load(counter=RUN_COUNTER, count=full * lanes))
         self.program.append(RunStep(align=self.take_align(), run=run, exits=NOWHERE))
         if tail:
             self.value(items, tail * size, ArrayEnd())
@@ -295,11 +295,11 @@ class _Builder:
             self.flush()
             # The body's first step is also reached from the body's end, where no such rest is left.
             self.flush_rest()
-            self.program.append(Mark(kind="enter", counter=level, count=count))
+            self.program.append(Load(counter=level, count=count))
         else:
             length, limit = count.length, count.limit
             self.flush(BeginLoop(length=length, limit=limit, level=level, body=END))
-        self.program.append(Mark(kind="loop", counter=level))
+        self.program.append(BodyStart(level=level))
         return level
 
     def leave_loop(self) -> None:
@@ -307,7 +307,7 @@ class _Builder:
         self.flush()
         self.depth -= 1
         self.join_rest()
-        self.program.append(Mark(kind="end", counter=self.depth))
+        self.program.append(BodyEnd(level=self.depth))
 
     def join_rest(self) -> None:
         """Give the rest of a body's last run to the body's first step, or to a step of its own."""
@@ -327,12 +327,9 @@ class _Builder:
 
     def body_start(self, level: int) -> int:
         """Return the place of the first step of the body of the innermost open loop."""
-        marks = (
-            place
-            for place, item in reversed(list(enumerate(self.program)))
-            if isinstance(item, Mark) and item.kind == "loop" and item.counter == level
-        )
-        place = next(marks) + 1
+        place = len(self.program) - 1
+        while self.program[place] != BodyStart(level=level):
+            place -= 1
         while isinstance(self.program[place], Mark):
             place += 1
         return place
