@@ -20,15 +20,19 @@ from firm_hdl.plan.ir import (
     BeginLoop,
     BeginRun,
     Fixed,
+    IntoBody,
     Jump,
     Leaf,
+    LoopAgain,
     LoopEnd,
     MapStep,
+    Next,
     Pad,
     Part,
     Plan,
     RunStep,
     Slice,
+    successors,
 )
 from firm_hdl.plan.limits import BUS_BYTES
 from firm_hdl.plan.offsets import Span, check_offsets, loop_spans
@@ -329,22 +333,25 @@ class _Walk:
             if isinstance(part.end, LoopEnd) and part.end.level != len(state) - 1:
                 self.problems.append(f"{where}: loop {part.end.level} is not the innermost")
         after = index + 1
-        begin = step.begin
-        if isinstance(begin, BeginLoop):
-            if begin.level != len(state):
-                self.problems.append(f"{where}: loop {begin.level} inside {len(state)} loops")
-            self.jump(begin.body, (*state, after), after, f"{where}, body", None)
-            after = spans.get((len(state), after), after) + 1
-        elif begin is not None:
-            self.jump(begin.body, state, after, f"{where}, body", begin.run)
-            after += 1
-        for level, jump in step.exits.repeats:
-            if level != len(state) - 1:
-                self.problems.append(f"{where}: loop {level} ends inside {len(state)} loops")
-                return
-            self.jump(jump, state, state[-1], f"{where}, loop {level} again")
-            state = state[:-1]
-        self.jump(step.exits.default, state, after, f"{where}, next")
+        for way, jump in successors(step):
+            match way:
+                case IntoBody(begin=BeginLoop(level=level)):
+                    if level != len(state):
+                        self.problems.append(f"{where}: loop {level} inside {len(state)} loops")
+                    self.jump(jump, (*state, after), after, f"{where}, body")
+                    after = spans.get((len(state), after), after) + 1
+                case IntoBody(begin=BeginRun(run=run)):
+                    self.jump(jump, state, after, f"{where}, body", run)
+                    after += 1
+                case LoopAgain(level=level):
+                    if level != len(state) - 1:
+                        problem = f"{where}: loop {level} ends inside {len(state)} loops"
+                        self.problems.append(problem)
+                        return
+                    self.jump(jump, state, state[-1], f"{where}, loop {level} again")
+                    state = state[:-1]
+                case Next():
+                    self.jump(jump, state, after, f"{where}, next")
 
 
 def _flow(plan: Plan) -> list[str]:
@@ -372,12 +379,11 @@ def _rests(plan: Plan) -> Iterator[str]:
             run = step.run if plan.runs[step.run].counted else None
         elif isinstance(step.begin, BeginRun):
             run = step.begin.run
-        elif step.begin is not None:
-            left.setdefault(step.begin.body.step, set()).add(None)
-        for jump in (step.exits.default, *(jump for _, jump in step.exits.repeats)):
-            left.setdefault(jump.step, set()).add(run)
+        for way, jump in successors(step):
+            # Only the step that starts a run leads to the body of the run.
+            if run is None or not isinstance(way, IntoBody):
+                left.setdefault(jump.step, set()).add(run)
     for index, step in enumerate(plan.steps):
-        # Only the step that starts a run leads to the body of the run.
         runs = left.get(index, set())
         if step.rest is not None and step.rest not in runs:
             yield f"step {index}: {_items(plan, step.rest)} has no rest here"

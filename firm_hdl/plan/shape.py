@@ -15,13 +15,17 @@ from firm_hdl.plan.ir import (
     Begin,
     BeginLoop,
     Fixed,
+    IntoBody,
     Jump,
+    LoopAgain,
     LoopEnd,
+    Next,
     Pad,
     Part,
     Plan,
     RunStep,
     Step,
+    successors,
 )
 
 __all__ = ["constructs", "shape"]
@@ -71,11 +75,9 @@ def _step(plan: Plan, step: Step) -> Iterator[str]:
                 yield _part(plan, item)
     if step.begin is not None:
         yield _begin(plan, step.begin)
-        yield from _jump("body", step.begin.body)
     yield f"{min(len(step.exits.repeats), 3)} loops may repeat"
-    for _, jump in step.exits.repeats:
-        yield from _jump("repeat", jump)
-    yield from _jump("next", step.exits.default)
+    for way, jump in successors(step):
+        yield from _jump({IntoBody: "body", LoopAgain: "repeat", Next: "next"}[type(way)], jump)
 
 
 def _part(plan: Plan, part: Part) -> str:

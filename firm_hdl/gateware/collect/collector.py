@@ -206,9 +206,8 @@ class _CollectorLogic:
 
         A length is the last transfer of its step; so nothing else can delay the step after it.
         """
-        jumps = [step.exits.default, *(jump for _, jump in step.exits.repeats)]
         return step.begin is not None and any(
-            jump.step is None or only_ends(self.plan.steps[jump.step]) for jump in jumps
+            jump.step is None or only_ends(self.plan.steps[jump.step]) for jump in step.exits.jumps
         )
 
     def _judge(self) -> None:

@@ -187,11 +187,8 @@ def meanings_of(plan: Plan, *, has_leaves: bool = True) -> dict[int, Meaning]:
             case BeginLoop() as begin:
                 found[index] = LoopMeaning(plan=plan, begin=begin, has_leaves=has_leaves)
             case BeginRun() as begin:
-                exits = [jump.step for _, jump in step.exits.repeats]
-                nexts = (*exits, step.exits.default.step)
-                found[index] = RunMeaning(
-                    plan=plan, begin=begin, nexts=tuple(n for n in nexts if n is not None)
-                )
+                nexts = tuple(j.step for j in step.exits.jumps if j.step is not None)
+                found[index] = RunMeaning(plan=plan, begin=begin, nexts=nexts)
     return found
 
 

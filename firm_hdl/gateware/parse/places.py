@@ -12,6 +12,7 @@ from firm_hdl.gateware.flow import Flow
 from firm_hdl.gateware.parse.lengths import Meaning, RunMeaning, shift_of
 from firm_hdl.gateware.positions import Ring, align_addend, any_of, pick
 from firm_hdl.plan import BeginRun, Plan, RunStep
+from firm_hdl.plan.ir import IntoBody, LoopAgain, Next, successors
 
 __all__ = ["NextPlace", "place_fields", "place_traits"]
 
@@ -39,18 +40,20 @@ def _ways(plan: Plan, index: int) -> Iterator[tuple[str, _Way]]:
     """Yield the ways out of a step: `exit`, `again_N` if loop N may go on, and `body`."""
     step = plan.steps[index]
     rest = isinstance(step, RunStep) and plan.runs[step.run].counted
-    exits = [("exit", step.exits.default)]
-    exits += [(f"again_{level}", jump) for level, jump in step.exits.repeats]
-    for name, jump in exits:
-        align = 1 if jump.step is None else plan.steps[jump.step].align
-        yield name, _Way(align=align, shift=shift_of(plan, jump.step), rest=rest)
     if isinstance(step, RunStep):
         yield "body", _Way(align=1, shift=plan.bus_bytes - 1)
-    elif step.begin is not None:
-        body = step.begin.body.step
-        assert body is not None
-        align = step.begin.align if isinstance(step.begin, BeginRun) else plan.steps[body].align
-        yield "body", _Way(align=align, shift=shift_of(plan, body))
+    for way, jump in successors(step):
+        align = 1 if jump.step is None else plan.steps[jump.step].align
+        shift = shift_of(plan, jump.step)
+        match way:
+            case IntoBody(begin=BeginRun(align=first)):
+                yield "body", _Way(align=first, shift=shift)
+            case IntoBody():
+                yield "body", _Way(align=align, shift=shift)
+            case LoopAgain(level=level):
+                yield f"again_{level}", _Way(align=align, shift=shift, rest=rest)
+            case Next():
+                yield "exit", _Way(align=align, shift=shift, rest=rest)
 
 
 def _distance(plan: Plan, align: int, shift: int) -> int:

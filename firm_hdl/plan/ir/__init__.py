@@ -33,10 +33,15 @@ from firm_hdl.plan.ir.steps import (
     BeginLoop,
     BeginRun,
     Exits,
+    IntoBody,
     Jump,
+    LoopAgain,
     MapStep,
+    Next,
     RunStep,
     Step,
+    Way,
+    successors,
 )
 
 __all__ = [
@@ -47,11 +52,14 @@ __all__ = [
     "BeginRun",
     "Exits",
     "Fixed",
+    "IntoBody",
     "Jump",
     "Leaf",
     "LeafKind",
+    "LoopAgain",
     "LoopEnd",
     "MapStep",
+    "Next",
     "Pad",
     "Part",
     "Plan",
@@ -59,4 +67,6 @@ __all__ = [
     "RunStep",
     "Slice",
     "Step",
+    "Way",
+    "successors",
 ]
