@@ -20,7 +20,7 @@ from firm_hdl.model import Array, Field, Message, Primitive, Sequence, String
 from firm_hdl.plan import Plan
 from firm_hdl.plan.shape import constructs
 from firm_hdl.wire import Wire, lay_out
-from firm_hdl.wire.layout import Gap, LoopNode, Node, RunNode, Scalar, walk
+from firm_hdl.wire.layout import Gap, LengthField, LoopNode, Node, RunNode, Scalar, walk
 
 __all__ = ["FAMILIES", "all_features", "choose", "cost", "features"]
 
@@ -119,11 +119,10 @@ def _node(node: Node) -> str:
             return f"scalar of {node.type.bytes} bytes, {_gap(node.gap)}"
         case RunNode() | LoopNode():
             words = [f"run of {node.item.bytes} bytes" if isinstance(node, RunNode) else "loop"]
-            words.append(
-                "of a constant length" if node.gap is None else f"length: {_gap(node.gap)}"
-            )
+            length = node.length if isinstance(node.length, LengthField) else None
+            words.append(f"length: {_gap(length.gap)}" if length else "of a constant length")
             words += [f"items: {_gap(node.item_gap)}"] if isinstance(node, RunNode) else []
-            words += [] if node.bound is None else ["bounded"]
+            words += ["bounded"] if length and length.bound is not None else []
             words += ["NUL"] if isinstance(node, RunNode) and node.terminated else []
             return ", ".join(words)
         case _:

@@ -14,7 +14,7 @@ from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.parse import order_layout
 from firm_hdl.gateware.positions import Ring, any_of, beat_layout, rotate
 from firm_hdl.gateware.signatures import StatusSignature, leaf_shape
-from firm_hdl.plan import Part, Plan, Run, RunStep, Step
+from firm_hdl.plan import LoopEnd, Part, Plan, Run, RunStep, Step
 from firm_hdl.plan.geometry import geometry
 from firm_hdl.plan.transfers import repeated_leaves, transfers
 
@@ -368,9 +368,9 @@ class _MoverLogic:
         """Write a transfer of static size."""
         leaf, payload = self.plan.leaves[writer.leaf], self.payloads[writer.leaf]
         size = leaf.item_bytes
-        last: Value = Const(part.last)
-        if part.last_level is not None:
-            last = self.final[part.last_level]
+        last: Value = Const(part.end is not None)
+        if isinstance(part.end, LoopEnd):
+            last = self.final[part.end.level]
         self.m.d.sync += payload.last.eq(last)
         for lane in range(leaf.lanes):
             value, good = Const(0), Const(1)

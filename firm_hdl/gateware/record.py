@@ -34,6 +34,7 @@ class _Adapter(wiring.Component):
         fields: Iterable[str] | None,
         reads: bool,
     ):
+        self._reads = reads
         self.plan = build_plan(lay_out(message, wire), bus_bytes=bus_bytes)
         self.tree = member_tree(leaf.path for leaf in self.plan.leaves)
         self._record = Record(message, self.plan, fields)
@@ -67,7 +68,7 @@ class _Adapter(wiring.Component):
             return
         for _, path in rest.leaves():
             ends = (_member(self.message, path), _member(self.rest, path))
-            source, sink = ends if isinstance(self, RecordReader) else ends[::-1]
+            source, sink = ends if self._reads else ends[::-1]
             m.d.comb += [
                 sink.payload.eq(source.payload),
                 sink.valid.eq(source.valid),

@@ -15,6 +15,7 @@ from firm_hdl.plan.interpret import (
 )
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
+    ArrayEnd,
     Begin,
     BeginLoop,
     BeginRun,
@@ -22,6 +23,7 @@ from firm_hdl.plan.ir import (
     Fixed,
     Jump,
     Leaf,
+    LoopEnd,
     MapStep,
     Pad,
     Part,
@@ -38,6 +40,7 @@ __all__ = [
     "BUS_BYTES",
     "DEFAULT_MAX_MESSAGE_BYTES",
     "RUN_COUNTER",
+    "ArrayEnd",
     "Begin",
     "BeginLoop",
     "BeginRun",
@@ -49,6 +52,7 @@ __all__ = [
     "Fixed",
     "Jump",
     "Leaf",
+    "LoopEnd",
     "MapStep",
     "Pad",
     "Part",

@@ -14,6 +14,7 @@ from firm_hdl.model import Primitive
 from firm_hdl.plan.cut import split, step_sizes
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
+    ArrayEnd,
     Begin,
     BeginLoop,
     BeginRun,
@@ -21,6 +22,7 @@ from firm_hdl.plan.ir import (
     Jump,
     Leaf,
     LeafKind,
+    LoopEnd,
     MapStep,
     Pad,
     Part,
@@ -35,9 +37,21 @@ from firm_hdl.plan.limits import (
     check_bus_bytes,
     check_max_message_bytes,
 )
-from firm_hdl.plan.link import END, NOWHERE, Mark, link
-from firm_hdl.wire import Layout, LoopNode, Node, Path, RunNode, Scalar, Trigger, walk
-from firm_hdl.wire.layout import LENGTH, OCTET, Gap
+from firm_hdl.plan.link import END, NOWHERE, BodyEnd, BodyStart, Load, Mark, link
+from firm_hdl.wire import (
+    ConstantLength,
+    Gap,
+    Layout,
+    LengthField,
+    LoopNode,
+    Node,
+    Path,
+    RunNode,
+    Scalar,
+    Trigger,
+    walk,
+)
+from firm_hdl.wire.layout import LENGTH, OCTET
 
 __all__ = ["build_plan"]
 
@@ -68,7 +82,8 @@ def build_plan(
     check_bus_bytes(bus_bytes)
     check_max_message_bytes(layout, max_message_bytes)
     has_lengths = any(
-        isinstance(node, RunNode | LoopNode) and node.count is None for node in walk(layout.nodes)
+        isinstance(node, RunNode | LoopNode) and isinstance(node.length, LengthField)
+        for node in walk(layout.nodes)
     )
     builder = _Builder(layout, bus_bytes, max_message_bytes, has_lengths)
     start, steps = builder.build()
@@ -156,10 +171,10 @@ class _Builder:
                     self.value(self.leaf(node.path, "scalar", node.type), node.type.bytes)
                 case Trigger():
                     self.value(self.leaf(node.path, "trigger", OCTET), 0)
-                case RunNode(count=None):
-                    self.counted_run(node)
-                case RunNode():
-                    self.array(node)
+                case RunNode(length=LengthField() as length):
+                    self.counted_run(node, length)
+                case RunNode(length=ConstantLength(count=count)):
+                    self.array(node, count)
                 case LoopNode():
                     self.loop(node)
 
@@ -183,11 +198,9 @@ class _Builder:
         elif gap.bytes:
             self.segment.append(Pad(at=self.segment_bytes, bytes=gap.bytes))
 
-    def value(self, leaf: int, size: int, *, last: bool = False, level: int | None = None) -> None:
+    def value(self, leaf: int, size: int, end: ArrayEnd | LoopEnd | None = None) -> None:
         at = self.segment_bytes
-        self.segment.append(
-            Part(at=at, bytes=size, leaf=leaf, first=0, size=size, last=last, last_level=level)
-        )
+        self.segment.append(Part(at=at, bytes=size, leaf=leaf, first=0, size=size, end=end))
 
     def limit(self, bound: int | None, item_bytes: int, end_bytes: int = 0) -> int:
         """Return the largest count that a legal message can have."""
@@ -199,49 +212,55 @@ class _Builder:
     def lanes(self, item: Primitive) -> int:
         return max(1, self.bus_bytes // item.bytes)
 
-    def counted_run(self, node: RunNode) -> None:
+    def length(
+        self, path: Path, length: LengthField, item_bytes: int, end_bytes: int = 0
+    ) -> _Count:
+        """Add a length to the segment; return its leaf and limit."""
+        self.gap(length.gap)
+        leaf = self.leaf(path, "length", LENGTH)
+        self.value(leaf, LENGTH.bytes)
+        return _Count(length=leaf, limit=self.limit(length.bound, item_bytes, end_bytes))
+
+    def counted_run(self, node: RunNode, length: LengthField) -> None:
         """Plan a string or a sequence of primitives: a length, then a run or a loop."""
-        assert node.gap is not None
-        self.gap(node.gap)
-        length = self.leaf(node.path, "length", LENGTH)
-        self.value(length, LENGTH.bytes)
+        count = self.length(node.path, length, node.item.bytes, int(node.terminated))
         items = self.leaf(node.path, "items", node.item, self.lanes(node.item))
-        limit = self.limit(node.bound, node.item.bytes, int(node.terminated))
         if node.item.bytes > self.bus_bytes:
-            self.item_loop(node, items, _Count(length=length, limit=limit))
+            self.item_loop(node, items, count)
         else:
             run = self.new_run(items, terminated=node.terminated)
             align = node.item_gap.align if node.item_gap.bytes != 0 else 1
-            self.flush(BeginRun(length=length, limit=limit, run=run, align=align, body=END))
+            self.flush(
+                BeginRun(length=count.length, limit=count.limit, run=run, align=align, body=END)
+            )
             self.program.append(RunStep(run=run, exits=NOWHERE))
             self.rest = run
 
-    def array(self, node: RunNode) -> None:
+    def array(self, node: RunNode, count: int) -> None:
         """Plan an array of primitives: values of a segment, a run, or a loop."""
-        assert node.count is not None
         items = self.leaf(node.path, "items", node.item, self.lanes(node.item))
         size = node.item.bytes
-        if size > self.bus_bytes and node.count > 1:
-            self.item_loop(node, items, node.count)
+        if size > self.bus_bytes and count > 1:
+            self.item_loop(node, items, count)
             return
         self.gap(node.item_gap)
         lanes = self.lanes(node.item)
-        full, tail = divmod(node.count, lanes)
-        if node.count <= 2 * lanes:
+        full, tail = divmod(count, lanes)
+        if count <= 2 * lanes:
             # One or two transfers are as static as other values, and share steps with them.
-            remaining = node.count
+            remaining = count
             if remaining > lanes:
                 self.value(items, lanes * size)
                 remaining -= lanes
-            self.value(items, remaining * size, last=True)
+            self.value(items, remaining * size, ArrayEnd())
             return
         self.flush()
         self.flush_rest()
         run = self.new_run(items, counted=False, last=not tail)
-        self.program.append(Mark(kind="enter", counter=RUN_COUNTER, count=full * lanes))
+        self.program.append(Load(counter=RUN_COUNTER, count=full * lanes))
         self.program.append(RunStep(align=self.take_align(), run=run, exits=NOWHERE))
         if tail:
-            self.value(items, tail * size, last=True)
+            self.value(items, tail * size, ArrayEnd())
 
     def new_run(
         self, items: int, *, counted: bool = True, terminated: bool = False, last: bool = True
@@ -256,19 +275,15 @@ class _Builder:
         # aligned already. The gap of the layout is that of the first item, so it cannot be static.
         if node.item_gap.bytes is None or node.item_gap.bytes:
             self.segment_align = node.item_gap.align
-        self.value(items, node.item.bytes, level=level)
+        self.value(items, node.item.bytes, LoopEnd(level=level))
         self.leave_loop()
 
     def loop(self, node: LoopNode) -> None:
-        if node.count is not None:
-            self.enter_loop(node.count)
-        else:
-            assert node.gap is not None
-            self.gap(node.gap)
-            length = self.leaf(node.path, "length", LENGTH)
-            self.value(length, LENGTH.bytes)
-            limit = self.limit(node.bound, node.min_body_bytes)
-            self.enter_loop(_Count(length=length, limit=limit))
+        match node.length:
+            case LengthField() as length:
+                self.enter_loop(self.length(node.path, length, node.min_body_bytes))
+            case ConstantLength(count=count):
+                self.enter_loop(count)
         self.nodes(node.body)
         self.leave_loop()
 
@@ -280,11 +295,11 @@ class _Builder:
             self.flush()
             # The body's first step is also reached from the body's end, where no such rest is left.
             self.flush_rest()
-            self.program.append(Mark(kind="enter", counter=level, count=count))
+            self.program.append(Load(counter=level, count=count))
         else:
             length, limit = count.length, count.limit
             self.flush(BeginLoop(length=length, limit=limit, level=level, body=END))
-        self.program.append(Mark(kind="loop", counter=level))
+        self.program.append(BodyStart(level=level))
         return level
 
     def leave_loop(self) -> None:
@@ -292,7 +307,7 @@ class _Builder:
         self.flush()
         self.depth -= 1
         self.join_rest()
-        self.program.append(Mark(kind="end", counter=self.depth))
+        self.program.append(BodyEnd(level=self.depth))
 
     def join_rest(self) -> None:
         """Give the rest of a body's last run to the body's first step, or to a step of its own."""
@@ -312,12 +327,9 @@ class _Builder:
 
     def body_start(self, level: int) -> int:
         """Return the place of the first step of the body of the innermost open loop."""
-        marks = (
-            place
-            for place, item in reversed(list(enumerate(self.program)))
-            if isinstance(item, Mark) and item.kind == "loop" and item.counter == level
-        )
-        place = next(marks) + 1
+        place = len(self.program) - 1
+        while self.program[place] != BodyStart(level=level):
+            place -= 1
         while isinstance(self.program[place], Mark):
             place += 1
         return place

@@ -20,14 +20,19 @@ from firm_hdl.plan.ir import (
     BeginLoop,
     BeginRun,
     Fixed,
+    IntoBody,
     Jump,
     Leaf,
+    LoopAgain,
+    LoopEnd,
     MapStep,
+    Next,
     Pad,
     Part,
     Plan,
     RunStep,
     Slice,
+    successors,
 )
 from firm_hdl.plan.limits import BUS_BYTES
 from firm_hdl.plan.offsets import Span, check_offsets, loop_spans
@@ -179,9 +184,8 @@ def _slice(plan: Plan, item: Slice) -> Iterator[str]:
         yield f"a transfer of {leaf} has {item.size} bytes"
     if item.first < 0 or item.first + item.bytes > item.size or (size and item.bytes < 1):
         yield f"{leaf} has no bytes {item.first} to {item.first + item.bytes - 1}"
-    marks = item.last + (item.last_level is not None)
-    if marks > (leaf.kind == "items"):
-        yield f"{leaf} has too many marks of its end"
+    if item.end is not None and leaf.kind != "items":
+        yield f"{leaf} has a mark of its end, which only items have"
 
 
 def _begin(plan: Plan, begin: Begin) -> Iterator[str]:
@@ -230,13 +234,13 @@ def _ends(plan: Plan, leaf: int, parts: list[Part], runs: list[int]) -> Iterator
     if plan.leaves[leaf].kind != "items" or not parts:
         return
     first, last = parts[0], parts[-1]
-    if not last.last and last.last_level is None:
+    if last.end is None:
         yield "its last transfer has no mark of its end"
-    elif last.last_level is not None and (runs or len(parts) > 1):
+    elif isinstance(last.end, LoopEnd) and (runs or len(parts) > 1):
         yield "the last of several transfers is in a loop"
     if len(parts) > 1:
         word = plan.leaves[leaf].lanes * plan.leaves[leaf].item_bytes
-        if first.last or first.last_level is not None or first.size != word:
+        if first.end is not None or first.size != word:
             yield "its first transfer is not a full word, or has a mark of its end"
 
 
@@ -254,8 +258,7 @@ def _joints(plan: Plan) -> Iterator[str]:
             fits = (
                 isinstance(cut, Part)
                 and isinstance(first, Part)
-                and (cut.leaf, cut.size, cut.last, cut.last_level)
-                == (first.leaf, first.size, first.last, first.last_level)
+                and (cut.leaf, cut.size, cut.end) == (first.leaf, first.size, first.end)
                 and cut.first + cut.bytes == first.first
                 and step.align == 1
             )
@@ -327,25 +330,28 @@ class _Walk:
             if count % leaf.lanes:
                 self.problems.append(f"{where}: {count} items do not fill words of {leaf.lanes}")
         for part in step.parts:
-            if part.last_level is not None and part.last_level != len(state) - 1:
-                self.problems.append(f"{where}: loop {part.last_level} is not the innermost")
+            if isinstance(part.end, LoopEnd) and part.end.level != len(state) - 1:
+                self.problems.append(f"{where}: loop {part.end.level} is not the innermost")
         after = index + 1
-        begin = step.begin
-        if isinstance(begin, BeginLoop):
-            if begin.level != len(state):
-                self.problems.append(f"{where}: loop {begin.level} inside {len(state)} loops")
-            self.jump(begin.body, (*state, after), after, f"{where}, body", None)
-            after = spans.get((len(state), after), after) + 1
-        elif begin is not None:
-            self.jump(begin.body, state, after, f"{where}, body", begin.run)
-            after += 1
-        for level, jump in step.exits.repeats:
-            if level != len(state) - 1:
-                self.problems.append(f"{where}: loop {level} ends inside {len(state)} loops")
-                return
-            self.jump(jump, state, state[-1], f"{where}, loop {level} again")
-            state = state[:-1]
-        self.jump(step.exits.default, state, after, f"{where}, next")
+        for way, jump in successors(step):
+            match way:
+                case IntoBody(begin=BeginLoop(level=level)):
+                    if level != len(state):
+                        self.problems.append(f"{where}: loop {level} inside {len(state)} loops")
+                    self.jump(jump, (*state, after), after, f"{where}, body")
+                    after = spans.get((len(state), after), after) + 1
+                case IntoBody(begin=BeginRun(run=run)):
+                    self.jump(jump, state, after, f"{where}, body", run)
+                    after += 1
+                case LoopAgain(level=level):
+                    if level != len(state) - 1:
+                        problem = f"{where}: loop {level} ends inside {len(state)} loops"
+                        self.problems.append(problem)
+                        return
+                    self.jump(jump, state, state[-1], f"{where}, loop {level} again")
+                    state = state[:-1]
+                case Next():
+                    self.jump(jump, state, after, f"{where}, next")
 
 
 def _flow(plan: Plan) -> list[str]:
@@ -373,12 +379,11 @@ def _rests(plan: Plan) -> Iterator[str]:
             run = step.run if plan.runs[step.run].counted else None
         elif isinstance(step.begin, BeginRun):
             run = step.begin.run
-        elif step.begin is not None:
-            left.setdefault(step.begin.body.step, set()).add(None)
-        for jump in (step.exits.default, *(jump for _, jump in step.exits.repeats)):
-            left.setdefault(jump.step, set()).add(run)
+        for way, jump in successors(step):
+            # Only the step that starts a run leads to the body of the run.
+            if run is None or not isinstance(way, IntoBody):
+                left.setdefault(jump.step, set()).add(run)
     for index, step in enumerate(plan.steps):
-        # Only the step that starts a run leads to the body of the run.
         runs = left.get(index, set())
         if step.rest is not None and step.rest not in runs:
             yield f"step {index}: {_items(plan, step.rest)} has no rest here"

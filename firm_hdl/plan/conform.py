@@ -2,8 +2,18 @@
 
 from __future__ import annotations
 
-from firm_hdl.plan.ir import RUN_COUNTER, Plan, RunStep
-from firm_hdl.wire import Layout, LoopNode, RunNode, Scalar, Trigger, walk
+from firm_hdl.plan.ir import RUN_COUNTER, LoopEnd, Plan, RunStep
+from firm_hdl.wire import (
+    ConstantLength,
+    Layout,
+    LengthField,
+    LoopNode,
+    Path,
+    RunNode,
+    Scalar,
+    Trigger,
+    walk,
+)
 
 __all__ = ["against_layout"]
 
@@ -26,9 +36,9 @@ def against_layout(plan: Plan, layout: Layout) -> list[str]:
                 comparison.leaves.append(((*node.path, "trigger"), "trigger", "bool"))
             case RunNode():
                 comparison.run(node)
-            case LoopNode(count=None):
-                comparison.length(node, node.bound, terminated=False)
-            case LoopNode(count=int() as count):
+            case LoopNode(length=LengthField() as length):
+                comparison.length(node.path, length, terminated=False)
+            case LoopNode(length=ConstantLength(count=count)):
                 comparison.counts.append(count)
     if comparison.leaves != [(leaf.path, leaf.kind, leaf.type) for leaf in plan.leaves]:
         comparison.problems.append("leaves are not those of the layout")
@@ -45,11 +55,14 @@ class _Comparison:
         self.problems: list[str] = []
         self.totals = _totals(plan)
         self.begins = plan.begins
+        self.loop_ends = {
+            part.leaf for step in plan.steps for part in step.parts if isinstance(part.end, LoopEnd)
+        }
 
-    def length(self, node: RunNode | LoopNode, bound: int | None, *, terminated: bool) -> None:
-        name = ".".join(node.path)
+    def length(self, path: Path, length: LengthField, *, terminated: bool) -> None:
+        name, bound = ".".join(path), length.bound
         begin = self.begins.get(len(self.leaves))
-        self.leaves.append(((*node.path, "length"), "length", "uint32"))
+        self.leaves.append(((*path, "length"), "length", "uint32"))
         if begin is None:
             self.problems.append(f"{name} has no length")
         elif bound is not None and begin.limit > bound:
@@ -58,15 +71,21 @@ class _Comparison:
             self.problems.append(f"{name} must have a NUL in both plan and layout, or in neither")
 
     def run(self, node: RunNode) -> None:
-        if node.count is None:
-            self.length(node, node.bound, terminated=node.terminated)
-        else:
-            # Items wider than the bus are planned as a loop over single items.
-            wide = node.item.bytes > self.plan.bus_bytes and node.count > 1
-            self.counts += [node.count] if wide else []
-            total = self.totals.get(len(self.leaves))
-            if total != (1 if wide else node.count):
-                self.problems.append(f"{'.'.join(node.path)} has {total} items, not {node.count}")
+        name = ".".join(node.path)
+        # Items wider than the bus are planned as a loop over single items.
+        is_loop = node.item.bytes > self.plan.bus_bytes
+        match node.length:
+            case LengthField() as length:
+                self.length(node.path, length, terminated=node.terminated)
+            case ConstantLength(count=count):
+                is_loop &= count > 1
+                self.counts += [count] if is_loop else []
+                total = self.totals.get(len(self.leaves))
+                if total != (1 if is_loop else count):
+                    self.problems.append(f"{name} has {total} items, not {count}")
+        if (len(self.leaves) in self.loop_ends) != is_loop:
+            kind = "a loop" if is_loop else "an array"
+            self.problems.append(f"the last item of {name} must be that of {kind}")
         self.leaves.append(((*node.path, "items"), "items", node.item.name))
 
 

@@ -9,7 +9,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from firm_hdl.plan.interpret import Edge
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, BeginLoop, BeginRun, Plan, RunStep, Step
+from firm_hdl.plan.ir import (
+    RUN_COUNTER,
+    Begin,
+    BeginLoop,
+    BeginRun,
+    IntoBody,
+    LoopAgain,
+    Next,
+    Plan,
+    RunStep,
+    Step,
+    successors,
+)
 from firm_hdl.plan.offsets import paddings
 
 __all__ = ["edges"]
@@ -47,12 +59,16 @@ def _ways(
         yield from (f"padding {count}" for count in padding)
     if isinstance(step, RunStep) and counts[RUN_COUNTER, index] > _once(plan, step):
         yield "again"
-    if step.begin is not None and _may_need_body(plan, step.begin):
-        yield "body"
-    for level, jump in step.exits.repeats:
-        if jump.step is not None and counts.get((level, jump.step), 0) > 1:
-            yield f"loop {level} again"
-    yield "next"
+    for way, jump in successors(step):
+        match way:
+            case IntoBody(begin=begin):
+                if _may_need_body(plan, begin):
+                    yield "body"
+            case LoopAgain(level=level):
+                if jump.step is not None and counts.get((level, jump.step), 0) > 1:
+                    yield f"loop {level} again"
+            case Next():
+                yield "next"
 
 
 def _max_counts(plan: Plan) -> MaxCounts:

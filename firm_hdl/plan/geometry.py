@@ -7,10 +7,10 @@ point. A plan in which every word starts in lane 0 needs no rotator.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
-from firm_hdl.plan.ir import BeginRun, Exits, Jump, MapStep, Plan, RunStep, Step
+from firm_hdl.plan.ir import BeginRun, IntoBody, Jump, Plan, RunStep, Step, successors
 from firm_hdl.wire import residues as rs
 
 __all__ = [
@@ -182,10 +182,12 @@ class _Flow:
     def successors(self, index: int, residues: int) -> Iterator[tuple[Jump, int]]:
         step = self.plan.steps[index]
         start = self.start(step, residues)
-        if isinstance(step, RunStep):
-            yield from self.exits(step.exits, self.repeated(start))
-            return
-        yield from self.after_map(step, self.advance(start, step.bytes))
+        is_run = isinstance(step, RunStep)
+        after = into_body = self.repeated(start) if is_run else self.advance(start, step.bytes)
+        if isinstance(step.begin, BeginRun):
+            into_body = self.aligned(after, step.begin.align)
+        for way, jump in successors(step):
+            yield jump, into_body if isinstance(way, IntoBody) else after | into_body
 
     def repeated(self, start: int) -> int:
         """Return the positions after any number of words."""
@@ -194,16 +196,3 @@ class _Flow:
             found |= start
             start = self.advance(start, self.plan.bus_bytes)
         return found
-
-    def after_map(self, step: MapStep, after: int) -> Iterator[tuple[Jump, int]]:
-        begin = step.begin
-        if isinstance(begin, BeginRun):
-            items = self.aligned(after, begin.align)
-            yield begin.body, items
-            after |= items
-        elif begin is not None:
-            yield begin.body, after
-        yield from self.exits(step.exits, after)
-
-    def exits(self, exits: Exits, residues: int) -> Iterable[tuple[Jump, int]]:
-        return [(jump, residues) for _, jump in exits.repeats] + [(exits.default, residues)]

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 from firm_hdl.plan.ir import BeginLoop, Exits, Jump, Step
 
-__all__ = ["END", "NOWHERE", "Mark", "link"]
+__all__ = ["END", "NOWHERE", "BodyEnd", "BodyStart", "Load", "Mark", "link"]
 
 END = Jump(step=None)
 """The jump to the end of the packet; also in place of a jump that is not linked yet."""
@@ -22,23 +23,37 @@ NOWHERE = Exits(default=END)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Mark:
-    """A position between steps where a loop starts or ends, or a constant counter is loaded.
+class Load:
+    """A position where a loop or run of constant count starts: its counter is loaded.
 
     Attributes
     ----------
-    kind : "enter", "loop" or "end"
-        "enter": `counter` is loaded with `count`. "loop": the body of loop `counter` starts.
-        "end": the body ends.
     counter : int or RUN_COUNTER
         The level of a loop, or the counter of the items of a run.
     count : int
-        Elements or items; only for "enter".
+        Elements or items.
     """
 
-    kind: str
     counter: int | str
-    count: int = 0
+    count: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BodyStart:
+    """A position where the body of a loop starts."""
+
+    level: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BodyEnd:
+    """A position where the body of a loop ends."""
+
+    level: int
+
+
+Mark: TypeAlias = Load | BodyStart | BodyEnd
+"""A position between steps."""
 
 
 def link(program: Sequence[Step | Mark]) -> tuple[Jump, tuple[Step, ...]]:
@@ -60,9 +75,9 @@ class _Linker:
         self.ends: dict[int, int] = {}
         open_loops: list[int] = []
         for place, item in enumerate(program):
-            if isinstance(item, Mark) and item.kind == "loop":
+            if isinstance(item, BodyStart):
                 open_loops.append(place)
-            elif isinstance(item, Mark) and item.kind == "end":
+            elif isinstance(item, BodyEnd):
                 start = open_loops.pop()
                 self.bodies[place] = start + 1
                 self.ends[start] = place
@@ -74,8 +89,8 @@ class _Linker:
             item = self.program[place]
             if not isinstance(item, Mark):
                 break
-            assert item.kind != "end"
-            if item.kind == "enter":
+            assert not isinstance(item, BodyEnd)
+            if isinstance(item, Load):
                 enter.append((item.counter, item.count))
             place += 1
         return Jump(enter=tuple(enter), step=self.numbers.get(place))
@@ -85,10 +100,9 @@ class _Linker:
         repeats: list[tuple[int, Jump]] = []
         while place < len(self.program):
             item = self.program[place]
-            if not isinstance(item, Mark) or item.kind != "end":
+            if not isinstance(item, BodyEnd):
                 break
-            assert isinstance(item.counter, int)
-            repeats.append((item.counter, self.jump_to(self.bodies[place])))
+            repeats.append((item.level, self.jump_to(self.bodies[place])))
             place += 1
         return Exits(repeats=tuple(repeats), default=self.jump_to(place))
 

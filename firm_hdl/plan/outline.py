@@ -14,8 +14,18 @@ from dataclasses import dataclass, replace
 from itertools import count
 
 from firm_hdl.model import PRIMITIVES
-from firm_hdl.wire import Layout, LoopNode, Node, Path, RunNode, Scalar, Trigger
-from firm_hdl.wire.layout import OCTET, Gap
+from firm_hdl.wire import (
+    ConstantLength,
+    Gap,
+    Layout,
+    LoopNode,
+    Node,
+    Path,
+    RunNode,
+    Scalar,
+    Trigger,
+)
+from firm_hdl.wire.layout import OCTET
 
 __all__ = ["outline"]
 
@@ -89,11 +99,9 @@ def _bytes(stretch: _Stretch, bus_bytes: int, numbers: Iterator[int]) -> Iterato
 def _array(size: int, gap: Gap, numbers: Iterator[int]) -> RunNode:
     return RunNode(
         path=_path(numbers),
-        gap=None,
+        length=ConstantLength(count=size),
         item_gap=gap,
         item=OCTET,
-        count=size,
-        bound=None,
         terminated=False,
     )
 
@@ -110,9 +118,9 @@ def _fixed(node: Node) -> _Stretch | None:
             return _Stretch(node.gap, node.type.bytes)
         case Trigger():
             return _Stretch(NO_GAP, 0)
-        case RunNode(count=int() as size):
+        case RunNode(length=ConstantLength(count=size)):
             return _Stretch(node.item_gap, size * node.item.bytes)
-        case LoopNode(count=int() as size):
+        case LoopNode(length=ConstantLength(count=size)):
             return _fixed_loop(node, size)
         case _:
             return None

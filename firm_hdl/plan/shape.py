@@ -11,15 +11,21 @@ from dataclasses import replace
 
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
+    ArrayEnd,
     Begin,
     BeginLoop,
     Fixed,
+    IntoBody,
     Jump,
+    LoopAgain,
+    LoopEnd,
+    Next,
     Pad,
     Part,
     Plan,
     RunStep,
     Step,
+    successors,
 )
 
 __all__ = ["constructs", "shape"]
@@ -69,11 +75,9 @@ def _step(plan: Plan, step: Step) -> Iterator[str]:
                 yield _part(plan, item)
     if step.begin is not None:
         yield _begin(plan, step.begin)
-        yield from _jump("body", step.begin.body)
     yield f"{min(len(step.exits.repeats), 3)} loops may repeat"
-    for _, jump in step.exits.repeats:
-        yield from _jump("repeat", jump)
-    yield from _jump("next", step.exits.default)
+    for way, jump in successors(step):
+        yield from _jump({IntoBody: "body", LoopAgain: "repeat", Next: "next"}[type(way)], jump)
 
 
 def _part(plan: Plan, part: Part) -> str:
@@ -82,8 +86,14 @@ def _part(plan: Plan, part: Part) -> str:
         which = "whole"
     else:
         which = "first part" if not part.first else "last part" if part.completes else "inner part"
-    end = ", last" if part.last else ", last by its loop" if part.last_level is not None else ""
-    return f"{which} of {leaf.kind}, {leaf.item_bytes} bytes each{end}"
+    text = f"{which} of {leaf.kind}, {leaf.item_bytes} bytes each"
+    match part.end:
+        case ArrayEnd():
+            return f"{text}, last"
+        case LoopEnd():
+            return f"{text}, last by its loop"
+        case None:
+            return text
 
 
 def _begin(plan: Plan, begin: Begin) -> str:

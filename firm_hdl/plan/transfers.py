@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from firm_hdl.plan.ir import Part, Plan, RunStep, Step
+from firm_hdl.plan.ir import Part, Plan, RunStep, Step, successors
 
 __all__ = ["repeated_leaves", "transfers"]
 
@@ -31,10 +31,7 @@ def repeated_leaves(plan: Plan) -> frozenset[int]:
     start = plan.start.step or 0
     repeated: set[int] = set()
     for index, step in enumerate(plan.steps):
-        jumps = [step.exits.default, *(jump for _, jump in step.exits.repeats)]
-        if step.begin is not None:
-            jumps.append(step.begin.body)
-        following = {start if jump.step is None else jump.step for jump in jumps}
+        following = {start if jump.step is None else jump.step for _, jump in successors(step)}
         if isinstance(step, RunStep):
             following.add(index)
         for other in following:

@@ -13,12 +13,14 @@ from dataclasses import dataclass, field
 from firm_hdl.model import PRIMITIVE_OF
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
+    ArrayEnd,
     Begin,
     BeginLoop,
     Exits,
     Fixed,
     Jump,
     Leaf,
+    LoopEnd,
     Pad,
     Part,
     Plan,
@@ -142,10 +144,11 @@ class _Printer:
             text += f", {_count(count, 'item')}"
         if part.bytes != part.size or part.size != natural:
             text += f", bytes {_range(part.first, part.bytes)} of {part.size}"
-        if part.last:
-            text += ", last"
-        if part.last_level is not None:
-            text += f", last of loop {part.last_level}"
+        match part.end:
+            case ArrayEnd():
+                text += ", last"
+            case LoopEnd(level=level):
+                text += f", last of loop {level}"
         return _plain(text)
 
     def begin(self, begin: Begin) -> dict[str, str]:

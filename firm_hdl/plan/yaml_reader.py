@@ -15,6 +15,7 @@ import yaml
 from firm_hdl.model import PRIMITIVE_OF
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
+    ArrayEnd,
     Begin,
     BeginLoop,
     BeginRun,
@@ -22,6 +23,7 @@ from firm_hdl.plan.ir import (
     Fixed,
     Jump,
     Leaf,
+    LoopEnd,
     MapStep,
     Pad,
     Part,
@@ -46,7 +48,7 @@ FIXED = re.compile(r"\(((?:[0-9a-f]{2} )+)(checked|ignored)\)")
 RUN_WORDS = ("counted", "constant count", "with NUL", "with tail")
 PART = re.compile(
     r"([\w.]+)(?:, (\d+) items?)?(?:, bytes (\d+)(?:\.\.(\d+))? of (\d+))?"
-    r"(, last)?(?:, last of loop (\d+))?"
+    r"(?:(, last)(?: of loop (\d+))?)?"
 )
 JUMP = re.compile(r"(?:end|step (\d+))(?: with (.+))?")
 COUNTER = re.compile(r"(?:loop (\d+)|run) = (\d+)")
@@ -298,19 +300,21 @@ class _Reader:
 
     def part(self, at: int, size: int, node: yaml.Node) -> Part:
         found = _match(PART, node, "a leaf, padding or fixed bytes")
-        path, items, first, end, whole, last, level = found.groups()
+        path, items, first, final, whole, last, level = found.groups()
         index = self.index(self.indices, path, node)
-        if first is not None and int(end or first) - int(first) + 1 != size:
+        if first is not None and int(final or first) - int(first) + 1 != size:
             raise _error(node, f"the bytes of {path!r} are not as many as those of the slice")
         natural = int(items or 1) * self.leaves[index].item_bytes
         if whole is None and natural != size:
             raise _error(node, f"{path!r} has {natural} bytes, not {size}")
+        end: ArrayEnd | LoopEnd | None = None
+        if last is not None:
+            end = ArrayEnd() if level is None else LoopEnd(level=int(level))
         return Part(
             at=at,
             bytes=size,
             leaf=index,
             first=int(first or 0),
             size=natural if whole is None else int(whole),
-            last=last is not None,
-            last_level=None if level is None else int(level),
+            end=end,
         )

@@ -12,7 +12,17 @@ from dataclasses import dataclass, field
 
 from firm_hdl.model import Message
 from firm_hdl.plan import Payload, Plan
-from firm_hdl.wire import LoopNode, Node, Path, RunNode, Scalar, Trigger, lay_out
+from firm_hdl.wire import (
+    ConstantLength,
+    LengthField,
+    LoopNode,
+    Node,
+    Path,
+    RunNode,
+    Scalar,
+    Trigger,
+    lay_out,
+)
 
 __all__ = [
     "PendingTransfers",
@@ -98,17 +108,17 @@ def transfer_table(plan: Plan, message: Message) -> TransferTable:
                     yield leaf(node.path), 1
                 case Trigger():
                     yield leaf(node.path, "trigger"), 1
-                case RunNode(count=None):
+                case RunNode(length=LengthField()):
                     number = leaf(node.path, "items")
                     items[leaf(node.path, "length")] = (number, plan.leaves[number].lanes)
                     yield leaf(node.path, "length"), 1
-                case RunNode(count=int(count)):
+                case RunNode(length=ConstantLength(count=count)):
                     number = leaf(node.path, "items")
                     yield number, -(-count // plan.leaves[number].lanes)
-                case LoopNode(count=None):
+                case LoopNode(length=LengthField()):
                     below[leaf(node.path, "length")] = tuple(visit(node.body))
                     yield leaf(node.path, "length"), 1
-                case LoopNode(count=int(count)):
+                case LoopNode(length=ConstantLength(count=count)):
                     yield from ((inner, each * count) for inner, each in visit(node.body))
 
     start = tuple(visit(lay_out(message, plan.wire).nodes))

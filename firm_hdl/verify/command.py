@@ -27,7 +27,7 @@ from firm_hdl.verify.choices import (
     SYSTEM_NAMES,
     WRITER_NAMES,
 )
-from firm_hdl.verify.request import Workload
+from firm_hdl.verify.request import resolve
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 
@@ -51,10 +51,8 @@ def run_verify(given: argparse.Namespace) -> int:
     """
     request = _request(given)
     try:
-        work = Workload(request)
-        if request.types and not request.is_ts1_alone:
-            # Report a type that cannot be used before simulators and oracles are imported.
-            _ = work.tasks
+        # Report a type that cannot be used before simulators and oracles are imported.
+        work = resolve(request)
     except UnknownTypeError as error:
         print(f"error: {error}", file=sys.stderr)
         return 1

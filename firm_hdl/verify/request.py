@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
-from functools import cached_property
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from firm_hdl.errors import Diagnostic
 from firm_hdl.frontend import DEFAULT_DISTRO
@@ -17,73 +16,82 @@ from firm_hdl.verify.systems.tasks import (
     collect_tasks,
 )
 
-__all__ = ["Workload"]
+__all__ = ["Workload", "resolve"]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Workload:
-    """A request and its types, which are looked up when a test system first needs them.
-
-    Named types that no distribution has are looked up in the active workspace, as with ``--path``.
-    If only TS1 runs, TS1 itself looks up the types.
+    """A request and its types.
 
     Attributes
     ----------
     request : Request
-        Its `paths` are the folders of the workspace if the types are looked up there.
-    problems : dict of str to Diagnostic
+        Its `paths` are the folders of the workspace if the types were found there.
+    tasks : sequence of TypeUnderTest
+        The types that are tested; empty if only TS1 runs, which looks up the types itself.
+    problems : mapping of str to Diagnostic
         Errors by their texts. Types without errors are tested nevertheless.
     """
 
-    def __init__(self, request: Request):
-        self.request = request
-        self.problems: dict[str, Diagnostic] = {}
-        if request.types and not (request.paths or request.bags or request.is_ts1_alone):
-            self._search_workspace()
+    request: Request
+    tasks: Sequence[TypeUnderTest]
+    problems: Mapping[str, Diagnostic]
 
-    @cached_property
-    def tasks(self) -> list[TypeUnderTest]:
-        """The types that are tested.
 
-        Raises
-        ------
-        DefinitionError
-            If a definition that is named cannot be used.
-        UnknownTypeError
-            If a type that is named does not exist.
-        """
-        request = self.request
-        if request.bags:
-            from firm_hdl.verify.ts3.recording import collect_recorded
+def resolve(request: Request) -> Workload:
+    """Look up the types of a request.
 
-            return collect_recorded(
-                next(iter(request.distros), None),
-                request.types,
-                request.bags,
-                wire=request.wire,
-                problems=self.problems,
-            )
-        if request.paths:
-            # An invalid type does not keep the others from being tested.
-            own = [path for path in request.paths if path not in request.depends]
-            distros: Sequence[str] = request.distros or [DEFAULT_DISTRO]
-            return collect_own(
-                distros, request.types, request.paths, own=own, problems=self.problems
-            )
-        return collect_tasks(request.distros, request.types)
+    Named types that no distribution has are looked up in the active workspace, as with ``--path``.
 
-    def _search_workspace(self) -> None:
-        types, distros = self.request.types, self.request.distros
-        try:
-            _ = self.tasks
-        except UnknownTypeError:
-            packages = {name.partition("/")[0] for name in types}
-            found = [
-                folder
-                for distro in distros or [DEFAULT_DISTRO]
-                for folder in workspace_folders(distro, packages)
-            ]
-            if found:
-                self.request = replace(self.request, paths=tuple(found))
-            else:
-                # Some of the types may exist: these are tested.
-                self.__dict__["tasks"] = collect_tasks(distros, types, problems=self.problems)
+    Raises
+    ------
+    DefinitionError
+        If a definition that is named cannot be used.
+    UnknownTypeError
+        If a type that is named does not exist.
+    """
+    problems: dict[str, Diagnostic] = {}
+    if request.is_ts1_alone:
+        return Workload(request=request, tasks=(), problems=problems)
+    try:
+        tasks = _collect(request, problems)
+    except UnknownTypeError:
+        if not request.types or request.paths or request.bags:
+            raise
+        if folders := _workspace(request):
+            request = replace(request, paths=folders)
+            tasks = _collect(request, problems)
+        else:
+            # Some of the types may exist: these are tested.
+            tasks = collect_tasks(request.distros, request.types, problems=problems)
+    return Workload(request=request, tasks=tasks, problems=problems)
+
+
+def _collect(request: Request, problems: dict[str, Diagnostic]) -> list[TypeUnderTest]:
+    """Return the types from where the request says; add errors to `problems`."""
+    if request.bags:
+        from firm_hdl.verify.ts3.recording import collect_recorded
+
+        return collect_recorded(
+            next(iter(request.distros), None),
+            request.types,
+            request.bags,
+            wire=request.wire,
+            problems=problems,
+        )
+    if request.paths:
+        # An invalid type does not keep the others from being tested.
+        own = [path for path in request.paths if path not in request.depends]
+        distros: Sequence[str] = request.distros or [DEFAULT_DISTRO]
+        return collect_own(distros, request.types, request.paths, own=own, problems=problems)
+    return collect_tasks(request.distros, request.types)
+
+
+def _workspace(request: Request) -> tuple[str, ...]:
+    """Return the folders of the active workspace with the packages of the named types."""
+    packages = {name.partition("/")[0] for name in request.types}
+    return tuple(
+        folder
+        for distro in request.distros or [DEFAULT_DISTRO]
+        for folder in workspace_folders(distro, packages)
+    )

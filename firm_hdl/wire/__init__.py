@@ -4,8 +4,10 @@ from firm_hdl.model import Wire
 from firm_hdl.wire.cdr import CDR
 from firm_hdl.wire.formats import RULES
 from firm_hdl.wire.layout import (
+    ConstantLength,
     Gap,
     Layout,
+    LengthField,
     LoopNode,
     Node,
     Path,
@@ -25,8 +27,10 @@ __all__ = [
     "MAX_LEVELS",
     "ROS1",
     "RULES",
+    "ConstantLength",
     "Gap",
     "Layout",
+    "LengthField",
     "LoopNode",
     "Node",
     "Path",

@@ -9,7 +9,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
-from firm_hdl.wire import Gap, Layout, LoopNode, Node, RunNode, Scalar, Trigger
+from firm_hdl.wire import (
+    ConstantLength,
+    Gap,
+    Layout,
+    LengthField,
+    LoopNode,
+    Node,
+    RunNode,
+    Scalar,
+    Trigger,
+)
 
 __all__ = ["Band", "BandCell", "Grid", "Note", "bands"]
 
@@ -118,12 +128,13 @@ class _Drawing:
                     self.loop(node, name, header)
 
     def run(self, node: RunNode, name: str) -> None:
-        if node.count is not None:
+        if isinstance(node.length, ConstantLength):
+            count = node.length.count
             self.gap(node.item_gap)
-            self.cell("field", node.count * node.item.bytes, name, f"{node.item}[{node.count}]")
+            self.cell("field", count * node.item.bytes, name, f"{node.item}[{count}]")
             return
-        self.length(node, name)
-        most = "" if node.bound is None else f", at most {node.bound}"
+        self.length(node.length, name)
+        most = "" if node.length.bound is None else f", at most {node.length.bound}"
         text = f"{name}: length x {node.item}{most}"
         if node.item_gap.bytes is None:
             text += f", aligned to {node.item_gap.align} if there are any"
@@ -131,15 +142,17 @@ class _Drawing:
             text += f", after {node.item_gap.bytes} bytes of padding if there are any"
         self.note("data", text + (", and a NUL that length counts" if node.terminated else ""))
 
-    def length(self, node: RunNode | LoopNode, name: str) -> None:
-        if node.gap is not None:
-            self.gap(node.gap)
-            self.cell("length", 4, f"{name}.length", "uint32")
+    def length(self, length: LengthField, name: str) -> None:
+        self.gap(length.gap)
+        self.cell("length", 4, f"{name}.length", "uint32")
 
     def loop(self, node: LoopNode, name: str, header: int) -> None:
-        self.length(node, name)
-        most = "" if node.bound is None else f" (at most {node.bound})"
-        times = f"length{most} times" if node.count is None else f"{node.count} times"
+        match node.length:
+            case LengthField(bound=bound) as length:
+                self.length(length, name)
+                times = f"length{'' if bound is None else f' (at most {bound})'} times"
+            case ConstantLength(count=count):
+                times = f"{count} times"
         self.note("loop", f"{name}: {times}")
         self.depth += 1
         self.nodes(node.body, header)

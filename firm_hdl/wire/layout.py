@@ -30,8 +30,10 @@ from firm_hdl.wire.refusals import refusals
 from firm_hdl.wire.rules import WireRules
 
 __all__ = [
+    "ConstantLength",
     "Gap",
     "Layout",
+    "LengthField",
     "LoopNode",
     "Node",
     "Path",
@@ -80,29 +82,48 @@ class Trigger:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LengthField:
+    """The length of a string or a sequence: a number on the wire, before the items.
+
+    Attributes
+    ----------
+    gap : Gap
+        Padding before the number.
+    bound : int or None
+        Largest number of items, if the type bounds it.
+    """
+
+    gap: Gap
+    bound: int | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConstantLength:
+    """The length of an array: the type fixes the number of items, which is not on the wire."""
+
+    count: int
+
+
+Length: TypeAlias = "LengthField | ConstantLength"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RunNode:
     """Primitives in a row: a string, or an array or a sequence of primitives.
 
     Attributes
     ----------
-    gap : Gap or None
-        Padding before the length on the wire; `None` if the run has no length (fixed arrays).
+    length : LengthField or ConstantLength
     item_gap : Gap
         Padding before the first item. An empty run does not have it (CDR).
-    count : int or None
-        Number of items, if the type fixes it.
-    bound : int or None
-        Largest number of items, if the type bounds it.
     terminated : bool
         Whether a NUL follows the items. The length on the wire counts the NUL.
     """
 
     path: Path
-    gap: Gap | None
+    length: Length
     item_gap: Gap
     item: Primitive
-    count: int | None
-    bound: int | None
     terminated: bool
 
 
@@ -110,14 +131,17 @@ class RunNode:
 class LoopNode:
     """Elements in a row that are not primitives.
 
-    Attributes are as for :class:`RunNode`. `body` is one element, laid out for all offsets where
-    any element may start.
+    Attributes
+    ----------
+    length : LengthField or ConstantLength
+    body : tuple of Node
+        One element, laid out for all offsets where any element may start.
+    min_body_bytes : int
+        Lower bound of the size of an element in bytes.
     """
 
     path: Path
-    gap: Gap | None
-    count: int | None
-    bound: int | None
+    length: Length
     body: tuple[Node, ...]
     min_body_bytes: int
 
@@ -271,37 +295,36 @@ class _Builder:
         # wstring: each UTF-16 unit in four bytes, without a NUL, in today's ROS 2 middlewares.
         return RunNode(
             path=path,
-            gap=self.gap(LENGTH, at),
+            length=LengthField(gap=self.gap(LENGTH, at), bound=kind.bound),
             item_gap=Gap(align=1, bytes=0),
             item=LENGTH if kind.wide else OCTET,
-            count=None,
-            bound=kind.bound,
             terminated=self.rules.terminated and not kind.wide,
         )
 
+    def length(self, kind: Array | Sequence, at: int) -> tuple[Length, int]:
+        """Return the length of an array or sequence, and the residues where it may end."""
+        if isinstance(kind, Array):
+            return ConstantLength(count=kind.count), at
+        length = LengthField(gap=self.gap(LENGTH, at), bound=kind.bound)
+        return length, self.past(LENGTH, at)
+
     def run(self, kind: Array | Sequence, item: Primitive, path: Path, at: int) -> RunNode:
-        is_array = isinstance(kind, Array)
-        start = at if is_array else self.past(LENGTH, at)
+        length, start = self.length(kind, at)
         return RunNode(
             path=path,
-            gap=None if is_array else self.gap(LENGTH, at),
+            length=length,
             item_gap=self.gap(item, start),
             item=_number(item),
-            count=kind.count if isinstance(kind, Array) else None,
-            bound=kind.bound if isinstance(kind, Sequence) else None,
             terminated=False,
         )
 
     def loop(self, kind: Array | Sequence, path: Path, at: int) -> LoopNode:
-        is_array = isinstance(kind, Array)
-        count = kind.count if isinstance(kind, Array) else None
-        start = at if is_array else self.past(LENGTH, at)
+        length, start = self.length(kind, at)
+        count = length.count if isinstance(length, ConstantLength) else None
         entry, _ = rs.repeat(start, lambda now: self.after(kind.element, now), count)
         return LoopNode(
             path=path,
-            gap=None if is_array else self.gap(LENGTH, at),
-            count=count,
-            bound=kind.bound if isinstance(kind, Sequence) else None,
+            length=length,
             body=self.field(kind.element, (*path, "item"), entry),
             min_body_bytes=self.min_bytes(kind.element),
         )

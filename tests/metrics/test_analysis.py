@@ -16,7 +16,7 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DISTROS, Library
 from firm_hdl.metrics import Analyses, metrics_of
 from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, String
-from firm_hdl.wire import LoopNode, RunNode, Scalar, Trigger, lay_out, walk
+from firm_hdl.wire import LengthField, LoopNode, RunNode, Scalar, Trigger, lay_out, walk
 from tests.steps import calls_at_most
 
 from ..frontend.workspace import library
@@ -47,13 +47,13 @@ def of_layout(message, wire):
             case Scalar():
                 place(node.gap)
             case RunNode():
-                if node.gap is not None:
-                    place(node.gap)
+                if isinstance(node.length, LengthField):
+                    place(node.length.gap)
                 if not has_text(node.path):
                     place(node.item_gap)
             case LoopNode():
-                if node.gap is not None:
-                    place(node.gap)
+                if isinstance(node.length, LengthField):
+                    place(node.length.gap)
             case Trigger():
                 pass
     return counts

@@ -11,6 +11,7 @@ import pytest
 
 from firm_hdl.plan import (
     BUS_BYTES,
+    ArrayEnd,
     Begin,
     BeginLoop,
     BeginRun,
@@ -18,6 +19,7 @@ from firm_hdl.plan import (
     Fixed,
     Jump,
     Leaf,
+    LoopEnd,
     MapStep,
     Pad,
     Part,
@@ -84,14 +86,19 @@ def mutations(node: Any) -> Iterator[tuple[str, Any]]:
                 yield f"[{index}] twice", (*rest[0], item, item, *rest[1])
             for name, changed in mutations(item):
                 yield f"[{index}].{name}", (*rest[0], changed, *rest[1])
-    elif isinstance(node, Plan | Step | Begin | Jump | Exits | Part | Pad | Fixed | Run | Leaf):
+    elif isinstance(node, NODES):
         for field in dataclasses.fields(node):
             if (type(node), field.name) not in HARMLESS:
                 if getattr(node, field.name) is None and (type(node), field.name) in NUMBERS:
                     yield f"{field.name}.some", replace(node, **{field.name: 0})
                 for name, changed in mutations(getattr(node, field.name)):
                     yield f"{field.name}.{name}", replace(node, **{field.name: changed})
+                if (type(node), field.name) == (Part, "end"):
+                    for end in {None, ArrayEnd(), LoopEnd(level=0)} - {node.end}:
+                        yield f"end.{end}", replace(node, end=end)
 
+
+NODES = Plan | Step | Begin | Jump | Exits | Part | LoopEnd | Pad | Fixed | Run | Leaf
 
 # What may be otherwise in a sound plan: limits within the bound, and the size of packets.
 HARMLESS = {
@@ -104,7 +111,6 @@ HARMLESS = {
 # What may be `None` and else is a number.
 NUMBERS = {
     (MapStep, "rest"),
-    (Part, "last_level"),
     (Jump, "step"),
 }
 
@@ -334,3 +340,20 @@ def test_a_sequence_of_another_kind_is_named(sequence):
 def test_a_length_that_nothing_counts_by_is_named():
     plan = build_plan(lay_out(make("ros2", {"a": "uint8"})))
     assert "a has no length" in check(plan, lay_out(make("ros2", {"a": "string"})))
+
+
+def test_a_mark_of_the_wrong_end_is_named():
+    row = make("ros1", {"a": "uint8[3]"}, "R")
+    layout = lay_out(make("ros1", {"rows": (row, "[2]"), "wide": "uint64[3]"}))
+    plan = build_plan(layout, bus_bytes=4)
+    (index,) = (
+        n for n, step in enumerate(plan.steps) if any(p.end == ArrayEnd() for p in step.parts)
+    )
+    slices = tuple(replace(part, end=LoopEnd(level=0)) for part in plan.steps[index].parts)
+    problem = "the last item of rows.item.a must be that of an array"
+    assert check(with_step(plan, index, slices=slices), layout) == [problem]
+    for index, step in enumerate(plan.steps):
+        if any(part.end == LoopEnd(level=0) for part in step.parts):
+            slices = tuple(replace(part, end=ArrayEnd()) for part in step.parts)
+            plan = with_step(plan, index, slices=slices)
+    assert check(plan, layout) == ["the last item of wide must be that of a loop"]

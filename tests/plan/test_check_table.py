@@ -9,9 +9,11 @@ from typing import Any
 import pytest
 
 from firm_hdl.plan import (
+    ArrayEnd,
     Exits,
     Fixed,
     Jump,
+    LoopEnd,
     MapStep,
     Pad,
     Part,
@@ -75,7 +77,7 @@ RICH_STEPS = PLANS["rich"].steps
 PAIR_STEPS = PLANS["pair"].steps
 BYTE = Part(at=4, bytes=1, leaf=0, first=0, size=1)
 X = RICH_STEPS[4].slices[0]
-MARKS = "has too many marks of its end"
+MARK = "has a mark of its end, which only items have"
 FIRST = "its first transfer is not a full word, or has a mark of its end"
 RULE = "a length must be complete in the step that starts what it counts, and in no other"
 JOIN = "the parts of a transfer do not join"
@@ -137,9 +139,8 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("rich", {"steps.2.slices.0.first": 1}, ["step 2: b has no bytes 1 to 8"]),
     ("rich", {"steps.2.slices.0.bytes": 9}, ["step 2: b has no bytes 0 to 8"]),
     ("rich", {"steps.2.slices.0.bytes": 0}, ["step 2: b has no bytes 0 to -1"]),
-    ("rich", {"steps.11.slices.0.last_level": 0}, [f"step 11: m.items {MARKS}"]),
-    ("rich", {"steps.2.slices.0.last": True}, [f"step 2: b {MARKS}"]),
-    ("rich", {"steps.2.slices.0.last_level": 0}, [f"step 2: b {MARKS}"]),
+    ("rich", {"steps.2.slices.0.end": ArrayEnd()}, [f"step 2: b {MARK}"]),
+    ("rich", {"steps.2.slices.0.end": LoopEnd(level=0)}, [f"step 2: b {MARK}"]),
     ("rich", {"steps.0.slices.3": Pad(at=5, bytes=0)}, ["step 0: the slice at byte 5 is empty"]),
     ("rich", {"steps.0.slices.1.data": b""}, ["step 0: the slice at byte 2 is empty"]),
     ("rich", {"steps.2.bytes": 7}, ["step 2: the map has 8 bytes, the step 7"]),
@@ -249,21 +250,21 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ),
     (
         "rich",
-        {"steps.11.slices.0.last": False},
+        {"steps.11.slices.0.end": None},
         ["leaf m.items: its last transfer has no mark of its end"],
     ),
     (
         "pair",
-        {"steps.1.slices.0.last": False},
+        {"steps.1.slices.0.end": None},
         ["leaf t.items: its last transfer has no mark of its end"],
     ),
     (
         "pair",
-        {"steps.1.slices.0.last": False, "steps.1.slices.0.last_level": 0},
+        {"steps.1.slices.0.end": LoopEnd(level=0)},
         ["leaf t.items: the last of several transfers is in a loop"],
     ),
-    ("pair", {"steps.0.slices.1.last": True}, [f"leaf t.items: {FIRST}"]),
-    ("pair", {"steps.0.slices.1.last_level": 0}, [f"leaf t.items: {FIRST}"]),
+    ("pair", {"steps.0.slices.1.end": ArrayEnd()}, [f"leaf t.items: {FIRST}"]),
+    ("pair", {"steps.0.slices.1.end": LoopEnd(level=0)}, [f"leaf t.items: {FIRST}"]),
     (
         "pair",
         {"steps.0.slices.1.size": 4, "steps.0.slices.1.bytes": 4, "steps.0.bytes": 8},
@@ -273,7 +274,7 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("rich", {"runs.0.last": False}, ["leaf q.items: its run and its tail disagree about its end"]),
     (
         "rich",
-        {"steps.11.slices.0.last": False, "steps.11.slices.0.last_level": 0},
+        {"steps.11.slices.0.end": LoopEnd(level=0)},
         ["leaf m.items: the last of several transfers is in a loop"],
     ),
     (
@@ -300,10 +301,10 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("cut", {"steps.0.exits.repeats": ((0, Jump(step=0)),)}, [f"step 1: {JOIN}"]),
     ("cut", {"steps.0.slices.0.bytes": 1, "steps.0.bytes": 1}, [f"step 1: {JOIN}"]),
     ("cut", {"steps.0.slices": (Pad(at=0, bytes=2),)}, [f"step 1: {JOIN}"]),
-    ("narrow", {"steps.1.slices.0.last_level": 1}, [f"step 1: {JOIN}", f"step 2: {JOIN}"]),
+    ("narrow", {"steps.1.slices.0.end": LoopEnd(level=1)}, [f"step 1: {JOIN}", f"step 2: {JOIN}"]),
     (
         "narrow",
-        {"steps.1.slices.0.last_level": None, "steps.1.slices.0.last": True},
+        {"steps.1.slices.0.end": ArrayEnd()},
         [f"step 1: {JOIN}", f"step 2: {JOIN}"],
     ),
     # The flow.
@@ -377,7 +378,7 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ),
     (
         "narrow",
-        {f"steps.{n}.slices.0.last_level": 1 for n in range(3)},
+        {f"steps.{n}.slices.0.end": LoopEnd(level=1) for n in range(3)},
         ["step 0: loop 1 is not the innermost"],
     ),
     (

@@ -87,10 +87,10 @@ def test_an_array_of_messages_is_bytes_if_its_padding_is_fixed():
     message = message_of("p/Many", x=UINT8, pairs=Array(element=pair, count=1000), y=UINT8)
     layout = lay_out(message, "ros1")
     assert [type(node) for node in outline(layout, 8).nodes] == [RunNode, RunNode]
-    assert sum(node.count for node in outline(layout, 8).nodes) == 1 + 1000 * 5 + 1
+    assert sum(node.length.count for node in outline(layout, 8).nodes) == 1 + 1000 * 5 + 1
     # 3 bytes of padding before the first, and 3 between two of them.
     layout = lay_out(message, "cdr")
-    assert sum(node.count for node in outline(layout, 8).nodes) == 1 + 1000 * 8 + 1
+    assert sum(node.length.count for node in outline(layout, 8).nodes) == 1 + 1000 * 8 + 1
     _, short = plans_of(message, "cdr", 8)
     assert sum(isinstance(step, RunStep) for step in short.steps) == 1
     assert decode(short, b"\0\1\0\0" + bytes(8002)).status == "OK"

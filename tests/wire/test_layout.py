@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from firm_hdl.model import PRIMITIVES
 from firm_hdl.plan import build_plan, encode
 from firm_hdl.sim.values import to_transfers
-from firm_hdl.wire import RULES, Gap, LoopNode, RunNode, Scalar, Trigger, lay_out, walk
+from firm_hdl.wire import RULES, Gap, LengthField, LoopNode, RunNode, Scalar, Trigger, lay_out, walk
 from tests.plan.reference import Reference
 from tests.strategies import definitions, make, values
 
@@ -27,8 +27,8 @@ def gaps_of(layout):
             case Scalar():
                 result[node.path] = node.gap
             case RunNode() | LoopNode():
-                if node.gap is not None:
-                    result[(*node.path, "length")] = node.gap
+                if isinstance(node.length, LengthField):
+                    result[(*node.path, "length")] = node.length.gap
                 if isinstance(node, RunNode):
                     result[(*node.path, "items")] = node.item_gap
     return result

@@ -122,35 +122,35 @@ def _add_records(parts: _Parts, converters: Converters, cores: Mapping[Direction
     """Add the layer with records and its benches."""
     message, plan = converters.message, converters.plan
     reason = why_no_record(message, plan)
-    whole = {} if reason else _record_cores(parts, converters)
+    record_cores = None if reason else _record_cores(parts, converters)
     layer = user_layer(
         message,
         plan,
         name=parts.base,
         cores=cores,
-        record_cores=whole,
+        record_cores=record_cores,
         header=parts.header,
     )
     parts.design = {**layer.packages, **parts.design, **layer.wrappers}
     parts.add_bench(stream_view(plan, layer), plan)
-    record: dict[str, Any] = {"built": False, "reason": reason}
-    if layer.values is not None:
-        parts.add_bench(record_view(layer), plan, "_record")
-        whole_type = layer.values
-        record = {"built": True, "message_type": whole_type.name, "bits": whole_type.bits}
+    section: dict[str, Any] = {"built": False, "reason": reason}
+    if layer.record is not None:
+        parts.add_bench(record_view(layer, layer.record), plan, "_record")
+        values = layer.record.values
+        section = {"built": True, "message_type": values.name, "bits": values.bits}
     parts.section = {
         "package": layer.package,
         "entities": {
             way: {
                 "records": layer.entities[way],
                 "flat": cores[way].entity,
-                **({"record": layer.record_entities[way]} if whole else {}),
+                **({"record": layer.record.entities[way]} if layer.record else {}),
             }
             for way in DIRECTIONS
         },
         "message_type": layer.tree.root.type,
         "ready_type": layer.tree.root.ready_type,
-        "record_view": record,
+        "record_view": section,
         "leaves": layer.tree.leaf_members(plan),
         "constants": [
             entry.entry(package) for package, named in layer.constants.items() for entry in named

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from firm_hdl.export.primitives import TYPES_NAME, primitive_name
 from firm_hdl.export.top import DIRECTIONS, Direction, Port, leaf_names, ports_of
-from firm_hdl.export.vhdl.layer import UserLayer
+from firm_hdl.export.vhdl.layer import RecordEntities, UserLayer
 from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.plan import Leaf, Plan
 
@@ -126,9 +126,8 @@ def _payload(leaf: Leaf) -> tuple[str, ...]:
     return ("data", "last") if leaf.kind == "items" else ("data",)
 
 
-def record_view(layer: UserLayer) -> View:
+def record_view(layer: UserLayer, record: RecordEntities) -> View:
     """Return the view of converters with a record of values: one stream of whole messages."""
-    assert layer.values is not None
     image = f"to_hstring(work.{layer.package}.to_slv(rx_msg))"
     sides = [
         {"data": f"{side}_msg", "valid": f"{side}_valid", "ready": f"{side}_ready"}
@@ -137,11 +136,11 @@ def record_view(layer: UserLayer) -> View:
     return View(
         uses=_uses(layer),
         declarations=(
-            f"  signal rx_msg, tx_msg     : work.{layer.package}.{layer.values.name};\n"
+            f"  signal rx_msg, tx_msg     : work.{layer.package}.{record.values.name};\n"
             "  signal rx_valid, tx_valid : std_logic;\n"
             "  signal rx_ready, tx_ready : std_logic;\n"
         ),
-        instances=layer.record_entities,
+        instances=record.entities,
         message_ports={
             way: {"msg": f"{side}_msg", "msg_valid": f"{side}_valid", "msg_ready": f"{side}_ready"}
             for way, side in _SIDES.items()

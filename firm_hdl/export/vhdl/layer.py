@@ -36,7 +36,7 @@ from firm_hdl.export.vhdl.wrapper import (
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
-__all__ = ["Shared", "UserLayer", "flat_package", "user_layer"]
+__all__ = ["RecordEntities", "Shared", "UserLayer", "flat_package", "user_layer"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,6 +58,21 @@ class Shared:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class RecordEntities:
+    """The entities that transfer the whole message as one record of values.
+
+    Attributes
+    ----------
+    values : ValueType
+        The record.
+    entities : mapping of direction to str
+    """
+
+    values: ValueType
+    entities: Mapping[Direction, str]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class UserLayer:
     """The user's layer of a message type.
 
@@ -69,10 +84,9 @@ class UserLayer:
         Name of the package with the message's own records.
     entities : mapping of direction to str
         Entities with a record of streams.
-    record_entities : mapping of direction to str
-        Entities with a record of values; empty if the message has no record view.
+    record : RecordEntities or None
+        Entities with a record of values; `None` if the message has no record view.
     tree : Tree
-    values : ValueType or None
     constants : dict of str to list of NamedConstant
         Constants by package.
     shared : tuple of Shared
@@ -86,9 +100,8 @@ class UserLayer:
     name: str
     package: str
     entities: Mapping[Direction, str]
-    record_entities: Mapping[Direction, str]
+    record: RecordEntities | None
     tree: Tree
-    values: ValueType | None
     constants: Mapping[str, list[NamedConstant]]
     shared: tuple[Shared, ...]
     packages: Mapping[str, str]
@@ -119,10 +132,8 @@ def user_layer(
         Lines of a comment at the head of every file that is not shared.
     """
     entities = {direction: f"{name}_{direction}" for direction in DIRECTIONS}
-    whole = {way: f"{entity}_record" for way, entity in entities.items() if record_cores}
     tree = tree_of(message, plan)
     values = values_of(tree, plan)
-    own = values.get(message.name)
     components = f"{name}_components_pkg"
     head = "".join(comment(header, ""))
     lines = {entity: stream_lines(plan, tree, way) for way, entity in entities.items()}
@@ -130,17 +141,20 @@ def user_layer(
         entity: stream_wrapper(plan, tree, way, entity=entity, core=cores[way])
         for way, entity in entities.items()
     }
-    for way, entity in whole.items():
-        assert own is not None and record_cores is not None
-        lines[entity] = record_lines(plan, own, way)
-        wrappers[entity] = record_wrapper(plan, own, way, entity=entity, core=record_cores[way])
+    record = None
+    if record_cores is not None:
+        own = values[message.name]
+        whole = {way: f"{entity}_record" for way, entity in entities.items()}
+        record = RecordEntities(values=own, entities=whole)
+        for way, entity in whole.items():
+            lines[entity] = record_lines(plan, own, way)
+            wrappers[entity] = record_wrapper(plan, own, way, entity=entity, core=record_cores[way])
     return UserLayer(
         name=name,
         package=tree.package.name,
         entities=entities,
-        record_entities=whole,
+        record=record,
         tree=tree,
-        values=own if whole else None,
         constants={package.name: constants_of(package, plan) for package in tree.packages},
         shared=_shared(plan, tree),
         packages={

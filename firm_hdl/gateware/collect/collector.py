@@ -15,7 +15,7 @@ from firm_hdl.gateware.collect.state import COUNT_BITS, CollectState
 from firm_hdl.gateware.collect.words import words_layout
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.gateware.signatures import Status, StatusSignature
-from firm_hdl.plan import BeginRun, Part, Plan, RunStep, Step
+from firm_hdl.plan import BeginRun, LoopEnd, Part, Plan, RunStep, Step
 from firm_hdl.plan.geometry import only_ends
 from firm_hdl.plan.transfers import transfers
 
@@ -137,8 +137,9 @@ class _CollectorLogic:
         """Return the value that `items.last` must have in a transfer."""
         flow = self.progress.flow
         if part is not None:
-            level = part.last_level
-            return Const(part.last, 1) if level is None else flow.levels[level].last
+            if isinstance(part.end, LoopEnd):
+                return flow.levels[part.end.level].last
+            return Const(part.end is not None, 1)
         if not isinstance(step, RunStep):
             return Const(1, 1)
         run = self.plan.runs[step.run]
@@ -205,9 +206,8 @@ class _CollectorLogic:
 
         A length is the last transfer of its step; so nothing else can delay the step after it.
         """
-        jumps = [step.exits.default, *(jump for _, jump in step.exits.repeats)]
         return step.begin is not None and any(
-            jump.step is None or only_ends(self.plan.steps[jump.step]) for jump in jumps
+            jump.step is None or only_ends(self.plan.steps[jump.step]) for jump in step.exits.jumps
         )
 
     def _judge(self) -> None:

@@ -8,8 +8,10 @@ entry by its position, and fields of the entry by its step.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
@@ -18,10 +20,18 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware.flow import exceeds
 from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.positions import Ring, align_up, beat_layout, known_lane_bits
-from firm_hdl.plan import BeginLoop, BeginRun, Jump, MapStep, Plan, RunStep
+from firm_hdl.plan import Begin, BeginLoop, BeginRun, MapStep, Plan, RunStep
 from firm_hdl.plan.geometry import Geometry
 
-__all__ = ["LENGTH_BYTES", "Lengths", "Meaning", "shift_of"]
+__all__ = [
+    "LENGTH_BYTES",
+    "Lengths",
+    "LoopMeaning",
+    "Meaning",
+    "RunMeaning",
+    "meanings_of",
+    "shift_of",
+]
 
 LENGTH_BYTES = 4
 
@@ -37,8 +47,8 @@ def shift_of(plan: Plan, step: int | None) -> int:
     return (plan.bus_bytes if isinstance(taken, RunStep) else taken.bytes) - 1
 
 
-@dataclass(frozen=True, slots=True)
-class Meaning:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Meaning(ABC):
     """What a length means in one step: the names of its fields in a table entry.
 
     Steps with the same meaning share a field. So the number of fields grows with the kinds of
@@ -47,42 +57,22 @@ class Meaning:
     Attributes
     ----------
     plan : Plan
-    step : MapStep
-        A step that begins a loop or a run.
-    has_leaves : bool
-        Whether steps without bytes matter, because they have leaves.
+    begin : Begin
+        The loop or run that the step begins.
     """
 
     plan: Plan
-    step: MapStep
-    has_leaves: bool = True
+    begin: Begin
 
     @property
-    def run(self) -> BeginRun | None:
-        """The run, or `None` for a loop."""
-        return self.step.begin if isinstance(self.step.begin, BeginRun) else None
-
-    @property
+    @abstractmethod
     def kind(self) -> str:
         """What is counted: equal for lengths whose items have one size."""
-        if self.run is None:
-            return "nothing" if self.is_nothing else "loop"
-        terminated = self.plan.runs[self.run.run].terminated
-        return f"run_{self.plan.item_bytes(self.run.run)}{'_nul' if terminated else ''}"
-
-    @property
-    def is_nothing(self) -> bool:
-        """The length counts elements that have no bytes, and leaves do not matter."""
-        if self.has_leaves or not isinstance(self.step.begin, BeginLoop):
-            return False
-        body = self.plan.steps[self.step.begin.body.step or 0]
-        return isinstance(body, MapStep) and not body.bytes and body.begin is None
 
     @property
     def max_count(self) -> int:
         """The largest legal value."""
-        assert self.step.begin is not None
-        return self.plan.max_count(self.step.begin)
+        return self.plan.max_count(self.begin)
 
     @property
     def over(self) -> str:
@@ -104,22 +94,102 @@ class Meaning:
         """The body is executed twice, if not at most once (`single`)."""
         return f"double_{self.kind}"
 
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoopMeaning(_Meaning):
+    """The length of a loop.
+
+    Attributes
+    ----------
+    has_leaves : bool
+        Whether steps without bytes matter, because they have leaves.
+    """
+
+    begin: BeginLoop
+    has_leaves: bool
+
+    @property
+    def kind(self) -> str:
+        return "nothing" if self.is_nothing else "loop"
+
+    @property
+    def is_nothing(self) -> bool:
+        """The length counts elements that have no bytes, and leaves do not matter."""
+        if self.has_leaves:
+            return False
+        body = self.plan.steps[self.begin.body.step or 0]
+        return isinstance(body, MapStep) and not body.bytes and body.begin is None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunMeaning(_Meaning):
+    """The length of a run.
+
+    Attributes
+    ----------
+    nexts : tuple of int
+        The steps to which exits of the length's step lead.
+    """
+
+    begin: BeginRun
+    nexts: tuple[int, ...]
+
+    @property
+    def kind(self) -> str:
+        return f"run_{self.item_bytes}{'_nul' if self.terminated else ''}"
+
+    @property
+    def item_bytes(self) -> int:
+        """Bytes of an item."""
+        return self.plan.item_bytes(self.begin.run)
+
+    @property
+    def terminated(self) -> bool:
+        """Whether a NUL follows the items."""
+        return self.plan.runs[self.begin.run].terminated
+
+    @property
+    def lanes(self) -> int:
+        """Items of a word."""
+        return self.plan.leaves[self.plan.runs[self.begin.run].items].lanes
+
+    @property
+    def word(self) -> int:
+        """The largest value of which all items are in the rest."""
+        return self.plan.word(self.begin.run)
+
     @property
     def rest(self) -> str:
         """Items of the rest."""
         return f"rest_{self.kind}"
 
-    def next_last_at(self, jump: Jump) -> str:
-        """The last byte of the step that follows if all items are in the rest."""
-        assert self.run is not None and jump.step is not None
-        align, shift = self.plan.steps[jump.step].align, shift_of(self.plan, jump.step)
-        return f"last_{self.kind}_{self.run.align}_{align}_{shift + 1}"
+    def next_last_at(self, step: int) -> str:
+        """The last byte of `step`, which follows, if all items are in the rest."""
+        align, shift = self.plan.steps[step].align, shift_of(self.plan, step)
+        return f"last_{self.kind}_{self.begin.align}_{align}_{shift + 1}"
 
-    @property
-    def jumps(self) -> Iterator[Jump]:
-        """The exits to another step."""
-        jumps = [*(jump for _, jump in self.step.exits.repeats), self.step.exits.default]
-        return (jump for jump in jumps if jump.step is not None)
+
+Meaning: TypeAlias = LoopMeaning | RunMeaning
+
+
+def meanings_of(plan: Plan, *, has_leaves: bool = True) -> dict[int, Meaning]:
+    """Return what the lengths of a plan mean, by step.
+
+    Parameters
+    ----------
+    plan : Plan
+    has_leaves : bool
+        Whether steps without bytes matter, because they have leaves.
+    """
+    found: dict[int, Meaning] = {}
+    for index, step in enumerate(plan.steps):
+        match step.begin:
+            case BeginLoop() as begin:
+                found[index] = LoopMeaning(plan=plan, begin=begin, has_leaves=has_leaves)
+            case BeginRun() as begin:
+                nexts = tuple(j.step for j in step.exits.jumps if j.step is not None)
+                found[index] = RunMeaning(plan=plan, begin=begin, nexts=nexts)
+    return found
 
 
 class Lengths(wiring.Component):
@@ -177,15 +247,11 @@ class Lengths(wiring.Component):
         fields = {"zero": 1}
         for meaning in self.meanings:
             fields |= {meaning.over: 1, meaning.skips: 1, meaning.single: 1, meaning.double: 1}
-            if meaning.run is not None:
-                fields[meaning.rest] = self._lanes_of(meaning).bit_length()
-                for jump in meaning.jumps:
-                    fields[meaning.next_last_at(jump)] = self.ring.bits
+            if isinstance(meaning, RunMeaning):
+                fields[meaning.rest] = meaning.lanes.bit_length()
+                for step in meaning.nexts:
+                    fields[meaning.next_last_at(step)] = self.ring.bits
         return fields
-
-    def _lanes_of(self, meaning: Meaning) -> int:
-        assert meaning.run is not None
-        return self.plan.leaves[self.plan.runs[meaning.run.run].items].lanes
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -238,15 +304,14 @@ class Lengths(wiring.Component):
         m.d.comb += entry.zero.eq(zero)
         for meaning in self.meanings:
             over = exceeds(length, meaning.max_count)
-            if meaning.run is None:
-                skips = Const(1, 1) if meaning.is_nothing else zero
-                single, double = length == 1, length == 2
-            else:
-                lanes = self._lanes_of(meaning)
-                word = self.plan.word(meaning.run.run)
-                skips, single, double = (~exceeds(length, n * lanes + word) for n in range(3))
-                m.d.comb += entry[meaning.rest].eq(self._rest(length, lanes, word - lanes))
-                self._places(m, length, lane, entry, meaning)
+            match meaning:
+                case LoopMeaning():
+                    skips = Const(1, 1) if meaning.is_nothing else zero
+                    single, double = length == 1, length == 2
+                case RunMeaning(lanes=lanes, word=word):
+                    skips, single, double = (~exceeds(length, n * lanes + word) for n in range(3))
+                    m.d.comb += entry[meaning.rest].eq(self._rest(length, lanes, word - lanes))
+                    self._places(m, length, lane, entry, meaning)
             m.d.comb += [
                 entry[meaning.over].eq(over),
                 entry[meaning.skips].eq(skips | over),
@@ -262,24 +327,22 @@ class Lengths(wiring.Component):
         return Mux(exceeds(length, nul), full, 0)
 
     def _places(
-        self, m: Module, length: Signal, lane: int, entry: data.View, meaning: Meaning
+        self, m: Module, length: Signal, lane: int, entry: data.View, meaning: RunMeaning
     ) -> None:
         """Decode the last byte of the next step, if no word comes before the rest."""
-        ring, run = self.ring, meaning.run
-        assert run is not None
+        ring = self.ring
         phase: Value | int = self.plan.header_bytes if self.plan.bus_bytes >= 8 else self.phase
-        unit = self.plan.item_bytes(run.run)
         items = Signal(ring.bits, name=f"items_{lane}_{meaning.kind}")
         items_end = Signal(ring.bits, name=f"items_end_{lane}_{meaning.kind}")
         beat = Cat(Const(0, ring.lane_bits), self.beat.at)
-        count = length[: self.plan.word(run.run).bit_length()]
-        aligned = align_up(m, beat, lane + 1, run.align, phase)
+        count = length[: meaning.word.bit_length()]
+        first_align = meaning.begin.align
+        aligned = align_up(m, beat, lane + 1, first_align, phase)
         m.d.comb += [
-            items.eq(Mux(length.any(), aligned, beat + (lane + 1)) if run.align > 1 else aligned),
-            items_end.eq(items + (count << (unit.bit_length() - 1))),
+            items.eq(Mux(length.any(), aligned, beat + (lane + 1)) if first_align > 1 else aligned),
+            items_end.eq(items + (count << (meaning.item_bytes.bit_length() - 1))),
         ]
-        for jump in meaning.jumps:
-            assert jump.step is not None
-            align, shift = self.plan.steps[jump.step].align, shift_of(self.plan, jump.step)
+        for step in meaning.nexts:
+            align, shift = self.plan.steps[step].align, shift_of(self.plan, step)
             last = align_up(m, items_end, 0, align, phase, shift)
-            m.d.comb += entry[meaning.next_last_at(jump)].eq(last)
+            m.d.comb += entry[meaning.next_last_at(step)].eq(last)

@@ -9,9 +9,10 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data
 
 from firm_hdl.gateware.flow import Flow
-from firm_hdl.gateware.parse.lengths import Meaning, shift_of
+from firm_hdl.gateware.parse.lengths import Meaning, RunMeaning, shift_of
 from firm_hdl.gateware.positions import Ring, align_addend, any_of, pick
-from firm_hdl.plan import BeginRun, Jump, Plan, RunStep
+from firm_hdl.plan import BeginRun, Plan, RunStep
+from firm_hdl.plan.ir import IntoBody, LoopAgain, Next, successors
 
 __all__ = ["NextPlace", "place_fields", "place_traits"]
 
@@ -39,18 +40,20 @@ def _ways(plan: Plan, index: int) -> Iterator[tuple[str, _Way]]:
     """Yield the ways out of a step: `exit`, `again_N` if loop N may go on, and `body`."""
     step = plan.steps[index]
     rest = isinstance(step, RunStep) and plan.runs[step.run].counted
-    exits = [("exit", step.exits.default)]
-    exits += [(f"again_{level}", jump) for level, jump in step.exits.repeats]
-    for name, jump in exits:
-        align = 1 if jump.step is None else plan.steps[jump.step].align
-        yield name, _Way(align=align, shift=shift_of(plan, jump.step), rest=rest)
     if isinstance(step, RunStep):
         yield "body", _Way(align=1, shift=plan.bus_bytes - 1)
-    elif step.begin is not None:
-        body = step.begin.body.step
-        assert body is not None
-        align = step.begin.align if isinstance(step.begin, BeginRun) else plan.steps[body].align
-        yield "body", _Way(align=align, shift=shift_of(plan, body))
+    for way, jump in successors(step):
+        align = 1 if jump.step is None else plan.steps[jump.step].align
+        shift = shift_of(plan, jump.step)
+        match way:
+            case IntoBody(begin=BeginRun(align=first)):
+                yield "body", _Way(align=first, shift=shift)
+            case IntoBody():
+                yield "body", _Way(align=align, shift=shift)
+            case LoopAgain(level=level):
+                yield f"again_{level}", _Way(align=align, shift=shift, rest=rest)
+            case Next():
+                yield "exit", _Way(align=align, shift=shift, rest=rest)
 
 
 def _distance(plan: Plan, align: int, shift: int) -> int:
@@ -190,12 +193,11 @@ class NextPlace:
         tail = Signal(range(5 * bus + 16), name="tail", reset_less=True)
         sizes: list[tuple[Value, int]] = []
         rests: list[tuple[Value, Value]] = []
-        for taken, step, _, meaning in self._rests():
+        for taken, step, meaning in self._rests():
             addend = _distance(plan, plan.steps[step].align, shift_of(plan, step))
-            assert meaning.run is not None and self.entry is not None
-            sizes.append((taken, addend + plan.runs[meaning.run.run].terminated))
-            unit = plan.item_bytes(meaning.run.run)
-            rest = Value.cast(self.entry[meaning.rest]) << (unit.bit_length() - 1)
+            assert self.entry is not None
+            sizes.append((taken, addend + meaning.terminated))
+            rest = Value.cast(self.entry[meaning.rest]) << (meaning.item_bytes.bit_length() - 1)
             rests.append((taken, rest))
         if sizes:
             total = pick(sizes, len(tail)) + pick(rests, len(tail))
@@ -205,17 +207,17 @@ class NextPlace:
 
     def _after_rest(self) -> Value:
         cases: dict[str, list[Value]] = {}
-        for taken, _, jump, meaning in self._rests():
-            cases.setdefault(meaning.next_last_at(jump), []).append(taken)
+        for taken, step, meaning in self._rests():
+            cases.setdefault(meaning.next_last_at(step), []).append(taken)
         if not cases:
             return Const(0, self.ring.bits)
         assert self.entry is not None
         fields = [(any_of(on), Value.cast(self.entry[field])) for field, on in cases.items()]
         return fields[0][1] if len(fields) == 1 else pick(fields, self.ring.bits)
 
-    def _rests(self) -> Iterator[tuple[Value, int, Jump, Meaning]]:
-        """Yield the exits of steps that begin a run with a rest: taken, next step, jump, length."""
+    def _rests(self) -> Iterator[tuple[Value, int, RunMeaning]]:
+        """Yield the exits of steps that begin a run with a rest: taken, next step, length."""
         for each in self.flow.exits:
-            meaning, jump = self.meanings.get(each.step), each.jump
-            if meaning is not None and meaning.run is not None and jump.step is not None:
-                yield each.taken, jump.step, jump, meaning
+            meaning, step = self.meanings.get(each.step), each.jump.step
+            if isinstance(meaning, RunMeaning) and step is not None:
+                yield each.taken, step, meaning

@@ -5,10 +5,10 @@ from __future__ import annotations
 from amaranth.hdl import Const, Module, Signal, Value
 
 from firm_hdl.gateware.flow import Flow
-from firm_hdl.gateware.parse.lengths import Meaning, shift_of
+from firm_hdl.gateware.parse.lengths import meanings_of, shift_of
 from firm_hdl.gateware.parse.places import place_fields, place_traits
 from firm_hdl.gateware.positions import Ring
-from firm_hdl.plan import BeginLoop, BeginRun, MapStep, Plan, RunStep
+from firm_hdl.plan import BeginLoop, BeginRun, Plan, RunStep
 from firm_hdl.plan.geometry import geometry
 
 __all__ = ["ParseState"]
@@ -77,11 +77,7 @@ class ParseState:
     def __init__(self, m: Module, plan: Plan, *, has_leaves: bool):
         self.m, self.plan = m, plan
         self.ring = ring = Ring(plan)
-        self.meanings = {
-            index: Meaning(plan, step, has_leaves)
-            for index, step in enumerate(plan.steps)
-            if isinstance(step, MapStep) and step.begin is not None
-        }
+        self.meanings = meanings_of(plan, has_leaves=has_leaves)
         self.flow = self._flow()
         self.state, self.step = self.flow.state, self.flow.step
         start = shift_of(plan, plan.start.step) % (1 << ring.bits)

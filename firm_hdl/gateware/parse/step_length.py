@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterable
 
 from amaranth.hdl import Cat, Const, Signal, Value
 from amaranth.lib import data
 
-from firm_hdl.gateware.parse.lengths import Lengths, Meaning
+from firm_hdl.gateware.parse.lengths import Lengths, LoopMeaning, RunMeaning
 from firm_hdl.gateware.parse.state import ParseState
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.plan.geometry import geometry
@@ -56,18 +56,15 @@ class StepLength:
             return
         self.entry = self._look_up(beat)
         self.zero = self.entry.zero
-        self.over = self._select(lambda meaning: meaning.over)
-        self.run_skips = self._select(
-            lambda meaning: meaning.skips if meaning.run is not None else None, exact=True
-        )
-        self.loop_skips = self._select(
-            lambda meaning: meaning.skips if meaning.run is None else None, exact=True
-        )
-        self.single = self._select(lambda meaning: meaning.single)
-        self.double = self._select(lambda meaning: meaning.double)
-        self.rest = self._select(
-            lambda meaning: meaning.rest if meaning.run is not None else None, len(now.rest)
-        )
+        every = now.meanings.items()
+        runs = [(index, each) for index, each in every if isinstance(each, RunMeaning)]
+        loops = [(index, each) for index, each in every if isinstance(each, LoopMeaning)]
+        self.over = self._select((index, each.over) for index, each in every)
+        self.run_skips = self._select(((index, each.skips) for index, each in runs), exact=True)
+        self.loop_skips = self._select(((index, each.skips) for index, each in loops), exact=True)
+        self.single = self._select((index, each.single) for index, each in every)
+        self.double = self._select((index, each.double) for index, each in every)
+        self.rest = self._select(((index, each.rest) for index, each in runs), len(now.rest))
 
     def _look_up(self, beat: data.View) -> data.View:
         """Return the entry of the step's length."""
@@ -87,15 +84,19 @@ class StepLength:
         return lengths.entry
 
     def _select(
-        self, name: Callable[[Meaning], str | None], width: int = 1, *, exact: bool = False
+        self, named: Iterable[tuple[int, str]], width: int = 1, *, exact: bool = False
     ) -> Value:
-        """Select a field of the entry by the step; 0 where the step has none, if `exact`."""
+        """Select a field of the entry by the step; 0 where the step has none, if `exact`.
+
+        Parameters
+        ----------
+        named : iterable of (int, str)
+            Steps, and the name of the field of each.
+        """
         assert self.entry is not None
         fields: dict[str, list[Value]] = {}
-        for index, meaning in self.now.meanings.items():
-            field = name(meaning)
-            if field is not None:
-                fields.setdefault(field, []).append(self.now.step[index])
+        for index, field in named:
+            fields.setdefault(field, []).append(self.now.step[index])
         if len(fields) == 1 and not exact:
             return Value.cast(self.entry[next(iter(fields))])
         return pick(

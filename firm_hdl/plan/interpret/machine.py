@@ -8,11 +8,13 @@ from typing import NamedTuple, TypeAlias
 
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
+    ArrayEnd,
     Begin,
     BeginLoop,
     Exits,
     Fixed,
     Jump,
+    LoopEnd,
     MapStep,
     Pad,
     Part,
@@ -199,4 +201,10 @@ class Machine(ABC):
 
     def is_last(self, part: Part) -> bool:
         """Return whether a transfer of items is the last of its leaf."""
-        return part.last or (part.last_level is not None and self.counters[part.last_level] == 1)
+        match part.end:
+            case ArrayEnd():
+                return True
+            case LoopEnd(level=level):
+                return self.counters[level] == 1
+            case None:
+                return False

@@ -15,7 +15,17 @@ The step after the run takes the rest together with its own bytes, so that the r
 The counter of the run has the size of the rest: 0 if no run was started, or the run was empty.
 """
 
-from firm_hdl.plan.ir.leaves import Fixed, Leaf, LeafKind, Pad, Part, Run, Slice
+from firm_hdl.plan.ir.leaves import (
+    ArrayEnd,
+    Fixed,
+    Leaf,
+    LeafKind,
+    LoopEnd,
+    Pad,
+    Part,
+    Run,
+    Slice,
+)
 from firm_hdl.plan.ir.plan import Plan
 from firm_hdl.plan.ir.steps import (
     RUN_COUNTER,
@@ -23,23 +33,33 @@ from firm_hdl.plan.ir.steps import (
     BeginLoop,
     BeginRun,
     Exits,
+    IntoBody,
     Jump,
+    LoopAgain,
     MapStep,
+    Next,
     RunStep,
     Step,
+    Way,
+    successors,
 )
 
 __all__ = [
     "RUN_COUNTER",
+    "ArrayEnd",
     "Begin",
     "BeginLoop",
     "BeginRun",
     "Exits",
     "Fixed",
+    "IntoBody",
     "Jump",
     "Leaf",
     "LeafKind",
+    "LoopAgain",
+    "LoopEnd",
     "MapStep",
+    "Next",
     "Pad",
     "Part",
     "Plan",
@@ -47,4 +67,6 @@ __all__ = [
     "RunStep",
     "Slice",
     "Step",
+    "Way",
+    "successors",
 ]

@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias
 
 from firm_hdl.model import PRIMITIVE_OF, Primitive
 
-__all__ = ["Fixed", "Leaf", "LeafKind", "Pad", "Part", "Run", "Slice"]
+__all__ = ["ArrayEnd", "Fixed", "Leaf", "LeafKind", "LoopEnd", "Pad", "Part", "Run", "Slice"]
 
 LeafKind: TypeAlias = Literal["scalar", "length", "items", "trigger"]
 
@@ -74,6 +74,18 @@ class Fixed:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ArrayEnd:
+    """The mark of a transfer that is always the last one of its array."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoopEnd:
+    """The mark of a transfer that is the last one if the loop counter `level` is 1."""
+
+    level: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
     """Bytes of one transfer of a leaf; the transfer is complete with its last byte.
 
@@ -89,13 +101,12 @@ class Part:
         Index of the part's first byte in the transfer.
     size : int
         Bytes of the whole transfer.
-    last : bool
-        For items: whether this transfer is always the last one of its array.
-    last_level : int or None
-        For items: the loop counter that is 1 if this transfer is the last one.
+    end : ArrayEnd, LoopEnd or None
+        For items: when this transfer is the last one of its leaf; `None` for never.
 
-    An array of one or two transfers consists of parts, the last of which has `last`. A longer array
-    is a run of full words; a part with the tail follows, if the items do not fill all words.
+    An array of one or two transfers consists of parts, the last of which has an `ArrayEnd`. A
+    longer array is a run of full words; a part with the tail follows, if the items do not fill all
+    words. Items that are wider than the bus are a loop, whose parts have a `LoopEnd`.
     """
 
     at: int
@@ -103,8 +114,7 @@ class Part:
     leaf: int
     first: int
     size: int
-    last: bool = False
-    last_level: int | None = None
+    end: ArrayEnd | LoopEnd | None = None
 
     @property
     def completes(self) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from firm_hdl.model import Wire
 from firm_hdl.plan.ir.leaves import Leaf, Run
-from firm_hdl.plan.ir.steps import Begin, BeginLoop, Jump, Step
+from firm_hdl.plan.ir.steps import Begin, BeginLoop, Jump, Step, successors
 
 __all__ = ["Plan"]
 
@@ -55,10 +55,7 @@ class Plan:
         """Yield every jump of the plan."""
         yield self.start
         for step in self.steps:
-            yield step.exits.default
-            yield from (jump for _, jump in step.exits.repeats)
-            if step.begin is not None:
-                yield step.begin.body
+            yield from (jump for _, jump in successors(step))
 
     @property
     def begins(self) -> dict[int, Begin]:

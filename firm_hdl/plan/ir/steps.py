@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar, TypeAlias
 
@@ -13,10 +14,15 @@ __all__ = [
     "BeginLoop",
     "BeginRun",
     "Exits",
+    "IntoBody",
     "Jump",
+    "LoopAgain",
     "MapStep",
+    "Next",
     "RunStep",
     "Step",
+    "Way",
+    "successors",
 ]
 
 RUN_COUNTER = "run"
@@ -54,6 +60,11 @@ class Exits:
 
     repeats: tuple[tuple[int, Jump], ...] = ()
     default: Jump
+
+    @property
+    def jumps(self) -> tuple[Jump, ...]:
+        """All jumps, in the order in which they are tried."""
+        return (*(jump for _, jump in self.repeats), self.default)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -175,3 +186,41 @@ class RunStep:
 
 
 Step: TypeAlias = MapStep | RunStep
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IntoBody:
+    """The way into the body of the loop or run that a step starts.
+
+    It is taken unless the count allows to skip the body: a loop without elements, or a run of at
+    most one word. Then the step takes one of its exits.
+    """
+
+    begin: Begin
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoopAgain:
+    """The way to the first step of a loop that has more than one element left."""
+
+    level: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Next:
+    """The way that is taken when no loop repeats: to the following step, or to the end."""
+
+
+Way: TypeAlias = IntoBody | LoopAgain | Next
+
+
+def successors(step: Step) -> Iterator[tuple[Way, Jump]]:
+    """Yield the jumps that may follow a step, with what selects each, in the order of selection.
+
+    The repetition of a run's body for each word is not a jump, and not among them.
+    """
+    if step.begin is not None:
+        yield IntoBody(begin=step.begin), step.begin.body
+    for level, jump in step.exits.repeats:
+        yield LoopAgain(level=level), jump
+    yield Next(), step.exits.default

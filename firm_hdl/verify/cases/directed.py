@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from firm_hdl.plan import BeginLoop, BeginRun, Edge, Plan, RunStep, decode, encode
+from firm_hdl.plan import BeginRun, Edge, Plan, RunStep, decode, encode
 from firm_hdl.plan.edges import edges
+from firm_hdl.plan.ir import successors
 from firm_hdl.verify.cases.make import Case, make_cases
 from firm_hdl.verify.references.oracle import RosbagsOracle
 
@@ -98,11 +99,8 @@ def _bare_edges(plan: Plan) -> frozenset[Edge]:
     # Other paths than the end of a string lead to these steps, and there is no rest on them.
     others = {plan.start.step}
     for step in plan.steps:
-        if isinstance(step.begin, BeginLoop):
-            others.add(step.begin.body.step)
         if not isinstance(step, RunStep) and not isinstance(step.begin, BeginRun):
-            others.add(step.exits.default.step)
-            others.update(jump.step for _, jump in step.exits.repeats)
+            others.update(jump.step for _, jump in successors(step))
     return frozenset(
         Edge(index, "no rest")
         for index, step in enumerate(plan.steps)

@@ -8,9 +8,16 @@ import random
 import pytest
 from amaranth.sim import Simulator
 
-from firm_hdl.gateware.parse.lengths import LENGTH_BYTES, Lengths, Meaning, shift_of
+from firm_hdl.gateware.parse.lengths import (
+    LENGTH_BYTES,
+    Lengths,
+    LoopMeaning,
+    RunMeaning,
+    meanings_of,
+    shift_of,
+)
 from firm_hdl.gateware.positions import Ring
-from firm_hdl.plan import MapStep, build_plan
+from firm_hdl.plan import build_plan
 from firm_hdl.plan.geometry import geometry
 from firm_hdl.wire import lay_out
 from tests.strategies import make
@@ -38,11 +45,11 @@ def expected(plan, meaning, length, key, phase):
         Position after the header, modulo 8.
     """
     over = length > meaning.max_count
-    if meaning.run is None:
+    if isinstance(meaning, LoopMeaning):
         found = {"skips": length == 0, "single": length == 1, "double": length == 2}
         fields = {name: int(value) for name, value in found.items()}
     else:
-        run = plan.runs[meaning.run.run]
+        run = plan.runs[meaning.begin.run]
         lanes, nul = plan.leaves[run.items].lanes, int(run.terminated)
         items = max(0, length - nul)
         words = -(-items // lanes)
@@ -57,9 +64,9 @@ def expected(plan, meaning, length, key, phase):
         meaning.single: fields["single"],
         meaning.double: fields["double"],
     }
-    if meaning.run is not None:
+    if isinstance(meaning, RunMeaning):
         named[meaning.rest] = fields["rest"]
-        if length <= plan.word(meaning.run.run):
+        if length <= plan.word(meaning.begin.run):
             named |= places(plan, meaning, length, key, phase)
     return named
 
@@ -71,20 +78,18 @@ def places(plan, meaning, length, key, phase):
         return position + (phase - position) % align
 
     ring = Ring(plan)
-    start = aligned(key + 1, meaning.run.align) if length else key + 1
-    after = start + length * plan.item_bytes(meaning.run.run)
+    start = aligned(key + 1, meaning.begin.align) if length else key + 1
+    after = start + length * plan.item_bytes(meaning.begin.run)
     return {
-        meaning.next_last_at(jump): (
-            aligned(after, plan.steps[jump.step].align) + shift_of(plan, jump.step)
-        )
+        meaning.next_last_at(step): (aligned(after, plan.steps[step].align) + shift_of(plan, step))
         % (1 << ring.bits)
-        for jump in meaning.jumps
+        for step in meaning.nexts
     }
 
 
 def compare(plan, tamper=lambda name, value: value):
     """Write random lengths to each lane, and look them up; return how many values were compared."""
-    meanings = [Meaning(plan, s) for s in plan.steps if isinstance(s, MapStep) and s.begin]
+    meanings = list(meanings_of(plan).values())
     dut = Lengths(plan, geometry(plan), meanings)
     bus, ring, rng = plan.bus_bytes, Ring(plan), random.Random(plan.bus_bytes)
     edges = {m.max_count + d for m in meanings for d in (-1, 0, 1)} | {0, 1, 2, (1 << 32) - 1}
