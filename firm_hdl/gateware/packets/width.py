@@ -75,13 +75,13 @@ class PacketWidth(wiring.Component):
             wide.last.eq(beat.last),
         ]
         bits = 8 * self.in_bytes
-        came, parts = Value.cast(beat.data), Value.cast(wide.data)
+        incoming, parts = Value.cast(beat.data), Value.cast(wide.data)
         for place in range(ratio):
             kept = Signal(bits, name=f"kept_{place}", reset_less=True)
             is_here = number == place
-            m.d.comb += parts[bits * place : bits * (place + 1)].eq(Mux(is_here, came, kept))
+            m.d.comb += parts[bits * place : bits * (place + 1)].eq(Mux(is_here, incoming, kept))
             with m.If(packets.valid & packets.ready & is_here):
-                m.d.sync += kept.eq(came)
+                m.d.sync += kept.eq(incoming)
         with m.If(packets.valid & packets.ready):
             m.d.sync += number.eq(Mux(completes, 0, number + 1))
 
