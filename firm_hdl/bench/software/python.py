@@ -55,7 +55,7 @@ def time_rosbags(sample: Sample) -> Timed:
 
     messages = [read(packet) for packet in sample.packets]
     for message, packet in zip(messages, sample.packets, strict=True):
-        check_written("rosbags", sample, bytes(writer(message, name)), packet)
+        check_written(sample, bytes(writer(message, name)), packet)
     return Timed(deserialize=best_ns(read, sample.packets), serialize=best_ns(write, messages))
 
 

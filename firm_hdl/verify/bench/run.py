@@ -118,9 +118,9 @@ def _simulate(entity: str, vhdl: Path, ghdl: str) -> Path:
     work = vhdl / f"work_{entity}"
     environment = {"GHDL": ghdl, "WORK": str(work), "BENCH": entity}
     names = [f"-g{what}={what}.txt" for what in ("results", "transfers")]
-    said = run_tool(["sh", str(vhdl / RUN_SCRIPT), *names], vhdl, environment=environment)
-    if not said.startswith("PASS "):
-        raise ToolError(said.strip() or f"{entity} ended without a word: it has not passed")
+    output = run_tool(["sh", str(vhdl / RUN_SCRIPT), *names], vhdl, environment=environment)
+    if not output.startswith("PASS "):
+        raise ToolError(output.strip() or f"{entity} ended without a word: it has not passed")
     return work
 
 
@@ -136,9 +136,9 @@ def _analyse(built: Built, ghdl: str) -> tuple[Path, list[str]]:
     vhdl = built.folder.resolve() / str(manifest["folder"])
     files = [str(vhdl / name) for name in [*manifest["files"], *manifest["bench"]["files"]]]
     with tempfile.TemporaryDirectory(dir=vhdl.parent) as work:
-        said = run_tool([ghdl, "-a", "--std=08", *WARNINGS, *files], Path(work))
-    if said:
-        raise ToolError(said)
+        output = run_tool([ghdl, "-a", "--std=08", *WARNINGS, *files], Path(work))
+    if output:
+        raise ToolError(output)
     return vhdl, list(manifest["bench"]["entities"])
 
 

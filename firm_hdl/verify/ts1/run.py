@@ -98,7 +98,7 @@ class Ts1Run:
             self.cases = universe.select(request.types)
             self.versions: dict[str, str] = {}
             self.missing: dict[str, str] = {}
-            self._ask_who_is_here(universe, request.oracles or tuple(ORACLES))
+            self._find_oracles(universe, request.oracles or tuple(ORACLES))
             self._stack = stack.pop_all()
         self._key = _Key(request, folder, tuple(self.versions))
 
@@ -109,7 +109,7 @@ class Ts1Run:
         _end_session(self._key)
         self._stack.close()
 
-    def _ask_who_is_here(self, universe: Universe, names: Sequence[str]) -> None:
+    def _find_oracles(self, universe: Universe, names: Sequence[str]) -> None:
         for name in names:
             if universe.dialect not in ORACLES[name].languages:
                 continue
