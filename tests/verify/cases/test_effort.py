@@ -55,7 +55,7 @@ def test_types_are_simulated_in_part(monkeypatch):
     whole = accept("lyrical", HEADER)
     monkeypatch.setattr(
         acceptance,
-        "chosen",
+        "packets_to_simulate",
         lambda plan, *given: effort.packets_to_simulate(plan, *given, most=effort.work_of(plan, 8)),
     )
     part = accept("lyrical", HEADER)
