@@ -12,7 +12,7 @@ from firm_hdl.gateware.counter import Counter
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.plan import RUN_COUNTER, BeginLoop, BeginRun, Jump, Plan, RunStep, Step
 
-__all__ = ["Exit", "Flow", "exceeds"]
+__all__ = ["Flow", "exceeds"]
 
 
 def exceeds(value: Value, limit: int) -> Value:

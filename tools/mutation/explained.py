@@ -10,7 +10,7 @@ import yaml
 
 from tools.mutation.results import Record
 
-__all__ = ["FILE", "KINDS", "Explanation", "explain", "read_explanations"]
+__all__ = ["FILE", "Explanation", "explain", "read_explanations"]
 
 FILE = Path(__file__).parent / "survivors.yaml"
 KINDS = {

@@ -15,7 +15,7 @@ from firm_hdl.bench.software.timing import RUN_SECONDS, RUNS
 from firm_hdl.bench.tools import BenchError, MissingToolError
 from firm_hdl.jobs import ToolError, run_tool
 
-__all__ = ["OPTIONS", "fastcdr_versions", "time_fastcdr"]
+__all__ = ["fastcdr_versions", "time_fastcdr"]
 
 OPTIONS = ("-std=c++17", "-O2")
 """Options of the compiler. ROS's packages are built with ``-O2``."""
