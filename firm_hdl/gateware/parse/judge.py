@@ -59,11 +59,11 @@ class Judge:
         self.has_trailing, self.code = Signal(name="trailing"), Signal(Status, name="code")
         self.items_room = Signal(range(bus + 1), name="items_room")
         self.map_room = Signal(range(bus + 1), name="map_room")
-        self._look(beat)
+        self._check_bytes(beat)
         self._judge()
         self._keep_good(ready)
 
-    def _look(self, beat: data.View) -> None:
+    def _check_bytes(self, beat: data.View) -> None:
         """Check the bytes of the step."""
         m, state, ring = self.m, self.state, self.state.ring
         m.submodules.marks = marks = Marks(state.plan)

@@ -166,9 +166,9 @@ def _check_transfers(plan: Plan, cases: Sequence[Case], text: str) -> int:
 def _compare(what: str, got: str, right: str) -> None:
     if got == right:
         return
-    mine, wanted = got.splitlines(), right.splitlines()
-    at = first_difference(mine, wanted)
+    received, wanted = got.splitlines(), right.splitlines()
+    at = first_difference(received, wanted)
     raise AssertionError(
-        f"{what}: number {at} of {len(wanted)} is {mine[at : at + 1]} "
+        f"{what}: number {at} of {len(wanted)} is {received[at : at + 1]} "
         f"instead of {wanted[at : at + 1]}"
     )

@@ -16,7 +16,7 @@ __all__ = ["KNOWN"]
 # Changes of values, for `KnownDivergence.take_out` and `KnownDivergence.same`.
 
 
-def _quiet(kind: FieldType, value: Plain) -> Plain:
+def _quiet_nan(kind: FieldType, value: Plain) -> Plain:
     if isinstance(kind, Primitive) and kind.kind == "float" and kind.bytes == 4:
         return value | 1 << 22 if is_nan(value, 4) else value
     return value
@@ -110,8 +110,8 @@ _CUTS = ("cut-1", "cut-half", "cut-all", "long-text", "long-items")
 _Entries(*("rosbags", "cyclonedds", "mcap-ros2"), *_GENPY.libraries, wires="ros1 cdr").add(
     "python-signalling-nan",
     "A signalling NaN of 4 bytes becomes a quiet one, as any Python float.",
-    take_out=_quiet,
-    same=_quiet,
+    take_out=_quiet_nan,
+    same=_quiet_nan,
 )
 _Entries("rosbags", "cyclonedds", "mcap-ros2", wires="ros1 cdr").refuses(
     "python-not-utf8", "A string that is not UTF-8 is refused.", "not-utf8", "encode not-utf8"

@@ -44,11 +44,13 @@ def each_distro(request: Request) -> list[Request]:
     UnknownTypeError
         If no distribution has the types.
     """
-    names = request.distros or ([DEFAULT_DISTRO] if request.paths else _having(request.types))
+    names = request.distros or (
+        [DEFAULT_DISTRO] if request.paths else _distros_with_any_of(request.types)
+    )
     return [replace(request, distros=(name,)) for name in names]
 
 
-def _having(types: Sequence[str]) -> list[str]:
+def _distros_with_any_of(types: Sequence[str]) -> list[str]:
     found = []
     for distro in DISTROS:
         try:

@@ -123,7 +123,7 @@ def accept_message(
         packets = [*(case.sent for case in cases), *(packet for _, packet in bare)]
         numbers = set(packets_to_simulate(run.plan, packets, taken))
         if len(numbers) < len(taken):
-            result.say(f"simulated in part: {len(numbers)} of {len(taken)} packets")
+            result.add_note(f"simulated in part: {len(numbers)} of {len(taken)} packets")
             run.cover(taken[number] for number in numbers)
         bare = [pair for number, pair in enumerate(bare, len(cases)) if number in numbers]
         cases = [case for number, case in enumerate(cases) if number in numbers]
@@ -131,7 +131,7 @@ def accept_message(
     if is_large(run.plan, cases):
         cases = cases_to_disturb(run.plan, cases)
         if not cases:
-            result.say("neither stalled nor damaged")
+            result.add_note("neither stalled nor damaged")
     if options.stalled and cases:
         run.circuit.interrupt([case.sent for case in cases])
         run.check_circuit(cases, stalls_for(f"{options.seed}/{name}"))
