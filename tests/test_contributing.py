@@ -1,8 +1,10 @@
-"""The five walks of docs/contributing.md: their files exist, and each walk touches at most six."""
+"""The five walks of docs/contributing.md: files and names exist, at most six files in a walk."""
 
 from __future__ import annotations
 
+import ast
 import re
+from functools import cache
 from pathlib import Path
 
 import firm_hdl
@@ -11,6 +13,8 @@ ROOT = Path(firm_hdl.__file__).parent.parent
 PAGE = (ROOT / "docs" / "contributing.md").read_text(encoding="utf-8")
 # Of a new file, which the walk makes.
 NEW = re.compile(r"NAME|PART")
+# A file such as `README.md` is no member of a class.
+MEMBER = re.compile(r"`([A-Z]\w*[a-z]\w*)\.(\w+)`")
 FILE = re.compile(r"`([\w/]+\.(?:py|md|lark))`")
 
 
@@ -32,6 +36,43 @@ def missing(page):
 
 def test_files_that_the_page_names_exist():
     assert list(missing(PAGE)) == []
+
+
+@cache
+def members():
+    """Return the members of the package's classes, by the name of the class."""
+    found = {}
+    for path in (ROOT / "firm_hdl").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                found.setdefault(node.name, set()).update(_members_of(node))
+    return found
+
+
+def _members_of(node):
+    for each in ast.walk(node):
+        match each:
+            case ast.FunctionDef(name=name) | ast.AnnAssign(target=ast.Name(id=name)):
+                yield name
+            case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Store()):
+                yield name
+
+
+def unknown_members(page):
+    return [
+        f"{owner}.{name}"
+        for owner, name in MEMBER.findall(page)
+        if name not in members().get(owner, ())
+    ]
+
+
+def test_members_that_the_page_names_exist():
+    assert len(MEMBER.findall(PAGE)) >= 4 and unknown_members(PAGE) == []
+
+
+def test_a_member_that_is_gone_is_seen():
+    page = PAGE.replace("`Plan.begins`", "`Plan.counted`") + "`Plans.begins`"
+    assert unknown_members(page) == ["Plan.counted", "Plans.begins"]
 
 
 def lengths(page):

@@ -93,13 +93,13 @@ def _add_messages(command: argparse.ArgumentParser) -> None:
 
 def _add_files(command: argparse.ArgumentParser) -> None:
     command.add_argument("--json", metavar="FILE", help="write the figures to a file")
-    command.add_argument("--compare", metavar="FILE", help="say what changed since that file")
+    command.add_argument("--compare", metavar="FILE", help="compare with the figures in FILE")
     command.add_argument(
         "--threshold",
         type=float,
         default=2.0,
         metavar="PERCENT",
-        help="changes that are not worth a line; default: %(default)s",
+        help="smallest change to report; default: %(default)s",
     )
     command.add_argument(
         "--cache", metavar="DIR", help="keep figures there, and take those of unchanged circuits"

@@ -96,9 +96,9 @@ def compared(old: Iterable[Result], new: Iterable[Result], threshold: float) -> 
     changes = list(compare(olds, news, threshold))
     lines = [str(change) for change in changes]
     for result in both:
-        ways = [_made_by(before[result.key]), _made_by(result)]
-        if ways[0] != ways[1]:
-            lines.append(f"not alike: {result.converter}: {ways[0]}, now {ways[1]}")
+        conditions = [_made_by(before[result.key]), _made_by(result)]
+        if conditions[0] != conditions[1]:
+            lines.append(f"not alike: {result.converter}: {conditions[0]}, now {conditions[1]}")
     lines.append(
         f"{len(both)} converters compared, {len(news) - len(both)} are new, "
         f"{len(olds) - len(both)} are not measured now; {len(changes)} figures changed by more "

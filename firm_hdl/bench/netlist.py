@@ -119,7 +119,7 @@ class Names:
 
     def _connected(self, cell: str, direction: str) -> Iterator[int]:
         found = self._cells.get(cell, {"port_directions": {}})
-        for port, way in found["port_directions"].items():
-            for bit in found["connections"][port] if way == direction else ():
+        for port, kind in found["port_directions"].items():
+            for bit in found["connections"][port] if kind == direction else ():
                 if isinstance(bit, int):
                     yield bit

@@ -118,14 +118,16 @@ def beats_table(sets: Mapping[str, Sequence[Result]]) -> str:
 
 def made_with(results: Iterable[Result]) -> str:
     """Write each combination of device, tools and options with which figures were made."""
-    ways: dict[str, int] = {}
+    counts: dict[str, int] = {}
     for result in results:
         if (found := result.measured) is None:
             continue
         tools = ", ".join(f"{name} {version}" for name, version in sorted(found.tools.items()))
         seeds = ", ".join(str(each.seed) for each in found.placed)
         parts = [f"`{found.mapping}`", *([f"`{found.placement}`"] if found.placement else [])]
-        way = f"{found.device.title}: {tools}; {'; '.join(parts)}"
-        way += f"; seeds {seeds}" if seeds else ""
-        ways[way] = ways.get(way, 0) + 1
-    return "".join(f"* {way} ({count} converters)\n" for way, count in sorted(ways.items()))
+        conditions = f"{found.device.title}: {tools}; {'; '.join(parts)}"
+        conditions += f"; seeds {seeds}" if seeds else ""
+        counts[conditions] = counts.get(conditions, 0) + 1
+    return "".join(
+        f"* {conditions} ({count} converters)\n" for conditions, count in sorted(counts.items())
+    )

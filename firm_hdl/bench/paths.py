@@ -27,7 +27,7 @@ class CriticalPath:
     routing_ns : float
         The part of the delay that is routing.
     cells : int
-        Number of look-up tables, carry chains and the like on the way.
+        Number of look-up tables, carry chains and the like on the path.
     points : tuple of (float, str)
         Signals on the path, each with its arrival time in ns. The first and the last are the
         registers. Signals after ``&`` join the path there, directly or through other logic. Each
@@ -40,9 +40,9 @@ class CriticalPath:
     points: tuple[tuple[float, str], ...]
 
     def __str__(self) -> str:
-        way = " > ".join(f"{name} {ns:.1f}" for ns, name in self.points)
+        route = " > ".join(f"{name} {ns:.1f}" for ns, name in self.points)
         cells = f"{self.cells} cell{'' if self.cells == 1 else 's'}"
-        return f"{self.ns:.1f} ns, {self.routing_ns:.1f} of them routing, {cells}: {way}"
+        return f"{self.ns:.1f} ns, {self.routing_ns:.1f} of them routing, {cells}: {route}"
 
 
 def critical_path(report: Mapping[str, Any], names: Names) -> CriticalPath:

@@ -75,8 +75,8 @@ class Tool:
         try:
             return run_tool([*self.command, "-l", log.name, *arguments], folder, timeout=TIMEOUT)
         except ToolError as error:
-            said = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
-            reason = _error_in(said) or _error_in(str(error), lines=2)
+            output = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
+            reason = _error_in(output) or _error_in(str(error), lines=2)
             raise BenchError(f"{self.title} failed: {reason}") from None
 
 
@@ -166,10 +166,10 @@ def _find(title: str, package: str, program: str, option: str, version: str) -> 
         commands.append((path,))
     for command in commands:
         try:
-            said = run_tool([*command, option], Path.cwd(), timeout=TIMEOUT)
+            output = run_tool([*command, option], Path.cwd(), timeout=TIMEOUT)
         except (ToolError, OSError):
             continue
-        if match := re.search(version, said):
+        if match := re.search(version, output):
             return Tool(title=title, command=tuple(command), version=match[1])
     return None
 

@@ -72,7 +72,7 @@ def _dispatch(arguments: list[str]) -> int:
 def _failed(error: OSError) -> int:
     """Report an error of the operating system, if standard error can still be written to."""
     if isinstance(error, BrokenPipeError):
-        _abandon()
+        _discard_output()
         return 1
     where = f"'{os.fsdecode(error.filename)}': " if error.filename is not None else ""
     _print_error(f"error: {where}{error.strerror or error}")
@@ -80,11 +80,11 @@ def _failed(error: OSError) -> int:
     with suppress(OSError, ValueError):
         sys.stdout.flush()
         return 1
-    _abandon()
+    _discard_output()
     return 1
 
 
-def _abandon() -> None:
+def _discard_output() -> None:
     """Discard the rest of the output, which Python would try to write again when it ends."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

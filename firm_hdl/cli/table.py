@@ -51,7 +51,7 @@ COMMANDS: dict[str, Command] = {
         module="building",
     ),
     "verify": Command(
-        help="test converters against real ROS parts", module="testing", has_origins=False
+        help="test converters against ROS's own libraries", module="testing", has_origins=False
     ),
     "report": Command(
         help="write a report of results of verify, as HTML, Markdown or JSON",

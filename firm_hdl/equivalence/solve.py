@@ -18,7 +18,7 @@ from firm_hdl.equivalence.circuit import ProofError
 from firm_hdl.equivalence.miter import Miter
 from firm_hdl.equivalence.tools import ToolError, Tools, TooSlowError, answer_of
 
-__all__ = ["Answer", "Difference", "solve"]
+__all__ = ["solve"]
 
 # Equal cells of the two sides are merged before they become gates. These passes may exploit
 # undefined values, but a miter has none. `check` finds loops, because their value is undefined.

@@ -19,7 +19,7 @@ from typing import Any
 
 from firm_hdl.plan import Plan
 
-__all__ = ["DATA", "FEATURES", "Estimate", "estimate_text", "estimates_of", "features_of"]
+__all__ = ["DATA", "Estimate", "estimate_text", "estimates_of", "features_of"]
 
 DATA = "figures.json"
 """Name of the file, in this package."""

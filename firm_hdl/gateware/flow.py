@@ -12,7 +12,7 @@ from firm_hdl.gateware.counter import Counter
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.plan import RUN_COUNTER, BeginLoop, BeginRun, Jump, Plan, RunStep, Step
 
-__all__ = ["Exit", "Flow", "exceeds"]
+__all__ = ["Flow", "exceeds"]
 
 
 def exceeds(value: Value, limit: int) -> Value:
@@ -57,7 +57,7 @@ class Exit:
 class Flow:
     """Step, counters and jumps of a plan. Not a component: logic of one module.
 
-    A *trait* is what a circuit has to know of a step: a field of the state register, written
+    A *trait* is what a circuit has to know of a step: a field of `step_state`, written
     together with the step. So traits are valid at the start of a cycle.
 
     Parameters
@@ -76,7 +76,7 @@ class Flow:
 
     Attributes
     ----------
-    state : View
+    step_state : View
         Register with `step` and the traits.
     step : Signal
         One-hot, one bit per step.
@@ -109,8 +109,9 @@ class Flow:
         self.layout = data.StructLayout({"step": len(steps) + has_end, **fields})
         self._traits, self._has_end = traits, has_end
         self.start = self.encode(plan.start.step)
-        self.state = Signal(self.layout, init=self.layout.from_bits(self.start), name="state")
-        self.step = self.state.step
+        init_bits = self.layout.from_bits(self.start)
+        self.step_state = Signal(self.layout, init=init_bits, name="state")
+        self.step = self.step_state.step
         init = {
             counter: self._words_or_elements(plan.start, counter) for counter, _ in plan.start.enter
         }

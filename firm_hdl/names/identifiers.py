@@ -1,8 +1,8 @@
-"""ROS names as identifiers of VHDL and Verilog: one name for both languages.
+"""Identifiers of ROS names: the same identifier in VHDL, Verilog and SystemVerilog.
 
-Some names of ROS fields, such as `range`, `type`, `label` and `reg`, are keywords of one of the
+Some names of ROS fields, such as `range`, `type`, `label` and `reg`, are keywords of one of these
 languages. ROS 1 also allows `a__b`, `a_`, and both `A` and `a`, which VHDL forbids. Each name gets
-one identifier, so that a port has the same name in both languages. The identifier is legal in
+one identifier, so that a port has the same name in all languages. The identifier is legal in
 VHDL-2008 and in SystemVerilog-2017, and differs from its neighbours in more than case.
 
 Different names get different identifiers: legal names stay, and the others get a suffix.

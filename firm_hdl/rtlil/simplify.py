@@ -1,7 +1,7 @@
 """Simplify a module: replace values that are constant or equal to another value.
 
 Amaranth does not evaluate operators on constants. Generated circuits have many such operators: for
-example, a comparison with a constant 0, or a condition that no message of the type can meet.
+example, a comparison with a constant 0, or a condition that no input of the module can meet.
 Registers with a constant value are replaced, too; memories and instances stay. A constant signal
 keeps its name.
 """

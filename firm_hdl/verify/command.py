@@ -114,7 +114,7 @@ def _check_replay(given: argparse.Namespace) -> None:
     if given.path:
         given.usage_error("argument --bag: not allowed with argument --path")
     if set(given.systems) != {"ts3"}:
-        given.usage_error("--bag is of ts3 alone")
+        given.usage_error("--bag requires --systems ts3")
     if given.sut:
         given.usage_error("--bag is for firm-hdl's own converters, not for --sut")
     if given.share_circuits:
@@ -126,7 +126,7 @@ def _check_replay(given: argparse.Namespace) -> None:
 def _check_libraries(given: argparse.Namespace) -> None:
     """Refuse arguments that cannot be combined with references or with libraries under test."""
     if NO_REFERENCE in given.reference and len(given.reference) > 1:
-        given.usage_error(f"--reference {NO_REFERENCE} goes with no other")
+        given.usage_error(f"--reference {NO_REFERENCE} excludes other references")
     if not given.sut:
         return
     for name in _OTHERS:
@@ -184,14 +184,14 @@ def _add_ts1(group: argparse._ArgumentGroup) -> None:
         action="append",
         default=[],
         choices=ORACLE_NAMES,
-        help="whom to ask; repeatable; default: all that are here",
+        help="oracle to use; repeatable; default: all installed",
     )
     group.add_argument(
         "--mutations",
         type=positive,
         default=0,
         metavar="N",
-        help="judge N texts with small mistakes, made from the types' own, instead of these",
+        help="judge N mutated definitions instead of the originals",
     )
 
 
@@ -207,7 +207,8 @@ def _add_cases(group: argparse._ArgumentGroup) -> None:
         "--cases",
         type=positive,
         metavar="N",
-        help="most cases per type; default: all, of recordings some",
+        help="at most N cases of each type; default: all; for recordings, at most "
+        f"{MOST_MESSAGES} messages of each type",
     )
     group.add_argument(
         "--no-stalls", dest="stalls", action="store_false", help="do not run with stalls"
@@ -230,8 +231,8 @@ def _add_replay(group: argparse._ArgumentGroup) -> None:
         default=[],
         metavar="FILE",
         help="replay the messages of a recording (.bag, .mcap, .db3), with its definitions and no "
-        f"others, {MOST_MESSAGES} of each type at most (--cases N: N of each); without TYPE, all "
-        "types that it has topics of; repeatable",
+        f"others, at most {MOST_MESSAGES} of each type (--cases N: N of each); without TYPE, of "
+        "all types that have topics; repeatable",
     )
     group.add_argument(
         "--max-message-bytes",
@@ -258,7 +259,7 @@ def _add_libraries(group: argparse._ArgumentGroup, ts3: argparse._ArgumentGroup)
         choices=[*WRITER_NAMES, NO_REFERENCE],
         metavar="NAME",
         help="library that has to write the same bytes as rosbags: "
-        f"{', '.join(WRITER_NAMES)}, or {NO_REFERENCE}; repeatable; default: all that are here",
+        f"{', '.join(WRITER_NAMES)}, or {NO_REFERENCE}; repeatable; default: all installed",
     )
 
 

@@ -4,7 +4,7 @@ A test system is an entry of :data:`SYSTEMS`: a function that makes the system f
 systems write to one file of results, which lists the planned tests of all systems first.
 
 A type that was asked for by name has to be judged. If all types are tested, those that no oracle
-can judge are listed and do not count. A run that judged nothing at all is no pass.
+can judge are listed and do not count. A run that judged no test fails.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from firm_hdl.verify.ts1.run import each_distro
 from firm_hdl.verify.ts2.system import Ts2
 from firm_hdl.verify.ts3.system import Ts3
 
-__all__ = ["SYSTEMS", "concluded", "is_well", "run_workload"]
+__all__ = ["SYSTEMS", "concluded", "run_workload", "succeeded"]
 
 
 def run_workload(work: Workload) -> int:
@@ -65,10 +65,10 @@ def run_workload(work: Workload) -> int:
         return 1
     for problem in work.problems:
         print(problem, file=sys.stderr)
-    return 0 if is_well(found, is_named=request.is_named) and not work.problems else 1
+    return 0 if succeeded(found, is_named=request.is_named) and not work.problems else 1
 
 
-def is_well(found: Sequence[Judged], *, is_named: bool) -> bool:
+def succeeded(found: Sequence[Judged], *, is_named: bool) -> bool:
     """Return whether a run is a success: no test failed, and enough was judged.
 
     Parameters
@@ -79,20 +79,22 @@ def is_well(found: Sequence[Judged], *, is_named: bool) -> bool:
     verdicts = [each.verdict for each in found]
     if any(isinstance(verdict, Failed) for verdict in verdicts):
         return False
-    silent = sum(isinstance(verdict, NotJudged) for verdict in verdicts)
-    return silent < len(verdicts) and not (is_named and silent)
+    not_judged = sum(isinstance(verdict, NotJudged) for verdict in verdicts)
+    return not_judged < len(verdicts) and not (is_named and not_judged)
 
 
 def concluded(found: Sequence[Judged], *, is_named: bool) -> list[str]:
     """Return lines for the end of a run: the tests that were not judged, and the consequence."""
-    silent = [(each.what, each.verdict) for each in found if isinstance(each.verdict, NotJudged)]
-    lines = [f"not judged: {what}: {verdict.reason}" for what, verdict in silent]
-    if len(silent) == len(found):
-        return [*lines, "nothing was judged: this is no pass"]
-    if silent:
-        were = "was" if len(silent) == 1 else "were"
-        meaning = ", although named: this is no pass" if is_named else ""
-        lines.append(f"{len(silent)} of {len(found)} tests {were} not judged{meaning}")
+    not_judged = [
+        (each.what, each.verdict) for each in found if isinstance(each.verdict, NotJudged)
+    ]
+    lines = [f"not judged: {what}: {verdict.reason}" for what, verdict in not_judged]
+    if len(not_judged) == len(found):
+        return [*lines, "no test was judged, so the run fails"]
+    if not_judged:
+        were = "was" if len(not_judged) == 1 else "were"
+        meaning = ", although named, so the run fails" if is_named else ""
+        lines.append(f"{len(not_judged)} of {len(found)} tests {were} not judged{meaning}")
     return lines
 
 

@@ -18,7 +18,7 @@ from firm_hdl.vhdl.uses import int_parameter, output, trim
 if TYPE_CHECKING:
     from firm_hdl.vhdl.expr import Values
 
-__all__ = ["COMPARISONS", "Cells"]
+__all__ = ["Cells"]
 
 NATURAL_BITS = 31
 """Widest number that is written in decimal: VHDL's integers have 31 bits and a sign."""

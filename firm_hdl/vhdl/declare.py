@@ -13,7 +13,7 @@ from firm_hdl.vhdl.names import AMS, Scope, legal
 from firm_hdl.vhdl.text import bit_literal, literal
 from firm_hdl.vhdl.uses import INLINE, output
 
-__all__ = ["Names", "Port", "Signal", "declare", "enumeration", "initial_value", "part_names"]
+__all__ = ["Names", "declare", "enumeration", "initial_value", "part_names"]
 
 Role: TypeAlias = Literal["register", "logic", "alias"]
 DriverKind: TypeAlias = Literal["register", "logic", "submodule", "foreign"]

@@ -184,6 +184,8 @@ def test_what_a_library_has_not_has_no_figure() -> None:
     text = replace(PADDED, fields=(Field(name="a", type=String(wide=True)),))
     with pytest.raises(NoFigureError, match="wstring"):
         time_rosbags(Sample(message=text, wire="cdr", packets=()))
+    with pytest.raises(NoFigureError, match="rosbags does not have the wire format morse"):
+        time_rosbags(Sample(message=PADDED, wire="morse", packets=()))
 
 
 @pytest.fixture

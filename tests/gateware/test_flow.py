@@ -64,10 +64,10 @@ class Walk(wiring.Component):
         )
         done, ends = Signal(), Signal()
         m.d.comb += [
-            done.eq(Mux(flow.state.is_run, flow.words.last, ~self.begins | self.skips)),
+            done.eq(Mux(flow.step_state.is_run, flow.words.last, ~self.begins | self.skips)),
             ends.eq(done & flow.exit_ends),
             self.step.eq(flow.step),
-            self.trait.eq(flow.state.is_run),
+            self.trait.eq(flow.step_state.is_run),
         ]
         flow.count(
             moves=self.moves,
@@ -79,7 +79,7 @@ class Walk(wiring.Component):
         )
         following = Mux(done, flow.exit_state, flow.body_state)
         with m.If(self.moves):
-            m.d.sync += Value.cast(flow.state).eq(Mux(ends, flow.start, following))
+            m.d.sync += Value.cast(flow.step_state).eq(Mux(ends, flow.start, following))
         return m
 
 

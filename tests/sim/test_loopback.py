@@ -31,6 +31,7 @@ from firm_hdl.sim.record import Recorder
 from firm_hdl.sim.transfers import PendingTransfers, split_transfers, transfer_table
 from firm_hdl.wire import lay_out
 from tests.sim.components import Relay
+from tests.strategies import make
 
 IMAGE = load_message("sensor_msgs/msg/CompressedImage", distro="humble")
 JOINTS = load_message("trajectory_msgs/msg/JointTrajectory", distro="humble")
@@ -99,6 +100,24 @@ def test_stalls_change_nothing_but_the_time(stalls):
     assert stalled.transfers == free.transfers
     if "status" not in (stalls if isinstance(stalls, dict) else ()):
         assert stalled.cycles > free.cycles
+
+
+def test_loopback_on_the_wire_that_is_asked_for():
+    message = make("ros2", {"a": "uint8", "s": "string"})
+    ros1 = b"\7\2\0\0\0hi"
+    assert tuple(loopback(message, [ros1], wire="ros1")) == ([ros1], [Status.OK])
+    assert loopback(message, [ros1], wire="cdr").statuses == [Status.ENCAPSULATION]
+
+
+def test_loopback_has_the_limit_that_is_asked_for():
+    assert loopback(IMAGE, [PACKET], max_message_bytes=90).statuses == [Status.OK]
+    assert loopback(IMAGE, [PACKET], max_message_bytes=32).statuses == [Status.LENGTH]
+
+
+def test_loopback_has_the_deadline_that_is_asked_for():
+    assert loopback(IMAGE, [PACKET], deadline=20).packets == [PACKET]
+    with pytest.raises(DeadlineError, match=r"^No transfer in 3 cycles up to cycle"):
+        loopback(IMAGE, [PACKET], deadline=2)
 
 
 def test_runs_of_a_harness_do_not_depend_on_each_other():

@@ -21,6 +21,7 @@ from firm_hdl.sim import (
 )
 from tests.sim.components import run_testbenches
 from tests.sim.test_loopback import IMAGE, JOINTS, PACKET, TRAJECTORY, VALUE
+from tests.strategies import make
 
 COLOUR = load_message("std_msgs/msg/ColorRGBA", distro="humble")
 IMU = load_message("sensor_msgs/msg/Imu", distro="humble")
@@ -97,6 +98,26 @@ def test_rosbags_objects_become_packets():
 
     run_testbenches(tx, source, sink, statuses)
     assert got == [PACKET]
+
+
+@pytest.mark.parametrize(("wire", "packet"), [("ros1", b"\7\2\0\0\0hi"), ("cdr", None)])
+def test_a_port_has_the_bus_and_the_wire_of_its_converter(wire, packet):
+    message, value, got = make("ros2", {"a": "uint8", "s": "string"}), {"a": 7, "s": "hi"}, []
+    tx = Serializer(message, wire=wire, bus_bytes=2)
+    port = MessagePort(tx.message, message, wire=wire, bus_bytes=2)
+    assert port.plan.bus_bytes == 2 and port.plan.wire == wire
+
+    async def source(ctx):
+        await port.send(ctx, value)
+
+    async def sink(ctx):
+        got.extend(await receive_packets(ctx, tx.packets, 1))
+
+    async def statuses(ctx):
+        assert await receive_statuses(ctx, tx.status, 1) == [Status.OK]
+
+    run_testbenches(tx, source, sink, statuses)
+    assert got == [packet or b"\0\1\0\0\7\0\0\0\3\0\0\0hi\0"]
 
 
 def test_leaves_are_offered_whatever_the_others_wait_for():

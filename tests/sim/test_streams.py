@@ -123,3 +123,53 @@ def test_statuses_are_statuses():
     run_testbenches(dut, source, sink)
     assert got == [Status.OK, Status.TRUNCATED]
     assert all(isinstance(each, Status) for each in got)
+
+
+def test_a_stream_has_the_stalls_of_its_name():
+    stall, patterns = Stalls(0.5, 1, 5, seed=3), {}
+    for name in ("packets_in", "other"):
+        dut, cycles = Relay(packet_layout(4)), []
+
+        async def source(ctx, name=name, dut=dut):
+            await send_packets(ctx, dut.i, [bytes(40)], stalls=stall, name=name)
+
+        async def sink(ctx, dut=dut, cycles=cycles):
+            for _ in range(60):
+                _, _, valid = await ctx.tick().sample(dut.i.valid)
+                cycles.append(valid)
+
+        run_testbenches(dut, source, sink)
+        patterns[name] = cycles
+    offered = [not stalled for stalled, _ in zip(stall.cycles("other"), range(60), strict=False)]
+    assert sum(patterns["other"]) == sum(patterns["packets_in"]) == 10
+    assert patterns["other"].index(1) == offered.index(True)
+    assert patterns["other"] != patterns["packets_in"]
+
+
+def test_the_deadline_of_packets_names_the_stream():
+    dut = Relay(packet_layout(4))
+
+    async def sink(ctx):
+        await receive_packets(ctx, dut.o, 1, deadline=9, name="answers")
+
+    message = r"^No transfer on stream 'answers' in 10 cycles; outstanding: 1 of 1 packets$"
+    with pytest.raises(DeadlineError, match=message):
+        run_testbenches(dut, sink)
+
+
+def test_statuses_may_be_stalled_and_have_a_deadline():
+    dut, got = Relay(Status), []
+
+    async def source(ctx):
+        await send(ctx, dut.i, [Status.OK, Status.STRING])
+
+    async def sink(ctx):
+        stall = Stalls.bits("0" * 30 + "1")
+        options = {"stalls": stall, "deadline": 9, "name": "verdicts"}
+        got.extend(await receive_statuses(ctx, dut.o, 2, **options))
+        await receive_statuses(ctx, dut.o, 1, **options)
+
+    message = r"^No transfer on stream 'verdicts' in 40 cycles; outstanding: 1 of 1 transfers$"
+    with pytest.raises(DeadlineError, match=message):
+        run_testbenches(dut, source, sink)
+    assert got == [Status.OK, Status.STRING]

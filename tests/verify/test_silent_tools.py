@@ -15,7 +15,7 @@ from firm_hdl.frontend import Library
 from firm_hdl.jobs.processes import ToolError
 from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.verify import Options, accept, distro_oracle, make_cases
-from firm_hdl.verify.clients.judge import Contest
+from firm_hdl.verify.clients.judge import LibraryComparison
 from firm_hdl.verify.references.client import ClientDiedError, each_answered
 from firm_hdl.verify.references.clients import CLIENTS
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
@@ -185,7 +185,7 @@ def test_library_that_does_not_answer_everything_fails(library_here, is_referenc
     rosbags = library_here("rosbags")
     both = (rosbags, Few(rosbags)) if is_reference else (Few(rosbags), rosbags)
     message = Library("lyrical").message(BOOL)
-    trial = Contest(*both, "cdr").judge(message, [{"data": True}, {"data": False}])
+    trial = LibraryComparison(*both, "cdr").judge(message, [{"data": True}, {"data": False}])
     (failure,) = trial.verdict.failures
     assert failure.startswith("few gave ") and " questions" in failure
 

@@ -10,7 +10,7 @@ import yaml
 
 from tools.mutation.results import Record
 
-__all__ = ["FILE", "KINDS", "Explanation", "explain", "read_explanations"]
+__all__ = ["Explanation", "explain", "read_explanations"]
 
 FILE = Path(__file__).parent / "survivors.yaml"
 KINDS = {
@@ -50,9 +50,9 @@ class Explanation:
         )
 
 
-def read_explanations(path: Path = FILE) -> list[Explanation]:
-    """Read the explanations of a file."""
-    found = [Explanation(**entry) for entry in yaml.safe_load(path.read_text()) or []]
+def read_explanations() -> list[Explanation]:
+    """Read the explanations in `FILE`."""
+    found = [Explanation(**entry) for entry in yaml.safe_load(FILE.read_text()) or []]
     unknown = {each.kind for each in found} - set(KINDS)
     if unknown:
         raise ValueError(f"Kinds of survivors must be of {sorted(KINDS)}, not {sorted(unknown)}")

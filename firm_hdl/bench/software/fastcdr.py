@@ -15,7 +15,7 @@ from firm_hdl.bench.software.timing import RUN_SECONDS, RUNS
 from firm_hdl.bench.tools import BenchError, MissingToolError
 from firm_hdl.jobs import ToolError, run_tool
 
-__all__ = ["OPTIONS", "fastcdr_versions", "time_fastcdr"]
+__all__ = ["fastcdr_versions", "time_fastcdr"]
 
 OPTIONS = ("-std=c++17", "-O2")
 """Options of the compiler. ROS's packages are built with ``-O2``."""
@@ -77,7 +77,7 @@ def time_fastcdr(sample: Sample, runs: int = RUNS, run_seconds: float = RUN_SECO
         try:
             run_tool(compile_, folder)
             program = [str(folder / "program"), "packets", str(runs), str(run_seconds)]
-            said = run_tool(program, folder).splitlines()
+            lines = run_tool(program, folder).splitlines()
         except ToolError as error:
             raise BenchError(f"Fast CDR, {sample.message.name}: {error}") from None
-    return Timed(deserialize=float(said[-2]), serialize=float(said[-1]))
+    return Timed(deserialize=float(lines[-2]), serialize=float(lines[-1]))

@@ -14,6 +14,7 @@ from firm_hdl.bench.software.sample import NoFigureError, Sample, Timed, check_w
 from firm_hdl.bench.software.timing import best_ns
 from firm_hdl.bench.tools import BenchError, MissingToolError
 from firm_hdl.verify.references.objects import full_text
+from firm_hdl.verify.references.oracle import ROSBAGS_WIRES
 from firm_hdl.verify.references.user_oracle import oracle_name, resolved_oracle
 from firm_hdl.verify.results.verdict import NotJudgedError
 from firm_hdl.verify.ros_python.worker import ROS_PYTHON
@@ -35,10 +36,12 @@ def time_rosbags(sample: Sample) -> Timed:
     Raises
     ------
     NoFigureError
-        If it does not have the type.
+        If it does not have the type or the wire format.
     BenchError
         If it does not write what it has read.
     """
+    if sample.wire not in ROSBAGS_WIRES:
+        raise NoFigureError(f"rosbags does not have the wire format {sample.wire}")
     try:
         store = resolved_oracle(sample.message).store
     except NotJudgedError as error:
@@ -55,7 +58,7 @@ def time_rosbags(sample: Sample) -> Timed:
 
     messages = [read(packet) for packet in sample.packets]
     for message, packet in zip(messages, sample.packets, strict=True):
-        check_written("rosbags", sample, bytes(writer(message, name)), packet)
+        check_written(sample, bytes(writer(message, name)), packet)
     return Timed(deserialize=best_ns(read, sample.packets), serialize=best_ns(write, messages))
 
 

@@ -36,8 +36,8 @@ class Timed:
         return self.deserialize if direction == "deserializer" else self.serialize
 
 
-def check_written(library: str, sample: Sample, written: bytes, packet: bytes) -> None:
-    """Check that a library writes the packet that it has read.
+def check_written(sample: Sample, written: bytes, packet: bytes) -> None:
+    """Check that rosbags writes the packet that it has read.
 
     Raises
     ------
@@ -46,6 +46,6 @@ def check_written(library: str, sample: Sample, written: bytes, packet: bytes) -
     """
     if written != packet:
         raise BenchError(
-            f"{library} reads a packet of {sample.message.name} and writes another: "
+            f"rosbags reads a packet of {sample.message.name} and writes another: "
             f"{packet.hex(' ')}, then {written.hex(' ')}"
         )

@@ -36,7 +36,7 @@ from firm_hdl.export.vhdl.wrapper import (
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
-__all__ = ["RecordEntities", "Shared", "UserLayer", "flat_package", "user_layer"]
+__all__ = ["RecordEntities", "UserLayer", "flat_package", "user_layer"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -89,29 +89,29 @@ class _CollectorLogic:
         self.c = collector
         self.m, self.plan = m, plan = Module(), collector.plan
         streams = [collector.leaves[k] for k in range(len(plan.leaves))]
-        self.progress = progress = CollectState(m, plan, streams)
+        self.state = state = CollectState(m, plan, streams)
         self._decide()
         self.readers = [self._readers(*each) for each in enumerate(plan.steps)]
         self._serve()
         self._hold_lengths()
         self._judge()
-        Filler(progress, collector.words)
+        Filler(state, collector.words)
         self._advance()
 
     # The step.
 
     def _decide(self) -> None:
-        m, plan, progress = self.m, self.plan, self.progress
-        state, flow = progress.state, progress.flow
-        is_begin = state.run_begin | state.loop_begin
-        skips = progress.of_length(lambda length: length.skips)
+        m, plan, state = self.m, self.plan, self.state
+        traits, flow = state.traits, state.flow
+        is_begin = traits.run_begin | traits.loop_begin
+        skips = state.of_length(lambda length: length.skips)
         # A last step that only takes a rest is skipped if there is no rest.
         rests = {i for i, step in enumerate(plan.steps) if only_ends(step)}
         to_rest = any_of([each.taken for each in flow.exits if each.jump.step in rests])
-        no_rest = is_begin & progress.zero & ~state.terminated & to_rest
+        no_rest = is_begin & state.zero & ~traits.terminated & to_rest
         m.d.comb += [
-            progress.done.eq(state.plain | (is_begin & skips) | (state.words & flow.words.last)),
-            progress.ends.eq(progress.done & (flow.exit_ends | no_rest)),
+            state.done.eq(traits.plain | (is_begin & skips) | (traits.words & flow.words.last)),
+            state.ends.eq(state.done & (flow.exit_ends | no_rest)),
         ]
 
     def _readers(self, index: int, step: Step) -> list[_Reader]:
@@ -135,7 +135,7 @@ class _CollectorLogic:
 
     def _last(self, step: Step, part: Part | None) -> Value:
         """Return the value that `items.last` must have in a transfer."""
-        flow = self.progress.flow
+        flow = self.state.flow
         if part is not None:
             if isinstance(part.end, LoopEnd):
                 return flow.levels[part.end.level].last
@@ -151,7 +151,7 @@ class _CollectorLogic:
         A producer may offer a leaf only after an earlier one was taken. So a step must not wait
         until all its leaves are offered. `served` records which of them were taken.
         """
-        m, c, progress, streams = self.m, self.c, self.progress, self.progress.streams
+        m, c, state, streams = self.m, self.c, self.state, self.state.streams
         ready: dict[int, list[Value]] = {}
         missing: list[Value] = []
         for index, (step, readers) in enumerate(zip(self.plan.steps, self.readers, strict=True)):
@@ -162,44 +162,44 @@ class _CollectorLogic:
             # A transfer that continues in the next step is taken in that step.
             for part in step.parts:
                 if not part.completes:
-                    missing.append(progress.step[index] & ~streams[part.leaf].valid)
+                    missing.append(state.step[index] & ~streams[part.leaf].valid)
         for leaf, cases in ready.items():
             m.d.comb += streams[leaf].ready.eq(any_of(cases))
         status_free = ~c.status.valid | c.status.ready
         m.d.comb += [
-            progress.free.eq(~c.words.valid | c.words.ready),
-            progress.complete.eq(progress.free & ~any_of(missing) & (~progress.ends | status_free)),
+            state.free.eq(~c.words.valid | c.words.ready),
+            state.complete.eq(state.free & ~any_of(missing) & (~state.ends | status_free)),
         ]
-        for slot, flag in enumerate(progress.served):
+        for slot, flag in enumerate(state.served):
             taken = [readers[slot].go for readers in self.readers if slot < len(readers)]
-            m.d.sync += flag.eq((flag | any_of(taken)) & ~progress.complete)
+            m.d.sync += flag.eq((flag | any_of(taken)) & ~state.complete)
 
     def _take(self, index: int, slot: int) -> None:
         """Take a transfer of a step when it is offered, after the earlier ones of the step."""
-        progress, readers = self.progress, self.readers[index]
+        state, readers = self.state, self.readers[index]
         reader = readers[slot]
-        valid = progress.streams[reader.leaf].valid
-        if reader.leaf in progress.lengths:
-            valid = valid & progress.lengths[reader.leaf].known
-        wanted = progress.rest.any() if reader.optional else Const(1, 1)
+        valid = state.streams[reader.leaf].valid
+        if reader.leaf in state.lengths:
+            valid = valid & state.lengths[reader.leaf].known
+        wanted = state.rest.any() if reader.optional else Const(1, 1)
         earlier = any_of([each.lacks for each in readers[:slot]])
         self.m.d.comb += [
-            reader.left.eq(progress.step[index] & wanted & ~progress.served[slot]),
+            reader.left.eq(state.step[index] & wanted & ~state.served[slot]),
             reader.lacks.eq(reader.left & ~valid),
-            reader.go.eq(reader.left & valid & progress.free & ~earlier),
+            reader.go.eq(reader.left & valid & state.free & ~earlier),
         ]
 
     def _hold_lengths(self) -> None:
         """Keep a length that is taken while its step waits until `status` is free."""
-        progress = self.progress
-        held: dict[int, list[Value]] = {leaf: [] for leaf in progress.lengths}
+        state = self.state
+        held: dict[int, list[Value]] = {leaf: [] for leaf in state.lengths}
         for index, (step, readers) in enumerate(zip(self.plan.steps, self.readers, strict=True)):
             for slot, reader in enumerate(readers):
                 if reader.leaf in held and self._may_wait_for_status(step):
-                    taken = reader.go | (progress.step[index] & progress.served[slot])
-                    held[reader.leaf].append(taken & ~progress.complete)
+                    taken = reader.go | (state.step[index] & state.served[slot])
+                    held[reader.leaf].append(taken & ~state.complete)
         for leaf, cases in held.items():
-            self.m.d.comb += progress.lengths[leaf].held.eq(any_of(cases))
+            self.m.d.comb += state.lengths[leaf].held.eq(any_of(cases))
 
     def _may_wait_for_status(self, step: Step) -> bool:
         """Tell whether a step may take its length, and then wait until `status` is free.
@@ -212,7 +212,7 @@ class _CollectorLogic:
 
     def _judge(self) -> None:
         """Keep the packet's first error, and report it with the last step."""
-        m, c, progress, streams = self.m, self.c, self.progress, self.progress.streams
+        m, c, state, streams = self.m, self.c, self.state, self.state.streams
         wrong_items = any_of(
             [
                 reader.go & (streams[reader.leaf].payload.last != reader.last)
@@ -221,8 +221,8 @@ class _CollectorLogic:
             ]
         )
         error, found = Signal(Status, name="error"), Signal(Status, name="found")
-        is_taken = any_of([streams[leaf].ready for leaf in progress.lengths])
-        over = is_taken & progress.of_length(lambda length: length.over)
+        is_taken = any_of([streams[leaf].ready for leaf in state.lengths])
+        over = is_taken & state.of_length(lambda length: length.over)
         # Items of a step come before its length in wire order, so their error counts.
         m.d.comb += found.eq(error)
         with m.If((error == Status.OK) & wrong_items):
@@ -232,48 +232,48 @@ class _CollectorLogic:
         m.d.sync += error.eq(found)
         with m.If(c.status.ready):
             m.d.sync += c.status.valid.eq(0)
-        with m.If(progress.complete & progress.ends):
+        with m.If(state.complete & state.ends):
             m.d.sync += [
                 c.status.valid.eq(1),
                 c.status.payload.eq(found),
                 error.eq(Status.OK),
             ]
-        with m.If(progress.free):
+        with m.If(state.free):
             m.d.sync += c.words.payload.error.eq(found != Status.OK)
 
     # The next step.
 
     def _advance(self) -> None:
-        m, progress = self.m, self.progress
-        state, flow = progress.state, progress.flow
-        next_rest = progress.of_length(lambda length: length.rest, len(progress.rest), BeginRun)
-        single = progress.of_length(lambda length: length.single)
+        m, state = self.m, self.state
+        traits, flow = state.traits, state.flow
+        next_rest = state.of_length(lambda length: length.rest, len(state.rest), BeginRun)
+        single = state.of_length(lambda length: length.single)
         count = self._count()
         flow.count(
-            moves=progress.complete,
-            ends=progress.ends,
-            done=progress.done,
+            moves=state.complete,
+            ends=state.ends,
+            done=state.done,
             count=count,
             single=single,
             nul=False,
         )
-        with m.If(progress.complete):
-            m.d.sync += Value.cast(state).eq(
-                Mux(progress.ends, flow.start, Mux(progress.done, flow.exit_state, flow.body_state))
+        with m.If(state.complete):
+            m.d.sync += Value.cast(flow.step_state).eq(
+                Mux(state.ends, flow.start, Mux(state.done, flow.exit_state, flow.body_state))
             )
-            with m.If(progress.ends):
-                m.d.sync += [progress.rest.eq(0), progress.has_nul.eq(0)]
+            with m.If(state.ends):
+                m.d.sync += [state.rest.eq(0), state.has_nul.eq(0)]
             with m.Else():
-                with m.If(state.run_begin):
-                    m.d.sync += [progress.rest.eq(next_rest), progress.has_nul.eq(state.terminated)]
-                with m.Elif(state.rest):
-                    m.d.sync += [progress.rest.eq(0), progress.has_nul.eq(0)]
+                with m.If(traits.run_begin):
+                    m.d.sync += [state.rest.eq(next_rest), state.has_nul.eq(traits.terminated)]
+                with m.Elif(traits.rest):
+                    m.d.sync += [state.rest.eq(0), state.has_nul.eq(0)]
 
     def _count(self) -> Value:
         """Return the payload of the step's length, 32 bits; 0 if the step has no length."""
-        progress = self.progress
+        state = self.state
         cases = [
-            (progress.step[i], progress.streams[step.begin.length].payload)
+            (state.step[i], state.streams[step.begin.length].payload)
             for i, step in enumerate(self.plan.steps)
             if step.begin is not None
         ]

@@ -39,19 +39,19 @@ class _Byte:
 class Filler:
     """Fill the words of each step. Not a component: logic of one module.
 
-    While `progress.free`, sizes are written in every cycle, and bytes until their leaf is taken.
-    `words.valid` becomes high one cycle after `progress.complete`. The collector writes `error`.
+    While `state.free`, sizes are written in every cycle, and bytes until their leaf is taken.
+    `words.valid` becomes high one cycle after `state.complete`. The collector writes `error`.
 
     Parameters
     ----------
-    progress : CollectState
+    state : CollectState
     words : stream.Interface
         See :func:`words_layout`.
     """
 
-    def __init__(self, progress: CollectState, words: stream.Interface):
-        self.m, self.progress, self.words = progress.m, progress, words
-        self.plan, self.step = progress.plan, progress.step
+    def __init__(self, state: CollectState, words: stream.Interface):
+        self.m, self.state, self.words = state.m, state, words
+        self.plan, self.step = state.plan, state.step
         self._write_bytes()
         self._compute_sizes()
 
@@ -59,7 +59,7 @@ class Filler:
 
     def _write_bytes(self) -> None:
         """Write the bytes that the step selects to the words, until their leaf is taken."""
-        m, progress = self.m, self.progress
+        m, state = self.m, self.state
         lanes: dict[str, list[dict[int, _Byte]]] = {}
         for index, step in enumerate(self.plan.steps):
             for name, lane, byte in self._bytes(step):
@@ -71,10 +71,10 @@ class Filler:
                 register = Signal(8 * len(stretch), name=f"{name}_{lane}", reset_less=True)
                 taken = [
                     any_of([self.step[i] for i, byte in cases.items() if byte.slot == slot]) & flag
-                    for slot, flag in enumerate(progress.served)
+                    for slot, flag in enumerate(state.served)
                     if any(byte.slot == slot for byte in cases.values())
                 ]
-                with m.If(progress.free & ~any_of(taken)):
+                with m.If(state.free & ~any_of(taken)):
                     m.d.sync += register.eq(self._selected(stretch))
                 bits = getattr(self.words.payload, name)[8 * lane :]
                 m.d.comb += bits[: len(register)].eq(register)
@@ -124,7 +124,7 @@ class Filler:
 
     def _wire_bits(self, leaf: int) -> Value:
         """Return the bits of a leaf's transfer on the wire."""
-        plan, payload = self.plan, self.progress.streams[leaf].payload
+        plan, payload = self.plan, self.state.streams[leaf].payload
         match plan.leaves[leaf].kind:
             case "items":
                 return Cat(_item_bits(item) for item in payload.data)
@@ -137,7 +137,7 @@ class Filler:
 
     def _compute_sizes(self) -> None:
         """Compute the sizes of the words, and the distances between their positions."""
-        m, progress, state, bus = self.m, self.progress, self.progress.state, self.plan.bus_bytes
+        m, state, traits, bus = self.m, self.state, self.state.traits, self.plan.bus_bytes
         words, ring = self.words.payload, Ring(self.plan)
         items = Signal(range(bus + 1), name="items_size")
         map_size = Signal(range(2 * bus + 1), name="map_size")
@@ -145,34 +145,34 @@ class Filler:
         # Whether the packet has a byte before this step, and whether it has one after the step.
         begun, begins = Signal(name="begun"), Signal(name="begins")
         m.d.comb += [
-            items.eq(Mux(state.rest, progress.flow.rest_bytes(progress.rest), state.items_bytes)),
-            map_size.eq(state.map_bytes + Mux(state.lead, bus, 0)),
-            nul.eq(progress.has_nul & state.rest),
-            begins.eq(begun | items.any() | nul | state.map_bytes.any()),
+            items.eq(Mux(traits.rest, state.flow.rest_bytes(state.rest), traits.items_bytes)),
+            map_size.eq(traits.map_bytes + Mux(traits.lead, bus, 0)),
+            nul.eq(state.has_nul & traits.rest),
+            begins.eq(begun | items.any() | nul | traits.map_bytes.any()),
         ]
-        with m.If(progress.complete):
-            m.d.sync += begun.eq(begins & ~progress.ends)
+        with m.If(state.complete):
+            m.d.sync += begun.eq(begins & ~state.ends)
         addend, mask = self._items_align()
         to_end = Signal.like(words.to_end, name="to_end")
         end_mask = Signal(max(3, ring.lane_bits), name="end_mask")
         to_map = Signal.like(words.to_map, name="to_map")
-        m.d.comb += to_map.eq(Mux(state.lead, 0, items) + nul + state.map_addend)
-        with m.If(progress.ends):
+        m.d.comb += to_map.eq(Mux(traits.lead, 0, items) + nul + traits.map_addend)
+        with m.If(state.ends):
             m.d.comb += [to_end.eq(Mux(begins, map_size + (bus - 1), bus)), end_mask.eq(bus - 1)]
         with m.Else():
             m.d.comb += [to_end.eq(map_size + addend), end_mask.eq(mask)]
-        with m.If(progress.free):
+        with m.If(state.free):
             m.d.sync += [
-                self.words.valid.eq(progress.complete),
+                self.words.valid.eq(state.complete),
                 words.items_bytes.eq(items),
-                words.map_bytes.eq(state.map_bytes),
-                words.lead.eq(state.lead),
+                words.map_bytes.eq(traits.map_bytes),
+                words.lead.eq(traits.lead),
                 words.to_map.eq(to_map),
                 words.max_beats.eq((to_map + to_end + (bus - 1)) >> ring.lane_bits),
-                words.map_mask.eq(state.mask),
+                words.map_mask.eq(traits.mask),
                 words.to_end.eq(to_end),
                 words.end_mask.eq(end_mask),
-                words.last.eq(progress.ends),
+                words.last.eq(state.ends),
                 words.empty.eq(~begins),
                 words.waits.eq(any_of([self.step[i] for i in range(first_step(self.plan))])),
             ]
@@ -188,7 +188,7 @@ class Filler:
             if isinstance(step.begin, BeginRun) and step.begin.align > 1:
                 align = step.begin.align
                 addend = align_addend(align, plan.header_bytes) if plan.bus_bytes >= 8 else 0
-                not_empty = self.step[index] & ~self.progress.lengths[step.begin.length].zero
+                not_empty = self.step[index] & ~self.state.lengths[step.begin.length].zero
                 cases.append((not_empty, addend, align - 1))
         return (
             pick([(not_empty, addend) for not_empty, addend, _ in cases], 3),

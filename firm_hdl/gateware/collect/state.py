@@ -31,10 +31,9 @@ class CollectState:
     lengths : dict of int to OfferedLength
         By leaf.
     flow : Flow
-        Step and counters.
-    state : View
-    step : Signal
-        Those of `flow`.
+        The step and the counters.
+    traits, step : View, Signal
+        The traits of the step, and the step itself: `flow.step_state` and `flow.step`.
     rest : Signal(range(lanes + 1))
         Number of items in the rest of the last run, until a step takes them. A register.
     has_nul : Signal(1)
@@ -60,7 +59,7 @@ class CollectState:
             for leaf in plan.begins
         }
         self.flow = self._flow()
-        self.state, self.step = self.flow.state, self.flow.step
+        self.traits, self.step = self.flow.step_state, self.flow.step
         lanes = max((plan.leaves[run.items].lanes for run in plan.runs), default=1)
         self.rest, self.has_nul = Signal(range(lanes + 1), name="rest"), Signal(name="has_nul")
         self.zero = self.of_length(lambda length: length.zero)

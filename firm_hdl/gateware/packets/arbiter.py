@@ -1,4 +1,4 @@
-"""Several packet streams become one."""
+"""Merge several packet streams into one."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ __all__ = ["PacketArbiter"]
 
 
 class PacketArbiter(wiring.Component):
-    """Let the packets of several streams leave on one stream, one whole packet after the other.
+    """Merge packet streams, packet by packet, round robin.
 
     The inputs take turns. After the end of a packet, it is the turn of the next input that offers
-    one. So an input waits for at most one packet of each other input. `source` says where a packet
-    comes from.
+    one. So an input waits for at most one packet of each other input. `source` is the number of the
+    packet's input.
 
-    Latency 1 cycle, if it is the input's turn; else one more. A beat leaves per cycle, without gaps
-    between packets of different inputs, and between packets of one input. A packet that has begun
-    is not interrupted: an input that begins a packet and does not go on holds all others. Gates and
-    FIFOs let no packet begin before all of it has come.
+    Latency 1 cycle, if it is the input's turn; else one more. Throughput one beat per cycle,
+    without gaps between packets of different inputs, and between packets of one input. A packet
+    that has begun is not interrupted: an input that begins a packet and stops holds all others.
+    Gates and FIFOs send a packet only after its last beat was stored.
 
     All outputs depend on registers only. One clock domain, `sync`; its reset discards the beats
     inside, so the packets of all inputs have to begin again.

@@ -1,4 +1,4 @@
-"""A packet stream from one clock domain to another."""
+"""Carry a packet stream from one clock domain to another."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ class PacketCrossing(wiring.Component):
     Beats cross in a FIFO in block RAM, whose positions are exchanged as Gray codes. If it is empty,
     a beat is valid after the second edge of the reading clock after its transfer; in hardware this
     may take an edge more. With 16 beats or more, a beat crosses per cycle of the slower clock.
-    Packets need not fit into the FIFO. To let a packet leave only when all of it has come, put a
-    :class:`PacketFifo` behind the crossing.
+    Packets need not fit into the FIFO. To send a packet only after its last beat was stored,
+    put a :class:`PacketFifo` behind the crossing.
 
     All outputs depend on registers of their own clock domain only. A reset of the writing domain
-    empties the FIFO and ends in the reading domain some cycles later. A packet that is leaving is
-    cut by it without a last beat, so the reading side has to be reset, too. A reset of the reading
-    domain alone discards nothing.
+    empties the FIFO and ends in the reading domain some cycles later. It cuts a packet that is
+    being sent, without a last beat, so the reading side has to be reset, too. A reset of the
+    reading domain alone discards nothing.
 
     Parameters
     ----------

@@ -18,15 +18,15 @@ __all__ = ["PacketFifo"]
 
 
 class PacketFifo(wiring.Component):
-    """Store whole packets in block RAM, and let them leave whole.
+    """Store-and-forward FIFO for packets, in block RAM.
 
-    A packet begins to leave after its last beat has come, and only if it is kept. `abort` drops it.
-    So for packets of a :class:`Serializer`, connect `packet_error` to `abort`: then only good
-    packets leave.
+    A packet is sent after its last beat was stored, and only if it is kept. `abort` drops the
+    packet. So for packets of a :class:`Serializer`, connect `packet_error` to `abort`: then only
+    good packets are sent.
 
     The first beat of a packet is valid 4 cycles after the transfer of its last beat, if no packet
-    is before it. A beat is taken per cycle, and a beat leaves per cycle, at the same time and
-    without gaps between packets. A packet that is dropped gives its memory back at once.
+    is before it. A beat is taken per cycle, and a beat is sent per cycle, at the same time and
+    without gaps between packets. The memory of a packet that is dropped is free at once.
 
     There is room for a beat if the memory has a free word, and fewer than `packets` packets are
     stored. A packet of exactly `memory_bytes` has room. Without room, the policy decides:
@@ -36,7 +36,7 @@ class PacketFifo(wiring.Component):
 
     A packet that is larger than the memory is dropped with either policy. Its memory is free again
     when a beat too many would be stored, and then the rest of its beats are taken one per cycle.
-    With `"wait"`, this is after all packets before it have left.
+    With `"wait"`, this is after all packets before it were sent.
 
     The memory has one write port and one synchronous read port; it is never initialized. All
     outputs are registers, or constant. No path leads from an input to an output. One clock domain,
@@ -49,7 +49,7 @@ class PacketFifo(wiring.Component):
     memory_bytes : int
         Size of the memory: a power of two, and at least two beats.
     packets : int
-        Most packets that are stored, besides the one that is leaving. At least 1.
+        Most packets that are stored, besides the one that is sent. At least 1.
     when_full : "wait" or "drop"
 
     Members
@@ -63,7 +63,7 @@ class PacketFifo(wiring.Component):
     ended : Out(1)
         High for one cycle per packet, 2 cycles after the transfer of its last beat.
     outcome : Out(Outcome)
-        What became of the packet; valid with `ended`.
+        Whether the packet was kept, or why it was dropped; valid with `ended`.
     counters : Out(counters_layout("passed", "aborted", "full", "large"))
         Packets by outcome, each with 32 bits; a counter stops at its largest value. Counted 2
         cycles after `ended`.
@@ -121,7 +121,7 @@ class PacketFifo(wiring.Component):
         return m
 
     def _store_sizes(self, m: Module, writer: PacketWriter, reader: PacketReader) -> None:
-        """Store the sizes of packets that have not begun to leave."""
+        """Store the sizes of packets whose first beat was not sent."""
         packets = self.shape.packets
         stored = Signal(range(packets + 1), name="stored")
         sizes = LutMemory(m, "sizes", writer.size.shape(), 1 << max(1, ceil_log2(packets)))

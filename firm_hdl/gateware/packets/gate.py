@@ -1,4 +1,4 @@
-"""A gate that only good packets pass."""
+"""A gate that forwards good packets only."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ COUNTED = {
 
 
 class PacketGate(wiring.Component):
-    """Let only good packets of a message type pass.
+    """Forward only the good packets of a message type.
 
     A :class:`Parser` judges each packet while it is stored in a :class:`PacketFifo`, which drops
-    the packets that are not `OK`. What leaves is what came, whole and in order. So behind a gate,
-    the status of a :class:`Deserializer` with the same parameters is always `OK`.
+    the packets that are not `OK`. Forwarded packets are unchanged and in order. So
+    behind a gate, the status of a :class:`Deserializer` with the same parameters is always `OK`.
 
     Both the first beat of a packet and its status are valid 4 cycles after the parser's status: 7
     cycles after the transfer of the last beat, if one step of the parser's plan ends in this beat,

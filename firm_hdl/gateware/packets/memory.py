@@ -16,18 +16,18 @@ WhenFull: TypeAlias = Literal["wait", "drop"]
 
 
 class Outcome(enum.Enum, shape=2):  # type: ignore[call-arg]
-    """What became of a packet that a :class:`PacketFifo` received.
+    """What a :class:`PacketFifo` did with a packet.
 
     Members
     -------
     KEPT
-        It leaves.
+        The packet is forwarded.
     ABORTED
-        It was dropped because of `abort`, whether or not it had room.
+        The packet was dropped because of `abort`, whether or not there was room.
     FULL
-        It was dropped because there was no room.
+        The packet was dropped because there was no room.
     LARGE
-        It was dropped because it is larger than the memory.
+        The packet was dropped because it is larger than the memory.
     """
 
     KEPT = 0

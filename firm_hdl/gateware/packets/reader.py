@@ -15,7 +15,7 @@ __all__ = ["PacketReader"]
 class PacketReader(wiring.Component):
     """Read packets from a memory with a synchronous read port.
 
-    A word takes two cycles: one in the memory, and one to the register of `packets`. A beat leaves
+    Latency 2 cycles: one in the memory, and one to the register of `packets`. Throughput one beat
     per cycle.
 
     Parameters
@@ -33,13 +33,13 @@ class PacketReader(wiring.Component):
     word : In(packet_layout(bus_bytes))
         The word of the last read.
     next_size : In(range(memory_bytes + 1))
-        Size of the first packet that has not begun to leave.
+        Size of the first packet whose first beat was not sent.
     begins : Out(1)
-        A packet begins to leave, and `next_size` is taken.
+        The first beat of a packet is sent to `packets`, and `next_size` is taken.
     packets : Out(PacketSignature(bus_bytes))
         `valid` and `payload` are registers.
     size : Out(range(memory_bytes + 1))
-        Bytes of the packet that leaves; valid with `packets`.
+        Bytes of the packet on `packets`; valid with `packets`.
     """
 
     def __init__(self, shape: MemoryShape):

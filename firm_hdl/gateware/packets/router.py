@@ -1,4 +1,4 @@
-"""One packet stream becomes several."""
+"""Split one packet stream into several, by topic."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class PacketRouter(wiring.Component):
     `topic` travels with the packet; the value beside its first beat counts. A packet whose topic
     has no output is dropped whole, a beat per cycle, and counted.
 
-    Latency 1 cycle. A beat is taken and leaves per cycle, without gaps between packets. An output
+    Latency 1 cycle. Throughput one beat per cycle, without gaps between packets. An output
     that does not take its packet holds all that come after it, whatever their topics. Behind a
     router, a :class:`PacketFifo` with the policy `"drop"` never does.
 
@@ -75,7 +75,7 @@ class PacketRouter(wiring.Component):
             to.eq(Mux(inside, begun, named)),
             out.i.payload.beat.eq(packets.payload),
             out.i.payload.to.eq(to),
-            # What has no output is taken and goes nowhere.
+            # Beats of a packet without an output are taken and dropped.
             out.i.valid.eq(packets.valid & to.any()),
             packets.ready.eq(out.i.ready),
             ends.eq(packets.valid & packets.ready & packets.payload.last),

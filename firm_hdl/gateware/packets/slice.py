@@ -1,4 +1,4 @@
-"""A register in a stream that separates both of its handshakes."""
+"""Skid buffer: a stream register without a combinational path through it."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ __all__ = ["StreamSlice"]
 class StreamSlice(wiring.Component):
     """Register a stream. `i.ready`, `o.valid` and `o.payload` are registers.
 
-    Latency 1 cycle. A transfer per cycle.
+    Latency 1 cycle. Throughput one transfer per cycle.
 
     Parameters
     ----------
     shape : shape-like
-        Of the payload.
+        The shape of the payload.
 
     Members
     -------
@@ -30,19 +30,19 @@ class StreamSlice(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        # Holds what comes in the cycle in which `o` stops. It is empty if `i.ready`.
-        come, out = Value.cast(self.i.payload), Value.cast(self.o.payload)
-        second, ready = Signal(len(come), reset_less=True), Signal(init=1)
+        # `second` holds the transfer of the cycle in which `o` stops; it is empty if `i.ready`.
+        incoming, out = Value.cast(self.i.payload), Value.cast(self.o.payload)
+        second, ready = Signal(len(incoming), reset_less=True), Signal(init=1)
         moves = Signal()
         m.d.comb += [self.i.ready.eq(ready), moves.eq(~self.o.valid | self.o.ready)]
         with m.If(moves):
             m.d.sync += [
                 self.o.valid.eq(self.i.valid | ~ready),
-                out.eq(Mux(ready, come, second)),
+                out.eq(Mux(ready, incoming, second)),
                 ready.eq(1),
             ]
         with m.Elif(self.i.valid):
             m.d.sync += ready.eq(0)
         with m.If(ready):
-            m.d.sync += second.eq(come)
+            m.d.sync += second.eq(incoming)
         return m

@@ -8,7 +8,7 @@ __all__ = ["GateStatus", "GateStatusSignature"]
 
 
 class GateStatus(enum.Enum, shape=4):  # type: ignore[call-arg]
-    """What became of a packet at a :class:`PacketGate`.
+    """What a :class:`PacketGate` did with a packet.
 
     Codes up to 7 are those of :class:`Status`, and have their meaning. With codes from 8 on, the
     gate dropped a packet that was `OK`, or that was not judged.
@@ -16,7 +16,7 @@ class GateStatus(enum.Enum, shape=4):  # type: ignore[call-arg]
     Members
     -------
     OK
-        The packet leaves, or has left.
+        The packet is or was forwarded.
     TRUNCATED, TRAILING, LENGTH, ENCAPSULATION, STRING
         As in :class:`Status`.
     FULL

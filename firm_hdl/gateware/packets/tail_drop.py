@@ -43,7 +43,7 @@ class TailDrop(wiring.Component):
     """Pass packets on while `packets_out` is ready; drop them whole while it is not.
 
     If `packets_out` is not ready for a beat of a packet that has begun, the packet is aborted: the
-    rest of it is dropped, and a last beat that says so is sent instead. Packets that begin before
+    rest of it is dropped, and a last beat with `aborted` is sent instead. Packets that begin before
     this beat has been taken are dropped whole. The latency is 0.
 
     Parameters

@@ -1,4 +1,4 @@
-"""A packet stream of another width."""
+"""Convert a packet stream to another bus width."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ __all__ = ["PacketWidth"]
 class PacketWidth(wiring.Component):
     """Carry packets from a bus of one width to a bus of another width.
 
-    Packets stay what they are: their bytes, in order, and only the last beat is not full.
+    The bytes of a packet do not change. All beats but the last one are full.
 
-    A beat per cycle on the narrower side, without gaps between packets. Latency from the narrow
-    beat that completes a wide one: 1 cycle. From a wide beat to its first narrow one: 2 cycles.
-    Between buses of the same width: 1 cycle.
+    Throughput one beat per cycle on the narrower side, without gaps between packets. Latency from
+    the narrow beat that completes a wide one: 1 cycle. From a wide beat to its first narrow one: 2
+    cycles. Between buses of the same width: 1 cycle.
 
     `packets_in.ready`, and `valid` and `payload` of `packets_out`, are registers. One clock domain,
     `sync`; its reset discards the bytes inside, and the next beat begins a packet.
@@ -59,7 +59,7 @@ class PacketWidth(wiring.Component):
         return m
 
     def _join(self, m: Module, out: StreamSlice) -> None:
-        """Collect narrow beats in registers; the last one of a wide beat goes past them."""
+        """Store narrow beats in registers; the last one of a wide beat bypasses them."""
         ratio = self.out_bytes // self.in_bytes
         packets, beat, wide = self.packets_in, self.packets_in.payload, out.i.payload
         number, completes = Signal(range(ratio)), Signal()
@@ -75,18 +75,18 @@ class PacketWidth(wiring.Component):
             wide.last.eq(beat.last),
         ]
         bits = 8 * self.in_bytes
-        came, parts = Value.cast(beat.data), Value.cast(wide.data)
+        incoming, parts = Value.cast(beat.data), Value.cast(wide.data)
         for place in range(ratio):
             kept = Signal(bits, name=f"kept_{place}", reset_less=True)
             is_here = number == place
-            m.d.comb += parts[bits * place : bits * (place + 1)].eq(Mux(is_here, came, kept))
+            m.d.comb += parts[bits * place : bits * (place + 1)].eq(Mux(is_here, incoming, kept))
             with m.If(packets.valid & packets.ready & is_here):
-                m.d.sync += kept.eq(came)
+                m.d.sync += kept.eq(incoming)
         with m.If(packets.valid & packets.ready):
             m.d.sync += number.eq(Mux(completes, 0, number + 1))
 
     def _split(self, m: Module, out: StreamSlice) -> None:
-        """Give a registered wide beat in parts."""
+        """Register a wide beat, and send it in parts."""
         ratio, low = self.in_bytes // self.out_bytes, (self.out_bytes - 1).bit_length()
         m.submodules.wide = wide = StreamSlice(packet_layout(self.in_bytes))
         beat = wide.o.payload

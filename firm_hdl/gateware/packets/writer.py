@@ -1,4 +1,4 @@
-"""The writing side of a packet memory: it stores packets, and takes back those that are dropped."""
+"""The writing side of a packet memory: it stores packets, and frees those that are dropped."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class _Room:
 
 
 class PacketWriter(wiring.Component):
-    """Write packets to a memory; give the memory of a packet back if it is dropped.
+    """Write packets to a memory; free the memory of a packet that is dropped.
 
-    A beat is registered, and written in the next cycle. With the last beat it is decided what
-    becomes of the packet. At most one packet in the memory is undecided, and it is the newest one.
-    So to drop a packet, the writer goes back to the first word of it.
+    A beat is registered, and written in the next cycle. With the last beat, the writer decides
+    whether the packet is kept. At most one packet in the memory is undecided, and it is the newest
+    one. So to drop a packet, the writer goes back to the first word of it.
 
     `packets.ready` is a register, or constantly 1 with the policy `"drop"`.
 
@@ -56,11 +56,11 @@ class PacketWriter(wiring.Component):
     freed : In(position)
         All words before this position are free.
     stored : In(range(packets + 1))
-        Number of packets that are kept and have not begun to leave.
+        Number of packets that are kept and whose first beat was not sent.
     ended : Out(1)
         A packet was decided: 2 cycles after the transfer of its last beat. A register.
     outcome : Out(Outcome)
-        What became of it; valid with `ended`.
+        Whether the packet was kept, or why it was dropped; valid with `ended`.
     """
 
     def __init__(self, shape: MemoryShape, when_full: WhenFull):

@@ -18,11 +18,11 @@ __all__ = ["Judge"]
 class Judge:
     """Find the packet's first error in wire order. Not a component: logic of one module.
 
-    The judge drives `now.bad` and `now.new_error`.
+    The judge drives `state.bad` and `state.new_error`.
 
     Parameters
     ----------
-    now : ParseState
+    state : ParseState
     length : StepLength
     beat, limit, ended
         As for :class:`Sequencer`.
@@ -33,110 +33,110 @@ class Judge:
     ----------
     good : Signal(1)
         All bytes of the step are in the buffer, and none of them is wrong. Combinational.
-    trailing : Signal(1)
+    has_trailing : Signal(1)
         All bytes of the step are in the buffer, and more bytes follow than may follow the message.
         Combinational.
     code : Signal(Status)
-        The error, if `now.bad`.
+        The error, if `state.bad`.
     items_room, map_room : Signal(range(bus_bytes + 1))
-        Good bytes of the word of items and of the map, if `now.bad` and not `now.new_error`.
+        Good bytes of the word of items and of the map, if `state.bad` and not `state.new_error`.
     """
 
     def __init__(
         self,
-        now: ParseState,
+        state: ParseState,
         length: StepLength,
         beat: data.View,
         limit: Value,
         ended: Value,
         ready: Value,
     ):
-        self.m, self.now, self.length = now.m, now, length
+        self.m, self.state, self.length = state.m, state, length
         self.limit, self.ended = limit, ended
-        bus = now.plan.bus_bytes
+        bus = state.plan.bus_bytes
         self.mismatch, self.wrong_nul = Signal(name="mismatch"), Signal(name="wrong_nul")
         self.good = Signal(name="good")
-        self.trailing, self.code = Signal(name="trailing"), Signal(Status, name="code")
+        self.has_trailing, self.code = Signal(name="trailing"), Signal(Status, name="code")
         self.items_room = Signal(range(bus + 1), name="items_room")
         self.map_room = Signal(range(bus + 1), name="map_room")
-        self._look(beat)
+        self._check_bytes(beat)
         self._judge()
         self._keep_good(ready)
 
-    def _look(self, beat: data.View) -> None:
+    def _check_bytes(self, beat: data.View) -> None:
         """Check the bytes of the step."""
-        m, now, ring = self.m, self.now, self.now.ring
-        m.submodules.marks = marks = Marks(now.plan)
-        too_many = exceeds(now.left[:-1], now.plan.max_trailing_bytes)
+        m, state, ring = self.m, self.state, self.state.ring
+        m.submodules.marks = marks = Marks(state.plan)
+        too_many = exceeds(state.left[:-1], state.plan.max_trailing_bytes)
         m.d.comb += [
             marks.beat.eq(beat),
-            marks.nul_at.eq(now.nul_at),
-            marks.header_at.eq(ring.beat(now.first_at)),
-            self.wrong_nul.eq(now.has_nul & now.state.rest & marks.nonzero),
-            self.trailing.eq(now.present & too_many),
+            marks.nul_at.eq(state.nul_at),
+            marks.header_at.eq(ring.beat(state.first_at)),
+            self.wrong_nul.eq(state.has_nul & state.traits.rest & marks.nonzero),
+            self.has_trailing.eq(state.present & too_many),
         ]
-        headers = [now.step[i] & marks.mismatch[k] for k, i in enumerate(marks.steps)]
+        headers = [state.step[i] & marks.mismatch[k] for k, i in enumerate(marks.steps)]
         wrong_header = any_of(headers)
         if headers:
             # The checked bytes of a header are the first bytes of its step.
             begun = ring.position("header_within")
             m.d.comb += [
-                begun.eq(self.limit - now.first_at),
+                begun.eq(self.limit - state.first_at),
                 self.mismatch.eq(wrong_header & ~begun[-1] & begun.any()),
             ]
-        m.d.comb += self.good.eq(now.present & ~self.wrong_nul & ~wrong_header)
+        m.d.comb += self.good.eq(state.present & ~self.wrong_nul & ~wrong_header)
 
     def _judge(self) -> None:
         """Find the first error of the step in wire order."""
-        m, now = self.m, self.now
-        within, cut = now.ring.position("nul_within"), Signal(name="cut")
+        m, state = self.m, self.state
+        within, cut = state.ring.position("nul_within"), Signal(name="cut")
         begins = Signal(name="begins")
         m.d.comb += [
-            within.eq(self.limit - now.nul_at),
-            cut.eq(self.ended & ~now.present),
-            begins.eq(now.issue & (now.state.run_begin | now.state.loop_begin)),
+            within.eq(self.limit - state.nul_at),
+            cut.eq(self.ended & ~state.present),
+            begins.eq(state.issue & (state.traits.run_begin | state.traits.loop_begin)),
         ]
         # The string's last byte is in the buffer, even if later bytes of the step are not.
-        missing_nul = self.wrong_nul & (now.present | (~within[-1] & within.any()))
-        overrun = now.ends_message & ~self.ended & self.trailing
+        missing_nul = self.wrong_nul & (state.present | (~within[-1] & within.any()))
+        overrun = state.ends_message & ~self.ended & self.has_trailing
         early = self.mismatch | missing_nul | cut | overrun
         # What is left if no other error is found: trailing bytes, or a length over its limit.
-        code = Mux(now.ends_message, Status.TRAILING, Status.LENGTH)
+        code = Mux(state.ends_message, Status.TRAILING, Status.LENGTH)
         code = Mux(cut, Status.TRUNCATED, code)
         code = Mux(missing_nul, Status.STRING, code)
         code = Mux(self.mismatch, Status.ENCAPSULATION, code)
-        with m.If(now.issue & now.ends_packet):
-            m.d.sync += now.bad.eq(0)
-        with m.Elif(~now.bad):
+        with m.If(state.issue & state.ends_packet):
+            m.d.sync += state.bad.eq(0)
+        with m.Elif(~state.bad):
             # A length above its limit does not stop the step; the step takes the length as 0.
-            m.d.sync += now.bad.eq(early | (begins & self.length.over))
-        with m.If(~now.bad):
-            m.d.sync += [now.new_error.eq(early), self.code.eq(code)]
+            m.d.sync += state.bad.eq(early | (begins & self.length.over))
+        with m.If(~state.bad):
+            m.d.sync += [state.new_error.eq(early), self.code.eq(code)]
 
     def _keep_good(self, ready: Value) -> None:
         """After an error, compute how many bytes of the step's words are good."""
-        m, now, ring, bus = self.m, self.now, self.now.ring, self.now.plan.bus_bytes
-        state = now.state
+        m, state, ring, bus = self.m, self.state, self.state.ring, self.state.plan.bus_bytes
+        traits = state.traits
         # Bytes from the first one of the map's last word to the packet's end.
         map_left = ring.position("map_left")
-        back = state.back.as_signed()
-        m.d.comb += map_left.eq(sum_of_three(self.limit, ~now.last_at, (1 - back)))
+        back = traits.back.as_signed()
+        m.d.comb += map_left.eq(sum_of_three(self.limit, ~state.last_at, (1 - back)))
         map_room = self._room(map_left)
-        items_room = Mux(state.rest, self._room(self.limit - now.first_at), map_room)
+        items_room = Mux(traits.rest, self._room(self.limit - state.first_at), map_room)
         # If the map has two words, the word of items is the first one. A negative `map_left` is at
         # least -bus: the packet ends within the first word.
         in_front = Mux(ring.beat(map_left).all(), ring.lane(map_left), 0)
-        items_room = Mux(state.lead, Mux(map_left[-1], in_front, bus), items_room)
+        items_room = Mux(traits.lead, Mux(map_left[-1], in_front, bus), items_room)
         is_cut, trails = self.code == Status.TRUNCATED, self.code == Status.TRAILING
         whole = Mux(trails | (self.code == Status.STRING), bus, 0)
-        with m.If(now.bad):
-            m.d.sync += now.new_error.eq(0)
-            with m.If(now.new_error):
+        with m.If(state.bad):
+            m.d.sync += state.new_error.eq(0)
+            with m.If(state.new_error):
                 m.d.sync += [
                     self.items_room.eq(Mux(is_cut, items_room, whole)),
                     self.map_room.eq(Mux(is_cut, map_room, Mux(trails, bus, 0))),
                 ]
-            with m.Elif(now.drains & ready):
+            with m.Elif(state.drains & ready):
                 m.d.sync += [self.items_room.eq(0), self.map_room.eq(0)]
 
     def _room(self, room: Value) -> Value:
@@ -147,5 +147,5 @@ class Judge:
         room : Value
             Distance from the word's first byte to the packet's end; may be negative.
         """
-        bus, room = self.now.plan.bus_bytes, room[: self.now.ring.bits]
+        bus, room = self.state.plan.bus_bytes, room[: self.state.ring.bits]
         return Mux(room[-1], 0, Mux(room >= bus, bus, room[: bus.bit_length()]))

@@ -18,8 +18,8 @@ __all__ = ["NextPlace", "place_fields", "place_traits"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Way:
-    """A way out of a step.
+class _Successor:
+    """A successor of a step.
 
     Attributes
     ----------
@@ -36,24 +36,24 @@ class _Way:
     rest: bool = False
 
 
-def _ways(plan: Plan, index: int) -> Iterator[tuple[str, _Way]]:
-    """Yield the ways out of a step: `exit`, `again_N` if loop N may go on, and `body`."""
+def _successors(plan: Plan, index: int) -> Iterator[tuple[str, _Successor]]:
+    """Yield the successors of a step, by name: `exit`, `again_N` if loop N may repeat, `body`."""
     step = plan.steps[index]
     rest = isinstance(step, RunStep) and plan.runs[step.run].counted
     if isinstance(step, RunStep):
-        yield "body", _Way(align=1, shift=plan.bus_bytes - 1)
+        yield "body", _Successor(align=1, shift=plan.bus_bytes - 1)
     for way, jump in successors(step):
         align = 1 if jump.step is None else plan.steps[jump.step].align
         shift = shift_of(plan, jump.step)
         match way:
             case IntoBody(begin=BeginRun(align=first)):
-                yield "body", _Way(align=first, shift=shift)
+                yield "body", _Successor(align=first, shift=shift)
             case IntoBody():
-                yield "body", _Way(align=align, shift=shift)
+                yield "body", _Successor(align=align, shift=shift)
             case LoopAgain(level=level):
-                yield f"again_{level}", _Way(align=align, shift=shift, rest=rest)
+                yield f"again_{level}", _Successor(align=align, shift=shift, rest=rest)
             case Next():
-                yield "exit", _Way(align=align, shift=shift, rest=rest)
+                yield "exit", _Successor(align=align, shift=shift, rest=rest)
 
 
 def _distance(plan: Plan, align: int, shift: int) -> int:
@@ -69,21 +69,21 @@ def _distance(plan: Plan, align: int, shift: int) -> int:
 def place_traits(plan: Plan, index: int) -> dict[str, int]:
     """Return the traits of a step from which the next position is computed.
 
-    Each way out of the step has an addend (`add`), the `mask` of the bits that alignment clears,
-    and the value of these bits (`low`); if the phase is not a constant, `low` is a distance. `rest`
-    replaces the addend by the register `tail`, the distance over the rest. `is` tells that the step
-    has this way.
+    Each successor of the step has an addend (`add`), the `mask` of the bits that alignment clears,
+    and the value of these bits (`low`); if the phase is not a constant, `low` is a distance. With
+    `rest`, the register `tail`, the distance over the rest, replaces the addend. `is` tells that
+    the step has this successor.
     """
     bus, traits = plan.bus_bytes, dict[str, int]()
-    for name, way in _ways(plan, index):
-        low = way.shift
+    for name, successor in _successors(plan, index):
+        low = successor.shift
         if bus >= 8:
-            low = (plan.header_bytes + way.shift) % way.align
+            low = (plan.header_bytes + successor.shift) % successor.align
         traits |= {
-            f"{name}_add": _distance(plan, way.align, way.shift),
-            f"{name}_mask": way.align - 1,
+            f"{name}_add": _distance(plan, successor.align, successor.shift),
+            f"{name}_mask": successor.align - 1,
             f"{name}_low": low,
-            f"{name}_rest": way.rest,
+            f"{name}_rest": successor.rest,
             f"{name}_is": 1,
         }
     return traits
@@ -95,7 +95,7 @@ def place_fields(plan: Plan) -> dict[str, int]:
     widths = {"add": (3 * bus + 8).bit_length(), "mask": 3, "low": 3, "rest": 1, "is": 1}
     if bus < 8:
         widths["low"] = Ring(plan).bits
-    names = {name for index in range(len(plan.steps)) for name, _ in _ways(plan, index)}
+    names = {name for index in range(len(plan.steps)) for name, _ in _successors(plan, index)}
     return {f"{name}_{what}": bits for name in sorted(names) for what, bits in widths.items()}
 
 
@@ -148,12 +148,12 @@ class NextPlace:
         if width is None:
             return Const(0, 1)
         if name in self.flow.layout.members:
-            return self.flow.state[name]
+            return self.flow.step_state[name]
         values = [place_traits(self.plan, k).get(name, 0) for k in range(len(self.plan.steps))]
         return pick([(self.flow.step[k], value) for k, value in enumerate(values)], width)
 
     def _exits(self) -> list[tuple[Value, str]]:
-        """Return the ways through exits: whether each is taken, and its name."""
+        """Return the successors behind exits: whether each exit is taken, and its name."""
         found: list[tuple[Value, str]] = []
         free: Value = Const(1, 1)
         # The innermost loop goes on first.
@@ -164,12 +164,12 @@ class NextPlace:
                 free = free & ~again
         return [*found, (free, "exit")]
 
-    def _sum(self, kind: str, ways: list[tuple[Value, str]], tail: Value) -> Value:
-        """Return the position of the way that is taken."""
+    def _sum(self, kind: str, successors: list[tuple[Value, str]], tail: Value) -> Value:
+        """Return the last byte of the successor that follows."""
         m, ring = self.m, self.ring
 
         def chosen(what: str, width: int) -> Value:
-            return pick([(on, self._trait(f"{name}_{what}")) for on, name in ways], width)
+            return pick([(on, self._trait(f"{name}_{what}")) for on, name in successors], width)
 
         amount, total = Signal(len(tail), name=f"{kind}_amount"), ring.position(f"{kind}_sum")
         mask, low = Signal(3, name=f"{kind}_mask"), ring.position(f"{kind}_low")
@@ -201,7 +201,7 @@ class NextPlace:
             rests.append((taken, rest))
         if sizes:
             total = pick(sizes, len(tail)) + pick(rests, len(tail))
-            with self.m.If(self.flow.state.run_begin):
+            with self.m.If(self.flow.step_state.run_begin):
                 self.m.d.sync += tail.eq(total)
         return tail
 

@@ -95,10 +95,10 @@ class _SequencerLogic:
     def __init__(self, sequencer: Sequencer):
         self.c = c = sequencer
         self.m, self.plan = m, plan = Module(), sequencer.plan
-        self.now = now = ParseState(m, plan, has_leaves=sequencer.has_leaves)
-        self.length = StepLength(now, c.beat)
+        self.state = state = ParseState(m, plan, has_leaves=sequencer.has_leaves)
+        self.length = StepLength(state, c.beat)
         self._decide()
-        self.judge = Judge(now, self.length, c.beat, c.limit, c.ended, c.orders.ready)
+        self.judge = Judge(state, self.length, c.beat, c.limit, c.ended, c.orders.ready)
         self._order()
         self._proceed()
         self._move_on()
@@ -107,69 +107,69 @@ class _SequencerLogic:
 
     def _decide(self) -> None:
         """Decide whether all bytes are present, and what follows the step."""
-        m, c, now = self.m, self.c, self.now
-        ring, state, flow = now.ring, now.state, now.flow
-        is_begin = state.run_begin | state.loop_begin
-        word_before = Cat(ring.lane(now.map_at), ring.beat(now.map_at) - state.lead)
+        m, c, state = self.m, self.c, self.state
+        ring, traits, flow = state.ring, state.traits, state.flow
+        is_begin = traits.run_begin | traits.loop_begin
+        word_before = Cat(ring.lane(state.map_at), ring.beat(state.map_at) - traits.lead)
         m.d.comb += [
-            now.step_end.eq(now.last_at + 1),
+            state.step_end.eq(state.last_at + 1),
             # limit - last_at - 1.
-            now.left.eq(c.limit + ~now.last_at),
-            c.trailing.eq(now.left),
-            now.present.eq(~now.left[-1]),
-            now.exits_always.eq(state.plain | (state.words & flow.words.last)),
-            now.done.eq(
-                now.exits_always
-                | (is_begin & now.bad)
+            state.left.eq(c.limit + ~state.last_at),
+            c.trailing.eq(state.left),
+            state.present.eq(~state.left[-1]),
+            state.exits_always.eq(traits.plain | (traits.words & flow.words.last)),
+            state.done.eq(
+                state.exits_always
+                | (is_begin & state.bad)
                 | self.length.run_skips
                 | self.length.loop_skips
             ),
             # Whether a length of 0 ends the message is known late; then the end is its own step.
-            now.ends_message.eq(state.end | (flow.exit_ends & now.exits_always)),
-            now.ends_packet.eq(now.ends_message & c.ended),
-            now.map_at.eq(now.last_at + state.back.as_signed()),
-            now.items_at.eq(Mux(state.rest, now.first_at, word_before)),
+            state.ends_message.eq(traits.end | (flow.exit_ends & state.exits_always)),
+            state.ends_packet.eq(state.ends_message & c.ended),
+            state.map_at.eq(state.last_at + traits.back.as_signed()),
+            state.items_at.eq(Mux(traits.rest, state.first_at, word_before)),
         ]
 
     def _order(self) -> None:
-        m, c, now = self.m, self.c, self.now
-        ring, state, flow = now.ring, now.state, now.flow
-        order, bus, bad = c.orders.payload, self.plan.bus_bytes, now.bad
+        m, c, state = self.m, self.c, self.state
+        ring, traits, flow = state.ring, state.traits, state.flow
+        order, bus, bad = c.orders.payload, self.plan.bus_bytes, state.bad
         # Without an error, a step is ordered if it is allowed and its bytes are good. `good` is
         # late in the cycle; so it is a factor of its own, and all else is computed before it.
-        drains, allowed = now.drains, Signal(name="allowed")
-        ready, good, ends = c.orders.ready, self.judge.good, now.ends_packet
+        drains, allowed = state.drains, Signal(name="allowed")
+        ready, good, ends = c.orders.ready, self.judge.good, state.ends_packet
         m.d.comb += [
-            drains.eq(bad & ~now.new_error & (~state.end | c.ended)),
-            allowed.eq(~bad & (~now.ends_message | c.ended) & ~self._too_early()),
+            drains.eq(bad & ~state.new_error & (~traits.end | c.ended)),
+            allowed.eq(~bad & (~state.ends_message | c.ended) & ~self._too_early()),
             c.orders.valid.eq(drains | (allowed & good)),
-            now.issue.eq((drains & ready) | (allowed & ready & good)),
+            state.issue.eq((drains & ready) | (allowed & ready & good)),
             c.next.eq((drains & ready & ends) | (allowed & ready & ends & good)),
         ]
         wanted = Signal(range(bus + 1), name="items_wanted")
         fits = self.judge.items_room >= wanted
         m.d.comb += [
-            wanted.eq(Mux(state.rest, flow.rest_bytes(now.rest), bus)),
+            wanted.eq(Mux(traits.rest, flow.rest_bytes(state.rest), bus)),
             order.step.eq(
-                pick([(now.step[i], i) for i in range(len(self.plan.steps))], len(order.step))
+                pick([(state.step[i], i) for i in range(len(self.plan.steps))], len(order.step))
             ),
-            order.blank.eq(state.end),
-            order.items_at.eq(now.items_at),
-            order.map_at.eq(now.map_at),
-            order.items_next.eq(ring.slot(now.items_at) + 1),
-            order.map_next.eq(ring.slot(now.map_at) + 1),
+            order.blank.eq(traits.end),
+            order.items_at.eq(state.items_at),
+            order.map_at.eq(state.map_at),
+            order.items_next.eq(ring.slot(state.items_at) + 1),
+            order.map_next.eq(ring.slot(state.map_at) + 1),
             order.items_bytes.eq(Mux(bad & ~fits, self.judge.items_room, wanted)),
             order.map_bytes.eq(Mux(bad, self.judge.map_room, bus)),
-            order.items.eq((state.rest & now.rest.any()) | state.counted),
-            order.last.eq(state.rest | (flow.words.last & ~state.counted)),
+            order.items.eq((traits.rest & state.rest.any()) | traits.counted),
+            order.last.eq(traits.rest | (flow.words.last & ~traits.counted)),
             order.length_good.eq(~bad & ~self.length.zero & ~self.length.over),
             order.final.eq(Cat(level.last for level in flow.levels)),
-            order.first.eq(ring.beat(now.first_at)),
-            order.ends.eq(now.ends_packet),
+            order.first.eq(ring.beat(state.first_at)),
+            order.ends.eq(state.ends_packet),
             order.status.eq(
-                Mux(bad, self.judge.code, Mux(self.judge.trailing, Status.TRAILING, Status.OK))
+                Mux(bad, self.judge.code, Mux(self.judge.has_trailing, Status.TRAILING, Status.OK))
             ),
-            c.oldest.eq(ring.beat(now.first_at)),
+            c.oldest.eq(ring.beat(state.first_at)),
         ]
 
     def _too_early(self) -> Value:
@@ -177,96 +177,100 @@ class _SequencerLogic:
 
         Only for the leading steps without bytes: others wait for their bytes.
         """
-        now = self.now
+        state = self.state
         leading = takewhile(
             lambda i: not isinstance(self.plan.steps[i], RunStep) and not self.plan.steps[i].bytes,
             range(len(self.plan.steps)),
         )
-        return any_of([now.step[i] for i in leading]) & ~now.left.any() & ~self.c.ended
+        return any_of([state.step[i] for i in leading]) & ~state.left.any() & ~self.c.ended
 
     # The next step.
 
     def _proceed(self) -> None:
         """Go to the next step, and count."""
-        m, now, state, flow = self.m, self.now, self.now.state, self.now.flow
+        m, state, flow = self.m, self.state, self.state.flow
         next_state = Signal(flow.layout.size, name="next_state")
-        following = Mux(now.done, flow.exit_state, flow.body_state)
+        following = Mux(state.done, flow.exit_state, flow.body_state)
         if not self.c.has_leaves:
-            following = Mux(now.bad, flow.encode(None), following)
-        m.d.comb += next_state.eq(Mux(now.ends_packet, flow.start, following))
+            following = Mux(state.bad, flow.encode(None), following)
+        m.d.comb += next_state.eq(Mux(state.ends_packet, flow.start, following))
         flow.count(
-            moves=now.issue,
-            ends=now.ends_packet,
-            done=now.done,
+            moves=state.issue,
+            ends=state.ends_packet,
+            done=state.done,
             count=self.length.count,
             single=self.length.single,
             double=self.length.double,
             nul=True,
         )
-        with m.If(now.issue):
-            m.d.sync += Value.cast(state).eq(next_state)
-            with m.If(now.ends_packet):
-                m.d.sync += [now.rest.eq(0), now.has_nul.eq(0)]
+        with m.If(state.issue):
+            m.d.sync += Value.cast(flow.step_state).eq(next_state)
+            with m.If(state.ends_packet):
+                m.d.sync += [state.rest.eq(0), state.has_nul.eq(0)]
             with m.Else():
                 self._begin_run()
 
     def _begin_run(self) -> None:
         """Store the rest of a run that begins; clear it after the step that takes it."""
-        m, now = self.m, self.now
-        good = ~now.bad & ~self.length.over
-        terminated = now.flow.on(
+        m, state = self.m, self.state
+        good = ~state.bad & ~self.length.over
+        terminated = state.flow.on(
             lambda s: isinstance(s.begin, BeginRun) and self.plan.runs[s.begin.run].terminated
         )
-        with m.If(now.state.run_begin):
+        with m.If(state.traits.run_begin):
             m.d.sync += [
-                now.rest.eq(Mux(good, self.length.rest, 0)),
-                now.has_nul.eq(terminated & good & ~self.length.zero),
+                state.rest.eq(Mux(good, self.length.rest, 0)),
+                state.has_nul.eq(terminated & good & ~self.length.zero),
             ]
-        with m.Elif(now.state.rest):
-            m.d.sync += [now.rest.eq(0), now.has_nul.eq(0)]
+        with m.Elif(state.traits.rest):
+            m.d.sync += [state.rest.eq(0), state.has_nul.eq(0)]
 
     def _move_on(self) -> None:
         """Compute the positions of the next step."""
-        m, c, now, ring, plan = self.m, self.c, self.now, self.now.ring, self.plan
+        m, c, state, ring, plan = self.m, self.c, self.state, self.state.ring, self.plan
         start = Signal(ring.bits, name="next_packet")
         m.d.comb += start.eq(Cat(Const(0, ring.lane_bits), c.following))
-        ways = NextPlace(m, now.flow, now.last_at, now.phase, now.meanings, self.length.entry)
+        places = NextPlace(
+            m, state.flow, state.last_at, state.phase, state.meanings, self.length.entry
+        )
         # Decisions by a length are late. After an error, `last_at` has no meaning.
         early, last = ring.position("early_last"), ring.position("next_last")
         begin = start + shift_of(plan, plan.start.step)
         m.d.comb += [
-            early.eq(Mux(now.ends_packet, begin, Mux(now.exits_always, ways.exit, ways.body))),
+            early.eq(
+                Mux(state.ends_packet, begin, Mux(state.exits_always, places.exit, places.body))
+            ),
             last.eq(
                 Mux(
                     self.length.run_skips,
-                    ways.after_rest,
-                    Mux(self.length.loop_skips, ways.exit, early),
+                    places.after_rest,
+                    Mux(self.length.loop_skips, places.exit, early),
                 )
             ),
         ]
         # After an error, `first_at` only frees beats; the end step drops the rest of the packet.
-        kept = Mux(now.state.end, c.limit, now.first_at)
-        first = Mux(now.ends_packet, start, Mux(now.bad, kept, self._items_start()))
-        with m.If(now.issue | (now.bad & now.state.end)):
-            m.d.sync += now.first_at.eq(first)
-        with m.If(now.issue):
-            m.d.sync += now.last_at.eq(last)
+        kept = Mux(state.traits.end, c.limit, state.first_at)
+        first = Mux(state.ends_packet, start, Mux(state.bad, kept, self._items_start()))
+        with m.If(state.issue | (state.bad & state.traits.end)):
+            m.d.sync += state.first_at.eq(first)
+        with m.If(state.issue):
+            m.d.sync += state.last_at.eq(last)
             if any(run.terminated for run in plan.runs):
-                rest = Mux(now.state.words, now.rest, self.length.rest)
-                m.d.sync += now.nul_at.eq(now.step_end + rest)
-            if isinstance(now.phase, Signal):
-                with m.If(now.ends_packet):
-                    m.d.sync += now.phase.eq(start + plan.header_bytes)
+                rest = Mux(state.traits.words, state.rest, self.length.rest)
+                m.d.sync += state.nul_at.eq(state.step_end + rest)
+            if isinstance(state.phase, Signal):
+                with m.If(state.ends_packet):
+                    m.d.sync += state.phase.eq(start + plan.header_bytes)
 
     def _items_start(self) -> Value:
         """Return the first item of the run that the step begins; else the end of the step."""
-        now = self.now
-        start: Value = now.step_end
+        state = self.state
+        start: Value = state.step_end
         aligns = {s.begin.align for s in self.plan.steps if isinstance(s.begin, BeginRun)} - {1}
         for align in sorted(aligns):
             steps = enumerate(self.plan.steps)
             runs = [(i, s.begin) for i, s in steps if isinstance(s.begin, BeginRun)]
-            chosen = any_of([now.step[i] for i, begin in runs if begin.align == align])
-            aligned = align_up(self.m, now.step_end, 0, align, now.phase)
+            chosen = any_of([state.step[i] for i, begin in runs if begin.align == align])
+            aligned = align_up(self.m, state.step_end, 0, align, state.phase)
             start = Mux(chosen & ~self.length.zero, aligned, start)
         return start

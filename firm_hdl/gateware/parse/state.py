@@ -1,4 +1,4 @@
-"""Where the sequencer is: its registers, and its decisions in this cycle."""
+"""The state of the sequencer: its registers, and its decisions in the current cycle."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["ParseState"]
 
 
 class ParseState:
-    """Where the sequencer is in the packet and in the plan. Not a component: signals.
+    """The place of the sequencer in the packet and in the plan. Not a component: signals.
 
     Parameters
     ----------
@@ -32,7 +32,9 @@ class ParseState:
     meanings : dict of int to Meaning
         What the length of a step means, by the step's index.
     flow : Flow
-        Has the step and the counters; `state` and `step` are its own.
+        The step and the counters.
+    traits, step : View, Signal
+        The traits of the step, and the step itself: `flow.step_state` and `flow.step`.
     last_at : Signal(position)
         Last byte of the step's map or word. A length of the step is the end of its map; so this is
         the length's last byte, too.
@@ -79,7 +81,7 @@ class ParseState:
         self.ring = ring = Ring(plan)
         self.meanings = meanings_of(plan, has_leaves=has_leaves)
         self.flow = self._flow()
-        self.state, self.step = self.flow.state, self.flow.step
+        self.traits, self.step = self.flow.step_state, self.flow.step
         start = shift_of(plan, plan.start.step) % (1 << ring.bits)
         self.last_at = ring.position("last_at", init=start)
         self.first_at = ring.position("first_at")

@@ -18,12 +18,12 @@ __all__ = ["StepLength"]
 class StepLength:
     """The length of the step, looked up in a table. Not a component: logic of one module.
 
-    All values are combinational, from registers and a memory that is read at `now.last_at`. In a
+    All values are combinational, from registers and a memory that is read at `state.last_at`. In a
     step without a length, `run_skips` and `loop_skips` are 0, and the other values have no meaning.
 
     Parameters
     ----------
-    now : ParseState
+    state : ParseState
     beat : Value(beat_layout(plan))
         The beat that is written to the packet buffer in this cycle.
 
@@ -46,17 +46,17 @@ class StepLength:
         Items in the rest.
     """
 
-    def __init__(self, now: ParseState, beat: data.View):
-        self.now = now
+    def __init__(self, state: ParseState, beat: data.View):
+        self.state = state
         self.entry: data.View | None = None
         self.zero: Value = Const(0, 1)
         self.over = self.run_skips = self.loop_skips = self.zero
         self.single = self.double = self.count = self.rest = self.zero
-        if not now.meanings:
+        if not state.meanings:
             return
         self.entry = self._look_up(beat)
         self.zero = self.entry.zero
-        every = now.meanings.items()
+        every = state.meanings.items()
         runs = [(index, each) for index, each in every if isinstance(each, RunMeaning)]
         loops = [(index, each) for index, each in every if isinstance(each, LoopMeaning)]
         self.over = self._select((index, each.over) for index, each in every)
@@ -64,17 +64,17 @@ class StepLength:
         self.loop_skips = self._select(((index, each.skips) for index, each in loops), exact=True)
         self.single = self._select((index, each.single) for index, each in every)
         self.double = self._select((index, each.double) for index, each in every)
-        self.rest = self._select(((index, each.rest) for index, each in runs), len(now.rest))
+        self.rest = self._select(((index, each.rest) for index, each in runs), len(state.rest))
 
     def _look_up(self, beat: data.View) -> data.View:
         """Return the entry of the step's length."""
-        m, plan, ring = self.now.m, self.now.plan, self.now.ring
+        m, plan, ring = self.state.m, self.state.plan, self.state.ring
         m.submodules.lengths = lengths = Lengths(
-            plan, geometry(plan), list(self.now.meanings.values())
+            plan, geometry(plan), list(self.state.meanings.values())
         )
-        m.d.comb += [lengths.beat.eq(beat), lengths.key.eq(self.now.last_at)]
+        m.d.comb += [lengths.beat.eq(beat), lengths.key.eq(self.state.last_at)]
         self.count = lengths.count
-        if isinstance(self.now.phase, Signal):
+        if isinstance(self.state.phase, Signal):
             # The phase of the packet that arrives.
             phase = Signal(3, name="arriving_phase", init=plan.header_bytes % 8)
             m.d.comb += lengths.phase.eq(phase)
@@ -96,7 +96,7 @@ class StepLength:
         assert self.entry is not None
         fields: dict[str, list[Value]] = {}
         for index, field in named:
-            fields.setdefault(field, []).append(self.now.step[index])
+            fields.setdefault(field, []).append(self.state.step[index])
         if len(fields) == 1 and not exact:
             return Value.cast(self.entry[next(iter(fields))])
         return pick(

@@ -118,9 +118,9 @@ def _simulate(entity: str, vhdl: Path, ghdl: str) -> Path:
     work = vhdl / f"work_{entity}"
     environment = {"GHDL": ghdl, "WORK": str(work), "BENCH": entity}
     names = [f"-g{what}={what}.txt" for what in ("results", "transfers")]
-    said = run_tool(["sh", str(vhdl / RUN_SCRIPT), *names], vhdl, environment=environment)
-    if not said.startswith("PASS "):
-        raise ToolError(said.strip() or f"{entity} ended without a word: it has not passed")
+    output = run_tool(["sh", str(vhdl / RUN_SCRIPT), *names], vhdl, environment=environment)
+    if not output.startswith("PASS "):
+        raise ToolError(output.strip() or f"{entity} ended without a word: it has not passed")
     return work
 
 
@@ -136,9 +136,9 @@ def _analyse(built: Built, ghdl: str) -> tuple[Path, list[str]]:
     vhdl = built.folder.resolve() / str(manifest["folder"])
     files = [str(vhdl / name) for name in [*manifest["files"], *manifest["bench"]["files"]]]
     with tempfile.TemporaryDirectory(dir=vhdl.parent) as work:
-        said = run_tool([ghdl, "-a", "--std=08", *WARNINGS, *files], Path(work))
-    if said:
-        raise ToolError(said)
+        output = run_tool([ghdl, "-a", "--std=08", *WARNINGS, *files], Path(work))
+    if output:
+        raise ToolError(output)
     return vhdl, list(manifest["bench"]["entities"])
 
 
@@ -166,9 +166,9 @@ def _check_transfers(plan: Plan, cases: Sequence[Case], text: str) -> int:
 def _compare(what: str, got: str, right: str) -> None:
     if got == right:
         return
-    mine, wanted = got.splitlines(), right.splitlines()
-    at = first_difference(mine, wanted)
+    received, wanted = got.splitlines(), right.splitlines()
+    at = first_difference(received, wanted)
     raise AssertionError(
-        f"{what}: number {at} of {len(wanted)} is {mine[at : at + 1]} "
+        f"{what}: number {at} of {len(wanted)} is {received[at : at + 1]} "
         f"instead of {wanted[at : at + 1]}"
     )

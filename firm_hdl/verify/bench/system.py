@@ -85,10 +85,10 @@ class Benches(TypesSystem):
     def _records(self, left: Sequence[Test]) -> Made[Test]:
         given = self._request, self._ghdl
         jobs = self._request.jobs
-        return run_tests(run_bench, given, left, self._command, _said, jobs=jobs)
+        return run_tests(run_bench, given, left, self._command, _lines_of, jobs=jobs)
 
 
-def _said(record: Record) -> list[str]:
+def _lines_of(record: Record) -> list[str]:
     if not isinstance(record.verdict, Failed):
         return []
     return [

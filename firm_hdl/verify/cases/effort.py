@@ -21,10 +21,10 @@ __all__ = [
     "MAX_MESSAGE_BYTES",
     "MOST_WORK",
     "all_cases",
-    "chosen",
-    "disturbed",
+    "cases_to_disturb",
     "is_large",
     "message_limit",
+    "packets_to_simulate",
     "too_large",
     "work_of",
 ]
@@ -89,7 +89,7 @@ def all_cases(
     """
     bus_bytes = plan.bus_bytes
     made = make_cases(oracle, name, wire=plan.wire, bus_bytes=bus_bytes, seed=seed, most=most)
-    cases = list(_some(made))
+    cases = list(_limited(made))
     if most is None and _size(cases) < MOST_CASE_BYTES:
         cases += more_cases(oracle, name, plan, cases, seed=seed)
     return cases
@@ -100,7 +100,7 @@ def _size(cases: Iterable[Case]) -> int:
     return sum(len(case.packet) for case in cases)
 
 
-def _some(cases: Iterable[Case]) -> Iterator[Case]:
+def _limited(cases: Iterable[Case]) -> Iterator[Case]:
     """Yield at least one case, and more until their total size reaches `MOST_CASE_BYTES`."""
     size = 0
     for case in cases:
@@ -115,12 +115,12 @@ def is_large(plan: Plan, cases: Sequence[Case]) -> bool:
     return work_of(plan, _size(cases)) > LARGE_WORK
 
 
-def disturbed(plan: Plan, cases: Sequence[Case]) -> list[Case]:
+def cases_to_disturb(plan: Plan, cases: Sequence[Case]) -> list[Case]:
     """Choose which cases of a large type to stall and damage; none if all are too large."""
-    return within(plan, cases[::LARGE_STRIDE], LARGE_WORK)
+    return limit_work(plan, cases[::LARGE_STRIDE], LARGE_WORK)
 
 
-def within(plan: Plan, cases: Sequence[Case], most: int) -> list[Case]:
+def limit_work(plan: Plan, cases: Sequence[Case], most: int) -> list[Case]:
     """Return cases in their order; leave out the largest until the work is at most `most`."""
     left = sorted(range(len(cases)), key=lambda number: (len(cases[number].packet), number))
     while sum(work_of(plan, len(cases[number].packet)) for number in left) > most:
@@ -128,7 +128,7 @@ def within(plan: Plan, cases: Sequence[Case], most: int) -> list[Case]:
     return [cases[number] for number in sorted(left)]
 
 
-def chosen(
+def packets_to_simulate(
     plan: Plan, packets: Sequence[bytes], taken: Sequence[AbstractSet[Edge]], most: int = MOST_WORK
 ) -> list[int]:
     """Choose packets to simulate, all of them if that is not too much.

@@ -11,8 +11,8 @@ from typing import Any
 from tqdm import tqdm
 
 from firm_hdl.verify.clients.finding import Finding
-from firm_hdl.verify.clients.judge import Trial
-from firm_hdl.verify.clients.run import command_of, contest_of, judge_types, reference_of
+from firm_hdl.verify.clients.judge import LibraryResult
+from firm_hdl.verify.clients.run import command_of, comparison_of, judge_types, reference_of
 from firm_hdl.verify.clients.shrink import shrunk
 from firm_hdl.verify.references.choice import find_clients
 from firm_hdl.verify.references.client import ClientMissingError, Refusal
@@ -36,7 +36,7 @@ MOST_NAMED = 5
 
 MOST_CHARACTERS = 400
 
-_SAID = {
+VERDICT_LABELS = {
     Passed.name: "agree",
     KnownDifference.name: "known",
     Failed.name: "differ",
@@ -60,34 +60,36 @@ def run_sut(tasks: Sequence[TypeUnderTest], options: Request) -> list[Judged]:
     for name in options.libraries:
         if name in missing:
             raise ClientMissingError(missing[name])
-    here = tuple(name for name in CLIENTS if name in references and name in versions)
-    for line in _judges(_wires(tasks, options), options, versions, missing, here):
+    installed = tuple(name for name in CLIENTS if name in references and name in versions)
+    for line in _judges(_wires(tasks, options), options, versions, missing, installed):
         print(line)
-    trials: list[tuple[TypeUnderTest, Trial]] = []
+    results: list[tuple[TypeUnderTest, LibraryResult]] = []
     with (
         tqdm(total=len(tasks), unit="type", desc="client libraries", disable=None) as bar,
-        closing(judge_types(tasks, options, here)) as run,
+        closing(judge_types(tasks, options, installed)) as run,
     ):
         for task, found in run:
-            trials += [(task, trial) for trial in found]
+            results += [(task, result) for result in found]
             bar.update()
-    for line in _differences(trials, options):
+    for line in _differences(results, options):
         print(line)
-    for line in _summary([trial for _, trial in trials], options, versions):
+    for line in _summary([result for _, result in results], options, versions):
         print(line)
     close_clients()
-    count = sum(isinstance(trial.verdict, Failed) for _, trial in trials)
+    count = sum(isinstance(result.verdict, Failed) for _, result in results)
     print(f"{len(tasks)} types, {time.perf_counter() - began:.0f} s, {count} differ")
     return [
-        Judged(what=f"{task.name} ({', '.join(task.same)}), {trial.library}", verdict=trial.verdict)
-        for task, trial in trials
-        if trial.is_asked
+        Judged(
+            what=f"{task.name} ({', '.join(task.same)}), {result.library}", verdict=result.verdict
+        )
+        for task, result in results
+        if result.is_asked
     ]
 
 
 def _wires(tasks: Sequence[TypeUnderTest], options: Request) -> list[Wire]:
-    spoken = {wire_of(task.distro, options.wire) for task in tasks}
-    return [wire for wire in REFERENCES if wire in spoken]
+    wires = {wire_of(task.distro, options.wire) for task in tasks}
+    return [wire for wire in REFERENCES if wire in wires]
 
 
 def _judges(
@@ -95,38 +97,40 @@ def _judges(
     options: Request,
     versions: dict[str, str],
     missing: dict[str, str],
-    here: Sequence[str],
+    installed: Sequence[str],
 ) -> Iterator[str]:
     """Yield lines that say which reference judges which library."""
     for wire in wires:
         ros = REFERENCES[wire][0]
         if ros in missing:
-            yield f"{ros}, which is ROS's own on {wire}, is not here: {missing[ros]}"
+            yield f"{ros}, which is ROS's own on {wire}, is not installed: {missing[ros]}"
         for library in options.libraries:
             if wire in CLIENTS[library].wires:
-                judge = reference_of(library, wire, here)
-                said = f"{judge} {versions[judge]}" if judge else "nobody"
-                yield f"{library} {versions[library]} on {wire}: judged by {said}"
+                judge = reference_of(library, wire, installed)
+                by = f"{judge} {versions[judge]}" if judge else "no reference"
+                yield f"{library} {versions[library]} on {wire}: judged by {by}"
 
 
-def _differences(trials: Sequence[tuple[TypeUnderTest, Trial]], options: Request) -> Iterator[str]:
+def _differences(
+    results: Sequence[tuple[TypeUnderTest, LibraryResult]], options: Request
+) -> Iterator[str]:
     """Yield lines about unknown differences, the first ones with the smallest case."""
     shown_of: Counter[tuple[str, str]] = Counter()
-    for task, trial in sorted(trials, key=lambda each: (each[1].library, each[1].type)):
-        for finding in trial.findings:
-            key = trial.library, finding.what
+    for task, result in sorted(results, key=lambda each: (each[1].library, each[1].type)):
+        for finding in result.findings:
+            key = result.library, finding.what
             shown_of[key] += 1
-            head = f"DIFFERS {trial.library}, {finding.what}: {trial.type} ({task.distro})"
-            again = command_of(options, task.distro, task.name, trial.library)
+            head = f"DIFFERS {result.library}, {finding.what}: {result.type} ({task.distro})"
+            again = command_of(options, task.distro, task.name, result.library)
             if shown_of[key] == 1 and len(shown_of) <= MOST_SHOWN * len(options.libraries):
-                small = shrunk(finding, contest_of(trial, finding.wire).again)
+                small = shrunk(finding, comparison_of(result, finding.wire).again)
                 yield "\n".join([head, *described(small), f"    again: {again}"])
             elif shown_of[key] <= MOST_NAMED:
                 yield f"{head}\n    again: {again}"
-    for task, trial in trials:
-        if isinstance(trial.obstacle, Failed):
-            why = trial.obstacle.failures[0]
-            yield f"FAIL {trial.library}: {trial.type} ({task.distro}): {why}"
+    for task, result in results:
+        if isinstance(result.obstacle, Failed):
+            why = result.obstacle.failures[0]
+            yield f"FAIL {result.library}: {result.type} ({task.distro}): {why}"
     for (library, what), count in shown_of.items():
         if count > MOST_NAMED:
             yield f"DIFFERS {library}, {what}: and {count - MOST_NAMED} more types"
@@ -158,23 +162,25 @@ def _answer(finding: Finding, answer: Any) -> str:
         return repr(answer)
 
 
-def _summary(trials: Sequence[Trial], options: Request, versions: dict[str, str]) -> Iterator[str]:
-    head = "".join(f"{name:>11}" for name in _SAID.values())
+def _summary(
+    results: Sequence[LibraryResult], options: Request, versions: dict[str, str]
+) -> Iterator[str]:
+    head = "".join(f"{name:>11}" for name in VERDICT_LABELS.values())
     yield f"{'types':24}{head}{'comparisons':>13}"
     for library in options.libraries:
-        own = [trial for trial in trials if trial.library == library]
-        counts = Counter(trial.verdict.name for trial in own)
-        row = "".join(f"{counts[name]:11}" for name in _SAID)
-        total = sum(trial.comparisons for trial in own)
+        own = [result for result in results if result.library == library]
+        counts = Counter(result.verdict.name for result in own)
+        row = "".join(f"{counts[name]:11}" for name in VERDICT_LABELS)
+        total = sum(result.comparisons for result in own)
         yield f"{f'{library} {versions[library]}':24}{row}{total:13}"
     for library in options.libraries:
         known: Counter[str] = Counter()
         reasons: Counter[str] = Counter()
-        for trial in trials:
-            if trial.library == library:
-                known.update(trial.known)
-                if isinstance(trial.verdict, NotJudged):
-                    reasons[trial.verdict.reason] += 1
+        for result in results:
+            if result.library == library:
+                known.update(result.known)
+                if isinstance(result.verdict, NotJudged):
+                    reasons[result.verdict.reason] += 1
         for key, count in sorted(known.items()):
             yield f"known, {library}: {key}: {count}"
         for reason, count in reasons.most_common(MOST_NAMED):

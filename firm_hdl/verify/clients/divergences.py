@@ -16,7 +16,7 @@ __all__ = ["KNOWN"]
 # Changes of values, for `KnownDivergence.take_out` and `KnownDivergence.same`.
 
 
-def _quiet(kind: FieldType, value: Plain) -> Plain:
+def _quiet_nan(kind: FieldType, value: Plain) -> Plain:
     if isinstance(kind, Primitive) and kind.kind == "float" and kind.bytes == 4:
         return value | 1 << 22 if is_nan(value, 4) else value
     return value
@@ -86,13 +86,13 @@ class _Entries:
         )
         KNOWN.append(found)
 
-    def takes(self, key: str, text: str, *whats: str) -> None:
-        """Add oddities that the libraries accept and the others refuse."""
-        self.add(key, text, whats=whats, answer="takes")
+    def takes(self, key: str, text: str, *case_names: str) -> None:
+        """Add cases that the libraries accept and the others refuse."""
+        self.add(key, text, case_names=case_names, answer="takes")
 
-    def refuses(self, key: str, text: str, *whats: str) -> None:
-        """Add oddities that the libraries refuse and the others accept."""
-        self.add(key, text, whats=whats, answer="refuses")
+    def refuses(self, key: str, text: str, *case_names: str) -> None:
+        """Add cases that the libraries refuse and the others accept."""
+        self.add(key, text, case_names=case_names, answer="refuses")
 
 
 KNOWN: list[KnownDivergence] = []
@@ -110,8 +110,8 @@ _CUTS = ("cut-1", "cut-half", "cut-all", "long-text", "long-items")
 _Entries(*("rosbags", "cyclonedds", "mcap-ros2"), *_GENPY.libraries, wires="ros1 cdr").add(
     "python-signalling-nan",
     "A signalling NaN of 4 bytes becomes a quiet one, as any Python float.",
-    take_out=_quiet,
-    same=_quiet,
+    take_out=_quiet_nan,
+    same=_quiet_nan,
 )
 _Entries("rosbags", "cyclonedds", "mcap-ros2", wires="ros1 cdr").refuses(
     "python-not-utf8", "A string that is not UTF-8 is refused.", "not-utf8", "encode not-utf8"
@@ -159,7 +159,7 @@ _ALL_FASTCDR.refuses(
 _ALL_FASTCDR.add(
     "fastcdr-bool-arrays",
     "In an array, a bool that is neither 0 nor 1 is not read.",
-    whats=("bool-2",),
+    case_names=("bool-2",),
 )
 _GENPY.add(
     "genpy-time-normalized",
@@ -188,7 +188,7 @@ _ROSBAGS.takes(
     "rosbags-bounds", "Bounds of sequences are not checked.", "bound-items", "encode bound-items"
 )
 _CYCLONEDDS.add(
-    "cyclonedds-no-nul", "A string without a NUL loses its last byte.", whats=("no-nul",)
+    "cyclonedds-no-nul", "A string without a NUL loses its last byte.", case_names=("no-nul",)
 )
 _CYCLONEDDS.takes(
     "cyclonedds-cut",
@@ -203,7 +203,9 @@ _CYCLONEDDS.refuses(
     "A string that is longer than its bound is not written.",
     "encode bound-text",
 )
-_MCAP_ROS2.add("mcap-ros2-no-nul", "A string without a NUL loses its last byte.", whats=("no-nul",))
+_MCAP_ROS2.add(
+    "mcap-ros2-no-nul", "A string without a NUL loses its last byte.", case_names=("no-nul",)
+)
 _MCAP_ROS2.takes(
     "mcap-ros2-cut", "A string or an array of bytes is read as far as the packet goes.", *_CUTS
 )

@@ -22,7 +22,8 @@ class Finding:
     library, reference : str
     wire : Wire
     what : str
-        ``encode``, ``decode``, the name of an odd packet, or ``encode`` and that of an odd value.
+        ``encode``, ``decode``, the name of an unusual case of a packet, or ``encode`` and that of
+        a value.
     message : Message
     value : Plain
         The value to write, or the value of the packet.
@@ -67,11 +68,11 @@ class KnownDivergence:
         Removes the difference from a value to write.
     same : callable or None
         Removes the difference from a value that was read.
-    whats : tuple of str
-        Oddities of this divergence.
+    case_names : tuple of str
+        Unusual cases that this divergence is about.
     answer : "takes", "refuses" or None
-        What the libraries do with the oddities while the other side does the opposite. `None`:
-        both sides take the oddities.
+        What the libraries do with these cases while the other side does the opposite. `None`:
+        both sides take them.
     """
 
     key: str
@@ -80,23 +81,23 @@ class KnownDivergence:
     text: str
     take_out: Change | None = None
     same: Change | None = None
-    whats: tuple[str, ...] = ()
+    case_names: tuple[str, ...] = ()
     answer: Literal["takes", "refuses"] | None = None
 
     def is_about(self, finding: Finding) -> str | None:
         """Return the library of a finding that this difference is about; `None` if neither is."""
-        return self.whose(finding.wire, finding.library, finding.reference)
+        return self.affected_library(finding.wire, finding.library, finding.reference)
 
-    def whose(self, wire: Wire, *libraries: str) -> str | None:
+    def affected_library(self, wire: Wire, *libraries: str) -> str | None:
         """Return the first library that this difference is about on a wire; `None` if none is."""
         if wire not in self.wires.split():
             return None
         return next((name for name in libraries if name in self.libraries), None)
 
     def explains_answer(self, finding: Finding) -> bool:
-        """Whether this difference explains which side takes an odd packet or value."""
+        """Whether this difference explains which side takes an unusual packet or value."""
         name = self.is_about(finding)
-        if name is None or finding.what not in self.whats:
+        if name is None or finding.what not in self.case_names:
             return False
         mine, other = (isinstance(each, Refusal) for each in finding.answers(name))
         return (mine, other) == {

@@ -10,12 +10,12 @@ from typing import Any
 from firm_hdl.model import Message
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.clients.known import known_keys
-from firm_hdl.verify.clients.oddities import (
-    odd_packet,
-    odd_packets,
-    odd_value,
-    odd_values,
+from firm_hdl.verify.clients.unusual import (
     plain_packet,
+    unusual_packet,
+    unusual_packets,
+    unusual_value,
+    unusual_values,
 )
 from firm_hdl.verify.references.client import (
     Client,
@@ -29,11 +29,11 @@ from firm_hdl.verify.references.values import Plain
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 from firm_hdl.wire import Wire
 
-__all__ = ["Contest", "Trial"]
+__all__ = ["LibraryComparison", "LibraryResult"]
 
 
 @dataclass(slots=True, kw_only=True)
-class Trial:
+class LibraryResult:
     """The result of one library on one type.
 
     Attributes
@@ -53,7 +53,7 @@ class Trial:
     obstacle : NotJudged, Failed or None
         Why there is no result: a library lacks the type, or died.
     is_asked : bool
-        Whether the trial counts. It does not if the library does not speak the wire of the type,
+        Whether the result counts. It does not if the library does not speak the wire of the type,
         and the user named neither wires nor distributions.
     """
 
@@ -92,7 +92,7 @@ class Trial:
             self.findings.append(finding)
 
 
-class Contest:
+class LibraryComparison:
     """A library and its reference.
 
     Parameters
@@ -104,16 +104,18 @@ class Contest:
     def __init__(self, library: Client, reference: Client, wire: Wire):
         self.library, self.reference, self.wire = library, reference, wire
 
-    def judge(self, message: Message, values: Sequence[Plain]) -> Trial:
+    def judge(self, message: Message, values: Sequence[Plain]) -> LibraryResult:
         """Compare how both write values, and how both read packets of these values."""
-        trial = Trial(library=self.library.name, reference=self.reference.name, type=message.name)
+        result = LibraryResult(
+            library=self.library.name, reference=self.reference.name, type=message.name
+        )
         try:
-            self._judge(trial, message, values, *self._open(message))
+            self._judge(result, message, values, *self._open(message))
         except ClientDiedError as error:
-            trial.obstacle = Failed((str(error),))
+            result.obstacle = Failed((str(error),))
         except UnsupportedError as error:
-            trial.obstacle = NotJudged(str(error) or "the type is not supported")
-        return trial
+            result.obstacle = NotJudged(str(error) or "the type is not supported")
+        return result
 
     def _open(self, message: Message) -> tuple[Codec, Codec]:
         for client in (self.library, self.reference):
@@ -123,37 +125,41 @@ class Contest:
 
     def _judge(
         self,
-        trial: Trial,
+        result: LibraryResult,
         message: Message,
         values: Sequence[Plain],
-        theirs: Codec,
-        right: Codec,
+        library_codec: Codec,
+        reference_codec: Codec,
     ) -> None:
         name = self.reference.name
-        packets = each_answered(name, values, right.encode_all(values))
+        packets = each_answered(name, values, reference_codec.encode_all(values))
         asked = [_Asked("encode", value, None) for value in values]
         pairs = [(v, p) for v, p in zip(values, packets, strict=True) if isinstance(p, bytes)]
         asked += [_Asked("decode", value, packet) for value, packet in pairs]
         asked += [
-            _Asked(f"encode {name}", value, None) for name, value in odd_values(message, values)
+            _Asked(f"encode {name}", value, None) for name, value in unusual_values(message, values)
         ]
         usable = [v for v, p in pairs if plain_packet(message, self.wire, v) == p]
         asked += [
-            _Asked(odd, value, packet)
-            for odd, value, packet in odd_packets(message, self.wire, usable)
-            if self._reads(odd)
+            _Asked(case, value, packet)
+            for case, value, packet in unusual_packets(message, self.wire, usable)
+            if self._reads(case)
         ]
-        expectations = _answers(name, right, asked)
-        answers = zip(asked, expectations, _answers(self.library.name, theirs, asked), strict=True)
+        expectations = _answers(name, reference_codec, asked)
+        answers = zip(
+            asked, expectations, _answers(self.library.name, library_codec, asked), strict=True
+        )
         for each, expected, got in answers:
-            trial.comparisons += 1
-            trial.answers += not isinstance(expected, Refusal)
+            result.comparisons += 1
+            result.answers += not isinstance(expected, Refusal)
             if expected != got:
-                trial.add(self._finding(message, each, expected, got), (theirs, right))
+                result.add(
+                    self._finding(message, each, expected, got), (library_codec, reference_codec)
+                )
 
-    def _reads(self, oddity: str) -> bool:
+    def _reads(self, case: str) -> bool:
         both = (self.library, self.reference)
-        return oddity != "big-endian" or all("big" in each.byte_orders for each in both)
+        return case != "big-endian" or all("big" in each.byte_orders for each in both)
 
     def _finding(self, message: Message, asked: _Asked, expected: Any, got: Any) -> Finding:
         return Finding(
@@ -176,38 +182,44 @@ class Contest:
         Parameters
         ----------
         what : str
-            See `Finding`. An oddity is put into `value`, or into its packet.
+            See `Finding`. An unusual case is put into `value`, or into its packet.
         """
         try:
-            theirs, right = self._open(message)
-            asked = self._asked(message, what, value, right)
+            library_codec, reference_codec = self._open(message)
+            asked = self._asked(message, what, value, reference_codec)
             if asked is None:
                 return None
-            (expected,) = _answers(self.reference.name, right, [asked])
-            (got,) = _answers(self.library.name, theirs, [asked])
+            (expected,) = _answers(self.reference.name, reference_codec, [asked])
+            (got,) = _answers(self.library.name, library_codec, [asked])
         except UnsupportedError:
             return None
         finding = self._finding(message, asked, expected, got)
-        return None if expected == got else (finding, known_keys(finding, theirs, right))
+        return (
+            None
+            if expected == got
+            else (finding, known_keys(finding, library_codec, reference_codec))
+        )
 
     def again(self, message: Message, what: str, value: Plain) -> Finding | None:
         """Ask one question; return the difference if no known divergence explains it."""
         found = self.ask(message, what, value)
         return None if found is None or found[1] else found[0]
 
-    def _asked(self, message: Message, what: str, value: Plain, right: Codec) -> _Asked | None:
+    def _asked(
+        self, message: Message, what: str, value: Plain, reference_codec: Codec
+    ) -> _Asked | None:
         if what.startswith("encode"):
-            odd = what.removeprefix("encode").strip()
-            given = odd_value(message, value, odd) if odd else value
+            case = what.removeprefix("encode").strip()
+            given = unusual_value(message, value, case) if case else value
             return None if given is None else _Asked(what, given, None)
-        (plain,) = right.encode_all([value])
+        (plain,) = reference_codec.encode_all([value])
         if isinstance(plain, Refusal):
             return None
         if what == "decode":
             return _Asked(what, value, plain)
         if plain != plain_packet(message, self.wire, value):
             return None
-        packet = odd_packet(message, self.wire, value, what)
+        packet = unusual_packet(message, self.wire, value, what)
         return None if packet is None else _Asked(what, value, packet)
 
 

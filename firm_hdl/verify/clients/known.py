@@ -1,9 +1,9 @@
 """Which known divergences explain a difference.
 
 A difference in values is explained if the values are equal without the parts that known divergences
-are about. So a known divergence hides no other difference. If one library takes an odd packet and
-the other refuses it, the oddity and the library explain the difference. A difference that no entry
-explains is new.
+are about. So a known divergence hides no other difference. If one library takes an unusual packet
+and the other refuses it, the case and the library explain the difference. A difference that no
+entry explains is new.
 """
 
 from __future__ import annotations
@@ -20,15 +20,19 @@ from firm_hdl.wire import Wire
 
 __all__ = ["known_keys", "known_writing"]
 
+_ROSBAGS = "rosbags"
 
-def known_keys(finding: Finding, theirs: Codec, right: Codec) -> Sequence[str]:
+
+def known_keys(finding: Finding, library_codec: Codec, reference_codec: Codec) -> Sequence[str]:
     """Return the keys of the divergences that explain a difference; none if it is new."""
     entries = [entry for entry in KNOWN if entry.is_about(finding)]
     for entry in entries:
         if entry.explains_answer(finding):
             return [entry.key]
     if finding.what.startswith("encode"):
-        return _explained_writing(finding.message, finding.value, entries, theirs, right)
+        return _explained_writing(
+            finding.message, finding.value, entries, library_codec, reference_codec
+        )
     if isinstance(finding.expected, Refusal) or isinstance(finding.got, Refusal):
         return ()
     found, expected, got = [], finding.expected, finding.got
@@ -45,8 +49,8 @@ def _explained_writing(
     message: Message,
     value: Plain,
     entries: Sequence[KnownDivergence],
-    theirs: Codec,
-    right: Codec,
+    library_codec: Codec,
+    reference_codec: Codec,
 ) -> Sequence[str]:
     found = []
     for entry in entries:
@@ -57,27 +61,30 @@ def _explained_writing(
             value = left
     if not found:
         return ()
-    one, other = right.encode_all([value])[0], theirs.encode_all([value])[0]
+    one, other = reference_codec.encode_all([value])[0], library_codec.encode_all([value])[0]
     return found if one == other and not isinstance(one, Refusal) else ()
 
 
 def known_writing(
-    message: Message, wire: Wire, value: Plain, library: str, reference: str, codec: Codec
+    message: Message, wire: Wire, value: Plain, library: str, codec: Codec
 ) -> Sequence[str]:
-    """Return the keys of the divergences that explain why two libraries write a value differently.
+    """Return the keys of divergences that explain why a library and rosbags write different bytes.
 
     The divergences explain it if both libraries write the same packet once the parts that the
-    divergences are about are taken out of the value. There are none without the reference's type.
+    divergences are about are taken out of the value. There are no divergences of a type that
+    rosbags does not have.
 
     Parameters
     ----------
     codec : Codec
-        The codec of `library`. That of the reference is opened here.
+        The codec of `library`. That of rosbags is opened here.
     """
     try:
-        right = client(reference).open(message, wire)
+        reference_codec = client(_ROSBAGS).open(message, wire)
     except UnsupportedError:
-        # A reference without the type writes nothing to compare.
+        # Without the type, rosbags writes nothing to compare.
         return ()
-    entries = [entry for entry in KNOWN if entry.whose(wire, library, reference) is not None]
-    return _explained_writing(message, value, entries, codec, right)
+    entries = [
+        entry for entry in KNOWN if entry.affected_library(wire, library, _ROSBAGS) is not None
+    ]
+    return _explained_writing(message, value, entries, codec, reference_codec)

@@ -9,7 +9,7 @@ from firm_hdl.jobs.processes import in_processes
 from firm_hdl.model import Message
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.cases.effort import all_cases
-from firm_hdl.verify.clients.judge import Contest, Trial
+from firm_hdl.verify.clients.judge import LibraryComparison, LibraryResult
 from firm_hdl.verify.references.clients import REFERENCES, client
 from firm_hdl.verify.references.user_oracle import judge_of
 from firm_hdl.verify.references.values import Plain, from_objects
@@ -18,7 +18,7 @@ from firm_hdl.verify.systems.options import Request, command_again
 from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
 from firm_hdl.wire import Wire, lay_out
 
-__all__ = ["command_of", "contest_of", "judge_type", "judge_types", "reference_of"]
+__all__ = ["command_of", "comparison_of", "judge_type", "judge_types", "reference_of"]
 
 BUS_BYTES = 8
 """Lengths of sequences and texts are chosen as for a bus of this width."""
@@ -37,32 +37,34 @@ def command_of(request: Request, distro: str, name: str, library: str) -> str:
     )
 
 
-def reference_of(library: str, wire: Wire, here: Sequence[str]) -> str | None:
+def reference_of(library: str, wire: Wire, installed: Sequence[str]) -> str | None:
     """Return the first reference for a library on a wire; `None` if none is installed."""
-    return next(iter(_references(library, wire, here)), None)
+    return next(iter(_references(library, wire, installed)), None)
 
 
-def _references(library: str, wire: Wire, here: Sequence[str]) -> list[str]:
+def _references(library: str, wire: Wire, installed: Sequence[str]) -> list[str]:
     own, *others = REFERENCES[wire]
     # ROS's own serializer is judged by rosbags first, and only then by other releases of itself.
     names = reversed(others) if library == own else (own, *others)
-    return [name for name in names if name in here and name != library]
+    return [name for name in names if name in installed and name != library]
 
 
-def contest_of(trial: Trial, wire: Wire) -> Contest:
-    """Return the contest of a trial, to repeat its questions."""
-    return Contest(client(trial.library), client(trial.reference), wire)
+def comparison_of(result: LibraryResult, wire: Wire) -> LibraryComparison:
+    """Return the comparison of a result, to repeat its questions."""
+    return LibraryComparison(client(result.library), client(result.reference), wire)
 
 
-def judge_type(distro: str, name: str, options: Request, here: Sequence[str]) -> list[Trial]:
-    """Judge all libraries on one type. Errors are not raised, but are in the trials.
+def judge_type(
+    distro: str, name: str, options: Request, installed: Sequence[str]
+) -> list[LibraryResult]:
+    """Judge all libraries on one type. Errors are not raised, but are in the results.
 
     Parameters
     ----------
     options : Request
         `libraries`, `wire`, `seed`, `most_cases`, `paths` and `names_wires` are used. If the user
         chose wires, a library that lacks one of them counts as not judged.
-    here : sequence of str
+    installed : sequence of str
         References that can be used.
     """
     try:
@@ -72,27 +74,27 @@ def judge_type(distro: str, name: str, options: Request, here: Sequence[str]) ->
     # The other types are judged in any case.
     except (NotJudgedError, DefinitionError, ValueError) as error:
         return [_not_judged(library, name, str(error)) for library in options.libraries]
-    trials = [_judged(library, message, wire, values, here) for library in options.libraries]
-    for trial in trials:
-        trial.is_asked = options.names_wires or wire in client(trial.library).wires
-    return trials
+    results = [_judged(library, message, wire, values, installed) for library in options.libraries]
+    for result in results:
+        result.is_asked = options.names_wires or wire in client(result.library).wires
+    return results
 
 
 def _judged(
-    library: str, message: Message, wire: Wire, values: Sequence[Plain], here: Sequence[str]
-) -> Trial:
+    library: str, message: Message, wire: Wire, values: Sequence[Plain], installed: Sequence[str]
+) -> LibraryResult:
     """Judge a library by the first reference that has the type."""
-    first: Trial | None = None
-    for reference in _references(library, wire, here):
-        trial = Contest(client(library), client(reference), wire).judge(message, values)
-        if not isinstance(trial.obstacle, NotJudged):
-            return trial
-        first = first or trial
-    return first or _not_judged(library, message.name, f"nobody is here who judges it on {wire}")
+    first: LibraryResult | None = None
+    for reference in _references(library, wire, installed):
+        result = LibraryComparison(client(library), client(reference), wire).judge(message, values)
+        if not isinstance(result.obstacle, NotJudged):
+            return result
+        first = first or result
+    return first or _not_judged(library, message.name, f"no reference for {wire} is installed")
 
 
-def _not_judged(library: str, name: str, why: str) -> Trial:
-    return Trial(library=library, reference="", type=name, obstacle=NotJudged(why))
+def _not_judged(library: str, name: str, why: str) -> LibraryResult:
+    return LibraryResult(library=library, reference="", type=name, obstacle=NotJudged(why))
 
 
 def _values(distro: str, message: Message, wire: Wire, options: Request) -> list[Plain]:
@@ -105,12 +107,12 @@ def _values(distro: str, message: Message, wire: Wire, options: Request) -> list
 
 
 def judge_types(
-    tasks: Sequence[TypeUnderTest], options: Request, here: Sequence[str]
-) -> Generator[tuple[TypeUnderTest, list[Trial]], None, None]:
-    """Judge all libraries on types, and yield each type's trials when they are done."""
-    work = [(task, (task.distro, task.name, options, here)) for task in tasks]
-    for task, trials in in_processes(judge_type, work, options.jobs):
-        if isinstance(trials, Exception):
+    tasks: Sequence[TypeUnderTest], options: Request, installed: Sequence[str]
+) -> Generator[tuple[TypeUnderTest, list[LibraryResult]], None, None]:
+    """Judge all libraries on types, and yield each type's results when they are done."""
+    work = [(task, (task.distro, task.name, options, installed)) for task in tasks]
+    for task, results in in_processes(judge_type, work, options.jobs):
+        if isinstance(results, Exception):
             # A worker process died, or our own code raised: the run has no result.
-            raise trials
-        yield task, trials
+            raise results
+        yield task, results

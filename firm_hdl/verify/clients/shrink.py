@@ -28,7 +28,7 @@ def shrunk(
     Parameters
     ----------
     again : callable
-        Repeats the question with another type and value; see `Contest.again`.
+        Repeats the question with another type and value; see `LibraryComparison.again`.
     seconds : float
         The time limit; after it, the smallest difference so far is returned.
     """
@@ -40,7 +40,7 @@ def shrunk(
             if time.monotonic() > until:
                 return finding
             found = again(message, finding.what, value)
-            # The oddity may have been put back into the value, which is no smaller then.
+            # The unusual case may be put back into the value, which is no smaller then.
             if found is not None and _size(found) < _size(finding):
                 finding, is_smaller = found, True
                 break

@@ -17,7 +17,7 @@ __all__ = [
     "find_clients",
     "find_references",
     "may_stand_in",
-    "references_here",
+    "usable_references",
 ]
 
 WRITERS: dict[str, frozenset[Wire]] = {
@@ -43,7 +43,7 @@ def find_clients(names: Sequence[str]) -> tuple[dict[str, str], dict[str, str]]:
     return versions, missing
 
 
-def references_here(wanted: Sequence[str] | None = None) -> tuple[str, ...]:
+def usable_references(wanted: Sequence[str] | None = None) -> tuple[str, ...]:
     """Return those of the wanted libraries that can be asked in this process; `None`: of all."""
     names = WRITERS if wanted is None else [name for name in WRITERS if name in wanted]
     return tuple(name for name in names if client(name).missing() is None)
@@ -52,7 +52,7 @@ def references_here(wanted: Sequence[str] | None = None) -> tuple[str, ...]:
 def may_stand_in(message: Message, wanted: Sequence[str] | None = None) -> bool:
     """Whether a type has wide text, and a library that can confirm its bytes is installed."""
     names = [name for name in WIDE_REFERENCES if wanted is None or name in wanted]
-    return bool(stand_ins(closure([message]))) and bool(references_here(names))
+    return bool(stand_ins(closure([message]))) and bool(usable_references(names))
 
 
 def find_references(wanted: Sequence[str] | None, wires: Sequence[str]) -> list[str]:

@@ -51,8 +51,8 @@ class Genpy(Client):
 
     @cached_property
     def _worker(self) -> worker.Worker:
-        here = Path(__file__).parent
-        return worker.Worker("genpy", "", modules=here, python=worker.ROS_PYTHON)
+        folder = Path(__file__).parent
+        return worker.Worker("genpy", "", modules=folder, python=worker.ROS_PYTHON)
 
     def missing(self) -> str | None:
         why = self._worker.missing
@@ -94,10 +94,10 @@ class _GenpyCodec(Codec):
         if "facts" in answer:
             return answer["facts"]
         self._opened.pop(id(self._worker), None)
-        said = answer.get("refused") or answer.get("failed")
-        if not said or said == worker.DIED:
-            raise ClientDiedError(f"genpy: {said or 'it answered nothing'}")
-        raise UnsupportedError(f"genpy: {said}")
+        problem = answer.get("refused") or answer.get("failed")
+        if not problem or problem == worker.DIED:
+            raise ClientDiedError(f"genpy: {problem or 'it answered nothing'}")
+        raise UnsupportedError(f"genpy: {problem}")
 
     def _ask(self, what: str, items: Sequence[Any]) -> list[Any]:
         if self._opened.get(id(self._worker)) is not self:

@@ -147,8 +147,8 @@ def _oracle(
             store.register(get_types_from_msg(text, name))
     # The exceptions of rosbags for definitions that it refuses have no common base class.
     except Exception as error:
-        said = str(error).strip().splitlines() or [type(error).__name__]
-        raise NotJudgedError(f"rosbags refuses the definition: {said[0]}") from None
+        lines = str(error).strip().splitlines() or [type(error).__name__]
+        raise NotJudgedError(f"rosbags refuses the definition: {lines[0]}") from None
     return (WideOracle if wide else RosbagsOracle)(store, message.dialect)
 
 

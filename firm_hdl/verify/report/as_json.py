@@ -10,7 +10,7 @@ from firm_hdl.verify.report.outcomes import NotRun, Outcome
 from firm_hdl.verify.report.summary import Summary
 from firm_hdl.verify.results.records import to_json as record_to_json
 
-__all__ = ["FORMAT", "to_json"]
+__all__ = ["to_json"]
 
 FORMAT = "firm-hdl report 2"
 

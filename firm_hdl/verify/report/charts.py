@@ -11,7 +11,6 @@ from firm_hdl.verify.report.summary import Curve, Trend
 from firm_hdl.verify.results.records import STAGES
 
 __all__ = [
-    "COLOURS",
     "colour",
     "counts_bar",
     "cumulative",

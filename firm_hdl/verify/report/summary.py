@@ -11,7 +11,7 @@ import numpy as np
 
 from firm_hdl.verify.report.outcomes import Counts, NotRun, Outcome, count, outcomes_of
 from firm_hdl.verify.report.stats import Box, Correlation, box_of, correlate, curve_of, share_within
-from firm_hdl.verify.report.verdicts import OracleSum, Remark, oracle_sums, said_of
+from firm_hdl.verify.report.verdicts import OracleSum, Remark, oracle_sums, remarks_of
 from firm_hdl.verify.results.file import Results
 from firm_hdl.verify.results.records import STAGES, Record
 from firm_hdl.verify.results.verdict import Failed, NotJudged
@@ -262,7 +262,7 @@ def summarise(files: Mapping[str, Results], title: str = "Verification of firm-h
             found for suite, own in suites.items() if (found := _coverage(suite, own)).types
         ),
         oracles=oracle_sums(outcomes),
-        said=said_of(outcomes),
+        said=remarks_of(outcomes),
         runs=tuple(_run(name, results) for name, results in files.items()),
     )
 
@@ -322,7 +322,7 @@ def _curve(suite: str, outcomes: Sequence[Outcome]) -> Curve:
         cpu_seconds=box_of([record.cpu_seconds for record in records if record.cpu_seconds]),
         stages={stage: box for stage, box in boxes.items() if box is not None},
         stage_values={
-            stage: some[:: -(-len(some) // MOST_POINTS)] for stage, some in stages.items()
+            stage: points[:: -(-len(points) // MOST_POINTS)] for stage, points in stages.items()
         },
     )
 

@@ -31,7 +31,7 @@ __all__ = [
     "group_table",
     "missing_table",
     "oracle_table",
-    "said_table",
+    "remark_table",
     "stage_table",
     "title_of",
     "trend_table",
@@ -193,7 +193,7 @@ def oracle_table(summary: Summary) -> Iterator[Row]:
 
 
 @_with("Oracle|Verdict|Key or reason|Definitions#|Such as")
-def said_table(summary: Summary) -> Iterator[Row]:
+def remark_table(summary: Summary) -> Iterator[Row]:
     """List known differences from oracles, and reasons why oracles did not judge."""
     for each in summary.said:
         yield each.oracle, each.verdict, each.what, each.count, each.example

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from firm_hdl.verify.report.outcomes import NotRun, Outcome
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 
-__all__ = ["OracleSum", "Remark", "oracle_sums", "reason_groups", "said_of"]
+__all__ = ["OracleSum", "Remark", "oracle_sums", "reason_groups", "remarks_of"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,7 +95,7 @@ def oracle_sums(outcomes: Iterable[Outcome]) -> tuple[OracleSum, ...]:
     )
 
 
-def said_of(outcomes: Iterable[Outcome]) -> tuple[Remark, ...]:
+def remarks_of(outcomes: Iterable[Outcome]) -> tuple[Remark, ...]:
     """List known differences and reasons not to judge, the most frequent of an oracle first."""
     names: dict[tuple[str, str, str], list[str]] = defaultdict(list)
     texts: dict[tuple[str, str, str], str] = {}

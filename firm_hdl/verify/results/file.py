@@ -233,7 +233,7 @@ def _differences(
     before: Results, options: Mapping[str, Any], planned: Collection[Test]
 ) -> Iterator[str]:
     for name in sorted({*before.options, *options}):
-        old, new = (_said(each, name) for each in (before.options, options))
+        old, new = (_option_text(each, name) for each in (before.options, options))
         if old != new:
             yield f"{name} was {old}, and is {new}"
     new_keys = {test.key for test in planned}
@@ -244,5 +244,5 @@ def _differences(
             yield f"{len(keys)} {tests} {what}, such as '{min(keys)}'"
 
 
-def _said(options: Mapping[str, Any], name: str) -> str:
+def _option_text(options: Mapping[str, Any], name: str) -> str:
     return json.dumps(options[name]) if name in options else "not given"

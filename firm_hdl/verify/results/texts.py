@@ -12,7 +12,7 @@ def clipped(text: str, most: int) -> str:
     return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
 
 
-def first_difference(mine: Sequence[object], right: Sequence[object]) -> int:
+def first_difference(received: Sequence[object], expected: Sequence[object]) -> int:
     """Return the index of the first item that differs; their common length if none does."""
-    pairs = enumerate(zip(mine, right, strict=False))
-    return next((n for n, (a, b) in pairs if a != b), min(len(mine), len(right)))
+    pairs = enumerate(zip(received, expected, strict=False))
+    return next((n for n, (a, b) in pairs if a != b), min(len(received), len(expected)))

@@ -44,12 +44,14 @@ def main():
         del sys.path[0]  # ROS may have modules with the names of our other modules.
         judges, modules = family.readers(sys.argv[2])
     except Exception as error:
-        _say(answers, {"missing": f"{type(error).__name__}: {error}"})
+        _send(answers, {"missing": f"{type(error).__name__}: {error}"})
         return
-    _say(answers, {"ready": sorted(judges), "versions": {name: _version(name) for name in modules}})
+    _send(
+        answers, {"ready": sorted(judges), "versions": {name: _version(name) for name in modules}}
+    )
     for line in sys.stdin:
         request = json.loads(line)
-        _say(answers, _judge(judges[request["oracle"]], request))
+        _send(answers, _judge(judges[request["oracle"]], request))
 
 
 def _judge(judge, request):
@@ -77,7 +79,7 @@ def _too_slow(signum, frame):
     raise _TooSlowError
 
 
-def _say(answers, value):
+def _send(answers, value):
     # `json` writes NaN and infinities in the form that the `json` of the parent reads.
     print(json.dumps(value), file=answers, flush=True)
 

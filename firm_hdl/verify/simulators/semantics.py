@@ -41,23 +41,23 @@ class Traffic:
 
     def difference(self, seen: RunResult) -> str | None:
         """Describe the first difference from the Python simulation."""
-        for what, mine, right in (
+        for what, received, expected in (
             ("packets", self.packets, seen.packets),
             ("tuser", self.packet_errors, seen.packet_errors),
             ("statuses of the deserializer", self.statuses, _bits(seen.statuses)),
             ("statuses of the serializer", self.sent_statuses, _bits(seen.sent_statuses)),
         ):
-            if mine != right:
-                return f"{what} differ: {_first(mine, right)}"
+            if received != expected:
+                return f"{what} differ: {_first_difference_text(received, expected)}"
         for number, leaf in enumerate(self.plan.leaves):
             decode = decoder_of(leaf)
-            right_ones = seen.transfers.get(number, [])
+            wanted = seen.transfers.get(number, [])
             try:
-                got = [decode(int(bits, 2)) for bits in self.transfers.get(number, ())]
+                payloads = [decode(int(bits, 2)) for bits in self.transfers.get(number, ())]
             except ValueError:
                 return f"transfers of {leaf} differ: some are undefined"
-            if got != right_ones:
-                return f"transfers of {leaf} differ: {_first(got, right_ones)}"
+            if payloads != wanted:
+                return f"transfers of {leaf} differ: {_first_difference_text(payloads, wanted)}"
         return None
 
 
@@ -65,11 +65,11 @@ def _bits(statuses: Sequence[Status]) -> list[str]:
     return [f"{status.value:08b}" for status in statuses]
 
 
-def _first(mine: Sequence[object], right: Sequence[object]) -> str:
-    at = first_difference(mine, right)
+def _first_difference_text(received: Sequence[object], expected: Sequence[object]) -> str:
+    at = first_difference(received, expected)
     return (
-        f"number {at} of {len(right)} is {list(mine[at : at + 1])} "
-        f"instead of {list(right[at : at + 1])}"
+        f"number {at} of {len(expected)} is {list(received[at : at + 1])} "
+        f"instead of {list(expected[at : at + 1])}"
     )
 
 

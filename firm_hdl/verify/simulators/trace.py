@@ -25,7 +25,7 @@ from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan
 from firm_hdl.sim.bench import RESET_CYCLES
 
-__all__ = ["ARESETN", "Device", "Trace", "read_row"]
+__all__ = ["ARESETN", "Trace", "read_row"]
 
 ARESETN = 0
 """The number of the reset among the inputs; both converters share it."""

@@ -35,7 +35,7 @@ class Options:
     longest : int
         Size of the longest recorded message to replay, in bytes.
     references : tuple of str or None
-        Libraries that have to write the same bytes as rosbags; `None`: all that are here.
+        Libraries that have to write the same bytes as rosbags; `None`: all that are installed.
     vcd : str or None
         Folder for a waveform of each run.
     simulated : bool

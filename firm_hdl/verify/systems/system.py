@@ -261,7 +261,7 @@ def run_tests(
     context: object,
     tests: Sequence[Test],
     command: Callable[[Test], str],
-    said: Callable[[Record], Iterable[str]],
+    lines_of: Callable[[Record], Iterable[str]],
     *,
     most: int = 1,
     executor: str = PROCESSES,
@@ -273,7 +273,7 @@ def run_tests(
     ----------
     command : callable
         Returns the command that repeats a test.
-    said : callable
+    lines_of : callable
         Returns the lines to print about a record.
     most : int
         The largest number of tests that a process gets at once. Their records come together.
@@ -289,7 +289,7 @@ def run_tests(
                 replace(each, verdict=clipped_verdict(each.verdict), command=command(each.test))
                 for each in result
             ]
-            yield [(each.test, each, said(each)) for each in records]
+            yield [(each.test, each, lines_of(each)) for each in records]
 
 
 def _work_share(

@@ -24,7 +24,7 @@ _MOST_DETAILS = 8
 _MOST_SHOWN = 20
 """The verdicts on at most this many definitions are printed one by one."""
 
-_SAID = {
+VERDICT_LABELS = {
     Passed.name: "agrees",
     KnownDifference.name: "known",
     Failed.name: "differs",
@@ -120,9 +120,9 @@ class Ts1(System):
     @property
     def options(self) -> Mapping[str, Any]:
         """The oracles with their versions, and a digest of the definitions to mutate."""
-        here = {f"{name} {v}".strip() for run in self._runs for name, v in run.versions.items()}
+        oracles = {f"{name} {v}".strip() for run in self._runs for name, v in run.versions.items()}
         mutated = {run.distro: run.digest for run in self._runs if run.request.mutations}
-        return {"oracles": sorted(here), **({"mutated": mutated} if mutated else {})}
+        return {"oracles": sorted(oracles), **({"mutated": mutated} if mutated else {})}
 
     def run(self, recorder: Recorder) -> list[Judged]:
         """Judge everything."""
@@ -152,7 +152,10 @@ class Ts1(System):
         asked = run.missing.items() if run.request.oracles else ()
         return [
             *(Judged(what=each.test.title, verdict=each.verdict) for each in records.values()),
-            *(Judged(what=f"oracle {n}", verdict=Failed((f"is not here: {w}",))) for n, w in asked),
+            *(
+                Judged(what=f"oracle {n}", verdict=Failed((f"is not available: {w}",)))
+                for n, w in asked
+            ),
         ]
 
 
@@ -193,17 +196,17 @@ def _summary(run: Ts1Run, records: Mapping[int, Record], tally: Tally) -> Iterat
     for number, record in records.items() if is_short else ():
         for each in record.verdicts:
             details = "both refuse" if each.is_refused else "; ".join(each.verdict.details)
-            said = ": ".join(filter(None, [_SAID[each.verdict.name], details]))
-            yield f"{run.case(number).full_name}  {each.oracle}  {said}"
+            text = ": ".join(filter(None, [VERDICT_LABELS[each.verdict.name], details]))
+            yield f"{run.case(number).full_name}  {each.oracle}  {text}"
     yield f"{'oracle':24} {'agree':>7} {'known':>7} {'differ':>7} {'not judged':>11}"
     for name, version in run.versions.items():
-        counts = [tally.verdicts[name, verdict] for verdict in _SAID]
+        counts = [tally.verdicts[name, verdict] for verdict in VERDICT_LABELS]
         refused = f"  ({tally.refused[name]} refused by both)" if tally.refused[name] else ""
         yield (
             f"{f'{name} {version}':24} {counts[0]:7} {counts[1]:7} {counts[2]:7} {counts[3]:11}"
             f"{refused}"
         )
     for name, why in run.missing.items():
-        yield f"{name:24} is not here: {why}"
+        yield f"{name:24} is not available: {why}"
     for (name, verdict, text), count in sorted(tally.details.items()):
-        yield f"{_SAID[verdict]}, {name}: {text}: {count}"
+        yield f"{VERDICT_LABELS[verdict]}, {name}: {text}: {count}"

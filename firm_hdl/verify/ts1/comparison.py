@@ -63,9 +63,9 @@ def compared(
             why = ours.diagnostics[0].message
             return _verdicts(f"refuses: {why}", "accepts")
         case Exception(), Accepted() | Refused():
-            return _verdicts(f"raised {type(ours).__name__}: {ours}", _said(answer))
+            return _verdicts(f"raised {type(ours).__name__}: {ours}", _answer_text(answer))
         case _, Refused():
-            return _verdicts("accepts", _said(answer))
+            return _verdicts("accepts", _answer_text(answer))
         case _, Accepted(facts):
             assert not isinstance(ours, Exception)
             found = differences(_facts(ours, facts, alike, show), facts)
@@ -78,7 +78,7 @@ def _verdicts(ours: str, theirs: str) -> Compared:
     return Compared(differences=(Difference(path="verdict", ours=ours, theirs=theirs),))
 
 
-def _said(answer: Answer) -> str:
+def _answer_text(answer: Answer) -> str:
     return f"refuses: {answer.message}" if isinstance(answer, Refused) else "accepts"
 
 

@@ -171,8 +171,8 @@ class Explainer:
         """Yield reasons why the verdict says nothing about the definition itself."""
         if isinstance(self._ours, DefinitionError):
             for entry in self._entries():
-                if entry.spoils is not None and any(
-                    map(entry.spoils, [self._case, *self._texts.values()])
+                if entry.unavoidable is not None and any(
+                    map(entry.unavoidable, [self._case, *self._texts.values()])
                 ):
                     yield f"{entry.key}: {entry.text}"
         for need in self._needs():

@@ -34,7 +34,7 @@ def judge_case(
     ours = read(universe, case)
     watch.enter("testing")
     verdicts: list[OracleVerdict] = []
-    elsewhere = 0.0
+    oracle_cpu_seconds = 0.0
     for oracle in oracles:
         # Two oracles may share a process, so only the difference is the time of this oracle.
         before = oracle.cpu_seconds()
@@ -43,11 +43,14 @@ def judge_case(
         except Exception as error:  # The other oracles and definitions are judged in any case.
             verdict = _failed(oracle, f"the oracle raised {type(error).__name__}: {error}")
         verdicts += [] if verdict is None else [verdict]
-        elsewhere += max(0.0, oracle.cpu_seconds() - before)
-    seconds, here = watch.stop()
+        oracle_cpu_seconds += max(0.0, oracle.cpu_seconds() - before)
+    seconds, own_cpu_seconds = watch.stop()
     record = record_of(test, case.language, verdicts)
     return replace(
-        record, seconds=seconds, cpu_seconds=here + elsewhere, metrics=_metrics(case, ours)
+        record,
+        seconds=seconds,
+        cpu_seconds=own_cpu_seconds + oracle_cpu_seconds,
+        metrics=_metrics(case, ours),
     )
 
 

@@ -44,11 +44,13 @@ def each_distro(request: Request) -> list[Request]:
     UnknownTypeError
         If no distribution has the types.
     """
-    names = request.distros or ([DEFAULT_DISTRO] if request.paths else _having(request.types))
+    names = request.distros or (
+        [DEFAULT_DISTRO] if request.paths else _distros_with_any_of(request.types)
+    )
     return [replace(request, distros=(name,)) for name in names]
 
 
-def _having(types: Sequence[str]) -> list[str]:
+def _distros_with_any_of(types: Sequence[str]) -> list[str]:
     found = []
     for distro in DISTROS:
         try:
@@ -98,7 +100,7 @@ class Ts1Run:
             self.cases = universe.select(request.types)
             self.versions: dict[str, str] = {}
             self.missing: dict[str, str] = {}
-            self._ask_who_is_here(universe, request.oracles or tuple(ORACLES))
+            self._find_oracles(universe, request.oracles or tuple(ORACLES))
             self._stack = stack.pop_all()
         self._key = _Key(request, folder, tuple(self.versions))
 
@@ -109,7 +111,7 @@ class Ts1Run:
         _end_session(self._key)
         self._stack.close()
 
-    def _ask_who_is_here(self, universe: Universe, names: Sequence[str]) -> None:
+    def _find_oracles(self, universe: Universe, names: Sequence[str]) -> None:
         for name in names:
             if universe.dialect not in ORACLES[name].languages:
                 continue

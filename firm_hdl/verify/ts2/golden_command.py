@@ -19,7 +19,8 @@ def add_golden_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "do",
         choices=["check", "accept", "add"],
-        help="compare all plans of the folder with today's; write those that changed; or add types",
+        help="compare all plans of the folder with the current ones; write those that changed; or "
+        "add types",
     )
     parser.add_argument("folder", metavar="DIR", help="folder of golden plans")
     parser.add_argument("types", nargs="*", metavar="TYPE", help="all of the folder, if none")

@@ -114,7 +114,7 @@ class Ts2(TypesSystem):
             request,
             left,
             self._command,
-            _said,
+            _lines_of,
             most=MOST_IN_A_SHARE,
             executor=request.executor,
             jobs=request.jobs,
@@ -175,7 +175,7 @@ def _checked(options: Options, test: Test) -> Record:
     return recorded(test, run)
 
 
-def _said(record: Record) -> Iterable[str]:
+def _lines_of(record: Record) -> Iterable[str]:
     test = record.test
     return failure_of(f"{test.type} ({test.distro}), {test.bus_bytes}-byte bus", record)
 
@@ -192,8 +192,8 @@ def _count(records: Sequence[Record]) -> None:
     for key in total:
         print(f"{key[0]:8} {good[key]:4} of {total[key]:4} plans are sound ({key[1]}-byte bus)")
     shapes = {each.shape for each in records if isinstance(each.verdict, Passed)}
-    if silent := sum(isinstance(each.verdict, NotJudged) for each in records):
-        print(f"{silent} of {len(records)} plans not judged")
+    if not_judged := sum(isinstance(each.verdict, NotJudged) for each in records):
+        print(f"{not_judged} of {len(records)} plans not judged")
     print(f"{len(shapes)} different circuits")
 
 

@@ -27,10 +27,10 @@ from firm_hdl.verify.cases.damage import DAMAGES, broken_packets, stalls_for
 from firm_hdl.verify.cases.directed import bare_packets
 from firm_hdl.verify.cases.effort import (
     all_cases,
-    chosen,
-    disturbed,
+    cases_to_disturb,
     is_large,
     message_limit,
+    packets_to_simulate,
     too_large,
 )
 from firm_hdl.verify.cases.figures import digest, figures
@@ -116,27 +116,27 @@ def accept_message(
     result.metrics = figures(message, run.plan, [case.packet for case in cases])
     _confirm(message, run.plan.wire, cases, options, result, isinstance(oracle, WideOracle))
     result.watch.enter("testing")
-    taken = run.golden(cases, bare)
+    taken = run.check_golden_model(cases, bare)
     if not options.simulated:
         return
     if options.most_cases is None:
         packets = [*(case.sent for case in cases), *(packet for _, packet in bare)]
-        numbers = set(chosen(run.plan, packets, taken))
+        numbers = set(packets_to_simulate(run.plan, packets, taken))
         if len(numbers) < len(taken):
-            result.say(f"simulated in part: {len(numbers)} of {len(taken)} packets")
+            result.add_note(f"simulated in part: {len(numbers)} of {len(taken)} packets")
             run.cover(taken[number] for number in numbers)
         bare = [pair for number, pair in enumerate(bare, len(cases)) if number in numbers]
         cases = [case for number, case in enumerate(cases) if number in numbers]
-    run.good(cases, None, bare)
+    run.check_circuit(cases, None, bare)
     if is_large(run.plan, cases):
-        cases = disturbed(run.plan, cases)
+        cases = cases_to_disturb(run.plan, cases)
         if not cases:
-            result.say("neither stalled nor damaged")
+            result.add_note("neither stalled nor damaged")
     if options.stalled and cases:
         run.circuit.interrupt([case.sent for case in cases])
-        run.good(cases, stalls_for(f"{options.seed}/{name}"))
+        run.check_circuit(cases, stalls_for(f"{options.seed}/{name}"))
     if options.broken and cases:
-        run.broken(cases)
+        run.check_damaged(cases)
     run.circuit.crosscheck()
 
 
@@ -210,7 +210,7 @@ class Acceptance:
         if options.simulated:
             self.circuit = Circuit(message, self.plan, options, result)
 
-    def golden(
+    def check_golden_model(
         self, cases: Sequence[Case], bare: Sequence[tuple[Case, bytes]]
     ) -> list[AbstractSet[Edge]]:
         """Check the golden model against the oracle; return the decisions of each packet.
@@ -253,7 +253,7 @@ class Acceptance:
             missing=tuple(f"step {edge.step}: {edge.way}" for edge in missing),
         )
 
-    def good(
+    def check_circuit(
         self,
         cases: Sequence[Case],
         stalls: Stalls | None,
@@ -278,7 +278,7 @@ class Acceptance:
         self._result.failures += run_differences(where, self.plan, seen, wanted, names)
         self._result.judged += len(seen.packets)
 
-    def broken(self, cases: Sequence[Case]) -> None:
+    def check_damaged(self, cases: Sequence[Case]) -> None:
         """Check the hardware against the golden model with damaged packets."""
         sample = list(cases[:: max(1, len(cases) // len(DAMAGES))])
         broken = list(broken_packets(self.plan, sample, self._random))

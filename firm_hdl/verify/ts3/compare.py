@@ -48,12 +48,12 @@ def run_differences(
     """Yield the first difference of packets, of each leaf, of statuses, and of error marks."""
     yield from packet_differences(where, seen.packets, wanted.packets, names)
     yield from transfer_differences(where, plan, seen.transfers, wanted.transfers, names)
-    for what, statuses, right in (
+    for what, statuses, expected in (
         ("status", seen.statuses, wanted.statuses),
         ("sent_status", seen.sent_statuses, wanted.sent_statuses),
     ):
         got = [status.name for status in statuses]
-        yield from _status_differences(f"{where}: {what}", got, right, names)
+        yield from _status_differences(f"{where}: {what}", got, expected, names)
     marked = [status != "OK" for status in wanted.sent_statuses]
     if seen.packet_errors != marked:
         yield f"{where}: packet_error is {seen.packet_errors} instead of {marked}"
@@ -108,13 +108,13 @@ def transfer_differences(
         for path, payloads in each.items():
             joined.setdefault(path, []).extend(payloads)
     for number, leaf in enumerate(plan.leaves):
-        mine, right = list(got.get(number, [])), joined.pop(leaf.path, [])
-        if mine == right:
+        received, expected = list(got.get(number, [])), joined.pop(leaf.path, [])
+        if received == expected:
             continue
-        at = first_difference(mine, right)
+        at = first_difference(received, expected)
         yield (
-            f"{where}: leaf {leaf}, transfer {at} of {len(right)}: "
-            f"{mine[at : at + 1]} instead of {right[at : at + 1]}"
+            f"{where}: leaf {leaf}, transfer {at} of {len(expected)}: "
+            f"{received[at : at + 1]} instead of {expected[at : at + 1]}"
             f"{_name(names, _message_of(leaf.path, at, wanted))}"
         )
     if joined:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from firm_hdl.model import Message
 from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.clients.known import known_writing
-from firm_hdl.verify.references.choice import WRITERS, references_here
+from firm_hdl.verify.references.choice import WRITERS, usable_references
 from firm_hdl.verify.references.client import (
     ClientDiedError,
     Refusal,
@@ -62,9 +62,9 @@ def confirm(
     wanted : sequence of str or None
         Names of libraries; `None`: all that are installed.
     """
-    here = references_here(wanted)
-    unable = {name: f"{name} has no wire '{wire}'" for name in here if wire not in WRITERS[name]}
-    names = [name for name in here if name not in unable]
+    usable = usable_references(wanted)
+    unable = {name: f"{name} has no wire '{wire}'" for name in usable if wire not in WRITERS[name]}
+    names = [name for name in usable if name not in unable]
     sample = _sample(cases)
     values = [from_objects(message, case.value) for case in sample] if names else []
     by: list[str] = []
@@ -106,9 +106,9 @@ def _differences(
     for case, value, answer in zip(cases, values, answers, strict=True):
         if answer == case.packet:
             continue
-        if keys := known_writing(message, wire, value, name, "rosbags", codec):
+        if keys := known_writing(message, wire, value, name, codec):
             known += keys
             continue
-        said = f"refuses: {answer}" if isinstance(answer, Refusal) else f"writes {answer.hex()}"
-        found.append(f"{case.what}: {name} {said}, rosbags writes {case.packet.hex()}")
+        text = f"refuses: {answer}" if isinstance(answer, Refusal) else f"writes {answer.hex()}"
+        found.append(f"{case.what}: {name} {text}, rosbags writes {case.packet.hex()}")
     return found, known

@@ -275,8 +275,9 @@ def collect_recorded(
         If a named type has no topic, or if the recording has another wire format.
     """
     library = open_library(distro, bags=bags)
-    if wire not in (None, there := "ros1" if library.dialect == "ros1" else "cdr"):
-        raise UnknownTypeError(f"'{bags[0]}' has messages of {there}, not of {wire}")
+    recorded_wire = "ros1" if library.dialect == "ros1" else "cdr"
+    if wire not in (None, recorded_wire):
+        raise UnknownTypeError(f"'{bags[0]}' has messages of {recorded_wire}, not of {wire}")
     found: dict[str, None] = {}
     wrong: dict[str, Diagnostic] = {} if names else problems
     for kind in dict.fromkeys(topic.type for bag in bags for topic in topics_of(bag)):

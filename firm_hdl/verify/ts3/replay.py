@@ -87,13 +87,13 @@ def _replay(message: Message, judge: Judge, options: Options, result: Result) ->
     parts = [*_counts(selection, options), *others, *_kinds(judged)]
     result.note = "; ".join([*parts, *([judge.note] if judge.note else [])])
     result.watch.enter("testing")
-    run.golden(cases, ())
+    run.check_golden_model(cases, ())
     if not options.simulated:
         return
-    run.good(cases, None)
+    run.check_circuit(cases, None)
     if options.stalled:
         sample = cases[::LARGE_STRIDE] if is_large(run.plan, cases) else cases
-        run.good(sample, stalls_for(f"{options.seed}/{judge.name}"))
+        run.check_circuit(sample, stalls_for(f"{options.seed}/{judge.name}"))
     run.circuit.crosscheck()
 
 
@@ -194,7 +194,9 @@ def _judge(plan: Plan, judge: Judge, message: RecordedMessage, with_bag: bool) -
         return _Judged(case=by_golden, finding=_misfit(by_golden, "rosbags reads it"))
     if _changed(plan, decoded.streams, _in_python) != decoded.streams:
         kind = "with a signalling NaN, which Python does not keep"
-        return _tamed(plan, judge, by_golden, decoded, kind, "rosbags reads it otherwise")
+        return _judged_by_substitute(
+            plan, judge, by_golden, decoded, kind, "rosbags reads it otherwise"
+        )
     case = Case(what=what, value=None, packet=answer, transfers=transfers, given=packet)
     return _Judged(case=case, kind=_difference(packet, answer, plan.header_bytes))
 
@@ -222,20 +224,22 @@ def _make_bools_plain(value: Any) -> None:
 
 def _refused(plan: Plan, judge: Judge, case: Case, decoded: Decoded, error: Exception) -> _Judged:
     """Judge a packet that rosbags refuses to read."""
-    said = str(error).strip().splitlines() or [type(error).__name__]
-    text = f"rosbags says: {said[0]}"
+    lines = str(error).strip().splitlines() or [type(error).__name__]
+    text = f"rosbags says: {lines[0]}"
     if decoded.status != "OK":
         return _Judged(case=case, finding=_misfit(case, text))
     is_text = isinstance(error.__cause__, UnicodeDecodeError)
     kind = (
         "with text that is not UTF-8, which rosbags read with other letters in its place"
         if is_text
-        else f"that rosbags reads only as a serializer writes them ({said[0]})"
+        else f"that rosbags reads only as a serializer writes them ({lines[0]})"
     )
-    return _tamed(plan, judge, case, decoded, kind, text)
+    return _judged_by_substitute(plan, judge, case, decoded, kind, text)
 
 
-def _tamed(plan: Plan, judge: Judge, case: Case, decoded: Decoded, kind: str, text: str) -> _Judged:
+def _judged_by_substitute(
+    plan: Plan, judge: Judge, case: Case, decoded: Decoded, kind: str, text: str
+) -> _Judged:
     """Judge a packet by a similar one without the floats and texts that rosbags cannot read."""
     kept = _changed(plan, decoded.streams, _in_python)
     streams = _changed(plan, kept, _in_ascii)

@@ -89,7 +89,7 @@ class Result:
     known: tuple[str, ...] = ()
     comparison: Comparison | None = None
 
-    def say(self, what: str) -> None:
+    def add_note(self, what: str) -> None:
         """Add to the note."""
         self.note = "; ".join(filter(None, [self.note, what]))
 

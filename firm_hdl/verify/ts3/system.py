@@ -119,7 +119,7 @@ class Ts3(System):
                     # The note of a replay has the number of messages, so it is always printed.
                     is_new = notes[result.note] == 1 or bool(options.bags)
                     record = record_of(task, result, options, same_as)
-                    yield [(task, record, _said(task, result, is_new=is_new))]
+                    yield [(task, record, _lines_of(task, result, is_new=is_new))]
 
         records = kept(tasks, recorder, run, label=f"{options.bus_bytes}-byte bus")
         if not options.bags:
@@ -162,7 +162,7 @@ def run_tasks(
             yield task, result
 
 
-def _said(task: TypeUnderTest, result: Result, *, is_new: bool) -> Iterator[str]:
+def _lines_of(task: TypeUnderTest, result: Result, *, is_new: bool) -> Iterator[str]:
     """Yield the failure and the note of a type; a note only if it is new."""
     if isinstance(result.verdict, Failed):
         yield _describe(task, result, result.verdict)
@@ -196,8 +196,8 @@ def _count(records: Mapping[TypeUnderTest, Record], options: Options) -> None:
     if known:
         keys = ", ".join(sorted({key for verdict in known for key in verdict.keys}))
         print(f"{len(known)} of them with a known difference between libraries: {keys}")
-    if silent := sum(isinstance(verdict, NotJudged) for verdict in verdicts.values()):
-        print(f"{silent} of {len(records)} types not judged")
+    if not_judged := sum(isinstance(verdict, NotJudged) for verdict in verdicts.values()):
+        print(f"{not_judged} of {len(records)} types not judged")
     if shared := sum(bool(record.same_as) for record in records.values()):
         print(f"{shared} of {len(records)} types have the circuit of another, which was simulated")
 
@@ -217,8 +217,8 @@ def _summarize(results: Sequence[Result], options: Options) -> None:
     writers = Counter(
         name for result in results if result.cases for name in ("rosbags", *result.written_by)
     )
-    said = ", ".join(f"{name} {count} types" for name, count in writers.items())
-    print("wire bytes:", said or "nobody wrote any")
+    text = ", ".join(f"{name} {count} types" for name, count in writers.items())
+    print("wire bytes:", text or "no library wrote any")
     compared = [result.comparison for result in results if result.comparison is not None]
     if compared:
         same = sum(isinstance(each.verdict, Passed) for each in compared)

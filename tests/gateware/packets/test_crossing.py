@@ -30,12 +30,12 @@ def run(crossing, packets, *, write=1.0, read=1.0, phase=0.0, stall=0.0):
     async def send(ctx):
         for beat in all_beats(packets, bus):
             while rng.random() < stall:
-                await ctx.tick("write")
+                await ctx.tick(crossing.write_domain)
             ctx.set(Value.cast(came.payload), beat)
             ctx.set(came.valid, 1)
             taken = 0
             while not taken:
-                _, _, taken = await ctx.tick("write").sample(came.ready)
+                _, _, taken = await ctx.tick(crossing.write_domain).sample(came.ready)
             ctx.set(came.valid, 0)
 
     async def receive(ctx):
@@ -43,7 +43,8 @@ def run(crossing, packets, *, write=1.0, read=1.0, phase=0.0, stall=0.0):
         while len(collector.packets) < len(packets):
             ready = int(other.random() >= stall)
             ctx.set(out.ready, ready)
-            _, _, valid, bits = await ctx.tick("read").sample(out.valid, Value.cast(out.payload))
+            tick = ctx.tick(crossing.read_domain)
+            _, _, valid, bits = await tick.sample(out.valid, Value.cast(out.payload))
             held.check(cycle, valid, ready, lambda _, bits=bits: bits)
             if valid and ready:
                 rules.check(cycle, bits)
@@ -53,8 +54,8 @@ def run(crossing, packets, *, write=1.0, read=1.0, phase=0.0, stall=0.0):
             assert cycle < 20_000, "packets are missing"
 
     simulator = Simulator(crossing)
-    simulator.add_clock(1e-6 * write, domain="write")
-    simulator.add_clock(1e-6 * read, phase=1e-6 * phase, domain="read")
+    simulator.add_clock(1e-6 * write, domain=crossing.write_domain)
+    simulator.add_clock(1e-6 * read, phase=1e-6 * phase, domain=crossing.read_domain)
     simulator.add_testbench(send, background=True)
     simulator.add_testbench(receive)
     simulator.run()
@@ -94,6 +95,11 @@ def test_a_beat_per_cycle_of_the_slower_clock(ratio):
 def test_a_beat_is_valid_after_the_second_edge(phase, want):
     # The beat is written at 0.5 periods, and the edges that read are `phase` after 0, 1, 2...
     assert run(PacketCrossing(8), [b"x"], phase=phase) == [want]
+
+
+def test_the_domains_have_the_names_that_are_asked_for():
+    crossing = PacketCrossing(8, write_domain="sync", read_domain="fast")
+    run(crossing, sent(8), read=0.7, phase=0.2)
 
 
 def test_parameters_are_checked():

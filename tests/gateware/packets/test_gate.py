@@ -30,7 +30,7 @@ from tests.gateware.packets.gates import (
     judged,
 )
 from tests.gateware.test_parser import BAD, GOOD, HEADER, has_path, random_packets
-from tests.strategies import BUS_WIDTHS
+from tests.strategies import BUS_WIDTHS, make
 
 TYPES = [
     (HEADER, "lyrical"),
@@ -254,6 +254,13 @@ def test_no_output_depends_on_an_input_in_the_same_cycle(when_full):
     held = Cat(out.valid, Value.cast(out.payload), gate.size)
     said = Cat(status.valid, Value.cast(status.payload))
     assert not has_path(gate, inputs, Cat(came.ready, held, said))
+
+
+def test_a_gate_judges_by_the_wire_that_is_asked_for():
+    message = make("ros2", {"a": "uint8", "s": "string"})
+    packets = [b"\7\2\0\0\0hi", b"\0\1\0\0\7\0\0\0\3\0\0\0hi\0"]
+    for wire, want in (("ros1", [OK, GateStatus.LENGTH]), ("cdr", [GateStatus.ENCAPSULATION, OK])):
+        assert GateRun(PacketGate(message, wire=wire, memory_bytes=64), packets).statuses == want
 
 
 def test_parameters_are_checked():

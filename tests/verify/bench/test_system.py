@@ -65,7 +65,7 @@ def wide(folder, ghdl):
 
 
 def test_wide_text_is_not_judged_unless_somebody_has_it(ghdl, tmp_path, monkeypatch):
-    monkeypatch.setattr(references, "references_here", lambda wanted=None: ())
+    monkeypatch.setattr(references, "usable_references", lambda wanted=None: ())
     result = wide(tmp_path, ghdl)
     assert result.verdict == NotJudged("rosbags has no wstring, which own_msgs/msg/Wide.text is")
 

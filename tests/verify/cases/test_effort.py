@@ -27,7 +27,7 @@ def some_edges(*numbers):
 
 
 def test_everything_if_it_is_not_much(plan):
-    assert effort.chosen(plan, [bytes(8)] * 5, [some_edges(1)] * 5) == [0, 1, 2, 3, 4]
+    assert effort.packets_to_simulate(plan, [bytes(8)] * 5, [some_edges(1)] * 5) == [0, 1, 2, 3, 4]
 
 
 def test_what_takes_most_for_its_size(plan):
@@ -35,26 +35,28 @@ def test_what_takes_most_for_its_size(plan):
     taken = [some_edges(1, 2, 3), some_edges(1, 2), some_edges(1), some_edges(3)]
     work = effort.work_of(plan, 24)
     # The second takes something new, and may cost more; the first takes nothing that is.
-    assert effort.chosen(plan, packets, taken, most=work) == [2, 3]
-    assert effort.chosen(plan, packets, taken, most=2 * work) == [1, 2, 3]
+    assert effort.packets_to_simulate(plan, packets, taken, most=work) == [2, 3]
+    assert effort.packets_to_simulate(plan, packets, taken, most=2 * work) == [1, 2, 3]
 
 
 def test_what_takes_nothing_new_has_no_more_than_what_is_left(plan):
     packets, taken = [bytes(8), bytes(8), bytes(8)], [some_edges(1)] * 3
     work = effort.work_of(plan, 8)
-    assert effort.chosen(plan, packets, taken, most=2 * work) == [0, 1]
+    assert effort.packets_to_simulate(plan, packets, taken, most=2 * work) == [0, 1]
 
 
 def test_one_in_any_case(plan):
-    assert effort.chosen(plan, [bytes(80), bytes(800)], [some_edges(1)] * 2, most=0) == [0]
+    assert effort.packets_to_simulate(
+        plan, [bytes(80), bytes(800)], [some_edges(1)] * 2, most=0
+    ) == [0]
 
 
 def test_types_are_simulated_in_part(monkeypatch):
     whole = accept("lyrical", HEADER)
     monkeypatch.setattr(
         acceptance,
-        "chosen",
-        lambda plan, *given: effort.chosen(plan, *given, most=effort.work_of(plan, 8)),
+        "packets_to_simulate",
+        lambda plan, *given: effort.packets_to_simulate(plan, *given, most=effort.work_of(plan, 8)),
     )
     part = accept("lyrical", HEADER)
     assert assert_passed(part) and 0 < part.cycles < whole.cycles
@@ -68,9 +70,9 @@ def test_types_are_simulated_in_part(monkeypatch):
 
 def test_without_the_largest(plan):
     cases = [Case(what="", value=None, packet=bytes(8 * n), transfers={}) for n in (3, 1, 2, 9)]
-    assert effort.within(plan, cases, effort.work_of(plan, 48)) == cases[:3]
-    assert effort.within(plan, cases, effort.work_of(plan, 40)) == cases[1:3]
-    assert effort.within(plan, cases, 0) == []
+    assert effort.limit_work(plan, cases, effort.work_of(plan, 48)) == cases[:3]
+    assert effort.limit_work(plan, cases, effort.work_of(plan, 40)) == cases[1:3]
+    assert effort.limit_work(plan, cases, 0) == []
 
 
 def test_what_is_too_large_for_more_is_not_stalled(monkeypatch):

@@ -11,7 +11,12 @@ from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, String
 from firm_hdl.verify.clients.divergences import KNOWN
 from firm_hdl.verify.clients.finding import Finding, KnownDivergence
 from firm_hdl.verify.clients.known import known_keys
-from firm_hdl.verify.clients.oddities import odd_packet, odd_value, odd_values, plain_packet
+from firm_hdl.verify.clients.unusual import (
+    plain_packet,
+    unusual_packet,
+    unusual_value,
+    unusual_values,
+)
 from firm_hdl.verify.references.client import Codec, Refusal
 from firm_hdl.verify.references.values import as_float, bits_of, changed, is_nan
 
@@ -52,7 +57,7 @@ class Says(Codec):
 # What is known.
 
 ENTRY = KnownDivergence(
-    key="k", libraries=("mine",), wires="cdr", text="", whats=("bool-2",), answer="takes"
+    key="k", libraries=("mine",), wires="cdr", text="", case_names=("bool-2",), answer="takes"
 )
 
 
@@ -285,7 +290,7 @@ ODD = {
 def test_an_odd_packet_is_odd_at_its_first_place_and_nowhere_else(make_message, name):
     message = make_message(ODD_TEXT)
     assert plain_packet(message, "cdr", ODD_VALUE) == bytes.fromhex(PLAIN)
-    packet = odd_packet(message, "cdr", ODD_VALUE, name)
+    packet = unusual_packet(message, "cdr", ODD_VALUE, name)
     assert packet == bytes.fromhex(ODD[name]), packet.hex()
 
 
@@ -301,14 +306,14 @@ def test_half_a_packet_is_its_first_half(make_message):
     message = make_message("uint8[6] a")
     value = {"a": [1, 2, 3, 4, 5, 6]}
     packet = plain_packet(message, "cdr", value)
-    assert odd_packet(message, "cdr", value, "cut-half") == packet[:5]
+    assert unusual_packet(message, "cdr", value, "cut-half") == packet[:5]
     assert plain_packet(message, "ros1", value) == packet[4:]
 
 
 def test_bounds_are_exceeded_by_one_and_one_thing_at_a_time(make_message):
     message = make_message("string<=3 s\nuint8[<=2] l\nwstring<=2 w\nB[<=1] b", B="string<=3 s")
     value = {"s": b"xy", "l": [5], "w": [1], "b": []}
-    found = dict(odd_values(message, [value]))
+    found = dict(unusual_values(message, [value]))
     assert len(found["bound-text"]["s"]) == 4 and found["bound-text"]["s"].startswith(b"xy")
     assert {k: v for k, v in found["bound-text"].items() if k != "s"} == {
         k: v for k, v in value.items() if k != "s"
@@ -317,4 +322,4 @@ def test_bounds_are_exceeded_by_one_and_one_thing_at_a_time(make_message):
     assert found["nul-inside"]["s"].count(0) == 1
     with pytest.raises(UnicodeDecodeError):
         found["not-utf8"]["s"].decode()
-    assert odd_value(make_message("uint8 a"), {"a": 1}, "bound-items") is None
+    assert unusual_value(make_message("uint8 a"), {"a": 1}, "bound-items") is None

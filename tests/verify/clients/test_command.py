@@ -19,7 +19,10 @@ from tests.frontend.workspace import make_files
         (["--sut", "rosbags", "--all", "--bus-bytes", "1"], "--bus-bytes does not go with --sut"),
         (["--sut", "rosbags", "--all", "--results", "x"], "--results does not go with --sut"),
         (["--sut", "rosbags", "--all", "--no-stalls"], "--no-stalls and --no-broken do not go"),
-        (["--all", "--reference", "none", "--reference", "genpy"], "none goes with no other"),
+        (
+            ["--all", "--reference", "none", "--reference", "genpy"],
+            "none excludes other references",
+        ),
     ],
 )
 def test_wrong_calls_are_refused(capsys, arguments, said):
@@ -88,7 +91,7 @@ def test_without_ros_s_own_rosbags_judges(capsys, monkeypatch):
     arguments = ["verify", "--sut", "firm-hdl", "--distro", "lyrical", "--cases", "2", "--jobs"]
     assert main([*arguments, "1", "std_msgs/msg/Bool"]) == 0
     said = capsys.readouterr().out
-    assert "fastcdr, which is ROS's own on cdr, is not here: no Fast CDR\n" in said
+    assert "fastcdr, which is ROS's own on cdr, is not installed: no Fast CDR\n" in said
     assert "firm-hdl 0.1.0 on cdr: judged by rosbags " in said
     versions, missing = find_clients(["fastcdr", "rosbags"])
     assert missing == {"fastcdr": "no Fast CDR"} and list(versions) == ["rosbags"]
@@ -101,8 +104,8 @@ def test_library_is_not_asked_about_wires_that_nobody_named(library_here, capsys
     assert main([*call, "std_msgs/msg/Bool"]) == 0
     assert main([*call, "--distro", "noetic", "--distro", "lyrical", "std_msgs/msg/Bool"]) == 1
     said = capsys.readouterr().out
-    assert "not judged: std_msgs/msg/Bool (noetic), cyclonedds: nobody is here" in said or (
+    assert "not judged: std_msgs/msg/Bool (noetic), cyclonedds: no reference for" in said or (
         "not judged: std_msgs/msg/Bool (noetic), cyclonedds: cyclonedds does not speak" in said
     )
     assert main([*call, "--distro", "noetic", "std_msgs/msg/Bool"]) == 1
-    assert capsys.readouterr().out.endswith("nothing was judged: this is no pass\n")
+    assert capsys.readouterr().out.endswith("no test was judged, so the run fails\n")

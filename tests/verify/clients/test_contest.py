@@ -8,7 +8,7 @@ import pytest
 
 from firm_hdl.model import Message, Primitive, Sequence, String
 from firm_hdl.verify.clients.finding import Finding, KnownDivergence
-from firm_hdl.verify.clients.judge import Contest, Trial
+from firm_hdl.verify.clients.judge import LibraryComparison, LibraryResult
 from firm_hdl.verify.clients.shrink import shrunk
 from firm_hdl.verify.references.client import (
     Client,
@@ -70,7 +70,7 @@ def message(make_message):
 
 
 def contest(codec, right=None):
-    return Contest(Made("mine", codec), Made("right", right or Bytes()), "cdr")
+    return LibraryComparison(Made("mine", codec), Made("right", right or Bytes()), "cdr")
 
 
 VALUES = [{"a": 1}, {"a": 7}, {"a": 200}]
@@ -134,12 +134,12 @@ def test_what_cannot_be_opened_is_not_judged_or_failed(message):
     died = contest(ClientDiedError("it died")).judge(message, VALUES)
     assert died.verdict == Failed(("it died",))
     for ours, theirs, name in ((("ros1",), None, "mine"), (None, ("ros1",), "right")):
-        both = Contest(Made("mine", Bytes(), ours), Made("right", Bytes(), theirs), "cdr")
+        both = LibraryComparison(Made("mine", Bytes(), ours), Made("right", Bytes(), theirs), "cdr")
         assert both.judge(message, VALUES).verdict == NotJudged(f"{name} does not speak cdr")
 
 
 def trial(**more):
-    return Trial(library="mine", reference="right", type="p/A", **more)
+    return LibraryResult(library="mine", reference="right", type="p/A", **more)
 
 
 def test_what_a_trial_comes_to():
@@ -151,7 +151,7 @@ def test_what_a_trial_comes_to():
     assert trial(answers=1, obstacle=obstacle).verdict == obstacle
     # A difference that was found before it broke down is one.
     assert trial(unknown=1, obstacle=obstacle).verdict == Failed(("1 differences",))
-    assert Trial(library="x", reference="", type="y").verdict == NotJudged(
+    assert LibraryResult(library="x", reference="", type="y").verdict == NotJudged(
         "the reference had no answer to anything"
     )
 
@@ -209,7 +209,7 @@ def test_a_known_difference_explains_its_own_answer_alone(message, answer, is_mi
         libraries=("mine",) if is_mine else ("right",),
         wires="cdr",
         text="",
-        whats=("odd", "other"),
+        case_names=("odd", "other"),
         answer=answer,
     )
     explained = {
@@ -227,13 +227,15 @@ def test_a_known_difference_explains_its_own_answer_alone(message, answer, is_mi
 
 def test_a_known_difference_is_about_its_libraries_wires_and_oddities(message):
     entry = KnownDivergence(
-        key="k", libraries=("mine", "yours"), wires="cdr", text="", whats=("odd",)
+        key="k", libraries=("mine", "yours"), wires="cdr", text="", case_names=("odd",)
     )
     assert entry.is_about(finding_of(message)) == "mine"
     assert entry.is_about(finding_of(message, library="x", reference="yours")) == "yours"
     assert entry.is_about(finding_of(message, library="x")) is None
     assert entry.is_about(finding_of(message, wire="ros1")) is None
-    both = KnownDivergence(key="k", libraries=("mine",), wires="ros1 cdr", text="", whats=("odd",))
+    both = KnownDivergence(
+        key="k", libraries=("mine",), wires="ros1 cdr", text="", case_names=("odd",)
+    )
     assert both.is_about(finding_of(message, wire="ros1")) == "mine"
     assert entry.explains_answer(finding_of(message))
     assert not entry.explains_answer(finding_of(message, what="other"))

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.verify.clients.divergences import KNOWN
-from firm_hdl.verify.clients.judge import Contest
+from firm_hdl.verify.clients.judge import LibraryComparison
 from firm_hdl.verify.references.client import Refusal
 from firm_hdl.verify.references.objects import definition_text
 from firm_hdl.verify.references.values import shown
@@ -22,7 +22,7 @@ def asked(library_here, make_message):
     """Ask for an example; return the difference and its keys."""
 
     def ask(example):
-        contest = Contest(
+        contest = LibraryComparison(
             library_here(example.library),
             library_here(example.reference),
             "ros1" if example.distro == "noetic" else "cdr",
@@ -81,7 +81,7 @@ def test_section_has_the_sentence_the_release_and_a_command(entry):
 
 
 def test_a_known_divergence_hides_no_other(library_here, make_message):
-    contest = Contest(library_here("rosbags"), library_here("fastcdr"), "cdr")
+    contest = LibraryComparison(library_here("rosbags"), library_here("fastcdr"), "cdr")
     message = make_message("byte a\nuint16 b\n")
     codec = contest.library.open(message, "cdr")
 

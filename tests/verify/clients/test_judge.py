@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.verify.clients.judge import Contest
-from firm_hdl.verify.clients.oddities import ODDITIES, odd_packet, odd_packets
+from firm_hdl.verify.clients.judge import LibraryComparison
 from firm_hdl.verify.clients.shrink import shrunk
+from firm_hdl.verify.clients.unusual import UNUSUAL_CASES, unusual_packet, unusual_packets
 from firm_hdl.verify.references.client import Refusal
 from firm_hdl.verify.references.objects import full_text
 from firm_hdl.verify.results.verdict import Failed, NotJudged
@@ -53,7 +53,7 @@ class Careless(Same):
 def contest(library_here):
     """Make a contest of a broken library with rosbags, which is right."""
     right = library_here("rosbags")
-    return lambda fault: Contest(Twin(right, fault), right, "cdr")
+    return lambda fault: LibraryComparison(Twin(right, fault), right, "cdr")
 
 
 @pytest.fixture
@@ -89,7 +89,7 @@ def test_faults_are_found_and_made_small(contest, message, fault, what, text):
 
 
 def test_a_type_that_a_library_has_not_is_not_judged(library_here, make_message):
-    both = Contest(library_here("cyclonedds"), library_here("rosbags"), "cdr")
+    both = LibraryComparison(library_here("cyclonedds"), library_here("rosbags"), "cdr")
     trial = both.judge(make_message("wstring w\n"), [])
     assert trial.verdict == NotJudged("cyclonedds has no wstring")
     wide = both.judge(make_message("uint8[<=65536] w\n"), [])
@@ -99,7 +99,7 @@ def test_a_type_that_a_library_has_not_is_not_judged(library_here, make_message)
     # Nobody was asked for anything.
     none = both.judge(make_message("uint8[<=65535] w\n"), [])
     assert none.verdict == NotJudged("rosbags had no answer to anything")
-    other = Contest(library_here("cyclonedds"), library_here("rosbags"), "ros1")
+    other = LibraryComparison(library_here("cyclonedds"), library_here("rosbags"), "ros1")
     trial = other.judge(make_message("int8 w\n"), [])
     assert trial.verdict == NotJudged("cyclonedds does not speak ros1")
 
@@ -108,8 +108,8 @@ def test_odd_packets_are_odd_as_they_say(make_message):
     message = make_message("uint8 a\nuint32 n\nstring<=2 s\nstring e\nbool t\nuint8[<=1] l\n")
     value = {"a": 1, "n": 2, "s": b"xy", "e": b"", "t": True, "l": [5]}
     plain = "00010000 01000000 02000000 03000000 78790000 01000000 00 01 0000 01000000 05"
-    packets = {odd: packet.hex() for odd, _, packet in odd_packets(message, "cdr", [value])}
-    assert sorted(packets) == sorted(n for n, o in ODDITIES.items() if "cdr" in o)
+    packets = {odd: packet.hex() for odd, _, packet in unusual_packets(message, "cdr", [value])}
+    assert sorted(packets) == sorted(n for n, o in UNUSUAL_CASES.items() if "cdr" in o)
     right = bytes.fromhex(plain)
     assert bytes.fromhex(packets["pad-3"]) == right + bytes(3)
     assert bytes.fromhex(packets["cut-1"]) == right[:-1]
@@ -128,4 +128,4 @@ def test_odd_packets_are_odd_as_they_say(make_message):
 def test_what_has_no_place_is_not_made(make_message):
     message = make_message("uint8 a\n")
     for name in ("bare-string", "no-nul", "bool-2", "bound-items", "dirty-padding", "long-text"):
-        assert odd_packet(message, "cdr", {"a": 1}, name) is None
+        assert unusual_packet(message, "cdr", {"a": 1}, name) is None

@@ -23,7 +23,7 @@ def small(monkeypatch):
     """Let the smallest case of a difference be itself."""
     monkeypatch.setattr(command, "command_of", again)
     monkeypatch.setattr(command, "shrunk", lambda finding, again: finding)
-    monkeypatch.setattr(command, "contest_of", lambda *_: SimpleNamespace(again=None))
+    monkeypatch.setattr(command, "comparison_of", lambda *_: SimpleNamespace(again=None))
     monkeypatch.setattr(command, "described", lambda finding: [f"    small {finding.what}"])
 
 

@@ -9,7 +9,7 @@ from collections import Counter
 import pytest
 
 from firm_hdl.model import PRIMITIVES
-from firm_hdl.verify.clients.judge import Contest, Trial
+from firm_hdl.verify.clients.judge import LibraryComparison, LibraryResult
 from firm_hdl.verify.clients.run import command_of, reference_of
 from firm_hdl.verify.command import add_verify_arguments
 from firm_hdl.verify.references.client import Refusal
@@ -38,19 +38,21 @@ class Loses(Same):
 def test_an_empty_packet_is_read_and_not_written(wire):
     dialect = "ros1" if wire == "ros1" else "ros2"
     message = a_message(dialect=dialect, name="p/A" if wire == "ros1" else "p/msg/A")
-    contest = Contest(Twin(client("firm-hdl"), Same), client("firm-hdl"), wire)
+    contest = LibraryComparison(Twin(client("firm-hdl"), Same), client("firm-hdl"), wire)
     trial = contest.judge(message, [{}])
     assert trial.verdict.name == "passed" and trial.comparisons >= 2
-    wrong = Contest(Twin(client("firm-hdl"), Loses), client("firm-hdl"), wire).judge(message, [{}])
+    wrong = LibraryComparison(Twin(client("firm-hdl"), Loses), client("firm-hdl"), wire).judge(
+        message, [{}]
+    )
     assert wrong.verdict.name == "failed"
     assert "decode" in {finding.what for finding in wrong.findings}
 
 
 def test_refusing_what_is_right_is_a_difference():
     message = a_message(UINT8, ROS2["uint16"])
-    trial = Contest(Twin(client("firm-hdl"), RefusesAll), client("firm-hdl"), "cdr").judge(
-        message, [{"f0": 1, "f1": 2}]
-    )
+    trial = LibraryComparison(
+        Twin(client("firm-hdl"), RefusesAll), client("firm-hdl"), "cdr"
+    ).judge(message, [{"f0": 1, "f1": 2}])
     assert trial.verdict.name == "failed"
     kinds = {finding.what for finding in trial.findings}
     assert "decode" in kinds and "pad-1" in kinds and "cut-1" not in kinds
@@ -60,7 +62,7 @@ def test_the_first_of_each_kind_is_kept_and_all_are_counted():
     message = a_message(UINT8)
     values = [{"f0": n} for n in range(4)]
     own = client("firm-hdl")
-    trial = Contest(Twin(own, Loses), own, "cdr").judge(message, values)
+    trial = LibraryComparison(Twin(own, Loses), own, "cdr").judge(message, values)
     kinds = [finding.what for finding in trial.findings]
     assert len(kinds) == len({*kinds}) > 2 and kinds[0] == "decode"
     assert trial.findings[0].value == {"f0": 0}
@@ -78,7 +80,7 @@ def test_byte_orders_are_asked_for_where_both_are_meant_to_read_them(monkeypatch
         (("little", "big"), ("little", "big"), True),
     ):
         monkeypatch.setattr(type(own), "byte_orders", theirs, raising=False)
-        contest = Contest(Twin(client("firm-hdl"), Same, mine), own, "cdr")
+        contest = LibraryComparison(Twin(client("firm-hdl"), Same, mine), own, "cdr")
         assert contest._reads("big-endian") is is_asked
         assert contest._reads("pad-1")
         assert contest.judge(message, [{"f0": 1}]).verdict.name == "passed"
@@ -97,10 +99,10 @@ def test_nobody_judges_himself():
 
 def test_a_trial_is_worth_what_was_found_in_it():
     known = {"library": "a", "reference": "b", "type": "t", "comparisons": 5, "answers": 5}
-    assert Trial(**known).verdict.name == "passed"
-    assert Trial(**known, known=Counter(k=1)).verdict.name == "known difference"
-    assert Trial(**known, known=Counter(k=1), unknown=1).verdict.name == "failed"
-    assert Trial(**{**known, "answers": 0}).verdict.name == "not judged"
+    assert LibraryResult(**known).verdict.name == "passed"
+    assert LibraryResult(**known, known=Counter(k=1)).verdict.name == "known difference"
+    assert LibraryResult(**known, known=Counter(k=1), unknown=1).verdict.name == "failed"
+    assert LibraryResult(**{**known, "answers": 0}).verdict.name == "not judged"
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from firm_hdl.verify.results.verdict import (
     NotJudgedError,
     Passed,
 )
-from firm_hdl.verify.run import concluded, is_well
+from firm_hdl.verify.run import concluded, succeeded
 from firm_hdl.verify.systems.system import Judged
 from tests.frontend.workspace import make_files
 from tests.verify.report.samples import a_record, a_test
@@ -46,8 +46,8 @@ def found(*verdicts):
     ],
 )
 def test_success_needs_a_judgement_and_of_what_is_named_each(verdicts, of_all, named):
-    assert is_well(found(*verdicts), is_named=False) is of_all
-    assert is_well(found(*verdicts), is_named=True) is named
+    assert succeeded(found(*verdicts), is_named=False) is of_all
+    assert succeeded(found(*verdicts), is_named=True) is named
 
 
 def test_end_lists_what_was_not_judged_by_name_and_reason():
@@ -56,12 +56,12 @@ def test_end_lists_what_was_not_judged_by_name_and_reason():
     assert concluded(some, is_named=False) == [*lines, "1 of 2 tests was not judged"]
     assert concluded(some, is_named=True) == [
         *lines,
-        "1 of 2 tests was not judged, although named: this is no pass",
+        "1 of 2 tests was not judged, although named, so the run fails",
     ]
     assert concluded(found(SILENT, SILENT), is_named=False)[2:] == [
-        "nothing was judged: this is no pass"
+        "no test was judged, so the run fails"
     ]
-    assert concluded([], is_named=False) == ["nothing was judged: this is no pass"]
+    assert concluded([], is_named=False) == ["no test was judged, so the run fails"]
     assert concluded(found(PASSED, KNOWN, FAILED), is_named=True) == []
 
 
@@ -89,7 +89,7 @@ def test_named_type_that_is_not_judged_is_no_success(source, nobody_knows_wide, 
     call = ["verify", *FEW, "--path", source]
     assert main([*call, "p/A", "p/Wide"]) == 1
     said = capsys.readouterr().out
-    assert LINE + "1 of 2 tests was not judged, although named: this is no pass\n" in said
+    assert LINE + "1 of 2 tests was not judged, although named, so the run fails\n" in said
     assert main([*call, "p/A"]) == 0
     assert "not judged" not in capsys.readouterr().out
 
@@ -111,7 +111,7 @@ def test_all_types_of_which_none_is_judged_are_no_success(monkeypatch, source, c
 
     monkeypatch.setattr(acceptance, "judge_of", nobody)
     assert main(["verify", *FEW, "--path", source, "--all"]) == 1
-    assert capsys.readouterr().out.endswith("nothing was judged: this is no pass\n")
+    assert capsys.readouterr().out.endswith("no test was judged, so the run fails\n")
     # As the issue has it.
     assert main(["verify", "--jobs", "1", "geometry_msgs/msg/Twist"]) == 1
     assert "2 of 2 types not judged" in capsys.readouterr().out
@@ -128,7 +128,7 @@ def test_type_with_the_circuit_of_one_that_is_not_judged_is_not_judged(
     monkeypatch.setattr(acceptance, "judge_of", judge)
     path = tmp_path / "r.jsonl"
     assert main(["verify", *FEW, "--path", source, "--all", "--results", str(path)]) == 1
-    assert capsys.readouterr().out.endswith("nothing was judged: this is no pass\n")
+    assert capsys.readouterr().out.endswith("no test was judged, so the run fails\n")
     records = read_results(path).records
     (twin,) = [record for record in records.values() if record.same_as]
     assert isinstance(twin.verdict, Passed)
@@ -165,7 +165,7 @@ def test_named_definition_that_nobody_reads_is_no_success(tmp_path, capsys, syst
     bus = ", 8-byte bus" if system == "ts2" else ""
     said = capsys.readouterr().out
     assert f"not judged: p/msg/A (lyrical), {system}{bus}: " in said
-    assert "1 of 2 tests was not judged, although named: this is no pass\n" in said
+    assert "1 of 2 tests was not judged, although named, so the run fails\n" in said
     assert main([*call, "--all"]) == 0
     assert capsys.readouterr().out.endswith("1 of 2 tests was not judged\n")
 

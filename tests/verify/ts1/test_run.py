@@ -126,7 +126,7 @@ def test_an_oracle_that_is_asked_for_and_not_here_fails(source, capsys, monkeypa
     monkeypatch.setenv("PATH", "/nowhere")
     request = Request(distros=("lyrical",), paths=(source,), types=("q/B",))
     assert run_ts1(request, ["ros2"]) == 1
-    assert "is not here: there is no command 'ros2'" in capsys.readouterr().out
+    assert "is not available: there is no command 'ros2'" in capsys.readouterr().out
 
 
 def test_a_type_or_folder_that_is_not_there(source, tmp_path, capsys):

@@ -8,7 +8,7 @@ import firm_hdl.verify.ts3.confirm as references
 from firm_hdl.cli import main
 from firm_hdl.frontend import Library
 from firm_hdl.verify import Options, accept, distro_oracle, make_cases
-from firm_hdl.verify.references.choice import WRITERS, find_references, references_here
+from firm_hdl.verify.references.choice import WRITERS, find_references, usable_references
 from firm_hdl.verify.references.client import Refusal, UnsupportedError
 from firm_hdl.verify.references.clients import CLIENTS, client
 from firm_hdl.verify.results.verdict import NotJudged
@@ -126,7 +126,7 @@ def test_wide_text_is_judged_if_somebody_has_it(tmp_path, make_wide):
 
 
 def test_wide_text_needs_that_word(monkeypatch, make_wide):
-    monkeypatch.setattr(references, "references_here", lambda wanted=None: ("fastcdr",))
+    monkeypatch.setattr(references, "usable_references", lambda wanted=None: ("fastcdr",))
     monkeypatch.setattr(references, "WRITERS", {"fastcdr": ("ros1",)})
     result = accept("lyrical", "p/msg/Wide", Options(most_cases=1, paths=(str(make_wide),)))
     assert "fastcdr could not write wide text, which rosbags has not" in result.failures
@@ -149,7 +149,7 @@ def test_command_names_who_took_part(capsys):
 
 def test_what_is_missing_is_said_or_an_error(capsys, monkeypatch):
     monkeypatch.setattr(CLIENTS["cyclonedds"], "missing", lambda self: "cyclonedds is not there")
-    assert references_here() == ("genpy", *FAST_CDR)
+    assert usable_references() == ("genpy", *FAST_CDR)
     assert find_references(None, ["cdr"]) == [
         "cyclonedds does not confirm bytes: cyclonedds is not there"
     ]

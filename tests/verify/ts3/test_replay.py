@@ -320,7 +320,7 @@ def test_more_than_simulates_in_a_minute_is_left_out_unless_asked_for(monkeypatc
     ("arguments", "said"),
     [
         (["--path", "."], "argument --bag: not allowed with argument --path"),
-        (["--systems", "ts2,ts3"], "--bag is of ts3 alone"),
+        (["--systems", "ts2,ts3"], "--bag requires --systems ts3"),
         (["--sut", "rosbags"], "--bag is for firm-hdl's own converters, not for --sut"),
         (["--share-circuits"], "--bag replays the messages of each type: not with"),
         (["--distro", "humble", "--distro", "iron"], "--bag takes one --distro"),

@@ -49,7 +49,7 @@ def test_who_wrote_bytes_is_counted_by_types(capsys):
     said = capsys.readouterr().out.splitlines()[-1]
     assert said == "wire bytes: rosbags 2 types, genpy 2 types, fastcdr 1 types"
     system._summarize([result("C", 1)], PYTHON)
-    assert capsys.readouterr().out.splitlines()[-1] == "wire bytes: nobody wrote any"
+    assert capsys.readouterr().out.splitlines()[-1] == "wire bytes: no library wrote any"
 
 
 def test_another_simulator_is_summed_up(capsys):

@@ -224,7 +224,7 @@ def _without_unsupported(case: DefinitionCase) -> str:
     return in_code(case.text, _UNSUPPORTED, "")
 
 
-@RULES.spoils(
+@RULES.unavoidable(
     "idl-lists-of-lists",
     "Lists of lists by typedefs are refused; rosidl_parser takes some, and nothing after it.",
 )

@@ -41,7 +41,7 @@ def _legal_names(line: Line, case: DefinitionCase) -> Line:
     return replace(line, name=f"RENAMED{code.upper()}" if line.equals else f"renamed{code}")
 
 
-@RULES.spoils(
+@RULES.unavoidable(
     "rosbags-type-names",
     "rosbags takes names of messages that ROS 2 refuses, which no other text can mend.",
     dialect="ros2",

@@ -67,7 +67,7 @@ class KnownRule:
         something else.
     alike : mapping of str to str
         Primitives that `rewrite` replaces: their names, and those of the replacements.
-    spoils : callable or None
+    unavoidable : callable or None
         Whether a definition has the difference, if no text can avoid it. If we refuse such a
         definition and the oracle accepts it, it is not judged.
     """
@@ -83,7 +83,7 @@ class KnownRule:
     theirs: Mend | None = None
     ours: Callable[[Interface], Interface] | None = None
     alike: Mapping[str, str] = field(default_factory=dict)
-    spoils: Callable[[DefinitionCase], bool] | None = None
+    unavoidable: Callable[[DefinitionCase], bool] | None = None
 
     def is_about(self, oracle: str, release: str, case: DefinitionCase) -> bool:
         """Whether this rule can explain a difference from an oracle in a definition."""
@@ -138,9 +138,11 @@ class Rules(list[KnownRule]):
         """Declare a difference; the function is its `theirs`."""
         return self._declared(lambda mend: {"theirs": mend}, key, text, more)
 
-    def spoils(self, key: str, text: str, **more: Any) -> Callable[[F], F]:
-        """Declare a difference that cannot be removed; the function is its `spoils`."""
-        return self._declared(lambda has: {"spoils": has, "is_mistake": False}, key, text, more)
+    def unavoidable(self, key: str, text: str, **more: Any) -> Callable[[F], F]:
+        """Declare a difference that no text avoids; the function is its `unavoidable`."""
+        return self._declared(
+            lambda has: {"unavoidable": has, "is_mistake": False}, key, text, more
+        )
 
     def _declared(
         self, parts: Callable[[Any], dict[str, Any]], key: str, text: str, more: dict[str, Any]

@@ -67,7 +67,7 @@ class Rosbags(Oracle):
     ) -> Answer:
         found: dict[str, Any] = {}
         texts: list[str] = []
-        missing = self._read(case, found, lambda case: _noted(change(case), texts))
+        missing = self._read(case, found, lambda case: _collected(change(case), texts))
         if missing is not None:
             return Refused(f"{missing} is not there")
         if self._last is not None and self._last[0] == (case.full_name, texts):
@@ -123,7 +123,7 @@ def _parsed(text: str, full: str) -> Any:
     return get_types_from_msg(text, full)[full]
 
 
-def _noted(case: DefinitionCase, texts: list[str]) -> DefinitionCase:
+def _collected(case: DefinitionCase, texts: list[str]) -> DefinitionCase:
     texts.append(case.text)
     return case
 

@@ -332,11 +332,11 @@ class _Hashes:
             top = element.namespaced_type
             adder = add.add_srv if hasattr(element, "request_message") else add.add_action
             adder(element, found)
-        said = "/".join(top.namespaced_name())
+        full_name = "/".join(top.namespaced_name())
         own = f"{request['package']}/{request['kind']}/{request['name']}"
 
         def named(name):
-            return own + name[len(said) :] if name in found else name
+            return own + name[len(full_name) :] if name in found else name
 
         described = {}
         for name, each in found.items():

@@ -240,13 +240,13 @@ def test_wide_texts_are_narrow_to_rosbags_wherever_they_are():
     ],
 )
 def test_names_of_types_that_ros2_refuses(text, is_spoilt):
-    spoils = BY_KEY["rosbags-type-names"].spoils
+    spoils = BY_KEY["rosbags-type-names"].unavoidable
     assert spoils(case_of(text)) == is_spoilt
     assert not spoils(case_of(text, dialect="ros1"))
 
 
 def test_name_of_the_message_itself_may_be_refused():
-    spoils = BY_KEY["rosbags-type-names"].spoils
+    spoils = BY_KEY["rosbags-type-names"].unavoidable
     assert spoils(case_of("int8 a", name="a"))
     assert spoils(case_of("int8 a", name="A_b"))
     assert not spoils(case_of("int8 a", name="AbC2"))
@@ -269,7 +269,7 @@ def test_name_of_the_message_itself_may_be_refused():
     ],
 )
 def test_lists_of_lists_by_typedef(text, is_spoilt):
-    assert BY_KEY["idl-lists-of-lists"].spoils(case_of(text, language="idl")) == is_spoilt
+    assert BY_KEY["idl-lists-of-lists"].unavoidable(case_of(text, language="idl")) == is_spoilt
 
 
 SHARED = {"name": "a", "type": "wstring<=3[<=3]"}

@@ -1,8 +1,8 @@
-"""Odd packets, which are unusual or malformed, and odd values.
+"""Unusual packets and values: rare ones that are legal, and malformed ones.
 
-An odd packet is the packet of a case with one oddity, at the first place that can have the oddity.
-The writer here is our own. Its odd packets are used only if it writes the case itself like the
-reference.
+An unusual packet is the packet of a value with one unusual case, at the first place for this case.
+Our own writer makes it. The packet is used only if this writer writes the value without the case as
+the reference does.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ from firm_hdl.verify.references.values import Plain, changed
 from firm_hdl.wire import Wire
 
 __all__ = [
-    "ODDITIES",
-    "odd_packet",
-    "odd_packets",
-    "odd_value",
-    "odd_values",
+    "UNUSUAL_CASES",
     "plain_packet",
+    "unusual_packet",
+    "unusual_packets",
+    "unusual_value",
+    "unusual_values",
     "zero",
 ]
 
 MOST_PACKET_BYTES = 1 << 12
-"""Longer packets are not made odd."""
+"""Packets that are longer get no unusual case."""
 
 MOST_OF_A_KIND = 2
-"""The most odd packets of each kind, and the most odd values of each kind, for a type."""
+"""The most packets with a case, and the most values with a case, for a type."""
 
 MOST_BOUND = 64
-"""Oddities exceed no higher bound than this."""
+"""No case exceeds a bound that is higher than this."""
 
 TOO_LONG = 70_000
 """A length that exceeds every packet here, but that a library can still allocate."""
@@ -42,7 +42,7 @@ TOO_LONG = 70_000
 _CODES = {1: "B", 2: "H", 4: "I", 8: "Q"}
 
 
-ODDITIES: dict[str, str] = {
+UNUSUAL_CASES: dict[str, str] = {
     # A receiver has to take these packets.
     "bare-string": "cdr",  # The length of an empty string is 0, and it has no NUL.
     "big-endian": "cdr",  # The packet is big-endian.
@@ -65,7 +65,7 @@ ODDITIES: dict[str, str] = {
     "long-text": "ros1 cdr",  # The length of a string exceeds the packet.
     "long-items": "ros1 cdr",  # The length of a sequence exceeds the packet.
 }
-"""Oddities by name, and the wires that can have them: ``ros1``, ``cdr``, or both."""
+"""Cases by name, and the wires that can have them: ``ros1``, ``cdr``, or both."""
 
 _TAILS: dict[str, Callable[[bytes], bytes]] = {
     "options": lambda packet: packet[:2] + b"\x00\x03" + packet[4:],
@@ -81,50 +81,50 @@ _TAILS: dict[str, Callable[[bytes], bytes]] = {
 }
 
 
-def odd_packets(
+def unusual_packets(
     message: Message, wire: Wire, values: Sequence[Plain]
 ) -> Iterator[tuple[str, Plain, bytes]]:
-    """Yield oddities, values, and their odd packets: at most `MOST_OF_A_KIND` of each oddity."""
-    for odd, wires in ODDITIES.items():
+    """Yield cases, values, and their unusual packets: at most `MOST_OF_A_KIND` of each case."""
+    for case, wires in UNUSUAL_CASES.items():
         if wire in wires.split():
-            packets = ((value, odd_packet(message, wire, value, odd)) for value in values)
-            found = ((odd, value, packet) for value, packet in packets if packet is not None)
+            packets = ((value, unusual_packet(message, wire, value, case)) for value in values)
+            found = ((case, value, packet) for value, packet in packets if packet is not None)
             yield from islice(found, MOST_OF_A_KIND)
 
 
-def odd_packet(message: Message, wire: Wire, value: Plain, odd: str) -> bytes | None:
-    """Return the packet of a value with one oddity; `None` if there is no place for it."""
+def unusual_packet(message: Message, wire: Wire, value: Plain, case: str) -> bytes | None:
+    """Return the packet of a value with one case; `None` if there is no place for it."""
     plain = plain_packet(message, wire, value)
     if len(plain) > MOST_PACKET_BYTES:
         return None
-    if odd in _TAILS:
-        packet = _TAILS[odd](plain)
+    if case in _TAILS:
+        packet = _TAILS[case](plain)
     else:
-        writer = _Writer(wire=wire, odd=odd)
+        writer = _Writer(wire=wire, case=case)
         writer.packet(message, value)
         packet = bytes(writer.data)
     return None if packet == plain else packet
 
 
-_VALUE_ODDITIES = ("nul-inside", "not-utf8", "bound-text", "bound-items")
+_VALUE_CASES = ("nul-inside", "not-utf8", "bound-text", "bound-items")
 
 
-def odd_values(message: Message, values: Sequence[Plain]) -> Iterator[tuple[str, Plain]]:
-    """Yield oddities and odd values to be written: at most `MOST_OF_A_KIND` of each oddity."""
-    for odd in _VALUE_ODDITIES:
-        found = (odd_value(message, value, odd) for value in values)
-        yield from islice(((odd, value) for value in found if value is not None), MOST_OF_A_KIND)
+def unusual_values(message: Message, values: Sequence[Plain]) -> Iterator[tuple[str, Plain]]:
+    """Yield cases and unusual values to be written: at most `MOST_OF_A_KIND` of each case."""
+    for case in _VALUE_CASES:
+        found = (unusual_value(message, value, case) for value in values)
+        yield from islice(((case, value) for value in found if value is not None), MOST_OF_A_KIND)
 
 
-def odd_value(message: Message, value: Plain, odd: str) -> Plain | None:
-    """Return a value with one oddity; `None` if there is no place for it."""
-    writer = _Writer(wire="cdr", odd=odd)
-    found = changed(message, value, writer.odd_part)
+def unusual_value(message: Message, value: Plain, case: str) -> Plain | None:
+    """Return a value with one case; `None` if there is no place for it."""
+    writer = _Writer(wire="cdr", case=case)
+    found = changed(message, value, writer.unusual_part)
     return found if writer.is_done else None
 
 
 def plain_packet(message: Message, wire: Wire, value: Plain) -> bytes:
-    """Return the packet of a value, without anything odd."""
+    """Return the packet of a value, without an unusual case."""
     writer = _Writer(wire=wire)
     writer.packet(message, value)
     return bytes(writer.data)
@@ -150,27 +150,27 @@ def zero(kind: FieldType) -> Plain:
 @dataclass(slots=True, kw_only=True)
 class _Writer:
     wire: Wire
-    odd: str = ""
+    case: str = ""
     is_done: bool = False
     data: bytearray = field(default_factory=bytearray)
 
-    def here(self, odd: str) -> bool:
-        """Return whether the oddity goes here, at the first place for it; mark it as done."""
-        if odd != self.odd or self.is_done:
+    def takes_place(self, case: str) -> bool:
+        """Return whether the case belongs at this place, the first one for it; mark it as done."""
+        if case != self.case or self.is_done:
             return False
         self.is_done = True
         return True
 
     def packet(self, message: Message, value: Plain) -> None:
         if self.wire == "cdr":
-            self.data += b"\0\0\0\0" if self.odd == "big-endian" else b"\0\1\0\0"
+            self.data += b"\0\0\0\0" if self.case == "big-endian" else b"\0\1\0\0"
         self.message(message, value)
 
     def number(self, value: int, size: int) -> None:
         if self.wire == "cdr":
             gap = -(len(self.data) - 4) % size
-            self.data += bytes([0xFF if gap and self.here("dirty-padding") else 0]) * gap
-        order = ">" if self.odd == "big-endian" else "<"
+            self.data += bytes([0xFF if gap and self.takes_place("dirty-padding") else 0]) * gap
+        order = ">" if self.case == "big-endian" else "<"
         self.data += struct.pack(order + _CODES[size], value & ((1 << 8 * size) - 1))
 
     def message(self, kind: Message, value: Plain) -> None:
@@ -184,11 +184,11 @@ class _Writer:
             case Message():
                 self.message(kind, value)
             case Primitive(kind="bool"):
-                self.number(2 if self.here("bool-2") else value, 1)
+                self.number(2 if self.takes_place("bool-2") else value, 1)
             case Primitive():
                 self.number(value, kind.bytes)
             case String(wide=True):
-                value = self.odd_items(kind.bound, value, 0x61, "bound-text")
+                value = self.unusual_items(kind.bound, value, 0x61, "bound-text")
                 self.items(None, value, lambda unit: self.number(unit, 4), 0)
             case String():
                 self.text(kind, value)
@@ -201,49 +201,49 @@ class _Writer:
     def items(
         self, bound: int | None, values: Plain, write: Callable[[Plain], None], more: Plain
     ) -> None:
-        values = self.odd_items(bound, values, more)
-        self.number(TOO_LONG if self.here("long-items") else len(values), 4)
+        values = self.unusual_items(bound, values, more)
+        self.number(TOO_LONG if self.takes_place("long-items") else len(values), 4)
         for each in values:
             write(each)
 
-    def odd_items(
-        self, bound: int | None, values: Plain, more: Plain, odd: str = "bound-items"
+    def unusual_items(
+        self, bound: int | None, values: Plain, more: Plain, case: str = "bound-items"
     ) -> Plain:
-        if bound is not None and bound <= MOST_BOUND and self.here(odd):
+        if bound is not None and bound <= MOST_BOUND and self.takes_place(case):
             return [*values, *[more] * (bound + 1 - len(values))]
         return values
 
-    def odd_text(self, kind: String, value: bytes) -> bytes:
-        if self.here("not-utf8"):
+    def unusual_text(self, kind: String, value: bytes) -> bytes:
+        if self.takes_place("not-utf8"):
             return b"\xc3("
-        if self.here("nul-inside"):
+        if self.takes_place("nul-inside"):
             return b"a\0b"
-        if value and self.here("no-nul"):
+        if value and self.takes_place("no-nul"):
             return b"ab"
-        if kind.bound is not None and kind.bound <= MOST_BOUND and self.here("bound-text"):
+        if kind.bound is not None and kind.bound <= MOST_BOUND and self.takes_place("bound-text"):
             return value[: kind.bound].ljust(kind.bound + 1, b"x")
         return value
 
-    def odd_part(self, kind: FieldType, value: Plain) -> Plain:
-        """Return a value with the oddity in itself, not in its parts."""
+    def unusual_part(self, kind: FieldType, value: Plain) -> Plain:
+        """Return a value with the case in the value itself, not in its parts."""
         match kind:
             case String(wide=False):
-                return self.odd_text(kind, value)
+                return self.unusual_text(kind, value)
             case String(bound=bound):
-                return self.odd_items(bound, value, 0x61, "bound-text")
+                return self.unusual_items(bound, value, 0x61, "bound-text")
             case SequenceType(element=element):
-                return self.odd_items(kind.bound, value, zero(element))
+                return self.unusual_items(kind.bound, value, zero(element))
             case _:
                 return value
 
     def text(self, kind: String, value: bytes) -> None:
         had_nul = self.is_done
-        value = self.odd_text(kind, value)
+        value = self.unusual_text(kind, value)
         nul = b"\0" if self.wire == "cdr" else b""
-        if not value and self.here("bare-string"):
+        if not value and self.takes_place("bare-string"):
             nul = b""
-        if self.odd == "no-nul" and self.is_done and not had_nul:
+        if self.case == "no-nul" and self.is_done and not had_nul:
             nul = b""
         size = len(value) + len(nul)
-        self.number(TOO_LONG if self.here("long-text") else size, 4)
+        self.number(TOO_LONG if self.takes_place("long-text") else size, 4)
         self.data += value + nul

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.verify.clients import oddities as odd
-from firm_hdl.verify.clients.oddities import (
-    ODDITIES,
-    odd_packet,
-    odd_packets,
-    odd_value,
-    odd_values,
+from firm_hdl.verify.clients import unusual
+from firm_hdl.verify.clients.unusual import (
+    UNUSUAL_CASES,
     plain_packet,
+    unusual_packet,
+    unusual_packets,
+    unusual_value,
+    unusual_values,
     zero,
 )
 
@@ -25,7 +25,7 @@ ANYWHERE = (
 
 def test_each_is_where_it_can_be():
     wires = {**dict.fromkeys(CDR_ALONE, "cdr"), **dict.fromkeys(ANYWHERE, "ros1 cdr")}
-    assert {**wires, "trailing-1": "ros1"} == ODDITIES
+    assert {**wires, "trailing-1": "ros1"} == UNUSUAL_CASES
 
 
 ROS1 = "01 02000000 02000000 7879 00000000 01 01000000 05"
@@ -49,17 +49,17 @@ def test_packets_of_ros1_are_odd_at_their_first_place(make_message):
     message = make_message("uint8 a\nuint32 n\nstring<=2 s\nstring e\nbool t\nuint8[<=1] l\n")
     value = {"a": 1, "n": 2, "s": b"xy", "e": b"", "t": True, "l": [5]}
     assert plain_packet(message, "ros1", value) == bytes.fromhex(ROS1)
-    found = {each: packet for each, _, packet in odd_packets(message, "ros1", [value])}
+    found = {each: packet for each, _, packet in unusual_packets(message, "ros1", [value])}
     assert found == {name: bytes.fromhex(text) for name, text in ROS1_ODD.items()}
 
 
 def test_two_packets_of_a_kind_are_made_odd_and_two_values(make_message):
     message = make_message("string<=2 s\nuint8 a")
     values = [{"s": bytes([each]), "a": each} for each in (65, 66, 67)]
-    packets = [(each, value["a"]) for each, value, _ in odd_packets(message, "ros1", values)]
+    packets = [(each, value["a"]) for each, value, _ in unusual_packets(message, "ros1", values)]
     names = [name for name in ROS1_ODD if name not in ("bool-2", "bound-items", "long-items")]
     assert sorted(packets) == sorted((name, number) for name in names for number in (65, 66))
-    assert [(name, value["a"]) for name, value in odd_values(message, values)] == [
+    assert [(name, value["a"]) for name, value in unusual_values(message, values)] == [
         (name, number) for name in ("nul-inside", "not-utf8", "bound-text") for number in (65, 66)
     ]
 
@@ -67,14 +67,14 @@ def test_two_packets_of_a_kind_are_made_odd_and_two_values(make_message):
 def test_who_has_no_place_for_it_is_passed_over(make_message):
     message = make_message("string s")
     values = [{"s": b"a"}, {"s": b""}, {"s": b"b"}, {"s": b""}]
-    bare = [v for each, v, _ in odd_packets(message, "cdr", values) if each == "bare-string"]
+    bare = [v for each, v, _ in unusual_packets(message, "cdr", values) if each == "bare-string"]
     assert bare == [{"s": b""}] * 2
 
 
 @pytest.mark.parametrize(("size", "is_made"), [(4096, True), (4097, False)])
 def test_packets_are_made_odd_up_to_a_size(make_message, size, is_made):
     message = make_message(f"uint8[{size}] a")
-    packet = odd_packet(message, "ros1", {"a": [0] * size}, "cut-1")
+    packet = unusual_packet(message, "ros1", {"a": [0] * size}, "cut-1")
     assert (packet is not None) == is_made
 
 
@@ -82,19 +82,22 @@ def test_packets_are_made_odd_up_to_a_size(make_message, size, is_made):
 def test_bounds_are_exceeded_up_to_one(make_message, bound, is_made):
     message = make_message(f"string<={bound} s\nuint8[<={bound}] l\nwstring<={bound} w")
     value = {"s": b"", "l": [], "w": []}
-    text, items = odd_value(message, value, "bound-text"), odd_value(message, value, "bound-items")
+    text, items = (
+        unusual_value(message, value, "bound-text"),
+        unusual_value(message, value, "bound-items"),
+    )
     assert (text is not None, items is not None) == (is_made, is_made)
     if is_made:
         assert text == {"s": b"x" * 65, "l": [], "w": []}
         assert items == {"s": b"", "l": [0] * 65, "w": []}
-    wide = odd_value(make_message(f"wstring<={bound} w"), {"w": [1]}, "bound-text")
+    wide = unusual_value(make_message(f"wstring<={bound} w"), {"w": [1]}, "bound-text")
     assert wide == ({"w": [1] + [0x61] * 64} if is_made else None)
 
 
 def test_everything_of_a_packet_may_be_big_endian(make_message):
     message = make_message("uint8 a\nuint16 b\nuint32 c\nuint64 d\nstring s")
     value = {"a": 1, "b": 2, "c": 3, "d": 4, "s": b"x"}
-    packet = odd_packet(message, "cdr", value, "big-endian")
+    packet = unusual_packet(message, "cdr", value, "big-endian")
     want = "00000000 01 00 0002 00000003 0000000000000004 00000002 7800"
     assert packet == bytes.fromhex(want)
 
@@ -118,4 +121,4 @@ def test_zero_is_what_a_library_makes_of_nothing(make_message, fields, value):
 
 
 def test_lengths_that_lie_are_within_what_a_library_may_allocate():
-    assert odd.TOO_LONG > odd.MOST_PACKET_BYTES and odd.TOO_LONG < 1 << 20
+    assert unusual.TOO_LONG > unusual.MOST_PACKET_BYTES and unusual.TOO_LONG < 1 << 20
