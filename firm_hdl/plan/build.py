@@ -37,7 +37,8 @@ from firm_hdl.plan.limits import (
 )
 from firm_hdl.plan.link import END, NOWHERE, Mark, link
 from firm_hdl.wire import Layout, LoopNode, Node, Path, RunNode, Scalar, Trigger, walk
-from firm_hdl.wire.layout import LENGTH, OCTET, Gap
+from firm_hdl.wire.alignment import LENGTH, OCTET
+from firm_hdl.wire.layout import Gap
 
 __all__ = ["build_plan"]
 

@@ -15,7 +15,8 @@ from itertools import count
 
 from firm_hdl.model import PRIMITIVES
 from firm_hdl.wire import Layout, LoopNode, Node, Path, RunNode, Scalar, Trigger
-from firm_hdl.wire.layout import OCTET, Gap
+from firm_hdl.wire.alignment import OCTET
+from firm_hdl.wire.layout import Gap
 
 __all__ = ["outline"]
 
