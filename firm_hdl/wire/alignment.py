@@ -12,10 +12,13 @@ from firm_hdl.model import PRIMITIVES, Array, FieldType, Message, Primitive, Seq
 from firm_hdl.wire import residues as rs
 from firm_hdl.wire.rules import WireRules
 
-__all__ = ["LENGTH", "OCTET", "Alignment"]
+__all__ = ["LENGTH", "MAX_LENGTH", "OCTET", "Alignment"]
 
 LENGTH = PRIMITIVES["ros2"]["uint32"]
 """The length of a string or a sequence."""
+
+MAX_LENGTH = (1 << LENGTH.bits) - 1
+"""Largest length of a string or a sequence on every wire."""
 
 OCTET = PRIMITIVES["ros2"]["uint8"]
 """A byte of a string, and the one member of a message without fields."""
