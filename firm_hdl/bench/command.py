@@ -11,7 +11,6 @@ from tqdm import tqdm
 
 from firm_hdl.arguments import add_jobs, add_types_or_all, add_wire, number_between, positive
 from firm_hdl.bench.compare import compared
-from firm_hdl.bench.cycles import DIRECTIONS
 from firm_hdl.bench.devices import DEVICES
 from firm_hdl.bench.messages import STATED
 from firm_hdl.bench.results import Converted, Result, read_results, results_text
@@ -20,7 +19,7 @@ from firm_hdl.bench.software import CLOCK_MHZ, compare_software, machine, softwa
 from firm_hdl.bench.tables import head, row, summary
 from firm_hdl.bench.tools import versions
 from firm_hdl.frontend import load_all, open_library
-from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES
+from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, DIRECTIONS
 
 __all__ = ["add_bench_arguments", "run_bench"]
 

@@ -242,7 +242,7 @@ class Flow:
                 most[counter] = max(most[counter], self._words_or_elements(jump, counter))
         for step in plan.steps:
             if isinstance(step.begin, BeginRun):
-                lanes = plan.leaves[plan.runs[step.begin.run].items].lanes
+                lanes = plan.items_leaf(step.begin.run).lanes
                 most[RUN_COUNTER] = max(most[RUN_COUNTER], limit(step.begin) // lanes)
             elif step.begin is not None:
                 most[step.begin.level] = max(most[step.begin.level], limit(step.begin))
@@ -256,7 +256,7 @@ class Flow:
         assert jump.step is not None
         step = self.plan.steps[jump.step]
         assert isinstance(step, RunStep)
-        return count // self.plan.leaves[self.plan.runs[step.run].items].lanes
+        return count // self.plan.items_leaf(step.run).lanes
 
     def _load_levels(self, count: Value, single: Value, double: Value | None) -> None:
         """Load the counter of a loop that the step may begin.

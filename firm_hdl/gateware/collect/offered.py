@@ -61,7 +61,7 @@ class OfferedLength:
             self.rest = Signal(1, name=f"rest_{self.leaf}")
             m.d.sync += [self.skips.eq(zero), self.single.eq(length == 1)]
             return
-        lanes = plan.leaves[plan.runs[begin.run].items].lanes
+        lanes = plan.items_leaf(begin.run).lanes
         low = length[: lanes.bit_length() - 1]
         full = Mux(low.any(), low, lanes) if len(low) else Const(lanes)
         self.rest = Signal(range(lanes + 1), name=f"rest_{self.leaf}", reset_less=True)

@@ -185,7 +185,7 @@ class Lengths(wiring.Component):
 
     def _lanes_of(self, meaning: Meaning) -> int:
         assert meaning.run is not None
-        return self.plan.leaves[self.plan.runs[meaning.run.run].items].lanes
+        return self.plan.items_leaf(meaning.run.run).lanes
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
