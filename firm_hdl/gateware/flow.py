@@ -5,14 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from amaranth.hdl import Const, Module, Signal, Value
+from amaranth.hdl import Const, Module, Mux, Signal, Value
 from amaranth.lib import data
 
 from firm_hdl.gateware.counter import Counter
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.plan import RUN_COUNTER, BeginLoop, BeginRun, Jump, Plan, RunStep, Step
 
-__all__ = ["Exit", "Flow", "exceeds"]
+__all__ = ["Exit", "Flow", "exceeds", "last_word"]
+
+
+def last_word(items: Value, lanes: int) -> Value:
+    """Return the number of items in the last word of a run that has at least one item."""
+    low = items[: lanes.bit_length() - 1]
+    return Mux(low.any(), low, lanes) if len(low) else Const(lanes)
 
 
 def exceeds(value: Value, limit: int) -> Value:
