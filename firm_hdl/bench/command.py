@@ -9,7 +9,14 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from firm_hdl.arguments import add_jobs, add_types_or_all, add_wire, number_between, positive
+from firm_hdl.arguments import (
+    add_jobs,
+    add_types_or_all,
+    add_wire,
+    check_types_or_all,
+    number_between,
+    positive,
+)
 from firm_hdl.bench.compare import compared
 from firm_hdl.bench.devices import DEVICES
 from firm_hdl.bench.messages import STATED
@@ -121,8 +128,7 @@ def run_bench(given: argparse.Namespace) -> int:
     BenchError
         If the older file cannot be read.
     """
-    if given.all == bool(given.types):
-        given.usage_error("name either types or --all")
+    check_types_or_all(given)
     if given.software:
         return _run_software(given)
     old = None if given.compare is None else read_results(given.compare)

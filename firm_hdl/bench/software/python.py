@@ -14,6 +14,7 @@ from firm_hdl.bench.software.sample import NoFigureError, Sample, Timed, check_w
 from firm_hdl.bench.software.timing import best_ns
 from firm_hdl.bench.tools import BenchError, MissingToolError
 from firm_hdl.verify.references.objects import full_text
+from firm_hdl.verify.references.oracle import ROSBAGS_WIRES
 from firm_hdl.verify.references.user_oracle import oracle_name, resolved_oracle
 from firm_hdl.verify.results.verdict import NotJudgedError
 from firm_hdl.verify.ros_python.worker import ROS_PYTHON
@@ -35,7 +36,7 @@ def time_rosbags(sample: Sample) -> Timed:
     Raises
     ------
     NoFigureError
-        If it does not have the type.
+        If it does not have the type or the wire format.
     BenchError
         If it does not write what it has read.
     """
@@ -44,8 +45,11 @@ def time_rosbags(sample: Sample) -> Timed:
     except NotJudgedError as error:
         raise NoFigureError(str(error)) from None
     name = oracle_name(sample.message)
-    reader: Any = store.deserialize_ros1 if sample.wire == "ros1" else store.deserialize_cdr
-    writer: Any = store.serialize_ros1 if sample.wire == "ros1" else store.serialize_cdr
+    if sample.wire not in ROSBAGS_WIRES:
+        raise NoFigureError(f"rosbags does not write {sample.wire}")
+    # rosbags names its methods by the wire format, as firm-hdl does.
+    reader: Any = getattr(store, f"deserialize_{sample.wire}")
+    writer: Any = getattr(store, f"serialize_{sample.wire}")
 
     def read(packet: bytes) -> object:
         return reader(packet, name)
