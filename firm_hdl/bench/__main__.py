@@ -40,6 +40,7 @@ from firm_hdl.bench.software import (
 from firm_hdl.bench.standard import ALL_TYPES, MEASURED, SOFTWARE, Group, group_tasks
 from firm_hdl.bench.tables import row
 from firm_hdl.bench.tools import BenchError, versions
+from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.plan import DIRECTIONS
 from firm_hdl.terminal import printable_streams
 
@@ -74,7 +75,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     try:
         return _measure_all(given)
-    except BenchError as error:
+    except (BenchError, ProgramMissingError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
 

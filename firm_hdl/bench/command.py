@@ -123,7 +123,7 @@ def run_bench(given: argparse.Namespace) -> int:
     ------
     DefinitionError
         If a type is invalid.
-    MissingToolError
+    ProgramMissingError
         If a tool is not installed. Nothing was measured.
     BenchError
         If the older file cannot be read.

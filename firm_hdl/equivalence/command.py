@@ -12,9 +12,10 @@ from tqdm import tqdm
 from firm_hdl.arguments import add_jobs, add_types_or_all, check_types_or_all, positive
 from firm_hdl.equivalence.converters import Attempt, ProofTask, both_directions, run_tasks
 from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT
-from firm_hdl.equivalence.tools import MissingToolError, ToolError, find_tools
+from firm_hdl.equivalence.tools import find_tools
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import load_all, open_library
+from firm_hdl.jobs import ProgramMissingError, ToolError
 
 __all__ = ["add_prove_arguments", "add_timeout", "run_proofs", "run_prove"]
 
@@ -82,7 +83,7 @@ def run_proofs(tasks: Sequence[ProofTask], jobs: int | None, *, bar: bool) -> in
     """
     try:
         find_tools()
-    except (MissingToolError, ToolError) as error:
+    except (ProgramMissingError, ToolError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
     results: list[tuple[ProofTask, Attempt]] = []
