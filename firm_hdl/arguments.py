@@ -13,6 +13,7 @@ from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.model import Wire
 
 __all__ = [
+    "add_bus_bytes",
     "add_depends",
     "add_jobs",
     "add_options",
@@ -20,6 +21,7 @@ __all__ = [
     "add_path",
     "add_types_or_all",
     "add_wire",
+    "check_types_or_all",
     "number_between",
     "positive",
 ]
@@ -61,6 +63,12 @@ def add_types_or_all(
     command.add_argument("types", nargs="*", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
     command.add_argument("--all", action="store_true", help=which)
     command.set_defaults(usage_error=command.error)
+
+
+def check_types_or_all(given: argparse.Namespace) -> None:
+    """Refuse arguments that have both names of types and ``--all``, or neither."""
+    if given.all == bool(given.types):
+        given.usage_error("name either types or --all")
 
 
 def add_origins(command: argparse.ArgumentParser) -> None:
@@ -119,11 +127,10 @@ def add_jobs(command: argparse._ActionsContainer) -> None:
     )
 
 
-def add_options(command: argparse._ActionsContainer) -> None:
-    """Add the options of a converter: wire format, bus width, longest message."""
-    from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES
+def add_bus_bytes(command: argparse._ActionsContainer) -> None:
+    """Add ``--bus-bytes``."""
+    from firm_hdl.plan import BUS_BYTES
 
-    add_wire(command)
     command.add_argument(
         "--bus-bytes",
         type=int,
@@ -132,6 +139,14 @@ def add_options(command: argparse._ActionsContainer) -> None:
         metavar="N",
         help=f"bytes per beat: {', '.join(map(str, BUS_BYTES))}; default: %(default)s",
     )
+
+
+def add_options(command: argparse._ActionsContainer) -> None:
+    """Add the options of a converter: wire format, bus width, longest message."""
+    from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
+
+    add_wire(command)
+    add_bus_bytes(command)
     command.add_argument(
         "--max-message-bytes",
         type=_message_bytes,

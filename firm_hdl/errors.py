@@ -14,7 +14,22 @@ from functools import lru_cache
 
 from firm_hdl.terminal import printable
 
-__all__ = ["DefinitionError", "Diagnostic", "Source", "Span", "UserError", "described"]
+__all__ = [
+    "MAX_DIAGNOSTICS",
+    "DefinitionError",
+    "Diagnostic",
+    "Source",
+    "Span",
+    "UserError",
+    "described",
+]
+
+
+MAX_DIAGNOSTICS = 1000
+"""Largest number of problems that are reported of one file.
+
+Without a limit, a large file that is no definition takes minutes.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

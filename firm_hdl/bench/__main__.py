@@ -15,7 +15,6 @@ from tqdm import tqdm
 
 from firm_hdl.arguments import add_jobs
 from firm_hdl.bench.compare import compared
-from firm_hdl.bench.cycles import DIRECTIONS
 from firm_hdl.bench.devices import DEVICES
 from firm_hdl.bench.estimates import estimates_json
 from firm_hdl.bench.page import (
@@ -41,6 +40,8 @@ from firm_hdl.bench.software import (
 from firm_hdl.bench.standard import ALL_TYPES, MEASURED, SOFTWARE, Group, group_tasks
 from firm_hdl.bench.tables import row
 from firm_hdl.bench.tools import BenchError, versions
+from firm_hdl.jobs import ProgramMissingError
+from firm_hdl.plan import DIRECTIONS
 from firm_hdl.terminal import printable_streams
 
 PARTS = (*MEASURED, "beats", "software")
@@ -74,7 +75,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     try:
         return _measure_all(given)
-    except BenchError as error:
+    except (BenchError, ProgramMissingError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
 

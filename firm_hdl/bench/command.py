@@ -9,9 +9,15 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from firm_hdl.arguments import add_jobs, add_types_or_all, add_wire, number_between, positive
+from firm_hdl.arguments import (
+    add_jobs,
+    add_types_or_all,
+    add_wire,
+    check_types_or_all,
+    number_between,
+    positive,
+)
 from firm_hdl.bench.compare import compared
-from firm_hdl.bench.cycles import DIRECTIONS
 from firm_hdl.bench.devices import DEVICES
 from firm_hdl.bench.messages import STATED
 from firm_hdl.bench.results import Converted, Result, read_results, results_text
@@ -20,7 +26,7 @@ from firm_hdl.bench.software import CLOCK_MHZ, compare_software, machine, softwa
 from firm_hdl.bench.tables import head, row, summary
 from firm_hdl.bench.tools import versions
 from firm_hdl.frontend import load_all, open_library
-from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES
+from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, DIRECTIONS
 
 __all__ = ["add_bench_arguments", "run_bench"]
 
@@ -117,13 +123,12 @@ def run_bench(given: argparse.Namespace) -> int:
     ------
     DefinitionError
         If a type is invalid.
-    MissingToolError
+    ProgramMissingError
         If a tool is not installed. Nothing was measured.
     BenchError
         If the older file cannot be read.
     """
-    if given.all == bool(given.types):
-        given.usage_error("name either types or --all")
+    check_types_or_all(given)
     if given.software:
         return _run_software(given)
     old = None if given.compare is None else read_results(given.compare)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import islice
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 from firm_hdl.bench.messages import STATED, Stated, values
 from firm_hdl.gateware import Deserializer, Serializer
@@ -12,10 +12,7 @@ from firm_hdl.model import Message
 from firm_hdl.plan import Payload, Plan, encode
 from firm_hdl.sim import Harness, RunResult, to_transfers
 
-__all__ = ["DIRECTIONS", "Converter", "Cycles", "Direction", "count_cycles", "stated_messages"]
-
-Direction: TypeAlias = Literal["deserializer", "serializer"]
-DIRECTIONS: tuple[Direction, ...] = ("deserializer", "serializer")
+__all__ = ["Converter", "Cycles", "count_cycles", "stated_messages"]
 
 MOST_BEATS = 10_000
 """Number of beats after which no message is added: a nested sequence may have thousands."""

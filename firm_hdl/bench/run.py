@@ -14,9 +14,8 @@ from firm_hdl.bench.devices import DEVICES
 from firm_hdl.bench.flow import Measured
 from firm_hdl.bench.messages import STATED, Stated
 from firm_hdl.bench.results import Converted, Result
-from firm_hdl.bench.tools import BenchError
-from firm_hdl.errors import DefinitionError
-from firm_hdl.export.build import BuildError, check_size, plan_of
+from firm_hdl.errors import DefinitionError, UserError
+from firm_hdl.export.build import check_size, plan_of
 from firm_hdl.frontend import open_library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.jobs import run_each
@@ -79,7 +78,7 @@ def run_task(task: BenchTask) -> Result:
         if task.device is not None:
             measured = _measure(task, message)
             problem = measured.problem
-    except (BenchError, BuildError, DefinitionError, ValueError) as error:
+    except (UserError, DefinitionError, ValueError) as error:
         problem = str(error)
     return Result(converter=what, cycles=cycles, measured=measured, problem=problem)
 

@@ -6,12 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from firm_hdl.bench.cycles import DIRECTIONS
 from firm_hdl.bench.messages import STATED, Stated
 from firm_hdl.bench.results import Converted
 from firm_hdl.bench.run import BenchTask
 from firm_hdl.frontend import load_all, open_library
-from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
+from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, DIRECTIONS
 
 __all__ = ["ALL_TYPES", "MEASURED", "SOFTWARE", "Group", "group_tasks"]
 

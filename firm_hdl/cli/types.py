@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from firm_hdl.arguments import check_types_or_all
 from firm_hdl.frontend import Library, all_names, open_library
 
 __all__ = ["library_of", "names_of"]
@@ -11,8 +12,7 @@ __all__ = ["library_of", "names_of"]
 
 def names_of(args: argparse.Namespace) -> list[str]:
     """Return the types to work on: the named types, or all types of the folders or recordings."""
-    if args.all == bool(args.types):
-        args.usage_error("name either types or --all")
+    check_types_or_all(args)
     if not args.all:
         return list(args.types)
     return all_names(args.distro, args.path, args.bag)

@@ -16,7 +16,7 @@ from functools import cache
 from firm_hdl.covering.branches import branches
 from firm_hdl.frontend import Library
 from firm_hdl.frontend.productions import productions
-from firm_hdl.model import Array, Field, Message, Primitive, Sequence, String
+from firm_hdl.model import Array, Field, Message, Primitive, Sequence, String, closure
 from firm_hdl.plan import Plan
 from firm_hdl.plan.shape import constructs
 from firm_hdl.wire import Wire, lay_out
@@ -75,21 +75,8 @@ def cost(plan: Plan) -> float:
     return 20.0 + len(plan.steps)
 
 
-def _all_messages(message: Message) -> Iterator[Message]:
-    """Yield a message and all messages inside it, each once."""
-    pending = [message]
-    seen = {message.name}
-    while pending:
-        current = pending.pop()
-        yield current
-        for child in current.children:
-            if child.name not in seen:
-                seen.add(child.name)
-                pending.append(child)
-
-
 def _grammar(library: Library, message: Message) -> Iterator[str]:
-    for each in _all_messages(message):
+    for each in closure([message]):
         # The builtin types of ROS 1 have no text.
         if each.package:
             is_idl = library.is_idl(each.name)
@@ -104,7 +91,7 @@ def _productions(message: Message, is_idl: bool) -> frozenset[str]:
 
 
 def _meaning(message: Message) -> Iterator[str]:
-    for each in _all_messages(message):
+    for each in closure([message]):
         yield from _own(each)
 
 
@@ -147,7 +134,7 @@ def _own(message: Message) -> Iterator[str]:
 def _field(item: Field) -> Iterator[str]:
     kind = item.type
     if item.default is not None:
-        yield f"default of {_kind(kind.element if isinstance(kind, Array | Sequence) else kind)}"
+        yield f"default of {_kind(item.element_type)}"
     match kind:
         case Array():
             yield f"array of {_kind(kind.element)}"

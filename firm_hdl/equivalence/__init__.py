@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from firm_hdl.equivalence.circuit import ProofError
 from firm_hdl.equivalence.proof import Proof, prove
-from firm_hdl.equivalence.tools import MissingToolError, Tools, find_tools
+from firm_hdl.equivalence.tools import Tools, find_tools
 
-__all__ = ["MissingToolError", "Proof", "ProofError", "Tools", "find_tools", "prove"]
+__all__ = ["Proof", "ProofError", "Tools", "find_tools", "prove"]

@@ -9,20 +9,26 @@ from collections.abc import Sequence
 
 from tqdm import tqdm
 
-from firm_hdl.arguments import add_jobs, add_types_or_all, positive
+from firm_hdl.arguments import add_jobs, add_types_or_all, check_types_or_all, positive
 from firm_hdl.equivalence.converters import Attempt, ProofTask, both_directions, run_tasks
 from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT
-from firm_hdl.equivalence.tools import MissingToolError, ToolError, find_tools
+from firm_hdl.equivalence.tools import find_tools
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import load_all, open_library
+from firm_hdl.jobs import ProgramMissingError, ToolError
 
-__all__ = ["add_prove_arguments", "run_proofs", "run_prove"]
+__all__ = ["add_prove_arguments", "add_timeout", "run_proofs", "run_prove"]
 
 
 def add_prove_arguments(command: argparse.ArgumentParser) -> None:
     """Add the arguments that only this command has."""
     add_types_or_all(command, "all types")
     add_jobs(command)
+    add_timeout(command)
+
+
+def add_timeout(command: argparse.ArgumentParser) -> None:
+    """Add ``--timeout``."""
     command.add_argument(
         "--timeout",
         type=positive,
@@ -40,8 +46,7 @@ def run_prove(given: argparse.Namespace) -> int:
     DefinitionError, BuildError
         If a type is invalid, or the options do not fit it. Nothing was proved.
     """
-    if given.all == bool(given.types):
-        given.usage_error("name either types or --all")
+    check_types_or_all(given)
     library = open_library(given.distro, given.path, given.bag, depends=given.depends)
     names = given.types
     if given.all:
@@ -78,7 +83,7 @@ def run_proofs(tasks: Sequence[ProofTask], jobs: int | None, *, bar: bool) -> in
     """
     try:
         find_tools()
-    except (MissingToolError, ToolError) as error:
+    except (ProgramMissingError, ToolError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
     results: list[tuple[ProofTask, Attempt]] = []

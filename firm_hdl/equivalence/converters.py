@@ -9,8 +9,8 @@ from amaranth.back import rtlil as amaranth_rtlil
 
 from firm_hdl.equivalence.circuit import ProofError
 from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT, Proof, prove
-from firm_hdl.errors import DefinitionError
-from firm_hdl.export.build import BuildError, check_size, plan_of
+from firm_hdl.errors import DefinitionError, UserError
+from firm_hdl.export.build import check_size, plan_of
 from firm_hdl.export.top import DIRECTIONS, Direction, Top
 from firm_hdl.frontend import open_library
 from firm_hdl.gateware import Deserializer, Serializer
@@ -149,7 +149,7 @@ def attempt(task: ProofTask) -> Attempt:
                 timeout=task.timeout,
             )
         )
-    except (ProofError, BuildError, DefinitionError, ValueError) as error:
+    except (ProofError, UserError, DefinitionError, ValueError) as error:
         return Attempt(proof=None, problem=str(error))
 
 

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 from amaranth.back import rtlil as amaranth_rtlil
 
+from firm_hdl.equivalence.circuit import ProofError
 from firm_hdl.equivalence.match import match_names
 from firm_hdl.equivalence.miter import Miter, make_miter
 from firm_hdl.equivalence.rtlil_side import read_rtlil
 from firm_hdl.equivalence.solve import solve
 from firm_hdl.equivalence.tools import Tools, find_tools
 from firm_hdl.equivalence.vhdl_side import read_vhdl
+from firm_hdl.jobs import ToolError
 from firm_hdl.vhdl.convert import Vhdl, convert
 
 __all__ = ["DEFAULT_TIMEOUT", "Proof", "Result", "prove"]
@@ -72,6 +75,16 @@ class Proof:
         return "\n    ".join(lines)
 
 
+@contextmanager
+def _as_proof_errors() -> Iterator[None]:
+    """Turn errors of tools into errors of proofs."""
+    try:
+        yield
+    except ToolError as error:
+        raise ProofError(str(error)) from None
+
+
+@_as_proof_errors()
 def prove(
     design: Any,
     vhdl: Vhdl | None = None,
@@ -99,7 +112,7 @@ def prove(
 
     Raises
     ------
-    MissingToolError
+    ProgramMissingError
         If GHDL or Yosys is not installed.
     ProofError
         If the design has a construct that a proof does not support, such as a foreign instance, or

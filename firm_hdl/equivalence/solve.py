@@ -16,7 +16,8 @@ from pathlib import Path
 
 from firm_hdl.equivalence.circuit import ProofError
 from firm_hdl.equivalence.miter import Miter
-from firm_hdl.equivalence.tools import ToolError, Tools, TooSlowError, answer_of
+from firm_hdl.equivalence.tools import Tools, answer_of
+from firm_hdl.jobs import ToolError, TooSlowError
 
 __all__ = ["solve"]
 
@@ -77,12 +78,12 @@ def solve(miter: Miter, tools: Tools, folder: Path, timeout: float) -> Answer:
     _write(folder / "miter.json", miter, values=False)
     try:
         tools.run_yosys(folder, f"{_GATES.format(name='miter')}; {_ABC}", timeout)
-    except ToolError as error:
-        if "problems in 'check -assert'" in str(error):
-            raise ProofError("one of the circuits has a combinational loop, or a latch") from None
-        raise
     except TooSlowError:
         left = list(range(len(miter.claims)))
+    except ToolError as error:
+        is_loop = "problems in 'check -assert'" in str(error)
+        why = "one of the circuits has a combinational loop, or a latch" if is_loop else str(error)
+        raise ProofError(why) from None
     else:
         left = _left(folder / "answer.json", len(miter.claims))
     # A difference often shows in many claims, and a few claims make a small problem.

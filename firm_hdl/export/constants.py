@@ -11,7 +11,7 @@ from typing import Any, Literal, TypeAlias
 
 from firm_hdl.export.remarks import quoted, unit_of
 from firm_hdl.export.tree import snake
-from firm_hdl.model import Constant, Message, Primitive
+from firm_hdl.model import Constant, Message, Primitive, closure
 from firm_hdl.names.identifiers import first_free, scope_names
 from firm_hdl.vhdl.names import PREDEFINED, USED
 
@@ -92,7 +92,7 @@ def named_constants(
     """
     found: dict[str, tuple[Message, Constant]] = {}
     hiding = {*USED, *PREDEFINED, *taken}
-    for owner in _types(message) if nested else [message]:
+    for owner in closure([message], parts_first=False) if nested else [message]:
         prefix = "" if owner is message else f"{snake(owner.base_name).upper()}_"
         for constant in owner.constants:
             name = f"{prefix}{constant.name}"
@@ -107,22 +107,6 @@ def named_constants(
         NamedConstant(owner=owner, constant=constant, name=given[name])
         for name, (owner, constant) in found.items()
     ]
-
-
-def _types(message: Message) -> list[Message]:
-    """List a message and the types in it, each once, in the order of the fields."""
-    found: dict[str, Message] = {}
-
-    def visit(kind: Message) -> None:
-        if kind.name not in found:
-            found[kind.name] = kind
-            for item in kind.fields:
-                inner = item.element_type
-                if isinstance(inner, Message):
-                    visit(inner)
-
-    visit(message)
-    return list(found.values())
 
 
 def declarations(

@@ -148,7 +148,7 @@ def _leaves(message: Message, plan: Plan) -> Iterator[dict[str, Any]]:
 
 def _layout(leaf: Leaf) -> dict[str, int]:
     """Return the layout of a leaf's ``data``; item k starts at bit k * item_bits."""
-    bits = 1 if leaf.primitive.kind == "bool" else 8 * leaf.primitive.bytes
+    bits = leaf.primitive.bits
     return {"lanes": leaf.lanes, "item_bits": bits, "data_bits": leaf.lanes * bits}
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 from firm_hdl.gateware.signatures import Status
+from firm_hdl.model import PRIMITIVES
 from firm_hdl.plan import Leaf
 
 __all__ = [
@@ -28,13 +29,15 @@ __all__ = [
 TYPES_NAME = "firm_hdl_types_pkg"
 """Name of the VHDL package that all messages share."""
 
-PRIMITIVE_BITS = {
-    "bool": 1,
-    "float32": 32,
-    "float64": 64,
-    **{f"{sign}int{bits}": bits for bits in (8, 16, 32, 64) for sign in ("", "u")},
-}
-PRIMITIVE_BYTES = {name: max(1, bits // 8) for name, bits in PRIMITIVE_BITS.items()}
+_PRIMITIVES = [
+    PRIMITIVES["ros2"][name]
+    for name in (
+        *("bool", "float32", "float64"),
+        *(f"{sign}int{bits}" for bits in (8, 16, 32, 64) for sign in ("", "u")),
+    )
+]
+PRIMITIVE_BITS = {each.name: each.bits for each in _PRIMITIVES}
+PRIMITIVE_BYTES = {each.name: each.bytes for each in _PRIMITIVES}
 """Size of each primitive on the wire, in bytes."""
 
 TEXTS = {"string": "uint8", "wstring": "uint32"}

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal
 
 from amaranth.hdl import Cat, ClockDomain, Module, Mux, Shape, Value
 from amaranth.lib import data, wiring
@@ -20,7 +20,7 @@ from firm_hdl.gateware.limits import MAX_CELL_BITS
 from firm_hdl.gateware.signatures import leaf_shape
 from firm_hdl.model import Array, Field, Message, Sequence
 from firm_hdl.names.identifiers import flat_names
-from firm_hdl.plan import Leaf, Plan
+from firm_hdl.plan import DIRECTIONS, Direction, Leaf, Plan
 
 __all__ = [
     "DIRECTIONS",
@@ -32,9 +32,6 @@ __all__ = [
     "leaf_names",
     "ports_of",
 ]
-
-Direction: TypeAlias = Literal["deserializer", "serializer"]
-DIRECTIONS: tuple[Direction, ...] = ("deserializer", "serializer")
 
 MAX_INPUT_BITS = MAX_CELL_BITS
 """Largest number of input bits of a design, because Amaranth makes one cell of all inputs."""

@@ -20,7 +20,7 @@ from firm_hdl.export.primitives import (
     bus_name,
     primitive_name,
 )
-from firm_hdl.model import Array, Field, FieldType, Message, Sequence, String
+from firm_hdl.model import Array, Field, FieldType, Message, Sequence, String, element_of
 from firm_hdl.names.identifiers import first_free, identifier, scope_names
 from firm_hdl.plan import Leaf, Plan
 from firm_hdl.wire import Wire
@@ -61,8 +61,8 @@ class Node:
 
     @property
     def ready_type(self) -> str:
-        """Type of ready."""
-        return "std_logic" if self.leaf is not None else f"{self.type.removesuffix('_t')}_ready_t"
+        """Type of ready of a record; that of a leaf is one bit in every language."""
+        return f"{self.type.removesuffix('_t')}_ready_t"
 
     def walk(self) -> Iterator[Node]:
         """Yield all nodes, children before their parents."""
@@ -219,7 +219,7 @@ class _Maker:
         return node
 
     def name_type(self, node: Node, kind: FieldType | None) -> None:
-        element = kind.element if isinstance(kind, Array | Sequence) else None
+        element = element_of(kind) if kind is not None else None
         form = "array" if isinstance(kind, Array) else "sequence"
         if isinstance(kind, Message):
             package = self.package(kind, node)

@@ -22,11 +22,9 @@ from firm_hdl.frontend.syntax import (
     ValueSyntax,
 )
 from firm_hdl.model import IDL_PRIMITIVES, PRIMITIVES, Primitive
+from firm_hdl.wire.alignment import MAX_LENGTH
 
 __all__ = ["check_members", "check_type_name"]
-
-# A length has 32 bits in every wire format.
-_MAX_LENGTH = 2**32 - 1
 
 
 def check_type_name(
@@ -93,8 +91,8 @@ def _check_size(size: SizeSyntax | None, what: str) -> Iterator[Diagnostic]:
         return
     if size.value < 1:
         yield Diagnostic(message=f"the {what} must be at least 1, not 0", span=size.span)
-    elif size.value > _MAX_LENGTH:
-        yield Diagnostic(message=f"the {what} must be at most {_MAX_LENGTH}", span=size.span)
+    elif size.value > MAX_LENGTH:
+        yield Diagnostic(message=f"the {what} must be at most {MAX_LENGTH}", span=size.span)
 
 
 def _check_list(

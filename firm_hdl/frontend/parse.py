@@ -17,7 +17,7 @@ from typing import NamedTuple
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput
 
-from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
+from firm_hdl.errors import MAX_DIAGNOSTICS, DefinitionError, Diagnostic, Source, Span
 from firm_hdl.frontend.comments import CommentCollector, condense
 from firm_hdl.frontend.explain import clip, explain
 from firm_hdl.frontend.syntax import (
@@ -41,9 +41,6 @@ _LINE_ENDS = {
     "ros1": re.compile(r"\r\n|[\n\r]"),
     "ros2": re.compile("\r\n|[\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029]"),
 }
-
-# Largest number of diagnostics. Without a limit, a large file that is no definition takes minutes.
-_MOST_DIAGNOSTICS = 1000
 
 
 def parse_message(source: Source, dialect: Dialect) -> MessageSyntax:
@@ -86,7 +83,7 @@ def read_message(
     drafts: list[tuple[_Draft, list[str]]] = []
     diagnostics: list[Diagnostic] = []
     for offset, line in lines_of(source.text, dialect) if lines is None else lines:
-        if len(diagnostics) >= _MOST_DIAGNOSTICS:
+        if len(diagnostics) >= MAX_DIAGNOSTICS:
             message = "too many errors; the rest of this file was not checked"
             span = Span(source=source, start=offset, end=offset + len(line))
             diagnostics.append(Diagnostic(message=message, span=span))

@@ -5,14 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from amaranth.hdl import Const, Module, Signal, Value
+from amaranth.hdl import Const, Module, Mux, Signal, Value
 from amaranth.lib import data
 
 from firm_hdl.gateware.counter import Counter
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.plan import RUN_COUNTER, BeginLoop, BeginRun, Jump, Plan, RunStep, Step
 
-__all__ = ["Flow", "exceeds"]
+__all__ = ["Flow", "exceeds", "last_word"]
+
+
+def last_word(items: Value, lanes: int) -> Value:
+    """Return the number of items in the last word of a run that has at least one item."""
+    low = items[: lanes.bit_length() - 1]
+    return Mux(low.any(), low, lanes) if len(low) else Const(lanes)
 
 
 def exceeds(value: Value, limit: int) -> Value:
@@ -243,7 +249,7 @@ class Flow:
                 most[counter] = max(most[counter], self._words_or_elements(jump, counter))
         for step in plan.steps:
             if isinstance(step.begin, BeginRun):
-                lanes = plan.leaves[plan.runs[step.begin.run].items].lanes
+                lanes = plan.items_leaf(step.begin.run).lanes
                 most[RUN_COUNTER] = max(most[RUN_COUNTER], limit(step.begin) // lanes)
             elif step.begin is not None:
                 most[step.begin.level] = max(most[step.begin.level], limit(step.begin))
@@ -257,7 +263,7 @@ class Flow:
         assert jump.step is not None
         step = self.plan.steps[jump.step]
         assert isinstance(step, RunStep)
-        return count // self.plan.leaves[self.plan.runs[step.run].items].lanes
+        return count // self.plan.items_leaf(step.run).lanes
 
     def _load_levels(self, count: Value, single: Value, double: Value | None) -> None:
         """Load the counter of a loop that the step may begin.

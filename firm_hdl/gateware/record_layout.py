@@ -183,7 +183,7 @@ class _Choice:
 def _bits(kind: FieldType) -> int:
     match kind:
         case Primitive():
-            return 1 if kind.kind == "bool" else 8 * kind.bytes
+            return kind.bits
         case Message():
             return sum(_bits(item.type) for item in kind.fields)
         case Array():

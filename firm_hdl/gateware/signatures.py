@@ -109,8 +109,7 @@ def leaf_shape(leaf: Leaf) -> Shape | data.StructLayout:
     unsigned number. `items` is a structure of `data` and `last`. `data` is an array of `lanes`
     items, the first one in lane 0; lanes past the last item are 0.
     """
-    primitive = leaf.primitive
-    bits = 1 if primitive.kind == "bool" else 8 * primitive.bytes
+    bits = leaf.primitive.bits
     shape = signed(bits) if leaf.signed else unsigned(bits)
     if leaf.kind == "items":
         return data.StructLayout({"data": data.ArrayLayout(shape, leaf.lanes), "last": 1})

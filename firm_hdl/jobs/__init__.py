@@ -3,6 +3,17 @@
 from __future__ import annotations
 
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, run_each
-from firm_hdl.jobs.processes import ToolError, run_tool, worker_pool
+from firm_hdl.jobs.processes import ToolError, TooSlowError, made_by, run_tool, worker_pool
+from firm_hdl.jobs.programs import ProgramMissingError
 
-__all__ = ["PROCESSES", "ExecutorError", "ToolError", "run_each", "run_tool", "worker_pool"]
+__all__ = [
+    "PROCESSES",
+    "ExecutorError",
+    "ProgramMissingError",
+    "TooSlowError",
+    "ToolError",
+    "made_by",
+    "run_each",
+    "run_tool",
+    "worker_pool",
+]

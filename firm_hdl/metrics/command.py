@@ -11,7 +11,7 @@ from firm_hdl.frontend import Library
 from firm_hdl.identity.command import load_interfaces
 from firm_hdl.metrics.analysis import Analyses, Metrics
 from firm_hdl.metrics.report import report
-from firm_hdl.model import Interface
+from firm_hdl.model import WIRE_OF, Interface
 from firm_hdl.wire import Wire
 
 __all__ = ["metrics_text"]
@@ -44,7 +44,7 @@ def metrics_text(
     tuple of str and DefinitionError or None
         The text, and the errors of the types that are not in it.
     """
-    analyses = Analyses(wire or ("ros1" if library.dialect == "ros1" else "cdr"))
+    analyses = Analyses(wire or WIRE_OF[library.dialect])
     rows: dict[str, Metrics] = {}
 
     def on_loaded(interface: Interface) -> None:

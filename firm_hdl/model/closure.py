@@ -11,26 +11,35 @@ from firm_hdl.model.types import Array, FieldType, Sequence, element_of
 __all__ = ["closure", "rebuilt"]
 
 
-def closure(roots: Iterable[Message]) -> list[Message]:
+def closure(roots: Iterable[Message], *, parts_first: bool = True) -> list[Message]:
     """List messages and all messages in them, each once and after those in its fields.
 
     The stack is explicit, because definitions may nest deeper than Python's recursion limit.
     Messages of the same name count as the same type, as in one library.
+
+    Parameters
+    ----------
+    parts_first : bool
+        False lists each message when it is first met: a message before those in its fields, depth
+        first, in the order of the fields.
     """
-    done: dict[str, Message] = {}
+    met: dict[str, Message] = {}
+    done: list[Message] = []
     for root in roots:
         stack: list[tuple[Message, Iterator[Message]]] = []
-        if root.name not in done:
+        if root.name not in met:
+            met[root.name] = root
             stack.append((root, iter(root.children)))
         while stack:
             message, children = stack[-1]
-            child = next((c for c in children if c.name not in done), None)
+            child = next((c for c in children if c.name not in met), None)
             if child is None:
                 stack.pop()
-                done[message.name] = message
+                done.append(message)
             else:
+                met[child.name] = child
                 stack.append((child, iter(child.children)))
-    return list(done.values())
+    return done if parts_first else list(met.values())
 
 
 def rebuilt(message: Message, change: Callable[[Message], Message]) -> Message:

@@ -8,6 +8,7 @@ from functools import cached_property
 
 from firm_hdl.errors import Span
 from firm_hdl.model.types import (
+    WIRE_OF,
     Array,
     Dialect,
     FieldType,
@@ -135,7 +136,7 @@ class Message:
     @property
     def wire(self) -> Wire:
         """Wire format that the dialect's own middleware uses."""
-        return "ros1" if self.dialect == "ros1" else "cdr"
+        return WIRE_OF[self.dialect]
 
     @cached_property
     def children(self) -> tuple[Message, ...]:
@@ -176,7 +177,8 @@ class Message:
     def _evaluate_children(self, attribute: str) -> None:
         """Evaluate an attribute of all messages below, deepest first.
 
-        Nesting may be deeper than Python's recursion limit.
+        Nesting may be deeper than Python's recursion limit. Unlike :func:`closure`, this stops at
+        messages that have the attribute, so a type is not walked again for each type with it.
         """
         pending = list(self.children)
         while pending:

@@ -13,6 +13,7 @@ __all__ = [
     "IDL_PRIMITIVES",
     "PRIMITIVES",
     "PRIMITIVE_OF",
+    "WIRE_OF",
     "Array",
     "Dialect",
     "FieldType",
@@ -31,6 +32,9 @@ Dialect: TypeAlias = Literal["ros1", "ros2"]
 
 Wire: TypeAlias = Literal["ros1", "cdr"]
 """Names of the wire formats; :mod:`firm_hdl.wire` has their rules."""
+
+WIRE_OF: dict[Dialect, Wire] = {"ros1": "ros1", "ros2": "cdr"}
+"""The wire format that a dialect's own middleware uses."""
 
 Value: TypeAlias = "bool | int | float | str | bytes | tuple[Value, ...]"
 """A constant's or a default's value."""
@@ -61,6 +65,11 @@ class Primitive:
 
     def __str__(self) -> str:
         return self.name
+
+    @property
+    def bits(self) -> int:
+        """Bits of a value in a circuit: 1 for a `bool`, and all of its bytes for other types."""
+        return 1 if self.kind == "bool" else 8 * self.bytes
 
     @property
     def has_wire_format(self) -> bool:

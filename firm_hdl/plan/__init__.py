@@ -2,6 +2,7 @@
 
 from firm_hdl.plan.build import build_plan
 from firm_hdl.plan.check import check
+from firm_hdl.plan.directions import DIRECTIONS, Direction
 from firm_hdl.plan.interpret import (
     Decoded,
     DecodeStatus,
@@ -39,6 +40,7 @@ from firm_hdl.plan.yaml import from_yaml, to_yaml
 __all__ = [
     "BUS_BYTES",
     "DEFAULT_MAX_MESSAGE_BYTES",
+    "DIRECTIONS",
     "RUN_COUNTER",
     "ArrayEnd",
     "Begin",
@@ -46,6 +48,7 @@ __all__ = [
     "BeginRun",
     "DecodeStatus",
     "Decoded",
+    "Direction",
     "Edge",
     "EncodeStatus",
     "Exits",

@@ -51,7 +51,7 @@ from firm_hdl.wire import (
     Trigger,
     walk,
 )
-from firm_hdl.wire.layout import LENGTH, OCTET
+from firm_hdl.wire.alignment import LENGTH, OCTET
 
 __all__ = ["build_plan"]
 

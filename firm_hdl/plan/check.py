@@ -129,7 +129,7 @@ def _run(plan: Plan, run: int, *, counted: bool = False) -> Iterator[str]:
 
 
 def _items(plan: Plan, run: int) -> Leaf:
-    return plan.leaves[plan.runs[run].items]
+    return plan.items_leaf(run)
 
 
 def _map(plan: Plan, step: MapStep) -> Iterator[str]:

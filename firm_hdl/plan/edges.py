@@ -98,7 +98,7 @@ def _max_counts(plan: Plan) -> MaxCounts:
 
 def _once(plan: Plan, step: RunStep) -> int:
     """Return the largest count for which the body of a run takes one cycle."""
-    lanes = plan.leaves[plan.runs[step.run].items].lanes
+    lanes = plan.items_leaf(step.run).lanes
     return lanes + plan.word(step.run) if plan.runs[step.run].counted else lanes
 
 

@@ -55,7 +55,7 @@ def check_offsets(plan: Plan) -> list[str]:
             walk.report(f"step {index}: is aligned already")
         begin = step.begin
         if isinstance(begin, BeginRun) and begin.align != 1 and index not in walk.padded_runs:
-            leaf = plan.leaves[plan.runs[begin.run].items]
+            leaf = plan.items_leaf(begin.run)
             walk.report(f"step {index}: {leaf} is aligned already")
     return list(walk.problems)
 
@@ -182,7 +182,7 @@ class _Walk:
     def check_step_align(self, index: int, step: Step) -> None:
         """Check that a step has the alignment of the value that it starts with."""
         if isinstance(step, RunStep):
-            leaf = self.plan.leaves[self.plan.runs[step.run].items]
+            leaf = self.plan.items_leaf(step.run)
         else:
             first = step.slices[0] if step.slices else None
             if not isinstance(first, Part) or first.first:
@@ -215,7 +215,7 @@ class _Walk:
 
     def begin_run(self, index: int, begin: BeginRun, places: set[Place]) -> set[Place]:
         """Follow a whole run, including the rest that a later step takes."""
-        leaf = self.plan.leaves[self.plan.runs[begin.run].items]
+        leaf = self.plan.items_leaf(begin.run)
         align = self.align(leaf)
         if self.plan.steps[index + 1].align != 1:
             self.report(f"step {index + 1}: is aligned within a run")
@@ -239,7 +239,7 @@ class _Walk:
         return range(1, min(most, 8) + 1)
 
     def constant_run(self, index: int, run: int, places: set[Place]) -> set[Place]:
-        leaf = self.plan.leaves[self.plan.runs[run].items]
+        leaf = self.plan.items_leaf(run)
         for residue, pad in places:
             self.expect(index, leaf, residue, pad)
         count = self.counts.get((RUN_COUNTER, index), 0)

@@ -25,7 +25,7 @@ from firm_hdl.wire import (
     Scalar,
     Trigger,
 )
-from firm_hdl.wire.layout import OCTET
+from firm_hdl.wire.alignment import OCTET
 
 __all__ = ["outline"]
 

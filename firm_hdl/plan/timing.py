@@ -13,6 +13,7 @@ from itertools import product
 
 from firm_hdl.plan import Payload, Plan, encode
 from firm_hdl.plan.cycles import cycles_between, packet_of
+from firm_hdl.plan.yaml import counted
 
 __all__ = ["LINE_RATES", "Cost", "Timing", "clock_mhz", "describe", "timing"]
 
@@ -156,7 +157,7 @@ def describe(name: str, plan: Plan, figures: Timing) -> str:
         which = "the shortest" if hard is short else _cost_text(hard)
         rows.append((f"the hardest packet tried ({which})", hard))
     lines = [
-        f"{name} on {plan.wire}, {8 * plan.bus_bytes}-bit bus: {_count(figures.steps, 'step')}; "
+        f"{name} on {plan.wire}, {8 * plan.bus_bytes}-bit bus: {counted(figures.steps, 'step')}; "
         f"{'shortest ' if varies else ''}packet {_cost_text(short)}"
     ]
     for what, cost in rows:
@@ -174,9 +175,5 @@ def _has_long(plan: Plan) -> bool:
 
 
 def _cost_text(cost: Cost) -> str:
-    beats, cycles = _count(cost.beats, "beat"), _count(cost.cycles, "cycle")
-    return f"{_count(cost.bytes, 'byte')}, {beats}, {cycles}"
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"
+    beats, cycles = counted(cost.beats, "beat"), counted(cost.cycles, "cycle")
+    return f"{counted(cost.bytes, 'byte')}, {beats}, {cycles}"

@@ -68,9 +68,9 @@ class _Printer:
     def lines(self) -> Iterator[str]:
         plan = self.plan
         yield (
-            f"# Plan of {plan.message} on {plan.wire}, bus of {_count(plan.bus_bytes, 'byte')}: "
-            f"{_count(len(plan.leaves), 'leaf', 'leaves')}, {_count(len(plan.runs), 'run')}, "
-            f"{_count(plan.levels, 'loop level')}, {_count(len(plan.steps), 'step')}."
+            f"# Plan of {plan.message} on {plan.wire}, bus of {counted(plan.bus_bytes, 'byte')}: "
+            f"{counted(len(plan.leaves), 'leaf', 'leaves')}, {counted(len(plan.runs), 'run')}, "
+            f"{counted(plan.levels, 'loop level')}, {counted(len(plan.steps), 'step')}."
         )
         yield from LEGEND.splitlines()
         yield f"message: {_plain(plan.message)}"
@@ -141,7 +141,7 @@ class _Printer:
         if leaf.kind == "items":
             count = part.size // leaf.item_bytes
             natural *= count
-            text += f", {_count(count, 'item')}"
+            text += f", {counted(count, 'item')}"
         if part.bytes != part.size or part.size != natural:
             text += f", bytes {_range(part.first, part.bytes)} of {part.size}"
         match part.end:
@@ -161,7 +161,8 @@ class _Printer:
         return {**entries, "body": _jump(begin.body)}
 
 
-def _count(number: int, noun: str, plural: str = "") -> str:
+def counted(number: int, noun: str, plural: str = "") -> str:
+    """Write a number with its noun; the plural has an ``s`` unless it is given."""
     return f"{number} {noun if number == 1 else plural or noun + 's'}"
 
 

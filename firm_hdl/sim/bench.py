@@ -19,7 +19,7 @@ from amaranth.hdl import Cat, ClockDomain, Elaboratable, Module, Signal, Value
 from amaranth.lib import stream
 from amaranth.sim import Simulator, SimulatorContext
 
-from firm_hdl.sim.drive import Drive
+from firm_hdl.sim.drive import Drive, Inputs
 from firm_hdl.sim.job import Job
 from firm_hdl.sim.levels import divided
 from firm_hdl.sim.stalls import stalls_of
@@ -171,20 +171,27 @@ class Bench:
         control += [] if self.gates is None else [self.gates]
         control += [port.valid for port in self.sources.values()]
         layout: list[list[Value]] = [control]
-        self.places: list[tuple[int, int]] = []
+        places: dict[str, tuple[int, int]] = {}
         sizes = [sum(map(len, control))]
-        for port in self.sources.values():
+        for name, port in self.sources.items():
             payload = Value.cast(port.payload)
             if sizes[-1] + len(payload) > WORD_BITS:
                 layout.append([])
                 sizes.append(0)
-            self.places.append((len(layout) - 1, sizes[-1]))
+            places[name] = len(layout) - 1, sizes[-1]
             layout[-1].append(payload)
             sizes[-1] += len(payload)
         for index, (parts, size) in enumerate(zip(layout, sizes, strict=True)):
             word = Signal(size, name=f"word_{index}")
             m.d.comb += Cat(*parts).eq(word)
             self.words.append(word)
+        self._inputs = Inputs(
+            sinks=tuple(self.sinks),
+            gates=tuple(self.taps) if self.gates is not None else (),
+            sources=places,
+            first_source=len(self.ports) - len(self.sources),
+            words=len(self.words),
+        )
         return m
 
     async def _testbench(self, ctx: SimulatorContext) -> None:
@@ -212,7 +219,7 @@ class Bench:
 
     async def _run_job(self, ctx: SimulatorContext) -> None:
         assert self.job is not None
-        drive = Drive(self, self.job)
+        drive = Drive(self._inputs, self.job)
         watch = _Watch(self, self.job, ctx)
         observe = self.job.options.observe
         if observe is not None:

@@ -2,17 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from firm_hdl.sim.job import Job
 from firm_hdl.sim.stalls import stalls_of
 
-if TYPE_CHECKING:
-    from firm_hdl.sim.bench import Bench
+__all__ = ["Drive", "Inputs"]
 
-__all__ = ["Drive"]
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inputs:
+    """The signals that a bench drives, packed into words.
+
+    Bits of word 0, from bit 0 up: `ready` of the sinks, then the gates, then `valid` of the
+    sources.
+
+    Attributes
+    ----------
+    sinks, gates : tuple of str
+        Streams that the bench receives from, and streams that it can hold back.
+    sources : mapping of str to (int, int)
+        Streams that the bench sends on, with the word and the bit where the payload starts.
+    first_source : int
+        Number of ports before those of the sources, in bit masks of ports.
+    words : int
+        Number of words.
+    """
+
+    sinks: tuple[str, ...]
+    gates: tuple[str, ...]
+    sources: Mapping[str, tuple[int, int]]
+    first_source: int
+    words: int
 
 
 @dataclass(slots=True)
@@ -30,23 +52,22 @@ class _Source:
 class Drive:
     """The inputs of a run: the values of the bench's words in each cycle."""
 
-    def __init__(self, bench: Bench, job: Job):
-        self.words = [0] * len(bench.words)
+    def __init__(self, inputs: Inputs, job: Job):
+        self.words = [0] * inputs.words
         self.always, self.changing = 0, []
-        inputs = [*bench.sinks, *(bench.taps if bench.gates is not None else ())]
-        self.gates = (1 << len(inputs)) - (1 << len(bench.sinks))
-        for index, name in enumerate(inputs):
+        taken = [*inputs.sinks, *inputs.gates]
+        self.gates = (1 << len(taken)) - (1 << len(inputs.sinks))
+        for index, name in enumerate(taken):
             if stalls := stalls_of(job.options.stalls, name):
                 self.changing.append((1 << index, stalls.cycles(name)))
             else:
                 self.always |= 1 << index
-        self.first = len(bench.ports) - len(bench.sources)
+        self.first = inputs.first_source
         self.sources = []
-        for index, name in enumerate(bench.sources):
+        for index, (name, (word, at)) in enumerate(inputs.sources.items()):
             stalls = stalls_of(job.options.stalls, name)
-            word, at = bench.places[index]
             source = _Source(
-                valid=1 << (len(inputs) + index),
+                valid=1 << (len(taken) + index),
                 word=word,
                 at=at,
                 payloads=iter(job.sources.get(name, ())),

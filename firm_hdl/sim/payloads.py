@@ -26,13 +26,9 @@ __all__ = [
 ]
 
 
-def _item_bits(leaf: Leaf) -> int:
-    return 1 if leaf.primitive.kind == "bool" else 8 * leaf.primitive.bytes
-
-
 def decoder_of(leaf: Leaf) -> Callable[[int], Payload]:
     """Return the function from the bits of a leaf's payload to the payload."""
-    bits, lanes = _item_bits(leaf), range(leaf.lanes)
+    bits, lanes = leaf.primitive.bits, range(leaf.lanes)
     mask = (1 << bits) - 1
     sign = 1 << (bits - 1) if leaf.signed else 0
 
@@ -50,7 +46,7 @@ def decoder_of(leaf: Leaf) -> Callable[[int], Payload]:
 
 def encoder_of(leaf: Leaf) -> Callable[[Payload], int]:
     """Return the function from a leaf's payload to its bits; missing lanes are 0."""
-    bits = _item_bits(leaf)
+    bits = leaf.primitive.bits
     mask = (1 << bits) - 1
 
     def encode(payload: Payload) -> int:

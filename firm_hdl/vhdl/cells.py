@@ -9,14 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from operator import eq, ge, gt, le, lt, ne
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from firm_hdl.rtlil.ir import Cell, Spec, spec_width
 from firm_hdl.vhdl.text import Expression, atom, call, infix, literal, prefix
 from firm_hdl.vhdl.uses import int_parameter, output, trim
-
-if TYPE_CHECKING:
-    from firm_hdl.vhdl.expr import Values
 
 __all__ = ["Cells"]
 
@@ -36,10 +33,30 @@ _REDUCTIONS = {
 }
 
 
+class Operands(Protocol):
+    """Writes the operands of operators. :class:`firm_hdl.vhdl.expr.Values` has the contracts.
+
+    An operand may itself be an operator without a signal of its own. So the writers of operands
+    and of operators call each other.
+    """
+
+    def width(self, wire: str) -> int: ...
+    def folded(self, spec: Spec) -> Cell | None: ...
+    def logic(self, spec: Spec) -> Expression: ...
+    def boolean(self, spec: Spec) -> Expression: ...
+    def unsigned(
+        self, spec: Spec, width: int | None = None, *, target: bool = False
+    ) -> Expression: ...
+    def signed(self, spec: Spec) -> Expression: ...
+    def extended(self, spec: Spec, width: int, *, signed: bool) -> Expression: ...
+    def number(self, spec: Spec) -> Expression: ...
+    def constant(self, spec: Spec, *, signed: bool = False) -> int | None: ...
+
+
 class Cells:
     """Writes the operators of one module; `values` writes their operands."""
 
-    def __init__(self, values: Values) -> None:
+    def __init__(self, values: Operands) -> None:
         self._values = values
 
     def width(self, cell: Cell) -> int:

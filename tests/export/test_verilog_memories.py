@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.equivalence import MissingToolError, find_tools
+from firm_hdl.equivalence import find_tools
 from firm_hdl.export.verilog import to_verilog
 from firm_hdl.export.verilog.memories import settled_memories
+from firm_hdl.jobs import ProgramMissingError
 from tests.memory_designs import DESIGNS, WHOLE, Stores, rtlil_of, simulated
 from tests.tools import need
 
@@ -143,7 +144,7 @@ def test_yosys_makes_registers_of_what_is_no_memory(tmp_path: Path) -> None:
 def _cells_on_ecp5(text: str, folder: Path) -> list[str]:
     try:
         tools = find_tools()
-    except MissingToolError as error:
+    except ProgramMissingError as error:
         need(str(error), None)
         raise
     (folder / "stores.v").write_text(text)

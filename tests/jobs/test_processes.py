@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.jobs.processes import ToolError, in_processes, run_tool
+from firm_hdl.jobs.processes import ToolError, TooSlowError, in_processes, run_tool
 
 
 def test_tool_says_what_it_says(tmp_path):
@@ -26,9 +26,18 @@ def test_tool_that_fails_is_an_error_with_what_it_said(tmp_path):
         run_tool(["sh", "-c", "exit 3"], tmp_path)
 
 
+def test_standard_error_can_be_left_out_of_the_result(tmp_path):
+    script = "echo warning >&2; echo result"
+    assert run_tool(["sh", "-c", script], tmp_path, with_errors=False) == "result\n"
+    with pytest.raises(ToolError, match=r"^warning$"):
+        run_tool(["sh", "-c", f"{script}; exit 3"], tmp_path, with_errors=False)
+    with pytest.raises(ToolError, match=r"^result$"):
+        run_tool(["sh", "-c", "echo result; exit 3"], tmp_path, with_errors=False)
+
+
 def test_tool_that_takes_too_long_is_ended_with_all_that_it_started(tmp_path):
     script = "sleep 60 & echo $! > child; wait"
-    with pytest.raises(ToolError, match=r"^sh took more than 1 s$"):
+    with pytest.raises(TooSlowError, match=r"^sh took more than 1 s$"):
         run_tool(["sh", "-c", script], tmp_path, timeout=1)
     gone(int((tmp_path / "child").read_text()))
 

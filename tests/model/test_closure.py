@@ -27,3 +27,11 @@ def test_nesting_may_be_deeper_than_pythons_recursion_limit():
     for level in range(1, 5000):
         top = message(f"L{level}", top)
     assert [m.base_name for m in closure([top])] == [f"L{level}" for level in range(5000)]
+
+
+def test_types_can_come_before_their_parts_in_the_order_of_the_fields():
+    x, d = message("X"), message("D")
+    b = message("B", d, x)
+    a = message("A", b, x, d)
+    assert [m.base_name for m in closure([a], parts_first=False)] == ["A", "B", "D", "X"]
+    assert [m.base_name for m in closure([x, a], parts_first=False)] == ["X", "A", "B", "D"]

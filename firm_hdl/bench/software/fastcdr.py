@@ -12,8 +12,8 @@ from pathlib import Path
 from firm_hdl.bench.software.cpp import cpp_types
 from firm_hdl.bench.software.sample import NoFigureError, Sample, Timed
 from firm_hdl.bench.software.timing import RUN_SECONDS, RUNS
-from firm_hdl.bench.tools import BenchError, MissingToolError
-from firm_hdl.jobs import ToolError, run_tool
+from firm_hdl.bench.tools import BenchError
+from firm_hdl.jobs import ProgramMissingError, ToolError, run_tool
 
 __all__ = ["fastcdr_versions", "time_fastcdr"]
 
@@ -28,7 +28,7 @@ _HOW = "(Debian, Ubuntu: apt install g++ libfastcdr-dev)"
 def _compiler() -> str:
     compiler = shutil.which(os.environ.get("CXX") or "g++")
     if compiler is None:
-        raise MissingToolError(f"there is no C++ compiler {_HOW}")
+        raise ProgramMissingError(f"there is no C++ compiler {_HOW}")
     return compiler
 
 
@@ -38,7 +38,7 @@ def fastcdr_versions() -> dict[str, str]:
 
     Raises
     ------
-    MissingToolError
+    ProgramMissingError
     """
     question = "fastcdr FASTCDR_VERSION_STR\ncompiler __VERSION__\n"
     with tempfile.TemporaryDirectory() as folder:
@@ -47,7 +47,7 @@ def fastcdr_versions() -> dict[str, str]:
         try:
             lines = run_tool(command, Path(folder)).splitlines()
         except ToolError:
-            raise MissingToolError(f"Fast CDR's headers are not installed {_HOW}") from None
+            raise ProgramMissingError(f"Fast CDR's headers are not installed {_HOW}") from None
     fastcdr, compiler = (line.split(" ", 1)[1].strip('"') for line in lines[-2:])
     return {"Fast CDR": fastcdr, f"g++ {' '.join(OPTIONS)}": compiler}
 
@@ -57,7 +57,7 @@ def time_fastcdr(sample: Sample, runs: int = RUNS, run_seconds: float = RUN_SECO
 
     Raises
     ------
-    MissingToolError
+    ProgramMissingError
     NoFigureError
         If Fast CDR does not have the wire format, or `cpp_types` does not support the type.
     BenchError

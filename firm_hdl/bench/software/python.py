@@ -12,7 +12,8 @@ from typing import Any
 
 from firm_hdl.bench.software.sample import NoFigureError, Sample, Timed, check_written
 from firm_hdl.bench.software.timing import best_ns
-from firm_hdl.bench.tools import BenchError, MissingToolError
+from firm_hdl.bench.tools import BenchError
+from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.verify.references.objects import full_text
 from firm_hdl.verify.references.oracle import ROSBAGS_WIRES
 from firm_hdl.verify.references.user_oracle import oracle_name, resolved_oracle
@@ -47,8 +48,11 @@ def time_rosbags(sample: Sample) -> Timed:
     except NotJudgedError as error:
         raise NoFigureError(str(error)) from None
     name = oracle_name(sample.message)
-    reader: Any = store.deserialize_ros1 if sample.wire == "ros1" else store.deserialize_cdr
-    writer: Any = store.serialize_ros1 if sample.wire == "ros1" else store.serialize_cdr
+    if sample.wire not in ROSBAGS_WIRES:
+        raise NoFigureError(f"rosbags does not write {sample.wire}")
+    # rosbags names its methods by the wire format, as firm-hdl does.
+    reader: Any = getattr(store, f"deserialize_{sample.wire}")
+    writer: Any = getattr(store, f"serialize_{sample.wire}")
 
     def read(packet: bytes) -> object:
         return reader(packet, name)
@@ -68,7 +72,7 @@ def genpy_versions() -> dict[str, str]:
 
     Raises
     ------
-    MissingToolError
+    ProgramMissingError
     """
     return dict(_ask({})["versions"])
 
@@ -78,7 +82,7 @@ def time_genpy(sample: Sample) -> Timed:
 
     Raises
     ------
-    MissingToolError
+    ProgramMissingError
     NoFigureError
         If it does not have the type.
     BenchError
@@ -108,10 +112,12 @@ def _ask(request: dict[str, Any]) -> dict[str, Any]:
             check=False,
         )
     except OSError as error:
-        raise MissingToolError(f"{ROS_PYTHON} cannot be run: {error.strerror}") from None
+        raise ProgramMissingError(f"{ROS_PYTHON} cannot be run: {error.strerror}") from None
     if done.returncode:
         raise BenchError(f"genpy failed: {done.stderr.strip().splitlines()[-1:]}")
     answer: dict[str, Any] = json.loads(done.stdout)
     if "missing" in answer:
-        raise MissingToolError(f"genpy cannot be used: {answer['missing']} (Debian: python3-genpy)")
+        raise ProgramMissingError(
+            f"genpy cannot be used: {answer['missing']} (Debian: python3-genpy)"
+        )
     return answer

@@ -19,9 +19,9 @@ from firm_hdl.bench.software.python import (
     time_rosbags,
 )
 from firm_hdl.bench.software.sample import NoFigureError, Sample, Timed
-from firm_hdl.bench.tools import MissingToolError
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import open_library
+from firm_hdl.jobs import ProgramMissingError
 
 __all__ = ["CLOCK_MHZ", "LIBRARIES", "Compared", "compare_software", "library_versions", "machine"]
 
@@ -89,7 +89,7 @@ def compare_software(task: BenchTask, results: Sequence[Result]) -> Compared:
     for name, time in LIBRARIES.items():
         try:
             times[name] = time(sample)
-        except (MissingToolError, NoFigureError) as error:
+        except (ProgramMissingError, NoFigureError) as error:
             missing[name] = str(error)
     return Compared(
         bytes=sum(map(len, packets)) / len(packets),
@@ -104,7 +104,7 @@ def library_versions() -> dict[str, dict[str, str]]:
 
     Raises
     ------
-    MissingToolError
+    ProgramMissingError
         If a library is not installed.
     """
     return {name: found() for name, found in _VERSIONS.items()}

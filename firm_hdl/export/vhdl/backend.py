@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from firm_hdl.export.backend import BackEnd, Converters, Output
@@ -14,6 +15,7 @@ from firm_hdl.export.top import DIRECTIONS, Direction
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT, STIMULI, bench, run_script
 from firm_hdl.export.vhdl.bench_views import View, flat_view, record_view, stream_view
 from firm_hdl.export.vhdl.layer import flat_package, user_layer
+from firm_hdl.export.vhdl.neighbours import FOLDER, SECTION, check_packages
 from firm_hdl.export.vhdl.parts import PARTS, packets_text
 from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.names.identifiers import identifier
@@ -21,10 +23,7 @@ from firm_hdl.plan import Plan
 from firm_hdl.vhdl.convert import convert
 from firm_hdl.vhdl.package import PACKAGE_NAME
 
-__all__ = ["FOLDER", "Vhdl", "to_vhdl"]
-
-FOLDER = "vhdl"
-"""Subfolder of a type's folder."""
+__all__ = ["Vhdl", "to_vhdl"]
 
 COMMON = (f"{TYPES_NAME}.vhd", f"{PACKAGE_NAME}.vhd")
 """Files that are the same for all types."""
@@ -35,9 +34,12 @@ class Vhdl(BackEnd):
 
     name = "vhdl"
 
+    def check(self, folders: Mapping[Path, Converters]) -> None:
+        check_packages(folders)
+
     def write(self, converters: Converters) -> Output:
         made = to_vhdl(converters)
-        manifest = {"vhdl": made.manifest}
+        manifest = {SECTION: made.manifest}
         tools = packaging({"inputs": converters.inputs, **manifest})
         files = {f"{FOLDER}/{name}": text for name, text in {**made.files, **tools}.items()}
         return Output(files=files, manifest=manifest)

@@ -118,7 +118,7 @@ def _member(
 ) -> Member | None:
     """Describe a member; return `None` if it is too wide."""
     kind = node.source.type if node.source is not None else None
-    element = kind.element if isinstance(kind, Array) else kind
+    element = node.source.element_type if node.source is not None else None
     count = kind.count if isinstance(kind, Array) else None
     if isinstance(element, Message):
         value = made.get(element.name)

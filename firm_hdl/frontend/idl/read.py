@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Literal
 
-from firm_hdl.errors import Diagnostic, Source, Span
+from firm_hdl.errors import MAX_DIAGNOSTICS, Diagnostic, Source, Span
 from firm_hdl.frontend.idl.annotations import (
     comment_of,
     default_of,
@@ -58,9 +58,6 @@ from firm_hdl.model import EMPTY_MEMBER
 
 __all__ = ["read_idl"]
 
-# Largest number of diagnostics.
-_MOST_DIAGNOSTICS = 1000
-
 # What a file declares, by the number of its structs.
 _DECLARED: dict[int, tuple[str, Kind]] = {
     1: ("a message", "msg"),
@@ -93,8 +90,8 @@ def read_idl(
     # Errors of included files come first.
     wrong = sorted(reader.wrong, key=lambda d: (_place(d, source), d.message))
     wrong = list(dict.fromkeys(wrong))
-    if len(wrong) > _MOST_DIAGNOSTICS:
-        del wrong[_MOST_DIAGNOSTICS:]
+    if len(wrong) > MAX_DIAGNOSTICS:
+        del wrong[MAX_DIAGNOSTICS:]
         wrong.append(Diagnostic(message="too many errors; the others are not listed"))
     return messages, wrong
 

@@ -29,11 +29,9 @@ from firm_hdl.frontend.idl.values import (
 )
 from firm_hdl.frontend.names import Kind
 from firm_hdl.frontend.syntax import SizeSyntax, TypeSyntax
+from firm_hdl.wire.alignment import MAX_LENGTH
 
 __all__ = ["Expander"]
-
-# A length has 32 bits in every wire format.
-_MAX_LENGTH = 2**32 - 1
 
 # Names of IDL's types in other languages and in ROS.
 _FOREIGN = {
@@ -232,8 +230,8 @@ class Expander:
         assert isinstance(value.value, int)
         if value.value < 1:
             raise IdlError(f"the {what} must be at least 1, not {value.value}", span)
-        if value.value > _MAX_LENGTH:
-            raise IdlError(f"the {what} must be at most {_MAX_LENGTH}", span)
+        if value.value > MAX_LENGTH:
+            raise IdlError(f"the {what} must be at most {MAX_LENGTH}", span)
         return SizeSyntax(value=value.value, span=span)
 
 

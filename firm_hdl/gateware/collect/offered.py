@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Const, Module, Mux, Signal, Value
+from amaranth.hdl import Module, Mux, Signal, Value
 from amaranth.lib import stream
 
-from firm_hdl.gateware.flow import exceeds
+from firm_hdl.gateware.flow import exceeds, last_word
 from firm_hdl.plan import BeginLoop, BeginRun, Plan
 
 __all__ = ["OfferedLength"]
@@ -61,12 +61,10 @@ class OfferedLength:
             self.rest = Signal(1, name=f"rest_{self.leaf}")
             m.d.sync += [self.skips.eq(zero), self.single.eq(length == 1)]
             return
-        lanes = plan.leaves[plan.runs[begin.run].items].lanes
-        low = length[: lanes.bit_length() - 1]
-        full = Mux(low.any(), low, lanes) if len(low) else Const(lanes)
+        lanes = plan.items_leaf(begin.run).lanes
         self.rest = Signal(range(lanes + 1), name=f"rest_{self.leaf}", reset_less=True)
         m.d.sync += [
             self.skips.eq(~exceeds(length, lanes)),
             self.single.eq(~exceeds(length, 2 * lanes)),
-            self.rest.eq(Mux(zero, 0, full)),
+            self.rest.eq(Mux(zero, 0, last_word(length, lanes))),
         ]

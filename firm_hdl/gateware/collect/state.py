@@ -60,7 +60,7 @@ class CollectState:
         }
         self.flow = self._flow()
         self.traits, self.step = self.flow.step_state, self.flow.step
-        lanes = max((plan.leaves[run.items].lanes for run in plan.runs), default=1)
+        lanes = plan.max_run_lanes
         self.rest, self.has_nul = Signal(range(lanes + 1), name="rest"), Signal(name="has_nul")
         self.zero = self.of_length(lambda length: length.zero)
         self.done, self.ends = Signal(name="done"), Signal(name="ends")

@@ -17,7 +17,7 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.gateware.flow import exceeds
+from firm_hdl.gateware.flow import exceeds, last_word
 from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.positions import Ring, align_up, beat_layout, known_lane_bits
 from firm_hdl.plan import Begin, BeginLoop, BeginRun, MapStep, Plan, RunStep
@@ -322,9 +322,7 @@ class Lengths(wiring.Component):
     @staticmethod
     def _rest(length: Value, lanes: int, nul: int) -> Value:
         """Return the number of items in the last word; 0 if the length counts no item."""
-        low = (length[:8] - nul)[: lanes.bit_length() - 1]
-        full = Mux(low.any(), low, lanes) if len(low) else Const(lanes)
-        return Mux(exceeds(length, nul), full, 0)
+        return Mux(exceeds(length, nul), last_word(length[:8] - nul, lanes), 0)
 
     def _places(
         self, m: Module, length: Signal, lane: int, entry: data.View, meaning: RunMeaning

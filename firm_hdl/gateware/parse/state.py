@@ -85,7 +85,7 @@ class ParseState:
         start = shift_of(plan, plan.start.step) % (1 << ring.bits)
         self.last_at = ring.position("last_at", init=start)
         self.first_at = ring.position("first_at")
-        lanes = max((plan.leaves[run.items].lanes for run in plan.runs), default=1)
+        lanes = plan.max_run_lanes
         self.rest = Signal(range(lanes + 1), name="rest")
         self.nul_at, self.has_nul = ring.position("nul_at"), Signal(name="has_nul")
         self.phase: Value | int = plan.header_bytes

@@ -177,7 +177,7 @@ class Machine(ABC):
 
     def words(self, index: int, run: int) -> None:
         """Process the full words of a run, one per cycle, except the rest of a counted run."""
-        lanes = self.plan.leaves[self.plan.runs[run].items].lanes
+        lanes = self.plan.items_leaf(run).lanes
         rest = self.plan.word(run) if self.plan.runs[run].counted else 0
         while True:
             start = self.offset

@@ -70,10 +70,19 @@ class Plan:
         """Return the largest legal count on the wire, a NUL included."""
         return begin.limit + self.has_nul(begin)
 
+    def items_leaf(self, run: int) -> Leaf:
+        """Return the leaf of a run's items."""
+        return self.leaves[self.runs[run].items]
+
+    @property
+    def max_run_lanes(self) -> int:
+        """Lanes of the widest run; 1 without runs."""
+        return max((self.leaves[run.items].lanes for run in self.runs), default=1)
+
     def word(self, run: int) -> int:
         """Return the largest count that fits in one word of a run, its NUL included."""
-        return self.leaves[self.runs[run].items].lanes + self.runs[run].terminated
+        return self.items_leaf(run).lanes + self.runs[run].terminated
 
     def item_bytes(self, run: int) -> int:
         """Return the bytes of one item of a run."""
-        return self.leaves[self.runs[run].items].item_bytes
+        return self.items_leaf(run).item_bytes

@@ -106,6 +106,7 @@ class _RosbagsCodec(ObjectCodec):
 
     def made(self, kind: Message, members: dict[str, Any]) -> Any:
         if not kind.fields and self._oracle.dialect == "ros2":
+            # The name that rosbags gives the member; on purpose not that of the model.
             return self._classes[kind.name](structure_needs_at_least_one_member=0)
         return self._classes[kind.name](*members.values())
 

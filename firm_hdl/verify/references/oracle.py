@@ -53,6 +53,7 @@ ROSBAGS_WIRES: frozenset[Wire] = frozenset({"ros1", "cdr"})
 SIZES = {"bool": 1, "byte": 1, "octet": 1, "char": 1, "float32": 4, "float64": 8}
 SIZES |= {f"{sign}int{8 * size}": size for sign in ("", "u") for size in (1, 2, 4, 8)}
 
+# On purpose not that of the model, which the oracle is there to judge.
 EMPTY_MEMBER = "structure_needs_at_least_one_member"
 ROS1_TIMES = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 

@@ -53,7 +53,8 @@ Change: TypeAlias = "Callable[[FieldType, Plain], Plain]"
 _FLOATS = {4: ("<I", "<f"), 8: ("<Q", "<d")}
 _CODES = {(1, False): "B", (2, False): "H", (4, False): "I", (8, False): "Q"}
 _CODES |= {(size, True): code.lower() for (size, _), code in _CODES.items()}
-# rosbags has the names of ROS 2 for the members of ROS 1's time and duration.
+# rosbags has the names of ROS 2 for the members of ROS 1's time and duration. On purpose not those
+# of `firm_hdl.sim.values`, which makes the transfers that references judge.
 _ALIASES = {"secs": "sec", "nsecs": "nanosec"}
 
 

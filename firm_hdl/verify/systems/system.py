@@ -21,6 +21,7 @@ from firm_hdl.errors import described
 from firm_hdl.frontend import DISTROS
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, run_each
 from firm_hdl.jobs.processes import cpu_seconds
+from firm_hdl.model import WIRE_OF
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import STAGES, Record, Seconds, Test, clipped_verdict, settled
 from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Verdict
@@ -180,7 +181,7 @@ class TypesSystem(System):
 
 def wire_of(distro: str, wire: str | None) -> str:
     """Return the name of a wire format; `None`: that of the distribution."""
-    return wire or ("ros1" if DISTROS[distro].dialect == "ros1" else "cdr")
+    return wire or WIRE_OF[DISTROS[distro].dialect]
 
 
 class Stopwatch:

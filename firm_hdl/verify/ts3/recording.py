@@ -19,6 +19,7 @@ from rosbags.interfaces import Connection
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend import open_library
 from firm_hdl.frontend.recordings import Reader, use_recording
+from firm_hdl.model import WIRE_OF
 from firm_hdl.verify.systems.tasks import TypeUnderTest, UnknownTypeError
 from firm_hdl.wire import Wire, too_large
 
@@ -275,7 +276,7 @@ def collect_recorded(
         If a named type has no topic, or if the recording has another wire format.
     """
     library = open_library(distro, bags=bags)
-    recorded_wire = "ros1" if library.dialect == "ros1" else "cdr"
+    recorded_wire = WIRE_OF[library.dialect]
     if wire not in (None, recorded_wire):
         raise UnknownTypeError(f"'{bags[0]}' has messages of {recorded_wire}, not of {wire}")
     found: dict[str, None] = {}

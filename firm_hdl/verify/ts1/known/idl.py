@@ -19,6 +19,7 @@ RULES = Rules("rosidl_parser", language="idl")
 
 # Names.
 
+# On purpose not those of `firm_hdl.frontend`, which rosidl_parser judges.
 _PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
 
 

@@ -115,7 +115,8 @@ def _upper_lines(line: Line, case: DefinitionCase) -> Line:
     return replace(line, name=renamed(line.name))
 
 
-# The name of the field that rosbags adds to messages without fields.
+# The name of the field that rosbags adds to messages without fields; on purpose not that of the
+# model, which rosbags judges.
 
 _PLACEHOLDER, _STAND_IN = "structure_needs_at_least_one_member", "structure_has_one_more_member"
 

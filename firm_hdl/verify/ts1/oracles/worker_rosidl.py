@@ -33,6 +33,7 @@ class _RefusedError(Exception):
     pass
 
 
+# This script runs in ROS's own Python, without firm-hdl, whose model the answers judge.
 PLACEHOLDER = "structure_needs_at_least_one_member", "uint8"
 
 

@@ -1,0 +1,70 @@
+"""Where values may start and end, as sets of residues modulo 8."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, String
+from firm_hdl.wire import CDR, ROS1
+from firm_hdl.wire.alignment import LENGTH, Alignment
+
+UINT8, UINT32, FLOAT64 = (PRIMITIVES["ros2"][name] for name in ("uint8", "uint32", "float64"))
+EMPTY = Message(name="p/msg/Empty", dialect="ros2", fields=())
+PAIR = Message(
+    name="p/msg/Pair",
+    dialect="ros2",
+    fields=(Field(name="a", type=UINT32), Field(name="b", type=UINT8)),
+)
+
+
+def residues(*numbers: int) -> int:
+    return sum(1 << number for number in numbers)
+
+
+@pytest.mark.parametrize(
+    ("kind", "at", "after"),
+    [
+        (UINT32, residues(0), residues(4)),
+        (UINT32, residues(1, 5), residues(0, 4)),
+        (FLOAT64, residues(1, 5), residues(0)),
+        (String(), residues(0), residues(*range(8))),
+        (String(wide=True), residues(1), residues(0, 4)),
+        (EMPTY, residues(3), residues(4)),
+        (PAIR, residues(0), residues(5)),
+        (Array(element=PAIR, count=3), residues(0), residues(5)),
+        (Array(element=PAIR, count=2), residues(0), residues(5)),
+        (Sequence(element=FLOAT64), residues(0), residues(0, 4)),
+        (Sequence(element=PAIR), residues(0), residues(1, 4)),
+    ],
+)
+def test_a_value_ends_where_cdr_lets_it(kind: object, at: int, after: int) -> None:
+    assert Alignment(CDR).after(kind, at) == after  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("kind", "entry"),
+    [
+        # Later elements need no padding, so they start where the one before ends.
+        (Array(element=UINT32, count=9), residues(0)),
+        (Sequence(element=FLOAT64), residues(4)),
+        (Array(element=PAIR, count=1), residues(0)),
+        (Array(element=PAIR, count=2), residues(0, 5)),
+        (Sequence(element=PAIR), residues(1, 4)),
+    ],
+)
+def test_an_element_starts_where_one_before_may_end(kind: Array | Sequence, entry: int) -> None:
+    assert Alignment(CDR).entry(kind, residues(0)) == entry
+
+
+def test_ros1_has_no_alignment() -> None:
+    alignment = Alignment(ROS1)
+    assert [alignment.of(each) for each in (UINT8, UINT32, FLOAT64)] == [1, 1, 1]
+    assert alignment.pad(FLOAT64, residues(*range(8))) == 0
+    assert alignment.after(EMPTY, residues(3)) == residues(3)
+    assert alignment.past(LENGTH, residues(3)) == residues(7)
+
+
+def test_padding_that_differs_is_not_known() -> None:
+    alignment = Alignment(CDR)
+    found: list[int | None] = [alignment.pad(UINT32, at) for at in (residues(1), residues(0, 1))]
+    assert found == [3, None]
