@@ -281,7 +281,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   wire [3:0] \freed$32 ;
   wire [41:0] i__payload;
   wire \i__payload.blank ;
-  wire \i__payload.counted ;
   wire \i__payload.ends ;
   wire \i__payload.final ;
   wire [3:0] \i__payload.first ;
@@ -290,6 +289,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   wire [3:0] \i__payload.items_bytes ;
   wire [2:0] \i__payload.items_next ;
   wire \i__payload.last ;
+  wire \i__payload.length_good ;
   wire [5:0] \i__payload.map_at ;
   wire [3:0] \i__payload.map_bytes ;
   wire [2:0] \i__payload.map_next ;
@@ -347,7 +347,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   wire next_sig;
   wire [41:0] o__payload;
   wire \o__payload.blank ;
-  wire \o__payload.counted ;
   wire \o__payload.ends ;
   wire \o__payload.final ;
   wire [3:0] \o__payload.first ;
@@ -356,6 +355,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   wire [3:0] \o__payload.items_bytes ;
   wire [2:0] \o__payload.items_next ;
   wire \o__payload.last ;
+  wire \o__payload.length_good ;
   wire [5:0] \o__payload.map_at ;
   wire [3:0] \o__payload.map_bytes ;
   wire [2:0] \o__payload.map_next ;
@@ -376,7 +376,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   wire [41:0] orders__payload;
   wire [41:0] \orders__payload$22 ;
   wire \orders__payload$22.blank ;
-  wire \orders__payload$22.counted ;
   wire \orders__payload$22.ends ;
   wire \orders__payload$22.final ;
   wire [3:0] \orders__payload$22.first ;
@@ -385,6 +384,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   wire [3:0] \orders__payload$22.items_bytes ;
   wire [2:0] \orders__payload$22.items_next ;
   wire \orders__payload$22.last ;
+  wire \orders__payload$22.length_good ;
   wire [5:0] \orders__payload$22.map_at ;
   wire [3:0] \orders__payload$22.map_bytes ;
   wire [2:0] \orders__payload$22.map_next ;
@@ -399,7 +399,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   wire [2:0] \orders__payload$22.status ;
   wire [2:0] \orders__payload$22.step ;
   wire \orders__payload.blank ;
-  wire \orders__payload.counted ;
   wire \orders__payload.ends ;
   wire \orders__payload.final ;
   wire [3:0] \orders__payload.first ;
@@ -408,6 +407,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   wire [3:0] \orders__payload.items_bytes ;
   wire [2:0] \orders__payload.items_next ;
   wire \orders__payload.last ;
+  wire \orders__payload.length_good ;
   wire [5:0] \orders__payload.map_at ;
   wire [3:0] \orders__payload.map_bytes ;
   wire [2:0] \orders__payload.map_next ;
@@ -559,7 +559,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   assign \o__payload.ends  = \orders__payload$22 [38];
   assign \o__payload.first  = \orders__payload$22 [37:34];
   assign \o__payload.final  = \orders__payload$22 [33];
-  assign \o__payload.counted  = \orders__payload$22 [32];
+  assign \o__payload.length_good  = \orders__payload$22 [32];
   assign \o__payload.last  = \orders__payload$22 [31];
   assign \o__payload.items  = \orders__payload$22 [30];
   assign \o__payload.map_bytes  = \orders__payload$22 [29:26];
@@ -574,7 +574,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   assign \orders__payload$22.ends  = \orders__payload$22 [38];
   assign \orders__payload$22.first  = \orders__payload$22 [37:34];
   assign \orders__payload$22.final  = \orders__payload$22 [33];
-  assign \orders__payload$22.counted  = \orders__payload$22 [32];
+  assign \orders__payload$22.length_good  = \orders__payload$22 [32];
   assign \orders__payload$22.last  = \orders__payload$22 [31];
   assign \orders__payload$22.items  = \orders__payload$22 [30];
   assign \orders__payload$22.map_bytes  = \orders__payload$22 [29:26];
@@ -589,7 +589,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   assign \orders__payload.ends  = i__payload[38];
   assign \orders__payload.first  = i__payload[37:34];
   assign \orders__payload.final  = i__payload[33];
-  assign \orders__payload.counted  = i__payload[32];
+  assign \orders__payload.length_good  = i__payload[32];
   assign \orders__payload.last  = i__payload[31];
   assign \orders__payload.items  = i__payload[30];
   assign \orders__payload.map_bytes  = i__payload[29:26];
@@ -604,7 +604,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core (packets__valid,
   assign \i__payload.ends  = i__payload[38];
   assign \i__payload.first  = i__payload[37:34];
   assign \i__payload.final  = i__payload[33];
-  assign \i__payload.counted  = i__payload[32];
+  assign \i__payload.length_good  = i__payload[32];
   assign \i__payload.last  = i__payload[31];
   assign \i__payload.items  = i__payload[30];
   assign \i__payload.map_bytes  = i__payload[29:26];
@@ -1328,8 +1328,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (message__
   input [41:0] orders__payload;
   wire [41:0] orders__payload;
   wire \orders__payload.blank ;
-  (* unused_bits = "0" *)
-  wire \orders__payload.counted ;
   wire \orders__payload.ends ;
   (* unused_bits = "0" *)
   wire \orders__payload.final ;
@@ -1344,6 +1342,8 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (message__
   wire [2:0] \orders__payload.items_next ;
   (* unused_bits = "0" *)
   wire \orders__payload.last ;
+  (* unused_bits = "0" *)
+  wire \orders__payload.length_good ;
   (* unused_bits = "0 1 2" *)
   wire [5:0] \orders__payload.map_at ;
   wire [3:0] \orders__payload.map_bytes ;
@@ -1868,7 +1868,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.mover (message__
   assign \orders__payload.ends  = orders__payload[38];
   assign \orders__payload.first  = orders__payload[37:34];
   assign \orders__payload.final  = orders__payload[33];
-  assign \orders__payload.counted  = orders__payload[32];
+  assign \orders__payload.length_good  = orders__payload[32];
   assign \orders__payload.last  = orders__payload[31];
   assign \orders__payload.items  = orders__payload[30];
   assign \orders__payload.map_bytes  = orders__payload[29:26];
@@ -1953,7 +1953,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__v
   input [41:0] i__payload;
   wire [41:0] i__payload;
   wire \i__payload.blank ;
-  wire \i__payload.counted ;
   wire \i__payload.ends ;
   wire \i__payload.final ;
   wire [3:0] \i__payload.first ;
@@ -1962,6 +1961,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__v
   wire [3:0] \i__payload.items_bytes ;
   wire [2:0] \i__payload.items_next ;
   wire \i__payload.last ;
+  wire \i__payload.length_good ;
   wire [5:0] \i__payload.map_at ;
   wire [3:0] \i__payload.map_bytes ;
   wire [2:0] \i__payload.map_next ;
@@ -1982,7 +1982,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__v
   output [41:0] o__payload;
   reg [41:0] o__payload = 42'h00000000000;
   wire \o__payload.blank ;
-  wire \o__payload.counted ;
   wire \o__payload.ends ;
   wire \o__payload.final ;
   wire [3:0] \o__payload.first ;
@@ -1991,6 +1990,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__v
   wire [3:0] \o__payload.items_bytes ;
   wire [2:0] \o__payload.items_next ;
   wire \o__payload.last ;
+  wire \o__payload.length_good ;
   wire [5:0] \o__payload.map_at ;
   wire [3:0] \o__payload.map_bytes ;
   wire [2:0] \o__payload.map_next ;
@@ -2014,7 +2014,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__v
   wire rst;
   reg [41:0] second = 42'h00000000000;
   wire \second.blank ;
-  wire \second.counted ;
   wire \second.ends ;
   wire \second.final ;
   wire [3:0] \second.first ;
@@ -2023,6 +2022,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__v
   wire [3:0] \second.items_bytes ;
   wire [2:0] \second.items_next ;
   wire \second.last ;
+  wire \second.length_good ;
   wire [5:0] \second.map_at ;
   wire [3:0] \second.map_bytes ;
   wire [2:0] \second.map_next ;
@@ -2061,7 +2061,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__v
   assign \i__payload.ends  = i__payload[38];
   assign \i__payload.first  = i__payload[37:34];
   assign \i__payload.final  = i__payload[33];
-  assign \i__payload.counted  = i__payload[32];
+  assign \i__payload.length_good  = i__payload[32];
   assign \i__payload.last  = i__payload[31];
   assign \i__payload.items  = i__payload[30];
   assign \i__payload.map_bytes  = i__payload[29:26];
@@ -2076,7 +2076,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__v
   assign \o__payload.ends  = o__payload[38];
   assign \o__payload.first  = o__payload[37:34];
   assign \o__payload.final  = o__payload[33];
-  assign \o__payload.counted  = o__payload[32];
+  assign \o__payload.length_good  = o__payload[32];
   assign \o__payload.last  = o__payload[31];
   assign \o__payload.items  = o__payload[30];
   assign \o__payload.map_bytes  = o__payload[29:26];
@@ -2091,7 +2091,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.queue (rst, i__v
   assign \second.ends  = second[38];
   assign \second.first  = second[37:34];
   assign \second.final  = second[33];
-  assign \second.counted  = second[32];
+  assign \second.length_good  = second[32];
   assign \second.last  = second[31];
   assign \second.items  = second[30];
   assign \second.map_bytes  = second[29:26];
@@ -2372,7 +2372,6 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   output [41:0] orders__payload;
   wire [41:0] orders__payload;
   wire \orders__payload.blank ;
-  wire \orders__payload.counted ;
   wire \orders__payload.ends ;
   wire \orders__payload.final ;
   wire [3:0] \orders__payload.first ;
@@ -2381,6 +2380,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   wire [3:0] \orders__payload.items_bytes ;
   wire [2:0] \orders__payload.items_next ;
   wire \orders__payload.last ;
+  wire \orders__payload.length_good ;
   wire [5:0] \orders__payload.map_at ;
   wire [3:0] \orders__payload.map_bytes ;
   wire [2:0] \orders__payload.map_next ;
@@ -2674,7 +2674,7 @@ module \geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.core.sequencer (rst, 
   assign \orders__payload.map_bytes  = orders__payload[29:26];
   assign \orders__payload.items  = orders__payload[30];
   assign \orders__payload.last  = orders__payload[31];
-  assign \orders__payload.counted  = orders__payload[32];
+  assign \orders__payload.length_good  = orders__payload[32];
   assign \orders__payload.final  = orders__payload[33];
   assign \orders__payload.first  = orders__payload[37:34];
   assign \orders__payload.ends  = orders__payload[38];
