@@ -9,7 +9,7 @@ import firm_hdl
 
 ROOT = Path(firm_hdl.__file__).parent.parent
 PAGE = (ROOT / "docs" / "contributing.md").read_text(encoding="utf-8")
-# Of a new file, which the walk makes.
+# The name of a new file, which the walk creates.
 NEW = re.compile(r"NAME|PART")
 FILE = re.compile(r"`([\w/]+\.(?:py|md|lark))`")
 
@@ -41,7 +41,7 @@ def lengths(page):
 
 
 def test_a_walk_touches_at_most_six_files():
-    # One of six walks, as oracles of definitions and of packets have one each.
+    # There are six walks: oracles of definitions and of packets have one each.
     assert lengths(PAGE) == [6, 5, 6, 5, 6, 6]
 
 

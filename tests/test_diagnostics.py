@@ -1,4 +1,4 @@
-"""How errors are printed."""
+"""The printed form of errors."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_error_survives_pickling():
     assert str(again) == str(error) and again.diagnostics == error.diagnostics
 
 
-def test_what_is_meant_for_users_has_no_name_in_python():
+def test_errors_for_users_print_without_an_exception_name():
     assert described(UserError("Yosys needs memory")) == "Yosys needs memory"
     wrong = diagnostic("int8 a", 0, 4)
     assert described(DefinitionError([wrong])) == str(wrong)

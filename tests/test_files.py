@@ -1,4 +1,4 @@
-"""Files of others: regular ones up to their limit are read, and no others."""
+"""Input files: regular ones up to their limit are read, and no others."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_what_is_not_there_is_not_read(tmp_path):
 
 
 def test_a_file_that_becomes_a_fifo_meanwhile_is_not_waited_for(file, monkeypatch):
-    # As it was looked at, it was a file.
+    # It was a regular file when it was examined.
     monkeypatch.setattr("firm_hdl.files.check_file", lambda *given: None)
     file.unlink()
     os.mkfifo(file)
