@@ -140,7 +140,7 @@ def test_jobs_run_targets_and_pass_on_what_they_make(path):
 
 
 @pytest.mark.parametrize(
-    ("path", "good", "bad", "said"),
+    ("path", "good", "bad", "message"),
     [
         (GITLAB, "make simulate", "make simulation", "simulate: make has no 'simulation'"),
         (GITLAB, "make lint", "ruff check", "lint: runs no target of the Makefile"),

@@ -36,7 +36,7 @@ def test_a_distribution_is_covered_by_few_types():
     assert len(names) < 40
     everything = set().union(*types.values())
     assert set().union(*(types[name] for name in names)) == everything
-    # Leaving any one out loses what it was chosen for.
+    # Without any one of them, its features are not covered.
     for name in names[-5:]:
         others = (types[other] for other in names if other != name)
         assert set().union(*others) != everything
