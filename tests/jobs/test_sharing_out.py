@@ -32,7 +32,7 @@ class Pool:
 
     def __init__(self, dies_of=(), breaks_at=None):
         self.dies_of, self.breaks_at = dict(dies_of), breaks_at
-        self.given, self.said = [], []
+        self.given, self.shutdowns = [], []
 
     def submit(self, work, *arguments):
         if len(self.given) == self.breaks_at:

@@ -1,4 +1,4 @@
-"""Random types and values on both wires: plans, run in Python, against rosbags and contract."""
+"""Random types and values: plans run in Python, compared with rosbags and with the contract."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The layout against packets: what it says of padding and sizes is true of every value."""
+"""The layout, compared with packets: its padding and sizes hold for every value."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Residue sets against brute force over offsets."""
+"""Residue sets, compared with brute force over offsets."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def mask(offsets):
 
 
 def offsets(residues):
-    """Some offsets of each residue, well above zero."""
+    """Return some offsets of each residue, well above zero."""
     return [8 * k + r for k in (0, 3) for r in range(8) if residues >> r & 1]
 
 
