@@ -76,7 +76,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("case", WRONG)
-def test_wrong_definition_is_told_exactly_and_touches_nothing(workdir, capsys, case):
+def test_wrong_definition_has_an_exact_error_and_writes_nothing(workdir, capsys, case):
     text, message = WRONG[case]
     write(text)
     status = main(["build", "std_msgs/msg/Bool", "my_msgs/msg/Bad", "--path", "src"])
@@ -86,7 +86,7 @@ def test_wrong_definition_is_told_exactly_and_touches_nothing(workdir, capsys, c
     assert sorted(path.name for path in workdir.iterdir()) == ["src"]
 
 
-def test_wrong_definition_leaves_what_was_built(workdir, capsys):
+def test_wrong_definition_keeps_earlier_output(workdir, capsys):
     write("uint8 a\n")
     arguments = ["build", "my_msgs/msg/Bad", "--path", "src"]
     assert main(arguments) == 0
@@ -121,7 +121,7 @@ def test_wrong_definition_leaves_what_was_built(workdir, capsys):
         ),
     ],
 )
-def test_what_cannot_be_done_exits_1(workdir, capsys, arguments, message):
+def test_impossible_requests_exit_1(workdir, capsys, arguments, message):
     assert main(arguments) == 1
     assert capsys.readouterr() == ("", message)
     assert list(workdir.iterdir()) == []
@@ -155,7 +155,7 @@ def test_wrong_calls_exit_2(workdir, capsys, arguments, message):
     assert message in err
 
 
-def test_build_says_what_it_did(workdir, capsys):
+def test_build_prints_its_results(workdir, capsys):
     arguments = ["build", "geometry_msgs/msg/Twist", "--out", "gen", "--bus-bytes", "4"]
     assert main(arguments) == 0
     out, err = capsys.readouterr()
@@ -291,5 +291,5 @@ def test_build_that_is_interrupted_leaves_whole_folders(workdir, capsys, monkeyp
         found = {each.relative_to(path).as_posix() for each in path.rglob("*") if each.is_file()}
         assert found == {*listed, "manifest.json"}
     assert not list(workdir.glob("vhdl_out/lyrical/.*"))
-    # The converters that were not used complain when they are collected.
+    # Converters that were not elaborated warn when they are collected.
     gc.collect()

@@ -190,7 +190,7 @@ def test_every_exception_sets_the_exit_status(workdir, capsys, monkeypatch, erro
 
 @pytest.mark.parametrize("command", ["verify", "golden", "cover", "report", "prove", "bench"])
 @pytest.mark.parametrize(("returned", "status"), [(None, 0), (0, 0), (1, 1), (3, 3)])
-def test_the_status_of_a_command_is_that_of_what_it_runs(monkeypatch, command, returned, status):
+def test_command_returns_the_status_of_its_function(monkeypatch, command, returned, status):
     module = importlib.import_module(RUN[command])
     monkeypatch.setattr(module, f"run_{command}", lambda given: returned)
     words = {"golden": ["check", "x"], "report": ["x"]}.get(command, ["std_msgs/msg/Bool"])

@@ -61,7 +61,7 @@ def test_errors_for_users_print_without_an_exception_name():
     assert described(KeyError("x")) == "KeyError: 'x'"
 
 
-def test_a_type_that_cannot_be_run_says_so_in_the_words_for_users(monkeypatch):
+def test_failure_to_run_a_type_has_the_message_for_users(monkeypatch):
     def refused(*_):
         raise UserError("Yosys needs memory")
 

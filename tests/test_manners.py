@@ -37,7 +37,7 @@ def workdir(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("command", ["md5", "hash", "proto"])
 @pytest.mark.usefixtures("workdir")
-def test_all_is_what_is_in_the_folders_and_not_what_they_depend_on(command, capsys):
+def test_all_covers_the_folders_without_dependencies(command, capsys):
     assert main([command, "--all", "--path", "own", "--depends", "others"]) == 1
     out, err = capsys.readouterr()
     assert re.findall(r"p/(?:msg/)?(\w+)", out) == ["A", "C"]
@@ -75,13 +75,13 @@ def test_verify_goes_on_after_a_type_that_cannot_be_used(capsys):
 
 @pytest.mark.parametrize("command", ["plan", "info", "show", "build"])
 @pytest.mark.usefixtures("workdir")
-def test_what_a_type_depends_on_is_found(command, capsys):
+def test_dependencies_of_a_type_are_found(command, capsys):
     assert main([command, "p/A", "--path", "own"]) == 1
     assert main([command, "p/A", "--path", "own", "--depends", "others"]) == 0
     assert capsys.readouterr().err.count("error") == 1
 
 
-def test_info_says_what_was_tried_and_of_long_arrays_only_where_there_are_some(capsys):
+def test_info_names_the_hardest_packet_and_long_arrays_if_there_are_any(capsys):
     types = ["geometry_msgs/msg/PolygonInstance", "sensor_msgs/msg/Image"]
     assert main(["info", "--bus-bytes", "16", *types]) == 0
     polygon, image = capsys.readouterr().out.split("sensor_msgs/msg/Image")

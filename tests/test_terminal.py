@@ -61,7 +61,7 @@ def test_no_command_prints_control_characters(tmp_path, capsys, character):
     assert not {*output} & {*CONTROL_CHARACTERS, "\u202e"}
 
 
-def test_streams_are_what_they_were_afterwards(capsys):
+def test_streams_are_restored_afterwards(capsys):
     before = sys.stdout, sys.stderr
     with printable_streams():
         print("\x1b[2J")

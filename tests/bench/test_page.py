@@ -198,7 +198,7 @@ def test_all_parts_of_the_page_are_written(
     entries = json.loads((page_folder / "e.json").read_text())
     assert {entry["bus_bytes"] for entry in entries} == {1, 2, 4, 8}
     assert {entry["part"] for entry in entries} == {"ECP5 LFE5U-45F-8"}
-    # All invented results are of one device, so no figure differs from an earlier one.
+    # All invented results name one device, so they replace those of other devices.
     assert "figures changed" not in capsys.readouterr().out
     assert run_bench(page_folder) == 0
     assert (page_folder / "page.md").read_text() == text

@@ -230,7 +230,7 @@ def test_missing_tools_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("cpp", "ros1")
-def test_versions_are_those_of_libraries_and_of_what_runs_them() -> None:
+def test_versions_are_those_of_libraries_and_their_runtimes() -> None:
     found = library_versions()
     assert {name: list(each) for name, each in found.items()} == {
         "rosbags": ["rosbags", "numpy", "Python"],

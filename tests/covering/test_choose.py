@@ -55,7 +55,7 @@ def every_feature(library, name, **options):
     return all_features(library, message, build_plan(lay_out(message)), **options)
 
 
-def test_families_are_told_apart_and_branches_come_on_request():
+def test_families_are_distinguished_and_branches_are_optional():
     library = Library("lyrical")
     few = every_feature(library, "geometry_msgs/msg/PolygonStamped")
     assert {

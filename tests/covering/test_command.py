@@ -37,7 +37,7 @@ def test_written_file_passes_its_check(tmp_path, capsys):
     assert out == "" and err.startswith("2 of 3 types have 100 % of the ")
 
 
-def test_what_is_missing_is_named_with_a_type_that_has_it(tmp_path, capsys):
+def test_missing_features_are_named_with_a_type_that_has_them(tmp_path, capsys):
     path = tmp_path / "chosen.txt"
     path.write_text(f"# One.\n\n{NAMES[0]}\n")
     assert main(["cover", *NAMES, "--check", str(path)]) == 1

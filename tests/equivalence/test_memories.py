@@ -141,7 +141,7 @@ def test_a_change_of_the_vhdl_is_found(what: str, tools: Tools) -> None:
     try:
         proof = prove(text, replace(vhdl, files=files), tools=tools)
     except ProofError as error:
-        # A memory of another size is split into other words, so no proof is tried.
+        # A memory of another size has other words, so `prove` raises an error.
         assert what == "a missing word" or what == "one word more"
         assert str(error) == "memory mem of the VHDL has not 5 words"
     else:

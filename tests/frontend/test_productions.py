@@ -17,7 +17,7 @@ def test_lines_of_a_message_are_named_by_rule_and_parts():
     }
 
 
-def test_alternatives_of_a_rule_are_told_apart():
+def test_alternatives_of_a_rule_are_distinguished():
     integer = productions("int8 A=1", "ros2")
     text = productions("string A='x'", "ros2")
     assert integer - text and text - integer

@@ -208,7 +208,7 @@ def test_topic_without_definition_is_distinguished_from_a_missing_one(tmp_path):
 
 
 def without_definition(path, name):
-    """Record two topics, and take the definition of one away."""
+    """Record two topics, and remove the definition of one."""
     with Writer2(path, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
         for topic in ("p/msg/A", name):
             writer.add_connection(f"/{topic}", topic, msgdef="int8 a\n", rihs01="RIHS01_0")

@@ -245,7 +245,7 @@ def run_with_reset(dut, before, after):
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
-def test_reader_forgets_what_it_has_collected(count):
+def test_reset_of_the_reader_discards_collected_items(count):
     dut = RecordReader(MANY, bus_bytes=2)
     a, z = dut.message.a.items, dut.message.z
 

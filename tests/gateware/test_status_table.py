@@ -127,8 +127,8 @@ READ_LAST = [
     (HEAD + "04000000 63646578 a5a5a5a5", "LENGTH", {"t": ""}),
 ]
 
-# No alignment, no header, no NUL; the only bounds are those of the largest packet, of 20 bytes: 10
-# are in the shortest, so that 10 characters or 5 numbers have room.
+# ROS 1: no alignment, no header, no NUL. The only bounds follow from the largest packet, of 20
+# bytes: the shortest packet has 10, so 10 characters or 5 numbers have room.
 PLAIN = make("ros1", {"a": "uint8", "s": "string", "q": "uint16[]", "z": "uint8"})
 PLAIN_MOST = 20
 NOTHING = {"a": 0, "s": "", "q": [], "z": 0}

@@ -91,7 +91,7 @@ def test_types_of_ros2_have_none():
         md5sum(Library("humble").message("std_msgs/msg/Bool"))
 
 
-def test_depth_is_no_matter():
+def test_depth_is_not_limited():
     top = Message(name="p/L", dialect="ros1", fields=())
     for level in range(3000):
         top = Message(name=f"p/L{level}", dialect="ros1", fields=(Field(name="f", type=top),))

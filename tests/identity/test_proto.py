@@ -172,7 +172,7 @@ def test_millions_of_elements_are_quick_and_more_is_refused(tmp_path):
             proto(ours.message(f"p/{name}"))
 
 
-def test_depth_is_no_matter_in_ros2():
+def test_depth_is_not_limited_in_ros2():
     top = Message(name="p/msg/L", dialect="ros2", fields=())
     for level in range(1500):
         kind = Sequence(element=top) if level % 2 else top

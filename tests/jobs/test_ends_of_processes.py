@@ -150,7 +150,7 @@ def test_terminated_process_runs_its_cleanup():
     assert signal.getsignal(signal.SIGTERM) is before
 
 
-def test_threads_leave_signals_alone():
+def test_threads_install_no_signal_handler():
     before = signal.getsignal(signal.SIGTERM)
     seen = []
 

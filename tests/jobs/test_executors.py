@@ -143,7 +143,7 @@ class TestDask:
                 os.kill(local_cluster.workers[0].pid, signal.SIGKILL)
         assert found == SQUARES
 
-    def test_lost_cluster_is_an_error_that_keeps_what_came(self, cluster, monkeypatch):
+    def test_lost_cluster_is_an_error_that_keeps_earlier_results(self, cluster, monkeypatch):
         local_cluster, executor = cluster
         monkeypatch.setattr(executors, "CHECK_SECONDS", 0.5)
         monkeypatch.setattr(executors, "MAX_IDLE_SECONDS", 2)

@@ -195,7 +195,7 @@ def test_features_are_those_of_the_definition(tmp_path, text, features):
     assert metrics_of(library(tmp_path, texts).message("p/A")).features == features
 
 
-def test_wire_changes_what_it_should(tmp_path):
+def test_figures_depend_on_the_wire(tmp_path):
     message = library(tmp_path, {"p/A": "uint8 a\nfloat64 b\nstring c\n"}).message("p/A")
     cdr, ros1 = metrics_of(message, "cdr"), metrics_of(message, "ros1")
     assert (cdr.min_bytes, ros1.min_bytes) == (4 + 16 + 5, 9 + 4)

@@ -81,7 +81,7 @@ def test_identifier(name, want):
     assert identifier(name) == want
 
 
-def test_paths_that_meet_are_told_apart():
+def test_paths_with_equal_flat_names_are_distinguished():
     paths = [("a", "b_c"), ("a_b", "c"), ("A", "B", "C"), ("a__b", "c"), ("a_b_c_2",)]
     assert list(flat_names(paths).values()) == ["a_b_c", "a_b_c_3", "A_B_C_4", "a_b_c_5", "a_b_c_2"]
 

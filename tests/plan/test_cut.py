@@ -31,7 +31,7 @@ def test_the_last_step_may_be_larger():
 
 
 def segment(*values):
-    """Values of leaves: their sizes, and for the transfers of an array the same negative leaf."""
+    """Return values of leaves by their sizes; transfers of an array share a negative leaf."""
     slices, at = [], 0
     for number, value in enumerate(values):
         size, leaf = value if isinstance(value, tuple) else (value, number)

@@ -29,7 +29,7 @@ TWICE, POINTS = "in loop 0 (2 times)", "in loop 0 (p.length)"
             8,
             ["packet bytes 0..4", "packet bytes 5..20", "packet bytes 21..27"],
         ),
-        # A run at the very start.
+        # A run that begins at the start of the plan.
         (
             "ros1",
             {"b": "uint8[24]", "c": "uint16"},
@@ -59,6 +59,6 @@ TWICE, POINTS = "in loop 0 (2 times)", "in loop 0 (p.length)"
         ),
     ],
 )
-def test_steps_have_the_places_and_loops_that_they_have(dialect, fields, bus_bytes, notes):
+def test_steps_have_their_places_and_loops(dialect, fields, bus_bytes, notes):
     text = to_yaml(build_plan(lay_out(make(dialect, fields)), bus_bytes=bus_bytes))
     assert re.findall(r"^  step \d+:(?:  # (.*))?$", text, re.MULTILINE) == notes

@@ -37,7 +37,7 @@ def test_figures_of_a_type_of_one_size():
     [
         # A length in one cycle; the end of the packet, which takes the rest, in another one.
         ({"s": "string"}, 8, cost(4, 1, 2), cost(4, 1, 2)),
-        # Longer texts are not harder: the bus is always busy.
+        # Longer texts are easier: they keep the bus busy.
         ({"s": "string"}, 1, cost(4, 4, 4), cost(4, 4, 4)),
         # In loops, 16 elements. Each is a length in a step, and a cycle more for the serializer, as
         # the same length follows. The serializer leaves out the last step, which finds no rest.
@@ -98,7 +98,7 @@ def test_nothing_is_searched_where_short_texts_are_a_small_part(count, searched)
     assert (figures.hardest.bytes > figures.shortest.bytes) == searched
 
 
-def test_clock_is_what_the_bits_of_the_line_ask_for():
+def test_clock_follows_from_the_bit_rate_of_the_line():
     # 125 million bytes a second: a packet of 5 bytes each 40 ns, in 3 cycles.
     assert clock_mhz(cost(5, 2, 3), 1e9) == pytest.approx(75)
     assert clock_mhz(cost(0, 1, 1), 1e9) == pytest.approx(125)

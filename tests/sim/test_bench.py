@@ -150,7 +150,7 @@ def test_nothing_to_do_is_over_after_the_silence():
         ({"i0": "01", "o0": "011"}, [(2, 1), (4, 2), (7, 3)]),
     ],
 )
-def test_stalled_streams_wait_for_just_those_cycles(stalls, taken):
+def test_stalls_delay_by_exactly_their_cycles(stalls, taken):
     run = Run([[1, 2, 3]], stalls={name: Stalls.bits(bits) for name, bits in stalls.items()})
     run.go()
     assert run.taken["o0"] == taken

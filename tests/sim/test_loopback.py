@@ -183,7 +183,7 @@ def test_harness_needs_a_converter():
         Harness(None, None)
 
 
-def test_a_harness_takes_what_its_first_converter_takes():
+def test_harness_has_the_input_of_its_first_converter():
     with pytest.raises(ValueError, match=r"^Packets need a harness with a deserializer$"):
         Harness(None, Serializer(IMAGE)).run_packets([PACKET])
     for serializer in (None, Serializer(IMAGE)):

@@ -192,7 +192,7 @@ def test_transfers_become_plain_values():
     assert value["b"] is True
 
 
-def test_text_that_is_not_unicode_stays_what_it_was():
+def test_text_that_is_not_unicode_stays_bytes_or_numbers():
     assert joined({"s": "string"}, {"s.length": [1], "s.items": [((0xFF, 0, 0, 0), True)]}) == {
         "s": b"\xff"
     }

@@ -228,7 +228,7 @@ AGREED: dict[str, str] = {
     "msg file": "int32 a\nstring b\n",
 }
 
-# Constants and expressions: rosidl_parser knows one literal, and names of constants nowhere but in
+# Constants and expressions: rosidl_parser reads a single literal, and names of constants only in
 # bounds of wstring, where they stay names.
 ALLOWED_HERE: dict[str, str] = {
     "constant as a length": _constant("const long N = 3;", "long a[N];"),

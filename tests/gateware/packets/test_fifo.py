@@ -193,7 +193,7 @@ def test_the_number_of_packets_is_a_limit(packets):
     waits = 60
     run = Run(fifo, sent, stalls={"out": Stalls.bits("0" * waits + "1" * 1000)})
     assert run.outcomes == [KEPT] * 20
-    # Besides the one that is leaving.
+    # One more packet is leaving already.
     assert sum(cycle < waits for cycle in run.taken) == packets + 1
     fifo = PacketFifo(4, 1024, packets, when_full="drop")
     gap = {"in": Stalls.bits("00001"), "out": Stalls.bits("0" * 200 + "1" * 1000)}

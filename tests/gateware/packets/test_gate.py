@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The packet gate: only good packets pass, whole; each has a status; the gate never blocks."""
+"""The packet gate: only good packets pass, whole; each has a status; none blocks the gate."""
 
 from __future__ import annotations
 

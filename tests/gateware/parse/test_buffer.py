@@ -60,7 +60,7 @@ class Comparison:
         self.rng, self.reference = random.Random(seed), Reference(self.bus)
         self.modulus = 2 * self.reference.depth
         self.offered = None
-        # Cycles without a transfer although the whole ring is free.
+        # The longest time without a transfer while the whole ring is free.
         self.waiting = 0
 
     async def run(self, ctx):
