@@ -24,7 +24,7 @@ def literal(text):
     if not isinstance(file, FileSyntax):
         return None
     value = file.definitions[0].value
-    return (value.kind_of_number, value.parts) if hasattr(value, "parts") else None
+    return (value.kind, value.parts) if hasattr(value, "parts") else None
 
 
 INTEGER = "0|[1-9][0-9]*|0[0-7]+|0[xX][0-9A-Fa-f]+"
