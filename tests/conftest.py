@@ -1,4 +1,4 @@
-"""What holds for all tests."""
+"""Settings and fixtures of all tests."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from tests.depth import THOROUGH
 from tests.tools import need
 from tests.vhdl.ghdl import GHDL
 
-# Circuits are hundreds of thousands of objects, of which most live as long as their test.
+# A circuit has hundreds of thousands of objects, most of which live as long as their test.
 gc.set_threshold(100_000, 20, 20)
 
-# The packages of the workspace that happens to be active are nobody's business here.
+# Tests must not depend on the packages of an active ROS workspace.
 for _name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
     os.environ.pop(_name, None)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out thorough tests, except in `make test-thorough`."""
+    """Deselect thorough tests, except in `make test-thorough`."""
     if THOROUGH:
         return
     left_out = [item for item in items if item.get_closest_marker("thorough")]
@@ -34,7 +34,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def corpus() -> Path:
     """Definitions of real ROS packages, where ``FIRM_HDL_CORPUS`` names a folder of them.
 
-    Set and empty, it says that there are none: they are not part of the repository.
+    An empty value says that there are none: they are not part of the repository.
     """
     folder = os.environ.get("FIRM_HDL_CORPUS")
     if folder:

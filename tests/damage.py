@@ -8,10 +8,10 @@ from collections.abc import Callable
 
 __all__ = ["MOST_CHARACTERS", "TOKEN", "WORDS", "mutate"]
 
-# Close to what the largest real files have.
+# Close to the size of the largest real files.
 MOST_CHARACTERS = 40_000
 
-# Words that have a meaning somewhere, and values at the edges of something.
+# Words with a meaning in some language, and values at limits.
 # fmt: off
 WORDS = [
     "int32", "uint64", "float64", "bool", "string", "wstring", "time", "duration", "byte", "char",

@@ -1,7 +1,7 @@
-"""How deep tests go: `make test` has minutes, `make test-thorough` takes what it needs.
+"""Depth of tests: `make test` takes minutes, `make test-thorough` has no limit of time.
 
-What takes long and rarely tells anything new is thorough: a test with the marker `thorough`, or
-more cases of a test by :func:`by_depth`.
+Checks that take long and rarely find a fault are thorough: tests with the marker `thorough`, and
+further cases of a test by :func:`by_depth`.
 """
 
 from __future__ import annotations
@@ -17,5 +17,5 @@ THOROUGH = bool(os.environ.get("FIRM_HDL_THOROUGH"))
 
 
 def by_depth(usual: T, thorough: T) -> T:
-    """Return what `make test` takes, or what `make test-thorough` takes."""
+    """Return the first value in `make test`, the second one in `make test-thorough`."""
     return thorough if THOROUGH else usual

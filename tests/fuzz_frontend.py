@@ -36,9 +36,9 @@ __all__ = ["Finding", "Fuzzer", "Seed", "main", "seeds"]
 
 MOST_SECONDS = 1.0
 MOST_BYTES = 1 << 30
-# A library serves so many inputs; it remembers all of them.
+# Inputs per library: a library keeps all of them in memory.
 INPUTS_PER_TASK = 500
-# So many real files are used for them, because what these depend on has to be read each time.
+# Real files per library: it reads the dependencies of each of them.
 SEEDS_PER_TASK = 50
 
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
@@ -59,7 +59,7 @@ class Seed:
 
 @dataclass(frozen=True)
 class Finding:
-    """An input that ended in something else than a model or a `DefinitionError`."""
+    """An input that ended neither in a model nor in a `DefinitionError`."""
 
     number: int
     seed: Seed
@@ -84,7 +84,7 @@ def seeds(folder: Path) -> list[Seed]:
 
 
 class _InputOrigin:
-    """Gives the texts that are being tried."""
+    """An origin with the inputs that are being tried."""
 
     def __init__(self) -> None:
         self.definitions: dict[tuple[str, str, str], Definition] = {}
@@ -97,14 +97,14 @@ class _InputOrigin:
 
 
 class Fuzzer:
-    """Tries inputs, in one process.
+    """A fuzzer in one process.
 
     Parameters
     ----------
     folder : path
-        With the real files, and with packages that they need.
+        The folder of the real files and of the packages that they need.
     seed : int
-        What all random numbers are made from.
+        The seed of all random numbers.
     """
 
     def __init__(self, folder: Path, seed: int) -> None:
@@ -125,12 +125,12 @@ class Fuzzer:
         language = pool.choice(sorted(self._seeds))
         seed = pool.choice(self._seeds[language])
         other = rng.choice(self._seeds[language])
-        # Structs are called as their files, and each input has a name of its own.
+        # A struct has the name of its file, and each input has its own name.
         text = seed.text.replace(seed.name, _name(number)) if language == "idl" else seed.text
         return seed, mutate(rng, text, other.text)
 
     def run(self, numbers: Iterable[int]) -> tuple[Counter[str], list[Finding]]:
-        """Try the inputs of some numbers; count what they ended in."""
+        """Try the inputs of some numbers; count the results."""
         inputs = {number: self.input(number) for number in numbers}
         libraries = {dialect: self._library(dialect, inputs) for dialect in DISTROS}
         counts: Counter[str] = Counter()
@@ -146,7 +146,7 @@ class Fuzzer:
         return counts, findings
 
     def attempt(self, number: int, seed: Seed, text: str) -> str:
-        """Try one text alone: "model" and "error" are what it should end in."""
+        """Try one text alone; its expected results are "model" and "error"."""
         library = self._library(seed.dialect, {number: (seed, text)})
         return _attempt(library, seed, number)
 
@@ -159,7 +159,7 @@ class Fuzzer:
             if seed.dialect == dialect:
                 origin.definitions[seed.package, seed.kind, name] = definition
         library = Library(DISTROS[dialect], origins=[origin, *self._origins[dialect]])
-        # What is computed once must not count for the first input.
+        # Work that is done once must not count for the first input.
         with suppress(DefinitionError):
             library.message("std_msgs/Nothing")
         return library
@@ -219,7 +219,7 @@ class _TooLongError(BaseException):
 
 @contextmanager
 def _alarm() -> Iterator[None]:
-    """Stop what takes ten times as long as allowed."""
+    """Stop an input that takes ten times as long as allowed."""
 
     def stop(number: int, frame: object) -> None:
         raise _TooLongError
@@ -239,7 +239,7 @@ _FUZZER: Fuzzer | None = None
 def _prepare(folder: Path, seed: int) -> None:
     global _FUZZER
     _FUZZER = Fuzzer(folder, seed)
-    # What libraries reserve, numpy above all, differs from machine to machine.
+    # The memory that libraries reserve, above all numpy, differs from machine to machine.
     statistics = Path("/proc/self/statm")
     pages = int(statistics.read_text().split()[0]) if statistics.exists() else 0
     most = pages * resource.getpagesize() + MOST_BYTES

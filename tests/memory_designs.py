@@ -28,7 +28,7 @@ class Store:
     Attributes
     ----------
     reads : sequence of str
-        Domains of the read ports, in which ``transparent`` is `sync` and sees what is written.
+        Domains of the read ports; ``transparent`` is `sync` with a port that sees writes.
     places : sequence of int
         Constant addresses of further asynchronous read ports.
     """
@@ -110,7 +110,7 @@ class Stores(Component):
     stores : dict of str to Store
         The memories by their names.
     deep : bool
-        They are in a module of their own.
+        Whether the memories are in a submodule.
     """
 
     def __init__(self, stores: dict[str, Store], *, deep: bool = False) -> None:
@@ -179,7 +179,7 @@ WHOLE = [
 
 
 def rtlil_of(stores: dict[str, Store], *, deep: bool = False) -> str:
-    """Give memories as RTLIL, on request in a module of their own."""
+    """Return memories as RTLIL, on request in a submodule."""
     text: str = rtlil.convert(Stores(stores, deep=deep), name="stores", emit_src=False)
     return text
 

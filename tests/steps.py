@@ -1,8 +1,8 @@
 """Bounds of effort that are the same on every machine and in every run.
 
 A test with a clock fails on a busy machine and passes on a fast one. Calls can be counted: what
-grows with the square of its input, or worse, makes too many of them, and is stopped there. What
-takes long inside one call of a library, such as a search in a long list, is not seen.
+grows with the square of its input, or worse, makes too many of them, and is stopped there. A call
+that takes long inside a library, such as a search in a long list, is not detected.
 """
 
 from __future__ import annotations
@@ -32,5 +32,5 @@ def calls_at_most(most: int) -> Iterator[None]:
         yield
     finally:
         sys.setprofile(before)
-    # Who catches everything may have caught the first one.
+    # Code that catches every exception may have caught the first one.
     assert left >= 0, f"more than {most} calls"

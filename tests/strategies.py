@@ -31,7 +31,7 @@ __all__ = [
 
 BUS_WIDTHS = (1, 2, 4, 8, 16, 32, 64)
 DIALECTS = ("ros1", "ros2")
-# Legal in both dialects; most of them are a trap for somebody.
+# Names that are legal in both dialects, but reserved or special in some other language.
 # fmt: off
 NAMES = [
     "a", "b", "c", "d", "data", "range", "type", "map", "label", "units", "from", "class",
@@ -135,7 +135,7 @@ def _parse(dialect: Any, kind: Any) -> Any:
 def definitions(
     draw: st.DrawFn, dialect: str | None = None, *, wide: bool = False, depth: int = 3
 ) -> Definition:
-    """Build definitions of all kinds; `wide`: with `wstring`, too, which rosbags lacks."""
+    """Build definitions of all kinds; `wide` adds `wstring`, which rosbags lacks."""
     if dialect is None:
         dialect = draw(st.sampled_from(DIALECTS))
     pool: list[Message] = list(TIMES) if dialect == "ros1" else []
@@ -170,7 +170,7 @@ def _element(draw: st.DrawFn, dialect: Any, depth: int, pool: list[Message], wid
     what = draw(st.sampled_from(["primitive", "primitive", "primitive", "text", "message", "old"]))
     if what == "message" and depth > 1:
         return _message(draw, dialect, depth - 1, pool, wide)
-    # An earlier type: only shallow ones, so that the depth stays what was asked for.
+    # Only shallow earlier types, so that the depth stays within its limit.
     old = [message for message in pool if message.depth < depth]
     if what == "old" and old:
         return draw(st.sampled_from(old))
@@ -181,7 +181,7 @@ def _element(draw: st.DrawFn, dialect: Any, depth: int, pool: list[Message], wid
 
 
 def values(message: Message) -> st.SearchStrategy[dict[str, Any]]:
-    """Values of a type, as dicts; arrays of primitives are numpy's, NaNs and all."""
+    """Values of a type, as dicts; arrays of primitives are numpy arrays, with NaNs."""
     return st.fixed_dictionaries({item.name: _values(item.type) for item in message.fields})
 
 
@@ -199,7 +199,7 @@ def _values(kind: Any) -> st.SearchStrategy[Any]:
         case Message():
             return values(kind)
         case String(wide=True, bound=bound):
-            # Outside the plane of 16 bits, a character takes two units.
+            # A character beyond 16 bits takes two UTF-16 units.
             return st.text(max_size=12 if bound is None else bound // 2)
         case String(bound=bound):
             return st.text(max_size=20 if bound is None else bound // 4)

@@ -1,4 +1,4 @@
-"""The shape of the package: who may import whom, and what every module has."""
+"""The structure of the package: allowed imports, and properties of every module."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import firm_hdl
 
 PACKAGE = Path(firm_hdl.__file__).parent
 MOST_LINES = 400
-# Of a function, with its docstring.
-MOST_SIZE = 60
-# In a folder, its `__init__.py` included.
+# Lines of a function, with its docstring.
+MOST_FUNCTION_LINES = 60
+# Modules in a folder, its `__init__.py` included.
 MOST_MODULES = 20
 
-# Text to syntax to model to layout to plan to circuit to Verilog and VHDL: what each part may use.
+# The parts in the order of the pipeline, each with the parts that it may import.
 MAY_IMPORT = {
-    # Of no message: these could be packages of their own.
+    # Know nothing of messages; could be published alone.
     "terminal": set[str](),
     "errors": {"terminal"},
     "drawing": set[str](),
@@ -27,9 +27,9 @@ MAY_IMPORT = {
     "names": set[str](),
     "rtlil": set[str](),
     "vhdl": {"names", "rtlil"},
-    # Of messages.
+    # Know messages.
     "model": {"errors"},
-    # What no wire can carry is refused where types are loaded.
+    # `wire`: a type that no wire can carry is refused when it is loaded.
     "frontend": {"errors", "files", "model", "wire"},
     "identity": {"errors", "model", "frontend"},
     "wire": {"errors", "model"},
@@ -58,7 +58,7 @@ MAY_IMPORT["equivalence"] = {
 MAY_IMPORT["bench"] = {
     *("arguments", "drawing", "errors", "files", "jobs", "terminal"),
     *("model", "frontend", "wire", "plan", "estimates", "gateware", "sim", "export"),
-    # The libraries that stand beside converters, and how they get types.
+    # `verify`: the client libraries that are compared with converters.
     "verify",
 }
 MAY_IMPORT["cli"] = {
@@ -66,10 +66,10 @@ MAY_IMPORT["cli"] = {
     *("model", "frontend", "plan", "estimates", "export"),
     *("identity", "metrics", "covering", "verify", "equivalence", "bench"),
 }
-# The package's own face.
+# The public interface of the package.
 MAY_IMPORT["firm_hdl"] = {"errors", "frontend", "gateware"}
 
-# The same for the parts of `firm_hdl.verify`.
+# Allowed imports of the parts of `firm_hdl.verify`.
 VERIFY_MAY_IMPORT = {
     "choices": set[str](),
     "results": set[str](),
@@ -95,7 +95,7 @@ VERIFY_MAY_IMPORT["run"] = {
 }
 VERIFY_MAY_IMPORT["command"] = {"choices", "request", "run", "systems"}
 VERIFY_MAY_IMPORT["__main__"] = {"command"}
-# Its own face.
+# The public interface of `firm_hdl.verify`.
 VERIFY_MAY_IMPORT["verify"] = {"cases", "references", "systems", "ts3"}
 
 
@@ -128,8 +128,11 @@ def problems(package: Path) -> Iterator[str]:
         if len(text.splitlines()) > MOST_LINES:
             yield f"{where}: more than {MOST_LINES} lines"
         for node in ast.walk(tree):
-            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and _size(node) > MOST_SIZE:
-                yield f"{where}: {node.name} has more than {MOST_SIZE} lines"
+            if (
+                isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+                and _size(node) > MOST_FUNCTION_LINES
+            ):
+                yield f"{where}: {node.name} has more than {MOST_FUNCTION_LINES} lines"
         yield from _wrong_imports(where, tree, "firm_hdl", MAY_IMPORT)
         if where.parts[0] == "verify":
             yield from _wrong_imports(where, tree, "verify", VERIFY_MAY_IMPORT)
@@ -177,7 +180,7 @@ def _imports(tree: ast.Module, whole: str, parts: Container[str]) -> Iterator[st
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, "imports are absolute"
             if node.module == prefix:
-                # A name of the package's face, or one of its parts.
+                # A public name of the package, or one of its parts.
                 names = [f"{prefix}.{a.name}" if a.name in parts else prefix for a in node.names]
             else:
                 names = [node.module or ""]

@@ -1,4 +1,4 @@
-"""The files of CI services: what they run exists, and what a job takes an earlier one has made."""
+"""Files of CI services: their targets exist, and earlier jobs make the artifacts of later ones."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ import yaml
 ROOT = Path(__file__).parents[1]
 GITLAB = ROOT / ".gitlab-ci.yml"
 GITHUB = ROOT / ".github" / "workflows" / "ci.yml"
-# Top-level names of GitLab's that are not jobs, of those that its file may use here.
+# Top-level keys of GitLab that are not jobs; its file may use these.
 NOT_JOBS = {"stages", "default", "variables", "workflow", "include"}
 JOB_KEYWORDS = {
     "artifacts", "cache", "extends", "image", "needs", "parallel", "script", "stage", "timeout",
     "variables", "when",
 }  # fmt: skip
-# What targets read that no target of the same job writes.
+# Files that targets read and that an earlier job has to write.
 READS = {"simulate": "build/vhdl_out", "report": "build/verify"}
 
 
@@ -33,11 +33,11 @@ class Job:
     commands: tuple[str, ...]
     needs: tuple[str, ...]
     makes: frozenset[str]
-    takes: frozenset[str] | None  # None: all that is made by those that it needs.
+    takes: frozenset[str] | None  # None: all artifacts of the jobs that it needs.
 
 
 def targets(makefile: str) -> dict[str, set[str]]:
-    """Targets with a description, and what each depends on."""
+    """Return the targets with a description, each with its dependencies."""
     rules = re.findall(r"^([a-z0-9-]+):([^#=\n]*)", makefile, re.MULTILINE)
     return {name: set(needs.split()) for name, needs in rules}
 
@@ -70,7 +70,7 @@ def github_jobs(text: str) -> Iterator[Job]:
                 uploads.setdefault(name, {})[step["with"]["name"]] = step["with"]["path"]
             elif action == "actions/download-artifact":
                 downloads.setdefault(name, {})[step["with"]["name"]] = step["with"]["path"]
-    made = {(each, path) for found in uploads.values() for each, path in found.items()}
+    uploaded = {(each, path) for found in uploads.values() for each, path in found.items()}
     for name, job in jobs.items():
         needs = job.get("needs", [])
         taken = downloads.get(name, {})
@@ -80,7 +80,7 @@ def github_jobs(text: str) -> Iterator[Job]:
             commands=tuple(step["run"] for step in job["steps"] if "run" in step),
             needs=(needs,) if isinstance(needs, str) else tuple(needs),
             makes=frozenset(uploads.get(name, {}).values()),
-            takes=frozenset(path for each, path in taken.items() if (each, path) in made),
+            takes=frozenset(path for each, path in taken.items() if (each, path) in uploaded),
         )
 
 
@@ -89,7 +89,7 @@ def problems(jobs: list[Job], stages: list[str] | None, makefile: str) -> Iterat
     by_name = {job.name: job for job in jobs}
     run: set[str] = set()
     for job in jobs:
-        named = [word for command in job.commands for word in made_by(command)]
+        named = [word for command in job.commands for word in targets_of(command)]
         run.update(named)
         if not named:
             yield f"{job.name}: runs no target of the Makefile"
@@ -101,12 +101,12 @@ def problems(jobs: list[Job], stages: list[str] | None, makefile: str) -> Iterat
                 yield f"{job.name}: needs '{need}', which is no job"
             elif stages is not None and by_name[need].stage not in earlier(job, stages):
                 yield f"{job.name}: needs '{need}', which is not of an earlier stage"
-        made = {path for need in job.needs if need in by_name for path in by_name[need].makes}
-        there = made if job.takes is None else job.takes & made
+        artifacts = {path for need in job.needs if need in by_name for path in by_name[need].makes}
+        there = artifacts if job.takes is None else job.takes & artifacts
         for word in named:
             if word in READS and READS[word] not in there:
                 yield f"{job.name}: nothing earlier makes {READS[word]}"
-    for word in made_by(last_line(ROOT / ".ci" / "run")):
+    for word in targets_of(last_line(ROOT / ".ci" / "run")):
         if word not in run and not known.get(word, set()) & known.keys() <= run:
             yield f"nothing runs 'make {word}', as .ci/run does"
 
@@ -115,8 +115,8 @@ def earlier(job: Job, stages: list[str]) -> list[str]:
     return stages[: stages.index(job.stage)] if job.stage in stages else stages
 
 
-def made_by(command: str) -> list[str]:
-    """Targets that a command makes."""
+def targets_of(command: str) -> list[str]:
+    """Return the targets that a command makes."""
     words = shlex.split(command)
     if words[:1] != ["make"]:
         return []
@@ -140,7 +140,7 @@ def test_jobs_run_targets_and_pass_on_what_they_make(path):
 
 
 @pytest.mark.parametrize(
-    ("path", "good", "bad", "said"),
+    ("path", "good", "bad", "message"),
     [
         (GITLAB, "make simulate", "make simulation", "simulate: make has no 'simulation'"),
         (GITLAB, "make lint", "ruff check", "lint: runs no target of the Makefile"),
@@ -156,10 +156,10 @@ def test_jobs_run_targets_and_pass_on_what_they_make(path):
         (GITHUB, "path: build/verify\n", "path: build\n", "report: nothing earlier makes build/"),
     ],
 )
-def test_mistakes_are_found(path, good, bad, said):
+def test_mistakes_are_found(path, good, bad, message):
     text = path.read_text(encoding="utf-8")
     assert good in text
-    assert said in "\n".join(check(path, text.replace(good, bad, 1)))
+    assert message in "\n".join(check(path, text.replace(good, bad, 1)))
 
 
 def test_areas_are_all_of_the_tests():

@@ -24,7 +24,7 @@ ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch):
+def workdir(tmp_path, monkeypatch):
     """An empty working directory."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -76,24 +76,24 @@ WRONG = {
 
 
 @pytest.mark.parametrize("case", WRONG)
-def test_wrong_definition_is_told_exactly_and_touches_nothing(here, capsys, case):
+def test_wrong_definition_has_an_exact_error_and_writes_nothing(workdir, capsys, case):
     text, message = WRONG[case]
     write(text)
     status = main(["build", "std_msgs/msg/Bool", "my_msgs/msg/Bad", "--path", "src"])
     out, err = capsys.readouterr()
     assert (status, out) == (1, "")
     assert err == f"src/my_msgs/msg/Bad.msg{message}"
-    assert sorted(path.name for path in here.iterdir()) == ["src"]
+    assert sorted(path.name for path in workdir.iterdir()) == ["src"]
 
 
-def test_wrong_definition_leaves_what_was_built(here, capsys):
+def test_wrong_definition_keeps_earlier_output(workdir, capsys):
     write("uint8 a\n")
     arguments = ["build", "my_msgs/msg/Bad", "--path", "src"]
     assert main(arguments) == 0
-    before = {path: path.stat().st_mtime_ns for path in (here / "vhdl_out").rglob("*")}
+    before = {path: path.stat().st_mtime_ns for path in (workdir / "vhdl_out").rglob("*")}
     write("uint8 a\nuint8 a\n")
     assert main(arguments) == 1
-    assert before == {path: path.stat().st_mtime_ns for path in (here / "vhdl_out").rglob("*")}
+    assert before == {path: path.stat().st_mtime_ns for path in (workdir / "vhdl_out").rglob("*")}
 
 
 @pytest.mark.parametrize(
@@ -121,10 +121,10 @@ def test_wrong_definition_leaves_what_was_built(here, capsys):
         ),
     ],
 )
-def test_what_cannot_be_done_exits_1(here, capsys, arguments, message):
+def test_impossible_requests_exit_1(workdir, capsys, arguments, message):
     assert main(arguments) == 1
     assert capsys.readouterr() == ("", message)
-    assert list(here.iterdir()) == []
+    assert list(workdir.iterdir()) == []
 
 
 @pytest.mark.parametrize(
@@ -146,7 +146,7 @@ def test_what_cannot_be_done_exits_1(here, capsys, arguments, message):
         ),
     ],
 )
-def test_wrong_calls_exit_2(here, capsys, arguments, message):
+def test_wrong_calls_exit_2(workdir, capsys, arguments, message):
     with pytest.raises(SystemExit) as caught:
         main(arguments)
     out, err = capsys.readouterr()
@@ -155,7 +155,7 @@ def test_wrong_calls_exit_2(here, capsys, arguments, message):
     assert message in err
 
 
-def test_build_says_what_it_did(here, capsys):
+def test_build_prints_its_results(workdir, capsys):
     arguments = ["build", "geometry_msgs/msg/Twist", "--out", "gen", "--bus-bytes", "4"]
     assert main(arguments) == 0
     out, err = capsys.readouterr()
@@ -174,7 +174,7 @@ def test_build_says_what_it_did(here, capsys):
     assert err == ""
 
 
-def test_list_and_show(here, capsys):
+def test_list_and_show(workdir, capsys):
     write("float32 way  # [m]\nstd_msgs/Bool is_open\n", "Mine")
     assert main(["list", "--path", "src"]) == 0
     names = capsys.readouterr().out.splitlines()
@@ -184,7 +184,7 @@ def test_list_and_show(here, capsys):
     assert capsys.readouterr() == ("float32 way  # [m]\nstd_msgs/Bool is_open\n\tbool data\n", "")
 
 
-def test_plan_reads_back(here, capsys):
+def test_plan_reads_back(workdir, capsys):
     options = ["--distro", "noetic", "--bus-bytes", "16", "--max-message-bytes", "0x400"]
     assert main(["plan", "sensor_msgs/Imu", *options]) == 0
     message = firm_hdl.load_message("sensor_msgs/Imu", distro="noetic")
@@ -192,7 +192,7 @@ def test_plan_reads_back(here, capsys):
     assert from_yaml(capsys.readouterr().out) == plan
 
 
-def test_services_and_actions_stand_for_all_their_messages(here, capsys):
+def test_services_and_actions_stand_for_all_their_messages(workdir, capsys):
     for name, text in {"srv/Ask.srv": "int8 a\n---\n", "action/Go.action": "---\n---\n"}.items():
         path = Path("src/my_msgs", name)
         path.parent.mkdir(parents=True)
@@ -228,18 +228,18 @@ def test_version(capsys):
     assert capsys.readouterr().out == f"firm-hdl {firm_hdl.__version__}\n"
 
 
-def test_out_that_is_a_file_exits_1(here, capsys):
-    (here / "out").write_text("not a folder")
+def test_out_that_is_a_file_exits_1(workdir, capsys):
+    (workdir / "out").write_text("not a folder")
     assert main(["build", "std_msgs/msg/Bool", "--out", "out"]) == 1
     out, err = capsys.readouterr()
     assert out == ""
     assert err.startswith("error: 'out")
     assert err.count("\n") == 1
-    assert (here / "out").read_text() == "not a folder"
+    assert (workdir / "out").read_text() == "not a folder"
 
 
 @pytest.mark.skipif(os.name != "posix", reason="uses a folder that even root cannot write to")
-def test_out_that_cannot_be_written_exits_1(here, capsys):
+def test_out_that_cannot_be_written_exits_1(workdir, capsys):
     assert main(["build", "std_msgs/msg/Bool", "--out", "/proc/self/out"]) == 1
     out, err = capsys.readouterr()
     assert out == ""
@@ -258,7 +258,7 @@ def test_reader_that_goes_away_is_no_traceback():
     assert (done.returncode, done.stderr) == (1, b"")
 
 
-def test_interrupt_is_no_traceback(here, capsys, monkeypatch):
+def test_interrupt_is_no_traceback(workdir, capsys, monkeypatch):
     def interrupted(*args: object, **options: object) -> None:
         raise KeyboardInterrupt
 
@@ -269,7 +269,7 @@ def test_interrupt_is_no_traceback(here, capsys, monkeypatch):
 
 @pytest.mark.parametrize("calls", [0, 1, 2, 3])
 @pytest.mark.filterwarnings("ignore::amaranth.hdl.UnusedElaboratable")
-def test_build_that_is_interrupted_leaves_whole_folders(here, capsys, monkeypatch, calls):
+def test_build_that_is_interrupted_leaves_whole_folders(workdir, capsys, monkeypatch, calls):
     # Each type takes two calls, one for each direction; the interrupt comes in one of them.
     module = importlib.import_module("firm_hdl.export.verilog.backend")
     left = iter(range(calls))
@@ -283,13 +283,13 @@ def test_build_that_is_interrupted_leaves_whole_folders(here, capsys, monkeypatc
     monkeypatch.setattr(module, "to_verilog", interrupted)
     assert main(["build", "std_msgs/msg/Bool", "std_msgs/msg/Char", "--jobs", "1"]) == 130
     assert capsys.readouterr().err == "interrupted\n"
-    assert [path.name for path in here.glob("vhdl_out/lyrical/*")] == [
+    assert [path.name for path in workdir.glob("vhdl_out/lyrical/*")] == [
         "std_msgs_msg_Bool_cdr_8"
     ] * (calls // 2)
-    for path in here.glob("vhdl_out/lyrical/*"):
+    for path in workdir.glob("vhdl_out/lyrical/*"):
         listed = json.loads((path / "manifest.json").read_text())["files"]
         found = {each.relative_to(path).as_posix() for each in path.rglob("*") if each.is_file()}
         assert found == {*listed, "manifest.json"}
-    assert not list(here.glob("vhdl_out/lyrical/.*"))
-    # The converters that were not used complain when they are collected.
+    assert not list(workdir.glob("vhdl_out/lyrical/.*"))
+    # Converters that were not elaborated warn when they are collected.
     gc.collect()

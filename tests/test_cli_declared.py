@@ -1,6 +1,6 @@
-"""What each command takes: every argument, what stands for it where it is not given, every limit.
+"""Arguments of each command: their names, their defaults, and their limits.
 
-The table repeats by hand what the documentation promises. An option that is missing here is news.
+The table repeats the promises of the documentation by hand. A new option must be added to it.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from firm_hdl.cli.table import COMMANDS
 
 ORIGINS = {"distro": None, "path": [], "bag": [], "depends": []}
 PLAN = {"wire": None, "bus_bytes": 8, "max_message_bytes": 16 << 20}
-# Of each command: words that it cannot do without, and what is taken besides.
-TAKEN = {
+# For each command: its required arguments, and all values that the parser gives for them.
+DEFAULTS = {
     "build": (
         ["a/B"],
         {**ORIGINS, **PLAN, "types": ["a/B"], "out": "vhdl_out"}
@@ -77,76 +77,76 @@ TAKEN = {
         {**ORIGINS, **PLAN, "types": [], "branches": False, "out": None, "check": None},
     ),
 }
-NOT_SAID = ("run", "refuse", "usage_error", "default_of", "version")
+INTERNAL = ("run", "refuse", "usage_error", "default_of", "version")
 
 
-def taken(*words):
+def parsed(*words):
     given = vars(_parser(words).parse_args(words))
     assert callable(given["run"])
     return {
         name: list(value) if isinstance(value, tuple) else value
         for name, value in given.items()
-        if name not in NOT_SAID
+        if name not in INTERNAL
     }
 
 
-def refused(*words):
+def is_refused(*words):
     with pytest.raises(SystemExit) as caught:
         _parser(words).parse_args(words)
     return caught.value.code == 2
 
 
-def test_every_command_is_here():
-    assert {*TAKEN} == {*COMMANDS}
+def test_every_command_is_in_the_table():
+    assert {*DEFAULTS} == {*COMMANDS}
 
 
-@pytest.mark.parametrize("command", TAKEN)
-def test_what_is_not_said_is_taken_for_granted(command):
-    words, expected = TAKEN[command]
-    assert taken(command, *words) == expected
+@pytest.mark.parametrize("command", DEFAULTS)
+def test_arguments_have_these_defaults(command):
+    words, expected = DEFAULTS[command]
+    assert parsed(command, *words) == expected
 
 
-@pytest.mark.parametrize("command", [name for name, (words, _) in TAKEN.items() if words])
-def test_what_must_be_said_must_be(command, capsys):
-    assert refused(command, *TAKEN[command][0][:-1])
+@pytest.mark.parametrize("command", [name for name, (words, _) in DEFAULTS.items() if words])
+def test_required_arguments_are_required(command, capsys):
+    assert is_refused(command, *DEFAULTS[command][0][:-1])
     assert "required" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("words", [["--window-words", "2"], ["--window-words=1"], ["--window"]])
 @pytest.mark.parametrize("command", ["build", "plan", "info"])
 def test_an_option_that_is_gone_is_refused_with_the_reason(command, words, capsys):
-    assert refused(*words_of(command, *words))
+    assert is_refused(*words_of(command, *words))
     err = capsys.readouterr().err
     assert f"{command}: error: argument --window-words: there is no such option any more: " in err
     assert "--window-words" not in err.partition("error: ")[0]
-    assert refused("prove", *words)
+    assert is_refused("prove", *words)
 
 
 @pytest.mark.parametrize("command", ["list", "show", "plan"])
-def test_nobody_takes_one_word_too_many(command, capsys):
-    assert refused(command, *TAKEN[command][0], "more")
+def test_one_argument_too_many_is_refused(command, capsys):
+    assert is_refused(command, *DEFAULTS[command][0], "more")
 
 
-def having(option):
-    return [name for name, (_, expected) in TAKEN.items() if option in expected]
+def commands_with(option):
+    return [name for name, (_, expected) in DEFAULTS.items() if option in expected]
 
 
 def words_of(command, *more):
-    return [command, *TAKEN[command][0], *more]
+    return [command, *DEFAULTS[command][0], *more]
 
 
 @pytest.mark.parametrize("option", ["path", "bag", "depends"])
-def test_origins_add_up(option):
-    for command in having(option):
-        given = taken(*words_of(command, f"--{option}", "x", f"--{option}", "y"))
+def test_options_of_origins_accumulate(option):
+    for command in commands_with(option):
+        given = parsed(*words_of(command, f"--{option}", "x", f"--{option}", "y"))
         assert given[option] == ["x", "y"]
 
 
 def test_folders_exclude_recordings(capsys):
-    for command in having("bag"):
+    for command in commands_with("bag"):
         if command != "verify":
-            assert refused(*words_of(command, "--path", "x", "--bag", "y"))
-    assert refused("cover", "--out", "x", "--check", "y")
+            assert is_refused(*words_of(command, "--path", "x", "--bag", "y"))
+    assert is_refused("cover", "--out", "x", "--check", "y")
 
 
 @pytest.mark.parametrize(
@@ -167,26 +167,26 @@ def test_folders_exclude_recordings(capsys):
         ("seed", ["0", "12345"], ["x"]),
     ],
 )
-def test_limits_are_what_they_are_called(option, good, bad, capsys):
-    commands = having(option)
+def test_limits_of_options(option, good, bad, capsys):
+    commands = commands_with(option)
     if option == "max_message_bytes":
         commands.remove("verify")
     assert commands
     for command in commands:
         for text in good:
-            given = taken(*words_of(command, f"--{option.replace('_', '-')}", text))[option]
+            given = parsed(*words_of(command, f"--{option.replace('_', '-')}", text))[option]
             given = given[-1] if isinstance(given, list) and option != "systems" else given
             expected = text.split(",") if option == "systems" else text
             assert given == (int(text) if text.isdecimal() else expected)
         for text in bad:
-            assert refused(*words_of(command, f"--{option.replace('_', '-')}={text}"))
+            assert is_refused(*words_of(command, f"--{option.replace('_', '-')}={text}"))
 
 
 def test_messages_of_a_recording_have_a_limit_of_their_own(capsys):
     for number in (1, (1 << 31) - 1):
-        assert taken("verify", "--max-message-bytes", str(number))["max_message_bytes"] == number
+        assert parsed("verify", "--max-message-bytes", str(number))["max_message_bytes"] == number
     for number in (0, 1 << 31):
-        assert refused("verify", "--max-message-bytes", str(number))
+        assert is_refused("verify", "--max-message-bytes", str(number))
 
 
 @pytest.mark.parametrize(
@@ -210,8 +210,8 @@ def test_messages_of_a_recording_have_a_limit_of_their_own(capsys):
         (["plan", "a/B", "--max-message-bytes", "0x10"], "max_message_bytes", 16),
     ],
 )
-def test_what_is_said_is_taken(words, name, value):
-    assert taken(*words)[name] == value
+def test_options_set_their_values(words, name, value):
+    assert parsed(*words)[name] == value
 
 
 def test_help_says_which_types_all_are(capsys):

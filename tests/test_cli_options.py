@@ -1,4 +1,4 @@
-"""Every option of the command arrives where it is used, and every failure in the exit status."""
+"""Every option of the command reaches its use, and every failure sets the exit status."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from firm_hdl.wire import lay_out
 from tests.frontend.recordings import make_recording
 from tests.frontend.workspace import make_files
 
-# A package has a function of that name.
+# The name `build` is also that of a function in a package.
 BUILD = importlib.import_module("firm_hdl.export.build")
 RUN = {
     "verify": "firm_hdl.verify.command",
@@ -40,7 +40,7 @@ WORDS = ["--wire", "ros1", "--bus-bytes", "4", "--max-message-bytes", "777"]
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch):
+def workdir(tmp_path, monkeypatch):
     monkeypatch.chdir(make_files(tmp_path, FILES))
     return tmp_path
 
@@ -52,7 +52,7 @@ def planned(name, **options):
 
 
 @pytest.mark.parametrize("left_out", [None, "wire", "bus_bytes", "max_message_bytes"])
-def test_plans_are_made_with_all_options(here, capsys, left_out):
+def test_plans_are_made_with_all_options(workdir, capsys, left_out):
     options = {name: value for name, value in OPTIONS.items() if name != left_out}
     words = [
         word
@@ -69,7 +69,7 @@ def test_plans_are_made_with_all_options(here, capsys, left_out):
     assert f"on {plan.wire}, {8 * plan.bus_bytes}-bit bus: {len(plan.steps)} step" in head
 
 
-def test_build_is_given_all_options(here, monkeypatch):
+def test_build_is_given_all_options(workdir, monkeypatch):
     given = {}
     monkeypatch.setattr(BUILD, "build", lambda types, out, **options: given.update(
         options, types=types, out=out) or [])  # fmt: skip
@@ -84,8 +84,8 @@ def test_build_is_given_all_options(here, monkeypatch):
     assert (Options().wire, Options().bus_bytes, Options().ports) == (None, 8, "records")
 
 
-def proved(monkeypatch, arguments, status=0):
-    """The tasks that `prove` would do."""
+def proof_tasks(monkeypatch, arguments, status=0):
+    """The tasks that `prove` starts."""
     seen = {}
 
     def run_proofs(tasks, jobs, *, bar):
@@ -98,9 +98,9 @@ def proved(monkeypatch, arguments, status=0):
 
 
 @pytest.mark.parametrize("status", [0, 1])
-def test_prove_is_given_all_options_and_gives_its_status(here, monkeypatch, status):
+def test_prove_is_given_all_options_and_gives_its_status(workdir, monkeypatch, status):
     words = [*WORDS, "--timeout", "7", "--jobs", "3", "--distro", "iron"]
-    seen = proved(monkeypatch, ["p/A", "p/srv/S", "--path", ".", *words], status)
+    seen = proof_tasks(monkeypatch, ["p/A", "p/srv/S", "--path", ".", *words], status)
     assert seen["jobs"] == 3 and seen["bar"] is False
     names = ["p/msg/A", "p/srv/S_Request", "p/srv/S_Response", "p/srv/S_Event"]
     assert [(t.name, t.direction) for t in seen["tasks"]] == [
@@ -112,8 +112,8 @@ def test_prove_is_given_all_options_and_gives_its_status(here, monkeypatch, stat
 
 
 @pytest.mark.parametrize("distro", ["noetic", "lyrical"])
-def test_prove_all_is_of_all_messages(here, monkeypatch, distro):
-    seen = proved(monkeypatch, ["--all", "--path", ".", "--distro", distro])
+def test_prove_all_is_of_all_messages(workdir, monkeypatch, distro):
+    seen = proof_tasks(monkeypatch, ["--all", "--path", ".", "--distro", distro])
     assert seen["bar"] is True
     names = Library(distro, ["."]).names()
     assert [(t.name, t.direction) for t in seen["tasks"]] == [
@@ -122,8 +122,8 @@ def test_prove_all_is_of_all_messages(here, monkeypatch, distro):
     assert names[0] < names[-1] and len(names) > 150
 
 
-def test_list_has_services_and_actions_and_paths_in_their_order(here, capsys):
-    make_files(here, {"one/q/msg/Q.msg": "int8 one", "two/q/msg/Q.msg": "int8 two"})
+def test_list_has_services_and_actions_and_paths_in_their_order(workdir, capsys):
+    make_files(workdir, {"one/q/msg/Q.msg": "int8 one", "two/q/msg/Q.msg": "int8 two"})
     assert main(["list", "--path", "."]) == 0
     assert capsys.readouterr().out.split() == Library("lyrical", ["."]).interfaces()
     for paths, word in ((("one", "two"), "one"), (("two", "one"), "two")):
@@ -136,8 +136,8 @@ def test_list_has_services_and_actions_and_paths_in_their_order(here, capsys):
     ("number", "is_good"),
     [("0", False), ("1", False), ("4294967295", True), ("4294967296", False), ("0x400", True)],
 )
-def test_sizes_of_messages_have_32_bits(here, capsys, number, is_good):
-    # One byte is a number, but too few for the type.
+def test_sizes_of_messages_have_32_bits(workdir, capsys, number, is_good):
+    # One byte is a legal limit, but too small for the type.
     words = ["plan", "p/A", "--path", ".", "--max-message-bytes", number]
     if is_good:
         assert main(words) == 0
@@ -149,7 +149,7 @@ def test_sizes_of_messages_have_32_bits(here, capsys, number, is_good):
             main(words)
 
 
-def test_plans_of_several_messages_are_kept_apart(here, capsys):
+def test_plans_of_several_messages_are_kept_apart(workdir, capsys):
     assert main(["plan", "p/srv/S", "--path", "."]) == 0
     texts = capsys.readouterr().out.split("---\n")
     assert [from_yaml(text).message for text in texts] == [
@@ -157,8 +157,8 @@ def test_plans_of_several_messages_are_kept_apart(here, capsys):
     ]  # fmt: skip
 
 
-def test_sums_are_of_noetic_unless_a_recording_says_otherwise(here, capsys):
-    bag, mcap = make_recording(here, "bag"), make_recording(here, "mcap")
+def test_sums_are_of_noetic_unless_a_recording_says_otherwise(workdir, capsys):
+    bag, mcap = make_recording(workdir, "bag"), make_recording(workdir, "mcap")
     assert main(["md5", "p/A", "--path", "."]) == 0
     assert main(["md5", "my_msgs/Wheel", "--bag", str(bag)]) == 0
     capsys.readouterr()
@@ -168,7 +168,7 @@ def test_sums_are_of_noetic_unless_a_recording_says_otherwise(here, capsys):
 
 
 @pytest.mark.parametrize(
-    ("error", "status", "said"),
+    ("error", "status", "stderr"),
     [
         (DefinitionError([Diagnostic(message="wrong")]), 1, "error: wrong\n"),
         (BuildError("no"), 1, "error: no\n"),
@@ -179,41 +179,41 @@ def test_sums_are_of_noetic_unless_a_recording_says_otherwise(here, capsys):
         (KeyboardInterrupt(), 130, "interrupted\n"),
     ],
 )
-def test_whatever_ends_a_command_is_in_its_status(here, capsys, monkeypatch, error, status, said):
+def test_every_exception_sets_the_exit_status(workdir, capsys, monkeypatch, error, status, stderr):
     def fail(*args, **options):
         raise error
 
     monkeypatch.setattr(BUILD, "build", fail)
     assert main(["build", "p/A", "--path", "."]) == status
-    assert capsys.readouterr() == ("", said)
+    assert capsys.readouterr() == ("", stderr)
 
 
 @pytest.mark.parametrize("command", ["verify", "golden", "cover", "report", "prove", "bench"])
 @pytest.mark.parametrize(("returned", "status"), [(None, 0), (0, 0), (1, 1), (3, 3)])
-def test_the_status_of_a_command_is_that_of_what_it_runs(monkeypatch, command, returned, status):
+def test_command_returns_the_status_of_its_function(monkeypatch, command, returned, status):
     module = importlib.import_module(RUN[command])
     monkeypatch.setattr(module, f"run_{command}", lambda given: returned)
     words = {"golden": ["check", "x"], "report": ["x"]}.get(command, ["std_msgs/msg/Bool"])
     assert main([command, *words]) == status
 
 
-def test_proto_has_quotes_unless_told_otherwise(here, capsys):
+def test_proto_has_quotes_unless_told_otherwise(workdir, capsys):
     assert main(["proto", "p/srv/S", "--path", "."]) == 0
     assert capsys.readouterr().out == '"a: 0\n"\n'
     assert main(["proto", "p/srv/S", "--path", ".", "--no-quotes"]) == 0
     assert capsys.readouterr().out == "a: 0\n\n"
 
 
-def test_figures_are_of_the_wire_and_in_the_form_that_were_asked_for(here, capsys):
+def test_figures_are_of_the_wire_and_in_the_form_that_were_asked_for(workdir, capsys):
     assert main(["metrics", "p/A", "--path", ".", "--wire", "ros1", "--format", "json"]) == 0
     (row,) = json.loads(capsys.readouterr().out)
     assert (row["wire"], row["min_bytes"]) == ("ros1", 9)
 
 
-def test_the_environment_is_searched_after_paths(here, capsys, monkeypatch):
-    make_files(here / "ws", {"share/q/msg/Q.msg": "int8 workspace"})
-    make_files(here / "dir", {"q/msg/Q.msg": "int8 path"})
-    monkeypatch.setenv("AMENT_PREFIX_PATH", os.fspath(here / "ws"))
+def test_the_environment_is_searched_after_paths(workdir, capsys, monkeypatch):
+    make_files(workdir / "ws", {"share/q/msg/Q.msg": "int8 workspace"})
+    make_files(workdir / "dir", {"q/msg/Q.msg": "int8 path"})
+    monkeypatch.setenv("AMENT_PREFIX_PATH", os.fspath(workdir / "ws"))
     assert main(["show", "q/Q"]) == 0
     assert capsys.readouterr().out == "int8 workspace\n"
     assert main(["show", "q/Q", "--path", "dir"]) == 0

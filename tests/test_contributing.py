@@ -11,7 +11,7 @@ import firm_hdl
 
 ROOT = Path(firm_hdl.__file__).parent.parent
 PAGE = (ROOT / "docs" / "contributing.md").read_text(encoding="utf-8")
-# Of a new file, which the walk makes.
+# The name of a new file, which the walk creates.
 NEW = re.compile(r"NAME|PART")
 # A file such as `README.md` is no member of a class.
 MEMBER = re.compile(r"`([A-Z]\w*[a-z]\w*)\.(\w+)`")
@@ -82,7 +82,7 @@ def lengths(page):
 
 
 def test_a_walk_touches_at_most_six_files():
-    # One of six walks, as oracles of definitions and of packets have one each.
+    # There are six walks: oracles of definitions and of packets have one each.
     assert lengths(PAGE) == [6, 5, 6, 5, 6, 6]
 
 

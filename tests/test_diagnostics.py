@@ -1,4 +1,4 @@
-"""How errors are printed."""
+"""The printed form of errors."""
 
 from __future__ import annotations
 
@@ -54,14 +54,14 @@ def test_error_survives_pickling():
     assert str(again) == str(error) and again.diagnostics == error.diagnostics
 
 
-def test_what_is_meant_for_users_has_no_name_in_python():
+def test_errors_for_users_print_without_an_exception_name():
     assert described(UserError("Yosys needs memory")) == "Yosys needs memory"
     wrong = diagnostic("int8 a", 0, 4)
     assert described(DefinitionError([wrong])) == str(wrong)
     assert described(KeyError("x")) == "KeyError: 'x'"
 
 
-def test_a_type_that_cannot_be_run_says_so_in_the_words_for_users(monkeypatch):
+def test_failure_to_run_a_type_has_the_message_for_users(monkeypatch):
     def refused(*_):
         raise UserError("Yosys needs memory")
 

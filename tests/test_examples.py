@@ -1,4 +1,4 @@
-"""The documentation is true: examples run, quoted commands print what they are said to print."""
+"""The documentation is true: examples run, and quoted commands print the quoted output."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def load(path: Path) -> ModuleType:
     spec = importlib.util.spec_from_file_location(path.stem, path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    # Where dataclasses look for their own module.
+    # Dataclasses look their module up there.
     sys.modules[path.stem] = module
     spec.loader.exec_module(module)
     return module
@@ -46,8 +46,8 @@ def blocks(language: str) -> Iterator[object]:
             yield pytest.param(text, id=f"{page.stem}-{number}")
 
 
-def commands(text: str) -> Iterator[tuple[list[str], str]]:
-    """Yield the arguments of each `firm-hdl` in a console block, and what it is said to print."""
+def quoted_commands(text: str) -> Iterator[tuple[list[str], str]]:
+    """Yield the arguments of each `firm-hdl` in a console block, with its quoted output."""
     for part in re.split(r"^\$ ", text, flags=re.MULTILINE)[1:]:
         line, _, output = part.partition("\n")
         program, *arguments = shlex.split(line)
@@ -56,14 +56,14 @@ def commands(text: str) -> Iterator[tuple[list[str], str]]:
 
 
 def rows(page: str) -> set[str]:
-    """Return the lines of a page with runs of spaces made one."""
+    """Return the lines of a page with runs of spaces reduced to one space."""
     text = (ROOT / page).read_text(encoding="utf-8")
     return {" ".join(line.split()) for line in text.splitlines()}
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch):
-    """A working directory with the documentation and the recordings that it speaks of."""
+def workdir(tmp_path, monkeypatch):
+    """A working directory with the documentation and the recordings that it mentions."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "docs").symlink_to(ROOT / "docs")
     make_recording(tmp_path, "bag")
@@ -73,7 +73,7 @@ def here(tmp_path, monkeypatch):
 
 @pytest.mark.snapshot
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_examples_run(here, capsys, name):
+def test_examples_run(workdir, capsys, name):
     example = load(ROOT / "examples" / f"{name}.py")
     if name == "bench":
         # The other widths take as long as all other examples together.
@@ -81,20 +81,20 @@ def test_examples_run(here, capsys, name):
     assert example.main() == 0
     printed = capsys.readouterr().out
     if name == "demo":
-        # What GHDL says follows after another empty line, where there is GHDL.
+        # The output of GHDL follows after another empty line, if GHDL is installed.
         table = printed.split("\n\n")[2]
         assert {" ".join(line.split()) for line in table.splitlines()} <= rows("README.md")
     if name == "bench":
-        # All columns but the last, which is the time that it took here.
+        # Compare all columns but the last, which is a time.
         table = [line.split()[:-1] for line in printed.splitlines()[1:]]
         assert {f"| {' | '.join(line)} |" for line in table} <= rows("docs/interface.md")
 
 
 @pytest.mark.parametrize("text", list(blocks("python")))
 @pytest.mark.filterwarnings("ignore::amaranth.hdl.UnusedElaboratable")
-def test_python_runs(here, text):
+def test_python_runs(workdir, text):
     exec(compile(text, "<documentation>", "exec"), {"__name__": "__main__"})
-    # Components that only show how they are made complain when they are collected.
+    # Components that are constructed but not elaborated warn when they are collected.
     gc.collect()
 
 
@@ -107,20 +107,20 @@ def test_the_readme_quotes_an_example():
 
 @pytest.mark.snapshot
 @pytest.mark.parametrize("text", list(blocks("console")))
-def test_commands_print_what_is_quoted(here, capsys, text):
-    for arguments, output in commands(text):
+def test_commands_print_what_is_quoted(workdir, capsys, text):
+    for arguments, output in quoted_commands(text):
         status = firm_hdl_command(arguments)
         out, err = capsys.readouterr()
         if arguments[0] == "prove":
             # Proofs that run at the same time end in any order.
             out, output = (in_order(text) for text in (out, output))
         if arguments[0] == "build":
-            # So are folders that are written at the same time.
+            # Folders that are written at the same time are in any order, too.
             out, output = (written_in_order(text) for text in (out, output))
         # A line `...` stands for any number of lines.
         parts = re.split(r"^\.\.\.\n", output.strip("\n"), flags=re.MULTILINE)
         pattern = r"(?:.*\n)*?".join(map(re.escape, parts))
-        # What time it takes is another thing on every machine.
+        # Times differ from machine to machine.
         pattern = re.sub(r"(?:\\ )+\d+\\\.\d\\ s\b", r"\\ +\\d+\\.\\d\\ s", pattern)
         pattern = re.sub(r"(^|\?)\d+\\ s,", r"\1\\d+\\ s,", pattern, flags=re.MULTILINE)
         assert re.fullmatch(pattern, (out + err).strip("\n")), out + err
@@ -128,18 +128,18 @@ def test_commands_print_what_is_quoted(here, capsys, text):
 
 
 def in_order(text: str) -> str:
-    """Return lines in the order of what they say besides times."""
+    """Return lines sorted by their text without times."""
     return "\n".join(sorted(text.splitlines(), key=lambda line: line.split("s  ")[-1]))
 
 
 def written_in_order(text: str) -> str:
-    """Return lines with those before them that name folders in the order of these."""
+    """Return lines, with the leading lines of written folders sorted."""
     lines = text.splitlines()
     count = next((n for n, line in enumerate(lines) if not line.startswith("wrote ")), len(lines))
     return "\n".join([*sorted(lines[:count]), *lines[count:]])
 
 
-def test_links_lead_somewhere():
+def test_links_have_existing_targets():
     for page in PAGES:
         for link in LINK.findall(page.read_text(encoding="utf-8")):
             if "://" in link:
@@ -158,14 +158,14 @@ def test_tests_that_pages_name_exist():
     for page in PAGES:
         for path, name in re.findall(r"`(tests/[\w/]+\.py)(?:::(\w+))?`", page.read_text("utf-8")):
             if "NAME" in path:
-                continue  # What a reader is to write: tests.test_contributing looks at those.
+                continue  # A file that a reader is to write: see tests.test_contributing.
             assert (ROOT / path).exists(), f"{page.name}: {path}"
             text = (ROOT / path).read_text(encoding="utf-8")
             assert f"def {name}(" in text if name else True, f"{page.name}: {path}::{name}"
 
 
 @pytest.mark.parametrize("figure", ["deserializer", "serializer"])
-def test_waveforms_are_those_of_today(figure):
+def test_waveforms_are_up_to_date(figure):
     waveform = load(ROOT / "docs" / "figures" / "waveform.py")
     drawn = (ROOT / "docs" / "figures" / f"{figure}.json5").read_text(encoding="utf-8")
     assert waveform.source_of(figure) == drawn

@@ -1,4 +1,4 @@
-"""Files of others: regular ones up to their limit are read, and no others."""
+"""Input files: regular ones up to their limit are read, and no others."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_a_file_that_does_not_tell_its_size_is_measured_while_it_is_read():
     assert error.value.strerror == "it has more than 5 bytes, and at most 5 are read"
 
 
-def test_what_is_no_file_is_named(tmp_path):
+def test_paths_that_are_no_files_are_named(tmp_path):
     os.mkfifo(tmp_path / "fifo")
     (tmp_path / "folder").mkdir()
     with socket.socket(socket.AF_UNIX) as here:
@@ -64,14 +64,14 @@ def test_what_is_no_file_is_named(tmp_path):
                 assert error.value.strerror == f"it is {what}, not a regular file"
 
 
-def test_what_is_not_there_is_not_read(tmp_path):
+def test_missing_paths_are_not_read(tmp_path):
     for read in (read_file, check_file):
         with pytest.raises(FileNotFoundError):
             read(tmp_path / "none", 10)
 
 
 def test_a_file_that_becomes_a_fifo_meanwhile_is_not_waited_for(file, monkeypatch):
-    # As it was looked at, it was a file.
+    # It was a regular file when it was examined.
     monkeypatch.setattr("firm_hdl.files.check_file", lambda *given: None)
     file.unlink()
     os.mkfifo(file)

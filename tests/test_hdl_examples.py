@@ -1,4 +1,4 @@
-"""The designs in `examples/` drop what is damaged; once they do not, their own benches fail."""
+"""The designs in `examples/` drop damaged packets; benches fail on designs that do not."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.vhdl.ghdl import GHDL
 
 EXAMPLES = ROOT / "examples"
 
-# What a naive design does instead: it acts on `valid`, whatever the status says.
+# The change that makes a design naive: it acts on `valid` and ignores the status.
 NAIVE = {
     "vhdl_motor": ("motor.vhd", r"take = '1' and status = STATUS_OK", "msg_valid = '1'"),
     "vhdl_two_types": ("restamp.vhd", r"good <= '1' when [^;]*;", "good <= '1';"),
@@ -36,7 +36,7 @@ NAIVE = {
 
 
 @pytest.fixture
-def work(tmp_path):
+def example_copies(tmp_path):
     """Copies of the examples, which build into themselves."""
     need("make", shutil.which("make"))
     shutil.copytree(EXAMPLES, tmp_path / "examples", ignore=shutil.ignore_patterns("work"))
@@ -57,52 +57,56 @@ def make(folder: Path) -> tuple[int, str]:
     return done.returncode, done.stdout + done.stderr
 
 
-def spoil(work: Path, name: str) -> None:
-    """Make a design naive."""
+def make_naive(example_copies: Path, name: str) -> None:
+    """Replace a design by its naive form."""
     file, safe, naive = NAIVE[name]
-    text, count = re.subn(safe, naive, (work / name / file).read_text())
+    text, count = re.subn(safe, naive, (example_copies / name / file).read_text())
     assert count == 1
-    (work / name / file).write_text(text)
+    (example_copies / name / file).write_text(text)
 
 
-def passes(work: Path, name: str, said: str = "PASS 8 packets, 4 speeds") -> None:
-    status, output = make(work / name)
-    assert status == 0 and said in output, output
+def passes(example_copies: Path, name: str, expected: str = "PASS 8 packets, 4 speeds") -> None:
+    status, output = make(example_copies / name)
+    assert status == 0 and expected in output, output
 
 
-def fails(work: Path, name: str, said: str = "FAIL after") -> None:
-    status, output = make(work / name)
-    assert status != 0 and said in output and not re.search(r"PASS (?!=)", output), output
+def fails(example_copies: Path, name: str, expected: str = "FAIL after") -> None:
+    status, output = make(example_copies / name)
+    assert status != 0 and expected in output and not re.search(r"PASS (?!=)", output), output
 
 
-def test_motors_obey_good_packets_alone(work):
+def test_motors_obey_good_packets_alone(example_copies):
     """One test for the three, because all need the converters of a Twist."""
     need("GHDL", GHDL)
     need("Icarus Verilog", shutil.which("iverilog"))
     need("Verilator", shutil.which("verilator"))
-    passes(work, "vhdl_motor")
+    passes(example_copies, "vhdl_motor")
     for name in ("sv_motor", "cocotb_motor"):
-        made = re.findall(r"^\t(firm-hdl build .*)$", (work / name / "Makefile").read_text(), re.M)
-        assert made == ["firm-hdl build geometry_msgs/msg/Twist --bus-bytes 4 --out $(WORK)"]
-        (work / name / "work").mkdir()
-        (work / name / "work" / "lyrical").symlink_to(work / "vhdl_motor" / "work" / "lyrical")
-    passes(work, "sv_motor")
-    spoil(work, "vhdl_motor")
-    fails(work, "vhdl_motor")
+        commands = re.findall(
+            r"^\t(firm-hdl build .*)$", (example_copies / name / "Makefile").read_text(), re.M
+        )
+        assert commands == ["firm-hdl build geometry_msgs/msg/Twist --bus-bytes 4 --out $(WORK)"]
+        (example_copies / name / "work").mkdir()
+        (example_copies / name / "work" / "lyrical").symlink_to(
+            example_copies / "vhdl_motor" / "work" / "lyrical"
+        )
+    passes(example_copies, "sv_motor")
+    make_naive(example_copies, "vhdl_motor")
+    fails(example_copies, "vhdl_motor")
     found = find_spec("cocotb") and find_spec("cocotbext") and find_spec("cocotbext.axi")
-    spoil(work, "sv_motor")
-    fails(work, "sv_motor")
+    make_naive(example_copies, "sv_motor")
+    fails(example_copies, "sv_motor")
     need("cocotbext-axi", "here" if found else None)
-    passes(work, "cocotb_motor", "PASS=1 FAIL=0")
-    spoil(work, "cocotb_motor")
-    fails(work, "cocotb_motor", "PASS=0 FAIL=1")
+    passes(example_copies, "cocotb_motor", "PASS=1 FAIL=0")
+    make_naive(example_copies, "cocotb_motor")
+    fails(example_copies, "cocotb_motor", "PASS=0 FAIL=1")
 
 
-def test_clouds_with_headers_of_scans_are_good_ones_alone(work):
+def test_clouds_with_headers_of_scans_are_good_ones_alone(example_copies):
     need("GHDL", GHDL)
-    passes(work, "vhdl_two_types", "PASS 8 scans and clouds, 3 clouds with new headers")
-    spoil(work, "vhdl_two_types")
-    fails(work, "vhdl_two_types", "FAIL packet")
+    passes(example_copies, "vhdl_two_types", "PASS 8 scans and clouds, 3 clouds with new headers")
+    make_naive(example_copies, "vhdl_two_types")
+    fails(example_copies, "vhdl_two_types", "FAIL packet")
 
 
 def test_naive_filter_lets_damaged_scans_pass(tmp_path, capsys):

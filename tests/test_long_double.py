@@ -68,7 +68,7 @@ COMMANDS = [
 
 
 @pytest.mark.parametrize("arguments", COMMANDS, ids=lambda arguments: arguments[0])
-def test_what_needs_bytes_refuses_it_where_it_stands(run, arguments):
+def test_commands_that_need_bytes_refuse_it_with_its_position(run, arguments):
     assert run(*arguments) == (1, "", ERROR)
     assert not Path("out").exists()
 
@@ -81,9 +81,9 @@ def test_golden_plans_refuse_it(run):
 def test_a_service_is_refused_with_all_that_is_wrong(run):
     status, out, err = run("build", "--out", "out", "p/srv/Ask")
     assert (status, out) == (1, "")
-    said = [line for line in err.splitlines() if "error" in line]
+    errors = [line for line in err.splitlines() if "error" in line]
     of = "src/p/srv/Ask.idl:{}: error: field '{}' of p/srv/Ask_{} is of type 'long double'"
-    assert [line.partition(": systems")[0] for line in said] == [
+    assert [line.partition(": systems")[0] for line in errors] == [
         of.format("2:46", "q", "Request"),
         of.format("3:37", "r", "Response"),
     ]
@@ -102,7 +102,7 @@ def test_test_systems_do_not_judge_it(run, system):
 
 
 def test_without_the_rule_a_test_system_would_fail(run, monkeypatch):
-    # After the rule there is another, that of layouts.
+    # Without this rule, the check of layouts still refuses the type.
     monkeypatch.setattr(ts2, "refusals", lambda message: [])
     status, out, _ = run("verify", "--systems", "ts2", "--jobs", "1", "p/Wide")
     assert status == 1 and "FAIL p/msg/Wide" in out and SENTENCE in out
@@ -116,7 +116,7 @@ def test_it_is_listed_shown_and_hashed(run):
     assert (status, err) == (0, "") and out.startswith("RIHS01_")
 
 
-def test_metrics_say_what_they_can(run):
+def test_metrics_give_the_figures_that_exist(run):
     status, out, err = run("metrics", "p/Wide", "p/Good", "--format", "json")
     assert (status, err) == (0, "")
     wide, good = json.loads(out)

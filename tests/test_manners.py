@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""What commands do with several types, and with arguments that are none."""
+"""Commands with several types, and with arguments that are not types."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ FILES = {
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch):
+def workdir(tmp_path, monkeypatch):
     monkeypatch.chdir(make_files(tmp_path, FILES))
     for name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
         monkeypatch.delenv(name, raising=False)
@@ -36,8 +36,8 @@ def here(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("command", ["md5", "hash", "proto"])
-@pytest.mark.usefixtures("here")
-def test_all_is_what_is_in_the_folders_and_not_what_they_depend_on(command, capsys):
+@pytest.mark.usefixtures("workdir")
+def test_all_covers_the_folders_without_dependencies(command, capsys):
     assert main([command, "--all", "--path", "own", "--depends", "others"]) == 1
     out, err = capsys.readouterr()
     assert re.findall(r"p/(?:msg/)?(\w+)", out) == ["A", "C"]
@@ -48,7 +48,7 @@ def test_all_is_what_is_in_the_folders_and_not_what_they_depend_on(command, caps
 
 
 @pytest.mark.parametrize("command", ["md5", "hash", "proto", "metrics"])
-@pytest.mark.usefixtures("here")
+@pytest.mark.usefixtures("workdir")
 def test_types_that_cannot_be_used_keep_no_others_from_being_done(command, capsys):
     assert main([command, "p/Bad", "p/C", "--path", "own"]) == 1
     out, err = capsys.readouterr()
@@ -56,7 +56,7 @@ def test_types_that_cannot_be_used_keep_no_others_from_being_done(command, capsy
     assert "int33" in err
 
 
-@pytest.mark.usefixtures("here")
+@pytest.mark.usefixtures("workdir")
 def test_verify_goes_on_after_a_type_that_cannot_be_used(capsys):
     ts2 = ["--systems", "ts2", "--jobs", "1"]
     assert main(["verify", "p/Bad", "p/C", "--path", "own", *ts2]) == 1
@@ -74,14 +74,14 @@ def test_verify_goes_on_after_a_type_that_cannot_be_used(capsys):
 
 
 @pytest.mark.parametrize("command", ["plan", "info", "show", "build"])
-@pytest.mark.usefixtures("here")
-def test_what_a_type_depends_on_is_found(command, capsys):
+@pytest.mark.usefixtures("workdir")
+def test_dependencies_of_a_type_are_found(command, capsys):
     assert main([command, "p/A", "--path", "own"]) == 1
     assert main([command, "p/A", "--path", "own", "--depends", "others"]) == 0
     assert capsys.readouterr().err.count("error") == 1
 
 
-def test_info_says_what_was_tried_and_of_long_arrays_only_where_there_are_some(capsys):
+def test_info_names_the_hardest_packet_and_long_arrays_if_there_are_any(capsys):
     types = ["geometry_msgs/msg/PolygonInstance", "sensor_msgs/msg/Image"]
     assert main(["info", "--bus-bytes", "16", *types]) == 0
     polygon, image = capsys.readouterr().out.split("sensor_msgs/msg/Image")
@@ -93,14 +93,14 @@ def test_info_says_what_was_tried_and_of_long_arrays_only_where_there_are_some(c
 def test_limitations_deny_nothing_that_verify_does(capsys):
     with pytest.raises(SystemExit):
         main(["verify", "--help"])
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     page = (Path(__file__).parents[1] / "docs" / "limitations.md").read_text()
     for option, denial in (
         ("--results", r"Only \w+ keeps results"),
         ("--bag", r"[Rr]ecorded messages are not replayed"),
         ("--sut", r"no other client library can be"),
     ):
-        assert option in said
+        assert option in output
         assert not re.search(denial.replace(" ", r"\s+"), page), option
 
 

@@ -1,4 +1,4 @@
-"""Effort that is counted: as much as is allowed passes, and one call more does not."""
+"""Counted effort: the allowed number of calls passes, one call more fails."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def test_calls_are_counted_the_same_each_time():
         work(1000)
 
 
-def test_who_catches_everything_does_not_hide_it():
+def test_code_that_catches_every_exception_does_not_hide_it():
     raised = pytest.raises(AssertionError, match="more than 9 calls")
     with raised, calls_at_most(9), contextlib.suppress(Exception):
         work(1000)

@@ -1,4 +1,4 @@
-"""Nothing of a definition, and no name of a file, acts on the terminal."""
+"""No text of a definition and no file name can control the terminal."""
 
 from __future__ import annotations
 
@@ -19,11 +19,13 @@ from firm_hdl.cli import main
 from firm_hdl.errors import Diagnostic, Source, Span
 from firm_hdl.terminal import printable, printable_streams
 
-ACTING = [chr(code) for code in (*range(32), 127, *range(128, 160)) if chr(code) not in "\t\n"]
+CONTROL_CHARACTERS = [
+    chr(code) for code in (*range(32), 127, *range(128, 160)) if chr(code) not in "\t\n"
+]
 
 
-def test_what_acts_is_printed_as_an_escape_and_letters_stay():
-    for character in (*ACTING, "\u2028", "\u202e", "\u2066"):
+def test_control_characters_are_escaped_and_letters_are_not():
+    for character in (*CONTROL_CHARACTERS, "\u2028", "\u202e", "\u2066"):
         assert printable(f"a{character}b") == f"a{ascii(character)[1:-1]}b"
     for text in ("grün 雪 \N{SNOWFLAKE} שלום\t\n", "caf\u0065\u0301", "\U0001f916"):
         assert printable(text) == text
@@ -41,25 +43,25 @@ def package(folder: Path, name: str, text: str) -> Path:
 def test_no_command_prints_control_characters(tmp_path, capsys, character):
     bad = f"{character}[2J"
     folder = package(tmp_path / f"x{bad}y", "Wheel", f"# grün{bad}\nint8 a # b{bad}\n")
-    said = ""
+    output = ""
     for command in ("show", "proto", "hash", "info", "plan", "list"):
         types = [] if command == "list" else ["my_msgs/msg/Wheel"]
         assert main([command, *types, "--path", str(folder)]) == 0
-        said += "".join(capsys.readouterr())
-    assert "grün" in said
+        output += "".join(capsys.readouterr())
+    assert "grün" in output
     (folder / "my_msgs" / "msg" / "Wheel.msg").write_text(f"int8 a{bad}\nint9 b # é{bad}\n")
     for types in (["my_msgs/msg/Wheel"], [f"my_msgs/msg/{bad}"], ["my_msgs/msg/Whee"]):
         assert main(["show", *types, "--path", str(folder)]) == 1
-        said += "".join(capsys.readouterr())
+        output += "".join(capsys.readouterr())
     assert main(["show", "a/msg/B", "--path", str(tmp_path / bad)]) == 1
     with pytest.raises(SystemExit):
         main([bad])
-    said += "".join(capsys.readouterr())
-    assert ascii(character)[1:-1] in said
-    assert not {*said} & {*ACTING, "\u202e"}
+    output += "".join(capsys.readouterr())
+    assert ascii(character)[1:-1] in output
+    assert not {*output} & {*CONTROL_CHARACTERS, "\u202e"}
 
 
-def test_streams_are_what_they_were_afterwards(capsys):
+def test_streams_are_restored_afterwards(capsys):
     before = sys.stdout, sys.stderr
     with printable_streams():
         print("\x1b[2J")
@@ -67,11 +69,11 @@ def test_streams_are_what_they_were_afterwards(capsys):
         print("\x1b[A", end="", file=sys.stderr)
         sys.stdout.writelines(["\x07\n"])
     assert (sys.stdout, sys.stderr) == before
-    # Progress bars return and move; what stands in them does not act.
+    # Progress bars move the cursor; control characters in their text do not act.
     assert capsys.readouterr() == ("\\x1b[2J\n\\x07\n", "\rbar \\x1b[2J\n\x1b[A")
 
 
-def test_caret_stands_below_what_is_meant():
+def test_caret_stands_below_the_marked_text():
     source = Source(name="a\x1bb.msg", text="\x1b\tint9 b\x07 c")
     span = Span(source=source, start=2, end=9)
     assert str(Diagnostic(message="no\x1b", span=span)).splitlines() == [
@@ -90,10 +92,10 @@ def test_progress_bars_are_drawn_on_a_terminal():
     fcntl.ioctl(there, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
     subprocess.run([sys.executable, "-c", code], stderr=there, stdout=there, check=True)
     os.close(there)
-    said = ""
+    output = ""
     with io.FileIO(here) as terminal, suppress(OSError):
-        # Whoever reads on when there is nobody on the other side gets an error.
+        # Reading after the other side has closed raises an error.
         while part := terminal.read(4096):
-            said += part.decode()
-    assert "\rx\\x1b[2J: 100%" in said
-    assert "\x1b" not in said.replace("\x1b[0m", "")
+            output += part.decode()
+    assert "\rx\\x1b[2J: 100%" in output
+    assert "\x1b" not in output.replace("\x1b[0m", "")

@@ -1,4 +1,4 @@
-"""Tools that tests need from outside."""
+"""External tools that tests need."""
 
 from __future__ import annotations
 

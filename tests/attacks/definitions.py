@@ -15,7 +15,7 @@ NAMED = b"<package><name>p</name></package>"
 ONCE = ("build", "plan", "info", "cover", "verify", "prove")
 MSG, IDL = "src/p/msg/A.msg", "src/p/msg/A.idl"
 PATH = ("--path", "src")
-# Each is a text that is wrong, or meant to be expensive, or both.
+# Each text is wrong, expensive to read, or both.
 TEXTS: dict[str, str | bytes] = {
     "empty": "",
     "blank": "\n\n \t\n",
@@ -99,7 +99,7 @@ def definition_attacks() -> Iterator[Attack]:
     """Yield the attacks of this kind."""
     order = sorted(TEXTS)
     for number, name in enumerate(order):
-        # Not each with each command: what reads a text is the same for all.
+        # Not every text with every command: all commands read texts with the same code.
         for command in ("plan", COMMANDS[number % len(COMMANDS)]):
             yield Attack(
                 name=f"msg_{name}_{command}",
@@ -132,23 +132,23 @@ def _trees() -> Iterator[Attack]:
     arrays = {f"src/p/msg/T{level}.msg": f"T{level + 1}[65535] f\n" for level in range(8)}
     arrays["src/p/msg/T8.msg"] = "float64 x\n"
     trees = {"boom": boom, "deep": deep, "lists": lists, "arrays": arrays}
-    for name, made in trees.items():
+    for name, tree in trees.items():
         others = (
             ("build", "plan", "info", "cover", "verify", "prove") if name == "boom" else ("plan",)
         )
         for command in ("show", "hash", "proto", "metrics", *others):
             yield Attack(
-                name=f"tree_{name}_{command}", argv=(command, "p/T0", *PATH), make=files(made)
+                name=f"tree_{name}_{command}", argv=(command, "p/T0", *PATH), make=files(tree)
             )
         yield Attack(
             name=f"tree_{name}_noetic",
             argv=("proto", "p/T0", "--distro", "noetic", *PATH),
-            make=files(made),
+            make=files(tree),
         )
         yield Attack(
             name=f"tree_{name}_golden",
             argv=("golden", "add", "golden", "p/T0", *PATH),
-            make=files(made),
+            make=files(tree),
             fails=True,
         )
 

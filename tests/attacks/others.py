@@ -88,8 +88,8 @@ def _folders() -> Iterator[Attack]:
         "of_another": json.dumps(good),
         "message_list": json.dumps({**good, "inputs": {"message": [1]}}),
     }.items():
-        made = files({MANIFEST: text, f"{FOLDER}/thesis.tex": "ten years"})
-        yield attack(f"manifest_{name}", made)
+        fill = files({MANIFEST: text, f"{FOLDER}/thesis.tex": "ten years"})
+        yield attack(f"manifest_{name}", fill)
     yield attack("file", files({"out": "mine"}))
     yield attack("distro_is_file", files({"out/lyrical": "mine"}))
     yield attack("folder_is_file", files({FOLDER: "mine"}))
@@ -166,8 +166,8 @@ def _results() -> Iterator[Attack]:
 
 
 def _report(name: str, text: str | bytes, fails: bool | None) -> Attack:
-    made = files({"r.jsonl": text})
-    return Attack(name=f"report_{name}", argv=("report", "r.jsonl"), make=made, fails=fails)
+    fill = files({"r.jsonl": text})
+    return Attack(name=f"report_{name}", argv=("report", "r.jsonl"), make=fill, fails=fails)
 
 
 def _golden() -> Iterator[Attack]:

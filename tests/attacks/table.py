@@ -1,4 +1,4 @@
-"""What an attack is: a folder, a command line, and how that has to end."""
+"""The description of an attack: a folder, a command line, and the expected end."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Attack:
     fails : bool or None
         Whether it must end with status 1 or 2, or with 0; `None`: either.
     says : str
-        What standard error must have in it.
+        Text that standard error must contain.
     changes : tuple of str
         Files, by their paths there, that the command may change.
     """

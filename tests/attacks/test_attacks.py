@@ -1,4 +1,4 @@
-"""Attacks on the command: each ends, in words of ours, and nothing of the user's is lost."""
+"""Attacks on the command: each ends with a message of firm-hdl, and no file of the user is lost."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from tests.attacks.table import Attack
 
 ATTACKS = [*definition_attacks(), *recording_attacks(), *other_attacks()]
 
-# What Python says of a mistake in a program.
-PYTHON = re.compile(
+# Messages of Python that show an error in the program.
+INTERNAL_ERROR = re.compile(
     r"Traceback|\bErrno\b|object has no attribute|object is not|NoneType|codec can't|"
     r"\b[A-Z]\w*(?:Error|Exception)\b|invalid literal|index out of range|unpack|"
     r"unsupported operand|argument must be|recursion depth|Exceeds the limit"
 )
-# A hang is no failure that a test should wait for.
+# A command that hangs is stopped after this time.
 MOST_SECONDS = 120
 
 
 class HangError(BaseException):
-    """A command takes longer than anything here should."""
+    """A command takes longer than any attack should."""
 
 
 def contents(root: Path) -> dict[str, bytes]:
-    """Read all files of a folder that hold something."""
+    """Return the contents of all small files below a folder, and the kind of special files."""
     found = {}
     for path in sorted(root.rglob("*")):
         status = path.lstat()
@@ -44,13 +44,13 @@ def contents(root: Path) -> dict[str, bytes]:
     return found
 
 
-def ended(arguments: tuple[str, ...]) -> int:
-    """Run a command in this process; give its exit status."""
+def exit_status(arguments: tuple[str, ...]) -> int:
+    """Run a command in this process; return its exit status."""
 
-    def stop(*_: object) -> None:
+    def hang(*_: object) -> None:
         raise HangError
 
-    before = signal.signal(signal.SIGALRM, stop)
+    before = signal.signal(signal.SIGALRM, hang)
     signal.alarm(MOST_SECONDS)
     try:
         return main(arguments)
@@ -62,14 +62,16 @@ def ended(arguments: tuple[str, ...]) -> int:
         signal.signal(signal.SIGALRM, before)
 
 
-def judge(attack: Attack, status: int, said: str, before: dict[str, bytes], root: Path) -> None:
-    """Say what is wrong with how a command ended."""
-    assert status in {None: (0, 1, 2), True: (1, 2), False: (0,)}[attack.fails], said
-    assert not PYTHON.search(said), said[:2000]
-    assert attack.says in said
-    assert "\x1b" not in said
-    assert "\0" not in said
-    assert bool(said.strip()) or status == 0, "a failure without a word"
+def check_end(
+    attack: Attack, status: int, output: str, before: dict[str, bytes], root: Path
+) -> None:
+    """Check exit status, messages and files after a command."""
+    assert status in {None: (0, 1, 2), True: (1, 2), False: (0,)}[attack.fails], output
+    assert not INTERNAL_ERROR.search(output), output[:2000]
+    assert attack.says in output
+    assert "\x1b" not in output
+    assert "\0" not in output
+    assert bool(output.strip()) or status == 0, "a failure without a word"
     after = contents(root)
     for name, text in before.items():
         assert name in attack.changes or after.get(name) == text, f"{name} is lost"
@@ -82,10 +84,10 @@ def test_attack(attack, tmp_path, monkeypatch, capfd):
         monkeypatch.delenv(name, raising=False)
     attack.make(tmp_path)
     before = contents(tmp_path)
-    status = ended(attack.argv)
+    status = exit_status(attack.argv)
     out, err = capfd.readouterr()
-    # `verify` says on standard output what became of a test, and of what it could not judge.
-    judge(attack, status, err or out * (attack.argv[:1] == ("verify",)), before, tmp_path)
+    # `verify` prints results of tests, and types that it could not judge, on standard output.
+    check_end(attack, status, err or out * (attack.argv[:1] == ("verify",)), before, tmp_path)
 
 
 def test_names_are_distinct_and_there_are_many():
@@ -95,7 +97,7 @@ def test_names_are_distinct_and_there_are_many():
 
 
 @pytest.mark.parametrize(
-    ("status", "said", "lost"),
+    ("status", "output", "lost"),
     [
         (3, "error: x", ()),
         (1, "", ()),
@@ -106,13 +108,13 @@ def test_names_are_distinct_and_there_are_many():
         (0, "", ("a",)),
     ],
 )
-def test_the_judge_sees_what_is_wrong(tmp_path, status, said, lost):
+def test_the_check_finds_wrong_ends(tmp_path, status, output, lost):
     attack = Attack(name="x", argv=())
     (tmp_path / "a").write_text("1")
     before = contents(tmp_path)
-    judge(attack, 0, "", before, tmp_path)
-    judge(attack, 1, "error: x", before, tmp_path)
+    check_end(attack, 0, "", before, tmp_path)
+    check_end(attack, 1, "error: x", before, tmp_path)
     for name in lost:
         os.remove(tmp_path / name)
     with pytest.raises(AssertionError):
-        judge(attack, status, said, before, tmp_path)
+        check_end(attack, status, output, before, tmp_path)

@@ -1,4 +1,4 @@
-"""Attacks that need a process of their own: its streams, its signals, its memory."""
+"""Attacks that need their own process: on its streams, by signals, and on its memory."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 from rosbags.rosbag2 import StoragePlugin, Writer
 
 import firm_hdl
-from tests.attacks.test_attacks import PYTHON
+from tests.attacks.test_attacks import INTERNAL_ERROR
 from tests.frontend.bombs import BOMBS
 from tests.frontend.workspace import make_files
 
@@ -25,7 +25,7 @@ MOST_SECONDS = 120
 
 
 def run(*arguments, memory=None, shell="", cwd=None):
-    """Run the command in a process; `shell` is what a shell does with it."""
+    """Run the command in a process; `shell` has redirections or a pipe of a shell."""
 
     def limit() -> None:
         if memory is not None:
@@ -61,14 +61,14 @@ SHELLS = [">&-", "2>&-", ">&- 2>&-", "| head -c 1", ">/dev/full", "2>/dev/full",
 )
 def test_streams_that_are_closed_or_full_are_no_traceback(arguments, shell):
     done = run(*arguments, shell=shell)
-    assert not PYTHON.search(done.stderr), done.stderr
+    assert not INTERNAL_ERROR.search(done.stderr), done.stderr
     assert "Exception ignored" not in done.stderr
     assert done.returncode in (0, 1)
 
 
 @pytest.mark.parametrize("module", ["firm_hdl.terminal", "firm_hdl.cli.table", "rosbags"])
 def test_interrupt_while_it_starts_is_no_traceback(module):
-    # As if somebody pressed Ctrl-C while a module is being imported.
+    # Ctrl-C while a module is being imported.
     hook = (
         "import os, signal, sys\n"
         "def look(event, arguments):\n"
@@ -93,12 +93,12 @@ def test_yosys_without_memory_says_how_much_it_needs(tmp_path):
     assert done.returncode == 1
     assert "Yosys ran out of memory; it reserves 4.1 GB of address space" in done.stderr
     assert "this process may have 3.2 GB (see 'ulimit -v')" in done.stderr
-    assert not PYTHON.search(done.stderr), done.stderr
+    assert not INTERNAL_ERROR.search(done.stderr), done.stderr
     assert len(done.stderr.splitlines()) == 1, done.stderr
     assert not list(tmp_path.rglob("*.v"))
 
 
-# Runs command lines one by one; says how each ended, and how much memory all of them took.
+# Runs command lines one by one; prints status and output of each, and the memory used so far.
 MEASURED = """
 import contextlib, io, json, resource, sys
 from firm_hdl.cli import main
@@ -153,7 +153,7 @@ def explode(place, source, name, commands, before=""):
 
 
 @pytest.mark.parametrize("source", ["--path", "--bag"])
-def test_what_explodes_is_refused_with_count_and_limit_in_little_memory(tmp_path, source):
+def test_exploding_types_are_refused_with_count_and_limit_in_little_memory(tmp_path, source):
     texts = exploding()
     if source == "--path":
         place = make_files(tmp_path / "in", {f"p/msg/{n}.msg": t for n, t in texts.items()})
@@ -173,7 +173,7 @@ def test_what_explodes_is_refused_with_count_and_limit_in_little_memory(tmp_path
         assert kib < 200 * 1024, command
 
 
-def test_memory_that_is_taken_shows_in_what_is_measured(tmp_path):
+def test_used_memory_shows_in_the_measurement(tmp_path):
     place = make_files(tmp_path / "in", {"p/msg/A.msg": "int8 x\n"})
     ((*_, little),) = explode(place, "--path", "p/A", ["plan"])
     ((*_, much),) = explode(place, "--path", "p/A", ["plan"], "hog = b'x' * (200 << 20)\n")

@@ -1,4 +1,4 @@
-"""What measurements need from outside."""
+"""Fixtures: external tools that measurements need."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.tools import need
 
 @pytest.fixture
 def ecp5() -> Device:
-    """A device whose tools are installed."""
+    """The ECP5, if its tools are installed."""
     device = DEVICES["ecp5"]
     assert device.placer is not None
     try:

@@ -1,6 +1,6 @@
 """Make the netlists and reports of the tools that `test_reports.py` reads: run this module.
 
-They are what Yosys 0.70 and nextpnr 0.11.1 wrote of `Accumulator`, less what is not read.
+They are the output of Yosys 0.70 and nextpnr 0.11.1 for `Accumulator`, without the unread parts.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ FOLDER = Path(__file__).parent / "reports"
 
 
 class Accumulator(wiring.Component):
-    """A sum of what an input brings while another is high; the output says whether it is large."""
+    """A sum of an input while another input is high; the output is high if the sum is large."""
 
     def __init__(self) -> None:
         super().__init__({"amount": In(8), "enable": In(1), "large": Out(1)})
@@ -42,32 +42,32 @@ def main() -> None:
     FOLDER.mkdir(exist_ok=True)
     circuit = rtlil.convert(Accumulator(), name="top", emit_src=False)
     for name, device in DEVICES.items():
-        kept: dict[str, Any] = {}
+        remaining: dict[str, Any] = {}
 
-        def keep(tool: object, file: Path, kept: dict[str, Any] = kept) -> str:
+        def write(tool: object, file: Path, remaining: dict[str, Any] = remaining) -> str:
             text = file.read_text(encoding="utf-8")
-            kept[file.stem] = json.loads(text)
+            remaining[file.stem] = json.loads(text)
             return text
 
-        with mock.patch.object(flow, "written", keep):
+        with mock.patch.object(flow, "written", write):
             measure(circuit, device, [1])
-        for entry in kept.values():
-            _forget(entry)
-        found = {"netlist": {"modules": {"top": kept["top"]["modules"]["top"]}}}
-        if "report" in kept:
-            found["report"] = kept["report"]
+        for entry in remaining.values():
+            _strip(entry)
+        found = {"netlist": {"modules": {"top": remaining["top"]["modules"]["top"]}}}
+        if "report" in remaining:
+            found["report"] = remaining["report"]
         text = json.dumps(found, indent=None, separators=(",", ":")) + "\n"
         (FOLDER / f"{name}.json").write_text(text)
 
 
-def _forget(entry: Any) -> None:
-    """Remove what is not read: attributes, places, and the utilization."""
+def _strip(entry: Any) -> None:
+    """Remove parts that are not read: attributes, places, and the utilization."""
     if isinstance(entry, dict):
         for key in ("attributes", "loc", "sources", "utilization", "parameters"):
             entry.pop(key, None)
     for each in entry.values() if isinstance(entry, dict) else entry:
         if isinstance(each, dict | list):
-            _forget(each)
+            _strip(each)
 
 
 if __name__ == "__main__":

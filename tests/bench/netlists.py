@@ -1,4 +1,4 @@
-"""A small netlist, as Yosys writes it."""
+"""A small netlist in the format of Yosys."""
 
 from __future__ import annotations
 

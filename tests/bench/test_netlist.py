@@ -42,7 +42,7 @@ def test_nets_have_the_names_of_the_design() -> None:
     ("net", "joining"),
     [("i[1]", ["o", "i"]), ("core.fill", ["i"]), ("i_LUT4_A_Z", ["i", "o"]), ("", ["i", "o"])],
 )
-def test_what_joins_a_path_is_named_through_other_logic(net: str, joining: list[str]) -> None:
+def test_joint_of_a_path_is_named_through_other_logic(net: str, joining: list[str]) -> None:
     assert list(Names(small()).joining("fill_LUT4_A_Z_LUT4_Z", net)) == joining
 
 
@@ -56,7 +56,7 @@ def segment(kind: str, delay: float, cell: str = "", net: str = "", to: str = ""
     }
 
 
-def test_a_path_is_told_in_names_of_the_design() -> None:
+def test_path_has_the_names_of_the_design() -> None:
     way = [
         segment("clk-to-q", 0.5, "port i[0]"),
         segment("routing", 1.0, net="i[0]"),

@@ -1,4 +1,4 @@
-"""The page of figures, its plots, and what `make bench` does with them."""
+"""The page of figures, its plots, and their update by `make bench`."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def test_the_mean_of_beats_is_geometric() -> None:
     ]
 
 
-def drawn(text: str) -> ElementTree.Element:
+def parse_svg(text: str) -> ElementTree.Element:
     root = ElementTree.fromstring(text)
     assert root.tag == f"{SVG}svg"
     return root
@@ -95,15 +95,15 @@ def drawn(text: str) -> ElementTree.Element:
 def test_each_converter_has_a_bar(
     plot: Callable[[Sequence[Result]], str], titles: list[str]
 ) -> None:
-    root = drawn(plot([result(), result(direction="serializer", mhz=(99.0,))]))
+    root = parse_svg(plot([result(), result(direction="serializer", mhz=(99.0,))]))
     bars = root.findall(f"{SVG}rect[@class='bar c1']") + root.findall(f"{SVG}rect[@class='bar c3']")
-    told = [title.text for bar in bars for title in bar.findall(f"{SVG}title")]
-    assert told == [f"p/msg/A (lyrical, cdr, 8 bytes) {title}" for title in titles]
+    tooltips = [title.text for bar in bars for title in bar.findall(f"{SVG}title")]
+    assert tooltips == [f"p/msg/A (lyrical, cdr, 8 bytes) {title}" for title in titles]
     assert float(root.get("height") or 0) > 60
 
 
 def test_the_line_of_the_goal_is_at_its_clock_rate() -> None:
-    root = drawn(clock_plot([result()]))
+    root = parse_svg(clock_plot([result()]))
     (goal,) = root.findall(f"{SVG}line[@class='goal']")
     (bar,) = [bar for bar in root.findall(f"{SVG}rect") if bar.findall(f"{SVG}title")]
     start, width = float(bar.get("x") or 0), float(bar.get("width") or 0)
@@ -111,7 +111,7 @@ def test_the_line_of_the_goal_is_at_its_clock_rate() -> None:
 
 
 def test_curves_of_beats_reach_their_ends() -> None:
-    root = drawn(beats_plot({"some": [result(beats=50), result("p/msg/B", beats=100)]}))
+    root = parse_svg(beats_plot({"some": [result(beats=50), result("p/msg/B", beats=100)]}))
     (curve,) = root.findall(f"{SVG}path")
     assert (curve.get("d") or "").endswith("H730.0V34.0")
 
@@ -119,7 +119,7 @@ def test_curves_of_beats_reach_their_ends() -> None:
 def test_a_plot_without_figures_is_empty() -> None:
     bare = replace(result(), measured=None)
     for text in (clock_plot([bare]), area_plot([bare])):
-        assert not drawn(text).findall(f".//{SVG}title")
+        assert not parse_svg(text).findall(f".//{SVG}title")
 
 
 def test_groups_have_both_directions_on_all_buses_and_devices() -> None:
@@ -141,8 +141,8 @@ def test_groups_have_both_directions_on_all_buses_and_devices() -> None:
 
 
 @pytest.fixture
-def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with a page, where figures are made up."""
+def page_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a copy of the page; measurements give invented figures."""
     (tmp_path / "page.md").write_text((ROOT / "docs" / "performance.md").read_text())
 
     def run(tasks: Sequence[BenchTask], jobs: int | None) -> Iterator[Result]:
@@ -156,11 +156,11 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(bench, "run_tasks", run)
     monkeypatch.setattr(bench, "versions", lambda device: {})
     monkeypatch.setattr(bench, "library_versions", lambda: {"rosbags": {"rosbags": "0.11"}})
-    monkeypatch.setattr(bench, "compare_software", beside)
+    monkeypatch.setattr(bench, "compare_software", compare_libraries)
     return tmp_path
 
 
-def beside(task: BenchTask, results: Sequence[Result]) -> Compared:
+def compare_libraries(task: BenchTask, results: Sequence[Result]) -> Compared:
     assert {each.converter.type for each in results} == {task.converter.type}
     return Compared(
         bytes=100.0,
@@ -170,71 +170,73 @@ def beside(task: BenchTask, results: Sequence[Result]) -> Compared:
     )
 
 
-def ran(place: Path, *words: str) -> int:
-    where = ["--page", str(place / "page.md"), "--figures", str(place / "figures")]
-    where += ["--estimates", str(place / "e.json"), "--jobs", "3"]
+def run_bench(page_folder: Path, *words: str) -> int:
+    where = ["--page", str(page_folder / "page.md"), "--figures", str(page_folder / "figures")]
+    where += ["--estimates", str(page_folder / "e.json"), "--jobs", "3"]
     return bench.main([*where, *words])
 
 
-def test_all_parts_of_the_page_are_written(place: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert ran(place) == 0
-    text = (place / "page.md").read_text()
+def test_all_parts_of_the_page_are_written(
+    page_folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_bench(page_folder) == 0
+    text = (page_folder / "page.md").read_text()
     for name in bench.PARTS:
         assert len(text.split(f"<!-- {name} -->")[1].split("<!-- end")[0]) > 100
     assert "| sensor_msgs/msg/Imu | cdr | 8 | serializer | 100 | 50 |" in text
     assert "| sensor_msgs/Imu | ros1 | 100 | serializer | 50 (16.0) |  |  | 40 (7.50) |" in text
     assert "* rosbags: rosbags 0.11\n" in text
-    files = {file.name for file in (place / "figures").iterdir()}
+    files = {file.name for file in (page_folder / "figures").iterdir()}
     assert files == {
         "bench_area.svg",
         "bench_beats.svg",
         "bench_clock.svg",
         "performance.json",
     }
-    # What the page shows is there.
+    # The plots that the page shows exist.
     assert all(f"figures/{name}" in text for name in files if name.endswith(".svg"))
-    entries = json.loads((place / "e.json").read_text())
+    entries = json.loads((page_folder / "e.json").read_text())
     assert {entry["bus_bytes"] for entry in entries} == {1, 2, 4, 8}
     assert {entry["part"] for entry in entries} == {"ECP5 LFE5U-45F-8"}
-    # Made-up results are all of one device, so those of other devices replace them.
+    # All invented results name one device, so they replace those of other devices.
     assert "figures changed" not in capsys.readouterr().out
-    assert ran(place) == 0
-    assert (place / "page.md").read_text() == text
+    assert run_bench(page_folder) == 0
+    assert (page_folder / "page.md").read_text() == text
     assert "0 figures changed by more than 2 %" in capsys.readouterr().out
 
 
-def test_one_part_leaves_the_others_alone(place: Path) -> None:
-    before = (place / "page.md").read_text()
-    assert ran(place, "--group", "narrow") == 0
-    after = (place / "page.md").read_text()
+def test_one_part_leaves_the_others_alone(page_folder: Path) -> None:
+    before = (page_folder / "page.md").read_text()
+    assert run_bench(page_folder, "--group", "narrow") == 0
+    after = (page_folder / "page.md").read_text()
     head, marks, tail = before.partition("<!-- narrow -->")
     assert marks and after.startswith(head)
     assert after.endswith(tail.partition("<!-- end narrow: made with -->")[2])
-    assert [file.name for file in (place / "figures").iterdir()] == ["performance.json"]
-    assert len(read_results(place / "figures" / "performance.json")) == 24
-    assert ran(place, "--group", "figures") == 0
-    assert len(read_results(place / "figures" / "performance.json")) == 24 + 22
+    assert [file.name for file in (page_folder / "figures").iterdir()] == ["performance.json"]
+    assert len(read_results(page_folder / "figures" / "performance.json")) == 24
+    assert run_bench(page_folder, "--group", "figures") == 0
+    assert len(read_results(page_folder / "figures" / "performance.json")) == 24 + 22
 
 
 def test_without_all_figures_nothing_is_written(
-    place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    page_folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    before = (place / "page.md").read_text()
+    before = (page_folder / "page.md").read_text()
     monkeypatch.setattr(bench, "run_tasks", lambda tasks, jobs: [result(problem="too large")])
-    assert ran(place, "--group", "narrow") == 1
+    assert run_bench(page_folder, "--group", "narrow") == 1
     assert "p/msg/A (lyrical, cdr, 8 bytes) deserializer: too large" in capsys.readouterr().err
-    assert (place / "page.md").read_text() == before
-    assert not (place / "e.json").exists()
+    assert (page_folder / "page.md").read_text() == before
+    assert not (page_folder / "e.json").exists()
 
 
 def test_a_missing_tool_is_an_error(
-    place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    page_folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def missing(device: object) -> dict[str, str]:
         raise BenchError("nothing is installed")
 
     monkeypatch.setattr(bench, "versions", missing)
-    assert ran(place, "--group", "devices") == 1
+    assert run_bench(page_folder, "--group", "devices") == 1
     assert capsys.readouterr().err == "error: nothing is installed\n"
 
 
@@ -246,7 +248,7 @@ def test_the_committed_page_has_all_parts_and_plots() -> None:
     plots = re.findall(r"\]\((figures/\w+\.svg)\)", text)
     assert len(plots) == 3
     for plot in plots:
-        drawn((ROOT / "docs" / plot).read_text())
+        parse_svg((ROOT / "docs" / plot).read_text())
     kept = read_results(ROOT / "docs" / "figures" / bench.KEPT)
     assert {each.key for each in kept} == {
         (*map(str, asdict(task.converter).values()), task.device)

@@ -1,4 +1,4 @@
-"""Reports and netlists that the tools wrote of one circuit, on each device."""
+"""Reports and netlists of the tools for one circuit, on each device."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ def test_cells_are_those_of_the_circuit(name: str, area: Area) -> None:
         ),
     ],
 )
-def test_paths_are_told_in_names_of_the_design(name: str, path: str) -> None:
+def test_paths_have_the_names_of_the_design(name: str, path: str) -> None:
     found = kept(name)
-    told = critical_path(found["report"], Names(top_module(found["netlist"])))
-    assert str(told) == path
+    critical = critical_path(found["report"], Names(top_module(found["netlist"])))
+    assert str(critical) == path
     (rate,) = found["report"]["fmax"].values()
-    assert told.ns == pytest.approx(1000 / rate["achieved"], abs=0.02)
+    assert critical.ns == pytest.approx(1000 / rate["achieved"], abs=0.02)
 
 
 def test_every_device_has_its_files() -> None:

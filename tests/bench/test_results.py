@@ -1,4 +1,4 @@
-"""Files of results, tables, and what changed between two sets."""
+"""Files of results, tables, and changes between two sets."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_a_line_has_all_figures_and_the_path() -> None:
     assert row(result(), path=False) == line
     bare = replace(result(), measured=None, cycles=None, problem="too large")
     assert row(bare).split("\n")[1] == "    no figures: too large"
-    # Numbers stand below their headings.
+    # Numbers are aligned with their headings.
     names = head(None)
     assert names.index("LUT") + 3 == line.index("100") + 3
     assert names.index("latency") + 7 == line.rindex(" 2 ") + 2
@@ -82,7 +82,7 @@ def test_the_summary_has_means_and_extremes() -> None:
     assert geometric_mean([0.5, 2.0]) == pytest.approx(1)
 
 
-def test_changes_beyond_the_threshold_are_told() -> None:
+def test_changes_beyond_the_threshold_are_reported() -> None:
     new = result(lut=90, ff=51, mhz=(60.0,), latency=3)
     found = {
         change.figure: (str(change), change.is_worse) for change in compare([result()], [new], 0.02)
@@ -99,26 +99,26 @@ def test_changes_beyond_the_threshold_are_told() -> None:
 
 
 def test_figures_that_vanish_are_worse_and_those_that_appear_are_not() -> None:
-    gone = replace(result(mhz=()), cycles=None)
-    vanished = list(compare([result()], [gone], 0.02))
-    assert {each.figure for each in vanished} == {"MHz", "beats per cycle", "latency", "Gbit/s"}
-    assert all(each.is_worse for each in vanished)
-    assert str(vanished[0]).endswith("MHz 82.5 -> none")
-    assert not any(each.is_worse for each in compare([gone], [result()], 0.02))
+    missing = replace(result(mhz=()), cycles=None)
+    changes = list(compare([result()], [missing], 0.02))
+    assert {each.figure for each in changes} == {"MHz", "beats per cycle", "latency", "Gbit/s"}
+    assert all(each.is_worse for each in changes)
+    assert str(changes[0]).endswith("MHz 82.5 -> none")
+    assert not any(each.is_worse for each in compare([missing], [result()], 0.02))
 
 
-def test_a_comparison_says_what_is_not_alike() -> None:
+def test_comparison_names_different_tools_and_missing_converters() -> None:
     old = [result(), result("p/msg/B")]
     text, is_fine = compared(old, [result(mapping="synth_ecp5 -abc9"), result("p/msg/C")], 0.02)
-    made = "Yosys 0.70, nextpnr-ecp5 0.11.1; {}; --45k; seeds 1 2 3; " + str(STATED)
+    provenance = "Yosys 0.70, nextpnr-ecp5 0.11.1; {}; --45k; seeds 1 2 3; " + str(STATED)
     assert text == (
-        f"not alike: {result().converter}: {made.format('synth_ecp5 -top top')}, "
-        f"now {made.format('synth_ecp5 -abc9')}\n"
+        f"not alike: {result().converter}: {provenance.format('synth_ecp5 -top top')}, "
+        f"now {provenance.format('synth_ecp5 -abc9')}\n"
         "1 converters compared, 1 are new, 1 are not measured now; 0 figures changed by more than "
         "2 %"
     )
     assert is_fine
-    # Nothing to compare with is no pass.
+    # A comparison without common converters is no pass.
     assert not compared(old, [result("p/msg/C")], 0.02)[1]
     assert not compared(old, [result(lut=200)], 0.02)[1]
     assert compared(old, [result(lut=50)], 0.02)[1]

@@ -1,4 +1,4 @@
-"""Libraries beside converters: what is timed is right, and what is not right has no figure."""
+"""Client libraries beside converters: only libraries with correct results get figures."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def everything(dialect: Dialect) -> Message:
 
 @pytest.fixture
 def cpp() -> None:
-    """Fast CDR and a compiler."""
+    """Fast CDR and a compiler, or the test is skipped."""
     try:
         fastcdr_versions()
     except ProgramMissingError as error:
@@ -77,7 +77,7 @@ def cpp() -> None:
 
 @pytest.fixture
 def ros1() -> None:
-    """The Python with genpy."""
+    """A Python with genpy, or the test is skipped."""
     try:
         genpy_versions()
     except ProgramMissingError as error:
@@ -85,8 +85,8 @@ def ros1() -> None:
 
 
 @pytest.fixture
-def forgotten() -> Iterator[None]:
-    """What was found is looked for again, before and after."""
+def fresh_caches() -> Iterator[None]:
+    """Empty caches of found tools, before and after the test."""
     found = (fastcdr_versions, genpy_versions, fastcdr._compiler)
     for each in found:
         each.cache_clear()
@@ -124,7 +124,7 @@ PADDED = Message(
 
 @pytest.mark.usefixtures("cpp")
 def test_fast_cdr_without_the_same_bytes_has_no_figure() -> None:
-    # A byte of padding, which is written as zero.
+    # This byte is padding, which is written as zero.
     with pytest.raises(BenchError, match=r"(?s)^Fast CDR, p/msg/Padded: read: .* 07 .*written:"):
         time_fastcdr(damaged(sample_of(PADDED), 6, 7), 1, 0.0)
     short = replace(sample_of(PADDED), packets=(b"\0\1\0\0\1",))
@@ -172,7 +172,7 @@ def test_cpp_that_is_generated() -> None:
     )
 
 
-def test_what_a_library_has_not_has_no_figure() -> None:
+def test_missing_library_has_no_figure() -> None:
     wchar = Primitive(name="wchar", bytes=2, kind="int", signed=False)
     wide = replace(PADDED, fields=(Field(name="a", type=wchar),))
     with pytest.raises(NoFigureError, match=r"^wchar is not written in C"):
@@ -190,11 +190,11 @@ def test_what_a_library_has_not_has_no_figure() -> None:
 
 
 @pytest.fixture
-def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+def time_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(python, "best_ns", lambda work, items: best_ns(work, items, 1, 0.0))
 
 
-@pytest.mark.usefixtures("quick")
+@pytest.mark.usefixtures("time_once")
 def test_rosbags_is_timed_and_checked() -> None:
     for message in (PADDED, load_message("sensor_msgs/Imu", distro="noetic")):
         found = time_rosbags(sample_of(message))
@@ -214,12 +214,12 @@ def test_genpy_is_timed_and_checked() -> None:
         time_genpy(replace(sample_of(message), packets=(b"",)))
 
 
-@pytest.mark.usefixtures("forgotten")
+@pytest.mark.usefixtures("fresh_caches")
 def test_missing_tools_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(python, "ROS_PYTHON", "/nowhere/python")
     with pytest.raises(ProgramMissingError, match=r"^/nowhere/python cannot be run"):
         library_versions()
-    # A Python without it, and without any packages.
+    # A Python without genpy or any packages.
     monkeypatch.setattr(python, "ROS_PYTHON", sys.executable)
     with pytest.raises(ProgramMissingError, match=r"python3-genpy\)$"):
         genpy_versions()
@@ -235,7 +235,7 @@ def test_missing_tools_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("cpp", "ros1")
-def test_versions_are_those_of_libraries_and_of_what_runs_them() -> None:
+def test_versions_are_those_of_libraries_and_their_runtimes() -> None:
     found = library_versions()
     assert {name: list(each) for name, each in found.items()} == {
         "rosbags": ["rosbags", "numpy", "Python"],

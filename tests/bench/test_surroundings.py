@@ -1,4 +1,4 @@
-"""Flip-flops outside of ports, and chains of them where ports have to be pins."""
+"""Flip-flops around ports, and chains of them on devices where ports have to be pins."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def placer(name: str) -> Placer:
 
 
 def added(top: dict[str, Any]) -> dict[str, dict[str, list[int]]]:
-    """Cells that are not of the circuit, with what they are connected to."""
+    """Return the cells that are not of the circuit, with their connections."""
     return {
         name: cell["connections"]
         for name, cell in top["cells"].items()
@@ -42,7 +42,7 @@ def test_each_bit_of_a_port_gets_a_register_outside() -> None:
         "port i[1]": {"CLK": [2], "DI": [11], "Q": [5]},
         "port o[0]": {"CLK": [2], "DI": [7], "Q": [12]},
     }
-    # The circuit itself is as it was.
+    # The circuit itself is unchanged.
     assert top["cells"]["fill_LUT4_A_Z_LUT4_Z"] == lut(6, 5, 7, 8)
 
 
@@ -64,12 +64,12 @@ def test_without_pins_for_all_ports_their_registers_form_a_chain() -> None:
         "scan_out": [16],
     }
     assert added(top) == {
-        # A chain through the inputs, from the one pin.
+        # A chain from one pin drives the inputs.
         "port i[0]": {"C": [2], "D": [14], "Q": [4]},
         "port i[1]": {"C": [2], "D": [4], "Q": [5]},
         "port o[0]": {"C": [2], "D": [7], "Q": [12]},
         "port o[1]": {"C": [2], "D": [6], "Q": [13]},
-        # All outputs and the end of that chain, to the other.
+        # All outputs and the end of that chain are joined to the other pin.
         "sum 0": {"I0": [5], "I1": [12], "I2": [13], "I3": [5], "O": [15]},
         "sum register 0": {"C": [2], "D": [15], "Q": [16]},
     }
@@ -102,7 +102,7 @@ def test_every_output_is_in_the_sum_once(count: int) -> None:
     for name, bits in cells.items():
         if name.startswith("sum ") and "register" not in name:
             taken = [bits[port][0] for port in ("I0", "I1", "I2", "I3")]
-            # What comes twice, to fill a look-up table up, is not an output.
+            # A net that comes twice fills a look-up table up; it is not an output.
             assert {bit for bit in taken if taken.count(bit) > 1} <= {5, *ends}
             outputs -= set(taken)
     assert outputs == set() and len(ends) == -(-count // 3)

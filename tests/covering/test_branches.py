@@ -1,4 +1,4 @@
-"""Which branches code takes."""
+"""Tracing of the branches that code takes."""
 
 from __future__ import annotations
 
@@ -27,22 +27,22 @@ def test_each_way_is_a_branch_of_its_own():
     assert yes & no
 
 
-def test_other_folders_are_not_looked_at():
+def test_other_folders_are_not_traced():
     assert traced(lambda: choose(True), [HERE.parent / "verify"]) == frozenset()
 
 
-def test_whoever_traces_already_goes_on_when_it_is_done():
-    def nothing(frame, event, argument):
+def test_earlier_trace_function_is_restored():
+    def tracer(frame, event, argument):
         return None
 
     before = sys.gettrace()
-    sys.settrace(nothing)
+    sys.settrace(tracer)
     try:
         traced(lambda: choose(True), [HERE])
         after = sys.gettrace()
     finally:
         sys.settrace(before)
-    assert after is nothing
+    assert after is tracer
 
 
 def test_types_differ_by_what_the_generator_does_for_them():

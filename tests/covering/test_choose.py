@@ -36,7 +36,7 @@ def test_a_distribution_is_covered_by_few_types():
     assert len(names) < 40
     everything = set().union(*types.values())
     assert set().union(*(types[name] for name in names)) == everything
-    # Leaving any one out loses what it was chosen for.
+    # Without any one of them, its features are not covered.
     for name in names[-5:]:
         others = (types[other] for other in names if other != name)
         assert set().union(*others) != everything
@@ -55,7 +55,7 @@ def every_feature(library, name, **options):
     return all_features(library, message, build_plan(lay_out(message)), **options)
 
 
-def test_families_are_told_apart_and_branches_come_on_request():
+def test_families_are_distinguished_and_branches_are_optional():
     library = Library("lyrical")
     few = every_feature(library, "geometry_msgs/msg/PolygonStamped")
     assert {

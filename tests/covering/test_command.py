@@ -1,4 +1,4 @@
-"""``firm-hdl cover``, as users call it."""
+"""The command ``firm-hdl cover``."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def test_branches_are_counted_if_asked_for(capsys):
     assert ", branch " in err
 
 
-def test_what_is_written_can_be_checked(tmp_path, capsys):
+def test_written_file_passes_its_check(tmp_path, capsys):
     path = tmp_path / "new" / "chosen.txt"
     assert main(["cover", *NAMES, "--out", str(path)]) == 0
     assert read_chosen(path) == [NAMES[0], NAMES[2]]
@@ -37,7 +37,7 @@ def test_what_is_written_can_be_checked(tmp_path, capsys):
     assert out == "" and err.startswith("2 of 3 types have 100 % of the ")
 
 
-def test_what_is_missing_is_named_with_a_type_that_has_it(tmp_path, capsys):
+def test_missing_features_are_named_with_a_type_that_has_them(tmp_path, capsys):
     path = tmp_path / "chosen.txt"
     path.write_text(f"# One.\n\n{NAMES[0]}\n")
     assert main(["cover", *NAMES, "--check", str(path)]) == 1
@@ -48,19 +48,19 @@ def test_what_is_missing_is_named_with_a_type_that_has_it(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("# nothing\n", "error: '{path}' names no types"),
         ("x/msg/Y\n", "error: '{path}' names types that are not among the given ones: x/msg/Y"),
         (None, "error: '{path}': No such file or directory"),
     ],
 )
-def test_a_wrong_file_is_explained(tmp_path, capsys, text, said):
+def test_a_wrong_file_is_explained(tmp_path, capsys, text, message):
     path = tmp_path / "chosen.txt"
     if text is not None:
         path.write_text(text)
     assert main(["cover", *NAMES, "--check", str(path)]) == 1
-    assert capsys.readouterr().err == said.format(path=path) + "\n"
+    assert capsys.readouterr().err == message.format(path=path) + "\n"
 
 
 def test_out_and_check_exclude_each_other(capsys):
@@ -80,7 +80,7 @@ def test_a_type_that_cannot_be_used_does_not_keep_the_others_out(tmp_path, capsy
     out, err = capsys.readouterr()
     assert "own_msgs/msg/Good: " in out and "own_msgs/msg/Bad" not in out
     assert "left out: own_msgs/msg/Bad: " in err and "left out: own_msgs/msg/Large: " in err
-    # Who names it has to know.
+    # A type that the user names is an error.
     assert main(["cover", "--path", str(tmp_path), "own_msgs/msg/Bad"]) == 1
     assert main(["cover", "--path", str(tmp_path), "own_msgs/msg/Large"]) == 1
 

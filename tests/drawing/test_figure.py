@@ -1,4 +1,4 @@
-"""Figures by their elements: what is drawn where, of which class, with which words."""
+"""Elements of figures: their positions, classes and texts."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import pytest
 from firm_hdl.drawing.svg import Figure, Scale, number, seconds, spread
 
 
-def drawn(method, *arguments, **options):
+def parts_of(method, *arguments, **options):
     figure = Figure(200, 100, "A < B")
     getattr(figure, method)(*arguments, **options)
     return figure.parts
 
 
-def test_a_figure_says_what_it_is_and_how_large():
+def test_figure_states_its_label_and_size():
     figure = Figure(200, 100, "A < B")
     head = '<svg viewBox="0 0 200 100" role="img" aria-label="A &lt; B" style="max-width:200px">'
     assert str(figure) == f"{head}</svg>"
@@ -59,12 +59,12 @@ def test_a_figure_says_what_it_is_and_how_large():
         (("path", [], "c1"), '<path d="" class="c1"></path>'),
     ],
 )
-def test_each_shape_is_where_it_is_to_be(call, part):
-    assert drawn(*call) == [part]
+def test_elements_of_each_shape(call, part):
+    assert parts_of(*call) == [part]
 
 
 def test_a_horizontal_axis_has_a_grid_above_it():
-    parts = drawn("x_axis", Scale(0, 2.5, 10, 110), 50, "cycles", 5)
+    parts = parts_of("x_axis", Scale(0, 2.5, 10, 110), 50, "cycles", 5)
     assert parts == [
         '<line x1="10.0" y1="50" x2="10.0" y2="5" class="grid"/>',
         '<text x="10.0" y="65" class="tick" text-anchor="middle">0</text>',
@@ -85,7 +85,7 @@ def test_a_horizontal_axis_has_a_grid_above_it():
 
 @pytest.mark.parametrize(("percent", "ends"), [(False, ("0", "1")), (True, ("0%", "100%"))])
 def test_a_vertical_axis_has_a_grid_beside_it(percent, ends):
-    parts = drawn("y_axis", Scale(0, 1, 90, 10), 40, "a<b", 190, percent)
+    parts = parts_of("y_axis", Scale(0, 1, 90, 10), 40, "a<b", 190, percent)
     assert parts[0] == '<line x1="40" y1="90.0" x2="190" y2="90.0" class="grid"/>'
     assert parts[1] == f'<text x="34" y="94.0" class="tick" text-anchor="end">{ends[0]}</text>'
     assert parts[-3] == '<line x1="40" y1="10.0" x2="190" y2="10.0" class="grid"/>'

@@ -1,4 +1,4 @@
-"""Scales: round figures, in order, inside the picture."""
+"""Scales: ticks are round figures, in order, inside the picture."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_larger_values_are_further_on(one, other):
 
 
 @pytest.mark.parametrize("values", [[], [0], [-1, 0]])
-def test_what_has_no_logarithm_is_left_out(values):
+def test_values_without_a_logarithm_are_left_out(values):
     scale = Scale.logarithmic([*values, 0.2, 30], 0, 100)
     assert (scale.low, scale.high) == (0.2, 50)
     assert scale(0) == scale(0.2) == 0

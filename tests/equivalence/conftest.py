@@ -1,4 +1,4 @@
-"""What proofs need from outside."""
+"""Fixtures: external tools that proofs need."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""A small design in which everything matters, and ways to break a circuit, chosen by rule."""
+"""A small design without redundant logic, and ways to break a circuit, chosen by rule."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Small(Elaboratable):
 
 
 def small_rtlil() -> str:
-    """Give the design as RTLIL."""
+    """Return the design as RTLIL."""
     design = Small()
     text: str = rtlil.convert(design, name="little", ports=design.ports, emit_src=False)
     return text
@@ -87,7 +87,7 @@ def broken_rtlil(text: str) -> Iterator[tuple[str, str]]:
     ------
     what, text
         Other operators, clock edges, constants of registers, switches with swapped arms, and
-        registers that are mere wires.
+        registers that become wires.
     """
     for match in re.finditer(r"cell \$(\w+) ", text):
         other = _OTHER_CELL.get(match[1])

@@ -1,4 +1,4 @@
-"""``firm-hdl prove``."""
+"""The command ``firm-hdl prove``."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_types_of_recordings_can_be_proved(tmp_path: Path, monkeypatch: pytest.M
     )
     assert main(["prove", "my_msgs/Spot", "--bag", bag]) == 0
     assert asked == ["my_msgs/Spot"] * 2 and not any(each.problem for each in done)
-    # It is nowhere else.
+    # The type is in the recording only.
     assert main(["prove", "my_msgs/Spot", "--distro", "noetic"]) == 1
 
 
@@ -79,7 +79,7 @@ def test_status_says_whether_all_are_equal(
         assert "input i = 0x5" in out
 
 
-def test_missing_tools_are_said_with_how_to_install_them(
+def test_missing_tools_are_named_with_the_command_that_installs_them(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(programs.shutil, "which", lambda name: None)
@@ -89,9 +89,9 @@ def test_missing_tools_are_said_with_how_to_install_them(
         assert main(["prove", "std_msgs/msg/Bool"]) == 1
     finally:
         tools.find_tools.cache_clear()
-    said = capsys.readouterr().err
-    assert "GHDL is not installed" in said and "apt install ghdl-mcode" in said
-    assert "pip install 'firm-hdl[prove]'" in said
+    stderr = capsys.readouterr().err
+    assert "GHDL is not installed" in stderr and "apt install ghdl-mcode" in stderr
+    assert "pip install 'firm-hdl[prove]'" in stderr
 
 
 def test_ghdl_is_the_one_that_verification_takes(
@@ -127,13 +127,13 @@ def test_ghdl_is_the_one_that_verification_takes(
         ("yosys", 6 << 30, "this process may have 6.4 GB"),
     ],
 )
-def test_yosys_without_memory_says_what_it_needs_and_what_there_is(
+def test_yosys_without_memory_states_its_need_and_the_limit(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, program: str, limit: int, message: str
 ) -> None:
-    said = "Caused by:\n    Cannot allocate memory (os error 12)\n"
+    stderr = "Caused by:\n    Cannot allocate memory (os error 12)\n"
 
     def run(*arguments: object, **options: object) -> str:
-        raise ToolError(said)
+        raise ToolError(stderr)
 
     monkeypatch.setattr(tools, "run_tool", run)
     monkeypatch.setattr(resource, "getrlimit", lambda what: (limit, limit))
@@ -178,7 +178,7 @@ def test_unknown_types_are_an_error(capsys: pytest.CaptureFixture[str]) -> None:
     assert "did you mean" in capsys.readouterr().err
 
 
-def test_what_cannot_be_built_is_a_failure() -> None:
+def test_type_that_cannot_be_built_is_a_failure() -> None:
     attempt = converters.attempt(
         ProofTask(distro="lyrical", name="no/msg/T", direction="serializer")
     )

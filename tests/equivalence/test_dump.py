@@ -1,4 +1,4 @@
-"""GHDL's dump is read strictly."""
+"""The strict reader of GHDL's dump of a netlist."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_registers_are_cut_out_with_their_initial_values() -> None:
         ("\\r.$i{p7} <- %4.$q{n6w4}", "\\r.$i{p7} <- \\r.$o{n7w4}", "is defined by itself"),
     ],
 )
-def test_what_is_not_known_is_an_error(old: str, new: str, message: str) -> None:
+def test_unknown_syntax_is_an_error(old: str, new: str, message: str) -> None:
     assert old in DUMP
     with pytest.raises(ProofError, match=message):
         read_vhdl(DUMP.replace(old, new))

@@ -1,4 +1,4 @@
-"""``python -m firm_hdl.equivalence``, which `make prove` runs."""
+"""The program ``python -m firm_hdl.equivalence``, which `make prove` runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Proofs of designs with memories: equal ones, and broken ones that must not be."""
+"""Proofs of designs with memories: equal designs are proved, broken ones are not."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TWO = {"mem": Store(depth=4, writes=2)}
 
 
 @cache
-def _both(deep: bool = False) -> tuple[str, Vhdl]:
+def _full_design(deep: bool = False) -> tuple[str, Vhdl]:
     text = rtlil_of(FULL, deep=deep)
     return text, convert(text, name="stores")
 
@@ -46,12 +46,12 @@ def test_random_memories_are_proved_equal(seed: int, tools: Tools) -> None:
 
 
 def test_memories_of_inner_modules_are_proved_equal(tools: Tools) -> None:
-    text, vhdl = _both(deep=True)
+    text, vhdl = _full_design(deep=True)
     proof = prove(text, vhdl, tools=tools)
     assert (proof.result, proof.registers, proof.unmatched) == ("equal", 5 * 8 + 8, ())
 
 
-# Each is the only thing that changes in the VHDL.
+# Each twin is the VHDL with this one change.
 VHDL_TWINS = {
     "another write address": ("mem(to_integer(unsigned(mem_w0_addr)))(3", "mem(0)(3"),
     "the write address of a read port": (
@@ -134,7 +134,7 @@ VHDL_TWINS = {
 
 @pytest.mark.parametrize("what", [*VHDL_TWINS][:: by_depth(3, 1)])
 def test_a_change_of_the_vhdl_is_found(what: str, tools: Tools) -> None:
-    text, vhdl = _both()
+    text, vhdl = _full_design()
     old, new = VHDL_TWINS[what]
     body = vhdl.files["stores.vhd"]
     assert body.count(old) == 1
@@ -142,7 +142,7 @@ def test_a_change_of_the_vhdl_is_found(what: str, tools: Tools) -> None:
     try:
         proof = prove(text, replace(vhdl, files=files), tools=tools)
     except ProofError as error:
-        # A memory of another size cannot be split into the same words.
+        # A memory of another size has other words, so `prove` raises an error.
         assert what == "a missing word" or what == "one word more"
         assert str(error) == "memory mem of the VHDL has not 5 words"
     else:
@@ -150,7 +150,7 @@ def test_a_change_of_the_vhdl_is_found(what: str, tools: Tools) -> None:
         assert proof.differences
 
 
-# The number of the place that changes, what is there, and what comes there.
+# The number of the occurrence that changes, the old text, and the new text.
 RTLIL_TWINS = {
     "another write address": (
         0,
@@ -178,9 +178,9 @@ RTLIL_TWINS = {
 
 @pytest.mark.parametrize("what", RTLIL_TWINS)
 def test_a_change_of_the_rtlil_is_found(what: str, tools: Tools) -> None:
-    text, vhdl = _both()
+    text, vhdl = _full_design()
     number, old, new = RTLIL_TWINS[what]
-    proof = prove(_put(text, old, new, number), vhdl, tools=tools)
+    proof = prove(_replace_nth(text, old, new, number), vhdl, tools=tools)
     assert proof.result == "unequal", what
 
 
@@ -198,7 +198,7 @@ def test_two_writes_of_one_word_happen_in_order(tools: Tools) -> None:
 
 
 def test_a_counterexample_names_the_word(tools: Tools) -> None:
-    text, vhdl = _both(deep=True)
+    text, vhdl = _full_design(deep=True)
     body = vhdl.files["stores_inner.vhd"]
     broken, count = re.subn(r"(_en\(\d\) = '1' and \w+_addr <) 5 then", r"\1 4 then", body)
     assert count == 2
@@ -208,14 +208,14 @@ def test_a_counterexample_names_the_word(tools: Tools) -> None:
     assert proof.counterexample["input mem_w0_addr"] == 4
 
 
-# Yosys leaves open what is beyond the last word, and gives the words of contents no names.
+# Yosys leaves reads beyond the last word undefined, and gives the words of contents no names.
 @pytest.mark.parametrize(
     "name", sorted(set(DESIGNS) - {"odd depth", "transparent", "contents alone", "several"})
 )
 def test_yosys_makes_the_same_registers_of_a_memory(
     name: str, tools: Tools, tmp_path: Path
 ) -> None:
-    """Within the last word, the judge's reading of memories is that of Yosys' `memory_map`."""
+    """Up to the last word, memories have the meaning that Yosys' `memory_map` gives them."""
     assert _as_yosys_maps_it(rtlil_of(DESIGNS[name]), rtlil_of(DESIGNS[name]), tools, tmp_path)
 
 
@@ -225,11 +225,13 @@ def test_yosys_makes_other_registers_of_another_memory(tools: Tools, tmp_path: P
     for what, (number, old, new) in RTLIL_TWINS.items():
         # Yosys stops at a port that is transparent for one of another clock.
         if old in text and not what.startswith("the other edge"):
-            assert not _as_yosys_maps_it(text, _put(text, old, new, number), tools, tmp_path)
+            assert not _as_yosys_maps_it(
+                text, _replace_nth(text, old, new, number), tools, tmp_path
+            )
 
 
 def _as_yosys_maps_it(text: str, other: str, tools: Tools, folder: Path) -> bool:
-    """Return whether a memory is what Yosys makes of another one."""
+    """Return whether a memory equals the registers that Yosys makes of another one."""
     # A register without an initial value has no name in Yosys.
     text, other = (re.sub(r"(INIT_VALUE \d+')x+", r"\g<1>0", each) for each in (text, other))
     (folder / "in.il").write_text(other, encoding="utf-8")
@@ -241,7 +243,7 @@ def _as_yosys_maps_it(text: str, other: str, tools: Tools, folder: Path) -> bool
     return not miter.differences and bool(solve(miter, tools, folder, 60).equal)
 
 
-# What Amaranth never prints.
+# RTLIL of memories that Amaranth never prints.
 REFUSED = {
     "contents in parts": (0, "\\EN 8'11111111", "\\EN 8'11111110"),
     "contents that are not constant": (0, "40'00000000", "40'0000000z"),
@@ -258,13 +260,13 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("what", REFUSED)
-def test_what_amaranth_never_prints_is_refused(what: str, tools: Tools) -> None:
-    text, vhdl = _both()
+def test_memories_that_amaranth_never_prints_are_refused(what: str, tools: Tools) -> None:
+    text, vhdl = _full_design()
     number, old, new = REFUSED[what]
     with pytest.raises(
         ProofError, match=rf"^memory mem has {what}, which a proof does not support$"
     ):
-        prove(_put(text, old, new, number), vhdl, tools=tools)
+        prove(_replace_nth(text, old, new, number), vhdl, tools=tools)
 
 
 def test_ports_wider_than_their_memory_are_refused() -> None:
@@ -276,12 +278,12 @@ def test_ports_wider_than_their_memory_are_refused() -> None:
 
 def test_write_ports_of_two_clocks_are_refused(tools: Tools) -> None:
     text = rtlil_of(TWO)
-    broken = _put(text, r"connect \CLK \clk [0]", r"connect \CLK \rst [0]", 1)
+    broken = _replace_nth(text, r"connect \CLK \clk [0]", r"connect \CLK \rst [0]", 1)
     with pytest.raises(ProofError, match="write ports with several clocks"):
         prove(broken, convert(text), tools=tools)
 
 
-def _put(text: str, old: str, new: str, number: int) -> str:
+def _replace_nth(text: str, old: str, new: str, number: int) -> str:
     """Replace one of several places."""
     parts = text.split(old)
     assert len(parts) > number + 1

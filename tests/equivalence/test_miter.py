@@ -1,4 +1,4 @@
-"""Two small circuits, made by hand: each thing in which they may differ is one to be seen."""
+"""Miters of two small circuits, made by hand: every kind of difference is found."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ SAME = {"ports": {}, "signals": {("inner", "r"): ("inner_1", "r")}}
 
 
 def vhdl(**changes: object) -> Circuit:
-    made = circuit(2, **changes)
-    return replace(made, signals={("inner_1", "r"): made.signals["inner", "r"]})
+    result = circuit(2, **changes)
+    return replace(result, signals={("inner_1", "r"): result.signals["inner", "r"]})
 
 
 def miter(other: Circuit, ours: Circuit = AMARANTH, **options: object):
@@ -48,26 +48,26 @@ def miter(other: Circuit, ours: Circuit = AMARANTH, **options: object):
 
 
 def flops(**changes: object) -> dict[int, Flop]:
-    """The registers, both changed."""
+    """Return both registers with the same changes."""
     return {net: replace(flop, **changes) for net, flop in AMARANTH.flops.items()}
 
 
-def open_claims(made) -> list[str]:
-    return [claim.what for claim in made.claims]
+def open_claims(result) -> list[str]:
+    return [claim.what for claim in result.claims]
 
 
 def test_the_same_circuit_leaves_its_next_states_to_be_proved() -> None:
-    made = miter(vhdl())
-    assert (made.differences, made.unmatched, made.registers) == ((), (), 2)
-    # Outputs are registers that both share; the next states are made by a gate of each side.
-    assert open_claims(made) == ["next state of inner.r"]
-    (claim,) = made.claims
+    result = miter(vhdl())
+    assert (result.differences, result.unmatched, result.registers) == ((), (), 2)
+    # Outputs are shared registers; each side computes the next states with a gate.
+    assert open_claims(result) == ["next state of inner.r"]
+    (claim,) = result.claims
     assert claim.amaranth != claim.vhdl and len(claim.amaranth) == len(claim.vhdl) == 2
-    assert {name: len(bits) for name, bits in made.inputs.items()} == {
+    assert {name: len(bits) for name, bits in result.inputs.items()} == {
         "input clk": 1, "input i": 1, "input en": 1, "register inner.r": 2
     }  # fmt: skip
     # Both gates read the same nets.
-    one, other = made.cells
+    one, other = result.cells
     assert dict(one.inputs) == dict(other.inputs) and one.outputs != other.outputs
 
 
@@ -87,24 +87,24 @@ RESET = {"reset": 3, "reset_level": True, "reset_value": "0"}
         (RESET, {**RESET, "reset_level": False}, "inner.r has another asynchronous reset"),
     ],
 )
-def test_registers_that_are_others_differ_without_a_question(
+def test_registers_with_other_properties_differ_without_a_proof(
     ours: dict, theirs: dict, difference: str
 ) -> None:
-    made = miter(vhdl(flops=flops(**theirs)), replace(AMARANTH, flops=flops(**ours)))
-    assert difference in made.differences
-    assert {*made.differences} == {difference}
+    result = miter(vhdl(flops=flops(**theirs)), replace(AMARANTH, flops=flops(**ours)))
+    assert difference in result.differences
+    assert {*result.differences} == {difference}
 
 
 def test_one_bit_of_a_register_that_starts_otherwise_differs() -> None:
     for net in AMARANTH.flops:
         for init in "01":
             changed = {**AMARANTH.flops, net: replace(AMARANTH.flops[net], init=init)}
-            made = miter(vhdl(flops=changed))
+            result = miter(vhdl(flops=changed))
             is_same = init == AMARANTH.flops[net].init
-            assert made.differences == (() if is_same else ("inner.r starts with another value",))
+            assert result.differences == (() if is_same else ("inner.r starts with another value",))
 
 
-def test_a_register_that_may_start_anyhow_may_start_so() -> None:
+def test_register_without_an_initial_value_may_have_one_in_the_vhdl() -> None:
     assert (
         miter(vhdl(flops=flops(init="1")), replace(AMARANTH, flops=flops(init="x"))).differences
         == ()
@@ -119,20 +119,20 @@ def test_a_register_that_may_start_anyhow_may_start_so() -> None:
         ({**RESET, "reset": 4}, "reset of inner.r"),
     ],
 )
-def test_what_registers_are_connected_to_is_to_be_proved(changes: dict, claim: str) -> None:
+def test_inputs_of_registers_are_to_be_proved(changes: dict, claim: str) -> None:
     ours = flops(**RESET) if "reset" in changes else AMARANTH.flops
     same = miter(vhdl(flops=dict(ours)), replace(AMARANTH, flops=ours))
-    made = miter(vhdl(flops={n: replace(f, **changes) for n, f in ours.items()}),
+    result = miter(vhdl(flops={n: replace(f, **changes) for n, f in ours.items()}),
                  replace(AMARANTH, flops=ours))  # fmt: skip
-    assert made.differences == ()
-    assert claim in open_claims(made)
+    assert result.differences == ()
+    assert claim in open_claims(result)
     assert open_claims(same) == ["next state of inner.r"]
 
 
 def test_outputs_are_to_be_proved() -> None:
     q0, q1 = AMARANTH.outputs["o"]
-    made = miter(vhdl(outputs={"o": (q1, q0)}))
-    assert "output o" in open_claims(made) and made.differences == ()
+    result = miter(vhdl(outputs={"o": (q1, q0)}))
+    assert "output o" in open_claims(result) and result.differences == ()
     for constant in "01":
         assert "output o" in open_claims(miter(vhdl(outputs={"o": (q0, constant)})))
 
@@ -154,16 +154,16 @@ def test_ports_of_another_width_differ(what: str) -> None:
     name = {"inputs": "i", "outputs": "o"}[what]
     ports = dict(getattr(AMARANTH, what))
     ports[name] = (*ports[name], 99 if what == "inputs" else 5)
-    made = miter(vhdl(**{what: ports}))
-    assert f"the {what[:-1]} {name} has two widths" in made.differences
+    result = miter(vhdl(**{what: ports}))
+    assert f"the {what[:-1]} {name} has two widths" in result.differences
 
 
 def test_ports_are_matched_by_the_names_that_the_back_end_gave() -> None:
     renamed = vhdl(inputs={"clk": (2,), "i_field": (3,), "en": (4,)})
-    made = miter(renamed, ports={"i": "I_field"})
-    assert made.differences == () and open_claims(made) == ["next state of inner.r"]
+    result = miter(renamed, ports={"i": "I_field"})
+    assert result.differences == () and open_claims(result) == ["next state of inner.r"]
     assert len(miter(renamed).differences) == 2
-    # Names that are swapped are as bad as any other difference.
+    # Swapped names are a difference, too.
     swapped = miter(vhdl(), ports={"i": "en", "en": "i"})
     assert swapped.differences == () and open_claims(swapped) == ["next state of inner.r"]
     one, other = swapped.cells
@@ -175,10 +175,10 @@ def test_a_register_may_be_the_constant_that_it_keeps() -> None:
     bits = (q0, "1")
     other = circuit(2, outputs={"o": bits}, flops={q0: AMARANTH.flops[q0]})
     other = replace(other, signals={("inner_1", "r"): bits})
-    made = miter(other)
-    # That it keeps it is to be proved: its next state has to be that constant.
-    assert made.differences == ()
-    claims: dict[str, Claim] = {claim.what: claim for claim in made.claims}
+    result = miter(other)
+    # It must be proved to keep its value: its next state has to be that constant.
+    assert result.differences == ()
+    claims: dict[str, Claim] = {claim.what: claim for claim in result.claims}
     assert claims["next state of inner.r"].vhdl[1] == "1"
     wrong = replace(other, signals={("inner_1", "r"): (q0, "0")})
     assert miter(wrong).differences == ("inner.r starts with another value",)
@@ -191,8 +191,8 @@ def test_a_wire_in_place_of_a_register_differs() -> None:
     q0, q1 = AMARANTH.outputs["o"]
     wires = Cell(kind="$pos", parameters={}, inputs={"A": (3,)}, outputs={"Y": (q1,)})
     other = circuit(2, cells=[*AMARANTH.cells, wires], flops={q0: AMARANTH.flops[q0]})
-    made = miter(replace(other, signals={("inner_1", "r"): (q0, q1)}))
-    assert made.differences == ("inner.r is not a register in the VHDL",)
+    result = miter(replace(other, signals={("inner_1", "r"): (q0, q1)}))
+    assert result.differences == ("inner.r is not a register in the VHDL",)
 
 
 @pytest.mark.parametrize(
@@ -200,23 +200,23 @@ def test_a_wire_in_place_of_a_register_differs() -> None:
     [{}, {("inner", "r"): ("inner_1", "s")}, {("inner", "r"): ("inner", "r")}],
 )
 def test_registers_without_a_partner_may_hold_anything(signals: dict) -> None:
-    made = miter(vhdl(), signals=signals)
-    assert made.differences == () and made.registers == 0
-    assert made.unmatched == (
+    result = miter(vhdl(), signals=signals)
+    assert result.differences == () and result.registers == 0
+    assert result.unmatched == (
         "register inner.r of the Amaranth alone", "register inner_1.r of the VHDL alone"
     )  # fmt: skip
-    # So the outputs, which are these registers, are not equal.
-    assert open_claims(made) == ["output o"]
-    (claim,) = made.claims
-    free = {bit for name, bits in made.inputs.items() if "alone" in name for bit in bits}
+    # So the outputs are not equal: they are these registers.
+    assert open_claims(result) == ["output o"]
+    (claim,) = result.claims
+    free = {bit for name, bits in result.inputs.items() if "alone" in name for bit in bits}
     assert {*claim.amaranth, *claim.vhdl} == free and len(free) == 4
 
 
-def test_what_nothing_drives_may_be_anything() -> None:
+def test_undriven_nets_are_free() -> None:
     loose = Cell(kind="$and", parameters=NAND, inputs={"A": (77,), "B": (4,)}, outputs={"Y": (7,)})
-    made = miter(vhdl(cells=[loose]))
-    assert len(made.inputs["anything"]) == 1 and made.differences == ()
-    assert open_claims(made) == ["next state of inner.r"]
+    result = miter(vhdl(cells=[loose]))
+    assert len(result.inputs["anything"]) == 1 and result.differences == ()
+    assert open_claims(result) == ["next state of inner.r"]
 
 
 def test_two_drivers_are_refused() -> None:
@@ -227,12 +227,12 @@ def test_two_drivers_are_refused() -> None:
 
 
 def test_the_netlist_asks_about_every_claim() -> None:
-    made = miter(vhdl(outputs={"o": tuple(reversed(AMARANTH.outputs["o"]))}))
-    assert len(made.claims) == 2
-    module = made.netlist(values=True)["modules"]["miter"]
+    result = miter(vhdl(outputs={"o": tuple(reversed(AMARANTH.outputs["o"]))}))
+    assert len(result.claims) == 2
+    module = result.netlist(values=True)["modules"]["miter"]
     differs = module["ports"]["differs"]["bits"]
     assert len(differs) == 2
-    for number, claim in enumerate(made.claims):
+    for number, claim in enumerate(result.claims):
         cell = module["cells"][f"claim{number}"]
         assert cell["type"] == "$ne"
         assert cell["connections"]["A"] == list(claim.amaranth)
@@ -240,6 +240,8 @@ def test_the_netlist_asks_about_every_claim() -> None:
         assert cell["connections"]["Y"] == [differs[number]]
         assert module["ports"][f"amaranth{number}"]["bits"] == list(claim.amaranth)
         assert module["ports"][f"vhdl{number}"]["bits"] == list(claim.vhdl)
-    assert len({*differs}) == 2 and not {*differs} & {b for c in made.cells for b in c.outputs["Y"]}
+    assert len({*differs}) == 2 and not {*differs} & {
+        b for c in result.cells for b in c.outputs["Y"]
+    }
     inputs = [p["bits"] for n, p in module["ports"].items() if n.startswith("in")]
-    assert inputs == [list(bits) for bits in made.inputs.values()]
+    assert inputs == [list(bits) for bits in result.inputs.values()]

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Proofs: circuits that are equal, and broken ones that must not be.
+"""Proofs: equal circuits are proved equal, broken ones are not.
 
 ``FIRM_HDL_BROKEN=1`` tries every broken circuit, not one in five.
 """
@@ -79,7 +79,7 @@ def test_a_counterexample_has_names(tools: Tools) -> None:
 
 def test_a_register_that_vhdl_makes_a_wire_is_found(tools: Tools) -> None:
     text, vhdl = _small()
-    # A latched copy of `go` that is not latched.
+    # `late`, a registered copy of `go`, becomes a wire.
     body = vhdl.files["little.vhd"]
     assert "      late <= '0';\n" in re.sub(" +late", "      late", body)
     without = re.sub(r"\n *late <= [^\n]*;", "", body)
@@ -133,13 +133,13 @@ class _WithoutMemory(random_designs.RandomDesign):
         self._combinational(module)
 
 
-# GHDL 2.0's synthesis stops with an internal error at many other seeds, or gets them wrong: it cuts
+# GHDL 2.0's synthesis stops with an internal error at many other seeds, or is wrong: it cuts
 # a number off that is compared with a shorter vector, and takes the wrong bits of a constant.
 @pytest.mark.parametrize("seed", [0, 1, 6])
 def test_random_designs_are_proved_equal(
     seed: int, tools: Tools, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # Products and quotients of 40 bits take a solver forever.
+    # A solver takes too long for products and quotients of 40 bits.
     operators = random_designs._OPERATORS[:2] + random_designs._OPERATORS[5:]
     monkeypatch.setattr(random_designs, "_OPERATORS", operators)
     design = _WithoutMemory(seed, size=3)
@@ -150,7 +150,7 @@ def test_random_designs_are_proved_equal(
 @pytest.mark.parametrize("direction", DIRECTIONS)
 @pytest.mark.parametrize(
     ("name", "distro"),
-    # An empty message needs hardly any of the logic: what is constant is no register.
+    # An empty message needs hardly any logic: constant registers are removed.
     [
         ("std_msgs/msg/Header", "lyrical"),
         ("std_msgs/Int16MultiArray", "noetic"),
@@ -175,15 +175,15 @@ def test_a_broken_converter_is_found(direction: Direction, part: str, tools: Too
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-def test_what_is_proved_is_what_build_writes(direction: Direction, tmp_path: object) -> None:
+def test_proved_vhdl_is_the_vhdl_that_build_writes(direction: Direction, tmp_path: object) -> None:
     name = "sensor_msgs/msg/Joy"
     (built,) = build([name], f"{tmp_path}")
     _, vhdl = converter_vhdl(load_message(name), direction)
     for file, text in vhdl.files.items():
         written = (built.folder / "vhdl" / file).read_text(encoding="utf-8")
-        assert _code(written) == _code(text)
+        assert _without_header(written) == _without_header(text)
 
 
-def _code(text: str) -> str:
-    """Leave out the remarks at the head of a file."""
+def _without_header(text: str) -> str:
+    """Return a file without the comments at its head."""
     return text[text.index("library ieee;") :]

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Solvers that give up: nothing is known then, and that is no proof."""
+"""Solvers that give up: the result is undecided, which is no proof."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from firm_hdl.equivalence.solve import solve
 from firm_hdl.jobs import ToolError, TooSlowError
 from firm_hdl.vhdl.convert import Vhdl, convert
 
-# Two primes of 31 bits: whoever wants to know whether the output is ever 1 has to find them.
+# A product of two primes of 31 bits: to decide whether the output is ever 1 is to factor it.
 PRODUCT = 1500450271 * 1836311903
 TASK = ProofTask(distro="lyrical", name="std_msgs/msg/Bool", direction="serializer")
 
@@ -34,13 +34,13 @@ def rtlil_of(*, is_zero: bool) -> str:
 
 
 def factors() -> tuple[str, Vhdl]:
-    """A design that looks for factors, and the VHDL of one whose output is always 0."""
+    """Return a design that checks factors, and the VHDL of one whose output is always 0."""
     return rtlil_of(is_zero=False), convert(rtlil_of(is_zero=True), name="top")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Hasty(Tools):
-    """Solvers have 2 s each, whatever they are given; all else has the time that it takes."""
+class ShortTimeouts(Tools):
+    """Tools whose solvers have a limit of 2 s; the other tools have no limit."""
 
     def run_ghdl(self, folder: Path, *arguments: str, timeout: float | None = None) -> str:
         return Tools.run_ghdl(self, folder, *arguments)
@@ -51,24 +51,24 @@ class Hasty(Tools):
 
 
 @pytest.fixture
-def hasty(tools: Tools) -> Tools:
-    return Hasty(ghdl=tools.ghdl, yosys=tools.yosys)
+def short_timeouts(tools: Tools) -> Tools:
+    return ShortTimeouts(ghdl=tools.ghdl, yosys=tools.yosys)
 
 
 @pytest.fixture(scope="module")
-def known() -> dict[str, Proof]:
-    """What was proved before: it takes both solvers their time."""
+def proof_cache() -> dict[str, Proof]:
+    """A cache for the proof, which takes as long as both solvers may take."""
     return {}
 
 
 @pytest.fixture
-def undecided(hasty: Tools, known: dict[str, Proof]) -> Proof:
-    if not known:
-        known["factors"] = prove(*factors(), timeout=1, tools=hasty)
-    return known["factors"]
+def undecided(short_timeouts: Tools, proof_cache: dict[str, Proof]) -> Proof:
+    if not proof_cache:
+        proof_cache["factors"] = prove(*factors(), timeout=1, tools=short_timeouts)
+    return proof_cache["factors"]
 
 
-def test_what_no_solver_decides_is_neither_equal_nor_unequal(undecided: Proof) -> None:
+def test_claim_that_no_solver_decides_is_undecided(undecided: Proof) -> None:
     assert undecided.result == "undecided"
     assert (undecided.differences, undecided.counterexample) == (("output out",), {})
     lines = str(undecided).splitlines()
@@ -86,9 +86,9 @@ def test_the_command_says_undecided_and_fails(
 
 
 def test_the_command_asks_the_solvers(
-    hasty: Tools, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    short_timeouts: Tools, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(proof_module, "find_tools", lambda: hasty)
+    monkeypatch.setattr(proof_module, "find_tools", lambda: short_timeouts)
     monkeypatch.setattr(converters, "converter_vhdl", lambda *args, **options: factors())
     assert command.run_proofs([TASK], 1, bar=True) == 1
     out = capsys.readouterr().out
@@ -97,7 +97,7 @@ def test_the_command_asks_the_solvers(
 
 
 @pytest.mark.parametrize(
-    ("results", "said", "status"),
+    ("results", "message", "status"),
     [
         (["equal", "undecided"], "1 equal, 1 undecided", 1),
         (["undecided", "equal"], "1 equal, 1 undecided", 1),
@@ -107,9 +107,9 @@ def test_the_command_asks_the_solvers(
         ([], "", 1),
     ],
 )
-def test_summary_and_status_count_each_result_as_what_it_is(
+def test_summary_and_status_count_each_kind_of_result(
     results: list[str],
-    said: str,
+    message: str,
     status: int,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
@@ -124,12 +124,12 @@ def test_summary_and_status_count_each_result_as_what_it_is(
     )
     assert command.run_proofs([TASK] * len(attempts), 1, bar=True) == status
     out = capsys.readouterr().out.splitlines()
-    head = f"{len(results)} converters of {len({*results} and {1})} types: {said}"
+    head = f"{len(results)} converters of {len({*results} and {1})} types: {message}"
     assert head in out
     assert [line.split()[0] for line in out[: len(results)]] == results
 
 
-# The same without tools: every way in which the two solvers can end.
+# Without tools: every way in which the two solvers can end.
 
 CLAIMS = 7
 SUCCESS = "SAT proof finished - no model found: SUCCESS!\n"
@@ -137,9 +137,9 @@ FOUND = "SAT proof finished - model found: FAIL!\n"
 
 
 class Solvers:
-    """ABC leaves some claims, or does not end; then come answers of the SAT solver, one a call.
+    """Fake solvers: ABC leaves claims or fails; then the SAT solver gives the answers in order.
 
-    `asked` says how many claims that one was asked about, each time.
+    `asked` has the number of claims of each call of the SAT solver.
     """
 
     def __init__(self, left: list[int] | Exception, *answers: str | Exception) -> None:
@@ -196,7 +196,7 @@ ALL = list(range(CLAIMS))
         (ALL, [SUCCESS, SLOW], None, [4, 3]),
         (ALL, [FOUND], False, [4]),
         (ALL, [SLOW], None, [4]),
-        # Where the first solver does not end, all claims are left.
+        # If the first solver does not end, all claims are left.
         (SLOW, [SUCCESS, SUCCESS], True, [4, 3]),
         (SLOW, [SUCCESS, FOUND], False, [4, 3]),
         (SLOW, [SLOW], None, [4]),
@@ -234,12 +234,12 @@ def test_an_answer_about_other_claims_is_none(bits: list[str], tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    ("said", "match"),
+    ("message", "match"),
     [
         ("ERROR: Found 1 problems in 'check -assert'.", "combinational loop"),
         ("ERROR: out of memory", "out of memory"),
     ],
 )
-def test_a_tool_that_fails_proves_nothing(said: str, match: str, tmp_path: Path) -> None:
+def test_a_tool_that_fails_proves_nothing(message: str, match: str, tmp_path: Path) -> None:
     with pytest.raises(ProofError, match=match):
-        solve(some_miter(), Solvers(ToolError(said)), tmp_path, 1)
+        solve(some_miter(), Solvers(ToolError(message)), tmp_path, 1)

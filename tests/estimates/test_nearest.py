@@ -1,4 +1,4 @@
-"""The nearest converter that was measured."""
+"""Estimates from the nearest converter that was measured."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def plan_of(name: str, **options: Any) -> Any:
 
 
 def entry(type_: str, **changes: Any) -> dict[str, Any]:
-    """An entry of a type's own features, or of others."""
+    """Return an entry with a type's own features, or with others."""
     return {
         "type": type_,
         "wire": "cdr",
@@ -44,7 +44,7 @@ def test_features_are_of_the_plan() -> None:
     assert (found["bits"], found["lengths"]) == (32 + 64, 1)
 
 
-def test_a_type_that_was_measured_is_its_own_estimate() -> None:
+def test_measured_type_is_its_own_estimate() -> None:
     measured = [entry(IMU), entry(TWIST, lut=7), entry(POSE)]
     found = estimates_of(plan_of(TWIST), measured)
     assert list(found) == ["deserializer"]
@@ -63,10 +63,10 @@ def test_the_nearest_is_taken() -> None:
     assert estimates_of(plan_of(POSE), measured)["deserializer"].type == TWIST
     assert estimates_of(plan_of("std_msgs/msg/Header"), measured)["deserializer"].type == STRING
     assert estimates_of(plan_of("nav_msgs/msg/Odometry"), measured)["deserializer"].type == IMU
-    # Of two that are as near, the first by name, whatever their order.
+    # Of two equally near entries, the first by name is taken, in any order of the file.
     both = [entry(TWIST, type="b/msg/B"), entry(TWIST, type="a/msg/A")]
     assert estimates_of(plan_of(POSE), both)["deserializer"].type == "a/msg/A"
-    # Another wire is further than the same one.
+    # An entry of another wire is further away than one of the same wire.
     both = [entry(TWIST, type="a/msg/A", wire="ros1"), entry(TWIST, type="b/msg/B")]
     assert estimates_of(plan_of(POSE), both)["deserializer"].type == "b/msg/B"
 
@@ -98,7 +98,7 @@ def test_other_buses_and_directions_say_nothing() -> None:
         ),
     ],
 )
-def test_the_line_says_whose_figures_they_are(
+def test_text_names_the_source_of_the_figures(
     monkeypatch: pytest.MonkeyPatch, measured: list[dict[str, Any]], text: str
 ) -> None:
     monkeypatch.setattr(nearest, "_measured", lambda: measured)

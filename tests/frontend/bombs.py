@@ -20,7 +20,7 @@ __all__ = ["BOMBS"]
 _MAGIC = b"\x89MCAP0\r\n"
 _PIECE = bytes(1 << 20)
 
-# rosbags' own, which is another one on another Python.
+# The module that rosbags uses; it depends on the version of Python.
 _zstd: Any = storage_mcap.zstd
 
 
@@ -33,7 +33,7 @@ def _zeros(open_: Callable[..., Any], count: int) -> bytes:
 
 
 def _mcap(path: Path, chunks: list[bytes], size: int, compression: str) -> Path:
-    """Write a file without an index, so that all of it is looked at."""
+    """Write a file without an index, so that the reader scans all of it."""
 
     def record(kind: int, data: bytes) -> bytes:
         return struct.pack("<BQ", kind, len(data)) + data
@@ -88,7 +88,7 @@ def _database(folder: Path, mode: CompressionMode) -> Path:
 def _compressed_database(folder: Path, count: int) -> Path:
     path = _database(folder, CompressionMode.FILE)
     (file,) = path.glob("*.zstd")
-    # After its end, a database may have anything.
+    # A database may have any bytes after its end.
     with file.open("ab") as end:
         end.write(_zeros(_zstd.open, count))
     return path

@@ -1,4 +1,4 @@
-"""Lines of definitions, read: what stands in them, or what is said of them."""
+"""Readers of single lines of definitions: their members, or their errors."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ def refused(line, dialect):
     with pytest.raises(DefinitionError) as error:
         parse(line, dialect)
     (diagnostic,) = error.value.diagnostics
-    # Whatever is wrong is shown where it stands, or right after what stands there.
+    # Every error is shown within its line, or right after it.
     assert diagnostic.span is not None
     assert 0 <= diagnostic.span.start <= diagnostic.span.end <= len(line) + 1
     return diagnostic.message
 
 
 def spelled(line, dialect="ros2"):
-    """Write a field's type down again, with all that the tree knows."""
+    """Return the text of a field's type, with all properties in the tree."""
     type_ = field(line, dialect).type
     text = f"{type_.package}/" * (type_.package is not None) + type_.name
     if type_.bound:

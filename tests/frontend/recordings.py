@@ -14,7 +14,7 @@ __all__ = ["FORMATS", "make_old_db3", "make_recording"]
 
 FORMATS = ["bag", "mcap", "db3"]
 
-# A type that exists nowhere else.
+# A type that exists only in these recordings.
 _WHEEL = "uint8 LEFT=0\nstd_msgs/Header header\nfloat32 speed\nmy_msgs/Spot[] spots\n"
 _SPOT = "int16 a\nstring b\n"
 
@@ -44,7 +44,7 @@ def make_recording(folder: Path, form: str) -> Path:
 
 
 def make_old_db3(path: Path, types: list[str]) -> Path:
-    """Make a database as ROS 2 humble writes it, which has no definitions."""
+    """Make a database in the form of ROS 2 humble, without definitions."""
     with sqlite3.connect(path) as database:
         database.executescript(
             "CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL);"

@@ -1,4 +1,4 @@
-"""A message type as rosbags describes it, to compare with what rosbags knows."""
+"""Message types in the form of rosbags, to compare them with its types."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Limits that definitions have to keep, on both sides; wording: ``test_errors.py``."""
+"""Limits of definitions, from both sides; ``test_errors.py`` has the messages."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def load(tmp_path, line):
 @pytest.mark.parametrize(
     ("size", "is_legal"), [(0, False), (1, True), (2**32 - 1, True), (2**32, False)]
 )
-def test_sizes_are_those_that_32_bits_can_count(tmp_path, line, size, is_legal):
+def test_sizes_have_32_bits(tmp_path, line, size, is_legal):
     if is_legal:
         assert str(size) in str(load(tmp_path, line.format(size)).fields[0].type)
     else:
@@ -29,7 +29,7 @@ def test_sizes_are_those_that_32_bits_can_count(tmp_path, line, size, is_legal):
 @pytest.mark.parametrize(
     ("text", "where"),
     {
-        # What stands around the two hides neither; a third one is compared with the first.
+        # Lines around the two do not hide them; a third field is compared with the first.
         "int8 K = 1\nint8 a\nint8 a": (3, 2),
         "int8 a\nint8 K = 1\nint8 a": (3, 1),
         "int8 a\nint8 a\nint8 K = 1": (2, 1),
@@ -37,15 +37,15 @@ def test_sizes_are_those_that_32_bits_can_count(tmp_path, line, size, is_legal):
         "int8 a\nint8 b\nint8 a\nint8 a": (3, 1),
     }.items(),
 )
-def test_a_field_is_declared_once_whatever_stands_around_it(tmp_path, distro, text, where):
+def test_field_declared_twice_is_refused_between_any_other_lines(tmp_path, distro, text, where):
     root = make_files(tmp_path, {"p/msg/T.msg": text})
     with pytest.raises(DefinitionError) as error:
         Library(distro, [root]).message("p/msg/T" if distro == "lyrical" else "p/T")
     second, first = where
-    said = [line for line in str(error.value).splitlines() if "error:" in line]
-    assert f"T.msg:{second}:6: error: field 'a' is already declared in line {first}" in said[0]
-    assert len(said) == text.count("int8 a") - 1
-    assert all(line.endswith(f"in line {first}") for line in said)
+    lines = [line for line in str(error.value).splitlines() if "error:" in line]
+    assert f"T.msg:{second}:6: error: field 'a' is already declared in line {first}" in lines[0]
+    assert len(lines) == text.count("int8 a") - 1
+    assert all(line.endswith(f"in line {first}") for line in lines)
 
 
 @pytest.mark.parametrize(
@@ -59,9 +59,9 @@ def test_a_field_is_declared_once_whatever_stands_around_it(tmp_path, distro, te
         "int8 x 1x": 8,
     }.items(),
 )
-def test_of_a_list_just_the_wrong_item_is_named(tmp_path, text, column):
+def test_error_in_a_list_marks_the_wrong_item_alone(tmp_path, text, column):
     with pytest.raises(DefinitionError) as error:
         load(tmp_path, text)
-    said = str(error.value).splitlines()
-    assert said[0].endswith(f"T.msg:1:{column}: error: '1x' is not an integer")
-    assert said[2] == " " * (column - 1) + "^^"
+    lines = str(error.value).splitlines()
+    assert lines[0].endswith(f"T.msg:1:{column}: error: '1x' is not an integer")
+    assert lines[2] == " " * (column - 1) + "^^"

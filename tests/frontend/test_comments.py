@@ -1,4 +1,4 @@
-"""Whose comment is whose, and what unit it names."""
+"""Comments: their definitions, and the units that they name."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def comments(text, dialect="ros2"):
     return syntax.comment, {m.name.text: m.comment for m in syntax.members}
 
 
-def test_head_comment_ends_at_the_first_line_that_is_none():
+def test_head_comment_ends_at_the_first_line_without_a_comment():
     text = "# one\n#  two\n\n# of a\nint32 a\n"
     assert comments(text) == ("one\n two", {"a": "of a"})
 
@@ -40,11 +40,11 @@ def test_indented_comment_continues_the_definition_before_it():
     assert comments(text)[1] == {"a": "one\ntwo", "b": "of b"}
 
 
-def test_indented_comment_before_all_definitions_is_nobodys():
+def test_indented_comment_before_all_definitions_is_dropped():
     assert comments("\n  # lost\nint32 a\n") == ("", {"a": ""})
 
 
-def test_comment_after_the_last_definition_is_nobodys():
+def test_comment_after_the_last_definition_is_dropped():
     assert comments("int32 a\n# lost\n") == ("", {"a": ""})
 
 
@@ -84,5 +84,5 @@ def test_unit_is_what_the_expression_of_rosidl_finds(text):
 
 
 def test_brackets_by_the_thousand_take_no_time():
-    # An expression with this meaning that backtracks would take minutes.
+    # A backtracking regular expression with this meaning would take minutes.
     assert condense(["[" * 1_000_000 + " " * 1_000_000 + "x"])[1] is None

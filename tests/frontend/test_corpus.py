@@ -1,4 +1,4 @@
-"""Definitions of real ROS packages, where a corpus of them is at hand.
+"""Definitions of real ROS packages, if a corpus of them is available.
 
 ``FIRM_HDL_CORPUS`` names its folder: ``ros1/`` and ``ros2/`` with packages that ROS's own tools
 read, ``invalid/`` with files that they refuse (``REASONS.tsv`` says why), the md5 sums that genmsg
@@ -28,7 +28,7 @@ KINDS = ("msg", "srv", "action")
 
 
 def files(folder, *kinds):
-    """Package, kind, name and path of every definition in a folder of packages."""
+    """Return package, kind, name and path of every definition in a folder of packages."""
     found = (path for kind in kinds or KINDS for path in folder.glob(f"*/{kind}/*"))
     return [(p.parts[-3], p.parts[-2], p.stem, p) for p in sorted(found)]
 
@@ -91,7 +91,7 @@ def test_ros2_fields_are_those_that_rosbags_reads(corpus):
         message = library.message(full)
         assert field_descriptions(message) == list(fields), full
         assert [c.name for c in message.constants] == [c[0] for c in constants], full
-    # It refuses CRLF, and little else.
+    # rosbags refuses CRLF, and few other files.
     assert len(unread) < 10
 
 
@@ -105,17 +105,17 @@ def test_every_invalid_file_is_refused_for_its_reason(corpus, dialect):
         name, _, kind = row["file"].partition(".")
         with pytest.raises(DefinitionError) as error:
             library.interface(f"{row['package']}/{kind}/{name}")
-        # The name that is to blame, in whatever words.
+        # The message must have the wrong name, in any wording.
         quoted = re.search(r"'(\w+)' is an invalid|^\w+/(\w+)$", row["reason"])
         blamed = (quoted[1] or quoted[2]) if quoted else ""
-        # What is to blame may be there, but refused itself, and then that is what is reported.
+        # The named type may exist with errors; then its own errors are reported.
         if not any(other["file"] == f"{blamed}.msg" for other in rows):
             assert re.search(rf"\b{blamed}\b", str(error.value)), (row, str(error.value))
         assert all(d.span is not None for d in error.value.diagnostics)
 
 
 def without_char(message):
-    """rosidl_adapter writes the `char` of a text as IDL's `uint8`, which means the same."""
+    """Replace `char` by `uint8`: rosidl_adapter writes it so, with the same meaning."""
 
     def plain(kind):
         if isinstance(kind, Message):
@@ -144,7 +144,7 @@ def test_definitions_mean_what_the_idl_of_rosidl_adapter_means(corpus, tmp_path,
     ours, theirs = found
     assert ours == theirs
     # Comments do not count when models are compared.
-    said = [
+    texts = [
         [
             (x.comment, getattr(x, "unit", None))
             for m in messages
@@ -152,7 +152,7 @@ def test_definitions_mean_what_the_idl_of_rosidl_adapter_means(corpus, tmp_path,
         ]
         for messages in found
     ]
-    assert said[0] == said[1]
+    assert texts[0] == texts[1]
 
 
 def test_comments_are_those_that_rosidl_adapter_finds(corpus):

@@ -1,4 +1,4 @@
-"""The types of every distribution, against rosbags, which they come from."""
+"""The types of every distribution, compared with rosbags, their source."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .structure import field_descriptions
 
 
 def need(what: str, is_here: bool, how: str) -> None:
-    """Skip the test if something is not here; in CI, fail it."""
+    """Skip the test if something is not installed; in CI, fail it."""
     if not is_here:
         (pytest.fail if os.environ.get("CI") else pytest.skip)(f"{what} are not here {how}")
 
@@ -130,7 +130,7 @@ def test_definitions_are_those_that_the_release_published(release):
         constants = [[(c.name, c.value) for c in each.constants] for each in (ours, theirs)]
         assert constants[0] == constants[1], name
     assert compared >= 78
-    # All that has a default is in what was compared.
+    # Every field with a default was compared.
     assert {name.split("/")[0] for name in DEFAULTS} <= {path.name for path in share.iterdir()}
 
 
@@ -140,7 +140,7 @@ def test_an_example_has_the_defaults():
 
 
 def missing_packages() -> dict[str, set[str]]:
-    """Give the table of the documentation: packages that each distribution has and we do not."""
+    """Return the missing packages of each distribution, as the documentation lists them."""
     text = (Path(__file__).parents[2] / "docs" / "limitations.md").read_text()
     table = text.partition("### Packages that do not come with firm-hdl")[2].partition("\n## ")[0]
     rows = dict(re.findall(r"^\| ([a-z, ]+) \| (.*) \|$", table, re.MULTILINE))
@@ -148,14 +148,14 @@ def missing_packages() -> dict[str, set[str]]:
     assert rows["humble, iron, jazzy"] == "those of foxy"
     for distro in ("humble", "iron", "jazzy"):
         listed[distro] = listed["foxy"]
-    gone = re.search(r"without `(\w+)`, and `(\w+)` instead of `(\w+)`", rows["kilted"])
-    assert gone is not None
-    listed["kilted"] = (listed["foxy"] | {gone[2]}) - {gone[1], gone[3]}
+    replaced = re.search(r"without `(\w+)`, and `(\w+)` instead of `(\w+)`", rows["kilted"])
+    assert replaced is not None
+    listed["kilted"] = (listed["foxy"] | {replaced[2]}) - {replaced[1], replaced[3]}
     listed["lyrical"] = listed["kilted"] | {*re.findall(r"and `(\w+)`$", rows["lyrical"])}
     return listed
 
 
-def test_packages_that_the_documentation_lists_are_not_here_and_are_told():
+def test_packages_listed_as_missing_are_missing_and_named_in_errors():
     listed = missing_packages()
     assert [*listed] == [*DISTROS]
     assert "actionlib_msgs" in listed["lyrical"] and "turtlesim_msgs" in listed["kilted"]
@@ -168,7 +168,7 @@ def test_packages_that_the_documentation_lists_are_not_here_and_are_told():
 
 
 @pytest.mark.parametrize(("distro", "package"), [("noetic", "tf2_msgs"), ("lyrical", "std_srvs")])
-def test_a_package_of_ros_that_is_not_here_is_told_from_one_that_nobody_has(distro, package):
+def test_missing_package_of_ros_is_distinguished_from_an_unknown_one(distro, package):
     with pytest.raises(DefinitionError) as caught:
         Library(distro).interface(f"{package}/Such")
     assert str(caught.value) == (

@@ -1,7 +1,7 @@
-"""What users are told: each wrong file in ``errors/`` next to its whole message.
+"""Error messages for users: each wrong file in ``errors/`` is next to its whole message.
 
 ``errors/<dialect>`` is a folder of packages; beside ``Name.msg``, ``Name.srv``, ``Name.action``
-or ``Name.idl`` stands in ``Name.err`` what loading that type must say.
+or ``Name.idl``, ``Name.err`` has the error of loading that type.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A recording may not expand without bounds; one that expands to little is read."""
+"""Limits of expansion: recordings that expand too far are refused, others are read."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ MIB = 1 << 20
 
 
 def sizes(reader):
-    """Read all; return the sizes of the messages."""
+    """Read a recording; return the sizes of its messages."""
     return [len(data) for _, _, data in reader.messages(connections=reader.connections)]
 
 
 @pytest.fixture
 def temporary(tmp_path, monkeypatch):
-    """Where rosbags puts a database that it decompresses."""
+    """The folder in which rosbags puts a database that it decompresses."""
     folder = tmp_path / "temporary"
     folder.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(folder))
@@ -30,7 +30,7 @@ def temporary(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("form", BOMBS)
-def test_recordings_that_expand_too_far_are_refused_where_they_do(
+def test_recordings_that_expand_too_far_are_refused_at_that_point(
     tmp_path, form, monkeypatch, temporary
 ):
     monkeypatch.setattr(expansion, "MIN_BUDGET_BYTES", 4 * MIB)
@@ -49,7 +49,7 @@ def test_recordings_that_expand_to_little_are_no_bombs(tmp_path, form, temporary
     try:
         found = use_recording(str(path), sizes)
     except DefinitionError as error:
-        # What is made of zeros is no chunk.
+        # Decompressed zeros are no chunk.
         assert form in ("mcap of zstd", "mcap of lz4", "bag of bz2", "bag of lz4")
         assert "decompresses to" not in str(error) and "has a chunk" not in str(error)
     else:
@@ -76,7 +76,7 @@ def test_large_recordings_may_expand_to_more(tmp_path, monkeypatch):
     assert use_recording(str(path), sizes) == [8 * MIB]
 
 
-def test_rosbags_reads_as_ever_outside_of_us(tmp_path, monkeypatch):
+def test_rosbags_is_unchanged_outside_of_firm_hdl(tmp_path, monkeypatch):
     from rosbags.rosbag2 import Reader
 
     monkeypatch.setattr(expansion, "MIN_BUDGET_BYTES", 1)

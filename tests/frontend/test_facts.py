@@ -1,7 +1,7 @@
-"""Facts about definitions that trip implementations, each with a test that fails without it.
+"""Easily missed facts about definitions, each with a test that fails without it.
 
-What the facts of the wire are is in ``tests/plan/test_wire_facts.py``. The rules are those of
-genmsg 0.6.0 (ROS 1) and of rosidl_adapter 3.3.1 (ROS 2).
+``tests/plan/test_wire_facts.py`` has the facts of the wire. The rules are those of genmsg 0.6.0
+(ROS 1) and of rosidl_adapter 3.3.1 (ROS 2).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def only(message):
     return field
 
 
-# Both.
+# ROS 1 and ROS 2.
 
 
 def test_byte_is_int8_in_ros1_and_an_octet_in_ros2(tmp_path):
@@ -147,7 +147,7 @@ def test_ros2_defaults_and_bounds_are_in_the_model(tmp_path):
 
 
 def test_empty_messages_have_no_fields(tmp_path):
-    # What stands on the wire of ROS 2 is the wire's business.
+    # The byte of an empty message in ROS 2 belongs to the wire, not to the definition.
     for dialect in DISTROS:
         assert load(tmp_path, "# nothing\n", dialect).fields == ()
 

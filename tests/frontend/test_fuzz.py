@@ -1,4 +1,4 @@
-"""The harness that feeds the front end with damaged files (``make fuzz``), on a few of them."""
+"""The fuzzer of the front end (``make fuzz``), on a few damaged files."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def test_an_exception_of_another_kind_is_found_and_cut_down(number, monkeypatch)
         assert finding.text == "int"
 
 
-def test_what_takes_long_is_found(monkeypatch):
+def test_slow_input_is_found(monkeypatch):
     fuzzer = Fuzzer(FOLDER, 1)
     monkeypatch.setattr(fuzz_frontend, "MOST_SECONDS", 0.05)
 

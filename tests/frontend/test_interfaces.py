@@ -1,4 +1,4 @@
-"""Services and actions: how their files are cut, and which messages ROS makes of them."""
+"""Services and actions: the parts of their files, and the messages that ROS derives."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def fields(message):
     return [f"{item.type} {item.name}" for item in message.fields]
 
 
-# What genmsg 0.6.0 and genaction.py, and rosidl_adapter 3.3.1, make of these: fields of each part,
-# or None where they refuse it.
+# Results of genmsg 0.6.0 with genaction.py, and of rosidl_adapter 3.3.1: the fields of each part,
+# or None if they refuse the file.
 SERVICES = [
     ("---", [], [], True),
     ("---\n", [], [], True),
@@ -131,7 +131,7 @@ def test_ros1_service(tmp_path):
     service = load(tmp_path, "srv/S", "int8 a\n---\nint8 b\n", distro="noetic")
     assert (service.name, service.event) == ("p/S", None)
     assert [m.name for m in service.messages] == ["p/SRequest", "p/SResponse"]
-    # genmsg puts the lines of each part together again, and ends each of them.
+    # genmsg joins the lines of each part again, and ends each with a line feed.
     assert [m.text for m in service.messages] == ["int8 a\n", "int8 b\n\n"]
 
 
@@ -212,8 +212,8 @@ def test_an_action_called_like_the_start_of_header(tmp_path):
     assert fields(action.wrappers[0])[0] == "std_msgs/Header header"
 
 
-def test_made_messages_mean_what_their_texts_say(tmp_path):
-    # ROS 1 tools read the texts; so must we, and find the same fields.
+def test_derived_messages_equal_their_texts(tmp_path):
+    # ROS 1 tools read these texts; reading them here must give the same fields.
     action = load(tmp_path / "1", "action/F", FIBONACCI, distro="noetic")
     files = {f"p/msg/{m.base_name}.msg": m.text for m in action.messages}
     library = Library("noetic", [make_files(tmp_path / "2", files)])
@@ -221,7 +221,7 @@ def test_made_messages_mean_what_their_texts_say(tmp_path):
 
 
 def test_ros1_definitions_may_use_the_messages_of_actions_once_they_are_files(tmp_path):
-    # genmsg knows files only; genaction.py writes these when the package is built.
+    # genmsg reads files only; genaction.py writes them when the package is built.
     files = {"p/action/F.action": FIBONACCI, "q/msg/M.msg": "p/FGoal a\np/FActionFeedback[2] b"}
     library = Library("noetic", [make_files(tmp_path, files)])
     with pytest.raises(DefinitionError) as error:
@@ -247,13 +247,13 @@ def test_ros1_definitions_may_use_the_messages_of_actions_once_they_are_files(tm
         ("noetic", "F"),
     ],
 )
-def test_definitions_cannot_use_what_is_no_message_file(tmp_path, distro, type_):
+def test_definitions_cannot_use_types_without_a_message_file(tmp_path, distro, type_):
     files = {"p/srv/S.srv": "---", "p/action/F.action": FIBONACCI, "p/msg/M.msg": f"{type_} a"}
     with pytest.raises(DefinitionError, match="is not defined in package 'p'"):
         Library(distro, [make_files(tmp_path, files)]).message("p/M")
 
 
-def test_a_file_that_makes_a_name_wins_over_later_origins(tmp_path):
+def test_file_with_a_derived_name_wins_over_later_origins(tmp_path):
     # noetic has actionlib/TestGoal as a message.
     make_files(tmp_path, {"actionlib/action/Test.action": "string mine\n---\n---\n"})
     library = Library("noetic", [tmp_path])
@@ -290,7 +290,7 @@ def test_mistakes_of_one_file_are_reported_once_and_in_order(tmp_path):
     assert [d.span.line for d in error.value.diagnostics] == [1, 3, 5, 6]
 
 
-def test_a_wrong_part_spoils_the_file(tmp_path):
+def test_wrong_part_makes_the_file_wrong(tmp_path):
     files = {"p/srv/S.srv": "int8 a\n---\nint8 B\n"}
     library = Library("lyrical", [make_files(tmp_path, files)])
     for name in ("p/srv/S_Request", "p/srv/S_Response", "p/srv/S_Event", "p/srv/S"):

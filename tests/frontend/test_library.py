@@ -1,4 +1,4 @@
-"""The front end's face."""
+"""The class `Library`: names, suggestions, origins and hashes."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def test_services_and_actions_are_suggested(tmp_path):
     assert refused(lib.interface, "p/Begni") == (
         "error: type 'Begni' is not defined in package 'p'; did you mean 'p/srv/Begin'?"
     )
-    # A field cannot be of such a type.
+    # A field cannot be a service or an action.
     make_files(tmp_path, {"p/msg/A.msg": "Begni a"})
     with pytest.raises(DefinitionError) as error:
         Library("lyrical", [tmp_path]).message("p/A")
@@ -177,7 +177,7 @@ def test_hash_of_services_is_that_of_all_their_messages(tmp_path):
 
 
 class Texts:
-    """The smallest origin that there can be."""
+    """A minimal origin of definitions."""
 
     def __init__(self, texts):
         self.texts = texts
@@ -202,7 +202,7 @@ def test_origins_replace_the_types_of_the_distribution(tmp_path):
 
 
 def test_origins_may_have_messages_of_services_by_themselves():
-    # As recordings have.
+    # Recordings have such messages.
     names = ["S_Event", "S_Request", "S_Response"]
     lib = Library("lyrical", origins=[Texts({("p", "srv", n): f"int8 x{len(n)}" for n in names})])
     assert lib.interfaces() == [f"p/srv/{name}" for name in names]
@@ -248,7 +248,7 @@ def test_hash_changes_with_every_text_that_matters_and_no_other(tmp_path):
         assert (after == before) is (name == "p/E")
 
 
-def test_hash_changes_with_what_an_included_file_says(tmp_path):
+def test_hash_changes_with_the_text_of_an_included_file(tmp_path):
     def digest(size, tail=""):
         folder = tmp_path / f"{size}{len(tail)}"
         idl = "module p { module msg { struct T { sequence<long, N> x; }; }; };"
@@ -279,8 +279,8 @@ def test_hash_tells_where_a_text_ends(tmp_path):
         ("lyrical", "f8a3beaa0541e9c3302db3a774fd9c52a2090183497d1eda18cdf05650d06a09"),
     ],
 )
-def test_hash_stays_what_it_is(distro, digest):
-    # A change of this rebuilds what users have generated: it must be on purpose.
+def test_hash_is_stable(distro, digest):
+    # A change of this hash makes users rebuild all generated code: it must be on purpose.
     assert Library(distro).definition_hash("sensor_msgs/Imu") == digest
 
 

@@ -1,4 +1,4 @@
-"""What ROS's own tools and other readers of recordings take, and one more way to say it."""
+"""Spellings of definitions that ROS's own tools and other readers of recordings accept."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ def test_zeros_before_a_length_are_kept_as_genmsg_keeps_them(tmp_path, length):
             ours.message("p/A")
         return
     assert ours.message("p/A").fields[0].type.count == 10
-    said = show(ours, "p/A"), md5sum(ours.message("p/A"))
-    assert said == (text, hashlib.md5(text.strip().encode()).hexdigest())
+    results = show(ours, "p/A"), md5sum(ours.message("p/A"))
+    assert results == (text, hashlib.md5(text.strip().encode()).hexdigest())
 
 
 def recorded(path, text, name="p/msg/A"):
@@ -58,7 +58,7 @@ STRUCTS = "module p { module msg { struct B { long b; }; struct A { B b; }; }; }
 
 
 def test_schemas_of_other_tools_are_named(tmp_path):
-    # rosbags takes them for ros2idl, and it does not know them in a database.
+    # rosbags takes omgidl for ros2idl, and refuses it in a database.
     folder = make_recording(tmp_path, "db3")
     (file,) = folder.glob("*.db3")
     database = sqlite3.connect(file)
@@ -69,7 +69,7 @@ def test_schemas_of_other_tools_are_named(tmp_path):
         open_library(bags=[file])
     path = recorded(tmp_path / "r", f"{'=' * 80}\nIDL: p/msg/A\n{STRUCTS}")
     for each in path.glob("*.mcap"):
-        # As it would be without a heading, which is what the format is told by.
+        # The format is recognised by the heading, so it is removed.
         head = f"{'=' * 80}\nIDL: p/msg/A\n".encode()
         each.write_bytes(each.read_bytes().replace(head, b" " * len(head)))
     with pytest.raises(DefinitionError, match="defines 'p/msg/A' in 'omgidl', and only ros2msg"):
@@ -80,11 +80,11 @@ def test_scopes_of_idl_in_the_name_of_a_topics_type_are_those_of_omgidl(tmp_path
     (path,) = recorded(tmp_path / "r", "struct W { long b; };", "p/msg//Long").glob("*.mcap")
     data = path.read_bytes().replace(b"p/msg//Long", b"p::msg::Lon")
     path.write_bytes(data.replace(b"ros2msg", b"ros2idl"))
-    said = "defines 'p/msg/Lon' in 'omgidl', and only ros2msg"
-    with pytest.raises(DefinitionError, match=said):
+    message = "defines 'p/msg/Lon' in 'omgidl', and only ros2msg"
+    with pytest.raises(DefinitionError, match=message):
         open_library(bags=[path])
     other = recorded(tmp_path / "other", "int8 a\n")
-    with pytest.raises(DefinitionError, match=said):
+    with pytest.raises(DefinitionError, match=message):
         open_library(bags=[other, path]).message("p/Lon")
     with pytest.raises(DefinitionError, match="package 'q' is not found"):
         open_library(bags=[other]).message("q/Lon")
@@ -115,7 +115,7 @@ def test_a_section_in_idl_may_declare_several_messages_in_recordings(tmp_path):
     assert ours.message("q/C").comment == "struct X { }; of q"
     assert [str(f.type) for f in ours.message("p/B").fields] == ["int32[3]"]
     assert [str(name) for name in ours.names()] == ["p/msg/A", "p/msg/B", "q/msg/C"]
-    # rosbags reads the same.
+    # The reader of rosbags gives the same result.
     theirs = get_types_from_idl(SEVERAL)
     assert {name: len(fields) for name, (_, fields) in theirs.items() if fields} == {
         str(name): len(ours.message(str(name)).fields) for name in ours.names()

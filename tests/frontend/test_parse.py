@@ -1,4 +1,4 @@
-"""What each dialect's grammar lets through, and what it makes of it."""
+"""The grammar of each dialect: accepted lines, and their trees."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_bounds_are_ros2_only(type_):
 
 
 def test_ros1_has_no_wstring():
-    # The word is an ordinary type name there.
+    # `wstring` is an ordinary type name in ROS 1.
     assert not field("wstring x", "ros1").type.is_builtin
     assert field("wstring x", "ros2").type.is_builtin
 
@@ -136,7 +136,7 @@ def test_malformed_types_of_ros2_are_refused(type_):
 
 @pytest.mark.parametrize("dialect", ["ros1", "ros2"])
 @pytest.mark.parametrize("tail", ["b/C", "B/C", "B/"])
-def test_all_that_stands_for_the_name_of_a_type_is_wrong(dialect, tail):
+def test_error_marks_the_whole_name_of_a_type(dialect, tail):
     for package in ("a", "int8"):
         complaint = refused(f"{package}/{tail} x", dialect)
         assert complaint.startswith(f"'{tail}' is not a legal message name: ")

@@ -1,4 +1,4 @@
-"""What each dialect's grammar makes of constants and defaults."""
+"""The grammar of each dialect: constants and defaults."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_other_bases_are_ros2_only(text, value):
 
 @pytest.mark.parametrize("text", ["", "1.0", "x", "- 5", "1 2", "'1'", "1,2", "1__0", "0x"])
 @pytest.mark.parametrize("dialect", ["ros1", "ros2"])
-def test_what_is_no_integer_is_refused(dialect, text):
+def test_malformed_integers_are_refused(dialect, text):
     refused(f"int32 X={text}", dialect)
 
 
@@ -46,7 +46,7 @@ def test_numbers(dialect, text, value):
 
 @pytest.mark.parametrize("text", ["", ".", "1,5", "1e", "0x10", "x", "1.0f", "1 0"])
 @pytest.mark.parametrize("dialect", ["ros1", "ros2"])
-def test_what_is_no_number_is_refused(dialect, text):
+def test_malformed_numbers_are_refused(dialect, text):
     refused(f"float64 X={text}", dialect)
 
 
@@ -74,7 +74,7 @@ def test_truth_values(dialect, text, value):
     ("dialect", "text"),
     [("ros1", "true"), ("ros1", "01"), ("ros1", "yes"), ("ros2", "2"), ("ros2", "yes")],
 )
-def test_what_is_no_truth_value_is_refused(dialect, text):
+def test_malformed_truth_values_are_refused(dialect, text):
     refused(f"bool X={text}", dialect)
 
 
@@ -135,7 +135,7 @@ def test_ros2_text_constant_may_be_empty_and_contain_equals():
 
 
 def test_ros1_text_constants_are_not_indented_with_spaces():
-    # genmsg would call it 'string X', which is no name in any language.
+    # genmsg would name the constant 'string X', which is no identifier in any language.
     for line in ("  string X=a", "\t string X=a", " string\t X = a"):
         assert refused(line, "ros1") == (
             "a string constant must start in the first column: genmsg would read 'string X' for "
@@ -248,7 +248,7 @@ def test_constants_of_bounded_strings_are_refused():
         ("int8[99999999999999999999] a", "ros2", "99999999999999999999"),
     ],
 )
-def test_what_is_wrong_with_a_value_is_pointed_at(line, dialect, words):
+def test_error_in_a_value_is_marked(line, dialect, words):
     try:
         wrong = check_members(parse(line, dialect))
     except DefinitionError as error:

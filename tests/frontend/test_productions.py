@@ -1,4 +1,4 @@
-"""Which productions of a grammar a text uses."""
+"""The productions of a grammar that a text uses."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def test_lines_of_a_message_are_named_by_rule_and_parts():
     }
 
 
-def test_alternatives_of_a_rule_are_told_apart():
+def test_alternatives_of_a_rule_are_distinguished():
     integer = productions("int8 A=1", "ros2")
     text = productions("string A='x'", "ros2")
     assert integer - text and text - integer
@@ -29,7 +29,7 @@ def test_repetitions_are_one_production():
     assert few != productions("int8[] a [1]", "ros2")
 
 
-def test_what_is_no_sentence_has_no_productions():
+def test_wrong_texts_have_no_productions():
     assert productions("int32\n%%\nbool b\n", "ros2") == productions("bool b\n", "ros2")
     assert productions("module {", "ros2", is_idl=True) == frozenset()
 

@@ -1,4 +1,4 @@
-"""Types from recordings, and from nowhere else."""
+"""Types from recordings, without types of other origins."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def test_first_of_several_recordings_wins(tmp_path):
 
 
 def record(path, name, text, *more):
-    """Record topics whose definitions are given texts; hashes in it are nobody's business."""
+    """Record topics with given definitions; the hashes in the recording are wrong."""
     with Writer2(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         for index, (type_name, definition) in enumerate([(name, text), *more]):
             hashed = "RIHS01_" + "0" * 64
@@ -196,7 +196,7 @@ def test_recording_without_definitions_says_what_to_do(tmp_path):
         RecordingOrigin(path)
 
 
-def test_topic_without_definition_is_told_from_one_that_is_not_there(tmp_path):
+def test_topic_without_definition_is_distinguished_from_a_missing_one(tmp_path):
     path = without_definition(tmp_path / "r", "p/msg/B")
     ours = open_library(bags=[path])
     assert ours.names() == ["p/msg/A"]
@@ -208,7 +208,7 @@ def test_topic_without_definition_is_told_from_one_that_is_not_there(tmp_path):
 
 
 def without_definition(path, name):
-    """Record two topics, and take the definition of one away."""
+    """Record two topics, and remove the definition of one."""
     with Writer2(path, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
         for topic in ("p/msg/A", name):
             writer.add_connection(f"/{topic}", topic, msgdef="int8 a\n", rihs01="RIHS01_0")
@@ -235,13 +235,13 @@ def test_topics_whose_types_have_no_name_in_ros_are_named(tmp_path, name):
     path = record(tmp_path / "r", name, "int8 a\n")
     with pytest.raises(DefinitionError) as error:
         open_library(bags=[path])
-    said = f"error: '{path}' has a topic of type '{name}', which is not a ROS name"
-    assert str(error.value) == said
+    message = f"error: '{path}' has a topic of type '{name}', which is not a ROS name"
+    assert str(error.value) == message
     both = record(tmp_path / "both", name, "int8 a\n", ("p/msg/B", "int8 b\n"))
     assert open_library(bags=[both]).names() == ["p/msg/B"]
 
 
-def test_what_is_no_recording_is_refused(tmp_path):
+def test_paths_that_are_no_recordings_are_refused(tmp_path):
     make_files(tmp_path, {"a.txt": "x", "a.bag": "", "b.bag": "hello\n", "a.mcap": "hello"})
     make_files(tmp_path, {"a.db3": "hello" * 1000, "folder/a.msg": "", "dir.bag/x": ""})
     reasons = {
@@ -272,7 +272,7 @@ def test_definitions_in_an_unknown_language_are_refused_by_name(tmp_path):
 
 
 def test_damaged_recording_ends_in_definitions_or_in_an_error(recording, tmp_path):
-    """Cut and flip: whatever the reader makes of it, nothing else comes out."""
+    """Cut the file or flip a bit: the reader gives definitions or an error, nothing else."""
     file = recording if recording.is_file() else next(recording.glob(f"*.{recording.name}"))
     data, draw = file.read_bytes(), random.Random(1)
     outcomes = set()
@@ -322,15 +322,15 @@ def test_each_of_several_recordings_is_to_be_of_one_ros(tmp_path, place):
 
 
 @pytest.mark.parametrize(
-    ("said", "distro"),
+    ("recorded", "distro"),
     [("humble", "humble"), ("jazzy", "jazzy"), ("noetic", None), ("rosbags", None), ("[]", None)],
 )
-def test_distribution_is_the_one_that_the_recording_says(tmp_path, said, distro):
+def test_distribution_is_the_one_that_the_recording_says(tmp_path, recorded, distro):
     path = make_recording(tmp_path, "mcap")
     metadata = path / "metadata.yaml"
     text = metadata.read_text()
     assert text.count("ros_distro: rosbags\n") == 1
-    metadata.write_text(text.replace("ros_distro: rosbags\n", f"ros_distro: {said}\n"))
+    metadata.write_text(text.replace("ros_distro: rosbags\n", f"ros_distro: {recorded}\n"))
     found = RecordingOrigin(path)
     assert (found.distro, found.dialect) == (distro, "ros2")
     assert open_library(bags=[path]).distro == (distro or "lyrical")

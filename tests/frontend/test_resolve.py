@@ -1,4 +1,4 @@
-"""Names become types."""
+"""Resolution of names to types."""
 
 from __future__ import annotations
 
@@ -216,12 +216,12 @@ def test_random_definitions_come_back_from_their_texts(tmp_path_factory, definit
     assert lib.message(message.name) == message
 
 
-def test_all_that_is_wrong_after_a_cycle_is_told(tmp_path):
-    """Of a type that contains itself, what else its fields need is looked at, too."""
+def test_errors_after_a_cycle_are_reported(tmp_path):
+    """The other types of a type that contains itself are checked, too."""
     with pytest.raises(DefinitionError) as caught:
         load(tmp_path, "T a\nNope b\nU c\nint8 d\nT e\n", U="Never x\n")
     found = [(each.span.line, each.message.partition(":")[0]) for each in caught.value.diagnostics]
     cycle = "type 'p/msg/T' contains itself"
     missing = "type '{}' is not defined in package 'p'"
-    # A type that is needed twice is told of once.
+    # An error in a type that is used twice is reported once.
     assert found == [(1, cycle), (2, missing.format("Nope")), (1, missing.format("Never"))]

@@ -1,4 +1,4 @@
-"""Types, fields and constants that have the same names and are not the same."""
+"""Different types, fields and constants with the same names."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_a_name_without_a_package_is_the_packages_own(tmp_path, dialect):
 
 
 def test_header_of_ros1_is_that_of_std_msgs_in_every_package(tmp_path):
-    # Two packages have a Header of their own; std_msgs is one more.
+    # Two packages have their own Header, besides std_msgs.
     files = {
         "p/T": "Header a\np/Header b\nq/Header c\nq/U d",
         "p/Header": "int8 p",
@@ -49,7 +49,7 @@ def test_header_of_ros1_is_that_of_std_msgs_in_every_package(tmp_path):
     assert [names_of(kind) for kind in inner] == [["std"], ["q"], ["p"]]
     inner = [getattr(i.type, "element", i.type) for i in lib.message("std_msgs/V").fields]
     assert [names_of(kind) for kind in inner] == [["std"], ["std"], ["q"]]
-    # A package with a Header of its own, and none in any folder of std_msgs.
+    # A package with its own Header, and no folder that has std_msgs.
     alone = library(tmp_path / "alone", {"p/T": "Header a", "p/Header": "int8 p"}, "ros1")
     assert names_of(alone.message("p/T").fields[0].type) == ["seq", "stamp", "frame_id"]
 
@@ -70,7 +70,7 @@ def test_services_and_actions_of_one_name_in_two_packages(tmp_path, distro):
         found = [names_of(part) for part in (*parts, service.request, service.response)]
         words = ("goal", "result", "feedback", "request", "response")
         assert found == [[f"{word}{n}"] for word in words]
-        # What ROS makes of an action is made of its own parts.
+        # The derived messages of an action have its own parts.
         inside = {
             item.type.name
             for message in action.messages
@@ -106,13 +106,13 @@ def test_includes_are_those_of_the_first_folder_that_has_the_package(tmp_path):
     have = Sources([FolderOrigin(tmp_path / "one"), FolderOrigin(tmp_path / "two")])
     assert "N = 1" in have.include("p/sizes.idl").text
     assert "TWO = 2" in have.include("p/only_two.idl").text
-    # Within one folder, too, where two folders have the package.
+    # Within one folder, only the first subfolder with the package counts.
     both = FolderOrigin(tmp_path)
     assert "N = 1" in both.include("p/sizes.idl").text
     assert both.include("p/only_two.idl") is None
 
 
-# What a definition hash covers.
+# Coverage of definition hashes.
 
 LEVELS = {
     "p/msg/T.idl": '#include "q/msg/Mid.idl"\nmodule p {{ module msg {{ '
@@ -128,8 +128,8 @@ LEVELS = {
 def digest(folder, name="p/msg/T", files=LEVELS, **values):
     values = {"n": 3, "s": "a", "typedef": "long", "tail": ""} | values
     tail = values.pop("tail")
-    made = {path: text.format(**values) + tail for path, text in files.items()}
-    return Library("lyrical", [make_files(folder, made)]).definition_hash(name)
+    filled = {path: text.format(**values) + tail for path, text in files.items()}
+    return Library("lyrical", [make_files(folder, filled)]).definition_hash(name)
 
 
 def test_hash_covers_what_included_files_include(tmp_path):
@@ -194,15 +194,15 @@ def test_hash_does_not_depend_on_the_order_in_which_types_are_found(tmp_path):
     for name in ("q/A", "p/T", "p/A"):
         lib.message(name)
     assert lib.definition_hash("p/U") == want
-    # Which of two types of one name says what matters.
+    # The hash depends on which type of the two has which text.
     swapped = {**texts, "p/A": "int8 b", "q/A": "int8 a"}
     assert library(tmp_path / "2", swapped).definition_hash("p/U") != want
 
 
-# Models of the same name.
+# Models with the same name.
 
 
-def test_messages_that_differ_in_anything_that_counts_are_different(tmp_path):
+def test_messages_with_other_fields_or_constants_are_different(tmp_path):
     texts = {
         "int8 a": True,
         "int8 a 0": False,

@@ -1,4 +1,4 @@
-"""Where commands look for definitions, and in which order."""
+"""The search path of definitions, and its order."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .workspace import make_files
 
 
 def named(where):
-    """A definition that says where it is."""
+    """Return a definition whose field has the name of its place."""
     return f"int8 {where}\n"
 
 
@@ -67,7 +67,7 @@ def test_folders_come_first_then_the_environment_then_the_distribution(
 
 
 @pytest.mark.parametrize(("fixture", "distro", "variable"), CASES)
-def test_services_are_found_and_what_is_no_package_is_not(fixture, distro, variable, request):
+def test_services_are_found_and_other_folders_are_not(fixture, distro, variable, request):
     root = request.getfixturevalue(fixture)
     found = open_library(distro, environment={variable: str(root / "two")}).interfaces()
     own = [name for name in found if name.startswith(("p/", "q/"))]

@@ -1,4 +1,4 @@
-"""Definitions printed as ROS prints them."""
+"""Definitions printed in the format of ROS."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_rosmsg_show_keeps_the_text_of_constants_and_names_types_in_full(tmp_pat
 
 
 NESTED = {
-    # As in ros2cli's own tests.
+    # From ros2cli's own tests.
     "q/ShortVaried": "# A constant\nbool BOOL_CONST=true # Comment - Nesting Level 1: 1 of 2\n\n"
     "# Bool and array of bools\nbool bool_value\n"
     "bool[<=3] bool_values # Comment - Nesting Level 1: 2 of 2\n\n# Trailing comment\n",
@@ -114,7 +114,7 @@ SERVICE = {
 def test_rossrv_show(tmp_path):
     texts = {name: text.replace("<=2", "2") for name, text in SERVICE.items()}
     library = Library("noetic", [make_files(tmp_path, texts)])
-    # As rosmsg 1.15.15's `get_srv_text`.
+    # The output of rosmsg 1.15.15's `get_srv_text`.
     assert show(library, "p/S") == ("int8 X=1\nq/U a\n  int8 x\n---\nq/U[2] b\n  int8 x\nint8 c\n")
     assert show(library, "p/SResponse") == "q/U[2] b\n  int8 x\nint8 c\n"
 

@@ -1,4 +1,4 @@
-"""Definitions far deeper, longer and wider than people write: no recursion, and no long wait."""
+"""Definitions that are unusually deep, long or wide: no recursion, and no long run time."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DEEP = 5000
 
 @pytest.fixture(scope="module")
 def deep(tmp_path_factory):
-    """A chain of messages, each in the next, and a service and an action around the longest."""
+    """A chain of nested messages, with a service and an action around the outermost."""
     files = {f"p/msg/T{i}.msg": f"T{i + 1} a\n" for i in range(DEEP)}
     files[f"p/msg/T{DEEP}.msg"] = "int8 x\n"
     files["p/srv/S.srv"] = "T0 a\n---\nT0[] b\n"
@@ -33,7 +33,7 @@ def test_depth_is_not_limited(deep, dialect):
     assert len(library.definition_hash(message)) == 64
     indent = "  " if dialect == "ros1" else "\t"
     assert show(library, "p/T0").splitlines()[-1] == indent * DEEP + "int8 x"
-    # Equal models of two libraries, and their hashes.
+    # Models of two libraries are equal, and their hashes are.
     other = Library(DISTROS[dialect], [deep]).message(f"p/T{DEEP - 100}")
     assert other == library.message(f"p/T{DEEP - 100}")
     assert hash(other) == hash(library.message(f"p/T{DEEP - 100}"))

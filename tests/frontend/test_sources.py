@@ -1,4 +1,4 @@
-"""Finding packages in folders."""
+"""The search for packages in folders."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from .workspace import make_files
 
 
 def sources(*roots):
-    """Folders, in front of a distribution."""
+    """Return the sources of some folders and of a distribution."""
     return Sources([*map(FolderOrigin, roots), EmbeddedOrigin("lyrical")])
 
 
 def found(*roots):
-    """Packages and names of the messages that folders have."""
+    """Return the names of the messages in folders."""
     names = Sources(map(FolderOrigin, roots)).names
     assert all(kind == "msg" for _, kind, _ in names)
     return sorted((package, name) for package, _, name in names)
@@ -138,7 +138,7 @@ def test_text_is_kept_as_it_is(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["file", "none"])
-def test_what_is_no_folder_is_refused(tmp_path, name):
+def test_paths_that_are_no_folders_are_refused(tmp_path, name):
     make_files(tmp_path, {"file": ""})
     with pytest.raises(DefinitionError) as error:
         FolderOrigin(tmp_path / name)
@@ -202,7 +202,7 @@ def test_includes_are_read_from_folders_first(tmp_path):
     make_files(tmp_path, {"secret.idl": ""})
     assert have.include("pkg/msg/A.idl").text == "// a"
     assert have.include("pkg/idl/common.idl").text == "// c"
-    # Of what is in ROS's own form, others need no text: its types are found by name.
+    # Files in ROS's own form need no IDL text: their types are found by name.
     assert have.include("pkg/msg/B.idl").text == ""
     assert have.include("std_msgs/msg/String.idl").text == ""
     for path in ("pkg/msg/C.idl", "pkg/srv/A.idl", "none/msg/A.idl", "A.idl", "", "pkg/msg"):

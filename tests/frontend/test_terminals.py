@@ -1,7 +1,7 @@
-"""What each terminal of the grammars takes: all short words of letters at borders of classes.
+"""Terminals of the grammars, on all short words of characters at borders of classes.
 
-The rules are ROS's own, written down here once more: Python's `int` and `float`, and the regular
-expressions of genmsg and rosidl.
+The rules of ROS are restated here, independently of the grammars: Python's `int` and `float`, and
+the regular expressions of genmsg and rosidl.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ def test_words_that_go_on_after_a_builtin_type(word):
         assert found is not None and found.type.name == word + letter
         assert not found.type.is_builtin
         assert member(f"{word}{letter} x", "ros2") is None
-        # It is the whole word that is wrong.
+        # The error marks the whole word.
         with pytest.raises(DefinitionError, match=f"'{word}{letter}'"):
             parse_message(Source(name="T.msg", text=f"{word}{letter} x"), "ros2")
     for dialect in ("ros1", "ros2"):

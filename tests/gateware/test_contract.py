@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""What the contract promises about time and order: no leaf waits for one that it does not need."""
+"""The contract of time and order: no leaf waits for another one that it does not need."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_every_leaf_and_the_status_come_without_one_being_taken():
     async def feed(ctx):
         await send_packets(ctx, dut.packets, [b"\1\0\0\0\2\0\0\0hi\7\0\0\0"])
 
-    async def look(ctx):
+    async def watch(ctx):
         message = dut.message
         assert await until_valid(ctx, message.x) == 1
         assert await until_valid(ctx, message.name.length) == 2
@@ -59,11 +59,11 @@ def test_every_leaf_and_the_status_come_without_one_being_taken():
         assert await until_valid(ctx, message.y) == 7
         assert await until_valid(ctx, dut.status) == Status.OK
 
-    simulate(dut, feed, look)
+    simulate(dut, feed, watch)
 
 
 def test_a_leaf_that_is_held_does_not_hold_an_earlier_one_of_the_next_message():
-    # Both are in one step; the second message's x needs x's register alone.
+    # Both leaves are in one step; x of the second message needs the register of x alone.
     dut = Deserializer(PAIR)
 
     async def feed(ctx):
@@ -86,7 +86,7 @@ def test_a_leaf_that_is_held_does_not_hold_an_earlier_one_of_the_next_message():
 
 
 def test_leaves_become_valid_in_wire_order():
-    # x's register is taken, y's is free: the second message's y must wait for its x.
+    # The register of x is full, that of y is free: y of the second message must wait for its x.
     dut = Deserializer(PAIR)
 
     async def feed(ctx):
@@ -124,7 +124,7 @@ def test_a_producer_may_offer_one_leaf_after_the_other(bus_bytes):
         result.extend(await receive_packets(ctx, dut.packets, 2))
 
     simulate(dut, produce, consume)
-    # What the unused lanes hold does not reach the wire.
+    # Values of unused lanes do not reach the wire.
     assert result == [b"\5\0\0\0\1\0\0\0A\6\0\0\0"] * 2
 
 
@@ -172,13 +172,13 @@ def test_a_packet_begins_only_with_its_message(field, bus_bytes):
     # On a narrow bus, the encapsulation header has beats of its own.
     dut = Serializer(make("ros2", {"x": field}), bus_bytes=bus_bytes)
 
-    async def look(ctx):
+    async def watch(ctx):
         ctx.set(dut.packets.ready, 1)
         for _ in range(20):
             await ctx.tick()
             assert not ctx.get(dut.packets.valid)
 
-    simulate(dut, look)
+    simulate(dut, watch)
 
 
 def test_a_length_over_its_bound_is_sent_as_promised_and_marked():

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Both converters against rosbags' bytes, the interpreter of the plan, and the contract."""
+"""Both converters, compared with the bytes of rosbags and with the interpreter of the plan."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ options = st.fixed_dictionaries({"bus_bytes": st.sampled_from(BUS_WIDTHS)})
 
 
 def expected(plan, packets):
-    """Return what the plan's interpreter makes of packets: transfers by leaf, and statuses."""
+    """Return transfers by leaf, and statuses, that the plan's interpreter gives for packets."""
     decoded = [decode(plan, packet) for packet in packets]
     transfers = join_transfers(one.streams for one in decoded)
     return transfers, [Status[str(one.status)] for one in decoded]
@@ -87,7 +87,7 @@ def test_a_packet_may_end_with_a_length_or_a_step_without_bytes(end, bus_bytes):
         seen = Harness(rx, tx, gated=True).run_packets(packets, RunOptions(stalls=stalls))
         assert seen.packets == packets
         assert carried(seen.transfers) == expected(rx.plan, packets)[0]
-    # Beats leave at once, and may not overtake their end; or a status waits for long.
+    # Beats leave at once, and must not overtake the end; or a status waits for long.
     for stalled in ("message", "status"):
         slow = RunOptions(stalls={stalled: Stalls(probability=0.5, max_cycles=6)})
         assert Harness(None, tx).run_messages(messages, slow).packets == packets
@@ -96,7 +96,7 @@ def test_a_packet_may_end_with_a_length_or_a_step_without_bytes(end, bus_bytes):
 @pytest.mark.parametrize("wire", WIRES)
 @few
 @given(data=st.data(), case=typed_values(wide=True), options=options, stalls=stall_plans)
-def test_bad_packets_are_reported_and_forgotten(wire, data, case, options, stalls):
+def test_bad_packets_are_reported_and_do_not_affect_the_next(wire, data, case, options, stalls):
     definition, value = case
     rx = Deserializer(definition.message, wire=wire, max_message_bytes=100_000, **options)
     good = encode(rx.plan, to_transfers(rx.plan, definition.message, value))[0]
@@ -112,7 +112,7 @@ def test_bad_packets_are_reported_and_forgotten(wire, data, case, options, stall
 @pytest.mark.parametrize("wire", WIRES)
 @few
 @given(data=st.data(), case=typed_values(), options=options, stalls=stall_plans)
-def test_wrong_streams_are_marked_and_forgotten(wire, data, case, options, stalls):
+def test_wrong_streams_are_marked_and_do_not_affect_the_next(wire, data, case, options, stalls):
     definition, value = case
     tx = Serializer(definition.message, wire=wire, **options)
     good = to_transfers(tx.plan, definition.message, value)

@@ -11,7 +11,7 @@ from firm_hdl.gateware.counter import Counter
 
 
 class _Counting(Component):
-    """A counter with a load of 9, and a load by default of a number that comes late, or not."""
+    """A counter with a load of 9, and a default load of a number, which may come late."""
 
     def __init__(self, *, late: bool):
         self.late = late
@@ -33,8 +33,8 @@ class _Counting(Component):
         return m
 
 
-def _counts(counting: _Counting, number: int, *, nine: bool, pause: int = 0) -> int:
-    """Return after how many times counting the last one is told."""
+def _counts_until_last(counting: _Counting, number: int, *, nine: bool, pause: int = 0) -> int:
+    """Return the number of counts until `last` is high."""
     found = 0
 
     async def use(ctx) -> None:  # type: ignore[no-untyped-def]
@@ -62,12 +62,14 @@ def _counts(counting: _Counting, number: int, *, nine: bool, pause: int = 0) -> 
 
 @pytest.mark.parametrize("pause", [0, 1, 2])
 @pytest.mark.parametrize("late", [False, True])
-def test_the_last_one_is_told_a_cycle_ahead(late: bool, pause: int) -> None:
+def test_last_is_high_one_cycle_ahead(late: bool, pause: int) -> None:
     for number in (1, 2, 3, 4, 5, 8, 9, 17, 255):
-        assert _counts(_Counting(late=late), number, nine=False, pause=pause) == number - 1
+        assert (
+            _counts_until_last(_Counting(late=late), number, nine=False, pause=pause) == number - 1
+        )
 
 
 @pytest.mark.parametrize("late", [False, True])
 def test_a_constant_is_loaded_before_a_number(late: bool) -> None:
     for number in (0, 1, 2, 3, 200):
-        assert _counts(_Counting(late=late), number, nine=True) == 8
+        assert _counts_until_last(_Counting(late=late), number, nine=True) == 8

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The control flow of plans: from step to step as the interpreter goes, through loops and runs."""
+"""The control flow of plans: the same steps as the interpreter, through loops and runs."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 # amaranth: UnusedElaboratable=no
 """The latency that the manifest states is measured, from beat to leaf and from leaf to beat.
 
-What comes in has gaps, so that it meets converters that have nothing else to do. Then the cycle of
-every transfer follows from the plan: a step is done with its last beat, or with its last leaf, and
-several steps that are done with the same one take a cycle each.
+Inputs have gaps, so that converters are idle. Then the cycle of every transfer follows from the
+plan: a step is done with its last beat, or with its last leaf, and several steps that are done with
+the same one take a cycle each.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from firm_hdl.sim.payloads import all_beats, encoder_of
 from tests.depth import by_depth
 
 GAP = 24
-# Encapsulation where there is one, then fields, each padded to its own size. No value is 0: that is
-# what comes after the end of a packet.
+# The encapsulation on CDR, then fields, each padded to its own size. No value is 0, because values
+# after the end of a packet are 0.
 TYPES = {
     # Fixed parts, cut between values and inside of them.
     "Bool": ("std_msgs/msg/Bool", "lyrical", "00010000 01"),
@@ -51,7 +51,7 @@ TYPES = {
     "UInt8MultiArray": (
         "std_msgs/msg/UInt8MultiArray",
         "lyrical",
-        # Dimension "ab" of 5 and 6, offset 7, data.
+        # Dimension "ab" of 5 and 6, offset 7, then the data.
         "00010000 01000000 03000000 61620000 05000000 06000000 07000000 03000000 010203",
     ),
 }
@@ -60,7 +60,7 @@ every_bus = pytest.mark.parametrize("bus_bytes", by_depth([1, 8, 64], [1, 2, 4, 
 
 
 def prefixes(plan, packet):
-    """Return the size of the shortest prefix of a packet that has each transfer, in wire order."""
+    """Return, for each transfer in wire order, the size of the shortest prefix that contains it."""
     whole = decode(plan, packet)
     assert whole.status == "OK"
     sizes, seen = [], {}
@@ -83,7 +83,7 @@ def steps_of(plan, packet):
     transfers, sizes = prefixes(plan, packet)
     visits = decode(plan, packet).steps
     steps = [(-(-visit.end // bus) - 1, []) for visit in visits]
-    # The end of a packet shows in its last beat.
+    # The end of a packet is known with its last beat.
     steps[-1] = ((len(packet) - 1) // bus, [])
     for (leaf, _), size in zip(transfers, sizes, strict=True):
         index = next(k for k, visit in enumerate(visits) if visit.end >= size)
@@ -124,7 +124,7 @@ def test_deserializer(case, bus_bytes):
     assert found == want
 
 
-async def put(ctx, port, value):
+async def time_until_taken(ctx, port, value):
     """Offer a payload; return after how many cycles it was taken."""
     ctx.set(Value.cast(port.payload), value)
     ctx.set(port.valid, 1)
@@ -145,7 +145,9 @@ def offered_one_by_one(tx, packets):
         await ctx.tick().repeat(GAP)
         cycle = GAP
         for leaf, payload in payloads:
-            waited = await put(ctx, streams[leaf], encoder_of(tx.plan.leaves[leaf])(payload))
+            waited = await time_until_taken(
+                ctx, streams[leaf], encoder_of(tx.plan.leaves[leaf])(payload)
+            )
             transfers.append((cycle, waited))
             await ctx.tick().repeat(GAP)
             cycle += waited + 1 + GAP
@@ -180,7 +182,7 @@ def test_serializer(case, bus_bytes):
         for visit, (_, leaves) in zip(decode(plan, packet).steps, steps, strict=True):
             step, came = plan.steps[visit.step], []
             if visit.step < first_step(plan):
-                # Constants are there before; their beats leave with the first leaf.
+                # Constants are available before; their beats leave with the first leaf.
                 continue
             for _ in leaves:
                 at, _ = transfers[len(waits)]
@@ -188,7 +190,7 @@ def test_serializer(case, bus_bytes):
                 waits.append(max(lengths[len(waits) % len(lengths)], done + 1 - at))
                 came.append(at + waits[-1])
             if not all(part.completes for part in step.parts):
-                # It waits for the next leaf, and leaves it to a later step.
+                # The step waits for the next leaf, which belongs to a later step.
                 came.append(transfers[len(waits)][0])
             done = max(done + 1, *came, 0)
             want += [(visit.end, done + LATENCY_CYCLES["serializer"])]
@@ -197,7 +199,7 @@ def test_serializer(case, bus_bytes):
 
 
 def expected_beats(steps, size, bus_bytes):
-    """Return the cycles of beats: one at a time, when the step that fills it is done."""
+    """Return the cycles of beats: each leaves when the step that fills it is done."""
     beats = []
     for end, cycle in steps:
         count = -(-size // bus_bytes)

@@ -38,7 +38,7 @@ def test_reserved_names_get_an_underscore():
 
 
 def test_names_that_would_share_a_port_are_kept_apart():
-    # Amaranth joins parts with two underscores: both would be `a__b`, and one be lost.
+    # Amaranth joins parts with two underscores: both would be `a__b`, and one would be lost.
     assert members("a.b", "a__b") == ["a.b", "a__b_"]
     assert members("a__b", "a.b", "a.b_") == ["a__b__", "a.b", "a.b_"]
     assert members("clk", "clk_") == ["clk_", "clk__"]

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The parser against the plan's interpreter, and its bounds in cycles."""
+"""The parser, compared with the plan's interpreter, and its bounds in cycles."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ few = settings(
 )
 LATENCY = 3
 ERROR = 4
-"""Cycles from the last beat to the status, and those that an error adds at most."""
+"""Cycles from the last beat to the status, and the most cycles that an error adds."""
 
 SOME_WIDTHS = by_depth([1, 8, 64], [1, 2, 4, 8, 64])
 
@@ -50,8 +50,8 @@ HEADER = "std_msgs/msg/Header"
 
 
 @dataclass
-class Seen:
-    """What a parser made of packets: statuses, sizes, and the cycles of beats and statuses."""
+class Trace:
+    """The record of a run: statuses, sizes, and the cycles of beats and statuses."""
 
     statuses: list[Status]
     sizes: list[int]
@@ -76,7 +76,7 @@ def run(parser, packets, **options):
         sinks={"status": parser.status},
         payloads={"status": status},
     )
-    seen = Seen([], [], [], [], [])
+    seen = Trace([], [], [], [], [])
 
     def take(cycle, bits):
         seen.times.append(cycle)
@@ -128,7 +128,7 @@ def test_random_packets_get_the_status_of_the_interpreter(wire, data, case, bus_
 
 
 def random_packets(message, bus_bytes, count):
-    """Return packets of random values, and between them packets that are damaged."""
+    """Return packets of random values, with damaged packets between them."""
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes, max_message_bytes=MOST)
     rng = random.Random(f"{message.name} {bus_bytes}")
     counts = {
@@ -218,14 +218,14 @@ def test_latency_is_exact(bus_bytes, more):
 
 @pytest.mark.parametrize("bus_bytes", SOME_WIDTHS)
 @pytest.mark.parametrize(("text", "status"), BAD.values(), ids=BAD)
-def test_each_error_is_late_by_a_few_cycles_and_then_forgotten(text, status, bus_bytes):
+def test_error_delays_its_status_by_a_few_cycles_and_no_other(text, status, bus_bytes):
     good, bad = bytes.fromhex(GOOD), bytes.fromhex(text)
     packets = [bad, good, bad, bad, good]
     parser = Parser(load_message(HEADER), bus_bytes=bus_bytes)
     seen = run(parser, packets, stalls={"packets": GAP})
     assert [each.name for each in seen.statuses] == [status, "OK", status, status, "OK"]
     late = seen.late(packets, bus_bytes)
-    # The first one of each has nothing before it.
+    # The first packet of each has no packet before it.
     assert LATENCY <= late[0] <= LATENCY + ERROR
     assert late[0] == late[2] == late[3]
     assert late[1] == late[4] == LATENCY + (bus_bytes == 64)
@@ -247,7 +247,7 @@ def test_a_packet_that_claims_nearly_a_million_elements_costs_its_own_beats(bus_
     steps = 2 * (len(bomb) // 4 + 4)
     assert max(seen.times) <= max(beats, steps) + LATENCY + 2 * ERROR
     if bus_bytes == 8:
-        # As `docs/interface.md` says.
+        # The cycles in `docs/interface.md`.
         assert run(Parser(message), [bomb] * 3).times == [18, 33, 48]
 
 
@@ -288,9 +288,9 @@ def test_a_status_that_is_not_taken_holds_the_end_of_the_next_packet_but_one():
     waits = 5 * len(good)
     seen = run(parser, packets, stalls={"status": Stalls.bits("0" * waits + "1" * 1000)})
     # Beats after the third packet fill the buffer.
-    here = 3 * len(good)
-    assert seen.beats[:here] == list(range(here))
-    assert here < sum(beat < waits for beat in seen.beats) < here + 20
+    end_of_third = 3 * len(good)
+    assert seen.beats[:end_of_third] == list(range(end_of_third))
+    assert end_of_third < sum(beat < waits for beat in seen.beats) < end_of_third + 20
     assert seen.times[:3] == [waits, waits + 1, waits + 2]
     assert seen.statuses == [Status.OK] * 4
 
@@ -322,7 +322,7 @@ def test_no_output_depends_on_an_input_in_the_same_cycle():
     inputs = Cat(Value.cast(packets.payload), packets.valid, status.ready)
     held = Cat(status.valid, Value.cast(status.payload), Value.cast(parser.sizes))
     assert not has_path(parser, inputs, Cat(packets.ready, held))
-    # Where there is a path, it is found.
+    # An existing path is found.
     queue = OrderQueue(parser.plan)
     assert has_path(queue, queue.oldest, queue.freed)
 
@@ -334,7 +334,7 @@ def test_the_size_of_a_packet_saturates():
 
     async def bench(ctx):
         for count in (8, 7, 8):
-            # As if 2**32 - 8 bytes had come.
+            # Start at a count of 2**32 - 8 bytes.
             ctx.set(sizes.beats, (1 << 29) - 1)
             ctx.set(sizes.beat, {"valid": 1, "last": 1, "count": count})
             await ctx.tick()

@@ -1,7 +1,7 @@
 # amaranth: UnusedElaboratable=no
-"""Which outputs depend on which inputs in the same cycle, found in the netlist.
+"""Combinational paths from inputs to outputs, found in the netlist.
 
-The page on the interface promises it: see "Combinational paths" there.
+docs/interface.md promises them in "Combinational paths".
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ def reached(graph: Graph, start: Bit) -> set[Bit]:
 
 
 def paths(component) -> dict[str, set[str]]:
-    """Return the input ports on which each output port depends; those without any are left out."""
+    """Return the input ports on which each output port depends; others are left out."""
     design = parse(rtlil.convert(component, name="top", emit_src=False))
     found: dict[str, set[str]] = {}
     for (port, _), inputs in Paths(design).of("top").items():
@@ -138,13 +138,13 @@ def paths(component) -> dict[str, set[str]]:
 
 
 def names_of(component) -> dict[int, str]:
-    """Return how the ports of each leaf begin."""
+    """Return the prefixes of the port names of each leaf."""
     streams = leaf_streams(component.message, component.tree)
     return {leaf: port.ready.name.removesuffix("ready") for leaf, port in streams.items()}
 
 
 def allowed(tx) -> dict[str, set[str]]:
-    """Return what the interface page allows: `valid` of the leaf, and of earlier ones of a step."""
+    """Return the documented paths: from `valid` of the leaf and of earlier leaves of a step."""
     plan, names = tx.plan, names_of(tx)
     found: dict[str, set[str]] = {}
     for step in plan.steps:
@@ -183,7 +183,7 @@ def test_a_trigger_after_all_bytes_has_no_other_paths():
 
 
 class Mixed(wiring.Component):
-    """Outputs with paths through everything that netlists have, and outputs without."""
+    """Outputs with paths through every kind of netlist cell, and outputs without paths."""
 
     def __init__(self):
         wires = {"a": In(4), "b": In(4), "c": In(1), "d": In(2)}
@@ -221,7 +221,7 @@ def test_paths_are_found_through_cells_processes_memories_and_modules():
     }
 
 
-def test_bits_of_a_signal_are_told_apart():
+def test_bits_of_a_signal_are_distinguished():
     class Halves(wiring.Component):
         def __init__(self):
             super().__init__({"a": In(2), "b": In(2), "x": Out(1), "y": Out(1)})

@@ -11,7 +11,7 @@ from firm_hdl.gateware.positions import pick
 
 @pytest.mark.parametrize("constant", [True, False])
 def test_a_value_is_picked_from_thousands(constant):
-    # Nested as deeply as there are cases, expressions would be too deep for Python.
+    # Expressions with one level per case would be nested too deeply for Python.
     count = 3000
     chosen, values, result = Signal(count), Signal(16 * count), Signal(16)
     m = Module()

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The record view: a message as one structure, all of it valid together."""
+"""The record view: a message as one structure with one `valid`."""
 
 from __future__ import annotations
 
@@ -195,7 +195,7 @@ def test_a_record_is_offered_when_all_of_it_is_there():
         ),
     ],
 )
-def test_records_that_cannot_be_are_refused(message, fields, error):
+def test_messages_without_a_record_are_refused(message, fields, error):
     with pytest.raises(ValueError) as caught:
         record_layout(message, fields=fields)
     assert str(caught.value) == error
@@ -221,7 +221,7 @@ def test_lanes_that_no_record_has_may_be_wider_than_a_cell(monkeypatch):
         assert rtlil.convert(adapter(message, bus_bytes=64))
 
 
-# Arrays of more than one transfer, which are collected and split by counters.
+# Arrays of several transfers, which counters collect and split.
 MANY = make("ros1", {"a": "uint8[5]", "z": "uint8"})
 
 
@@ -245,7 +245,7 @@ def run_with_reset(dut, before, after):
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
-def test_reader_forgets_what_it_has_collected(count):
+def test_reset_of_the_reader_discards_collected_items(count):
     dut = RecordReader(MANY, bus_bytes=2)
     a, z = dut.message.a.items, dut.message.z
 

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""A reset of one cycle, at any time: what was under way is forgotten, and what comes is right."""
+"""A reset of one cycle, at any time: the current packet is discarded, later ones are right."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ MESSAGE = make(
     "ros2", {"a": "uint8", "s": "string<=20", "p": (make("ros2", {"x": "uint16"}, "P"), "[]")}
 )
 GOOD = bytes.fromhex("00010000 01000000 05000000 6162636400000000 02000000 0a000b00")
-# What is under way when the reset comes: a message, the middle of a run and of a loop, an error
-# whose rest is made up, and one whose rest is dropped.
+# The packet during the reset: a good one, the middle of a run and of a loop, an error whose rest is
+# completed with zeros, and an error whose rest is dropped.
 BEFORE = {
     "good": GOOD,
     "run": bytes.fromhex("00010000 02000000 15000000") + b"x" * 20 + b"\0" * 4 + b"\3\0\0\0" * 4,
@@ -28,7 +28,7 @@ BEFORE = {
 }
 
 
-# All or none, and of neighbours every other one, so that steps are half done.
+# Leaves taken before the reset: all, none, or every other one, so that steps are half done.
 TAKEN = (0b111111, 0b100001, 0, 0b110101, 0b101010)
 
 
@@ -36,7 +36,7 @@ class Bench:
     """A converter in a clock domain with a reset, driven in each cycle by a function."""
 
     def __init__(self, converter, good):
-        # What comes after the reset.
+        # The packet after the reset.
         self.good = good
         top = Module()
         top.domains.sync = self.domain = ClockDomain("sync")
@@ -70,7 +70,7 @@ async def offer(ctx, port, payloads, fired):
 def after_reset_of_reader(bench, packet, at, ready):
     """Return transfers and statuses after a reset in a cycle of a packet.
 
-    `ready`: which leaves, and the status, are taken before the reset, as bits; registers of the
+    `ready`: bits of the leaves and the status that are taken before the reset; registers of the
     others are full.
     """
     rx = bench.converter
@@ -116,7 +116,7 @@ def transfers_of_good(lanes):
     return {0: [1], 1: [4], 2: letters(b"abcd", lanes), 3: [2], 4: [10, 11]}
 
 
-def twice(transfers):
+def repeated(transfers):
     return {leaf: payloads * 2 for leaf, payloads in transfers.items()}
 
 
@@ -126,7 +126,7 @@ RIGHT = ([GOOD] * 2, [False] * 2, [Status.OK] * 2, b"")
 @pytest.mark.parametrize("bus_bytes", [4, 16])
 def test_deserializer_forgets_the_packet_under_way(bus_bytes):
     bench = Bench(Deserializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=400), GOOD)
-    right = twice(transfers_of_good(bus_bytes))
+    right = repeated(transfers_of_good(bus_bytes))
     for what, packet in BEFORE.items():
         cycles = range(1, 2 * -(-len(packet) // bus_bytes) + 10)
         for number, at in enumerate(cycles[:: 1 + len(cycles) // 8]):
@@ -137,7 +137,7 @@ def test_deserializer_forgets_the_packet_under_way(bus_bytes):
 def after_reset_of_writer(bench, transfers, after, at, until, offers):
     """Return packets, which of them are marked, and statuses after a reset.
 
-    `until`: up to which cycle all that comes is taken. `offers`: how many leaves are offered.
+    `until`: the cycle up to which outputs are taken. `offers`: the number of offered leaves.
     """
     tx = bench.converter
     out, marked, statuses = PacketCollector(tx.plan.bus_bytes), [], []
@@ -190,7 +190,7 @@ def test_serializer_forgets_the_message_under_way(bus_bytes):
         "items": {2: [(lanes, not last) for lanes, last in good[2]]},
         "loop": {3: [9], 4: list(range(9))},
     }.items():
-        # Blocked a while before the reset, at each place of a message; leaves that are missing.
+        # The output is blocked before a reset in each cycle; then leaves are missing.
         for at, until, offers in [
             *((at, at - 5, 5) for at in range(5, 14 + 30 // bus_bytes)),
             *((9, 9, offers) for offers in range(1, 6)),
@@ -199,7 +199,7 @@ def test_serializer_forgets_the_message_under_way(bus_bytes):
             assert found == RIGHT, (what, at, offers)
 
 
-# Counters that a packet begins with.
+# Messages that begin with a counter: of a loop, and of a run.
 POINT = make("ros1", {"x": "uint16"}, "P")
 LOOP = make("ros1", {"p": (POINT, "[3]"), "z": "uint8"})
 RUN = make("ros1", {"b": "uint8[21]"})
@@ -219,6 +219,6 @@ def test_counters_start_again(message, good, transfers, bus_bytes):
     writer = Bench(Serializer(message, bus_bytes=bus_bytes), good)
     for at in range(1, 14):
         found = after_reset_of_reader(reader, good, at, -1)
-        assert found == (twice(right), [Status.OK] * 2), at
+        assert found == (repeated(right), [Status.OK] * 2), at
         packets, *rest = after_reset_of_writer(writer, right, right, at, at, 2)
         assert (packets, rest) == ([good] * 2, [[False] * 2, [Status.OK] * 2, b""]), at

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Signatures of messages: what they are made for, and which are equal."""
+"""Signatures of messages: their arguments, and which of them are equal."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ POINT = make("ros2", {"x": "float64", "names": "string[]"}, "Point")
 EMPTY = make("ros2", {}, "Empty")
 
 
-def test_a_signature_says_what_it_is_made_for():
+def test_signature_has_and_prints_its_arguments():
     signature = MessageSignature(POINT)
     assert (signature.message, signature.bus_bytes, signature.wire) == (POINT, 8, "cdr")
     assert repr(signature) == f"MessageSignature({POINT.name}, bus_bytes=8, wire='cdr')"

@@ -1,8 +1,8 @@
 # amaranth: UnusedElaboratable=no
-"""Which error is reported, and what transfers: tables made by hand from docs/interface.md.
+"""Reported errors and transfers, in tables made by hand from docs/interface.md.
 
-No plan and no interpreter says what is right here. Every wrong packet, or message, stands between
-good ones, so that nothing may stick; what is ignored is noise.
+The tables use no plan and no interpreter. Every wrong packet or message is between good ones, which
+it must not affect; ignored lanes carry noise.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tests.strategies import BUS_WIDTHS, make
 
 some_buses = pytest.mark.parametrize("bus_bytes", [1, 4, 16])
 every_bus = pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
-# Nothing is slow; everything is, and who takes statuses above all.
+# No stalls; then stalls on all streams, longest on `status`.
 SLOW = Stalls(0.3, 1, 2, seed=5)
 STALLS = (
     None,
@@ -35,7 +35,7 @@ def packet(text):
     return bytes.fromhex(text)
 
 
-# Deserializer, CDR. The parts of a good packet, and what is wrong in their place.
+# Deserializer, CDR. The parts of a good packet, and wrong parts in their place.
 
 MESSAGE = make(
     "ros2", {"a": "uint8", "s": "string<=3", "t": "string", "q": "uint16[<=2]", "z": "uint8"}
@@ -69,15 +69,15 @@ READ = [
     (HEAD + A + S + T_OPEN + Q + Z, "STRING", TO_T),
     (HEAD + A + S + T + Q, "TRUNCATED", {**WHOLE, "z": 0}),
     (HEAD + A + S + T + Q[:-3], "TRUNCATED", {**WHOLE, "q": [10, 0], "z": 0}),
-    # At a bound.
+    # Lengths at their bounds.
     (HEAD + A + "04000000 61626300" + T + Q + Z, "OK", {**WHOLE, "s": "abc"}),
     (HEAD + A + "00000000 " + T + Q + Z, "OK", {**WHOLE, "s": ""}),
     (HEAD + A + S + T + "00000000 " + Z, "OK", {**WHOLE, "q": []}),
     (HEAD + A + S + T + "01000000 0a00 " + Z, "OK", {**WHOLE, "q": [10]}),
-    # What a length's highest bytes say.
+    # Lengths with high bytes that are not 0.
     (HEAD + A + "03000001 616200 a5" + T + Q + Z, "LENGTH", TO_A),
     (HEAD + A + S + T + "02000080 0a000b00" + Z, "LENGTH", TO_T),
-    # The header is judged byte by byte.
+    # The header is checked byte by byte.
     ("", "TRUNCATED", ZERO),
     ("00", "TRUNCATED", ZERO),
     ("0001", "TRUNCATED", ZERO),
@@ -110,7 +110,7 @@ READ = [
     (HEAD + A + S + T + "030000", "TRUNCATED", TO_T),
 ]
 
-# A string at the end of the message meets what stands after it.
+# A string at the end of the message, with bytes after it.
 LAST = make("ros2", {"t": "string<=2"})
 READ_LAST = [
     (HEAD + "02000000 6300", "OK", {"t": "c"}),
@@ -127,8 +127,8 @@ READ_LAST = [
     (HEAD + "04000000 63646578 a5a5a5a5", "LENGTH", {"t": ""}),
 ]
 
-# No alignment, no header, no NUL; the only bounds are those of the largest packet, of 20 bytes: 10
-# are in the shortest, so that 10 characters or 5 numbers have room.
+# ROS 1: no alignment, no header, no NUL. The only bounds follow from the largest packet, of 20
+# bytes: the shortest packet has 10, so 10 characters or 5 numbers have room.
 PLAIN = make("ros1", {"a": "uint8", "s": "string", "q": "uint16[]", "z": "uint8"})
 PLAIN_MOST = 20
 NOTHING = {"a": 0, "s": "", "q": [], "z": 0}
@@ -158,7 +158,7 @@ READ_PLAIN = [
 
 
 def check_reading(message, table, bus_bytes, **options):
-    """Send each packet of a table, and a good one after each, as fast and as slow as can be."""
+    """Send each packet of a table, and a good one after each, without and with stalls."""
     good = table[0]
     rows = [row for each in table for row in (each, good)]
     rx = Deserializer(message, bus_bytes=bus_bytes, **options)
@@ -167,8 +167,8 @@ def check_reading(message, table, bus_bytes, **options):
         seen = harness.run_packets([packet(text) for text, _, _ in rows], RunOptions(stalls=stalls))
         messages, _ = split_transfers(transfer_table(rx.plan, message), seen.transfers)
         assert len(messages) == len(rows)
-        for (text, status, value), got, said in zip(rows, messages, seen.statuses, strict=True):
-            assert (said.name, from_transfers(rx.plan, message, got)) == (status, value), text
+        for (text, status, value), got, reported in zip(rows, messages, seen.statuses, strict=True):
+            assert (reported.name, from_transfers(rx.plan, message, got)) == (status, value), text
 
 
 @every_bus
@@ -177,7 +177,7 @@ def test_first_error_of_a_packet_in_wire_order_is_reported(bus_bytes):
 
 
 @some_buses
-def test_string_at_the_end_of_a_message_is_judged_before_what_follows(bus_bytes):
+def test_string_at_the_end_of_a_message_is_checked_before_trailing_bytes(bus_bytes):
     check_reading(LAST, READ_LAST, bus_bytes)
 
 
@@ -189,7 +189,7 @@ def test_limits_are_exact_without_alignment(bus_bytes):
 # A bool is 1 for any byte but 0.
 ARRAYS = {"x": "bool", "a": "uint16[4]", "b": "bool[3]"}
 WORDS = [0x1111, 0x2222, 0x3333, 0x4444]
-# Where x, a and b are.
+# The offsets of x, a and b.
 PLACES = {
     "ros1": ("02 1111222233334444 018002", (0, 1, 9)),
     "ros2": (HEAD + "80 a5 1111222233334444 ff0110", (4, 6, 14)),
@@ -212,17 +212,17 @@ def test_items_that_are_not_whole_are_zero_whatever_is_in_their_lanes(bus_bytes,
         status = "OK" if size == len(whole) else "TRUNCATED"
         table.append((whole[:size].hex(), status, value))
     if dialect == "ros2":
-        # After an error, they are zero though they are whole.
+        # After an error, whole items are zero, too.
         nothing = {"x": False, "a": [0] * 4, "b": [False] * 3}
         table.append((WRONG + text.removeprefix(HEAD), "ENCAPSULATION", nothing))
     check_reading(make(dialect, ARRAYS), table, bus_bytes)
 
 
-# Serializer. A leaf is given by its items and by where `last` is wrong.
+# Serializer. A leaf is given by its items and by the place of a wrong `last`.
 
 SENT = make("ros1", {"a": "uint8[<=2]", "b": "uint8[3]", "c": "uint8[<=1]", "z": "uint8"})
 NO, EARLY, LATE = "right", "early", "late"
-# What a has and how it ends, b's end, what c has and how it ends; status and packet.
+# Items and end of a, end of b, items and end of c; status and packet.
 WRITE = [
     (b"ab", NO, NO, b"c", NO, "OK", "02000000 6162 010203 01000000 63 07"),
     (b"", NO, NO, b"", NO, "OK", "00000000 010203 00000000 07"),
@@ -305,7 +305,7 @@ def test_first_error_of_a_message_is_reported_and_marks_its_packet(bus_bytes):
         assert not seen.not_taken
 
 
-# With the last word of a message, or as its only one.
+# An error in the last word of a message, or in its only one.
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 @some_buses
 def test_error_in_the_last_word_of_a_message_marks_it(bus_bytes, wire):
@@ -331,7 +331,7 @@ def test_error_in_the_last_word_of_a_message_marks_it(bus_bytes, wire):
     assert seen.packet_errors == [status != "OK" for _, _, status in rows]
 
 
-# What `max_message_bytes` leaves room for; 9 bytes are those of the shortest message.
+# Lengths that `max_message_bytes` has room for; the shortest message has 9 bytes.
 @pytest.mark.parametrize(("count", "status"), [(7, "OK"), (8, "LENGTH"), (9, "LENGTH")])
 @some_buses
 def test_limit_of_a_serializer_is_exact(bus_bytes, count, status):

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Cycles are exact: those of the plan, and the latency."""
+"""Exact cycles: those of the plan, and the latency."""
 
 from __future__ import annotations
 
@@ -69,8 +69,8 @@ def test_types_of_fixed_size_run_at_line_rate(message):
     found = packet_of(build_plan(lay_out(message), bus_bytes=8), packets[0])
     assert cycles_between(found) == found.beats
     seen = run(message, packets)
-    # Nothing per packet. The serializer may wait for the second half of a value, and its last step
-    # may have two beats, which leave one after the other.
+    # No cycles per packet. The serializer may wait for the second half of a value, and its last
+    # step may have two beats, which leave one after the other.
     assert seen.cycles - seen.beats_in - BOTH in (0, 1, 2)
 
 
@@ -141,7 +141,7 @@ def test_blobs_run_at_line_rate(name, extra, size):
     assert seen.cycles <= seen.beats_in * 1.02 + 16
 
 
-# Each converter alone, against the plan.
+# Each converter alone, compared with the plan.
 
 
 def events(harness, sources, finished, stalls=None):
@@ -160,7 +160,7 @@ def events(harness, sources, finished, stalls=None):
 
 
 def measure_deserializer(rx, packets):
-    """Return the cycle in which each packet's status is valid, from the first beat on."""
+    """Return the cycle of each packet's status, counted from the first beat."""
     bus_bytes, count = rx.plan.bus_bytes, len(packets)
     sources = {"packets_in": list(all_beats(packets, bus_bytes))}
     found = events(Harness(rx, None), sources, lambda found: len(found["status"]) == count)
@@ -168,7 +168,7 @@ def measure_deserializer(rx, packets):
 
 
 def measure_serializer(tx, packets):
-    """Return the cycle of each packet's last beat, from that in which all leaves are offered."""
+    """Return the cycle of each packet's last beat, counted from the offer of all leaves."""
     plan = tx.plan
     sources = {leaf_name(plan, leaf): [] for leaf in range(len(plan.leaves))}
     for packet in packets:
@@ -238,7 +238,7 @@ EMPTY = make("ros1", {}, "Empty")
 @pytest.mark.parametrize(
     "fields",
     [
-        # A packet of lengths only, one that may end in steps without bytes, and one without bytes.
+        # Packets of lengths only, packets that may end in steps without bytes, and empty ones.
         {"a": "string", "b": "uint8[]", "c": (EMPTY, "[]")},
         {"a": "uint32", "e": (EMPTY, "[]")},
         {"e": EMPTY},

@@ -1,4 +1,4 @@
-"""Asks Debian's rosmsg for examples of messages; run by the Python that has it, alone.
+"""Ask Debian's rosmsg for examples of messages; run by the Python that has it, without firm-hdl.
 
 Arguments: folders with packages. Each line of standard
 input names a type; each line of standard output is the JSON text of what ``rosmsg-proto`` prints
@@ -29,8 +29,8 @@ def main(folders):
             spec = genmsg.load_msg_by_type(context, name, search_path)
             genmsg.load_depends(context, spec, search_path)
             text = genmsg.gentools.compute_full_text(context, spec)
-            made = genpy.dynamic.generate_dynamic(name, text)
-            classes[name] = made[name]
+            generated = genpy.dynamic.generate_dynamic(name, text)
+            classes[name] = generated[name]
         return classes[name]
 
     roslib.message.get_message_class = get_message_class

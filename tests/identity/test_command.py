@@ -1,4 +1,4 @@
-"""The commands ``md5``, ``hash`` and ``proto``: exact output, exact complaints."""
+"""The commands ``md5``, ``hash`` and ``proto``: exact output, exact error messages."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ DEFINITIONS = {
 
 @pytest.fixture
 def run(tmp_path, monkeypatch, capsys):
-    """Run the command in a folder with packages; return status, output and complaints."""
+    """Run the command in a folder with packages; return status, output and errors."""
     make_files(tmp_path, DEFINITIONS)
     monkeypatch.chdir(tmp_path)
 
@@ -49,7 +49,7 @@ def test_md5_of_an_action_is_that_of_its_messages(run):
     assert [line.split("  ")[1] for line in out.splitlines()] == [f"p/Do{part}" for part in parts]
 
 
-def test_hash_takes_all_that_has_one(run):
+def test_hash_of_all_types_that_have_one(run):
     names = ["p/msg/A", "p/srv/S", "p/srv/S_Event", "p/action/Do", "p/action/Do_SendGoal"]
     status, out, err = run("hash", *names, "p/action/Do_GetResult_Request", "p/A")
     assert (status, err) == (0, "")
@@ -59,7 +59,7 @@ def test_hash_takes_all_that_has_one(run):
     assert all(h.startswith("RIHS01_") and len(h) == 7 + 64 for h in hashes)
 
 
-def test_hash_says_what_has_none(run):
+def test_hash_refuses_types_without_one(run):
     assert run("hash", "p/A", "--distro", "noetic") == (
         1,
         "",
@@ -75,9 +75,9 @@ def test_hash_says_what_has_none(run):
 
 
 @pytest.mark.parametrize("command", ["md5", "hash"])
-def test_all_that_is_wrong_is_reported_at_once(run, command):
+def test_all_errors_are_reported_at_once(run, command):
     status, out, err = run(command, "p/Bad", "p/A", "p/Worse", "p/Nothing")
-    # Those that are good are done all the same.
+    # Good types are processed all the same.
     assert (status, len(out.splitlines())) == (1, 1)
     assert out.endswith(("  p/msg/A\n", "  p/A\n"))
     for word in ("'int33'", "'int34'", "'Nothing'"):
@@ -91,7 +91,7 @@ def test_proto_prints_quotes_unless_told_otherwise(run):
     assert run("proto", "p/Do", "--distro", "noetic", "--no-quotes") == (0, "a: 0\n", "")
 
 
-def test_proto_of_what_is_too_long_is_no_traceback(run, tmp_path):
+def test_proto_of_too_long_examples_is_no_traceback(run, tmp_path):
     make_files(tmp_path, {"p/msg/Huge.msg": "float64[4000000000] data\n"})
     assert run("proto", "p/Huge") == (
         1,

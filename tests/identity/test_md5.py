@@ -1,4 +1,4 @@
-"""md5 sums of ROS 1, against those that genmsg computed."""
+"""The md5 sums of ROS 1, compared with those of genmsg."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ PUBLISHED = {
 
 
 @pytest.mark.parametrize("name", PUBLISHED)
-def test_sum_is_the_one_that_everybody_knows(name):
+def test_sum_is_the_published_one(name):
     assert md5sum(Library("noetic").message(name)) == PUBLISHED[name]
 
 
@@ -74,7 +74,7 @@ def test_sums_of_the_corpus_are_those_of_genmsg(corpus):
         ("int32 A=1\nuint8[3] b\nTime c\n", True),
     ],
 )
-def test_sum_is_of_what_the_definition_means(tmp_path, text, is_same):
+def test_sum_does_not_depend_on_spelling(tmp_path, text, is_same):
     texts = {"p/A": "int32 A=1\nuint8[3] b\nTime[] c\n", "p/B": text, "p/Time": "time t\n"}
     ours = library(tmp_path, texts, "ros1")
     assert (md5sum(ours.message("p/A")) == md5sum(ours.message("p/B"))) is is_same
@@ -91,7 +91,7 @@ def test_types_of_ros2_have_none():
         md5sum(Library("humble").message("std_msgs/msg/Bool"))
 
 
-def test_depth_is_no_matter():
+def test_depth_is_not_limited():
     top = Message(name="p/L", dialect="ros1", fields=())
     for level in range(3000):
         top = Message(name=f"p/L{level}", dialect="ros1", fields=(Field(name="f", type=top),))

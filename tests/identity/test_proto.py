@@ -1,4 +1,4 @@
-"""Examples of types, against rosmsg's own and against messages put together another way."""
+"""Examples of types, compared with those of rosmsg and with messages that rosbags makes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ WORKER = Path(__file__).with_name("rosmsg_worker.py")
 
 
 def default(description, store):
-    """A value of a rosbags type as rosidl_generator_py makes it."""
+    """Return a value of a rosbags type as rosidl_generator_py initialises it."""
     kind, detail = description
     match kind:
         case Nodetype.BASE:
@@ -44,7 +44,7 @@ def default(description, store):
 def new(name, store):
     constants, fields = store.fielddefs[name]
     values = {n: default(d, store) for n, d in fields if not n.startswith("structure_needs")}
-    # rosbags has no defaults. These two are not 0; the second came with its constant.
+    # rosbags has no defaults. These two are not 0; the second is as old as its constant.
     if name == "geometry_msgs/msg/Quaternion":
         values["w"] = 1.0
     if ("STATUS_UNKNOWN", "int8", -2) in constants:
@@ -172,7 +172,7 @@ def test_millions_of_elements_are_quick_and_more_is_refused(tmp_path):
             proto(ours.message(f"p/{name}"))
 
 
-def test_depth_is_no_matter_in_ros2():
+def test_depth_is_not_limited_in_ros2():
     top = Message(name="p/msg/L", dialect="ros2", fields=())
     for level in range(1500):
         kind = Sequence(element=top) if level % 2 else top
@@ -204,7 +204,7 @@ def rosmsg():
     return run
 
 
-# Each row changes the style at another place.
+# Each row changes the YAML style of another part.
 ROS1 = {
     "p/Plain": "int32 a\nfloat32 b\nstring c\nbool d\n",
     "p/Five": "int32 a\nfloat32 b\nstring c\nbool d\nuint8 e\n",
@@ -240,7 +240,7 @@ def test_example_is_that_of_rosmsg_proto(tmp_path, rosmsg):
 
 
 def test_examples_of_the_corpus_are_those_of_rosmsg_proto(corpus, rosmsg):
-    # Every 40th takes 10 s, all of it in rosmsg; all were compared once.
+    # Every 40th type takes 10 s, all of it in rosmsg; all types were compared once.
     noetic = Library("noetic", [corpus / "ros1"])
     files = sorted((corpus / "ros1").glob("*/msg/*.msg"))[:: by_depth(120, 40)]
     names = [f"{path.parts[-3]}/{path.stem}" for path in files]
@@ -249,12 +249,12 @@ def test_examples_of_the_corpus_are_those_of_rosmsg_proto(corpus, rosmsg):
     assert {name: proto(noetic.message(name)) for name in names} == want
 
 
-def test_what_pyyaml_would_take_minutes_for_is_refused(tmp_path):
+def test_examples_that_take_pyyaml_minutes_are_refused(tmp_path):
     ours = library(tmp_path, {"p/A": "int8[500000] a\n", "p/B": "uint8[8388608] a\n"}, "ros1")
     message = "^p/A has an example of 1000001 values, which is more than 1000000$"
     with pytest.raises(TooLargeError, match=message):
         proto(ours.message("p/A"))
-    # Bytes are one text.
+    # A sequence of bytes is one text.
     assert proto(ours.message("p/B")).startswith('"a: !!binary |\n  AAAA')
 
 
@@ -279,8 +279,8 @@ def test_size_is_that_of_the_text_before_it_is_written(tmp_path, monkeypatch):
         monkeypatch.setattr("firm_hdl.identity.proto_ros2._MAX_CHARACTERS", len(text))
         assert proto(ours.message(name), quotes=False) == text
         monkeypatch.setattr("firm_hdl.identity.proto_ros2._MAX_CHARACTERS", len(text) - 1)
-        said = f" has an example of {len(text)} characters, which is more than {len(text) - 1}$"
-        with pytest.raises(TooLargeError, match=said):
+        pattern = f" has an example of {len(text)} characters, which is more than {len(text) - 1}$"
+        with pytest.raises(TooLargeError, match=pattern):
             proto(ours.message(name))
 
 
@@ -288,14 +288,14 @@ def test_size_is_that_of_the_text_before_it_is_written(tmp_path, monkeypatch):
     ("text", "values"),
     [
         ("int8 a\nstring b\n", 4),
-        # Each element of a list counts, and what it is.
+        # Each element of a list counts, and its values.
         ("string[3] a\n", 1 + 3 * 2),
         ("Part p\n", 1 + 4),
         ("Part[2] p\n", 1 + 2 * (1 + 4)),
-        # A list of any length has one.
+        # A list of any length counts as one value.
         ("string[] a\n", 1 + 1 + 1),
         ("Part[] p\n", 1 + 1 + 4),
-        # 16 bytes are as much as a value.
+        # 16 bytes count as one value.
         ("uint8[15] a\n", 1 + 1),
         ("uint8[16] a\n", 1 + 2),
         ("uint8[33] a\n", 1 + 3),
@@ -306,6 +306,6 @@ def test_values_of_ros1_are_counted_before_they_are_written(tmp_path, monkeypatc
     monkeypatch.setattr("firm_hdl.identity.proto_ros1._MAX_VALUES", values)
     proto(message)
     monkeypatch.setattr("firm_hdl.identity.proto_ros1._MAX_VALUES", values - 1)
-    said = f"^p/(A|Part) has an example of {values} values, which is more than {values - 1}$"
-    with pytest.raises(TooLargeError, match=said):
+    pattern = f"^p/(A|Part) has an example of {values} values, which is more than {values - 1}$"
+    with pytest.raises(TooLargeError, match=pattern):
         proto(message)

@@ -1,4 +1,4 @@
-"""Type hashes, against published ones and those of rosbags."""
+"""Type hashes, compared with published ones and with those of rosbags."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from ..frontend.workspace import library, make_files
 
 ROS2 = [name for name, distro in DISTROS.items() if distro.dialect == "ros2"]
 
-# Seen on the wire of ROS 2 or in the files that rosidl_generator_type_description writes: from
+# Hashes from the wire of ROS 2 or from files of rosidl_generator_type_description, as published in
 # documents and tests of rmw_zenoh, ros-z, nano-ros and zenoh-plugin-ros2dds.
 PUBLISHED = {
     "std_msgs/msg/String": "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18",
@@ -40,7 +40,7 @@ PUBLISHED = {
     ),
     "sensor_msgs/msg/Imu": "7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b",
     "nav_msgs/msg/Odometry": "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0",
-    # With `char`, which counts as uint8.
+    # A type with `char`, which counts as uint8.
     "service_msgs/msg/ServiceEventInfo": (
         "41bcbbe07a75c9b52bc96bfd5c24d7f0fc0a08c0cb7921b3373c5732345a6f45"
     ),
@@ -129,7 +129,7 @@ def has_char(message: Message) -> bool:
 
 
 def has_wide(message: Message) -> bool:
-    """Whether there is what rosbags does not know."""
+    """Return whether the type has wide characters or strings, which rosbags does not know."""
     return any(getattr(k, "wide", False) or str(k) == "wchar" for k in kinds_in(message))
 
 

@@ -1,4 +1,4 @@
-"""Sums, hashes and examples of types that share a last name, and of what is easy to mix up."""
+"""Sums, hashes and examples of types that share a last name or are easy to confuse."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_order_has_all_types_of_one_name(tmp_path):
     ]  # fmt: skip
 
 
-def test_sum_is_made_of_the_sums_of_the_very_types(tmp_path):
+def test_sum_has_the_sums_of_the_right_types(tmp_path):
     p, q, r = digest("int8 p"), digest("int16 q\nint16 more"), digest("string r")
     whole = digest(f"{q} q\n{p} p")
     assert md5sum(library(tmp_path, PARTS, "ros1").message("p/T")) == digest(
@@ -52,7 +52,7 @@ def test_sum_is_made_of_the_sums_of_the_very_types(tmp_path):
     )
 
 
-def test_sum_of_a_service_is_made_of_the_sums_of_the_very_types(tmp_path):
+def test_sum_of_a_service_has_the_sums_of_the_right_types(tmp_path):
     files = {f"{n.replace('/', '/msg/')}.msg": text for n, text in PARTS.items()}
     make_files(tmp_path, files | {"p/srv/S.srv": "Part a\n---\nq/Part a\nPart b"})
     p, q = digest("int8 p"), digest("int16 q\nint16 more")
@@ -105,7 +105,7 @@ def read_back(message):
     return yaml.safe_load(proto(message, quotes=False))
 
 
-def test_examples_are_of_the_very_types(tmp_path):
+def test_examples_have_values_of_the_right_types(tmp_path):
     p, q = {"p": 0}, {"q": 0, "more": 0}
     assert read_back(library(tmp_path / "2", PARTS).message("p/T")) == {
         "a": p, "b": [], "c": {"r": ""}, "d": {"q": q, "p": p}
@@ -139,7 +139,7 @@ def test_examples_of_nested_arrays_have_the_values_of_new_messages(tmp_path):
     for dialect in ("ros1", "ros2"):
         message = library(tmp_path / dialect, NESTED, dialect).message("p/T")
         assert read_back(message) == want
-    # A message without fields is one, whatever constants it has.
+    # A message without fields counts as one value, whatever constants it has.
     text = proto(library(tmp_path / "ros2", NESTED).message("p/T"), quotes=False)
     assert "\nnone: {}\n" in text and "\nsaid: {}\n" in text
 
@@ -179,7 +179,7 @@ def test_limit_of_characters_is_that_of_the_text(tmp_path, monkeypatch, text):
     size = len(proto(message, quotes=False)) + 1
     monkeypatch.setattr(proto_ros2, "_MAX_CHARACTERS", size)
     proto(message)
-    # Of an array, its elements are counted before they are written.
+    # The elements of an array are counted before they are written.
     monkeypatch.setattr(proto_ros2, "_MAX_CHARACTERS", len("- 0\n") * 2)
     with pytest.raises(TooLargeError):
         proto(message)
@@ -197,7 +197,7 @@ def test_a_message_and_a_service_of_one_name_are_two(tmp_path, capsys):
     assert capsys.readouterr().out == f"{digest('int8 a')}  p/A\n{digest('int8 b')}  p/A\n"
 
 
-def test_the_same_mistake_in_two_files_is_said_twice(tmp_path, capsys):
+def test_the_same_mistake_in_two_files_is_reported_twice(tmp_path, capsys):
     make_files(tmp_path, {"p/msg/A.msg": "int33 a", "q/msg/A.msg": "int33 a"})
     assert main(["hash", "p/A", "q/A", "p/msg/A", "--path", str(tmp_path)]) == 1
     out, err = capsys.readouterr()

@@ -1,4 +1,4 @@
-"""Each way in which a process ends, or is ended: who is killed, who is waited for, who is told."""
+"""Ends of processes: normal exit, kill, interrupt, SIGTERM, and a parent that dies."""
 
 from __future__ import annotations
 
@@ -25,40 +25,40 @@ from firm_hdl.jobs.processes import (
 )
 
 
-def started(*command, **options):
+def start_process(*command, **options):
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
     return subprocess.Popen(command, **pipes, **options)
 
 
-def test_who_ends_when_nobody_speaks_to_him_is_not_killed():
-    process = started("cat")
+def test_process_that_ends_when_its_input_closes_is_not_killed():
+    process = start_process("cat")
     hang_up(process, 30)
     assert process.returncode == 0
     assert process.stdin.closed and process.stdout.closed
 
 
-def test_who_does_not_end_is_killed():
-    process = started("sleep", "60")
+def test_process_that_does_not_end_is_killed():
+    process = start_process("sleep", "60")
     began = time.monotonic()
     hang_up(process, 0.01)
     assert process.returncode == -signal.SIGKILL
     assert time.monotonic() - began < 30
 
 
-def test_who_is_dead_already_is_no_error():
-    process = started("true")
+def test_hanging_up_on_a_dead_process_is_no_error():
+    process = start_process("true")
     process.wait()
     process.stdin.write(b"still to be said")
     hang_up(process)
     assert process.returncode == 0
 
 
-def test_a_tool_that_says_nothing_says_so():
+def test_tool_error_without_output_says_so():
     assert str(ToolError(" what \n")) == "what"
     assert str(ToolError(" \n")) == "it failed without output"
 
 
-def test_a_tool_has_made_what_is_there(tmp_path):
+def test_made_by_requires_the_file(tmp_path):
     file = tmp_path / "out.v"
     with pytest.raises(
         ToolError, match=r"^yosys ended without an error, but did not write out\.v$"
@@ -68,40 +68,40 @@ def test_a_tool_has_made_what_is_there(tmp_path):
     assert made_by("yosys", file) == file
 
 
-def test_a_tool_hears_nothing_and_may_say_any_bytes(tmp_path):
+def test_tool_has_empty_input_and_may_print_any_bytes(tmp_path):
     assert run_tool(["cat"], tmp_path) == ""
     assert run_tool(["printf", r"\377"], tmp_path) == "\ufffd"
     environment = {"A_NAME": "b"}
-    said = run_tool(["sh", "-c", "echo $A_NAME $HOME"], tmp_path, environment=environment)
-    assert said == f"b {os.environ.get('HOME', '')}\n"
+    output = run_tool(["sh", "-c", "echo $A_NAME $HOME"], tmp_path, environment=environment)
+    assert output == f"b {os.environ.get('HOME', '')}\n"
     assert "A_NAME" not in os.environ
-    # Nobody is left to be killed.
+    # No tool is registered as running.
     assert processes._running == set()
 
 
-def test_a_tool_that_is_not_there_is_an_error_of_the_system(tmp_path):
+def test_missing_tool_is_file_not_found_error(tmp_path):
     with pytest.raises(FileNotFoundError):
         run_tool([str(tmp_path / "none")], tmp_path)
     assert processes._running == set()
 
 
-def test_whoever_is_stopped_while_a_tool_runs_stops_the_tool(tmp_path, monkeypatch):
-    made = []
+def test_interrupt_while_a_tool_runs_kills_the_tool(tmp_path, monkeypatch):
+    opened = []
     real = subprocess.Popen
 
     class Interrupted(real):
         def communicate(self, *_, **__):
-            made.append(self)
+            opened.append(self)
             raise KeyboardInterrupt
 
     monkeypatch.setattr(processes.subprocess, "Popen", Interrupted)
     with pytest.raises(KeyboardInterrupt):
         run_tool(["sleep", "60"], tmp_path)
-    assert made[0].returncode == -signal.SIGKILL
+    assert opened[0].returncode == -signal.SIGKILL
     assert processes._running == set()
 
 
-def test_time_of_children_counts():
+def test_cpu_seconds_include_children():
     before = cpu_seconds()
     burn = "import time\nwhile time.process_time() < 0.2: pass"
     subprocess.run([sys.executable, "-S", "-c", burn], check=True)
@@ -114,7 +114,7 @@ def test_time_of_children_counts():
     assert cpu_seconds() - before < 0.1
 
 
-def test_tasks_of_one_process_run_here_in_their_order():
+def test_tasks_of_one_job_run_in_this_process_in_order():
     here = []
     tasks = [("b", (2,)), ("a", (1,))]
 
@@ -132,12 +132,12 @@ def fails(number):
     raise ValueError(number)
 
 
-def test_errors_of_a_task_are_told_with_their_name():
+def test_error_of_a_task_has_the_name_of_its_type():
     ((key, error),) = in_processes(fails, [("a", (7,))], 2)
     assert (key, str(error)) == ("a", "ValueError: 7")
 
 
-def test_terminated_processes_put_things_in_order():
+def test_terminated_process_runs_its_cleanup():
     before = signal.getsignal(signal.SIGTERM)
     tidied = []
     with pytest.raises(SystemExit) as caught, unwound_when_terminated():
@@ -150,7 +150,7 @@ def test_terminated_processes_put_things_in_order():
     assert signal.getsignal(signal.SIGTERM) is before
 
 
-def test_threads_leave_signals_alone():
+def test_threads_install_no_signal_handler():
     before = signal.getsignal(signal.SIGTERM)
     seen = []
 
@@ -164,7 +164,7 @@ def test_threads_leave_signals_alone():
     assert seen == [before]
 
 
-def test_a_worker_waits_for_its_parents_word(monkeypatch):
+def test_worker_ignores_interrupts_and_watches_its_parent(monkeypatch):
     handlers, threads = {}, []
 
     class Thread:
@@ -185,17 +185,17 @@ def test_a_worker_waits_for_its_parents_word(monkeypatch):
 
 
 class LeftError(BaseException):
-    """A process has ended."""
+    """Stands for the end of this process."""
 
 
 @pytest.fixture
-def ends(monkeypatch):
-    """Let the end of this process be an exception, with its status."""
+def tools_of_worker(monkeypatch):
+    """Two running tools of this process, whose end becomes an exception with its status."""
 
-    def leave(status):
+    def raise_left(status):
         raise LeftError(status)
 
-    monkeypatch.setattr(processes.os, "_exit", leave)
+    monkeypatch.setattr(processes.os, "_exit", raise_left)
     tools = [subprocess.Popen(["sleep", "60"], start_new_session=True) for _ in range(2)]
     monkeypatch.setattr(processes, "_running", {*tools})
     yield tools
@@ -204,15 +204,15 @@ def ends(monkeypatch):
         tool.wait()
 
 
-def test_a_stopped_worker_takes_its_tools_along(ends):
+def test_stopped_worker_kills_its_tools(tools_of_worker):
     with pytest.raises(LeftError, match=r"^143$"):
         processes._stop(signal.SIGTERM, None)
-    assert [tool.wait(30) for tool in ends] == [-signal.SIGKILL] * 2
+    assert [tool.wait(30) for tool in tools_of_worker] == [-signal.SIGKILL] * 2
 
 
 @pytest.mark.parametrize("adopted", [True, False])
-def test_an_orphan_ends_with_its_tools_and_files(ends, monkeypatch, tmp_path, adopted):
-    """Whether it hears of it by another parent, or because the parent is not there."""
+def test_an_orphan_ends_with_its_tools_and_files(tools_of_worker, monkeypatch, tmp_path, adopted):
+    """It notices by the new parent's number, or because the old parent no longer exists."""
     folder = tmp_path / "own"
     (folder / "deep").mkdir(parents=True)
     parents = iter([5, 5, 5, 1]) if adopted else iter([5] * 9)
@@ -224,20 +224,20 @@ def test_an_orphan_ends_with_its_tools_and_files(ends, monkeypatch, tmp_path, ad
     with pytest.raises(LeftError, match=r"^137$"):
         processes._end_with(4, str(folder))
     assert waited == [1, 1]
-    assert [tool.wait(30) for tool in ends] == [-signal.SIGKILL] * 2
+    assert [tool.wait(30) for tool in tools_of_worker] == [-signal.SIGKILL] * 2
     assert not folder.exists()
 
 
-def test_who_is_there_is_asked_of_the_system():
-    process = started("sleep", "60")
+def test_existence_of_a_process_is_asked_of_the_system():
+    process = start_process("sleep", "60")
     assert processes._exists(process.pid) and processes._exists(os.getpid())
     hang_up(process)
     assert not processes._exists(process.pid)
 
 
-def test_who_has_ended_is_not_killed_again(monkeypatch):
-    """Its number may be somebody else's."""
-    process = started("true")
+def test_process_that_has_ended_is_not_killed_again(monkeypatch):
+    """Its number may belong to another process by now."""
+    process = start_process("true")
     process.wait()
     killed = []
     monkeypatch.setattr(processes.os, "killpg", lambda *who: killed.append(who))
@@ -246,12 +246,12 @@ def test_who_has_ended_is_not_killed_again(monkeypatch):
     hang_up(process)
 
 
-def test_who_ends_while_he_is_killed_is_no_error(monkeypatch):
-    def gone(*_):
+def test_process_that_ends_while_it_is_killed_is_no_error(monkeypatch):
+    def raise_lookup_error(*_):
         raise ProcessLookupError
 
-    process = started("sleep", "60")
-    monkeypatch.setattr(processes.os, "killpg", gone)
+    process = start_process("sleep", "60")
+    monkeypatch.setattr(processes.os, "killpg", raise_lookup_error)
     processes._kill(process)
     monkeypatch.undo()
     hang_up(process)
@@ -259,7 +259,7 @@ def test_who_ends_while_he_is_killed_is_no_error(monkeypatch):
 
 def test_temporary_files_of_workers_go_with_their_pool(tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    ((_, made),) = in_processes(tempfile.mkdtemp, [("a", ())], 2)
-    assert Path(made).parent.parent == tmp_path
-    assert Path(made).parent.name.startswith("firm-hdl-")
+    ((_, folder),) = in_processes(tempfile.mkdtemp, [("a", ())], 2)
+    assert Path(folder).parent.parent == tmp_path
+    assert Path(folder).parent.name.startswith("firm-hdl-")
     assert list(tmp_path.iterdir()) == []

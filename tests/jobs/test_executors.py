@@ -1,4 +1,4 @@
-"""Executors: results do not depend on where tasks run, and a dead worker takes nobody else's."""
+"""Executors: results do not depend on where tasks run, and a dead worker loses its task only."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_exceptions_are_results(jobs):
     assert found == {key: value for key, value in SQUARES.items() if key != "task 7"}
 
 
-def test_process_that_dies_is_blamed_alone():
+def test_dead_process_is_the_error_of_its_task_alone():
     found = dict(run_each(square_or_die, TASKS, jobs=2))
     for key in ("task 5", "task 20"):
         assert str(found.pop(key)) == "the process that ran it died, also when it was repeated"
@@ -93,9 +93,9 @@ def test_dask_that_is_not_installed_is_an_error(monkeypatch):
 
 @pytest.fixture
 def cluster():
-    """Return a Dask cluster of two workers on this machine, and how to call it as an executor."""
+    """Return a Dask cluster of two workers on this machine, and its name as an executor."""
     distributed = pytest.importorskip("distributed")
-    made = distributed.LocalCluster(
+    local_cluster = distributed.LocalCluster(
         n_workers=2,
         threads_per_worker=1,
         host="127.0.0.1",
@@ -104,16 +104,16 @@ def cluster():
         silence_logs=50,
     )
     try:
-        yield made, made.scheduler_address.replace("tcp://", "dask://")
+        yield local_cluster, local_cluster.scheduler_address.replace("tcp://", "dask://")
     finally:
         with contextlib.suppress(Exception):
-            made.close()
+            local_cluster.close()
 
 
 # Dask leaves sockets and loops to the garbage collector.
 @pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")
 class TestDask:
-    """On a cluster."""
+    """The Dask executor, on a cluster of this machine."""
 
     def test_results_are_those_of_processes(self, cluster):
         _, executor = cluster
@@ -136,16 +136,16 @@ class TestDask:
         assert here == there and all(assert_passed(record) for record in here.values())
 
     def test_lost_worker_loses_nothing(self, cluster):
-        made, executor = cluster
+        local_cluster, executor = cluster
         found = {}
         for key, result in run_each(slow_square, TASKS, executor=executor):
             found[key] = result
             if len(found) == 5:
-                os.kill(made.workers[0].pid, signal.SIGKILL)
+                os.kill(local_cluster.workers[0].pid, signal.SIGKILL)
         assert found == SQUARES
 
-    def test_lost_cluster_is_an_error_that_keeps_what_came(self, cluster, monkeypatch):
-        made, executor = cluster
+    def test_lost_cluster_is_an_error_that_keeps_earlier_results(self, cluster, monkeypatch):
+        local_cluster, executor = cluster
         monkeypatch.setattr(executors, "CHECK_SECONDS", 0.5)
         monkeypatch.setattr(executors, "MAX_IDLE_SECONDS", 2)
         found = []
@@ -153,7 +153,7 @@ class TestDask:
             for key, _ in run_each(slow_square, TASKS, executor=executor):
                 found.append(key)
                 if len(found) == 5:
-                    made.close()
+                    local_cluster.close()
         assert 5 <= len(found) < len(TASKS)
 
     def test_scheduler_that_is_not_there_is_an_error(self, monkeypatch):

@@ -1,4 +1,4 @@
-"""Programs and processes: what they say, and that an interruption leaves nothing behind."""
+"""Programs and processes: their output, and that an interruption leaves nothing behind."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ import pytest
 from firm_hdl.jobs.processes import ToolError, TooSlowError, in_processes, run_tool
 
 
-def test_tool_says_what_it_says(tmp_path):
-    said = run_tool(["sh", "-c", "pwd; echo $WHAT >&2"], tmp_path, environment={"WHAT": "this"})
-    assert said == f"{tmp_path}\nthis\n"
+def test_output_of_a_tool_is_returned(tmp_path):
+    output = run_tool(["sh", "-c", "pwd; echo $WHAT >&2"], tmp_path, environment={"WHAT": "this"})
+    assert output == f"{tmp_path}\nthis\n"
 
 
-def test_tool_that_fails_is_an_error_with_what_it_said(tmp_path):
+def test_tool_that_fails_is_an_error_with_its_output(tmp_path):
     with pytest.raises(ToolError, match=r"^so what$"):
         run_tool(["sh", "-c", "echo so what; exit 3"], tmp_path)
     with pytest.raises(ToolError, match=r"^exit status 3$"):
@@ -39,17 +39,17 @@ def test_tool_that_takes_too_long_is_ended_with_all_that_it_started(tmp_path):
     script = "sleep 60 & echo $! > child; wait"
     with pytest.raises(TooSlowError, match=r"^sh took more than 1 s$"):
         run_tool(["sh", "-c", script], tmp_path, timeout=1)
-    gone(int((tmp_path / "child").read_text()))
+    wait_for_exit(int((tmp_path / "child").read_text()))
 
 
-def gone(process: int) -> None:
+def wait_for_exit(process: int) -> None:
     """Wait until a process has ended."""
     for _ in range(100):
         try:
             state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
         except (FileNotFoundError, ProcessLookupError):
             return
-        # Nobody may be there to wait for an orphan.
+        # An orphan may stay a zombie: perhaps no process waits for it.
         if state == "Z":
             return
         time.sleep(0.1)
@@ -68,7 +68,7 @@ def test_tasks_are_shared_out():
         assert dict(in_processes(double, tasks, jobs)) == {str(n): 2 * n for n in range(6)}
 
 
-def test_process_that_dies_is_told():
+def test_dead_process_is_reported():
     (result,) = in_processes(double, [("seven", (7,))], 2)
     assert result[0] == "seven" and "BrokenProcessPool" in str(result[1])
 
@@ -91,7 +91,7 @@ if __name__ == "__main__":
 
 
 def work(folder: str, number: int) -> None:
-    """Leave a temporary folder, and a program that runs for long."""
+    """Make a temporary folder, and start a program that runs for long."""
     import tempfile
 
     with tempfile.TemporaryDirectory() as own:
@@ -99,8 +99,8 @@ def work(folder: str, number: int) -> None:
         run_tool(["sh", "-c", f"{script}; sleep 60"], Path(own))
 
 
-def vanished(folder: Path) -> None:
-    """Wait until a folder is no longer there."""
+def wait_for_removal(folder: Path) -> None:
+    """Wait until a folder is removed."""
     for _ in range(100):
         if not folder.exists():
             return
@@ -126,16 +126,16 @@ def test_interruption_ends_everything_and_leaves_nothing(tmp_path, number):
             break
         time.sleep(0.1)
     started = [path.read_text().split() for path in seen]
-    # To it alone: what it has started must not depend on hearing that as well.
+    # Signal this process alone: its children must not depend on the signal.
     process.send_signal(number)
     if number == signal.SIGINT:
         assert process.wait(timeout=60) == 130
     for child, folder in started:
-        # If it was killed, it cannot be waited for yet: nobody knows but its children.
-        gone(int(child))
-        vanished(Path(folder))
+        # Do not wait for a killed process first: its children still have to notice.
+        wait_for_exit(int(child))
+        wait_for_removal(Path(folder))
     process.wait(timeout=60)
     for folder in (tmp_path / "temporary").iterdir():
-        vanished(folder)
+        wait_for_removal(folder)
     assert list((tmp_path / "temporary").iterdir()) == []
     assert sorted(path.name for path in (tmp_path / "seen").iterdir()) == ["0", "1"]

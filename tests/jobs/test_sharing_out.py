@@ -1,4 +1,4 @@
-"""How tasks are shared out, with pools and clusters that do exactly what a test tells them."""
+"""Distribution of tasks to workers, with fake pools and clusters that a test controls."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from firm_hdl.jobs import executors
 from firm_hdl.jobs.executors import ExecutorError, check_executor, run_each
 
 LOST = r"^the executor was lost; results so far are kept$"
-TWICE = "the process that ran it died, also when it was repeated"
+DIED_TWICE = "the process that ran it died, also when it was repeated"
 
 
 class DeadError(Exception):
-    """What a cluster says of a task whose worker died."""
+    """The error of a cluster for a task whose worker died."""
 
 
 class Pool:
-    """An executor that does each task when it is given, or dies of it.
+    """An executor that runs each task when it is submitted, or fails it.
 
     Parameters
     ----------
     dies_of : dict
-        Arguments to what the result is instead.
+        Error of the task by its arguments; `Future` for a task that never ends.
     breaks_at : int
-        How many tasks it takes before it is broken.
+        Number of tasks that the pool accepts before it is broken.
     """
 
     def __init__(self, dies_of=(), breaks_at=None):
         self.dies_of, self.breaks_at = dict(dies_of), breaks_at
-        self.given, self.said = [], []
+        self.given, self.shutdowns = [], []
 
     def submit(self, work, *arguments):
         if len(self.given) == self.breaks_at:
@@ -40,7 +40,7 @@ class Pool:
         self.given.append(arguments)
         future = Future()
         error = self.dies_of.get(arguments)
-        if error is Future:  # Nobody ever works on it.
+        if error is Future:  # The task never runs.
             return future
         if error is not None:
             future.set_exception(error)
@@ -52,43 +52,43 @@ class Pool:
         return future
 
     def shutdown(self, *, wait):
-        self.said.append(f"shutdown {wait}")
+        self.shutdowns.append(f"shutdown {wait}")
 
 
 @pytest.fixture
 def cluster(monkeypatch):
-    """A cluster of 3 threads that notes what it is told; `pools` is what it hands out."""
-    told = SimpleNamespace(
+    """A cluster of 3 threads that records calls; `pools` has the executors that it gives."""
+    fake_cluster = SimpleNamespace(
         pools=[], opened=[], closed=0, threads={"a": 2, "b": 1}, busy={"a": ()}, client=None
     )
 
     class Client:
         def __init__(self, address, **options):
-            told.client = address, options
+            fake_cluster.client = address, options
 
         def __enter__(self):
             return self
 
         def __exit__(self, *_):
-            told.closed += 1
+            fake_cluster.closed += 1
 
         @contextmanager
         def get_executor(self, **options):
-            told.opened.append(options)
-            yield told.pools.pop(0) if told.pools else Pool()
+            fake_cluster.opened.append(options)
+            yield fake_cluster.pools.pop(0) if fake_cluster.pools else Pool()
 
         def nthreads(self):
-            return told.threads
+            return fake_cluster.threads
 
         def processing(self):
-            if isinstance(told.busy, Exception):
-                raise told.busy
-            return told.busy
+            if isinstance(fake_cluster.busy, Exception):
+                raise fake_cluster.busy
+            return fake_cluster.busy
 
     fake = SimpleNamespace(Client=Client, KilledWorker=DeadError)
     monkeypatch.setattr(executors.importlib, "import_module", {"distributed": fake}.__getitem__)
-    told.run = lambda tasks, **how: run_each(square, tasks, executor="dask://here:1", **how)
-    return told
+    fake_cluster.run = lambda tasks, **how: run_each(square, tasks, executor="dask://here:1", **how)
+    return fake_cluster
 
 
 def square(number):
@@ -101,9 +101,9 @@ def tasks(*numbers):
     return [(f"task {number}", (number,)) for number in numbers]
 
 
-def test_a_cluster_is_called_by_its_address_and_left_at_the_end(cluster):
+def test_cluster_is_connected_by_its_address_and_closed_at_the_end(cluster):
     assert dict(cluster.run(tasks(2, 3))) == {"task 2": 4, "task 3": 9}
-    # What a task costs is measured: a result that the cluster remembers costs nothing.
+    # The cost of a task is measured: a result from the cluster's cache costs nothing.
     assert cluster.opened == [{"pure": False}]
     options = {"timeout": executors.CONNECT_SECONDS, "set_as_default": False}
     assert cluster.client == ("tcp://here:1", options)
@@ -114,7 +114,7 @@ def test_a_cluster_is_called_by_its_address_and_left_at_the_end(cluster):
     ("jobs", "threads", "most"),
     [(None, {"a": 2, "b": 1}, 6), (None, {}, 2), (4, {"a": 2}, 4), (1, {"a": 2}, 1)],
 )
-def test_so_many_tasks_are_under_way_and_no_more(cluster, jobs, threads, most):
+def test_number_of_submitted_tasks_is_limited(cluster, jobs, threads, most):
     pool = Pool()
     cluster.pools, cluster.threads = [pool], threads
     results = cluster.run(tasks(*range(20)), jobs=jobs)
@@ -136,13 +136,13 @@ def test_tasks_of_a_dead_worker_run_again_each_alone(cluster):
     cluster.pools = [dying, *alone]
     found = dict(cluster.run(tasks(1, 2, 3, 4, 5), jobs=3))
     assert [pool.given for pool in alone] == [[(2,)], [(3,)]]
-    assert isinstance(found["task 3"], ExecutorError) and str(found.pop("task 3")) == TWICE
+    assert isinstance(found["task 3"], ExecutorError) and str(found.pop("task 3")) == DIED_TWICE
     assert found == {"task 1": 1, "task 2": 4, "task 4": 16, "task 5": 25}
-    # While somebody is suspected, nobody gets more to do.
+    # No new task is submitted while a task is suspected of killing its worker.
     assert dying.given == [(1,), (2,), (3,)]
 
 
-def test_a_pool_that_breaks_takes_no_more_and_another_one_goes_on(cluster):
+def test_broken_pool_is_replaced(cluster):
     cluster.pools = [Pool(breaks_at=2)]
     found = list(cluster.run(tasks(1, 2, 3, 4)))
     assert sorted(found) == [("task 1", 1), ("task 2", 4), ("task 3", 9), ("task 4", 16)]
@@ -151,7 +151,7 @@ def test_a_pool_that_breaks_takes_no_more_and_another_one_goes_on(cluster):
 
 def test_a_task_whose_own_pool_takes_nothing_is_blamed(cluster):
     cluster.pools = [Pool({(1,): DeadError()}), Pool(breaks_at=0)]
-    assert [(key, str(error)) for key, error in cluster.run(tasks(1))] == [("task 1", TWICE)]
+    assert [(key, str(error)) for key, error in cluster.run(tasks(1))] == [("task 1", DIED_TWICE)]
 
 
 def test_pools_that_take_nothing_at_all_end_the_run(cluster):
@@ -165,15 +165,15 @@ def test_cancelled_tasks_end_the_run(cluster):
     cluster.pools = [pool]
     with pytest.raises(ExecutorError, match=LOST):
         list(cluster.run(tasks(1, 2)))
-    # And whoever is left is not waited for.
-    assert pool.said == ["shutdown False"] and cluster.closed == 1
+    # The run does not wait for the remaining tasks.
+    assert pool.shutdowns == ["shutdown False"] and cluster.closed == 1
 
 
-def test_a_run_that_ends_well_stops_nobody(cluster):
+def test_run_without_errors_shuts_no_pool_down(cluster):
     pool = Pool()
     cluster.pools = [pool]
     assert len(list(cluster.run(tasks(1, 2)))) == 2
-    assert pool.said == []
+    assert pool.shutdowns == []
 
 
 @pytest.mark.parametrize("busy", [{"a": (), "b": ()}, {}, OSError("lost")])
@@ -181,13 +181,13 @@ def test_idle_clusters_are_given_up(cluster, monkeypatch, busy):
     monkeypatch.setattr(executors, "CHECK_SECONDS", 0.01)
     monkeypatch.setattr(executors, "MAX_IDLE_SECONDS", 0.02)
     cluster.pools, cluster.busy = [Pool({(2,): Future})], busy
-    said = r"^no process has worked on a test for 0\.02 s; the results so far are kept$"
-    with pytest.raises(ExecutorError, match=said):
+    message = r"^no process has worked on a test for 0\.02 s; the results so far are kept$"
+    with pytest.raises(ExecutorError, match=message):
         list(cluster.run(tasks(1, 2)))
 
 
 def test_clusters_that_are_busy_are_waited_for(cluster, monkeypatch):
-    """And what idled before it was busy again does not count."""
+    """Idle time before the cluster was busy again does not count."""
     monkeypatch.setattr(executors, "CHECK_SECONDS", 0.001)
     monkeypatch.setattr(executors, "MAX_IDLE_SECONDS", 0.002)
     pool, asked = Pool({(2,): Future}), []
@@ -237,7 +237,7 @@ def test_results_of_this_process_come_one_by_one():
 
 
 @pytest.mark.parametrize("name", ["processes", "dask://host:8786", "dask://[::1]:1"])
-def test_names_of_executors_stay_what_they_are(name):
+def test_names_of_executors_are_returned_unchanged(name):
     assert check_executor(name) == name
 
 
@@ -248,26 +248,26 @@ def test_unknown_executors_start_nothing(monkeypatch):
 
 
 @pytest.mark.parametrize(("jobs", "workers"), [(3, 3), (None, 5)])
-def test_pools_here_have_as_many_processes_as_asked_for(monkeypatch, jobs, workers):
+def test_local_pools_have_the_requested_number_of_processes(monkeypatch, jobs, workers):
     pool, opened = Pool({(2,): BrokenExecutor()}), []
 
     @contextmanager
-    def opening(number):
+    def open_pool(number):
         opened.append(number)
         yield pool if len(opened) == 1 else Pool()
 
-    monkeypatch.setattr(executors, "worker_pool", opening)
+    monkeypatch.setattr(executors, "worker_pool", open_pool)
     monkeypatch.setattr(executors.multiprocessing, "cpu_count", lambda: 5)
     results = run_each(square, tasks(*range(20)), jobs=jobs)
     next(results)
-    # Two for each: none is idle, and few are in doubt if one dies.
+    # Two tasks for each process: none is idle, and few are suspects if one dies.
     assert len(pool.given) == 2 * workers
     assert len(list(results)) == 19
-    # One more for the suspect, and the rest.
+    # A pool of one process for the suspect, then a pool for the rest.
     assert opened == [workers, 1, workers]
 
 
-def test_pools_here_are_always_waited_for(monkeypatch):
+def test_local_pools_are_never_given_up(monkeypatch):
     monkeypatch.setattr(executors, "CHECK_SECONDS", 0.001)
     monkeypatch.setattr(executors, "MAX_IDLE_SECONDS", 0.002)
     future, waits = Future(), []
@@ -284,11 +284,11 @@ def test_pools_here_are_always_waited_for(monkeypatch):
         def submit(self, *_):
             return future
 
-    monkeypatch.setattr(executors, "worker_pool", lambda _: _opened(Slow()))
+    monkeypatch.setattr(executors, "worker_pool", lambda _: _context_of(Slow()))
     assert list(run_each(square, tasks(2), jobs=2)) == [("task 2", 4)]
     assert waits == [0.001] * 10
 
 
 @contextmanager
-def _opened(pool):
+def _context_of(pool):
     yield pool

@@ -1,4 +1,4 @@
-"""Figures of message types, against layouts, against real messages, and by hand."""
+"""Figures of message types, compared with layouts, with real messages, and with hand counts."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tests.steps import calls_at_most
 from ..frontend.workspace import library
 
 
-def of_layout(message, wire):
+def counts_in_layout(message, wire):
     """Count leaves and places in the layout, which writes every leaf out."""
     counts = {"leaves": 0, "aligned": 0, "padded": 0, "shifting": 0}
 
@@ -66,14 +66,14 @@ def test_leaves_and_places_are_those_of_the_layout(distro, wire):
     for name in ours.names():
         message = ours.message(name)
         figures = analyses.metrics(message)
-        want = of_layout(message, wire)
+        want = counts_in_layout(message, wire)
         assert {key: getattr(figures, key) for key in want} == want, name
         assert figures.fixed_leaves + figures.dynamic_leaves == figures.leaves
         assert (figures.dynamic_leaves == 0) == message.is_fixed_size
 
 
 def fill(description, store, fullest):
-    """The shortest or the longest value of a rosbags type; `None` if there is no longest."""
+    """Return the shortest or the longest value of a rosbags type; `None` if none is longest."""
     kind, detail = description
     if kind == Nodetype.NAME:
         values = [fill(d, store, fullest) for _, d in store.fielddefs[detail][1]]
@@ -195,7 +195,7 @@ def test_features_are_those_of_the_definition(tmp_path, text, features):
     assert metrics_of(library(tmp_path, texts).message("p/A")).features == features
 
 
-def test_wire_changes_what_it_should(tmp_path):
+def test_figures_depend_on_the_wire(tmp_path):
     message = library(tmp_path, {"p/A": "uint8 a\nfloat64 b\nstring c\n"}).message("p/A")
     cdr, ros1 = metrics_of(message, "cdr"), metrics_of(message, "ros1")
     assert (cdr.min_bytes, ros1.min_bytes) == (4 + 16 + 5, 9 + 4)
@@ -228,7 +228,7 @@ def test_the_whole_corpus_has_figures(corpus):
         ours = Library(distro, [corpus / dialect])
         found = []
         for name in ours.interfaces():
-            # docs/limitations.md lists what is refused.
+            # Refused: docs/limitations.md lists these types.
             with suppress(DefinitionError):
                 found += ours.interface(name).messages
         analyses = Analyses("ros1" if dialect == "ros1" else "cdr")
@@ -246,7 +246,7 @@ def test_the_whole_corpus_has_figures(corpus):
         ("None n\nNone m\nint16 x\n", (4, 4), (3, 0, 0)),
         ("None[3] n\nint32 x\n", (8, 8), (1, 1, 0)),
         ("None[4] n\nint32 x\n", (8, 8), (2, 0, 0)),
-        # After any number of bytes, the padding differs.
+        # After a part of any size, the padding differs.
         ("None[<=2] n\nint16 x\n", (6, 8), (2, 0, 1)),
         ("Two n\nint16 x\n", (8, 8), (2, 2, 0)),
         ("int8 a\nTwo[2] n\nint64 x\n", (24, 24), (4, 1, 0)),
@@ -258,5 +258,5 @@ def test_empty_messages_take_a_byte_of_cdr(tmp_path, text, sizes, places):
     figures = metrics_of(message)
     assert (figures.min_bytes - 4, figures.max_bytes - 4) == sizes
     assert (figures.aligned, figures.padded, figures.shifting) == places
-    want = of_layout(message, "cdr")
+    want = counts_in_layout(message, "cdr")
     assert {key: getattr(figures, key) for key in want} == want

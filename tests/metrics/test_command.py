@@ -1,4 +1,4 @@
-"""The command ``metrics``: its formats, and what it does with types that are wrong."""
+"""The command ``metrics``: its formats, and its errors for wrong types."""
 
 from __future__ import annotations
 

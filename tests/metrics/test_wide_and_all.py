@@ -1,4 +1,4 @@
-"""Figures that no library can confirm, and what the command counts."""
+"""Figures that no library can confirm, and the types that the command counts."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_sizes_by_hand(tmp_path, text, least, most):
 @pytest.mark.parametrize(
     ("text", "places"),
     [
-        # A wide text leaves the place of a uint32 aligned, and that of a float64 open.
+        # After a wide text, a uint32 is aligned; the padding of a float64 is not fixed.
         ("wstring a\nuint32 b", (2, 0, 0)),
         ("wstring a\nfloat64 b", (1, 0, 1)),
         ("string a\nuint8 b", (2, 0, 0)),
@@ -62,7 +62,7 @@ def test_counts_by_hand(tmp_path):
         "q/Empty": "int8 A=1",
     }
     figures = metrics_of(library(tmp_path, texts, "ros1").message("p/T"))
-    # The builtin times are no types of their own.
+    # The builtin times do not count as types.
     assert (figures.types, figures.depth, figures.fields, figures.constants) == (4, 3, 4, 0)
     assert (figures.leaves, figures.fixed_leaves, figures.dynamic_leaves) == (9, 6, 3)
     assert figures.definition_bytes == len(texts["p/T"].encode()) == len(texts["p/T"]) + 2
@@ -115,7 +115,7 @@ FILES = {
 
 
 @pytest.mark.parametrize("distro", ["noetic", "lyrical"])
-def test_all_are_the_messages_of_everything_there_is(tmp_path, capsys, distro):
+def test_all_are_messages_services_and_actions(tmp_path, capsys, distro):
     make_files(tmp_path, FILES)
     options = ["--path", str(tmp_path), "--distro", distro]
     assert main(["metrics", "--all", "--format", "csv", *options]) == 0

@@ -1,4 +1,4 @@
-"""Types in order: parts first, each once, however deep."""
+"""The closure of a type: parts before the whole, each once, at any depth."""
 
 from __future__ import annotations
 

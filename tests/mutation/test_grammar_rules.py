@@ -1,4 +1,4 @@
-"""What each rule for grammars makes."""
+"""The mutants that each rule for grammars makes."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ def test_comments_between_rules_stay():
     assert changes(text) == []
 
 
-def test_what_lark_refuses_is_no_fault():
+def test_grammar_that_lark_refuses_is_no_mutant():
     text = 'start: A B*\nA: "a"\nB: /[b-c]|d/\n'
     good = {change.apply(text) for change in changes(text) if is_fault(text, change, ["start"])}
     assert text.replace("B*", "B+") in good
     assert text.replace("[b-c]|", "") in good
     (empty,) = changes("start: A\nA: /a?/\n")
     assert is_fault("start: A\nA: /a?/\n", empty, ["start"])
-    # A terminal that fits nothing at all.
+    # A terminal that matches no text.
     text = 'start: A B\nA: "a"\nB: /b+/\n'
     assert not any(is_fault(text, change, ["start"]) for change in changes(text))

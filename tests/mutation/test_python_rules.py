@@ -1,4 +1,4 @@
-"""What each rule for Python makes, and what it leaves alone."""
+"""The mutants that each rule for Python makes, and the code that it does not change."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_rules(text, rule, changed):
         "y = 'a' + b",
     ],
 )
-def test_what_only_states_is_left_alone(text):
+def test_code_that_only_declares_is_not_changed(text):
     assert faults(text) == []
 
 

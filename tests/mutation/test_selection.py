@@ -1,4 +1,4 @@
-"""Which lines a change needs, and which tests come first."""
+"""Selection of tests: the lines of a change, and the order of tests."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def mutant_at(path, text, line):
         "y=2": {7, 8},
         "x and": {9, 10},
         "y + 1": {11, 12, 13, 14},
-        # Whether a case is looked at does not show in its own line alone.
+        # The line of a case alone does not show that the case is tried.
         "case 2": {15, 18},
         "y += 2": {19},
         "except": {22},
@@ -82,7 +82,7 @@ def test_a_grammar_needs_the_line_that_loads_it(name):
     assert [("joinpath" in line, ".lark" in line) for line in loading] == [(True, True)]
 
 
-def test_who_runs_the_line_is_asked_first_and_who_cannot_notice_never(tmp_path):
+def test_tests_that_run_the_line_come_first_and_others_are_left_out(tmp_path):
     tests = [
         Test(name=f"tests/wire/test_layout.py::test_it[{n}]", cpu_seconds=3.0 - n, opaque=False)
         for n in range(3)
@@ -133,7 +133,7 @@ def test_runs_are_short_at_first_and_keep_files_together():
         ["a::1", "a::2", "b::1", "b::2"],
         ["a::3", "a::4"],
     ]
-    # What is too long for any run has one of its own.
+    # A test that is too long for any run has a run of its own.
     (long,) = batches([test("a::1", 1e6)])
     assert len(long) == 1
     assert batches([]) == []

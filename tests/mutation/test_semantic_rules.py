@@ -1,4 +1,4 @@
-"""What each rule about meaning makes, and what it leaves alone."""
+"""The mutants that each semantic rule makes, and the code that it does not change."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tools.mutation.semantic_rules import changes
 
 
 def faults(text, rule, index=None):
-    """Return the text with each change of a rule, without what does not compile."""
+    """Return the text with each change of a rule, except changes that do not compile."""
     found = [each for each in changes(text, index) if each.rule == rule and is_fault(text, each)]
     return [each.apply(text) for each in found]
 
@@ -52,7 +52,7 @@ COMMAND = (
             "match a:\n    case A():\n        x()\n    case B():\n        y()",
             [],
         ),
-        # No text begins with both; with the second, it may begin with the first.
+        # No text begins with both; one that begins with the second may begin with the first.
         ("swapped branches", CHAIN.replace("a:", T_AB).replace("b:", T_AC), []),
         ("swapped branches", CHAIN.replace("a:", T_A).replace("b:", T_AC), 1),
         ("swapped branches", CHAIN.replace("a:", T_AB).replace("b:", "u.startswith('c'):"), 1),
@@ -122,7 +122,7 @@ COMMAND = (
         ("constant return", "def f() -> A | None:\n    return a", 1),
         ("constant return", "def f() -> A:\n    return a", []),
         ("swapped calls", "a()\nb()", ["b()\na()"]),
-        # Two collections, of which none knows of the other; and where one does, or might.
+        # Two independent collections; then two of which one uses the other, or may use it.
         ("swapped calls", "a.append(b)\nc.add(d)", []),
         ("swapped calls", "a.setdefault(b, []).append(c)\nd.pop()", []),
         ("swapped calls", "self.a.append(b.join(c))\nself.d.clear()", []),
@@ -132,7 +132,7 @@ COMMAND = (
         ("swapped calls", "a.append(b())\nc.append(d())", 1),
         ("swapped calls", "a.append(b)\nc.write(d)", 1),
         ("swapped calls", "f(a).append(b)\nc.append(d)", 1),
-        # Declarations of a command line, of which one has a dash; and where both may have none.
+        # Arguments of a command line: one is an option; then both may be positional.
         ("swapped calls", "a.add_argument('b')\na.add_argument('--c')", []),
         ("swapped calls", "a.add_argument('b')\na.set_defaults(c=d)", []),
         ("swapped calls", "a.add_argument('b')\na.add_argument('c')", 1),
@@ -182,9 +182,9 @@ def test_attributes_are_taken_for_those_of_the_same_type():
         "return a.all_bits",
         "return a.first_bits",
     ]
-    # In the class, too; and never one of another class.
+    # An attribute of the class counts, too; one of another class does not.
     assert len(faults(text, "wrong neighbour")) == 4
-    # Of another module.
+    # The type is one of another module.
     use = "def g(a):\n    return a.first_bits"
     assert faults(use, "wrong neighbour") == []
     assert len(faults(use, "wrong neighbour", index_of([text, use]))) == 2
@@ -204,7 +204,7 @@ def test_attributes_are_taken_for_those_of_the_same_type():
         "@d(a and b)\ndef f(): ...",
     ],
 )
-def test_what_only_states_is_left_alone(text):
+def test_code_that_only_declares_is_not_changed(text):
     assert faults(text, "dropped clause") == []
 
 

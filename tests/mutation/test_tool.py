@@ -1,4 +1,4 @@
-"""The tool on a small project: what is noticed, what is not, and going on after an interruption."""
+"""The tool on a small project: killed mutants, survivors, and resumption of a run."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def written(x):
 
 NAMES = dict.fromkeys("ab") | {}
 """
-# Those that the toy has something for.
+# Rules that apply to the toy project.
 RULES = ["operator", "delete assignment", "comparison", "number + 1"]
 HEAD = """
 import os, signal, subprocess, sys
@@ -92,7 +92,7 @@ def test_the_limit():
 def test_what_was_written():
     assert toy.written(6) == 3 and toy.double(3) == 6
 """
-PROCESSES = f"""{HEAD}
+PROCESS_TESTS = f"""{HEAD}
 def run(what):
     code = f"import sys, os; from firm_hdl.wire.toy import *; {{what}}"
     return subprocess.run([sys.executable, "-c", code]).returncode
@@ -111,7 +111,7 @@ def test_deadly():
 
 @pytest.fixture
 def toy(tmp_path):
-    """A repository."""
+    """A repository with a small package, its tests, and the tool."""
     root = tmp_path / "toy"
     for name, text in {
         "firm_hdl/__init__.py": "",
@@ -121,7 +121,7 @@ def toy(tmp_path):
         "pyproject.toml": '[tool.pytest.ini_options]\nmarkers = ["snapshot"]\n',
         "tests/wire/__init__.py": "",
         "tests/wire/test_toy.py": TESTS,
-        "tests/test_processes.py": PROCESSES,
+        "tests/test_processes.py": PROCESS_TESTS,
     }.items():
         path = root / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -131,7 +131,7 @@ def toy(tmp_path):
 
 
 def run(toy, *more):
-    """Run the command; return its results by what they are about."""
+    """Run the command; return its results by scope and rule."""
     out = toy.parent / "out.jsonl"
     places = ["--root", str(toy), "--out", str(out), "--map", str(toy.parent / "map")]
     rules = [] if "--rule" in more else [word for rule in RULES for word in ("--rule", rule)]
@@ -140,7 +140,7 @@ def run(toy, *more):
 
 
 def parts(toy):
-    """Return the parts of the map: the name of a test file, and where its part is."""
+    """Return the files of the coverage map by the names of the test files."""
     found = {}
     for path in (toy.parent / "map").glob("*.json"):
         found[json.loads(path.read_text())["tests"][0]["name"].partition("::")[0]] = path
@@ -154,11 +154,11 @@ def test_just_the_tests_that_run_a_line_judge_it_and_runs_resume(toy, capsys):
     assert f"{len(lines)} to run" in capsys.readouterr().err
     assert (toy / "firm_hdl/wire/toy.py").read_text() == MODULE
     by = {place: run.by for place, each in found.items() for run in each.runs.values()}
-    # Beside those that run the line, the one with a process that nobody sees may notice.
+    # A test whose process is not traced may kill it, besides the tests that run the line.
     double = found["double", "operator"]
     assert (double.status, double.tests) == ("killed", 3)
     assert by["double", "operator"] == "tests/wire/test_toy.py::test_double"
-    # It never ends; the test that runs is named.
+    # This mutant never ends; the running test is named.
     assert found["halve", "delete assignment"].killers == ["ts2"]
     assert found["halve", "delete assignment"].runs["ts2"].status == "timeout"
     assert by["halve", "delete assignment"] == "tests/wire/test_toy.py::test_halve[8]"
@@ -166,25 +166,25 @@ def test_just_the_tests_that_run_a_line_judge_it_and_runs_resume(toy, capsys):
         "survived",
         1,
     )
-    # What ran before the test, and what ran for another one.
+    # The line ran before the test, or for another test.
     assert by["", "number + 1"] == "tests/wire/test_toy.py::test_the_limit"
     assert by["table", "number + 1"] == "tests/wire/test_toy.py::test_the_table"
-    # In other processes.
+    # The line ran in another process.
     assert by["elsewhere", "operator"] == "tests/test_processes.py::test_elsewhere"
     assert found["elsewhere", "operator"].killers == ["rest"]
     assert by["hidden", "operator"] == "tests/test_processes.py::test_hidden"
-    # A test that compares with what was written notices, but does not count.
+    # A snapshot test kills the mutant, but does not count.
     assert found["written", "operator"].status == "snapshot"
     assert by["written", "operator"] == "tests/wire/test_toy.py::test_what_was_written"
-    # Python itself refuses it.
+    # Python cannot load the mutant.
     assert found["", "operator"].status == "unloaded"
-    # Whoever killed the process, it says nothing about the fault.
+    # A killed process is no verdict on the mutant.
     assert found["deadly", "operator"].status == "error"
 
-    # An interrupted run: the last line that counts is half there. The map is.
-    kept = [line for line in lines if b"error" not in line]
-    errors = len(lines) - len(kept)
-    (toy.parent / "out.jsonl").write_bytes(b"".join(kept[:-1]) + kept[-1][:20])
+    # An interrupted run: its last result is half written. The coverage map is complete.
+    complete_lines = [line for line in lines if b"error" not in line]
+    errors = len(lines) - len(complete_lines)
+    (toy.parent / "out.jsonl").write_bytes(b"".join(complete_lines[:-1]) + complete_lines[-1][:20])
     again = run(toy)
     printed = capsys.readouterr().err
     assert f"{errors + 1} to run" in printed and "map" not in printed
@@ -206,7 +206,7 @@ def test_a_test_that_the_map_lacks_notices_nothing(toy, capsys):
     (toy.parent / "out.jsonl").unlink()
     assert {(each.status, each.tests) for each in run(toy, *more).values()} == {("survived", 0)}
 
-    # Another file does not change this part; the file itself does, and makes results old.
+    # A new file does not change this part; the file itself does, and outdates results.
     capsys.readouterr()
     (toy / "tests/wire/test_other.py").write_text("def test_it():\n    pass\n")
     run(toy, *more, "--keep")
@@ -219,7 +219,7 @@ def test_a_test_that_the_map_lacks_notices_nothing(toy, capsys):
     assert {each.status for each in run(toy, *more).values()} == {"killed"}
 
 
-def test_what_not_all_tests_met_stays_open(toy):
+def test_mutant_that_not_all_tests_ran_stays_open(toy):
     (toy / "firm_hdl/wire/toy.py").write_text("def half(x):\n    return x // 2\n")
     test = "import pytest\nfrom firm_hdl.wire.toy import half\n\n"
     test += (
@@ -227,14 +227,14 @@ def test_what_not_all_tests_met_stays_open(toy):
     )
     (toy / "tests/wire/test_toy.py").write_text(test)
     (toy / "tests/test_processes.py").write_text("def test_it():\n    pass\n")
-    # The set of parameters that notices was not measured; it may run what the other one does.
+    # The parameter set that kills was not traced; it may run the lines of the other one.
     killed = run(toy, "--each", "1e-9")["half", "operator"]
     assert (killed.status, killed.runs["ts2"].by) == (
         "killed",
         "tests/wire/test_toy.py::test_half[8]",
     )
     (toy.parent / "out.jsonl").unlink()
-    # The file that would notice is left out.
+    # The file with the killing test is left out.
     alone = ["--tests", "tests/test_processes.py", "--retry"]
     assert run(toy, *alone)["half", "operator"].status == "open"
     more = ["--tests", "tests/wire"]
@@ -243,17 +243,17 @@ def test_what_not_all_tests_met_stays_open(toy):
 
 
 @pytest.mark.thorough
-def test_a_map_of_an_older_program_is_of_use(toy, capsys):
+def test_map_of_an_older_program_is_used(toy, capsys):
     (toy / "tests/test_processes.py").unlink()
     more = ["--rule", "comparison", "--retry"]
     assert run(toy, *more)["untested", "comparison"].status == "survived"
-    # Lines move, and there is one more.
+    # Lines move, and one is inserted.
     text = MODULE.replace("    return x < x", "    y = 1\n    return x < y")
     (toy / "firm_hdl/wire/toy.py").write_text(f"# A comment.\n{text}")
     capsys.readouterr()
     found = run(toy, "--rule", "operator", "--keep")
-    said = capsys.readouterr().err
-    assert "1 of 1 files as they were before" in said and "map: tests" not in said
+    err = capsys.readouterr().err
+    assert "1 of 1 files as they were before" in err and "map: tests" not in err
     assert found["double", "operator"].status == "killed"
     run(toy, *more, "--fresh")
     assert "map: tests/wire/test_toy.py" in capsys.readouterr().err
@@ -267,7 +267,7 @@ def test_lines_are_found_again():
         owner: [line for line in range(1, 10) if mask >> line & 1]
         for owner, mask in moved(masks, before, after).items()
     }
-    # What replaced a line is run by whoever ran that, what is new by whoever ran the line before.
+    # A replaced line belongs to the tests of the old one, a new line to those of the line before.
     assert lines == {"0": [2, 3], "1": [4, 5], "2": [6, 7, 8]}
 
 
@@ -276,15 +276,15 @@ def test_a_seed_is_drawn_and_named(toy, capsys):
     listed = []
     for seed in ([], ["--seed", "1"], ["--seed", "1"]):
         assert main([*named, *seed]) == 0
-        said = capsys.readouterr()
-        assert said.err.startswith("--seed ")
-        listed.append(said.out.splitlines())
+        captured = capsys.readouterr()
+        assert captured.err.startswith("--seed ")
+        listed.append(captured.out.splitlines())
     assert listed[1] == listed[2] and [len(each) for each in listed] == [9, 9, 9]
-    # Of a seed that was drawn, the same is chosen again by its name.
+    # A drawn seed, when given, selects the same mutants again.
     assert main(named) == 0
-    said = capsys.readouterr()
-    assert main([*named, "--seed", said.err.split()[1]]) == 0
-    assert capsys.readouterr().out == said.out
+    captured = capsys.readouterr()
+    assert main([*named, "--seed", captured.err.split()[1]]) == 0
+    assert capsys.readouterr().out == captured.out
     assert main([*named, "--rule", "operator"]) == 0
     assert {line.split(maxsplit=2)[2] for line in capsys.readouterr().out.splitlines()} == {
         "operator"
@@ -302,7 +302,7 @@ def test_a_project_whose_tests_fail_is_not_judged(toy, capsys):
     assert "error: no tests there" in capsys.readouterr().err
 
 
-def test_what_does_not_bear_to_be_counted_meets_every_fault(toy):
+def test_test_that_cannot_be_traced_runs_for_every_mutant(toy):
     (toy / "firm_hdl/wire/toy.py").write_text("def half(x):\n    return x // 2\n")
     (toy / "tests/test_processes.py").unlink()
     (toy / "tests/wire/test_toy.py").write_text(
@@ -327,7 +327,7 @@ def test_samples_are_spread_and_repeatable():
     mutants = all_mutants(ROOT, ["wire", "metrics"])
     chosen = sample(ROOT, mutants, 30, 1)
     assert chosen == sample(ROOT, mutants, 30, 1) != sample(ROOT, mutants, 30, 2)
-    # The larger one has more, but not as many more as it is larger.
+    # The larger target has more mutants, but fewer than in proportion to its size.
     shares = [sum(each.target == name for each in chosen) for name in ("metrics", "wire")]
     assert sum(shares) == 30 and 10 <= shares[0] < shares[1]
     assert len({each.path for each in chosen}) >= 7
@@ -367,7 +367,7 @@ def test_an_explanation_is_of_one_change_wherever_it_is(tmp_path):
     assert "1 of these were found before files changed" in markdown([record], other, "b")
 
 
-def test_explanations_are_of_what_is_there():
+def test_explanations_are_of_existing_mutants():
     explanations = read_explanations()
     mutants = all_mutants(ROOT, only={each.path for each in explanations})
     there = {(m.path, m.change.scope, m.change.rule, m.place.old, m.place.new) for m in mutants}

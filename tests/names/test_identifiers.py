@@ -1,4 +1,4 @@
-"""Names: legal in every language, never merged, always the same."""
+"""Identifiers: legal in every language, never merged, always the same."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from firm_hdl.names.keywords import KEYWORDS, VERILOG, VHDL
 
 LEGAL = re.compile(r"[A-Za-z](_?[A-Za-z0-9])*")
 
-# Names of both dialects, and what they meet: keywords, case, underscores, our own suffixes.
+# Names of both dialects, with conflicts: keywords, case, underscores, suffixes of firm-hdl.
 words = st.one_of(
     st.sampled_from(["range", "type", "reg", "data", "a", "A", "b", "x_2", "range_field", "f"]),
     st.sampled_from(sorted(KEYWORDS)),
@@ -81,13 +81,13 @@ def test_identifier(name, want):
     assert identifier(name) == want
 
 
-def test_paths_that_meet_are_told_apart():
+def test_paths_with_equal_flat_names_are_distinguished():
     paths = [("a", "b_c"), ("a_b", "c"), ("A", "B", "C"), ("a__b", "c"), ("a_b_c_2",)]
     assert list(flat_names(paths).values()) == ["a_b_c", "a_b_c_3", "A_B_C_4", "a_b_c_5", "a_b_c_2"]
 
 
 def test_keywords_are_complete_enough():
-    # 115 of VHDL-2008, and four that others keep besides.
+    # 115 keywords of VHDL-2008, and four that other versions reserve.
     assert len(VHDL) == 115 + len({"private", "view", "vpkg", "inherit"} & VHDL) == 119
     assert len(VERILOG) == 248
     assert {"range", "map", "units", "label", "buffer", "vunit", "force"} <= VHDL

@@ -1,4 +1,4 @@
-"""The lists of words that VHDL and Verilog keep for themselves, against others' lists."""
+"""The lists of reserved words of VHDL and Verilog, compared with GHDL and Pygments."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from pygments.token import Keyword, Operator
 from firm_hdl.names.identifiers import identifier, scope_names
 from firm_hdl.names.keywords import KEYWORDS, VERILOG, VHDL
 
-# Of VHDL-2019, and of PSL, that GHDL 2.0 does not keep.
+# Words of VHDL-2019 and PSL that GHDL 2.0 does not reserve.
 TAKEN = {"private", "view", "vpkg", "assume_guarantee", "fairness", "strong"}
-# Pygments knows them before a name only.
+# Pygments takes these for keywords before a name only.
 IN_CONTEXT = {"class", "extends"}
 
 
-def takes(ghdl: str, folder, word: str) -> bool:
-    """Whether GHDL takes a word for an identifier."""
+def accepts(ghdl: str, folder, word: str) -> bool:
+    """Return whether GHDL accepts a word as an identifier."""
     (folder / "e.vhd").write_text(f"entity e is port (\n  {word} : in bit\n); end entity;\n")
     done = subprocess.run(
         [ghdl, "-a", "--std=08", "e.vhd"], cwd=folder, capture_output=True, check=False
@@ -26,11 +26,11 @@ def takes(ghdl: str, folder, word: str) -> bool:
     return done.returncode == 0
 
 
-def test_every_word_of_vhdl_is_one_that_ghdl_keeps(ghdl, tmp_path):
-    assert {word for word in VHDL if takes(ghdl, tmp_path, word)} == TAKEN
-    # Twins: what is no keyword is taken, also if it looks like one.
+def test_every_word_of_vhdl_is_reserved_by_ghdl(ghdl, tmp_path):
+    assert {word for word in VHDL if accepts(ghdl, tmp_path, word)} == TAKEN
+    # Must-pass twins: words that are no keywords, some of which look like one.
     for word in ("ranges", "buffe", "signal_field", "integer"):
-        assert takes(ghdl, tmp_path, word)
+        assert accepts(ghdl, tmp_path, word)
 
 
 def is_keyword(word: str) -> bool:
@@ -40,13 +40,13 @@ def is_keyword(word: str) -> bool:
     return kind in Keyword or kind in Operator.Word
 
 
-def test_every_word_of_systemverilog_is_one_that_pygments_keeps():
+def test_every_word_of_systemverilog_is_reserved_by_pygments():
     assert {word for word in VERILOG if not is_keyword(word)} == IN_CONTEXT
     assert not is_keyword("wires") and not is_keyword("ranges") and not is_keyword("label")
 
 
-def test_no_word_that_pygments_keeps_is_left_out():
-    # What it has besides: types and directives that are no keywords of the standard.
+def test_every_word_that_pygments_reserves_is_in_the_list():
+    # Pygments also has types and directives that are no keywords of the standard.
     words = {
         word
         for name in ("keyword", "keyword_types")

@@ -1,6 +1,6 @@
 """The contract of decoding, restated primitive by primitive over the message model.
 
-It shares nothing with layout and plan but the limits of lengths, and no step or bus word is in it.
+It shares only the limits of lengths with layout and plan, and has no steps or bus words.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class Reference:
         self.position = 4
 
     def read(self, item: Primitive) -> int:
-        """Return a primitive's value, 0 if it is not there or after an error."""
+        """Return a primitive's value, 0 if it is missing or after an error."""
         if self.status != "OK":
             return 0
         end = self.position + item.bytes

@@ -1,4 +1,4 @@
-"""What the planner promises: legal parameters, few steps, limits of lengths."""
+"""The promises of the planner: legal parameters, few steps, limits of lengths."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_the_largest_message_has_room_for_the_smallest(size):
         build_plan(lay_out(BLOB), max_message_bytes=size)
 
 
-def test_a_message_that_no_limit_allows_is_refused_for_what_it_is():
+def test_message_beyond_every_limit_is_refused_by_its_size():
     layout = lay_out(make("ros1", {"a": "uint8[4294967295]"}))
     assert build_plan(layout, max_message_bytes=(1 << 32) - 1).max_message_bytes == (1 << 32) - 1
     layout = lay_out(make("ros1", {"a": "uint8[4294967295]", "b": "uint8"}))

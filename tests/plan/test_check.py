@@ -1,4 +1,4 @@
-"""Broken plans are found: by hand-made faults with what is said, and by every small change."""
+"""The check of plans finds faults: faults made by hand with their messages, and mutations."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ PLANS = [
 @pytest.mark.parametrize("bus_bytes", BUS_BYTES)
 @pytest.mark.parametrize("middle", ["uint8", "uint16", "uint32", "uint8[9]"])
 def test_plans_with_fields_before_a_run_are_sound(middle, bus_bytes):
-    """The fields take several steps, of which the last one starts the run."""
+    """Fields of several steps: the last one starts the run."""
     layout = lay_out(make("ros2", {"a": "uint8", "b": "float64", "c": middle, "s": "string"}))
     assert check(build_plan(layout, bus_bytes=bus_bytes), layout) == []
 
@@ -100,7 +100,7 @@ def mutations(node: Any) -> Iterator[tuple[str, Any]]:
 
 NODES = Plan | Step | Begin | Jump | Exits | Part | LoopEnd | Pad | Fixed | Run | Leaf
 
-# What may be otherwise in a sound plan: limits within the bound, and the size of packets.
+# Changes that leave a plan sound: limits within the bound, and the size of packets.
 HARMLESS = {
     (BeginLoop, "limit"),
     (BeginRun, "limit"),
@@ -108,7 +108,7 @@ HARMLESS = {
 }
 
 
-# What may be `None` and else is a number.
+# Attributes that are a number or `None`.
 NUMBERS = {
     (MapStep, "rest"),
     (Jump, "step"),
@@ -168,7 +168,7 @@ def test_the_wrong_alignment_is_named(plan):
 
 def test_the_wrong_alignment_of_items_is_named_where_they_are():
     after_a_string = build_plan(lay_out(make("ros2", {"s": "string", "q": "uint64[]"})))
-    index, begin = begun(after_a_string, "q.length")
+    index, begin = length_step(after_a_string, "q.length")
     assert begin.align == 8
     first, *_ = check(with_step(after_a_string, index, begin=replace(begin, align=4)))
     assert first == f"step {index}: q.items is aligned to 4, not 8"
@@ -204,8 +204,10 @@ def test_a_map_of_two_words_after_a_rest_is_named():
     assert (first.rest, first.bytes, second.bytes) == (0, 8, 8)
     slices = (*first.slices, *(replace(item, at=item.at + 8) for item in second.slices))
     both = replace(first, slices=slices, bytes=16, exits=second.exits)
-    said = f"step {len(others)}: the map after a rest has 16 bytes, more than a bus word"
-    assert check(replace(plan, steps=(*others, both))) == [said]
+    expected_problem = (
+        f"step {len(others)}: the map after a rest has 16 bytes, more than a bus word"
+    )
+    assert check(replace(plan, steps=(*others, both))) == [expected_problem]
 
 
 @pytest.mark.parametrize("bus_bytes", BUS_BYTES)
@@ -271,7 +273,7 @@ def with_leaf(plan, name, **changes):
 
 
 @pytest.mark.parametrize(
-    ("leaf", "changes", "said"),
+    ("leaf", "changes", "expected_problem"),
     [
         ("a", {"type": "uint7"}, "type 'uint7' is not a primitive"),
         ("a", {"type": "int8"}, "signedness is not that of int8"),
@@ -279,16 +281,16 @@ def with_leaf(plan, name, **changes):
         ("q.length", {"path": ("q", "size")}, "path does not end in 'length'"),
     ],
 )
-def test_a_leaf_that_cannot_be_is_named(plan, leaf, changes, said):
-    assert any(said in problem for problem in check(with_leaf(plan, leaf, **changes)))
+def test_impossible_leaf_is_named(plan, leaf, changes, expected_problem):
+    assert any(expected_problem in problem for problem in check(with_leaf(plan, leaf, **changes)))
 
 
 def test_a_plan_without_steps_is_named(plan):
     assert "there are no steps" in check(replace(plan, steps=()))
 
 
-def begun(plan, name):
-    """The number and the beginning of the step that takes a length."""
+def length_step(plan, name):
+    """Return the number of the step that takes a length, and its `begin`."""
     number = next(n for n, leaf in enumerate(plan.leaves) if str(leaf) == name)
     for index, step in enumerate(plan.steps):
         if isinstance(step.begin, BeginLoop | BeginRun) and step.begin.length == number:
@@ -297,19 +299,19 @@ def begun(plan, name):
 
 
 @pytest.mark.parametrize(
-    ("count", "said"),
+    ("count", "expected_problem"),
     [
         (0, "step 0, next: loads a count of 0"),
         (-8, "step 0, next: loads a count of -8"),
         (12, "step 1: 12 items do not fill words of 8"),
     ],
 )
-def test_a_constant_count_that_cannot_be_is_named(count, said):
+def test_impossible_constant_count_is_named(count, expected_problem):
     plan = build_plan(lay_out(make("ros2", {"a": "uint8[21]"})), bus_bytes=8)
     exits = plan.steps[0].exits
     assert exits.default.enter == (("run", 16),)
     changed = replace(exits, default=replace(exits.default, enter=(("run", count),)))
-    assert check(with_step(plan, 0, exits=changed)) == [said]
+    assert check(with_step(plan, 0, exits=changed)) == [expected_problem]
 
 
 def test_padding_that_no_alignment_needs_is_named():
@@ -321,11 +323,11 @@ def test_padding_that_no_alignment_needs_is_named():
 
 
 def test_a_bound_that_is_not_that_of_the_type_is_named(plan):
-    index, begin = begun(plan, "ps.length")
+    index, begin = length_step(plan, "ps.length")
     assert begin.limit == 4
     problems = check(with_step(plan, index, begin=replace(begin, limit=5)), LAYOUTS[0])
     assert problems == ["ps may have more than 4 elements"]
-    # Fewer are what `max_message_bytes` may leave room for.
+    # Fewer are legal: `max_message_bytes` may leave room for no more.
     assert check(with_step(plan, index, begin=replace(begin, limit=3)), LAYOUTS[0]) == []
 
 

@@ -42,7 +42,7 @@ def test_a_limit_is_one_change_with_its_place():
     ]
 
 
-def test_a_step_at_the_start_renumbers_nothing():
+def test_inserted_step_renumbers_no_other():
     old, new = plan("geometry_msgs/msg/Point"), plan("geometry_msgs/msg/Quaternion")
     assert differences(old, new) == [
         "message: geometry_msgs/msg/Point -> geometry_msgs/msg/Quaternion",
@@ -57,8 +57,8 @@ def test_a_step_at_the_start_renumbers_nothing():
 def test_a_rest_is_a_change_of_its_step():
     old = plan("std_msgs/msg/Header")
     *others, last = old.steps
-    gone = replace(old, steps=(*others, replace(last, rest=None)))
-    assert differences(old, gone) == [
+    without_rest = replace(old, steps=(*others, replace(last, rest=None)))
+    assert differences(old, without_rest) == [
         "steps[stamp.sec].next: step [rest of frame_id.items] -> step [nothing]",
         "steps[words of frame_id.items].next: step [rest of frame_id.items] -> step [nothing]",
         "steps[nothing]: new: next: end",
@@ -69,7 +69,7 @@ def test_a_rest_is_a_change_of_its_step():
 def test_leaves_in_another_order_are_a_change():
     old = plan("geometry_msgs/msg/Vector3", bus_bytes=32)
     first, second, third = old.leaves
-    # The same leaves and the same steps: only what each index means was exchanged.
+    # The same leaves and the same steps: only two indexes are exchanged.
     new = replace(old, leaves=(second, first, third))
     changes = differences(old, new)
     assert [change for change in changes if change.startswith("order of leaves")]
@@ -99,15 +99,15 @@ def test_kinds_leave_out_what_belongs_to_one_type():
 
 
 @pytest.mark.parametrize("text", ["", "a: [", "[]", "message: x"])
-def test_what_is_no_plan_is_refused(text):
+def test_texts_that_are_no_plans_are_refused(text):
     with pytest.raises(ValueError, match=r"^Not (YAML|a plan): "):
         compare(text, text)
 
 
-def test_what_is_new_or_gone_is_a_kind_of_its_own():
+def test_additions_and_removals_are_kinds_of_changes():
     old = plan("sensor_msgs/msg/JointState")
     new = replace(old, steps=old.steps[:-1])
-    gone = {change.kind for change in compare(to_yaml(old), to_yaml(new))}
-    came = {change.kind for change in compare(to_yaml(new), to_yaml(old))}
-    assert any(kind.endswith(": gone") for kind in gone)
-    assert {kind.replace(": gone", ": new") for kind in gone} == came
+    lost = {change.kind for change in compare(to_yaml(old), to_yaml(new))}
+    added = {change.kind for change in compare(to_yaml(new), to_yaml(old))}
+    assert any(kind.endswith(": gone") for kind in lost)
+    assert {kind.replace(": gone", ": new") for kind in lost} == added

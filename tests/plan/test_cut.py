@@ -1,4 +1,4 @@
-"""Segments are cut into as few steps as can be, between values where that costs no step."""
+"""Cuts of segments: as few steps as possible, between values if that costs no step."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from firm_hdl.plan.ir import Pad, Part
     ("values", "sizes"),
     [
         ([4, 4], [4, 4]),
-        # Between the values, because a step more is needed anyway.
+        # Cut between the values, because one more step is needed anyway.
         ([1, 8], [1, 4, 4]),
         ([2, 4, 3], [2, 4, 3]),
-        # Through the second value: to cut between them would cost a step.
+        # Cut through the second value: a cut between the values would cost a step.
         ([1, 7], [4, 4]),
         ([3, 1, 3, 1], [4, 4]),
         ([1], [1]),
@@ -31,7 +31,7 @@ def test_the_last_step_may_be_larger():
 
 
 def segment(*values):
-    """Values of leaves: their sizes, and for the transfers of an array the same negative leaf."""
+    """Return values of leaves by their sizes; transfers of an array share a negative leaf."""
     slices, at = [], 0
     for number, value in enumerate(values):
         size, leaf = value if isinstance(value, tuple) else (value, number)

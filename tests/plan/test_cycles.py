@@ -1,4 +1,4 @@
-"""Cycles of packets by hand: where beats limit them, where steps do, and where the ring is full."""
+"""Cycles of packets, counted by hand: limited by beats, by steps, or by a full ring."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ WIDE = make("ros1", {"x": "uint64", "y": "uint32"}, "Wide")
 EMPTY = make("ros1", {}, "Empty")
 
 
-def made(fields, data, bus_bytes=8, dialect="ros1"):
+def packet_for(fields, data, bus_bytes=8, dialect="ros1"):
     plan = build_plan(lay_out(make(dialect, fields)), bus_bytes=bus_bytes)
     return packet_of(plan, data)
 
 
-def both(packets):
+def both_cycles(packets):
     return deserializer_cycles(packets), serializer_cycles(packets)
 
 
@@ -36,23 +36,23 @@ def texts(*values):
 
 
 def test_a_beat_per_cycle():
-    packet = made({"a": "uint64", "b": "uint64", "c": "uint64[2]"}, bytes(32))
+    packet = packet_for({"a": "uint64", "b": "uint64", "c": "uint64[2]"}, bytes(32))
     # The two items of the array are a step each, as a leaf has one transfer per cycle.
     assert [visit.bytes for visit in packet.visits] == [8, 16, 8]
-    assert both([packet] * 3) == ([3, 7, 11],) * 2
+    assert both_cycles([packet] * 3) == ([3, 7, 11],) * 2
     assert cycles_between(packet) == 4
 
 
 def test_a_step_of_two_beats_is_done_with_the_second_one():
-    packet = made({"a": "uint32", "b": "uint64"}, bytes(12))
+    packet = packet_for({"a": "uint32", "b": "uint64"}, bytes(12))
     assert (packet.beats, len(packet.visits)) == (2, 1)
     # The serializer takes the leaves at once, and sends both beats.
-    assert both([packet] * 3) == ([1, 3, 5],) * 2
+    assert both_cycles([packet] * 3) == ([1, 3, 5],) * 2
 
 
 def test_a_step_per_cycle():
-    # Three lengths in two beats are four steps; the last one only looks for what is left.
-    packet = made({"a": "string", "b": "string", "c": "string"}, bytes(12))
+    # Three lengths in two beats are four steps; the last one only takes the rest, if any.
+    packet = packet_for({"a": "string", "b": "string", "c": "string"}, bytes(12))
     assert (packet.beats, len(packet.visits)) == (2, 4)
     # The third length ends in the second beat. The serializer decodes the first length in a cycle
     # of its own, and leaves out the last step.
@@ -62,7 +62,7 @@ def test_a_step_per_cycle():
 
 
 def test_the_same_length_again_costs_the_serializer_a_cycle():
-    packet = made({"t": (TEXT, "[]")}, texts(b"", b"", b"", b""))
+    packet = packet_for({"t": (TEXT, "[]")}, texts(b"", b"", b"", b""))
     assert len(packet.visits) == 6
     assert deserializer_cycles([packet]) == [5]
     # The number of texts, then a text in two cycles; the step after them is left out.
@@ -70,42 +70,42 @@ def test_the_same_length_again_costs_the_serializer_a_cycle():
 
 
 def test_a_length_of_zero_that_ends_the_packet_costs_the_deserializer_a_cycle():
-    packet = made({"a": "uint8", "w": (WIDE, "[]")}, b"\7\0\0\0\0")
+    packet = packet_for({"a": "uint8", "w": (WIDE, "[]")}, b"\7\0\0\0\0")
     assert (packet.beats, len(packet.visits)) == (1, 1)
     assert deserializer_cycles([packet] * 3) == [1, 3, 5]
-    # To the serializer, the length of the next packet is the same one again.
+    # For the serializer, the length of the next packet is the same length again.
     assert serializer_cycles([packet] * 3) == [1, 3, 5]
 
 
 @pytest.mark.parametrize(
     ("count", "reads", "writes"),
     [
-        # Two texts are a beat, and two elements are three. So there are as many beats as steps.
+        # Two texts are one beat, two elements are three beats: as many beats as steps.
         (8, 18, 16 + 12 + 1),
-        # But the bus waits for the texts, and the elements wait for the bus.
+        # The bus waits during the texts; the elements wait for the bus.
         (100, 100 + 150 - 2, 200 + 150 + 1),
     ],
 )
-def test_the_ring_is_full_where_one_of_the_two_is_slower_for_long(count, reads, writes):
+def test_ring_fills_where_steps_or_beats_are_slower_for_long(count, reads, writes):
     data = texts(*[b""] * count) + count.to_bytes(4, "little") + bytes(12 * count)
-    packet = made({"t": (TEXT, "[]"), "w": (WIDE, "[]")}, data)
+    packet = packet_for({"t": (TEXT, "[]"), "w": (WIDE, "[]")}, data)
     assert (packet.beats, len(packet.visits)) == (2 * count + 1, 2 * count + 2)
-    assert both([packet]) == ([reads], [writes])
+    assert both_cycles([packet]) == ([reads], [writes])
     assert cycles_between(packet) == writes - 1
 
 
 def test_a_full_beat_waits_where_it_may_be_the_last_one():
     # A trigger is a step without bytes.
-    packet = made({"a": "uint32", "e": (EMPTY, "[]")}, b"\7\0\0\0\3\0\0\0")
+    packet = packet_for({"a": "uint32", "e": (EMPTY, "[]")}, b"\7\0\0\0\3\0\0\0")
     assert may_end_empty(packet.plan)
     assert [visit.bytes for visit in packet.visits] == [8, 0, 0, 0]
-    assert both([packet]) == ([3], [1 + 3])
+    assert both_cycles([packet]) == ([3], [1 + 3])
 
 
 def test_packets_of_no_bytes_have_a_beat():
-    packet = made({"e": EMPTY}, b"")
+    packet = packet_for({"e": EMPTY}, b"")
     assert (packet.bytes, packet.beats) == (0, 1)
-    assert both([packet] * 3) == ([0, 1, 2],) * 2
+    assert both_cycles([packet] * 3) == ([0, 1, 2],) * 2
     assert cycles_between(packet) == 1
 
 

@@ -1,4 +1,4 @@
-"""The decisions of a plan, and that packets are seen to take them."""
+"""The decisions of a plan, and the decisions that packets take."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ def string(text):
     return struct.pack("<I", len(text) + 1) + text + b"\0"
 
 
-def test_a_fixed_type_leaves_nothing_to_the_packet_but_the_way_through():
+def test_fixed_type_has_no_decision():
     twist = plan("geometry_msgs/msg/Twist")
     assert edges(twist) == {Edge(index, "next") for index in range(6)}
 
 
-def test_a_string_may_be_empty_long_and_bare():
+def test_decisions_of_a_string():
     string_plan = plan("std_msgs/msg/String")
     start, words, rest = 0, 1, 2
     assert edges(string_plan) == {
@@ -37,15 +37,15 @@ def test_a_string_may_be_empty_long_and_bare():
         *(Edge(rest, way) for way in ("rest", "no rest", "next")),
     }
     end = {Edge(rest, "rest"), Edge(rest, "next")}
-    took = {
+    taken = {
         size: decode(string_plan, HEADER + string(bytes(size))).edges
         for size in (0, 1, 8, 9, 16, 17)
     }
-    # Up to a bus word and the NUL are the rest.
-    assert took[0] == took[1] == took[8] == {Edge(start, "next"), *end}
-    assert took[9] == took[16] == {Edge(start, "body"), Edge(words, "next"), *end}
-    assert took[17] == {*took[16], Edge(words, "again")}
-    # A length of 0 on the wire: no NUL either.
+    # The rest has up to a bus word and the NUL.
+    assert taken[0] == taken[1] == taken[8] == {Edge(start, "next"), *end}
+    assert taken[9] == taken[16] == {Edge(start, "body"), Edge(words, "next"), *end}
+    assert taken[17] == {*taken[16], Edge(words, "again")}
+    # A length of 0 on the wire: the NUL is missing, too.
     bare = decode(string_plan, HEADER + bytes(4))
     assert bare.status == "OK"
     assert bare.edges == {Edge(start, "next"), Edge(rest, "no rest"), Edge(rest, "next")}
@@ -69,9 +69,9 @@ def test_the_first_step_of_a_loop_has_a_rest_from_the_second_turn_on():
     assert ways[2] == {*ways[1], "rest", "loop 0 again"}
 
 
-def test_paddings_are_those_that_can_be():
-    # After a string anything goes; after the length of `points`, which is aligned to 4, it does
-    # not.
+def test_paddings_are_the_possible_ones():
+    # After a string, any padding may occur; after the length of `points`, which is aligned to 4,
+    # it may not.
     poses = plan("geometry_msgs/msg/PoseArray")
     found = edges(poses)
     paddings = sorted(edge for edge in found if edge.way.startswith("padding"))
@@ -96,16 +96,16 @@ def test_a_loop_that_cannot_turn_again_has_no_such_decision(tmp_path, count, aga
     ("size", "ways"),
     [
         (1 << 24, {"body", "again"}),
-        # 8 bytes of header and length leave 18 for text and NUL: two bus words, the NUL, one byte.
+        # 8 bytes of header and length leave 18 for text and NUL: two bus words, one byte, the NUL.
         (26, {"body", "again"}),
         (25, {"body"}),
         (18, {"body"}),
-        # A bus word and the NUL, which are the rest.
+        # A bus word and the NUL are the rest.
         (17, set()),
         (16, set()),
     ],
 )
-def test_what_limits_forbid_is_no_decision(size, ways):
+def test_ways_that_limits_forbid_are_no_decisions(size, ways):
     text = plan("std_msgs/msg/String", max_message_bytes=size)
     found = {edge for edge in edges(text) if edge.step != 2}
     body = {Edge(1, "next")} if "body" in ways else set()
@@ -125,7 +125,7 @@ def test_a_run_that_is_always_empty_has_no_rest(bound, rest):
 
 @pytest.mark.parametrize(("bound", "ways"), [("<=1", {0}), ("<=2", {0, 3}), ("", {0, 3})])
 def test_paddings_count_on_bounds(tmp_path, bound, ways):
-    # Three bytes of padding stand before the second element alone.
+    # Only the second element has three bytes of padding before it.
     folder = tmp_path / "demo" / "msg"
     folder.mkdir(parents=True)
     (folder / "Outer.msg").write_text(f"Inner[{bound}] inner\n")

@@ -1,4 +1,4 @@
-"""What bad packets and bad transfers get: docs/interface.md, "Status"."""
+"""Results of bad packets and bad transfers: docs/interface.md, "Status"."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_the_packet_under_test_is_good(bus_bytes):
         (45, changed(VALUE, z=0)),
     ],
 )
-def test_a_cut_packet_keeps_what_was_whole_and_completes_with_zeros(bus_bytes, size, value):
+def test_cut_packet_keeps_whole_values_and_completes_with_zeros(bus_bytes, size, value):
     assert read(PACKET[:size], bus_bytes) == ("TRUNCATED", value)
 
 
@@ -160,7 +160,7 @@ def test_max_message_bytes_bounds_every_length(bus_bytes):
 @pytest.mark.parametrize(
     ("fields", "limits"),
     [
-        # A bound over and under what there is room for: 28 bytes besides header and lengths.
+        # Bounds above and below the available room: 28 bytes besides header and lengths.
         ({"s": "string<=50", "q": "float64[]"}, {"s.length": 27, "q.length": 3}),
         ({"s": "string<=26", "q": "float64[<=2]"}, {"s.length": 26, "q.length": 2}),
         ({"s": "string<=27", "q": "float64[<=4]"}, {"s.length": 27, "q.length": 3}),
@@ -261,18 +261,18 @@ def test_visits_count_the_bytes_of_every_cycle():
 
 
 @pytest.mark.parametrize(
-    ("leaf", "given", "said"),
+    ("leaf", "given", "refusal"),
     [
         (0, ((1,), True), "Leaf s.length takes a number, not ((1,), True)"),
         (1, 5, "Leaf s.items takes at least 3 lanes and last, not 5"),
         (1, ((97,), True), "Leaf s.items takes at least 3 lanes and last, not ((97,), True)"),
     ],
 )
-def test_transfers_of_another_form_are_refused(leaf, given, said):
+def test_transfers_of_another_form_are_refused(leaf, given, refusal):
     message = make("ros2", {"s": "string"})
     plan = plan_for(8, message)
     streams = to_transfers(plan, message, {"s": "abc"})
     streams[leaf][0] = given
     with pytest.raises(ValueError) as caught:
         encode(plan, streams)
-    assert str(caught.value) == said
+    assert str(caught.value) == refusal

@@ -1,4 +1,4 @@
-"""Where the steps of plans may start in a bus word, worked out by hand."""
+"""Lanes of a bus word in which steps of plans may start, worked out by hand."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def needs(fields, wire, bus_bytes):
         ({"s": "string"}, "cdr", 8, (0,), (0,)),
         # Items after four bytes of padding, which an empty sequence does not have.
         ({"a": "uint64[]"}, "cdr", 8, (0, 4), (0,)),
-        # Anything may follow text; what follows items is where items end.
+        # A map after text starts at any lane, a map after items at the lanes in which items end.
         ({"s": "string", "n": "uint8"}, "ros1", 8, (4,), ANY),
         ({"s": "string", "n": "uint8"}, "cdr", 8, (0,), ANY),
         ({"s": "string", "n": "uint32"}, "cdr", 8, (0,), (0, 4)),
@@ -68,16 +68,16 @@ def test_lanes_that_are_only_written_together(fields, wire, bus_bytes, items, ma
 
 def test_places_of_a_rest_and_of_the_map_after_it():
     found = needs({"s": "string", "n": "uint32"}, "cdr", 8)
-    # Header and length; words of text; the rest of text from a bus word on, padding and `n`.
+    # The steps: header and length; words of text; rest of the text, padding and `n`.
     assert found.places == (Place((0,), (0,)), Place((0,), (0,)), Place((0,), (0, 4)))
 
 
 def test_places_in_a_loop_are_those_of_all_turns():
     found = needs({"t": (TEXT, "[]")}, "ros1", 8)
-    # The length; `x`, after text from the second turn on; words of text; the rest of the last one.
+    # The steps: the length; rest of the previous text and `x`; words of text; the last rest.
     start, turn, words, end = found.places
     assert start == Place((0,), (0,))
-    # After the length, or from where words of text start.
+    # The second step follows the length or a text.
     assert turn == Place(ANY, ANY)
     assert (words, end) == (Place(ANY, ANY), Place(ANY, ANY))
 
@@ -89,6 +89,6 @@ def test_padding_that_is_computed():
 
 
 def test_an_empty_run_ends_before_the_padding_of_items():
-    # `b` stands after the length at once, or after items.
+    # `b` follows the length at once, or follows items.
     found = needs({"a": "uint64[]", "b": "uint8"}, "cdr", 8)
     assert found.places[-1] == Place((0, 4), (0, 4))

@@ -1,6 +1,6 @@
-"""What a plan's text says beside each step: its place in all packets, and the loops around it.
+"""Notes beside the steps in a plan's text: the place in all packets, and the loops around it.
 
-An engineer who looks for a byte of a capture in the plan goes by these. Places are worked out by
+An engineer finds a byte of a captured packet in the plan by these notes. Places are worked out by
 hand: header, fields at multiples of their sizes, the words of an array after the earlier fields.
 """
 
@@ -29,26 +29,26 @@ TWICE, POINTS = "in loop 0 (2 times)", "in loop 0 (p.length)"
             8,
             ["packet bytes 0..4", "packet bytes 5..20", "packet bytes 21..27"],
         ),
-        # A run that the start itself enters.
+        # A run that begins at the start of the plan.
         (
             "ros1",
             {"b": "uint8[24]", "c": "uint16"},
             8,
             ["packet bytes 0..23", "packet bytes 24..25"],
         ),
-        # One of which the first item stands after padding.
+        # A run with padding before the first item.
         (
             "ros2",
             {"a": "uint8", "b": "float64[3]", "c": "uint8"},
             8,
             ["packet bytes 0..11", "packet bytes 12..35", "packet byte 36"],
         ),
-        # A single byte is called so.
+        # A single byte is called "byte".
         ("ros1", {"a": "uint8", "c": "uint8[2]"}, 1, ["packet bytes 0..1", "packet byte 2"]),
-        # Nothing after a text or a loop has one place.
+        # No step after a text or a loop has a fixed place.
         ("ros2", {"s": "string", "b": "uint8[21]"}, 8, ["packet bytes 0..7", "", "", "", ""]),
         ("ros2", {"q": (PAIR, "[2]"), "b": "uint8"}, 8, ["packet bytes 0..3", TWICE, ""]),
-        # Items wider than the bus are a loop, which nothing in the packet counts.
+        # Items wider than the bus are a loop, whose count is not in the packet.
         ("ros1", {"b": "float32[3]", "c": "uint8"}, 2, ["in loop 0 (3 times)", ""]),
         # Loops are found after steps that start something else.
         (
@@ -59,6 +59,6 @@ TWICE, POINTS = "in loop 0 (2 times)", "in loop 0 (p.length)"
         ),
     ],
 )
-def test_steps_have_the_places_and_loops_that_they_have(dialect, fields, bus_bytes, notes):
+def test_steps_have_their_places_and_loops(dialect, fields, bus_bytes, notes):
     text = to_yaml(build_plan(lay_out(make(dialect, fields)), bus_bytes=bus_bytes))
     assert re.findall(r"^  step \d+:(?:  # (.*))?$", text, re.MULTILINE) == notes

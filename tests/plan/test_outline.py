@@ -1,4 +1,4 @@
-"""The outline of a layout: its plan gives every packet the status that the layout's plan gives."""
+"""The outline of a layout: its plan gives every packet the same status as the full plan."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_padding_within_the_first_element_of_a_loop(bus_bytes):
         ("visualization_msgs/msg/InteractiveMarker", 8, 73, 59),
     ],
 )
-def test_what_stands_between_lengths_takes_few_steps(name, bus_bytes, steps, short):
+def test_bytes_between_lengths_take_few_steps(name, bus_bytes, steps, short):
     plans = plans_of(load_message(name), "cdr", bus_bytes)
     assert [len(plan.steps) for plan in plans] == [steps, short]
 
@@ -88,7 +88,7 @@ def test_an_array_of_messages_is_bytes_if_its_padding_is_fixed():
     layout = lay_out(message, "ros1")
     assert [type(node) for node in outline(layout, 8).nodes] == [RunNode, RunNode]
     assert sum(node.length.count for node in outline(layout, 8).nodes) == 1 + 1000 * 5 + 1
-    # 3 bytes of padding before the first, and 3 between two of them.
+    # 3 bytes of padding before the first element, and 3 between two elements.
     layout = lay_out(message, "cdr")
     assert sum(node.length.count for node in outline(layout, 8).nodes) == 1 + 1000 * 8 + 1
     _, short = plans_of(message, "cdr", 8)

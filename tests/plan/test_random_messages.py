@@ -1,4 +1,4 @@
-"""Random types and values on both wires: plans, run in Python, against rosbags and contract."""
+"""Random types and values: plans run in Python, compared with rosbags and with the contract."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def test_any_packet_decodes_as_the_contract_says_on_every_bus(wire, case, data):
 
 @st.composite
 def damaged(draw: st.DrawFn, packet: bytes) -> bytes:
-    """Packets cut, lengthened, with some bytes changed, or as they were."""
+    """Return packets: cut, lengthened, with some bytes changed, or unchanged."""
     how = draw(st.sampled_from(["cut", "longer", "changed", "both", "whole"]))
     result = bytearray(packet)
     if how in ("changed", "both") and result:

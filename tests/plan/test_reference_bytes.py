@@ -1,4 +1,4 @@
-"""Bytes that ROS 2's own type support wrote (humble, Fast CDR), from beside the corpus."""
+"""Reference bytes from ROS 2's own type support (humble, Fast CDR), stored with the corpus."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.wire import lay_out
 from tests.strategies import BUS_WIDTHS
 
-# What a converter rightly does otherwise: it neither cuts at a NUL nor takes more than the bound.
+# Correct differences of converters: they neither cut at a NUL nor take more than the bound.
 OTHERWISE = {"str_nul", "bounded_overflow"}
 
 

@@ -1,4 +1,4 @@
-"""Plans without names, and the constructs that they are made of."""
+"""Plans without names, and their constructs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Figures of plans by hand: bytes, beats, cycles, clocks, and which packet is the hardest."""
+"""Figures of plans, computed by hand: bytes, beats, cycles, clocks, and the hardest packet."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def plan_of(fields, bus_bytes, dialect="ros1"):
 
 
 def cost(size, beats, steps, cycles=None):
-    """Return a cost; without `cycles`, they are beats or steps, whichever are more."""
+    """Return a cost; `cycles` is by default the larger number of beats and steps."""
     cycles = max(beats, steps) if cycles is None else cycles
     return Cost(bytes=size, beats=beats, steps=steps, cycles=cycles)
 
@@ -37,18 +37,18 @@ def test_figures_of_a_type_of_one_size():
     [
         # A length in one cycle; the end of the packet, which takes the rest, in another one.
         ({"s": "string"}, 8, cost(4, 1, 2), cost(4, 1, 2)),
-        # Longer texts are easier: the bus is busy all the time.
+        # Longer texts are easier: they keep the bus busy.
         ({"s": "string"}, 1, cost(4, 4, 4), cost(4, 4, 4)),
         # In loops, 16 elements. Each is a length in a step, and a cycle more for the serializer, as
         # the same length follows. The serializer leaves out the last step, which finds no rest.
         ({"d": "uint64[3]", "t": (TEXT, "[]")}, 8, cost(28, 4, 5), cost(92, 12, 21, 20 + 15)),
-        # Not more than the bound allows.
+        # No more elements than the bound.
         ({"d": "uint64[3]", "t": (TEXT, "[<=3]")}, 8, cost(28, 4, 5), cost(43, 6, 8, 8 + 2)),
-        # In loops in loops 4 of each: the length of a row is between those of its texts.
+        # Nested loops have 4 of each: the length of a row is between the lengths of texts.
         ({"d": "uint64[3]", "rows": (ROW, "[]")}, 8, cost(28, 4, 5), cost(108, 14, 25, 24 + 4 * 3)),
         # The deserializer knows too late that the length of `w` ends the packet.
         ({"s": "string", "w": (WIDE, "[]")}, 8, cost(8, 1, 2, 3), cost(8, 1, 2, 3)),
-        # So elements that fill the bus are easier than none.
+        # So elements that fill the bus are easier than no elements.
         ({"pairs": (PAIR, "[]")}, 4, cost(4, 1, 1, 2), cost(4, 1, 1, 2)),
     ],
 )
@@ -62,11 +62,11 @@ def test_shortest_and_hardest_packets(fields, bus_bytes, shortest, hardest):
 @pytest.mark.parametrize(
     ("fields", "bus_bytes", "hardest"),
     [
-        # No text at all in one element: its NUL is a beat of its own.
+        # One element without text: its NUL has its own beat.
         ({"t": (TEXT, "[]")}, 2, cost(13, 7, 5)),
-        # One item is a beat of its own, too.
+        # One item has its own beat, too.
         ({"a": "uint8[]"}, 2, cost(9, 5, 4)),
-        # None, because the packet ends in a cycle of its own.
+        # No items, because the end of the packet takes its own cycle.
         ({"a": "uint8[]"}, 8, cost(8, 1, 2)),
         # Half a word of text, a NUL and padding: the last field starts a beat.
         ({"s": "string", "b": "uint16"}, 4, cost(14, 4, 2)),
@@ -78,7 +78,7 @@ def test_lengths_up_to_half_a_bus_word_are_tried(fields, bus_bytes, hardest):
 
 def test_packets_with_too_many_transfers_are_left_out(monkeypatch):
     fields = {"d": "uint64[3]", "t": (TEXT, "[]")}
-    # 3 transfers, a length, and for each element another one, and one more if it has text.
+    # 3 transfers, a length, a length for each element, and one more transfer if it has text.
     hardest = {
         36: cost(92, 12, 21, 35),
         20: cost(92, 12, 21, 35),
@@ -98,7 +98,7 @@ def test_nothing_is_searched_where_short_texts_are_a_small_part(count, searched)
     assert (figures.hardest.bytes > figures.shortest.bytes) == searched
 
 
-def test_clock_is_what_the_bits_of_the_line_ask_for():
+def test_clock_follows_from_the_bit_rate_of_the_line():
     # 125 million bytes a second: a packet of 5 bytes each 40 ns, in 3 cycles.
     assert clock_mhz(cost(5, 2, 3), 1e9) == pytest.approx(75)
     assert clock_mhz(cost(0, 1, 1), 1e9) == pytest.approx(125)

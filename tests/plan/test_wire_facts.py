@@ -1,4 +1,4 @@
-"""Facts about the wire formats that trip implementations, byte by byte, at every bus width.
+"""Easily missed facts about the wire formats, byte by byte, at every bus width.
 
 The hexadecimal of CDR is what ROS 2's own type support writes or follows from OMG DDS-XTypes 1.3,
 clause 7.4; spaces stand between fields, `|` before padding. Fast CDR 1.0.26, 2.2.5 and 2.3.3

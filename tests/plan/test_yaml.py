@@ -1,4 +1,4 @@
-"""Plans as text: what people review, and what is said when they make a mistake."""
+"""Plans as text: the printed form, and error messages for mistakes in it."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def test_names_that_yaml_takes_for_values_stay_names(bus_bytes):
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
     text = to_yaml(plan)
     assert from_yaml(text) == plan
-    # So that other readers of YAML see the names, too.
+    # The quotes make other readers of YAML see names, too.
     assert list(yaml.safe_load(text)["leaves"]) == names
     if bus_bytes == 8:
         assert list(yaml.safe_load(text)["steps"]["step 0"].values())[:4] == names[:4]
@@ -196,7 +196,7 @@ MISTAKES = [
 
 
 @pytest.mark.parametrize(("old", "new", "message"), MISTAKES)
-def test_a_mistake_is_told_with_its_line(old, new, message):
+def test_mistake_is_reported_with_its_line(old, new, message):
     text = BODY.replace(old, new, 1) if old else new
     assert text != BODY
     with pytest.raises(ValueError, match="^" + re.escape(message)) as caught:

@@ -1,6 +1,6 @@
-"""What operators give when operands are constant, against the rules of Yosys, for all values.
+"""Operators on constant operands, compared with the rules of Yosys for all values.
 
-The reference here works on numbers, bit by bit extended; it knows nothing of the program's rules
+The reference here works on numbers and extends them bit by bit; it does not use the program's rules
 for parts of operands.
 """
 
@@ -18,7 +18,7 @@ A, B = Slice("a", 0, 3), Slice("b", 0, 3)
 
 
 def value_of(spec: Spec, wires: dict[str, int]) -> int:
-    """The bits of a value, as an unsigned number."""
+    """Return the bits of a value as an unsigned number."""
     total = position = 0
     for chunk in spec:
         if isinstance(chunk, Bits):
@@ -68,13 +68,13 @@ UNARY = {
 }
 
 
-def shifted(kind: str, a: int, width: int, by: int, out: int, *, signed: bool) -> int:
+def shift_reference(kind: str, a: int, width: int, by: int, out: int, *, signed: bool) -> int:
     whole = number(a, width, signed=signed)
     return whole << by if kind == "$shl" else whole >> by
 
 
 def forms(wire: Slice, width: int) -> list[Spec]:
-    """Values of a width: every constant, a wire, and a wire with constant bits at either end."""
+    """Yield values of a width: every constant, a wire, and a wire with constants at either end."""
     found: list[Spec] = [(Bits(f"{n:0{width}b}"),) for n in range(1 << width)]
     found.append((Slice(wire.wire, 0, width),))
     if width > 1:
@@ -85,7 +85,7 @@ def forms(wire: Slice, width: int) -> list[Spec]:
 
 
 def check(cell: Cell, want, *specs: Spec) -> bool:
-    """Compare with what is wanted for all values of the wires; tell whether there was a result."""
+    """Compare a result with the reference for all values of wires; return whether one exists."""
     result = evaluate(cell)
     if result is None:
         return False
@@ -124,7 +124,7 @@ def test_operators_of_two(kind, signed):
 
 @pytest.mark.parametrize("kind", ["$add", "$mul", "$and", "$or", "$xor", "$eq", "$ne"])
 @pytest.mark.parametrize("signed", [False, True])
-def test_what_a_constant_decides_it_decides_on_either_side(kind, signed):
+def test_constant_decides_on_either_side(kind, signed):
     decided = 0
     for number, width in product(range(8), (1, 3)):
         wire, bits = (A,), (Bits(f"{number:03b}"),)
@@ -133,7 +133,7 @@ def test_what_a_constant_decides_it_decides_on_either_side(kind, signed):
         ]
         assert [each is None for each in sides] in ([True, True], [False, False]), number
         decided += sides[0] is not None
-    # 0 and all ones decide the most of them, and powers of two decide products.
+    # 0 and all ones decide most operators, and powers of two decide products.
     assert decided > 0 or kind in ("$eq", "$ne")
 
 
@@ -163,7 +163,9 @@ def test_shifts(kind, signed):
         for a in forms(A, wa):
 
             def want(wires, a=a, wa=wa, by=by, width=width):
-                return shifted(kind, value_of(a, wires), wa, min(by, 99), width, signed=signed)
+                return shift_reference(
+                    kind, value_of(a, wires), wa, min(by, 99), width, signed=signed
+                )
 
             cell = a_cell(kind, width, signed, A=a, B=distance)
             parameters = {**cell.parameters, "B_SIGNED": 0}
@@ -205,7 +207,7 @@ def test_constants_are_numbers():
     assert constant(()) == 0 and constant((Bits("1"), A)) is None
 
 
-def test_parts_and_joins_are_the_bits_that_they_are():
+def test_slices_and_concatenations_have_the_right_bits():
     specs = [(Bits("0110"), A, Bits("1"), Slice("b", 1, 2)), (A,), (Bits("10"),), (A, B)]
     for spec in specs:
         width = spec_width(spec)

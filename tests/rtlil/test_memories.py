@@ -1,4 +1,4 @@
-"""The reader of RTLIL and memories: sizes, ports, contents."""
+"""Memories in the reader of RTLIL: sizes, ports, contents."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_memories_stay_when_a_module_is_simplified(name: str) -> None:
         ("cell $memwr_v2", "cell $memwr", "Amaranth 0.5 emits no cells of kind"),
     ],
 )
-def test_what_is_no_memory_is_an_error(old: str, new: str, message: str) -> None:
+def test_malformed_memories_are_errors(old: str, new: str, message: str) -> None:
     text = rtlil_of(LANES)
     assert text.count(old) == 1
     with pytest.raises(ValueError, match=rf"^RTLIL line \d+: {message}"):

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The reader of RTLIL: all that Amaranth prints, and errors for what it does not."""
+"""The reader of RTLIL: everything that Amaranth prints, and errors for other input."""
 
 from __future__ import annotations
 

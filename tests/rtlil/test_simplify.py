@@ -1,6 +1,6 @@
-"""A simplified module does what the module did, for all values of its inputs.
+"""A simplified module is equivalent to the original, for all values of its inputs.
 
-The reference runs statements one by one, as RTLIL says that they are run.
+The reference runs statements one by one, in the order that RTLIL defines.
 """
 
 from __future__ import annotations
@@ -70,14 +70,14 @@ def settled(module: Module, inputs: Values) -> Values:
 
 
 def module_of(*items: Process | Cell, **wires: Wire) -> Module:
-    made = {
+    own_wires = {
         name: Wire(name=name, width=width, signed=False, direction=None, attributes={})
         for name, width in WIDTHS.items()
     }
     return Module(
         name="m",
         attributes={},
-        wires={**made, **wires},
+        wires={**own_wires, **wires},
         memories={},
         items=items,
         connections=(),
@@ -146,12 +146,12 @@ def test_a_simplified_module_does_the_same(start: int) -> None:
     for seed in range(start, start + 100):
         constant = Bits(f"{seed % 8:03b}")
         known = process(Assign(target=(Slice("k", 0, 3),), value=(constant,)))
-        made = module_of(Maker(seed, "y").process(), known)
-        less = simplified(made)
-        assert len(less.items) < len(made.items)
+        module = module_of(Maker(seed, "y").process(), known)
+        less = simplified(module)
+        assert len(less.items) < len(module.items)
         for s, t in product(range(8), range(4)):
             inputs = {"s": s, "t": t}
-            assert settled(less, inputs) == settled(made, inputs), seed
+            assert settled(less, inputs) == settled(module, inputs), seed
 
 
 def test_the_reference_sees_a_difference() -> None:
@@ -169,10 +169,10 @@ def body_of(*statements: Statement) -> tuple[Statement, ...]:
     return item.body
 
 
-def test_what_decides_nothing_is_gone() -> None:
+def test_cases_without_effect_are_removed() -> None:
     default = Assign(target=(Y,), value=(Slice("t", 0, 2), Slice("s", 0, 2)))
     other = Assign(target=(Y,), value=(Bits("1010"),))
-    # A constant bit of the selector decides, and is no more asked for.
+    # A constant bit of the selector decides, and is removed from the selector.
     switch = Switch(
         selector=(Slice("s", 0, 1), Bits("1")),
         cases=(
@@ -184,14 +184,14 @@ def test_what_decides_nothing_is_gone() -> None:
         default,
         Switch(selector=(Slice("s", 0, 1),), cases=(Case(patterns=("1",), body=(other,)),)),
     )
-    # An arm that always matches ends the list, and alone it is no choice.
+    # An arm that always matches ends the list; a single such arm is no choice.
     always = Switch(
         selector=(S,),
         cases=(Case(patterns=("---",), body=(other,)), Case(patterns=(), body=(default,))),
     )
     choice = Switch(selector=(S,), cases=(Case(patterns=("001",), body=(default,)),))
     assert simplified(module_of(process(default, always))).items == ()
-    # What the target has already is not assigned again, and arms without anything go.
+    # A value that the target has already is not assigned again, and empty arms are removed.
     assert (
         simplified(
             module_of(
@@ -301,7 +301,7 @@ def test_an_arm_that_always_matches_ends_the_list() -> None:
         assert body_of(default, switch) == (default, expected)
 
 
-def test_what_may_have_changed_is_assigned_again() -> None:
+def test_value_that_may_have_changed_is_assigned_again() -> None:
     one, other = (Assign(target=(Y,), value=(Bits(text),)) for text in ("1010", "0101"))
     switch = Switch(selector=(S,), cases=(Case(patterns=("001",), body=(other,)),))
     assert body_of(one, switch, one) == (one, switch, one)

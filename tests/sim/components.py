@@ -1,4 +1,4 @@
-"""Small components with streams, right and wrong, for tests of the harness itself."""
+"""Small components with streams, correct and faulty, for tests of the harness itself."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Fault = Literal["", "drop", "change", "swallow", "block"]
 
 
 class Relay(wiring.Component):
-    """A register in a stream, or one that is broken in a chosen way.
+    """A register in a stream, optionally with a fault.
 
     "drop": after three cycles of waiting, `o.valid` falls for a cycle; "change": the payload's
     lowest bit turns while it waits; "swallow": every fourth payload is lost; "block": nothing is

@@ -1,6 +1,6 @@
-"""A bench told exactly: in which cycle what is offered, taken, seen, and given up.
+"""The bench, cycle by cycle: offers, transfers, observations and deadlines.
 
-The design is a register in a stream: what comes in in one cycle goes out in the next one.
+The design is a register in a stream: a payload leaves one cycle after it enters.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tests.strategies import make
 
 
 class Run:
-    """A run of relays side by side, and what was taken from each, by cycle."""
+    """A run of parallel relays, with the payloads that were taken from each, by cycle."""
 
     def __init__(
         self,
@@ -62,7 +62,7 @@ class Run:
         return self.bench.run(self.job)
 
 
-def test_what_comes_in_goes_out_in_the_next_cycle():
+def test_payloads_leave_in_the_next_cycle():
     run = Run([[5, 6, 7]])
     # 0, 1 and 2 in; 1, 2 and 3 out; four cycles of silence.
     assert run.go() == 8
@@ -70,7 +70,7 @@ def test_what_comes_in_goes_out_in_the_next_cycle():
 
 
 @pytest.mark.parametrize("settle", [1, 2, 9])
-def test_so_much_silence_ends_a_run(settle):
+def test_silence_ends_a_run(settle):
     assert Run([[5, 6, 7]], settle=settle).go() == 4 + settle
 
 
@@ -81,8 +81,8 @@ def test_a_bench_runs_job_after_job_from_reset():
     assert [run.go(), run.taken["o0"]] == [6, [(1, 5)]]
 
 
-class Kept:
-    """A relay, a register without a reset that counts clock edges, and one with a reset."""
+class RelayBench:
+    """A relay, a counter of clock edges without a reset, and one with a reset."""
 
     def __init__(self, *, keeps_state):
         relay, top = Relay(8), Module()
@@ -94,7 +94,7 @@ class Kept:
         self.bench = Bench(top, ports, probes=probes, keeps_state=keeps_state)
 
     def run(self, given, **options):
-        """Run until all is taken; return what each cycle showed."""
+        """Run until all payloads are taken; return the probes of each cycle."""
         seen, taken = [], []
         self.bench.run(
             Job(
@@ -111,26 +111,28 @@ class Kept:
 
 @pytest.mark.parametrize("keeps_state", [True, False])
 def test_between_runs_is_a_reset_or_a_new_start(keeps_state):
-    kept = Kept(keeps_state=keeps_state)
-    first, second = kept.run([5, 6]), kept.run([7])
+    relay_bench = RelayBench(keeps_state=keeps_state)
+    first, second = relay_bench.run([5, 6]), relay_bench.run([7])
     assert first[0] == [0, 0, 0, 0]
     # The edge that ends the last cycle, and those of the reset.
     edges = first[-1][0] + 1 + RESET_CYCLES if keeps_state else 0
     assert second[0] == [edges, 0, 0, 0]
-    assert [row[1:] for row in second] == [row[1:] for row in Kept(keeps_state=False).run([7])]
+    assert [row[1:] for row in second] == [
+        row[1:] for row in RelayBench(keeps_state=False).run([7])
+    ]
 
 
 def test_a_run_that_failed_is_followed_by_a_reset():
-    kept = Kept(keeps_state=True)
+    relay_bench = RelayBench(keeps_state=True)
     with pytest.raises(DeadlineError, match="No end after 4 cycles"):
-        kept.run([5], stalls={"o": Stalls.bits("0" * 9 + "1")}, limit=4)
-    second = kept.run([7])
+        relay_bench.run([5], stalls={"o": Stalls.bits("0" * 9 + "1")}, limit=4)
+    second = relay_bench.run([7])
     assert second[0] == [5 + 1 + RESET_CYCLES, 0, 0, 0]
 
 
 def test_a_bench_that_keeps_its_state_writes_no_waveforms(tmp_path):
     with pytest.raises(ValueError, match=r"^A bench that keeps its state writes no waveforms$"):
-        Kept(keeps_state=True).run([5], vcd=tmp_path / "x.vcd")
+        RelayBench(keeps_state=True).run([5], vcd=tmp_path / "x.vcd")
 
 
 def test_nothing_to_do_is_over_after_the_silence():
@@ -141,14 +143,14 @@ def test_nothing_to_do_is_over_after_the_silence():
 @pytest.mark.parametrize(
     ("stalls", "taken"),
     [
-        # The register gives one away and takes one in the same cycle.
+        # In the same cycle, one payload leaves the register and the next one enters.
         ({"o0": "10"}, [(2, 1), (4, 2), (6, 3)]),
         ({"o0": "001"}, [(2, 1), (5, 2), (8, 3)]),
         ({"i0": "001"}, [(3, 1), (6, 2), (9, 3)]),
         ({"i0": "01", "o0": "011"}, [(2, 1), (4, 2), (7, 3)]),
     ],
 )
-def test_stalled_streams_wait_for_just_those_cycles(stalls, taken):
+def test_stalls_delay_by_exactly_their_cycles(stalls, taken):
     run = Run([[1, 2, 3]], stalls={name: Stalls.bits(bits) for name, bits in stalls.items()})
     run.go()
     assert run.taken["o0"] == taken
@@ -160,7 +162,7 @@ def test_streams_do_not_wait_for_each_other():
     assert run.taken == {"o0": [(3, 1), (7, 2)], "o1": [], "o2": [(1, 3)]}
 
 
-def test_who_is_stalled_keeps_nobody_else_from_offering():
+def test_stalled_source_does_not_stall_others():
     run = Run([[1, 2], [3], [4]], stalls={"i0": Stalls.bits("0001"), "i1": Stalls.bits("01")})
     run.go()
     assert run.taken == {"o0": [(4, 1), (8, 2)], "o1": [(2, 3)], "o2": [(1, 4)]}
@@ -168,7 +170,7 @@ def test_who_is_stalled_keeps_nobody_else_from_offering():
 
 @pytest.mark.parametrize("bits", [WORD_BITS // 4, WORD_BITS // 2, WORD_BITS - 3, WORD_BITS, 400])
 def test_wide_payloads_arrive_whole(bits):
-    """However they are spread over the words that the bench drives."""
+    """The words that the bench drives divide them at any bit."""
     ones = (1 << bits) - 1
     given = [[ones, 0, 1, ones - 1], [1 << (bits - 1), ones], [0, ones // 3]]
     run = Run(given, shapes=bits)
@@ -178,19 +180,19 @@ def test_wide_payloads_arrive_whole(bits):
 
 
 def test_deadline_is_the_most_cycles_without_a_transfer():
-    # Nothing moves in the cycles 2 to 6.
+    # No stream transfers in the cycles 2 to 6.
     stalls = {"i0": Stalls.bits("10000001")}
     run = Run([[1, 2]], stalls=stalls, deadline=1000)
     run.go()
     assert run.taken["o0"] == [(1, 1), (8, 2)]
     silent = Run([[1]], expected=2, deadline=5)
-    said = (
+    expected_message = (
         "No transfer in 6 cycles up to cycle 7; outstanding: something; "
         "offered and not taken: nothing"
     )
     with pytest.raises(DeadlineError) as caught:
         silent.go()
-    assert str(caught.value) == said
+    assert str(caught.value) == expected_message
     assert silent.bench.cycles == 8
 
 
@@ -201,7 +203,7 @@ def test_the_longest_stall_of_any_stream_is_added_to_the_deadline():
             Run([[1], [2]], expected=3, deadline=5, stalls=stalls).go()
 
 
-def test_who_offers_is_named_when_time_is_over():
+def test_missed_deadline_names_offering_sources():
     run = Run([list(range(9)), [1]], fault="block", expected=99, deadline=20)
     with pytest.raises(DeadlineError, match=r"offered and not taken: i0$"):
         run.go()
@@ -223,9 +225,9 @@ def test_limit_is_the_most_cycles_of_a_run(limit, ends):
 
 
 def test_silence_begins_anew_while_something_is_offered():
-    """What a sink has not taken yet is no silence, even if nothing more is expected."""
+    """A payload that a sink has not taken ends the silence, even if no more is expected."""
     run = Run([[1, 2]], expected=1, stalls={"o0": Stalls.bits("0100000000")}, settle=4)
-    # Taken in cycles 1 and 11, and four more cycles.
+    # Transfers in cycles 1 and 11, then four cycles of silence.
     assert run.go() == 16
     assert run.taken["o0"] == [(1, 1), (11, 2)]
 
@@ -259,7 +261,7 @@ def test_payloads_may_be_more_than_the_payload():
 
 
 class Tapped(wiring.Component):
-    """A stream through a register that a gate may hold up on its way."""
+    """A stream through a register, with a gate that can stall it inside."""
 
     def __init__(self):
         super().__init__({"i": In(stream.Signature(8)), "o": Out(stream.Signature(8))})
@@ -341,7 +343,7 @@ def test_a_limit_counts_the_bytes_of_packets_or_the_transfers_of_messages():
 
 
 @pytest.mark.parametrize("name", ["a", "b", "c"])
-def test_no_leaf_is_stalled_where_nothing_can_hold_it_up(name):
+def test_leaves_without_gates_are_not_stalled(name):
     harness = SimpleNamespace(leaf_ports=["a", "b", "c"])
     with pytest.raises(ValueError, match=f"^Stream '{name}' can be stalled in a gated harness"):
         Harness._refuse_leaf_stalls(harness, {name: Stalls.bits("10")})

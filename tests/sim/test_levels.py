@@ -36,7 +36,7 @@ class Chain:
 
 
 def run(chain, design):
-    """Return what all signals have in each of 200 cycles."""
+    """Return the values of all signals in each of 200 cycles."""
     rows, rng = [], random.Random(1)
 
     async def testbench(ctx):
@@ -64,11 +64,11 @@ def test_values_are_the_same():
     rows = run(chain, chain.top())
     assert len({tuple(row) for row in rows}) > 150
     assert run(chain, divided(chain.top())) == rows
-    # found_0, found_1, found_2, and both that are written together.
+    # found_0, found_1, found_2, and the two signals that are written together.
     assert parts(divided(chain.top())) == 4
 
 
-def test_what_is_lost_is_noticed(monkeypatch):
+def test_lost_statement_is_noticed(monkeypatch):
     chain = Chain()
     rows = run(chain, chain.top())
     kept = levels._driving

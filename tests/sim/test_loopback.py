@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Converters run as functions, and what the harness says of them."""
+"""Converters run as functions, and the reports of the harness."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def test_loopback_unpacks_as_packets_and_statuses():
     assert statuses == [Status.OK, Status.OK]
 
 
-def test_loopback_tells_all_that_it_saw():
+def test_loopback_returns_all_observations():
     seen = loopback(IMAGE, [PACKET, PACKET])
     plan = plan_of(IMAGE)
     once = to_transfers(plan, IMAGE, VALUE)
@@ -184,7 +184,7 @@ def test_missing_transfers_hit_the_deadline_with_names():
         encode(IMAGE, [transfers], deadline=50)
 
 
-def test_limit_ends_what_has_no_end():
+def test_limit_ends_a_run_without_an_end():
     message = r"^No end after 20 cycles; outstanding: status \(\d of 9\)"
     with pytest.raises(DeadlineError, match=message):
         loopback(IMAGE, [PACKET] * 9, limit=20)
@@ -202,7 +202,7 @@ def test_harness_needs_a_converter():
         Harness(None, None)
 
 
-def test_a_harness_takes_what_its_first_converter_takes():
+def test_harness_has_the_input_of_its_first_converter():
     with pytest.raises(ValueError, match=r"^Packets need a harness with a deserializer$"):
         Harness(None, Serializer(IMAGE)).run_packets([PACKET])
     for serializer in (None, Serializer(IMAGE)):
@@ -301,7 +301,7 @@ def test_dropped_valid_is_found_in_a_bench():
 
 
 class Echo(wiring.Component):
-    """Gives each payload again, three cycles after it was taken."""
+    """Offers each payload again, three cycles after it was taken."""
 
     def __init__(self):
         super().__init__({"i": In(stream.Signature(8)), "o": Out(stream.Signature(8))})
@@ -324,7 +324,7 @@ class Echo(wiring.Component):
 
 
 @pytest.mark.parametrize("stalls", [None, {"o": Stalls.bits("0" * 12 + "1")}])
-def test_what_comes_after_the_end_is_seen(stalls):
+def test_transfers_after_the_end_are_recorded(stalls):
     dut = Echo()
     got = []
     job = Job(
@@ -345,7 +345,7 @@ def test_cycles_of_a_run_that_fails_are_counted():
     assert harness.bench.cycles == 21
 
 
-def test_one_transfer_too_many_is_left_over():
+def test_one_transfer_too_many_is_not_taken():
     transfers = to_transfers(plan_of(IMAGE), IMAGE, VALUE)
     result = encode(IMAGE, [{leaf: list(each) for leaf, each in transfers.items()}])
     assert result.not_taken == {}
@@ -355,7 +355,7 @@ def test_one_transfer_too_many_is_left_over():
 
 
 def test_gates_stay_open_after_what_is_offered():
-    # What the serializer sees are streams, too: valid does not fall before the transfer.
+    # The gated streams keep the rules, too: `valid` does not fall before the transfer.
     rx, tx = Deserializer(IMAGE), Serializer(IMAGE)
     ports = leaf_streams(tx.message, tx.tree).values()
     probes = [Cat(port.valid for port in ports), Cat(port.ready for port in ports)]

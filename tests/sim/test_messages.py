@@ -120,7 +120,7 @@ def test_a_port_has_the_bus_and_the_wire_of_its_converter(wire, packet):
     assert got == [packet or b"\0\1\0\0\7\0\0\0\3\0\0\0hi\0"]
 
 
-def test_leaves_are_offered_whatever_the_others_wait_for():
+def test_leaves_are_offered_independently():
     dut = Wires(IMAGE)
     i, o = MessagePort(dut.i, IMAGE), MessagePort(dut.o, IMAGE)
     last = max(o.streams)
@@ -130,7 +130,7 @@ def test_leaves_are_offered_whatever_the_others_wait_for():
         await i.send(ctx, VALUE)
 
     async def sink(ctx):
-        # The last leaf alone is taken first: the sender must not wait with it for the others.
+        # Only the last leaf is taken at first: the sender must not wait for the others.
         ctx.set(o.streams[last].ready, 1)
         for _ in range(9):
             _, _, valid = await ctx.tick().sample(o.streams[last].valid)

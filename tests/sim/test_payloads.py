@@ -50,7 +50,7 @@ def test_bits_are_those_of_the_stream(leaf, payload, value):
     else:
         assert bits == value & ((1 << shape.width) - 1)
     assert decoder_of(leaf)(bits) == payload
-    # As the simulator gives a signed signal.
+    # The simulator returns a signed signal in this form.
     assert leaf.kind == "items" or decoder_of(leaf)(value) == payload
 
 

@@ -1,4 +1,4 @@
-"""What is collected in a run, and what is too much of it."""
+"""The recorder of a run: collected packets and statuses, and errors for too many."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def test_packets_and_marks_are_collected():
 
 def test_mark_belongs_to_the_last_beat():
     take = recorder().takes()["packets_out"]
-    said = r"^packet_error is high in cycle 5, with a beat that is not the last$"
-    with pytest.raises(AssertionError, match=said):
+    message = r"^packet_error is high in cycle 5, with a beat that is not the last$"
+    with pytest.raises(AssertionError, match=message):
         take(5, beat(b"abcd", last=False, mark=True))
 
 
@@ -125,7 +125,7 @@ def test_latency_is_from_the_last_in_to_the_last_out():
     assert RunResult(last_cycle=7, last_status_cycle=5).end_cycle == 7
 
 
-# What a deserializer has to ignore, and that it is there.
+# Noise that a deserializer has to ignore is present.
 
 
 @pytest.mark.parametrize("bus_bytes", [2, 8, 64])

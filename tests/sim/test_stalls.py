@@ -61,7 +61,7 @@ def test_bits_repeat_and_zero_stalls():
         ({"pattern": "00"}, r"^Pattern '00' would stall for ever$"),
     ],
 )
-def test_nonsense_is_refused(arguments, error):
+def test_wrong_parameters_are_refused(arguments, error):
     with pytest.raises(ValueError, match=error):
         Stalls(**arguments)
 

@@ -77,7 +77,7 @@ def test_packets_arrive_whole(bus_bytes, packets, i_stall, o_stall):
     assert got == packets
 
 
-def test_deadline_of_packets_says_what_has_begun():
+def test_deadline_of_packets_reports_the_partial_packet():
     dut = Relay(packet_layout(4), "block")
 
     async def source(ctx):

@@ -1,4 +1,4 @@
-"""What a message still calls for, leaf by leaf, and where one message ends and the next begins."""
+"""Missing transfers of a message, leaf by leaf, and boundaries between messages."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ TWO = {"two.item.x": 2, "two.item.tags.length": 2}
 
 
 def test_a_message_begins_with_what_every_message_has():
-    # Of the five items, two come at a time.
+    # Five items, two per transfer.
     assert taken() == {**START, **TWO}
 
 
@@ -45,12 +45,12 @@ def test_a_message_begins_with_what_every_message_has():
     [
         ([("a", 7)], {"a": 0}),
         ([("f.items", ((1, 2), False))], {"f.items": 2}),
-        # Four characters at a time: none, just full, and one more.
+        # Four characters per transfer: no character, a full transfer, and one character more.
         ([("s.length", 0)], {"s.length": 0}),
         ([("s.length", 4)], {"s.length": 0, "s.items": 1}),
         ([("s.length", 5)], {"s.length": 0, "s.items": 2}),
         ([("s.length", 5), ("s.items", ((0,) * 4, False))], {"s.length": 0, "s.items": 1}),
-        # Elements bring what is in them.
+        # Elements add their own leaves.
         ([("ps.length", 0)], {"ps.length": 0}),
         ([("ps.length", 3)], {"ps.length": 0, "ps.item.x": 3, "ps.item.tags.length": 3}),
         (
@@ -82,11 +82,11 @@ def test_transfers_are_cut_into_the_messages_that_they_make():
     joined = {n: [each for part in parts for each in part.get(n, [])] for n in leaves}
     messages, rest = split_transfers(TABLE, joined)
     assert messages == [{n: each for n, each in part.items() if each} for part in parts]
-    # The next one calls for a message.
+    # The next transfer begins another message.
     assert named(rest.counts) == {**START, **TWO}
 
 
-def test_what_a_cut_message_lacks_is_told():
+def test_missing_transfers_of_a_cut_message_are_named():
     part = to_transfers(PLAN, MESSAGE, message(3))
     assert part[NUMBER["a"]] == [3]
     part[NUMBER["a"]] = []

@@ -1,4 +1,4 @@
-"""Values as people have them against transfers: kinds, spellings, ranges, and what is refused."""
+"""Conversion of Python values to transfers and back: kinds, spellings, ranges, refusals."""
 
 from __future__ import annotations
 
@@ -153,7 +153,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("fields", "value", "error", "message"), REFUSED)
-def test_what_does_not_fit_is_refused_by_its_path(fields, value, error, message):
+def test_values_that_do_not_fit_are_refused_by_their_path(fields, value, error, message):
     with pytest.raises(error, match=f"^{re.escape(message)}$"):
         transfers(fields, value)
 
@@ -163,7 +163,7 @@ def test_bounds_can_be_exceeded_on_purpose():
     assert got == {"x.length": [2], "x.items": [((1, 2, 0, 0), True)]}
 
 
-# Back.
+# From transfers to values.
 
 
 def joined(fields, streams, bus_bytes=4):
@@ -192,7 +192,7 @@ def test_transfers_become_plain_values():
     assert value["b"] is True
 
 
-def test_text_that_is_not_unicode_stays_what_it_was():
+def test_text_that_is_not_unicode_stays_bytes_or_numbers():
     assert joined({"s": "string"}, {"s.length": [1], "s.items": [((0xFF, 0, 0, 0), True)]}) == {
         "s": b"\xff"
     }

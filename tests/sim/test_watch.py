@@ -1,4 +1,4 @@
-"""The watcher: silent on what is right, and a named rule for each way to be wrong."""
+"""The watcher of stream rules: silent on correct streams, and a numbered rule for each fault."""
 
 from __future__ import annotations
 

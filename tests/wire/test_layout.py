@@ -1,4 +1,4 @@
-"""The layout against packets: what it says of padding and sizes is true of every value."""
+"""The layout, compared with packets: its padding and sizes hold for every value."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_static_gaps_are_those_of_every_packet(wire, data):
         ({"a": "string", "b": "uint64", "c": "uint16", "d": "uint64"}, "d", 6),
     ],
 )
-def test_a_gap_is_static_just_when_types_decide_it(fields, path, gap):
+def test_gap_is_static_exactly_when_types_decide_it(fields, path, gap):
     layout = lay_out(make("ros2", fields))
     assert gaps_of(layout)[(path,)].bytes == gap
 

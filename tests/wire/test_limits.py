@@ -1,4 +1,4 @@
-"""Types that are too large to lay out: counted, refused by name, and quickly."""
+"""Types that are too large to lay out: they are counted and refused by name, quickly."""
 
 from __future__ import annotations
 
@@ -129,13 +129,13 @@ def test_an_example_is_counted_to_the_character(monkeypatch, tmp_path):
         "p/msg/None.msg": "",
         "p/msg/Out.msg": 'In[2] y\nIn x\nfloat32[] z\nstring s "a"\nint8[2] d [1, 2]\nNone[2] n\n',
     }
-    made = Library(paths=[make_files(tmp_path, files)]).message("p/Out")
-    text = proto(made, quotes=False)
+    nested = Library(paths=[make_files(tmp_path, files)]).message("p/Out")
+    text = proto(nested, quotes=False)
     monkeypatch.setattr("firm_hdl.identity.proto_ros2._MAX_CHARACTERS", len(text))
-    assert proto(made, quotes=False) == text
+    assert proto(nested, quotes=False) == text
     monkeypatch.setattr("firm_hdl.identity.proto_ros2._MAX_CHARACTERS", len(text) - 1)
     with pytest.raises(TooLargeError, match=f"an example of {len(text)} characters"):
-        proto(made)
+        proto(nested)
 
 
 def test_loops_in_loops_end_the_search_for_the_hardest_packet(monkeypatch):
@@ -146,7 +146,7 @@ def test_loops_in_loops_end_the_search_for_the_hardest_packet(monkeypatch):
         assert timing(plan).hardest.bytes < 1000
 
 
-def test_figures_that_nobody_can_read_are_refused():
+def test_figures_of_too_large_types_are_refused():
     with pytest.raises(DefinitionError) as caught:
         metrics_of(tree(300, 100))
     assert str(caught.value) == (
@@ -154,7 +154,7 @@ def test_figures_that_nobody_can_read_are_refused():
     )
 
 
-def test_the_limit_of_a_length_is_what_the_documentation_says():
+def test_limit_of_a_length_is_the_documented_one():
     plan = build_plan(lay_out(load_message("sensor_msgs/msg/PointCloud2")))
     limits = {str(plan.leaves[leaf]): begin.limit for leaf, begin in plan.begins.items()}
     limit = limits["fields.length"]
@@ -162,5 +162,5 @@ def test_the_limit_of_a_length_is_what_the_documentation_says():
     fits = (plan.max_message_bytes - 4 - 24 - 17) // 16
     assert fits < limit
     text = (Path(firm_hdl.__file__).parent.parent / "docs" / "interface.md").read_text()
-    said = f"the limit is {limit:,} `fields`, and packets of that size can hold {fits:,}."
-    assert said in " ".join(text.split())
+    sentence = f"the limit is {limit:,} `fields`, and packets of that size can hold {fits:,}."
+    assert sentence in " ".join(text.split())

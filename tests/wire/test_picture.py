@@ -1,4 +1,4 @@
-"""The picture of a layout: the bytes of the wire, in their order, and nothing else."""
+"""The picture of a layout: exactly the bytes of the wire, in their order."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ TEXTS = {
 }
 
 
-def shown(found):
-    """Bands in words: grids with where they start, and each cell's place."""
+def bands_in_words(found):
+    """Return bands as text: grids with their starts, and the place of each cell."""
     lines = []
     for band in found:
         indent = "  " * band.depth
@@ -105,13 +105,13 @@ data: n: no bytes
 
 def test_bands_are_the_wire_in_order(tmp_path):
     message = library(tmp_path / "cdr", TEXTS).message("p/T")
-    assert shown(bands(lay_out(message, "cdr"))) == CDR.splitlines()
+    assert bands_in_words(bands(lay_out(message, "cdr"))) == CDR.splitlines()
     message = library(tmp_path / "ros1", ROS1_TEXTS, "ros1").message("p/T")
-    assert shown(bands(lay_out(message, "ros1"))) == ROS1.splitlines()
+    assert bands_in_words(bands(lay_out(message, "ros1"))) == ROS1.splitlines()
 
 
 def rects(picture):
-    """Cells that are drawn: left edge, top, width, and what is said of each."""
+    """Return the drawn cells: left edge, top, width, and title of each."""
     found = []
     for rect in picture.iter(f"{SVG}rect"):
         title = rect.find(f"{SVG}title")
@@ -165,10 +165,10 @@ def test_offsets_count_from_the_start_of_the_packet(tmp_path):
     message = library(tmp_path, {"p/T": "uint64[9] a\nuint8 b\nuint8[] c"}).message("p/T")
     texts = texts_of(to_svg(lay_out(message, "cdr"), "p/T"))
     rows = [text for text in texts if re.fullmatch(r"\+?\d+", text)]
-    # The heads of the columns; the header; and then 9 rows of 8 bytes, of which six are left out.
+    # Column heads; the header; then 9 rows of 8 bytes, of which six are left out.
     assert rows == [*(f"+{lane}" for lane in range(8)), "0", "4", "68", "76"]
     assert "... 7 rows" in texts
-    # What is after a part of any size counts anew.
+    # After a part of variable size, offsets start again.
     message = library(tmp_path, {"p/U": "string s\nuint64[2] a"}).message("p/U")
     texts = texts_of(to_svg(lay_out(message, "ros1"), "p/U"))
     rows = [text for text in texts if re.fullmatch(r"\+?\d+", text)]
@@ -179,11 +179,11 @@ def test_names_are_beside_the_row_where_they_start(tmp_path):
     message = library(tmp_path, {"p/T": "uint8 a\nuint16 b\nuint64 c"}).message("p/T")
     texts = texts_of(to_svg(lay_out(message, "cdr"), "p/T"))
     assert "a uint8, b uint16" in texts and "c uint64" in texts
-    # Padding has no name there.
+    # Padding has no name beside its row.
     assert not [text for text in texts if "padding" in text and "," in text]
 
 
-def test_whatever_a_title_has_is_text(tmp_path):
+def test_special_characters_of_a_title_are_escaped(tmp_path):
     message = library(tmp_path, {"p/T": "uint8 a"}).message("p/T")
     title = "</text><script>&\"'"
     assert texts_of(to_svg(lay_out(message), title))[0] == title

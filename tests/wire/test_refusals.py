@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""What no wire has: it is read, and everything that would put it on a wire says where it stands."""
+"""Types that no wire has are read, but refused with their position by all users of a wire."""
 
 from __future__ import annotations
 
@@ -65,14 +65,14 @@ p/msg/Wide.idl:8:30: error: {sentence("three")}
 
 @pytest.mark.parametrize("wire", [None, "cdr", "ros1"])
 @pytest.mark.parametrize("name", ["Wide", "Middle", "Outer"])
-def test_layout_refuses_each_field_once_and_where_it_stands(load, tmp_path, wire, name):
+def test_layout_refuses_each_field_once_with_its_position(load, tmp_path, wire, name):
     with pytest.raises(DefinitionError) as error:
         lay_out(load(f"p/{name}"), wire)
     assert errors_of(error.value, tmp_path) == WHOLE
 
 
 def test_a_layout_that_took_it_would_be_noticed(load, monkeypatch):
-    # Without the rule there is a layout, of 16 bytes: nothing else stops it.
+    # Without the rule, there is a layout of 16 bytes: no other check refuses it.
     monkeypatch.setattr(layout, "refusals", lambda message: [])
     assert lay_out(load("p/Wide")).min_bytes >= 16 * 4
 

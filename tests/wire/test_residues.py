@@ -1,4 +1,4 @@
-"""Residue sets against brute force over offsets."""
+"""Residue sets, compared with brute force over offsets."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def mask(offsets):
 
 
 def offsets(residues):
-    """Some offsets of each residue, well above zero."""
+    """Return some offsets of each residue, well above zero."""
     return [8 * k + r for k in (0, 3) for r in range(8) if residues >> r & 1]
 
 
@@ -35,7 +35,7 @@ def test_aligned_pads_every_offset_to_the_next_multiple(residues, align):
 
 
 @given(residues=sets, align=aligns)
-def test_pad_of_is_known_just_when_all_offsets_need_the_same(residues, align):
+def test_pad_of_is_known_exactly_when_all_offsets_need_the_same(residues, align):
     pads = {-at % align for at in offsets(residues)}
     assert rs.pad_of(residues, align) == (pads.pop() if len(pads) == 1 else None)
 

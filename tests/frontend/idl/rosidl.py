@@ -1,6 +1,6 @@
-"""What rosidl_parser says about IDL texts, and what we say, in one form.
+"""Readings of IDL texts by rosidl_parser and by firm-hdl, in one form.
 
-Debian's ROS packages are seen by Debian's own Python alone, so it is asked in another process.
+Only Debian's own Python finds Debian's ROS packages, so rosidl_parser runs in another process.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ IDL_NAMES = {"bool": "boolean", "byte": "octet", "float32": "float", "float64": 
 
 
 def rosidl(texts: list[str]) -> list[list[dict[str, Any]] | str]:
-    """Ask rosidl_parser: messages of each text, or why it refuses it."""
+    """Return the messages that rosidl_parser reads in each text, or its error."""
     probe = [PYTHON, "-c", "import rosidl_parser"]
     has_it = Path(PYTHON).exists() and not subprocess.run(probe, capture_output=True).returncode
     need("rosidl_parser", PYTHON if has_it else None)

@@ -1,7 +1,7 @@
-"""Run by Debian's Python, which has rosidl_parser: what does it make of IDL texts?
+"""Read IDL texts with rosidl_parser; run by Debian's Python, which has it.
 
-Reads a list of texts as JSON, and writes for each a list of messages, or why it refuses it. It
-imports nothing of ours.
+The script reads a list of texts as JSON, and writes for each text a list of messages, or the error
+of rosidl_parser. It imports nothing of firm-hdl.
 """
 
 import json
@@ -29,7 +29,7 @@ def type_text(kind):
 
 
 def annotation(member, name):
-    """Give what stands after ``value=``."""
+    """Return the text after ``value=``."""
     values = member.get_annotation_values(name)
     return values[0].get("value") if values and isinstance(values[0], dict) else None
 
@@ -75,7 +75,7 @@ def messages(text):
 
 
 def answer(text):
-    """Give the messages of a text, or the text of the exception."""
+    """Return the messages of a text, or the text of the exception."""
     try:
         return list(messages(text))
     except Exception as error:

@@ -1,4 +1,4 @@
-"""IDL files of real ROS packages, where a corpus of them is at hand (``FIRM_HDL_CORPUS``)."""
+"""IDL files of real ROS packages, if ``FIRM_HDL_CORPUS`` names a corpus of them."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from tests.steps import calls_at_most
 
 
 def texts(message: Message) -> list[object]:
-    """Comments and units, which do not count when models are compared."""
+    """Return comments and units, which do not count when models are compared."""
     parts = [*message.constants, *message.fields]
     return [message.comment, *((part.name, part.comment, part.unit) for part in parts)]
 
 
 def adapted(kind: FieldType) -> FieldType:
-    """Do what rosidl_adapter does to a type: the ``char`` of ``.msg`` files becomes ``uint8``."""
+    """Replace ``char`` by ``uint8``, as rosidl_adapter does with the types of ``.msg`` files."""
     match kind:
         case Message():
             fields = (replace(item, type=adapted(item.type)) for item in kind.fields)
@@ -31,7 +31,7 @@ def adapted(kind: FieldType) -> FieldType:
 
 
 @pytest.mark.parametrize("kind", ["msg", "srv", "action"])
-def test_what_rosidl_adapter_writes_means_what_it_reads(corpus, kind, tmp_path):
+def test_idl_of_rosidl_adapter_means_the_same_as_its_input(corpus, kind, tmp_path):
     folder = corpus / "rosidl_adapter_pairs" / kind
     models = []
     for file, ending in ((f"Test.{kind}", kind), ("Test.expected.idl", "idl")):
@@ -42,13 +42,13 @@ def test_what_rosidl_adapter_writes_means_what_it_reads(corpus, kind, tmp_path):
         assert library.is_idl(f"test_msgs/{kind}/Test") == (ending == "idl")
         models.append(library.interface(f"test_msgs/{kind}/Test").messages)
     for message, other in zip(*models, strict=True):
-        # What comes with firm-hdl is the same on both sides, and has a `char` somewhere.
+        # Types of the distribution are the same on both sides, and some have a `char`.
         assert adapted(message) == adapted(other)
         assert texts(message) == texts(other)
 
 
 def leaves(message: Message, known: dict[str, int]) -> int:
-    """Count the leaves of a message, each element of an array of messages for itself."""
+    """Count the leaves of a message, with each element of an array of messages."""
     if message.name not in known:
         count = 0
         for item in message.fields:

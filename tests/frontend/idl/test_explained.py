@@ -1,4 +1,4 @@
-"""What is said of a text that is no IDL, and just which words are marked."""
+"""Error messages for texts that are not IDL, and the exact words that are marked."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from firm_hdl.frontend.idl.parse import parse_file
 RULE = "letters, digits and underscores, a letter first"
 
 
-def said(marked):
-    """Parse a text; return what is said, and the text with marks around the words meant."""
+def parse_error(marked):
+    """Parse a wrong text; return it with marks around the words of the error, and the message."""
     text = marked.replace("«", "").replace("»", "")
     found = parse_file(Source(name="t.idl", text=text))
     assert isinstance(found, Diagnostic), found
@@ -26,7 +26,7 @@ CASES = [
     ("«/**/»", "an empty comment is not allowed: ROS 2 reads its end as its content"),
     ("module m { «/*» }", "this comment is not closed"),
     ('const string S = «"abc»\n;', "this string is not closed in its line"),
-    # The L is a name, as far as anybody has come.
+    # The parser has read `L` as a name so far.
     ('const wstring S = L«"abc»\n;', "this string is not closed in its line"),
     ("module m {\n«\ufeff»", "a byte order mark is not allowed"),
     ("const long N = «0x»;", "'0x' is not a number"),
@@ -57,8 +57,8 @@ CASES = [
 
 
 @pytest.mark.parametrize(("marked", "message"), CASES)
-def test_the_words_that_are_wrong_are_marked_and_called_so(marked, message):
-    assert said(marked) == (marked, message)
+def test_wrong_words_are_marked_and_explained(marked, message):
+    assert parse_error(marked) == (marked, message)
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_the_words_that_are_wrong_are_marked_and_called_so(marked, message):
         "valuetype": "value types are",
     }.items(),
 )
-def test_what_ros_2_has_not_is_called_by_its_name(word, what):
+def test_unsupported_features_are_called_by_their_names(word, what):
     for before in ("", "module m { "):
         marked = f"{before}«{word}» x"
-        assert said(marked) == (marked, f"{what} not supported")
+        assert parse_error(marked) == (marked, f"{what} not supported")

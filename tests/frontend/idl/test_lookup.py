@@ -1,7 +1,7 @@
-"""Names that occur more than once: which of them is meant.
+"""Look-up of names that occur more than once.
 
-Where every constant has a name and a value of its own, a look-up in the wrong place finds the right
-one all the same. Here each place has the same names and other values.
+If every constant had its own name, a look-up in the wrong scope would find the right constant. Here
+each scope has the same names with other values.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def library(tmp_path, files):
 
 
 def sizes_of(text):
-    """The sizes of all members of all structs of a text, by struct and member."""
+    """Return the sizes of all members of all structs of a text, by struct and member."""
     messages, wrong = read(text)
     assert [d.message for d in wrong] == []
     return {
@@ -58,7 +58,7 @@ def test_a_struct_sees_its_own_constants_and_not_those_of_another():
 
 
 def test_a_module_around_a_struct_comes_before_the_structs_own_constants():
-    # As the standard has it: the struct's own stand in a module beside it.
+    # By the standard: the struct's own constants are in a module beside it.
     text = SERVICE.format(outer="", inner="const long N = 7;", request="", response="")
     assert set(sizes_of(text).values()) == {7}
     assert set(texts_of(text).values()) == {7}
@@ -71,13 +71,13 @@ def test_own_constants_come_before_those_of_modules_further_out():
     }  # fmt: skip
 
 
-def test_what_only_one_struct_has_is_seen_by_all():
+def test_constant_of_one_struct_is_seen_by_all():
     text = SERVICE.format(outer="", inner="", request="long b[B];", response="long a[A];")
     sizes = sizes_of(text)
     assert (sizes["S_Request.b"], sizes["S_Response.a"]) == (14, 13)
 
 
-def test_what_two_others_have_is_not_guessed():
+def test_constant_of_two_other_structs_is_not_found():
     text = """module p { module action {
       module D_Goal_Constants { const long N = 1; };
       struct D_Goal { long a[N]; };
@@ -127,7 +127,7 @@ BASE = "module {q} {{ const long K = {k}; module msg {{ const long N = {n}; {mor
 
 
 def test_constants_of_a_file_come_before_those_of_included_files(tmp_path):
-    # The same full names, with other values: the file's own are declared last.
+    # The same full names with other values: those of the file are declared last.
     files = {
         "p/msg/Base.idl": BASE.format(q="p", k=1, n=2, more=""),
         "p/msg/T.idl": """#include "p/msg/Base.idl"
@@ -198,7 +198,7 @@ def test_a_file_of_the_same_name_in_two_folders_is_that_beside_the_one_that_incl
 
 
 def test_files_of_one_library_do_not_remember_those_of_another(tmp_path, monkeypatch):
-    # Paths are as the user wrote them: the same words may mean another file.
+    # Paths are relative, as the user wrote them: the same path may be another file.
     for folder, n in (("one", 2), ("two", 3)):
         files = {
             "ws/p/msg/sizes.idl": f"module p {{ module msg {{ const long N = {n}; }}; }};",
@@ -265,7 +265,7 @@ def test_a_scope_before_a_typedef_has_to_be_its_own():
     for scope in ("b", "a::a", "p"):
         (wrong,) = read(text.replace("a::V x", f"{scope}::V x"))[1]
         assert wrong.message.startswith(f"'{scope}::V' is not a type"), scope
-    # A name like that of a struct is one.
+    # A name in the scope of structs is taken for a struct.
     messages, wrong = read(text.replace("a::V x", "p::msg::V x"))
     type_ = messages["T"].members[0].type
     assert wrong == [] and (type_.package, type_.kind, type_.name) == ("p", "msg", "V")
@@ -344,7 +344,7 @@ def test_comments_are_those_in_the_language_of_comments():
     assert wrong == []
     a, b, c = messages["T"].members
     assert a.comment == "one\ntwo\nthree"
-    # The first word of a name is what rosidl_parser goes by.
+    # rosidl_parser decides by the first word of a name.
     assert (b.comment, b.unit, c.unit) == ("", None, "s")
 
 
@@ -356,11 +356,11 @@ def test_a_default_of_one_name_is_not_that_of_an_array_after_it():
     assert wrong == []
     a, b = messages["T"].members
     assert [item.value for item in a.default.items] == [1, 2] and b.default.value == 3
-    # A list is no default of a number, nor the other way round.
+    # A list is no default of a number, and a number is none of a list.
     assert read('module p { struct T { @default(value="(1, 2)") long a, b[2]; }; };')[1]
 
 
-def test_an_unknown_constant_in_a_dependency_is_told_by_its_file(tmp_path):
+def test_unknown_constant_in_a_dependency_names_its_file(tmp_path):
     files = {
         "q/msg/U.idl": "module q { module msg { struct U { long a[N]; }; }; };",
         "p/msg/T.idl": """#include "q/msg/U.idl"

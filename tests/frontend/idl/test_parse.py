@@ -1,4 +1,4 @@
-"""Texts to trees."""
+"""The parser of IDL: from texts to trees."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_every_definition_has_its_place_and_its_parts():
     assert isinstance(minus, Unary) and words(minus) == "-2"
 
 
-def test_what_the_end_lacks_is_missed_right_after_the_text():
+def test_unexpected_end_is_marked_right_after_the_text():
     text = "module m {"
     found = parse_file(Source(name="test.idl", text=text + "\n"))
     assert isinstance(found, Diagnostic) and found.span is not None
@@ -132,13 +132,13 @@ def test_long_texts_are_read_in_time():
     ],
     ids=["modules", "sequences", "parentheses", "signs", "sums", "all operators"],
 )
-def test_what_is_nested_too_deeply_is_refused(text):
+def test_too_deep_nesting_is_refused(text):
     found = parse_file(Source(name="test.idl", text=text))
     assert isinstance(found, Diagnostic)
     assert found.message == "this is nested too deeply"
 
 
-def test_what_is_nested_deeper_than_anybody_writes_is_read():
+def test_deep_nesting_within_the_limit_is_read():
     deep = "module m { " * 20 + "const long A = " + "(1+" * 20 + "1" + ")" * 20 + "; " + "};" * 20
     assert len(parse(deep)) == 1
 
@@ -167,7 +167,7 @@ def test_chains_may_be_long():
         ("sequence<long, 3", "an operator or '>', not '}'"),
     ],
 )
-def test_what_may_follow_is_told(member, wanted):
+def test_errors_list_the_expected_tokens(member, wanted):
     text = f"module p {{ struct T {{ {member} }}; }};"
     found = parse_file(Source(name="test.idl", text=text))
     assert isinstance(found, Diagnostic)

@@ -1,4 +1,4 @@
-"""Trees to messages, and messages to the model."""
+"""From trees of IDL to messages, and from messages to the model."""
 
 from __future__ import annotations
 
@@ -169,7 +169,7 @@ def test_padding_member_alone_is_an_empty_message(tmp_path):
     member = "uint8 structure_needs_at_least_one_member;"
     assert message(tmp_path, member).fields == ()
     assert len(message(tmp_path, member + " long a;").fields) == 2
-    # It is what rosidl_adapter writes, and nothing else: a `long` has four bytes on the wire.
+    # Only the exact member of rosidl_adapter counts: a `long` has four bytes on the wire.
     for other in (member.replace("uint8", "long"), member.replace(";", "[1];")):
         assert len(message(tmp_path, other).fields) == 1
     files = {"q/msg/T.msg": member.rstrip(";")}
@@ -200,11 +200,11 @@ def test_what_is_included_can_be_named(tmp_path):
             struct T { long a[q::msg::N]; Pair b; q::msg::Base c; }; }; };""",
     }
     found = library(tmp_path, files).message("p/msg/T")
-    # `Base` and `Other` include each other, and `M` comes first for whoever starts at `Base`.
+    # `Base` and `Other` include each other; if `Base` is read first, `M` is declared before `N`.
     assert types(found) == {"a": "int32[6]", "b": "float64[2]", "c": "q/msg/Base"}
 
 
-def test_included_files_that_are_wrong_are_their_own_business(tmp_path):
+def test_errors_of_unused_parts_of_included_files_are_ignored(tmp_path):
     files = {
         "q/msg/Base.idl": """module q { module msg { const long N = 1 / 0;
             struct Base { any a; }; }; };""",
@@ -219,7 +219,7 @@ def test_included_files_that_are_wrong_are_their_own_business(tmp_path):
         lib.message("p/msg/U")
 
 
-def test_what_is_wrong_in_included_files_comes_first(tmp_path):
+def test_errors_of_included_files_come_first(tmp_path):
     files = {
         "q/msg/Base.idl": "module q { typedef fixed<3, 1> Bad; struct Base { long a; }; };",
         "p/msg/T.idl": '#include "q/msg/Base.idl"\nmodule p { typedef Bad A; };',
@@ -356,14 +356,14 @@ def test_blanks_in_a_list_mean_nothing(text):
 @pytest.mark.parametrize(
     "text", ["(1,2,3", "1,2,3)", "(1,2,3]", "[1,2,3)", "(", "", "(1 2)", "(,)", "(1,,2)", "(1,2);"]
 )
-def test_what_is_no_list_is_refused(text):
+def test_malformed_lists_are_refused(text):
     source = f'module p {{ struct T {{ @default(value="{text}") sequence<long> a; }}; }};'
     assert len(read(source)[1]) == 1
 
 
 @pytest.mark.parametrize(("kind", "text"), [("char", "'x'"), ("wchar", "L'x'")])
 def test_named_characters_are_characters(kind, text):
-    """They may stand where a character may, and not where a number is wanted."""
+    """They are legal as characters, and not as numbers."""
     head = f"module p {{ module T_Constants {{ const {kind} A = {text};"
     tail = "struct T { long a; }; };"
     messages, wrong = read(f"{head} const {kind} B = A; }}; {tail}")

@@ -1,6 +1,6 @@
-"""Our reading of IDL against that of rosidl_parser, on real files and on small variations.
+"""The reader of IDL, compared with rosidl_parser on real files and on small variations.
 
-``docs/errata.md`` names the groups of variations that we judge otherwise, on purpose.
+``docs/errata.md`` names the groups of variations with other results, on purpose.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def test_real_files_have_the_structure_that_rosidl_reads(files):
         ours = describe(messages)
         assert isinstance(theirs, list), theirs
         if path.endswith("MyMessage.idl"):
-            # It keeps a name for a bound.
+            # rosidl_parser keeps the name of a constant as the bound.
             assert "long double" in [f["type"] for f in theirs[0]["fields"]]
             (field,) = [f for f in theirs[0]["fields"] if "UNSIGNED_LONG_CONSTANT" in f["type"]]
             field["type"] = "wstring<42>"

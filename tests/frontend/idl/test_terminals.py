@@ -1,6 +1,6 @@
-"""What literals and names take: all short words of letters at borders of classes.
+"""Terminals of literals and names, on all short words of characters at borders of classes.
 
-The rules are those of IDL, written down here once more.
+The rules of IDL are restated here, independently of the grammar.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ def words(alphabet, longest):
 
 
 def literal(text):
-    """Return kind and text of a literal, or `None` if it is none."""
+    """Return kind and text of a literal, or `None` for other words."""
     file = parse_file(Source(name="test.idl", text=f"const long A = {text};"))
     if not isinstance(file, FileSyntax):
         return None
@@ -32,15 +32,15 @@ FLOAT = r"([0-9]+\.[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?|[0-9]+[eE][+-]?[0-9]+"
 FIXED = r"([0-9]+\.[0-9]*|\.?[0-9]+)[dD]"
 
 
-def kind(word):
-    """Tell what a word of digits is in IDL."""
+def kind_of_number(word):
+    """Return which kind of number a word is in IDL."""
     for name, rule in {"integer": INTEGER, "float": FLOAT, "fixed": FIXED}.items():
         if re.fullmatch(rule, word):
             return name
     return None
 
 
-def test_numbers_are_of_their_kind_and_end_where_they_end():
+def test_numbers_are_recognised_as_whole_words():
     digits = [word for word in words("0179.", 3) if word[0] != "."]
     tails = [head + word for head in ("0x", "0X") for word in words("09afAFgG_", 2)]
     floats = [*words("09.e", 4), *(word + "d" for word in words("09.", 3))]
@@ -50,18 +50,18 @@ def test_numbers_are_of_their_kind_and_end_where_they_end():
         if not word[0].isdigit() and word[0] != ".":
             continue  # A name.
         found = literal(word)
-        want = kind(word)
+        want = kind_of_number(word)
         assert (found[0] if found else None) == want, word
 
 
 def test_the_whole_word_is_wrong_and_not_what_follows_a_number():
-    # With two digits at the end, a shorter number might do.
+    # With two digits at the end, a shorter prefix could be a number.
     heads = (
         "0 10 199 100 07 077 000 0x1 0xAA 0xFF 0xaa 0xff 0x99 0x00 1. .1 1.0 1.00 1.99 .00 .99 "
         "1e1 1e00 1e99 1d 1.d .1d"
     ).split()
     for word in (head + tail for head in heads for tail in "AZaz09_."):
-        if kind(word) is None:
+        if kind_of_number(word) is None:
             found = parse_file(Source(name="test.idl", text=f"const long A = {word};"))
             assert not isinstance(found, FileSyntax), word
             assert found.message == f"'{word}' is not a number"
@@ -80,13 +80,13 @@ def test_characters():
 
 
 def test_names():
-    def named(word):
+    def as_name(word):
         file = parse_file(Source(name="test.idl", text=f"const long {word} = 1;"))
         return isinstance(file, FileSyntax) and file.definitions[0].name.text == word
 
     for word in (*words("AZ@az`09:_", 2), *words("aA0_", 4)):
         legal = re.fullmatch("[A-Za-z][A-Za-z0-9_]*", word) is not None
-        assert named(word) == legal, word
+        assert as_name(word) == legal, word
 
 
 def test_words_that_go_on_after_a_builtin_type_are_names():

@@ -1,4 +1,4 @@
-"""Expressions and what their values may be used for."""
+"""Expressions, and the types that take their values."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def test_values_become_those_of_a_type(name, text, want):
 
 
 @pytest.mark.parametrize("text", ["1 << 64", "1 << -1", "1 >> 64", "-9223372036854775808 - 1"])
-def test_what_64_bits_do_not_hold_is_refused(text):
+def test_values_beyond_64_bits_are_refused(text):
     with pytest.raises(IdlError):
         value(text)
     with pytest.raises(IdlError):

@@ -1,4 +1,4 @@
-"""Small IDL texts, in groups by whether rosidl_parser 3.3.1 and we agree about them."""
+"""Small IDL texts, in groups by agreement between rosidl_parser 3.3.1 and firm-hdl."""
 
 from __future__ import annotations
 
@@ -228,7 +228,7 @@ AGREED: dict[str, str] = {
     "msg file": "int32 a\nstring b\n",
 }
 
-# Constants and expressions: rosidl_parser knows one literal, and names of constants nowhere but in
+# Constants and expressions: rosidl_parser reads a single literal, and names of constants only in
 # bounds of wstring, where they stay names.
 ALLOWED_HERE: dict[str, str] = {
     "constant as a length": _constant("const long N = 3;", "long a[N];"),
@@ -251,7 +251,7 @@ ALLOWED_HERE: dict[str, str] = {
 }
 
 REFUSED_HERE: dict[str, str] = {
-    # Named by the standard or by us as not supported.
+    # Not supported, by the standard or by firm-hdl.
     "optional": _struct("@optional long a;"),
     "mutable": _struct().replace("struct", "@mutable struct"),
     "extensibility mutable": _struct().replace("struct", "@extensibility(MUTABLE) struct"),
@@ -261,7 +261,7 @@ REFUSED_HERE: dict[str, str] = {
     "two dimensions by a typedef": _struct(
         "A a[2];", "typedef q::msg::X B; typedef B A[3];"
     ).replace("q::msg::X", "long"),
-    # Types that are none.
+    # Words that are no types.
     "typedef of nothing": _struct("A a;", "typedef Nothing A;"),
     "typedef of itself": _struct("A a;", "typedef A A;"),
     "typedef of an enum": _struct("A a;", "enum E { X }; typedef E A;"),
@@ -287,10 +287,10 @@ REFUSED_HERE: dict[str, str] = {
     "bound of a wstring that is no constant": _struct("wstring<N> a;"),
     "bound of a wstring of 0": _struct("wstring<0> a;"),
     "negative length": _struct("long a[-1];"),
-    # Names that C++ would have twice.
+    # Names that would be declared twice in C++.
     "member twice": _struct("long a; long a;"),
     "constant twice": _constant("const long A = 1; const long A = 2;"),
-    # What rosidl reads otherwise than it is written.
+    # Texts that rosidl reads with another meaning than the written one.
     "array and a name after": _struct("long a[2], b;"),
     "number in two words": _struct("long a[1 2];"),
     "words run together": _struct("shortvalue;"),

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Words have all that packets are made of: put together by the rules of their layout, they are."""
+"""Words of the collector: joined by the rules of their layout, they make up the packets."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def words_of(plan, packets):
 
 
 def packets_of(plan, words):
-    """Put words together to packets, as the layout of words says, and check their estimates."""
+    """Join words to packets by the rules of their layout, and check their estimates."""
     bus, header = plan.bus_bytes, plan.header_bytes
     packets, packet, at = [], {}, 0
     for word in words:

@@ -1,4 +1,4 @@
-"""A bench for parts with packet streams: what went in and out, and in which cycles."""
+"""A bench for parts with packet streams: it records transfers and their cycles."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from firm_hdl.sim.job import Job, RunOptions
 from firm_hdl.sim.payloads import PacketCollector, packet_beats
 from firm_hdl.sim.watch import PacketRules
 
-__all__ = ["PacketBench", "Seen", "beats", "with_side"]
+__all__ = ["PacketBench", "Trace", "beats", "with_side"]
 
 
 def with_side(port, side):
@@ -36,13 +36,13 @@ def beats(packets, bus_bytes, sides=None, *, noise=None):
 
 
 @dataclass
-class Seen:
-    """What a run saw.
+class Trace:
+    """The record of a run.
 
     Attributes
     ----------
     packets, sides
-        By output: its packets, and what was beside the beats of each.
+        By output: its packets, and the values beside the beats of each.
     times
         By stream: the cycles of its transfers.
     events
@@ -63,7 +63,7 @@ class Seen:
 
     @property
     def counts(self):
-        """Return how much has been seen of each output and event."""
+        """Return the numbers of packets, transfers and events so far."""
         return {
             **{name: len(packets) for name, packets in self.packets.items()},
             **{name: len(each) for name, each in self.events.items()},
@@ -107,12 +107,14 @@ class PacketBench:
         flags += [Value.cast(value) for value in self.final.values()]
         self.bench = Bench(design, ports, probes=flags, keeps_state=keeps_state)
 
-    def run(self, sources: Mapping[str, Sequence[int]], want: Mapping[str, int], **options) -> Seen:
-        """Send beats until there is as much of each output and event as `want` says.
+    def run(
+        self, sources: Mapping[str, Sequence[int]], want: Mapping[str, int], **options
+    ) -> Trace:
+        """Send beats until each output and event has reached the number in `want`.
 
         `want` may also have the number of transfers of an input.
         """
-        seen = Seen(
+        seen = Trace(
             {name: [] for name in self.outputs},
             {name: [] for name in self.outputs},
             {name: [] for name in (*self.inputs, *self.outputs, *self.others)},

@@ -40,7 +40,7 @@ def gate_bench(gate, **options):
 
 
 class GateRun:
-    """Packets through a gate, with all that must hold of any run."""
+    """A run of packets through a gate, with the checks that hold for every run."""
 
     def __init__(self, gate, packets, bench=None, want=None, **options):
         bus = gate.bus_bytes
@@ -61,7 +61,7 @@ class GateRun:
         for packet in packets:
             at += beats_of(len(packet), bus)
             self.lasts.append(self.taken[at])
-        # One status per packet. What leaves is what was good, with its size.
+        # One status per packet. The good packets leave, with their sizes.
         assert len(self.statuses) == len(packets)
         pairs = zip(packets, self.statuses, strict=True)
         assert self.packets == [packet for packet, status in pairs if status == OK]
@@ -70,7 +70,7 @@ class GateRun:
         assert self.counters == counted | {"overrun": self.statuses.count(OVERRUN)}
 
 
-def judged(message, packets, bus_bytes, most=1 << 24):
-    """Return what the interpreter of the plan says of packets."""
+def expected_statuses(message, packets, bus_bytes, most=1 << 24):
+    """Return the statuses that the interpreter of the plan gives to packets."""
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes, max_message_bytes=most)
     return [GateStatus[str(decode(plan, packet).status)] for packet in packets]

@@ -1,4 +1,4 @@
-"""All parts in all output languages: Verilog, and VHDL that does in GHDL what Amaranth does."""
+"""All parts in all output languages: Verilog, and VHDL that agrees with Amaranth in GHDL."""
 
 from __future__ import annotations
 
@@ -55,8 +55,8 @@ def test_ghdl_analyses_the_crossing(tmp_path):
     analyse(convert(PARTS["crossing"](), name="dut"), tmp_path)
 
 
-def offered(steps):
-    """Return steps without payloads that are not offered.
+def meaningful_steps(steps):
+    """Return steps without payloads that have no meaning, because `valid` is low.
 
     In Amaranth's simulator, a reset clears the register of a memory's read port, in RTLIL it does
     not. So after a reset, the payload of `status` differs while it has no meaning.
@@ -69,7 +69,7 @@ def offered(steps):
 
 
 @pytest.mark.parametrize("part", one_clock)
-def test_the_vhdl_does_in_ghdl_what_the_part_does_in_python(part, tmp_path):
+def test_vhdl_in_ghdl_equals_the_part_in_python(part, tmp_path):
     need("ghdl", GHDL)
     vhdl, component = convert(PARTS[part](), name="dut"), PARTS[part]()
     top, domain = Module(), ClockDomain("sync")
@@ -84,6 +84,6 @@ def test_the_vhdl_does_in_ghdl_what_the_part_does_in_python(part, tmp_path):
     want = expected(top, inputs, outputs, steps)
     sizes = {port: len(value) for port, value in outputs.items()}
     seen = simulate(vhdl, steps, widths, sizes, tmp_path)
-    assert difference(offered(want), offered(seen)) is None
+    assert difference(meaningful_steps(want), meaningful_steps(seen)) is None
     if part in ("fifo", "gate"):
         assert "latch" not in synthesize(vhdl, tmp_path).lower()

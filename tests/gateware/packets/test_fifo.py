@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The packet FIFO: what leaves is what came, whole; what is dropped, and when."""
+"""The packet FIFO: whole packets leave in order; which packets are dropped, and when."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Run:
         for packet in packets:
             before = sum(beats_of(len(each), bus) for each in packets[: len(self.lasts)])
             self.lasts.append(self.taken[before + beats_of(len(packet), bus) - 1])
-        # One decision per packet, in time; what leaves is what was kept, with its size.
+        # One decision per packet, in time; the kept packets leave, with their sizes.
         assert len(self.outcomes) == len(packets)
         assert self.ended == [cycle + RESULT for cycle in self.lasts]
         pairs = list(zip(packets, self.outcomes, strict=True))
@@ -137,7 +137,7 @@ def test_a_beat_comes_and_a_beat_leaves_in_each_cycle(size):
 def test_aborted_packets_cost_their_beats_and_no_more():
     packets = [of_beats(size, 8) for size in (1, 7, 1, 1, 4, 8, 1) * 5]
     bad = set(range(len(packets))) - {5, 20}
-    # Two words more than the largest one: the others must leave nothing behind.
+    # The memory has two words more than the largest packet: aborted ones must leave nothing behind.
     run = Run(PacketFifo(8, 16 * 8, 4), packets, bad)
     assert run.taken == list(range(run.taken[0], run.taken[0] + len(run.taken)))
 
@@ -158,7 +158,7 @@ def test_a_packet_as_large_as_the_memory_passes_and_a_larger_one_does_not(bus_by
     slow = {"in": Stalls.bits("1110")}
     run = Run(fifo, packets, bench=bench, stalls=slow)
     assert run.outcomes == [KEPT, LARGE, KEPT, LARGE, KEPT]
-    # A bad packet is a bad packet.
+    # A packet that is aborted and too large counts as bad.
     run = Run(fifo, packets, {1}, bench=bench)
     assert run.outcomes[1] == ABORTED
 
@@ -168,7 +168,7 @@ def test_a_packet_larger_than_the_memory_does_not_hold_the_link():
     packets = [of_beats(size, bus) for size in (40, 3, 17, 3, 100, 3)]
     run = Run(PacketFifo(bus, most * bus, 4), packets)
     assert run.outcomes == [LARGE, KEPT] * 3
-    # A cycle without room, after the beat that fills the memory. All small packets have left.
+    # One cycle without room after the beat that fills the memory. All small packets have left.
     spent = run.taken[-1] - run.taken[0] + 1
     assert spent == len(run.taken) + run.outcomes.count(LARGE)
 
@@ -193,7 +193,7 @@ def test_the_number_of_packets_is_a_limit(packets):
     waits = 60
     run = Run(fifo, sent, stalls={"out": Stalls.bits("0" * waits + "1" * 1000)})
     assert run.outcomes == [KEPT] * 20
-    # Besides the one that is leaving.
+    # One more packet is leaving already.
     assert sum(cycle < waits for cycle in run.taken) == packets + 1
     fifo = PacketFifo(4, 1024, packets, when_full="drop")
     gap = {"in": Stalls.bits("00001"), "out": Stalls.bits("0" * 200 + "1" * 1000)}
@@ -282,42 +282,42 @@ def test_no_output_depends_on_an_input_in_the_same_cycle(when_full):
     assert not has_path(fifo, inputs, Cat(came.ready, held))
 
 
-# Twins: a FIFO with a fault, and the check that finds it.
+# Must-fail twins: a FIFO with a fault, which the checks find.
 
 
 class _Broken(PacketWriter):
-    """A writer with a line of its own at the end, which wins."""
+    """A writer with a further assignment, which overrides earlier ones."""
 
     def elaborate(self, platform):
         m = super().elaborate(platform)
-        self.spoil(m)
+        self.inject_fault(m)
         return m
 
 
 class _ForgetsToAbort(_Broken):
-    def spoil(self, m):
+    def inject_fault(self, m):
         m.d.sync += self.aborts.eq(0)
 
 
 class _NeverGoesBack(_Broken):
-    def spoil(self, m):
+    def inject_fault(self, m):
         m.d.comb += self.rewinds.eq(0)
 
 
 class _HasAlwaysRoom(_Broken):
-    def spoil(self, m):
+    def inject_fault(self, m):
         m.d.comb += self.packets.ready.eq(1)
         m.d.sync += self.fits.eq(1)
 
 
 class _HasNeverALargePacket(_Broken):
-    def spoil(self, m):
+    def inject_fault(self, m):
         m.d.comb += self.drops.eq(0)
         m.d.comb += self.rewinds.eq(self.has_beat & self.beat.last & self.aborts)
 
 
 class _CommitsEarly(_Broken):
-    def spoil(self, m):
+    def inject_fault(self, m):
         with m.If(self.writes):
             m.d.sync += self.kept.eq(self.kept + 1)
 

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The packet gate: only good packets pass, whole; each packet has a status; nothing holds it."""
+"""The packet gate: only good packets pass, whole; each has a status; none blocks the gate."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from tests.gateware.packets.gates import (
     OK,
     OVERRUN,
     GateRun,
+    expected_statuses,
     gate_bench,
-    judged,
 )
 from tests.gateware.test_parser import BAD, GOOD, HEADER, has_path, random_packets
 from tests.strategies import BUS_WIDTHS, make
@@ -47,7 +47,7 @@ def test_only_good_packets_pass_whole_and_in_order_under_any_stall(name, distro,
     message = load_message(name, distro=distro)
     most = 10_000
     _, packets = random_packets(message, bus_bytes, 4)
-    want = judged(message, packets, bus_bytes, most)
+    want = expected_statuses(message, packets, bus_bytes, most)
     largest = max(map(len, packets))
     memory = max(2 * bus_bytes, 1 << largest.bit_length())
     gate = PacketGate(
@@ -77,7 +77,7 @@ def test_bad_packets_of_each_kind_between_good_ones(bus_bytes, when_full):
     gap = None if when_full == "wait" else {"in": Stalls.bits("01")}
     run = GateRun(gate, packets, stalls=gap)
     assert run.statuses == want
-    # What an error adds is less than the beats of these packets on a narrow bus.
+    # The cycles of an error are fewer than the beats of these packets on a narrow bus.
     if when_full == "wait" and bus_bytes < 4:
         assert run.taken == list(range(run.taken[0], run.taken[0] + len(run.taken)))
 
@@ -131,14 +131,14 @@ def test_a_packet_that_claims_nearly_a_million_elements_costs_its_beats_and_a_fe
     packets = [BOMB, NO_BOMB, BOMB, BOMB, NO_BOMB]
     run = GateRun(gate, packets)
     assert [status.name for status in run.statuses] == "TRUNCATED OK TRUNCATED TRUNCATED OK".split()
-    # Free again: the packet after it is in, whole, and has its status.
+    # The gate is free again: the next packet is in, whole, and has its status.
     own, next_own = beats_of(len(BOMB), bus_bytes), beats_of(len(NO_BOMB), bus_bytes)
     assert run.lasts[1] - run.taken[0] + 1 <= own + 16 + next_own
     assert run.times[0] - run.taken[0] + 1 <= own + 16 + LATENCY
     if bus_bytes == 8:
         # The parser takes 15 cycles for a bomb, and 3 for the beats of the other packet.
         assert run.times == [22, 25, 40, 55, 58]
-    # Many of them do not add up.
+    # The delays of many bombs do not add up.
     many = GateRun(gate, [BOMB] * 20 + [NO_BOMB])
     steps = len(BOMB) // 4 + 4
     assert many.times[-1] <= 20 * max(own, steps) + next_own + LATENCY + ERROR
@@ -171,14 +171,14 @@ def test_the_link_is_held_exactly_when_nothing_has_room():
     good, bad = bytes.fromhex(GOOD), bytes.fromhex(GOOD)[:11]
     gate = PacketGate(load_message(HEADER), bus_bytes=bus, memory_bytes=memory)
     waits = 200
-    # Bad packets need no memory, whatever stands before them.
+    # Bad packets need no memory, whatever precedes them.
     packets = [good, *[bad] * 30, *[good] * 20]
     stalls = {"out": Stalls.bits("0" * waits + "1" * 1000)}
     run = GateRun(gate, packets, stalls=stalls, deadline=400)
     inside = sum(cycle < waits for cycle in run.taken)
     # Two words are in the registers of the reader. The parser has 2 statuses, and its ring is full.
     assert inside == 30 * 2 + memory // bus + 2 + 15
-    # The link was held long before, and is free again soon.
+    # The link was held long before the output starts, and is free soon afterwards.
     assert run.taken[inside - 1] < waits - 30 < run.taken[inside] <= waits + 6
 
 
@@ -199,7 +199,7 @@ def test_reset_in_the_middle_discards_all(when_full):
     packets = [good, bad, BOMB, good]
     gate = PacketGate(load_message(HEADER), bus_bytes=4, memory_bytes=128, when_full=when_full)
     bench = gate_bench(gate, keeps_state=True)
-    want = judged(load_message(HEADER), packets, 4)
+    want = expected_statuses(load_message(HEADER), packets, 4)
     source = list(beats(packets, 4))
     for count in range(1, len(source)):
         with pytest.raises(DeadlineError):
@@ -228,7 +228,7 @@ def test_random_gates_with_random_stalls_and_resets(seed):
         max_message_bytes=most,
     )
     bench = gate_bench(gate, keeps_state=True)
-    bad = judged(message, packets, bus, most)
+    bad = expected_statuses(message, packets, bus, most)
     for _ in range(2):
         stalls = {
             each: Stalls(rng.choice([0, 0.3, 0.8]), max_cycles=rng.choice([1, 5, 40]), seed=seed)
@@ -252,8 +252,8 @@ def test_no_output_depends_on_an_input_in_the_same_cycle(when_full):
     came, out, status = gate.packets_in, gate.packets_out, gate.status
     inputs = Cat(Value.cast(came.payload), came.valid, out.ready, status.ready)
     held = Cat(out.valid, Value.cast(out.payload), gate.size)
-    said = Cat(status.valid, Value.cast(status.payload))
-    assert not has_path(gate, inputs, Cat(came.ready, held, said))
+    status_bits = Cat(status.valid, Value.cast(status.payload))
+    assert not has_path(gate, inputs, Cat(came.ready, held, status_bits))
 
 
 def test_a_gate_judges_by_the_wire_that_is_asked_for():
@@ -273,7 +273,7 @@ def test_parameters_are_checked():
         PacketGate("std_msgs/msg/Header")
 
 
-# Twins: a gate with a fault, and the check that finds it.
+# Must-fail twins: a gate with a fault, which the checks find.
 
 
 class _LetsAllPass(_Verdicts):
@@ -301,7 +301,7 @@ def test_a_fault_of_the_gate_is_found(monkeypatch, fault):
     def check():
         gate = PacketGate(load_message(HEADER), bus_bytes=8, memory_bytes=64)
         run = GateRun(gate, packets, stalls={"status": Stalls.bits("0" * 150 + "1" * 3)})
-        assert run.statuses == judged(load_message(HEADER), packets, 8)
+        assert run.statuses == expected_statuses(load_message(HEADER), packets, 8)
 
     check()
     monkeypatch.setattr("firm_hdl.gateware.packets.gate._Verdicts", fault)

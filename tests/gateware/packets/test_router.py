@@ -31,7 +31,7 @@ def run(router, packets, topics, stalls=None, **options):
     for packet, topic in zip(packets, topics, strict=True):
         each = beats([packet], bus, [0], noise=noise)
         side_at = 8 * bus + bus.bit_length() + 1
-        # Only beside the first beat, the topic has a meaning.
+        # The topic has a meaning only beside the first beat.
         for number, beat in enumerate(each):
             side = noise.getrandbits(len(router.topic)) if number else topic
             source.append(beat | side << side_at)
@@ -108,7 +108,7 @@ def test_parameters_are_checked():
 
 
 class _ForgetsTheTopic(PacketRouter):
-    """Each beat goes where its own topic says."""
+    """Each beat goes to the output of its own topic."""
 
     def elaborate(self, platform):
         m = super().elaborate(platform)

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""A gate on a link that cannot be held: whole packets are dropped, in order and counted."""
+"""The gate on a link that cannot be held: it drops whole packets and counts them."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def strings(bus_bytes, count):
 
 @pytest.fixture
 def short_backlog(monkeypatch):
-    """Few beats wait for the parser, so that short traffic is too much."""
+    """A small backlog for the parser, so that short traffic overruns it."""
     monkeypatch.setattr("firm_hdl.gateware.packets.gate.BACKLOG_BEATS", 33)
 
 
@@ -69,7 +69,7 @@ def check_overruns(bus_bytes, takes):
     assert OVERRUN in run.statuses and OK in run.statuses
     for status, without in zip(run.statuses, want, strict=True):
         assert status in (without, OVERRUN)
-    # Afterwards, all is as before.
+    # Afterwards, the gate works as before.
     gap = {"in": Stalls.bits("0" * 2 * bus_bytes + "1"), "status": Stalls.bits(takes)}
     assert GateRun(gate, packets[-5:], bench, stalls=gap, deadline=2000).statuses == want[-5:]
 
@@ -80,13 +80,13 @@ def test_packets_that_come_while_the_parser_is_behind_are_dropped_and_counted(bu
     check_overruns(bus_bytes, takes)
 
 
-def test_statuses_that_nobody_takes_hold_the_gate_or_drop_packets():
+def test_statuses_that_are_not_taken_hold_the_gate_or_drop_packets():
     good = b"\0\1\0\0\1"
     message = load_message("std_msgs/msg/Bool")
     never = {"status": Stalls.bits("0" * 500 + "1" * 1000)}
     gate = PacketGate(message, memory_bytes=2048, packets=256)
     run = GateRun(gate, [good] * 60, stalls=never, deadline=600)
-    # 8 statuses, 2 in the parser, and what its buffer takes then.
+    # 8 statuses in the FIFO, 2 in the parser, and the beats in its buffer.
     inside = sum(cycle < 500 for cycle in run.taken)
     assert 10 <= inside <= 10 + 10
     gate = PacketGate(message, memory_bytes=2048, packets=256, when_full="drop")
@@ -94,7 +94,7 @@ def test_statuses_that_nobody_takes_hold_the_gate_or_drop_packets():
     inside += BACKLOG_BEATS
     run = GateRun(gate, [good] * 450, bench, stalls=never, deadline=600)
     assert run.statuses == [OK] * inside + [OVERRUN] * (450 - inside)
-    # More than 255 in a row have no status, but are counted.
+    # Packets after 255 dropped ones in a row have no status, but are counted.
     for more in (0, 1):
         sent = inside + MOST_DROPPED + more
         never = {"status": Stalls.bits("0" * 600 + "1" * 1000)}
@@ -109,7 +109,7 @@ def test_statuses_that_nobody_takes_hold_the_gate_or_drop_packets():
         assert bench.state["overrun"] == MOST_DROPPED + more
 
 
-# Twins: a gate with a fault, and the check that finds it.
+# Must-fail twins: a gate with a fault, which the checks find.
 
 
 class _ReportsDroppedPacketsTooEarly(_Verdicts):

@@ -78,7 +78,7 @@ def test_parameters_are_checked():
 
 
 class _ForgetsTheLast(PacketWidth):
-    """A wide beat is only complete when it is full."""
+    """A wide beat leaves only when it is full."""
 
     def elaborate(self, platform):
         m = super().elaborate(platform)

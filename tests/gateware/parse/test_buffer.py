@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The packet buffer against lists: what has arrived, where packets end, and what is free again."""
+"""The packet buffer, compared with lists: arrived beats, ends of packets, and freed beats."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Reference:
         self.beats, self.start, self.freed = [], 0, 0
 
     def expected(self, cycle):
-        """Return `limit`, `ended` and `following`, as they are without end."""
+        """Return `limit`, `ended` and `following`, without their wrap-around."""
         seen = [beat for beat in self.beats[self.start :] if beat[0] + 2 <= cycle]
         for number, (_, count, last) in enumerate(seen):
             if last:
@@ -51,7 +51,7 @@ class Reference:
 class Comparison:
     """A buffer with random traffic, compared with the reference in each cycle.
 
-    `tamper`: a function that changes what was seen, so that a test can show that it matters.
+    `tamper`: a function that changes observed values, so that a test can show that they matter.
     """
 
     def __init__(self, dut, seed, tamper=None):
@@ -60,7 +60,7 @@ class Comparison:
         self.rng, self.reference = random.Random(seed), Reference(self.bus)
         self.modulus = 2 * self.reference.depth
         self.offered = None
-        # The longest time in which no beat was taken although all was free.
+        # The longest time without a transfer while the whole ring is free.
         self.waiting = 0
 
     async def run(self, ctx):
@@ -149,7 +149,7 @@ def packet_beat(number, count, last, bus):
 @pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8, 64])
 def test_beats_and_ends_of_packets(bus_bytes):
     reference = compare(buffer_of(bus_bytes), seed=bus_bytes)
-    # The traffic had all cases: the ring was full, and several packets were in it.
+    # The traffic covers all cases: the ring was full, and several packets were in it.
     assert len(reference.beats) > CYCLES / 5
     assert sum(last for _, _, last in reference.beats) > CYCLES / 20
 
@@ -162,6 +162,6 @@ def test_beats_and_ends_of_packets(bus_bytes):
         lambda seen: {"following": seen["following"] and seen["following"] ^ 1},
     ],
 )
-def test_what_is_wrong_is_noticed(tamper):
+def test_wrong_outputs_are_noticed(tamper):
     with pytest.raises(AssertionError):
         compare(buffer_of(4), seed=1, tamper=tamper)

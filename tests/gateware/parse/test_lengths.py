@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Decoded lengths against plain arithmetic, for each lane and each meaning."""
+"""Decoded lengths, compared with plain arithmetic, for each lane and each meaning."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def plan_of(name, bus_bytes):
 
 
 def expected(plan, meaning, length, key, phase):
-    """Return what a length means, by the names of the fields.
+    """Return the decoded values of a length, by the names of their fields.
 
     Parameters
     ----------
@@ -67,11 +67,11 @@ def expected(plan, meaning, length, key, phase):
     if isinstance(meaning, RunMeaning):
         named[meaning.rest] = fields["rest"]
         if length <= plan.word(meaning.begin.run):
-            named |= places(plan, meaning, length, key, phase)
+            named |= next_last_bytes(plan, meaning, length, key, phase)
     return named
 
 
-def places(plan, meaning, length, key, phase):
+def next_last_bytes(plan, meaning, length, key, phase):
     """Return the last byte of each step that may follow, if all items are in the rest."""
 
     def aligned(position, align):

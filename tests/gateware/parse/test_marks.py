@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Marks of bytes and headers against the bytes themselves."""
+"""Marks of bytes and headers, compared with the bytes themselves."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from firm_hdl.wire import lay_out
 from tests.strategies import make
 
 TEXT = make("ros2", {"s": "string"})
-# The first two bytes are checked, the next two may be anything.
+# The first two bytes are checked; the next two may have any value.
 HEADER = (0, 1)
 
 
@@ -58,7 +58,7 @@ def compare(bus_bytes, tamper=lambda found: found):
 
 
 def mismatch(checks, present):
-    """Return a bit for each step with checked bytes: whether one that is there differs."""
+    """Return a bit for each step with checked bytes: whether an arrived one differs."""
     wrong = [
         any(present[k] != byte for k, byte in each if k < len(present)) for each in checks.values()
     ]

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The queue of orders against a list of at most two."""
+"""The queue of orders, compared with a list of at most two."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LAYOUT = order_layout(PLAN)
 
 
 def compare(rates, tamper=lambda bits: bits):
-    """Send random orders; `rates`: how often orders are offered, and how often they are taken."""
+    """Send random orders; `rates` has the rates of offered and of taken orders."""
     dut, rng = OrderQueue(PLAN), random.Random(str(rates))
     queue, taken, most = [], 0, 0
 

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The orders of the sequencer against the interpreter: steps, positions, sizes, and the end."""
+"""The orders of the sequencer, compared with the interpreter: steps, positions, sizes, ends."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tests.strategies import make
 TEXT = make("ros2", {"s": "string", "d": "float64"}, "Text")
 OLD = make("ros1", {"s": "string", "d": "float64"}, "Old")
 MESSAGES = {
-    # Every alignment, before maps and of items; a loop; a constant count; a last rest.
+    # Every alignment of maps and items; a loop; a constant count; a rest at the end.
     "cdr": make("ros2", {"a": "uint8", "s": "string", "d": "float64[]", "t": (TEXT, "[]")}),
     "ros1": make("ros1", {"a": "uint8", "s": "string", "d": "float64[]", "t": (OLD, "[]")}),
     "array": make("ros2", {"a": "uint8[40]", "s": "uint16[]", "x": "float64"}),
@@ -64,7 +64,7 @@ class Ordering(wiring.Component):
 
 
 def expected(plan, packets):
-    """Return the fields of orders that have a meaning, by the interpreter."""
+    """Return the meaningful fields of orders, by the interpreter."""
     bus, ring = plan.bus_bytes, Ring(plan)
     orders, base = [], 0
 
@@ -88,7 +88,7 @@ def expected(plan, packets):
                 order |= {"map_at": place(start), "map_bytes": bus}
             if step.rest is not None:
                 size = visit.bytes - step.bytes
-                # The NUL is no item. In CDR, a run with a NUL has at least that.
+                # The NUL is no item. In CDR, a run with a NUL has at least the NUL.
                 size -= bool(size) and plan.runs[step.rest].terminated
                 order["items"] = int(size > 0)
                 if size:
@@ -107,7 +107,7 @@ def expected(plan, packets):
 
 
 def compare(plan, packets, tamper=lambda name, value: value):
-    """Run packets through a sequencer, and compare all its orders; return how many there were."""
+    """Run packets through a sequencer, compare all its orders, and return their number."""
     dut, rng = Ordering(plan), random.Random(1)
     want = expected(plan, packets)
     beats = list(all_beats(packets, plan.bus_bytes, counts=True))
@@ -158,7 +158,7 @@ def test_each_field_matters(field):
 
 
 def test_alignments_of_items_occur():
-    # Otherwise the test would not see them.
+    # Otherwise the tests above would not cover them.
     aligns = set()
     for bus_bytes in (8, 16):
         plan = build_plan(lay_out(MESSAGES["cdr"]), bus_bytes=bus_bytes)

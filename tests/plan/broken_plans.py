@@ -1,0 +1,60 @@
+"""Plans of all constructs, and the messages of the check after changes of their values."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import replace
+from typing import Any
+
+from firm_hdl.plan import build_plan, check
+from firm_hdl.wire import lay_out
+from tests.strategies import make
+
+from .test_check import RICH
+
+__all__ = ["PLANS", "problems_of"]
+
+
+def plan_of(fields, bus_bytes=8, dialect="ros1"):
+    return build_plan(lay_out(make(dialect, fields)), bus_bytes=bus_bytes)
+
+
+PLANS = {
+    "rich": build_plan(lay_out(RICH), bus_bytes=8),
+    # A string and items wider than the bus, which are a loop.
+    "narrow": plan_of({"m": "float32[7]", "s": "string"}, 1),
+    "trigger": plan_of({"a": "uint8", "e": make("ros1", {}, "E")}),
+    # A run of constant count that begins at the start.
+    "entered": plan_of({"b": "uint8[24]"}),
+    # A transfer in three steps.
+    "cut": plan_of({"b": "uint64"}, 2),
+    "last": plan_of({"a": "uint8", "b": "uint8", "c": "uint8"}),
+    "side": plan_of({"a": "uint8", "b": "uint64"}, 16),
+    # An array of two transfers.
+    "pair": plan_of({"a": "uint32", "t": "uint32[3]"}),
+    # A run whose rest is the end of the packet.
+    "text": plan_of({"s": "string"}),
+    # A run before a loop that ends in a run.
+    "texts": plan_of({"s": "string", "ts": (make("ros1", {"t": "string"}, "T"), "[2]")}),
+    # Padding of items only, before the first one.
+    "gap": plan_of({"a": "uint8[]", "d": "float64[]"}, 8, "ros2"),
+}
+
+
+def damaged(node: Any, path: list[str], new: Any) -> Any:
+    """Return a plan with a new value at a path of attributes and indexes."""
+    if not path:
+        return new
+    if isinstance(node, tuple):
+        index = int(path[0])
+        return (*node[:index], damaged(node[index], path[1:], new), *node[index + 1 :])
+    assert path[0] in {field.name for field in dataclasses.fields(node)}
+    return replace(node, **{path[0]: damaged(getattr(node, path[0]), path[1:], new)})
+
+
+def problems_of(which, changes):
+    """Return the messages of the check for a plan with changed values."""
+    plan = PLANS[which]
+    for path, new in changes.items():
+        plan = damaged(plan, path.split("."), new)
+    return check(plan)
