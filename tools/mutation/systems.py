@@ -47,9 +47,14 @@ def mirrored(path: str) -> str:
 
 
 def mirrors(name: str, path: str) -> bool:
-    """Return whether a test file is that of a module or grammar."""
+    """Return whether a test file is that of a module or grammar.
+
+    The test file may be in a folder below the mirroring one that groups test files.
+    """
     module = "parse" if path.endswith(".lark") else PurePosixPath(path).stem
-    return name == f"{mirrored(path)}/test_{module}.py"
+    file = PurePosixPath(name)
+    folders = (file.parent, file.parent.parent)
+    return file.name == f"test_{module}.py" and PurePosixPath(mirrored(path)) in folders
 
 
 def test_files(root: Path, only: Sequence[str] = ()) -> list[str]:

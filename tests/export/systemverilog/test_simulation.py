@@ -155,7 +155,7 @@ def test_packets_come_back_through_structs_and_two_swapped_fields_are_seen(folde
     text = text.replace(f"{NAME}_deserializer_sv", "swapped_deserializer")
     (tmp_path / "swapped.sv").write_text(text)
     command = [
-        *(sys.executable, "-c", RUN, str(tmp_path), str(Path(__file__).parents[1])),
+        *(sys.executable, "-c", RUN, str(tmp_path), str(Path(__file__).parents[1] / "verilog")),
         str(folder / "vhdl" / "stimuli.txt"),
         *sources(folder),
         *(str(tmp_path / name) for name in ("swapped.sv", "loopback.sv")),

@@ -11,8 +11,8 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.export.vhdl.parts import PARTS
+from tests.examples.test_examples import load
 from tests.export.vhdl.test_layer import analyse, vhdl_of, write
-from tests.test_examples import load
 
 ROOT = Path(__file__).parents[3]
 README = (ROOT / "README.md").read_text()

@@ -7,11 +7,11 @@ import itertools
 import re
 from collections.abc import Iterator
 
-from tools.mutation.harmless import are_independent, is_read_only
-from tools.mutation.index import Index
 from tools.mutation.mutants import Change
-from tools.mutation.order_rules import blocks, hardware_branch
-from tools.mutation.source import Source
+from tools.mutation.rules.harmless import are_independent, is_read_only
+from tools.mutation.rules.index import Index
+from tools.mutation.rules.order_rules import blocks, hardware_branch
+from tools.mutation.rules.source import Source
 
 __all__ = ["RULES"]
 

@@ -19,7 +19,7 @@ from tests.damage import TOKEN, WORDS, mutate
 from tests.fuzz_frontend import Finding, Fuzzer, main, seeds
 from tests.steps import calls_at_most
 
-FOLDER = Path(__file__).parent / "errors"
+FOLDER = Path(__file__).parents[1] / "errors"
 IDL = (
     '#include "a.idl"\nmodule p { module msg { module T_Constants { const long N = 1 << 2; };\n'
     "typedef sequence<string<N>, 3> S; enum E { A }; @final struct T {\n"

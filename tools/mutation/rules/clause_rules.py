@@ -10,10 +10,10 @@ import ast
 import itertools
 from collections.abc import Iterator
 
-from tools.mutation.harmless import is_plain_bool
-from tools.mutation.index import Index
 from tools.mutation.mutants import Change
-from tools.mutation.source import Source
+from tools.mutation.rules.harmless import is_plain_bool
+from tools.mutation.rules.index import Index
+from tools.mutation.rules.source import Source
 
 __all__ = ["RULES"]
 

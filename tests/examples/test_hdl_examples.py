@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.test_examples import ROOT, load
+from tests.examples.test_examples import ROOT, load
 from tests.tools import need
 from tests.vhdl.ghdl import GHDL
 

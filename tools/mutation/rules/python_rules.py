@@ -12,8 +12,8 @@ import tokenize
 from collections.abc import Iterator
 from types import CodeType
 
-from tools.mutation.harmless import durations
 from tools.mutation.mutants import Change
+from tools.mutation.rules.harmless import durations
 
 __all__ = ["changes", "is_fault", "same_code"]
 

@@ -12,7 +12,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePosixPath
 
-from tools.mutation.coverage_map import CoverageMap, Test
+from tools.mutation.map.coverage_map import CoverageMap, Test
 from tools.mutation.mutants import Mutant
 from tools.mutation.systems import mirrored, mirrors
 

@@ -11,8 +11,7 @@ import pytest
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.model import Array, Message, Sequence
-
-from .workspace import make_files
+from tests.frontend.workspace import make_files
 
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
 

@@ -6,9 +6,8 @@ import pytest
 
 from firm_hdl.frontend import Library, show
 from firm_hdl.model import Array
+from tests.frontend.workspace import make_files
 from tests.steps import calls_at_most
-
-from .workspace import make_files
 
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
 DEEP = 5000

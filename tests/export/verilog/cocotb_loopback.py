@@ -1,6 +1,6 @@
 """A bench as users of cocotb write it: packets through both converters, with random pauses.
 
-It is run by the Python of a simulator; :mod:`tests.export.test_cocotb` starts that.
+It is run by the Python of a simulator; :mod:`tests.export.verilog.test_cocotb` starts that.
 """
 
 from __future__ import annotations

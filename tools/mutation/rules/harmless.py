@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 import re
 
-from tools.mutation.source import Functions, Source
+from tools.mutation.rules.source import Functions, Source
 
 __all__ = ["are_independent", "durations", "is_plain_bool", "is_read_only"]
 

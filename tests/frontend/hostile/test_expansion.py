@@ -9,8 +9,7 @@ import pytest
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import expansion
 from firm_hdl.frontend.recordings import use_recording
-
-from .bombs import BOMBS
+from tests.frontend.hostile.bombs import BOMBS
 
 MIB = 1 << 20
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from tools.mutation import clause_rules, neighbour_rules, order_rules, state_rules
-from tools.mutation.index import Index, index_of
 from tools.mutation.mutants import Change
-from tools.mutation.source import Source
+from tools.mutation.rules import clause_rules, neighbour_rules, order_rules, state_rules
+from tools.mutation.rules.index import Index, index_of
+from tools.mutation.rules.source import Source
 
 __all__ = ["changes"]
 

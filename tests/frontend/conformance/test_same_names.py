@@ -8,8 +8,7 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.frontend.sources import FolderOrigin, Sources
 from firm_hdl.model import Action, Message, Service
-
-from .workspace import library, make_files
+from tests.frontend.workspace import library, make_files
 
 
 def names_of(message):

@@ -24,8 +24,8 @@ from typing import Any
 
 from coverage import CoverageData
 
-from tools.mutation import trace
-from tools.mutation.coverage_map import SHARED, CoverageMap, Part, Test
+from tools.mutation.map import trace
+from tools.mutation.map.coverage_map import SHARED, CoverageMap, Part, Test
 from tools.mutation.systems import test_files
 from tools.mutation.workshop import Workshop
 
@@ -213,7 +213,7 @@ def _trace(workshop: Workshop, name: str, each: float | None) -> Part:
         trace.EACH: str(each or ""),
         "COVERAGE_CORE": "ctrace",
     }
-    options = ["-p", "tools.mutation.trace", name]
+    options = ["-p", "tools.mutation.map.trace", name]
     failed: Counter[str] = Counter()
     opaque: list[Test] = []
     while True:

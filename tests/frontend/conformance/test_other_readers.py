@@ -12,9 +12,8 @@ from rosbags.typesys import get_types_from_idl
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library, open_library, show
 from firm_hdl.identity import md5sum
-
-from .recordings import make_recording
-from .workspace import make_files
+from tests.frontend.recordings import make_recording
+from tests.frontend.workspace import make_files
 
 
 @pytest.mark.parametrize("length", ["010", "0010", "00"])

@@ -20,8 +20,7 @@ from firm_hdl.errors import DefinitionError, Source
 from firm_hdl.frontend import Library
 from firm_hdl.frontend.parse import parse_message
 from firm_hdl.model import PRIMITIVES, Message
-
-from .structure import field_descriptions
+from tests.frontend.structure import field_descriptions
 
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
 KINDS = ("msg", "srv", "action")

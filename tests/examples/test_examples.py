@@ -15,9 +15,8 @@ import pytest
 
 import firm_hdl
 from firm_hdl.cli import main as firm_hdl_command
-
-from .frontend.recordings import make_recording
-from .verify.robot import robot, write
+from tests.frontend.recordings import make_recording
+from tests.verify.robot import robot, write
 
 ROOT = Path(firm_hdl.__file__).parent.parent
 PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").glob("*.md")])

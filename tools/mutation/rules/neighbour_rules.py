@@ -10,9 +10,9 @@ import ast
 from collections import defaultdict
 from collections.abc import Iterator
 
-from tools.mutation.index import Index
 from tools.mutation.mutants import Change
-from tools.mutation.source import Source
+from tools.mutation.rules.index import Index
+from tools.mutation.rules.source import Source
 
 __all__ = ["RULES"]
 
