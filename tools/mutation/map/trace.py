@@ -1,7 +1,7 @@
 """A plugin of pytest: record the lines that each test runs, in all its processes, and its time.
 
-Use it by ``-p tools.mutation.map.trace``, with the name of a folder in the environment. Each test is
-a context of coverage, named by its number. Code that runs only once for several tests is marked.
+Use it by ``-p tools.mutation.map.trace``, with the name of a folder in the environment. Each test
+is a context of coverage, named by its number. Code that runs once for several tests is marked.
 Imports have no context. Cached functions and fixtures of a wider scope have a context with a ``+``
 before the number of the first test that needs them.
 
